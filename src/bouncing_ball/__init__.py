@@ -4,31 +4,31 @@ A replication of Carbonelli, Perret-Liaudet, Rigaud and Feki, "Investigation
 of restitution coefficient and spring-damper models for the bouncing ball
 problem", ASME IDETC/CIE 2011, DETC2011-47870.
 
-Three calls answer most questions; ``restitution`` alone is the model with a
-restitution coefficient, with ``frequency_ratio`` a spring-damper contact::
+Three calls answer most questions. With ``restitution`` alone the model is the restitution model,
+and with ``frequency_ratio`` as well it is a spring-damper contact::
 
     bouncing_ball.orbit(n=1, amplitude=1.0, restitution=0.85, frequency_ratio=10.0)
     bouncing_ball.limits(n=1, restitution=0.85, frequency_ratio=10.0)
     bouncing_ball.simulate(amplitude=1.0, restitution=0.85, frequency_ratio=10.0)
 
-Others return labelled datasets, whose ``plot()`` is their figure: a ball over time, one that is
-let go at a height, the branch of orbits over Λ, the motion on which a ball ends::
+Other calls return labelled datasets, whose ``plot()`` draws their figure: a ball over time, a ball
+that is dropped from a height, the branch of orbits over Λ, the motion on which a ball ends::
 
     bouncing_ball.history(amplitude=1.0, restitution=0.85, frequency_ratio=10.0).plot()
     bouncing_ball.drop(height=10.0, restitution=0.85).plot()
     bouncing_ball.branch(n=1, restitution=0.85, frequency_ratio=[10.0, 2.0]).plot()
     bouncing_ball.motion_of(amplitude=1.1, restitution=0.85)
 
-Behind them are the models, :class:`SpringDamperModel` of a :class:`SpringDamper` and
-:class:`RestitutionModel`, with one interface (:mod:`bouncing_ball.orbits.model`).
+These calls use the models :class:`RestitutionModel` and :class:`SpringDamperModel`, the latter with
+a contact :class:`SpringDamper`. All models have one interface (:mod:`bouncing_ball.orbits.model`).
 
 Everything is dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g, and phases and angles are
-in radians. Functions take arrays, which broadcast as in numpy; a docstring gives the shape of a
-result if it is not that to which the arguments broadcast. NaN stands for a number that does not
+in radians. Functions take arrays, which broadcast as in numpy. If the shape of a result is not the
+one to which the arguments broadcast, the docstring gives it. NaN stands for a number that does not
 exist, such as the phase of an orbit below its saddle-node.
 
-The layers, each importing only what lies above it in this list (and ``errors`` and
-``parameters``):
+The package consists of layers, each of which imports only from the layers above it in this list,
+and from ``errors``, ``parameters`` and ``signatures``:
 
 ``datasets``      names, symbols, units and netCDF files
 ``contacts``      the impact: restitution map, spring-damper contact, permanent contact
@@ -38,16 +38,16 @@ The layers, each importing only what lies above it in this list (and ``errors`` 
 ``attractors``    the motions on which balls end: repeating, locked, chaotic
 ``calls``         the calls that most people need: orbits, balls over time, their long run
 ``accuracy``      errors of one model against another, their thresholds, the error law
-``engines``       the contact of physics engines: their parameters, their time stepping
+``engines``       the contacts of physics engines: their parameters, their time stepping
 ``studies``       the stages of the pipeline: parameters in, datasets out
 ``calculator``    units, cases and verdicts for an engineer's contact
 ``atlas``         how stiff is stiff enough, for all orbits: tiles, shards, one file
 ``configuration`` the parameters of a run, read and checked
-``claims``        what the paper claims and prints, and the verdict on each
+``claims``        the claims and formulas of the paper, with a verdict on each
 ``figures``       figures, tables and the article; they compute nothing
-``provenance``    the commit, the parameters and the versions that an artifact is made from
-``compare``       datasets, texts and pictures of two runs against each other
-``pipeline``      what the Snakefile needs of Python
+``provenance``    the commit, the parameters and the versions from which an artifact is made
+``compare``       the comparison of datasets, texts and pictures of two runs
+``pipeline``      the Python side of the Snakefile: source files of a stage, jobs, progress
 ``cli``           the command line, ``bouncing-ball``
 """
 
@@ -56,8 +56,8 @@ from typing import Any
 
 __version__ = "0.1.0"
 
-# The names that users import from here, and their modules. A module is imported on first use:
-# the command line's --help needs no numpy.
+# The modules of the names that users import from here. Each module is imported on first use,
+# because --help of the command line needs no numpy.
 _MODULES = {
     "calls.model": ("model",),
     "calls.orbits": ("orbit", "limits", "branch"),

@@ -1,7 +1,6 @@
-"""The errors a user can cause, as one-line messages.
+"""The errors that a user can cause, with messages of one line.
 
-Both derive from :class:`ValueError`, so that callers who do not care for the
-distinction can catch that.
+All of them derive from :class:`ValueError`, so that callers can catch them without a distinction.
 """
 
 import re
@@ -18,10 +17,10 @@ class ModelError(ValueError):
 
 
 class ParameterError(ModelError):
-    """Parameters of a call that do not go together, or one that is missing.
+    """A parameter of a call that is missing, not allowed, or in contradiction to another.
 
     ``{name}`` in the text stands for a parameter, which the command line shows as its option, and
-    each ``{}`` for one of the values that follow the text. A value may contain braces itself.
+    each ``{}`` for one of the values that follow the text. A value may contain braces.
 
     Examples
     --------
@@ -44,12 +43,14 @@ class ParameterError(ModelError):
 
 
 class NoOrbitError(ValueError):
-    """The requested periodic orbit does not exist, with the reason why."""
+    """The requested periodic orbit does not exist; the message gives the reason."""
 
 
 @contextmanager
 def extra(name: str) -> Iterator[None]:
-    """Around imports that need an extra of the package: one line says how to install it.
+    """A context for imports that need an extra of the package.
+
+    If a package is missing, the error is one line that tells how to install the extra.
 
     Raises
     ------
@@ -76,7 +77,7 @@ install the extra 'plot', for example pip install ".[plot]"
 
 
 def require(valid: "ArrayLike", value: "ArrayLike", name: str, allowed: str) -> None:
-    """Raise :class:`ModelError` with the first value that is not valid.
+    """Raise :class:`ModelError` with the first value that is not valid, if there is one.
 
     Examples
     --------
@@ -85,7 +86,7 @@ def require(valid: "ArrayLike", value: "ArrayLike", name: str, allowed: str) -> 
     ...
     bouncing_ball.errors.ModelError: restitution coefficient r = 1.5 is not in (0, 1]
     """
-    # Imported here: the command line needs the errors, and for --help no numpy.
+    # Imported here, because the command line imports this module, and --help needs no numpy.
     import numpy as np
 
     if not np.all(valid):
@@ -95,7 +96,7 @@ def require(valid: "ArrayLike", value: "ArrayLike", name: str, allowed: str) -> 
 
 
 def escaped(text: str) -> str:
-    """Text in which nothing moves a cursor, hides or turns the reading.
+    """Text with escapes for control characters and for marks that hide or reverse text.
 
     Examples
     --------
@@ -110,7 +111,7 @@ def escaped(text: str) -> str:
 
 
 def printable(text: object, width: int | None = 300) -> str:
-    """Text of one line in which nothing moves a cursor; a long one is cut off.
+    """Text in one line, escaped as by :func:`escaped`; a longer text than ``width`` is cut off.
 
     Examples
     --------

@@ -1,8 +1,8 @@
 """The types from which parameters are made: the meaning of a number, its unit and its range.
 
-A study takes a subclass of :class:`Parameters` that stands beside it. The check of the
+Each study takes a subclass of :class:`Parameters` that is defined beside it. The check of the
 configuration, its one-line errors, its documentation and its JSON schema are made from these
-classes, so that a name, a range or a description stands once. The description gives the reason
+classes, so that each name, range and description is written once. The description gives the reason
 for each limit. Numbers that many studies take are rows of ``parameters.csv``.
 """
 
@@ -37,9 +37,7 @@ class Parameters(BaseModel):
 
 
 def number(description: str, unit: str = "1", **limits: Any) -> Any:
-    """The field of a number: its description, its unit and the limits ``ge``, ``gt``, ``le``,
-    ``lt``.
-    """
+    """The field of a number: its description, its unit, and limits such as ``ge`` and ``lt``."""
     return Field(description=description, json_schema_extra={"unit": unit}, **limits)
 
 
@@ -61,7 +59,7 @@ def _distinct(values: tuple) -> tuple:
 
 
 Many = Annotated[tuple[_T, ...], Strict(False), Field(min_length=1), AfterValidator(_distinct)]
-"""One or more different values, a list in the configuration."""
+"""One or more distinct values, given as a list in the configuration."""
 
 Family = Annotated[int, listed("Family")]
 Restitution = Annotated[float, listed("Restitution")]

@@ -1,7 +1,7 @@
-"""Ranges of a call's parameters, and parameters that it hands on to another call.
+"""Ranges of a call's parameters, and parameters that a call hands on to another call.
 
-The command line reads both from the signatures of the calls, and the meaning of a parameter from
-the call's docstring, so that each stands once.
+The command line takes both from the signatures of the calls, and the description of a parameter
+from the docstring of the call, so that each is written once.
 """
 
 import inspect
@@ -15,7 +15,7 @@ _Call = TypeVar("_Call", bound=Callable)
 
 
 class Range(NamedTuple):
-    """The numbers that are allowed, as an annotation; ``ends`` are the brackets.
+    """The range of the numbers allowed, as an annotation; ``ends`` are the interval's brackets.
 
     Examples
     --------
@@ -46,22 +46,25 @@ class Range(NamedTuple):
 
 
 def count(high: int, low: int = 1) -> Range:
-    """The whole numbers from ``low`` to ``high``."""
+    """The range of the whole numbers from ``low`` to ``high``."""
     return Range(low, high, "[]", whole=True)
 
 
 def takes(other: Callable, *names: str, without: Container[str] = ()) -> Callable[[_Call], _Call]:
-    """A call whose ``**keywords`` are parameters of another: its signature shows them.
+    """Decorator of a call that hands its ``**keywords`` on to another call.
+
+    The signature of the decorated call shows the parameters of the other call.
 
     Parameters
     ----------
     other : callable
         The call to which the keywords are handed on.
     names : str
-        Those of its parameters that are meant; all of them if none is named. A parameter of
-        the decorated call without an annotation has that of the other, and its default.
+        The parameters of ``other`` that are handed on; all of them if none is named. A parameter
+        of the decorated call without an annotation has the annotation of the other call and, if it
+        has no default, the default of the other call.
     without : container of str
-        Those that are not meant.
+        Parameters of ``other`` that are not handed on.
 
     Examples
     --------

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball import design
-from bouncing_ball.calculator.motion import height_and_power
+from bouncing_ball.calculator.motion import aside, height_and_power
 from bouncing_ball.calculator.results import Mean, Motion
 from bouncing_ball.calculator.verdict import judged_by_motion
 from bouncing_ball.contacts.spring_damper import SpringDamper
@@ -90,6 +90,13 @@ def test_a_verdict_on_an_orbit_says_that_it_leaves_out_a_ball_laid_on_the_table(
     found = design(**UNIT | {"n": 7, "stiffness": 1e5}, acceleration=2.0, tolerance="20 %")
     assert found.motion.kind == "orbit" and found.motion.laid not in (None, "permanent contact")
     assert found.verdict.endswith(", and is not judged.") and "; a ball laid" in found.verdict
+
+
+def test_a_ball_laid_on_the_table_is_left_out_without_a_word_where_it_rests_in_both_models():
+    # A ball with restitution alone rests up to Λ = 1.
+    for laid, amplitude in (("permanent contact", 1.01), ("chaotic", 0.9)):
+        assert aside(Motion("orbit", 1, 1, laid), amplitude).endswith("and is not judged")
+    assert aside(Motion("orbit", 1, 1, "permanent contact"), 1.0) == ""
 
 
 def test_without_loss_a_ball_stays_beside_the_orbit(short_runs):

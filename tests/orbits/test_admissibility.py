@@ -112,6 +112,5 @@ def test_what_misses_its_own_start_is_no_orbit():
         assert late.is_admissible() == fast.is_admissible() == same
     # Thrown up at nπ from an earlier phase the ball lands in time, and with another velocity.
     pace = np.cos(phase - 0.1)
-    assert not RestitutionOrbit.of(
-        1, 0.85, 1.0, phase - 0.1, 0.0, pace - (np.pi - pace) / 0.85
-    ).is_admissible()
+    early = RestitutionOrbit.of(1, 0.85, 1.0, phase - 0.1, 0.0, pace - (np.pi - pace) / 0.85)
+    assert not early.is_admissible()

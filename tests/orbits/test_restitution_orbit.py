@@ -90,9 +90,6 @@ def test_values():
     # Eqs. 7 and 8 worked out by hand for r = 1/2: nπ/3 and 2(5/4)/(9/4) = 10/9.
     assert float(saddle_node(3, 0.5)) == pytest.approx(np.pi, rel=4 * EPS)
     assert float(period_doubling(3, 0.5)) == pytest.approx(np.hypot(10 / 9, np.pi), rel=4 * EPS)
-    assert float(period_doubling(3, 0.5, ImpactMap.HOLMES)) == pytest.approx(
-        np.hypot(1, np.pi), rel=4 * EPS
-    )
 
 
 @pytest.mark.parametrize(("n", "r", "top"), [(1, 0.85, 2.0), (5, 0.85, 1.4), (2, 1.0, 1.5)])

@@ -95,6 +95,17 @@ class Stretching(NamedTuple):
         ``lap`` is the number of impacts after which a ball has stuck to the table again, 0 if it
         has not. The computed motion is the same in each lap, so that only the means of one lap are
         independent. Means that are equal up to rounding are copies of one mean and give no error.
+
+        Examples
+        --------
+        Growth by 1 and by 3 in one unit of time each, and the same in four laps:
+
+        >>> stretch = Stretching.of(1)
+        >>> stretch.sums[0] = 2, 4, 2, 10, 4, 2
+        >>> with np.errstate(divide="ignore"):
+        ...     rate, error = stretch.exponent(np.array([0, 0]), np.array([0, 16]))
+        >>> rate.tolist(), error.tolist()
+        ([2.0, 2.0], [1.0, 2.0])
         """
         number, growth, time, square, product, times = self.sums[which].T
         rate = growth / time

@@ -20,20 +20,21 @@ from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
 
-# Two restitution coefficients are one: the law is found, and interpolated, to 1e-12.
+# Restitution coefficients that differ by less are taken for equal, because a contact law is fitted
+# to a free impact, and its signature interpolated, to 1e-12.
 _SAME = 1e-9
 
 
 @dataclass(frozen=True)
 class Table:
-    """The table's motion A sin Ωt, and gravity.
+    """The table with its motion A sin Ωt, and the acceleration of gravity.
 
     Parameters
     ----------
     angular_frequency, table_amplitude : float
         Ω in rad/s and the amplitude A of the table in m.
     gravity : float
-        g in m/s²; in a gear pair the drag torque over the inertia.
+        g in m/s²; for a gear pair, the deceleration that the drag torque causes.
 
     Examples
     --------
@@ -47,7 +48,7 @@ class Table:
 
     @property
     def amplitude(self) -> float:
-        """Λ = AΩ²/g, the amplitude of the table's acceleration over gravity."""
+        """Excitation amplitude Λ = AΩ²/g, the greatest acceleration of the table over gravity."""
         return self.table_amplitude * self.angular_frequency**2 / self.gravity
 
     @property
@@ -63,7 +64,9 @@ class Table:
 
 @dataclass(frozen=True)
 class Case:
-    """A case to design for; its models are built once.
+    """A ball on a vibrating table with a contact between them, and the models of this contact.
+
+    The models are built on first use.
 
     Parameters
     ----------
@@ -73,8 +76,8 @@ class Case:
     contact : SpringDamper
         ϖ, ζ and the release rule.
     law : ContactLaw, optional
-        A Hertz contact; the linear one then has its restitution coefficient, and its
-        duration at the orbit's impact speed.
+        A nonlinear contact law. ``contact`` is then the linear contact with the same restitution
+        coefficient and duration as this law has at the impact speed of the orbit.
 
     Examples
     --------
@@ -90,8 +93,8 @@ class Case:
 
     @cached_property
     def models(self) -> dict[str, ImpactModel]:
-        """The models by name: the exact one first, then the simple ones with the r of a free
-        impact.
+        """The models by name: first the exact model, then the two simple models, in which r is
+        that of a free impact.
         """
         if self.law is None:
             return {model.name: model for model in models(self.contact)}
@@ -102,23 +105,22 @@ class Case:
         }
 
     def instant(self, n: int) -> Instant:
-        """The signature of the contact at the impact speed of the restitution model's n-T orbit."""
+        """Signature of the contact at the impact speed of the restitution model's n-T orbit."""
         r = self.contact.restitution
-        # The r of a law is interpolated, and may exceed 1 by rounding.
+        # The r of a contact law is interpolated, and may exceed 1 by rounding.
         return self.models["corrected"].signature(rigid_speed(n, r))._replace(restitution=r)
 
     def has_its_restitution(self, n: int) -> bool:
-        """Whether the r of the contact is that of the law at the impact speed of the n-T orbit."""
+        """Whether the contact law has the r of ``contact`` at the impact speed of the n-T orbit."""
         r = float(self.contact.restitution)
         own = self.models["corrected"].signature(rigid_speed(n, r)).restitution
         return abs(float(own) - r) < _SAME
 
     def in_si(self) -> dict[str, float]:
-        """Stiffness k = mω² and damping c = 2ζmω with ω = ϖΩ, contact time, and static deflection
-        mg/k.
+        """Stiffness k = mω² in N/m, damping c = 2ζmω in N s/m, where ω = ϖΩ, contact time in s,
+        and static deflection mg/k in m.
 
-        They are in N/m, N s/m, s and m. For a Hertz contact the deflection is that at which K
-        p^{3/2} = 1.
+        For a contact law the deflection is the one at which its force at rest is the weight.
         """
         omega = float(self.contact.frequency_ratio) * self.table.angular_frequency
         deflection = self.table.gravity / omega**2
@@ -141,7 +143,7 @@ class Case:
 
     @cached_property
     def permanent_contact(self) -> float:
-        """Λ up to which the ball stays down; NaN if no such threshold was found."""
+        """Λ up to which the ball stays on the table; NaN if no such threshold was found."""
         with suppress(ModelError):
             return permanent_contact(self.contact if self.law is None else self.law)
         return math.nan

@@ -1,4 +1,4 @@
-r"""The case from its data: a table, and a contact that two numbers determine.
+r"""A case from given data: a table, and a contact that two numbers determine.
 
 A free impact ends at the angle π - 2α (:mod:`bouncing_ball.contacts.release`), so that ::
 
@@ -11,7 +11,7 @@ determine it. For two elastic bodies, the ball and the table (Hertz), ::
 
     1/E* = (1 - ν₁²)/E₁ + (1 - ν₂²)/E₂
 
-Everything in SI units.
+All quantities are in SI units.
 """
 
 import math
@@ -31,11 +31,11 @@ from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
 
-# Parameters that determine the stiffness of a contact; a modulus goes with a radius.
+# Parameters that determine the stiffness of a contact; a modulus needs the radius, too.
 STIFF = ("stiffness", "contact_time", "reduced_modulus", "youngs_modulus")
 MATERIALS = ("youngs_modulus", "poissons_ratio", "table_youngs_modulus", "table_poissons_ratio")
 """Moduli E and Poisson's ratios ν of the ball and of the table, from which E* follows."""
-# Parameters that determine its loss; the height of a rebound goes with that of the drop.
+# Parameters that determine its loss; the height of a rebound needs that of the drop, too.
 LOSSY = ("damping", "damping_ratio", "restitution", "measured_restitution", "rebound_height")
 _PAIRS = {"rebound_height": "drop_height"}
 
@@ -46,10 +46,10 @@ STANDARD_GRAVITY = 9.80665
 
 
 def _one_of(given: Given, names: tuple[str, ...], what: str, give: str = "") -> str:
-    """The one of some parameters that is given.
+    """Name of the single one of these parameters that is given.
 
-    If none is given, it is an error if ``give`` names what to give, and otherwise the name is
-    empty.
+    If none of them is given, the result is an empty text, or, where ``give`` names the parameters
+    to give, an error.
     """
     found = [name for name in names if name in given]
     if len(found) > 1:
@@ -61,13 +61,13 @@ def _one_of(given: Given, names: tuple[str, ...], what: str, give: str = "") -> 
 
 
 def loss(given: Given, release: Release) -> float:
-    """Damping ratio ζ of a contact whose loss is given without its stiffness.
+    """Damping ratio ζ of a contact whose loss is given without the stiffness.
 
     Raises
     ------
     ModelError
-        If no parameter gives the loss, or two do, or a damping c, which needs the stiffness, or if
-        r or ζ is out of range.
+        If no parameter or more than one gives the loss, if the loss is given as a damping c, which
+        needs the stiffness, or if r or ζ is out of range.
 
     Examples
     --------
@@ -93,7 +93,7 @@ def loss(given: Given, release: Release) -> float:
 
 
 def _oscillating(zeta: float, release: Release, name: str) -> float:
-    # If the damper does not pull, a ball on an overdamped contact comes back as well.
+    # If the damper cannot pull, a ball rebounds from an overdamped contact as well.
     pulls = release is Release.DISPLACEMENT
     bounces = not pulls or (zeta < 1 and SpringDamper(1.0, zeta, release).restitution > 0)
     if not bounces:
@@ -103,18 +103,19 @@ def _oscillating(zeta: float, release: Release, name: str) -> float:
 
 
 def reduced_modulus(given: Given) -> float | None:
-    """E* of a Hertz contact in Pa, given or from the materials of both bodies; None for another
-    contact.
+    """E* of a Hertz contact in Pa, given or computed from the materials of both bodies.
+
+    None if the contact is not a Hertz contact.
 
     Raises
     ------
     ModelError
-        If a part of the data is missing.
+        If one of the parameters that are needed together is missing.
 
     Examples
     --------
-    For two bodies of the same material, without lateral contraction, it is half the modulus; on a
-    much stiffer table it is the modulus of the ball:
+    For two bodies of the same material with ν = 0, E* is half of Young's modulus; on a much
+    stiffer table it is Young's modulus of the ball:
 
     >>> same = dict.fromkeys(MATERIALS, 0.0) | {"radius": 1.0}
     >>> reduced_modulus(same | {"youngs_modulus": 2.0, "table_youngs_modulus": 2.0})
@@ -144,8 +145,9 @@ def reduced_modulus(given: Given) -> float | None:
 
 
 def hertz(mass: float, modulus: float, radius: float, restitution: float, table: Table) -> Tsuji:
-    """The dimensionless law of a Hertz contact with E* in Pa and R in m: K = k √g/(mΩ³), and C of
-    r.
+    """The dimensionless law of a Hertz contact with E* in Pa and R in m.
+
+    Its stiffness is K = k √g/(mΩ³), and its damping C follows from r.
 
     Examples
     --------
@@ -159,7 +161,7 @@ def hertz(mass: float, modulus: float, radius: float, restitution: float, table:
 
 
 def table_of(given: Given) -> Table:
-    """The table, from one parameter for its rate and one for its displacement.
+    """The table, from one parameter for the frequency and one for the amplitude of its motion.
 
     Raises
     ------
@@ -182,7 +184,9 @@ def table_of(given: Given) -> Table:
 
 
 def meant(asked: Sequence[int], restitution: float, amplitude: float) -> int:
-    """The lowest of the families that is stable in the restitution model, or the first one.
+    """The first of the families whose orbit is stable in the restitution model.
+
+    If none of these orbits is stable, it is the first family.
 
     Examples
     --------
@@ -202,7 +206,7 @@ def case_of(
     asked: Sequence[int],
     kind: type[ContactLaw] | None = None,
 ) -> Case | None:
-    """The case whose contact is given; None without any stiffness.
+    """The case with the contact that is given; None if no parameter gives a stiffness.
 
     Parameters
     ----------
@@ -211,7 +215,9 @@ def case_of(
     table : Table
     release : Release
     asked : sequence of int
-        Families n, of which the first stable one gives the impact speed of a Hertz contact.
+        Families n. The impact speed of a nonlinear contact is that of the first stable family.
+    kind : type of ContactLaw, optional
+        A contact law, whose parameters follow from r, the contact time and the impact speed.
 
     Raises
     ------
@@ -241,23 +247,17 @@ def case_of(
         else:
             zeta = loss(given, release)
         return Case(mass, table, SpringDamper(omega / table.angular_frequency, zeta, release))
-    # In the unit of time in which the frequency of the contact is 1.
+    # A contact with ω = 1; its free duration over the given one is ϖ.
     unit = SpringDamper(1.0, loss(given, release), release)
-    law: ContactLaw | None = None
+    if modulus is not None and release is not Release.DISPLACEMENT:
+        raise ModelError("a Hertz contact with Tsuji's damping has the displacement release only")
+    of_unit, r = float(unit.free_duration), float(unit.restitution)
+    speed = rigid_speed(meant(asked, r, table.amplitude), r)
+    law: ContactLaw | None
     if modulus is None:
         duration = given["contact_time"] / table.time
-        if kind is not None:
-            r = float(unit.restitution)
-            speed = rigid_speed(meant(asked, r, table.amplitude), r)
-            law = law_of_impact(kind, r, duration, speed)
+        law = None if kind is None else law_of_impact(kind, r, duration, speed)
     else:
-        if release is not Release.DISPLACEMENT:
-            raise ModelError(
-                "a Hertz contact with Tsuji's damping has the displacement release only"
-            )
-        r = float(unit.restitution)
         law = hertz(mass, modulus, given["radius"], r, table)
-        speed = rigid_speed(meant(asked, r, table.amplitude), r)
         duration = float(free_impact(law, speed).duration)
-    ratio = float(unit.free_duration) / duration
-    return Case(mass, table, SpringDamper(ratio, unit.damping_ratio, release), law)
+    return Case(mass, table, SpringDamper(of_unit / duration, unit.damping_ratio, release), law)

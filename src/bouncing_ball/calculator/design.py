@@ -37,11 +37,11 @@ STEPS = 50
 """Time steps in one contact, for the rule of the largest time step."""
 STEP_RULE = f"a contact takes {STEPS} steps, the default of MFiX-Exa (mfix.tcoll_ratio)"
 
-# The families by default: those that the paper shows, and some more.
+# The default families: those that the paper shows, and some more.
 _FAMILIES = range(1, 9)
-# Beyond this the squares of ϖ and Λ leave no digits; the rest of the command line has the same.
+# Beyond this limit the squares of ϖ and Λ leave no digits. The other calls have the same limit.
 _LARGEST = 1e8
-# What says that there is a table.
+# Parameters of which each implies that there is a table.
 _TABLE = {"frequency", "angular_frequency", "period", "table_amplitude", "acceleration"}
 _LOSS = Unit("", "0.85", Range(0, 1, "(]"))
 _POISSON = Unit("", "0.3", Range(-1, 0.5, "(]"))
@@ -204,7 +204,7 @@ def design(
         if case is None:
             case, need = _chosen(given, table, rule, asked, question)
         elif source and not engine:
-            # For another engine it is the spring and damper that is written.
+            # For another engine the spring and damper is written in place of the law.
             case = replace(case, law=source.law(table))
         return _design(case, need, asked, question, remarks)
     except NoOrbitError as error:
@@ -223,7 +223,7 @@ def _chosen(
     asked: Sequence[int],
     question: Mapping[str, Any],
 ) -> tuple[Case, Needed]:
-    """The most compliant contact within the tolerance."""
+    """The case with the most compliant contact within the tolerance, and the ϖ needed for it."""
     contact, quantity = SpringDamper(1.0, loss(given, rule), rule), question["quantity"]
     r = float(contact.restitution)
     index = meant(asked, r, table.amplitude)
@@ -246,7 +246,7 @@ def _contact(
     question: dict[str, Any],
     remarks: tuple[str, ...],
 ) -> Contact:
-    """A contact without a table."""
+    """The answer about a contact without a table."""
     # With a table of 1 rad/s the frequency ratio is the frequency of the contact.
     case = case_of(given, Table(1.0, 1.0, STANDARD_GRAVITY), rule, [1])
     if case is None:
@@ -265,7 +265,10 @@ def _contact(
 def _of_law(
     name: str | None, engine: str | None, release: str | None, given: dict[str, float]
 ) -> type[ContactLaw] | None:
-    """The kind of a contact law, which a free impact gives its parameters; None if it is linear."""
+    """The type of the contact law that is named; None for the linear contact.
+
+    The parameters of the law follow from a free impact, so that r counts as measured.
+    """
     if name is not None and engine is not None and name != SpringDamper.name:
         laws = engine_named(engine).laws
         if name not in {*laws, *laws.values()}:
@@ -290,7 +293,10 @@ def _of_law(
 
 
 def _under(engine: str | None, release: str | None, given: dict[str, float]) -> Release:
-    """The release of a contact; a restitution is then the one under the release of the engine."""
+    """The release rule of a contact.
+
+    With an engine, a given restitution counts as measured under the release of this engine.
+    """
     if engine is None:
         return Release.of(release or Release.DISPLACEMENT)
     rule = engine_named(engine).release(release)
@@ -308,14 +314,14 @@ def quantities() -> dict[str, Unit]:
 
 
 def _read(parameters: Mapping[str, Any]) -> dict[str, float]:
-    """The quantities that are given, in SI units and in their ranges."""
+    """The quantities that are given, in SI units, after a check of their ranges."""
     given = {}
     for name, kind in quantities().items():
         if parameters.get(name) is not None:
             given[name] = value = number(name, parameters[name], kind)
             if value not in kind.allowed:
                 said = f"{{{name}}} = {value:g} {kind.name}".rstrip()
-                # A share that is above one was meant in percent.
+                # A share above 1 was probably meant in percent.
                 share = kind.allowed.high == 1 <= value < 100 and "%" not in str(parameters[name])
                 meant = f": did you mean {value:g} %?" if share else ""
                 raise ParameterError(f"{said} is not {kind.allowed}{meant}")
@@ -330,16 +336,17 @@ def _design(
     remarks: tuple[str, ...],
     no_orbit: str = "",
 ) -> Design:
-    """Everything that is known of a contact, given, or chosen for what is needed.
+    """The answer about a contact that is given or, with ``need``, was chosen for a tolerance.
 
-    If ``no_orbit`` says why no model has an orbit, the ball is one that is laid on the table.
+    If no model has an orbit, ``no_orbit`` gives the reason, and the answer is about a ball that is
+    laid on the table.
     """
     contact, table = case.contact, case.table
     only = "below 1: without a table r is computed, with one only underdamped contacts are"
     require(contact.damping_ratio < 1, contact.damping_ratio, "damping ratio ζ", only)
     ratio, found = float(contact.frequency_ratio), families(case, asked, bool(no_orbit))
     require(1 / _LARGEST < ratio < _LARGEST, ratio, "ϖ", f"between {1 / _LARGEST:g} and 1e8")
-    # The verdict is about the first stable family, or the first that exists.
+    # The verdict is about the first family whose orbit is stable and admissible, or else exists.
     one = max(found, key=lambda one: (one.exists, one.is_stable and one.is_admissible))
     if need is None:
         quantity, tolerance, before = question["quantity"], question["tolerance"], ""
@@ -351,7 +358,7 @@ def _design(
         verdict = chosen(case.in_si(), need, index)
         before = f"{verdict.verdict} "
     motion = of_family(case, one, need.tolerance)
-    # A threshold of permanent contact is none of an orbit.
+    # A threshold, such as that of permanent contact, is not a property of one orbit.
     if motion.restitution_kind is not None and need.quantity in OF_ORBITS:
         end = judged_by_motion(motion, need.tolerance, one.n)
         verdict = end._replace(verdict=before + end.verdict, reason=no_orbit or end.reason)
@@ -384,7 +391,7 @@ def _design(
         question=question,
     )
     if question["engine"]:
-        # There is one time step, the engine's.
+        # The only time step given is that of the engine.
         settings = answer.engine_settings()
         why = f"r of a free impact in {settings.name} is within {settings.error:g}"
         answer = replace(answer, time_step=TimeStep(settings.time_step, why))

@@ -1,4 +1,4 @@
-"""A contact that is given by the parameters of an engine."""
+"""Contacts that are given by the parameters of a physics engine."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -13,13 +13,13 @@ from bouncing_ball.errors import ParameterError
 
 
 class Source(NamedTuple):
-    """An engine and the parameters of its contact that are given."""
+    """An engine and the given parameters of its contact."""
 
     engine: Engine
     parameters: dict[str, Any]
 
     def law(self, table: Table) -> ContactLaw | None:
-        """The law of this contact on a table; None if it is a spring and a damper."""
+        """The law of this contact, dimensionless on a table; None if it is a spring and damper."""
         return self.engine.law(self.parameters, table.time, table.length)
 
     def remarks(self) -> tuple[str, ...]:
@@ -28,7 +28,10 @@ class Source(NamedTuple):
 
 
 def read_engine(said: Mapping[str, Any]) -> tuple[Source | None, dict[str, Any]]:
-    """The engine whose parameters are given, and these parameters as stiffness and damping."""
+    """The engine whose parameters are given, and the arguments with these as k and c.
+
+    Without such an engine, None and the arguments unchanged.
+    """
     names, name = ("solref", "solimp"), said.get("from_engine")
     values = {**{x: said.get(x) for x in names}, **dict(said.get("parameters") or {})}
     values = {x: value for x, value in values.items() if value is not None}
@@ -45,6 +48,6 @@ def read_engine(said: Mapping[str, Any]) -> tuple[Source | None, dict[str, Any]]
     mass, rule = said.get("mass"), said.get("release")
     mass = None if mass is None else number("mass", mass, Unit("kg", "20 g"))
     contact = source.engine.read(values, mass)
-    # For another engine the release is the one of that engine.
+    # If the contact is written for another engine, that engine determines the release.
     rule = rule if said.get("engine") else str(source.engine.release(rule))
     return source, {**said, **contact._asdict(), "mass": mass, "release": rule}

@@ -15,14 +15,15 @@ from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits.orbit import Orbit
 
-# Samples of a contact, and further ones for each radian of the table, because a long contact has
-# several maxima. The two steps around the greatest are sampled again: their length is then
-# a 10⁻⁶th of the contact, and a parabola exceeds its samples by 10⁻¹¹ of its height.
+# Samples of a contact, and further samples for each radian of the table's motion, because a long
+# contact has several maxima. The two steps around the greatest sample are sampled again. A step is
+# then 2·10⁻⁶ of the contact, so that a parabola exceeds its samples by less than 10⁻¹¹ of its
+# height.
 _SAMPLES, _IN_A_RADIAN = 1001, 16
 
 
 def finite(value: float | np.ndarray) -> float | None:
-    """A number; None if it is NaN or infinite."""
+    """The value as a Python float; None if it is NaN or infinite."""
     return float(value) if math.isfinite(value) else None
 
 
@@ -50,9 +51,9 @@ def _loads(orbit: Any) -> tuple[float, float]:
 
 
 def by_error_law(case: Case, n: int) -> tuple[Errors, bool]:
-    """Moduli of the restitution model's errors by the error law, and whether it holds there.
+    """Moduli of the restitution model's errors by the error law, and whether the law holds here.
 
-    The error of the permanent contact, |K₂|/ϖ², is not known for a Hertz contact.
+    The error of the permanent contact, |K₂|/ϖ², is known for the linear contact only.
 
     Examples
     --------
@@ -68,7 +69,8 @@ def by_error_law(case: Case, n: int) -> tuple[Errors, bool]:
         first = error_law.first_order(n, instant, lam)
         law[: len(first)] = [*first.values()]
         holds = bool(error_law.small_parameter(n, instant, lam) < error_law.STATED)
-        # A law whose r depends on the speed has the r of the restitution model at one speed only.
+        # If the r of a contact law depends on the speed, it equals the r of the restitution model
+        # at one speed only.
         holds = holds and case.has_its_restitution(n)
     if case.law is None:
         second = error_law.permanent_contact_coefficient(contact.damping_ratio, contact.release)
@@ -91,14 +93,15 @@ def _standing(orbit: Orbit, values: np.ndarray, amplitude: float) -> Standing:
 
 
 def families(case: Case, asked: Sequence[int], or_first: bool = False) -> tuple[Family, ...]:
-    """Those of the families ``asked`` in which some model has an orbit.
+    """The families ``asked`` in which at least one model has an orbit.
 
-    If there is none, that is an error, or with ``or_first`` the first of them without an orbit.
+    If there is no such family, the result is the first of ``asked`` with ``or_first``, and
+    otherwise an error.
 
     Raises
     ------
     NoOrbitError
-        If no model has one; the message gives the acceleration that the lowest family needs.
+        If no model has an orbit; the message gives the Λ that the first family needs.
 
     Examples
     --------
@@ -115,7 +118,7 @@ def families(case: Case, asked: Sequence[int], or_first: bool = False) -> tuple[
         still = np.full(n.shape, RESTITUTION_THRESHOLD if found else case.permanent_contact)
         node = model.saddle_node(n).amplitude
         limits = node, model.period_doubling(n).amplitude, still
-        # Below its saddle-node a model has no orbit to be looked for.
+        # Below its saddle-node a model has no orbit, so that none is searched for.
         orbits.append(model.orbit(n, np.where(lam < node, np.nan, lam)))
         found.append([*(getattr(orbits[-1], quantity) for quantity in OF_ORBITS), *limits])
     values = np.array(found)
@@ -137,7 +140,9 @@ def families(case: Case, asked: Sequence[int], or_first: bool = False) -> tuple[
 
 
 def _family(case: Case, n: int, orbits: Sequence[Any], values: np.ndarray) -> Family:
-    """A family from its orbits in all models and its quantities, shape (model, quantity)."""
+    """A family from its orbits in all models and the ``values`` of the quantities, shape
+    (model, quantity).
+    """
     unit, orbit = case.table, orbits[0]
     standing = [_standing(*each, unit.amplitude) for each in zip(orbits, values, strict=True)]
     depth, force = _loads(orbit)

@@ -8,10 +8,10 @@ over time of the height, and of the power that the table transfers to the ball
 the contacts.
 
 In a chaotic motion the balls of both models start alike, and each gives a pair of means. The error
-of the ratio of both means is that of the differences within the pairs, which counts what the pairs
-have in common; for independent ones it is by √2 less than the sum of both errors. Balls are added
-until the difference is decided against the tolerance, up to a number of them that takes some three
-seconds.
+of the ratio of both means follows from the differences within the pairs, so that fluctuations which
+both models share cancel. For independent means it is smaller than the sum of both errors, by a
+factor of √2 if these are equal. Balls are added until the difference is known to be within or
+beyond the tolerance, up to a number of balls that takes about three seconds.
 """
 
 from collections.abc import Mapping
@@ -31,14 +31,15 @@ from bouncing_ball.motion.linear_contact import has_closed_form
 from bouncing_ball.motion.sequence import ImpactSequence, Status
 from bouncing_ball.motion.work import over_steps
 
-# Relative change of the velocity of an orbit, for a start beside it.
+# Relative change of an orbit's impact velocity for a start beside the orbit.
 _BESIDE = 1e-3
 # Number of impacts after which the search for a repetition ends.
 _IMPACTS = 600
-# Balls of a round, the largest number of rounds, and impacts of a mean with those left out before;
-# for a linear contact and for a law, which takes a hundred times as long.
+# Balls in a round, the largest number of rounds, impacts of each ball, and the number of first
+# impacts left out of the means: for a linear contact, and for a contact law, which takes a hundred
+# times as long.
 _SAMPLES, _SAMPLES_OF_LAW = (256, 6, 500, 100), (32, 1, 120, 40)
-# Quantile of Student's distribution for an interval of 95 %, with 32 balls or more.
+# Quantile of Student's distribution for a confidence interval of 95 % with 32 balls or more.
 _STUDENT = 2.04
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 
@@ -51,9 +52,9 @@ class _Start(NamedTuple):
 
 
 def of_family(case: Case, family: Family, tolerance: float) -> Motion:
-    """The motion of a ball that starts on the orbit, or beside it if it is not stable.
+    """The motion of a ball that starts on the orbit of a family, or beside an unstable orbit.
 
-    Means over time are compared up to a decision against the tolerance.
+    Balls are added to the means over time until these decide about the tolerance.
     """
     lam = case.table.amplitude
     exact, simple = list(case.models)[:2]
@@ -64,7 +65,8 @@ def of_family(case: Case, family: Family, tolerance: float) -> Motion:
     lossless = float(case.contact.restitution) == 1 and family.exists and family.is_admissible
     if orbit is not None and lossless and abs(float(orbit.trace_and_determinant()[0])) < 2:
         return Motion(str(Kind.UNDECIDED), 0, 0)
-    # Where no model has an orbit: a ball laid on the table as that is fastest on its way down.
+    # If no model has an orbit, a ball laid on the table at the phase where the table moves down
+    # fastest.
     start = _Start(np.pi, -lam)
     if orbit is not None:
         start = _Start(float(orbit.phase), float(orbit.impact_velocity) * (1 + _BESIDE))
@@ -75,7 +77,7 @@ def of_family(case: Case, family: Family, tolerance: float) -> Motion:
     kinds = [(str(x.kind), int(x.periods), int(x.impacts)) for x in found.values()]
     ideal = family.standing[simple]
     if ideal.exists and ideal.is_stable and ideal.is_admissible:
-        # If the stability is weak, the mapper may not recognise that the motion repeats.
+        # If the orbit is weakly stable, the mapper may not recognise that the motion repeats.
         kinds[1] = str(Kind.ORBIT), family.n, 1
     values: dict[str, Any] = {}
     if kinds[0] == kinds[1] and kinds[0][1] and kinds[0][0] != Kind.PERMANENT_CONTACT:
@@ -93,7 +95,7 @@ def _law(case: Case, name: str) -> Any:
 
 
 def _laid(case: Case, family: Family) -> str | None:
-    """The motion of a ball that is laid on the table; None if it is that of the orbit."""
+    """Kind of the motion of a ball that is laid on the table; None if it ends on the orbit."""
     lam = case.table.amplitude
     if lam <= case.permanent_contact:
         return str(Kind.PERMANENT_CONTACT)
@@ -103,7 +105,7 @@ def _laid(case: Case, family: Family) -> str | None:
 
 
 def _tops(sequence: ImpactSequence) -> np.ndarray:
-    """Greatest heights of the flights after the impacts."""
+    """Greatest height of the flight after each impact, dimensionless."""
     rise = np.maximum(sequence.bounce_velocity, 0.0)
     lift = sequence.amplitude * np.sin(sequence.release_phase)
     return sequence.release_displacement + lift + rise * rise / 2
@@ -130,7 +132,7 @@ def _compared(
         for name in names:
             run = case.models[name].simulate(table.amplitude, start.phase, one, impacts)
             if np.any(run.status != Status.BOUNCING):
-                # Some balls come to rest, and have no mean.
+                # Some balls come to rest, so that the means do not exist.
                 return {"mean_height": dict.fromkeys(names), "mean_power": dict.fromkeys(names)}
             found.append(height_and_power(run, before))
         means = np.concatenate([means, np.array(found)], axis=-1)
@@ -151,20 +153,20 @@ def _compared(
 
 
 def _half_width(samples: np.ndarray) -> np.ndarray:
-    """Half the width of the confidence interval of a mean over the last axis."""
+    """Half the width of the 95 % confidence interval of a mean over the last axis."""
     return _STUDENT * samples.std(axis=-1, ddof=1) / np.sqrt(samples.shape[-1])
 
 
 def height_and_power(sequence: ImpactSequence, before: int = 0) -> tuple[np.ndarray, np.ndarray]:
     """Means over time of each ball's height and of the power that the table transfers to it.
 
-    They are dimensionless, of the shape of the balls, and taken from the impact number ``before``
-    to the last one recorded.
+    The means are dimensionless, have the shape of the balls, and extend from impact number
+    ``before`` to the last impact recorded.
 
     Examples
     --------
-    An elastic ball on a table at rest has two thirds of its greatest height in the mean, and
-    receives no power:
+    The mean height of an elastic ball on a table at rest is two thirds of its greatest height, and
+    the ball receives no power:
 
     >>> from bouncing_ball.motion.simulation import simulate
     >>> height, power = height_and_power(simulate(1.0, 0.0, 0.0, -2.0, 5))
@@ -184,7 +186,7 @@ def height_and_power(sequence: ImpactSequence, before: int = 0) -> tuple[np.ndar
 
 
 def _by_nodes(sequence: ImpactSequence, part: slice) -> tuple[np.ndarray, np.ndarray]:
-    """∫ z dt and ∫ z′ w dt over the contacts of each ball."""
+    """∫ z dt and ∫ z′ w dt over the contacts of each ball, by Gauss's rule."""
     if sequence.time.ndim > 1:
         each = [_by_nodes(sequence[k], part) for k in range(sequence.time.shape[1])]
         held, moved = np.moveaxis(np.array(each), 0, -1)
@@ -197,7 +199,7 @@ def _by_nodes(sequence: ImpactSequence, part: slice) -> tuple[np.ndarray, np.nda
 
 
 def aside(motion: Motion, amplitude: float) -> str:
-    """What a verdict on the orbit leaves out, if a ball laid on the table ends elsewhere."""
+    """A clause that follows the verdict on the orbit if a ball laid on the table ends elsewhere."""
     rests = motion.laid == Kind.PERMANENT_CONTACT and amplitude <= RESTITUTION_THRESHOLD
     if motion.laid is None or rests:
         return ""

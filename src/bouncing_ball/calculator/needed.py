@@ -1,4 +1,4 @@
-"""The stiffness that a tolerance needs, by a root of the exact error."""
+"""The stiffness that a tolerance needs, from a root of the exact error over ϖ."""
 
 import numpy as np
 
@@ -10,8 +10,8 @@ from bouncing_ball.calculator.results import Needed
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import NoOrbitError
 
-# From contacts that last a considerable part of the table's period to stiffer ones than
-# any simulation has; fine enough not to miss two crossings between neighbours.
+# From contacts that last a considerable part of the table's period to contacts stiffer than those
+# of any simulation. The grid is fine, so that two crossings hardly fall between neighbours.
 RATIOS = np.geomspace(1.0, 1e6, 97)
 
 NO_ORBIT = "the restitution model has no such orbit"
@@ -21,14 +21,14 @@ NO_ORBIT = "the restitution model has no such orbit"
 def needed(
     quantity: str, tolerance: float, contact: SpringDamper, n: int, amplitude: float
 ) -> Needed:
-    """The ϖ that a tolerance needs, for contacts with the damping and the release of a given one.
+    """The ϖ that a tolerance needs, for contacts with the ζ and the release of a given contact.
 
     Parameters
     ----------
     quantity : str
         One of :class:`~bouncing_ball.accuracy.quantities.Quantity`.
     tolerance : float
-        Relative error tolerated.
+        Largest relative error allowed.
     contact : SpringDamper
     n : int
     amplitude : float
@@ -43,8 +43,8 @@ def needed(
     (10.0, 10.0)
     """
     zeta, rule = contact.damping_ratio, contact.release
-    # The law of a limit does not depend on Λ, which may be too small for an orbit: the
-    # saddle-node is below nπ.
+    # The error law of a limit does not depend on Λ. A Λ too small for an orbit is therefore
+    # replaced by nπ, which is above the saddle-node.
     there = amplitude if quantity in OF_ORBITS else max(amplitude, n * np.pi)
     try:
         by_law = finite(law_thresholds(n, zeta, there, rule, tolerance)[Quantity(quantity)])

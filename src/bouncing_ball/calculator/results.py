@@ -1,6 +1,6 @@
-"""The results of the calculator, each of which stands once, with its words and its unit.
+"""The results of the calculator; each is defined once, with its description and its unit.
 
-JSON has all of them under their names; the text and the page list those that have words.
+JSON has all results under their names; the text and the page list those with a description.
 """
 
 from abc import ABC, abstractmethod
@@ -14,7 +14,8 @@ from bouncing_ball.engines import engine_named
 from bouncing_ball.engines.engine import EngineSettings, Physical
 
 Errors = dict[str, float | None]
-"""Relative errors by quantity; None where there is nothing to compare, or to divide by."""
+"""Relative errors by quantity; None where one of the values does not exist, or the simple one is
+zero."""
 
 QUANTITIES = {
     Quantity.MAX_HEIGHT: "greatest height",
@@ -29,14 +30,14 @@ QUANTITIES = {
 
 
 class Row(NamedTuple):
-    """How a result is listed: its words, and its unit for :func:`~.units.shown`."""
+    """How a result is listed: its description, and its unit for :func:`~.units.shown`."""
 
     words: str
     unit: str = ""
 
 
 def rows(result: Any) -> list[tuple[str, str]]:
-    """Words and text of all results that are listed, in order, with those of parts within.
+    """Description and value, as texts, of each result that is listed, including nested results.
 
     Examples
     --------
@@ -58,9 +59,9 @@ def rows(result: Any) -> list[tuple[str, str]]:
 class Standing:
     """The place of a case in its family, in one model.
 
-    ``saddle_node`` and ``period_doubling`` are Λ; the margins are the shares by
-    which Λ may fall to the one, ``1 - Λ_SN/Λ``, and rise to the other,
-    ``Λ_PD/Λ - 1``. None where there is no such bifurcation.
+    ``saddle_node`` and ``period_doubling`` are the Λ of the bifurcations. The margins are relative
+    changes of Λ: ``1 - Λ_SN/Λ`` is the fall down to the saddle-node, and ``Λ_PD/Λ - 1`` the rise
+    up to the period doubling. They are None if there is no such bifurcation.
     """
 
     exists: Annotated[bool, Row("exists")]
@@ -76,10 +77,11 @@ class Standing:
 class Family:
     """The n-T orbit of a case, in SI units, and the errors of the simple models.
 
-    ``exists``, ``is_stable`` and ``is_admissible`` are those of the exact model, which comes
-    first in ``standing``. The errors are moduli of relative errors: ``errors`` of the
-    restitution and ``corrected_errors`` of the corrected model, ``law_errors`` those of the
-    restitution model by the error law, which holds where ``law_holds``.
+    ``exists``, ``is_stable`` and ``is_admissible`` refer to the orbit of the exact model, which
+    comes first in ``standing``. All errors are moduli of relative errors: ``errors`` are those of
+    the restitution model, ``corrected_errors`` those of the corrected model, and ``law_errors``
+    those that the error law gives for the restitution model; ``law_holds`` tells whether the law
+    holds.
     """
 
     n: int
@@ -111,12 +113,14 @@ class Mean:
 class Motion:
     """The motion on which a ball ends that starts on the orbit of the verdict, or beside it.
 
-    ``kind`` is "orbit", "subharmonic", "locked", "permanent contact", "chaotic" or "undecided" in
-    the exact model, with the periods of the table and the impacts after which it repeats, 0 if it
-    does not; ``laid`` is the kind for a ball laid on the table, None if it is the same. If the
-    orbit is not stable, the same numbers follow for the restitution model, and for each model
-    either the ``greatest`` height, of motions that repeat in the same way, or means over time of
-    the height and of the power that the table transfers, with the moduli of their relative errors.
+    ``kind`` is the kind of this motion in the exact model: "orbit", "subharmonic", "locked",
+    "permanent contact", "chaotic" or "undecided". The periods of the table and the impacts after
+    which the motion repeats follow; they are 0 if it does not repeat. ``laid`` is the kind for a
+    ball laid on the table, None if it is the same. If the orbit is not stable, there are the same
+    three values for the restitution model. For motions that repeat in the same way in both models
+    there is then the ``greatest`` height in each model; for other motions there are means over
+    time of the height and of the power that the table transfers, with the moduli of their relative
+    errors.
     """
 
     kind: str
@@ -134,12 +138,12 @@ class Motion:
 
 @dataclass(frozen=True)
 class Needed:
-    """The contact from which on the error of a quantity stays within a tolerance.
+    """The frequency ratio above which the error of a quantity stays within a tolerance ε.
 
-    ``frequency_ratio`` is the largest ϖ at which the restitution model's error
-    crosses the tolerance, if its ``status`` is "found"; ``by_law`` is |K|/ε of the error
-    law (the root of |K₂|/ε for the permanent contact), ``corrected`` the largest crossing
-    of the corrected model. None where there is none; the status gives the reason.
+    ``frequency_ratio`` is the largest ϖ at which the error of the restitution model crosses the
+    tolerance, and ``corrected`` that of the corrected model. ``by_law`` is the ϖ that the error
+    law gives, |K|/ε, or √(|K₂|/ε) for the permanent contact. A value that does not exist is None,
+    and ``status`` or ``corrected_status``, otherwise "found", gives the reason.
     """
 
     quantity: str
@@ -153,7 +157,7 @@ class Needed:
 
 @dataclass(frozen=True)
 class TimeStep:
-    """The largest time step that resolves the contact, in s, and the origin of this rule."""
+    """The largest time step that resolves the contact, in s, and the rule that it follows from."""
 
     largest: Annotated[float, Row("largest time step", "s")]
     rule: str
@@ -163,8 +167,8 @@ class TimeStep:
 class Corrected:
     """The three numbers of the corrected restitution model, in SI units.
 
-    The impact is an instant t_c = ``delay`` after the ball touches, with the
-    restitution ``r + σ a/v``: σ = ``load`` is a time, a the acceleration that
+    The impact is instantaneous and happens t_c = ``delay`` after the ball touches the table. Its
+    restitution coefficient is ``r + σ a/v``, where σ = ``load`` is a time, a the acceleration that
     presses the ball to the table and v the impact speed.
     """
 
@@ -174,24 +178,24 @@ class Corrected:
 
 
 class _ForEngines(ABC):
-    """An answer that is given again for an engine."""
+    """An answer of the calculator that can be repeated for a physics engine."""
 
     question: dict[str, Any]
 
     def engine(self, name: str, release: str | None = None) -> EngineSettings:
         """The settings to write into an engine, see :mod:`bouncing_ball.engines`, and their effect.
 
-        A given restitution is met under the release of the engine, whichever release this design
-        has.
+        A restitution that was given holds under the release of the engine, even if the release of
+        this answer is different.
 
         Raises
         ------
         ModelError
-            If there is no such engine, or it has no such release or no such contact.
+            If there is no such engine, or the engine does not have this release or this contact.
         NoOrbitError
-            If the contact of the engine then has no orbit.
+            If no model has an orbit with the contact of the engine.
         """
-        # It makes designs of this class.
+        # Imported here, because that module imports this one.
         from bouncing_ball.calculator.design import design
 
         asked = {"engine": name} | ({"release": release} if release else {})
@@ -233,13 +237,14 @@ class Contact(_ForEngines):
 
 @dataclass(frozen=True)
 class Design(_ForEngines):
-    """The answer of the calculator about a contact; times in s, lengths in m, forces in N.
+    """The answer of the calculator about a contact; times are in s, lengths in m, forces in N.
 
-    ``frequency_ratio``, ``damping_ratio`` and ``amplitude`` are ϖ, ζ and Λ; ``restitution`` is that
-    of a free impact by the release rule, ``measured_restitution`` that by the rule of this contact;
-    ``n`` is the family of the verdict and ``question`` holds the arguments of the call. Up to Λ =
-    ``permanent_contact`` a ball may stay down; None if no such threshold was found. ``law`` has the
-    ``name`` of a contact law and its parameters, with powers of kg, m and s as units.
+    ``frequency_ratio``, ``damping_ratio`` and ``amplitude`` are ϖ, ζ and Λ. ``restitution`` has the
+    r of a free impact for each release rule, and ``measured_restitution`` is that for the rule of
+    this contact. ``n`` is the family of the verdict, and ``question`` holds the arguments of the
+    call. Up to Λ = ``permanent_contact`` a ball may stay on the table; None if no such threshold
+    was found. ``law`` has the ``name`` of a contact law and its parameters, whose units are powers
+    of kg, m and s.
     """
 
     frequency_ratio: Annotated[float, Row("frequency ratio ϖ")]
@@ -285,5 +290,5 @@ class Design(_ForEngines):
 
     @property
     def judged(self) -> Family:
-        """The family of the verdict."""
+        """The result for the family of the verdict."""
         return next(one for one in self.orbits if one.n == self.n)

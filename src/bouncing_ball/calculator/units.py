@@ -1,11 +1,12 @@
 """Quantities with units, converted at the interface: SI numbers inside.
 
 A text is a number followed by its unit: ``50 Hz``, ``0.5 mm``, ``2e6 N/m``.
-A plain number is in SI units. Only the unit is given to pint, and never an
-expression: texts of a command line are not evaluated.
+A plain number is in SI units. Pint receives the unit alone and never an expression, so that texts
+of a command line are not evaluated.
 
-Here an angle has a dimension, and a hertz is a turn in a second: ``Hz``, ``rad/s``, ``rpm``
-and ``deg/s`` are of one kind, and a bare ``1/s``, which might be either, is of none.
+An angle has a dimension here, and a hertz is one turn per second. ``Hz``, ``rad/s``, ``rpm`` and
+``deg/s`` therefore have the same dimension; a bare ``1/s`` is refused, because it might mean turns
+or radians.
 """
 
 import math
@@ -21,16 +22,16 @@ from bouncing_ball.signatures import Range
 
 # A number, and the rest of the text.
 _TEXT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
-# Letters, products, quotients and powers of one digit. A power of a power would
-# be evaluated, however large. A digit after a letter is a power as well: m/s2.
+# Letters, products, quotients and powers of one digit. A power of a power is refused, because pint
+# would evaluate it, however large it is. A digit after a letter is a power as well: m/s2.
 _POWER = re.compile(r"(?<=[^\W\d_])(?=\d(?!\d))")
 _UNIT = re.compile(r"(?:[^\W\d]|[ ·*/%°²³¹⁻]|\^-?\d(?![\d^])|_0|1(?= */)){1,40}")
 
 
 class Unit(NamedTuple):
-    """The annotation of a parameter: its SI unit, an example, and its range.
+    """The annotation of a parameter: its SI unit, an example, and the range allowed.
 
-    Products and powers of a few numbers in the default range remain floating-point numbers.
+    Products and powers of a few numbers in the default range neither overflow nor underflow.
     """
 
     name: str
@@ -51,21 +52,21 @@ def _registry() -> Any:
 
 
 def number(name: str, value: Any, kind: Unit) -> float:
-    """A parameter in SI units.
+    """The value of a parameter in SI units.
 
     Parameters
     ----------
     name : str
         The name of the parameter in an error.
     value : float, str or pint.Quantity
-        A plain number is in SI units.
+        The value; a plain number is in SI units.
     kind : Unit
-        Its unit and an example; its range is not checked here.
+        The unit of the parameter and an example. The range is not checked here.
 
     Raises
     ------
     ModelError
-        One line, if it is not a finite number with a unit of the right kind.
+        If the value is not a finite number with a unit of the right dimension.
 
     Examples
     --------
@@ -106,20 +107,20 @@ write it as '50 Hz'
 
 
 def _converted(value: float, unit: str, kind: Unit) -> tuple[float, str]:
-    """A value in SI units, or the reason why it has none.
+    """A value in SI units and an empty text, or NaN and the reason why it cannot be converted.
 
-    For an acceleration the unit g is standard gravity, and not the gram.
+    For an acceleration the unit g means standard gravity and not the gram.
     """
     registry, why = _registry(), "has an unknown unit"
     if (kind.name, unit) == ("m/s^2", "g"):
         unit = "standard_gravity"
-    # pint raises whatever its tokenizer does.
+    # Pint also raises the errors of its tokenizer, which are of many types.
     unit = _POWER.sub("^", unit)
     with suppress(Exception):
         if _UNIT.fullmatch(unit.replace("**", "^")):
             one = registry.Quantity(value, registry.parse_units(unit))
             why = f"is of the dimension {one.dimensionality}"
-            # Fifteen digits, so that the digits that a user wrote are kept.
+            # Fifteen digits keep all digits that a user wrote, without the rounding error.
             return float(f"{one.m_as(kind.name):.15g}"), ""
     return math.nan, why
 
@@ -128,7 +129,7 @@ _PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n"}
 
 
 def percent(share: float) -> str:
-    """A share as a percentage, with six digits at most.
+    """A share as a percentage with at most six digits.
 
     Examples
     --------
@@ -141,7 +142,7 @@ def percent(share: float) -> str:
 def shown(value: float | None, unit: str = "", least: float = 1e-5) -> str:
     """A value as text: four digits with a prefix of its unit, or a share in "%" with two digits.
 
-    A share below ``least``, or below 1e-5 if that is less, is said to be less than it.
+    A share below ``least``, or below 1e-5 if this is smaller, is given as "less than" that bound.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The verdict in one sentence, with its reason."""
+"""The verdict on the restitution model in one sentence, with the reason and further notes."""
 
 import math
 from collections.abc import Mapping
@@ -19,7 +19,7 @@ from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 
 
 class Verdict(NamedTuple):
-    """Whether the restitution model is good enough, the verdict in one sentence, and the reason."""
+    """Whether the restitution model is good enough, this verdict as a sentence, and the reason."""
 
     is_good_enough: bool
     verdict: str
@@ -32,8 +32,8 @@ def _subject(quantity: str, n: int) -> str:
 
 
 def _disagreement(family: Family) -> str | None:
-    """A qualitative disagreement of the restitution model's orbit with the exact one, if there is
-    any.
+    """The first qualitative disagreement between the restitution model's orbit and the exact one:
+    in existence, admissibility or stability. None if they agree.
     """
     simple, orbit = family.standing["restitution"], f"{family.n}-T orbit"
     if family.exists != simple.exists:
@@ -47,8 +47,10 @@ def _disagreement(family: Family) -> str | None:
 
 
 def assessed(family: Family, needed: Needed, frequency_ratio: float) -> Verdict:
-    """The verdict on a given contact: whether the orbits agree and the error is within the
-    tolerance.
+    """The verdict on a given contact.
+
+    The model is good enough if its orbit agrees with the exact one in existence, admissibility and
+    stability, and if the error is within the tolerance.
     """
     tolerance, subject = percent(needed.tolerance), _subject(needed.quantity, family.n)
     error, wrong = family.errors[needed.quantity], _disagreement(family)
@@ -66,13 +68,13 @@ def assessed(family: Family, needed: Needed, frequency_ratio: float) -> Verdict:
 
 
 def judged_by_motion(motion: Motion, tolerance: float, n: int) -> Verdict:
-    """The verdict where no ball stays on the orbit: about the motion on which it ends."""
+    """The verdict on the motion on which a ball ends, if the orbit is not stable."""
     about = f"no ball stays on the {n}-T orbit, so that its errors are not judged"
     kinds = motion.kind, motion.restitution_kind
     if kinds == (Kind.PERMANENT_CONTACT,) * 2:
         sentence = "The restitution model is good enough: the ball rests in both models."
         return Verdict(True, sentence, about)
-    # Locked and chaotic motions of long periods are alike in the mean, but no others are.
+    # Locked and chaotic motions may be alike in the mean, but other kinds that differ are not.
     if len({*kinds}) > 1 and {*kinds} & {Kind.PERMANENT_CONTACT, Kind.ORBIT, Kind.SUBHARMONIC}:
         sentence = f"its motion is {_named(kinds[1])}, and the contact's is {_named(kinds[0])}"
         return Verdict(False, f"The restitution model is not good enough: {sentence}.", about)
@@ -99,7 +101,7 @@ def _between(e: float, h: float) -> str:
 
 
 def _within(error: float, margin: float, tolerance: float, found: str, why: str) -> Verdict:
-    """Whether an error that is known within a margin is within a tolerance."""
+    """The verdict on an error that is known up to a margin, against a tolerance."""
     asked = percent(tolerance)
     if error + margin <= tolerance:
         return Verdict(True, f"The restitution model is good enough: {found}, within {asked}.", why)
@@ -111,7 +113,7 @@ def _within(error: float, margin: float, tolerance: float, found: str, why: str)
 
 
 def _instead(family: Family, needed: Needed) -> str:
-    """Whether the corrected model is good enough instead."""
+    """A clause on whether the corrected model is good enough instead."""
     error, corrected = family.corrected_errors[needed.quantity], family.standing["corrected"]
     same = (family.exists, family.is_stable) == (corrected.exists, corrected.is_stable)
     if same and error is not None and error <= needed.tolerance:
@@ -120,7 +122,7 @@ def _instead(family: Family, needed: Needed) -> str:
 
 
 def _reason(needed: Needed, frequency_ratio: float, good: bool, tolerance: str) -> str:
-    """The ϖ of the contact compared with the one that the tolerance needs."""
+    """A clause that compares the ϖ of the contact with the ϖ that the tolerance needs."""
     if needed.frequency_ratio is None:
         return f"the error is {needed.status}"
     place = "above" if frequency_ratio >= needed.frequency_ratio else "below"
@@ -149,7 +151,7 @@ def chosen(si: Mapping[str, float], needed: Needed, n: int) -> Verdict:
 
 
 def _cost_of(law: Impedance, case: Case, family: Family) -> str:
-    """What an impedance changes at the depth of the orbit."""
+    """A sentence on the change of the greatest height that an impedance causes."""
     about = "stiffness, damping, ϖ and ζ are those of the spring and damper of this solref"
     spring = SpringDamperModel(case.contact).orbit(family.n, case.table.amplitude)
     if family.greatest_compression is None or family.max_height is None or not spring.exists:
@@ -164,7 +166,7 @@ def _cost_of(law: Impedance, case: Case, family: Family) -> str:
 
 
 def notes(case: Case, family: Family) -> tuple[str, ...]:
-    """What a user should know beside the verdict."""
+    """Sentences that a user should read in addition to the verdict."""
     found, contact, orbit = [], case.contact, f"{family.n}-T orbit"
     if isinstance(case.law, Impedance):
         found.append(_cost_of(case.law, case, family))

@@ -1,4 +1,4 @@
-"""Calls about the motions on which balls end: of one ball, over Λ, and of many starts."""
+"""Calls about the motions on which balls end: one ball, a range of Λ, or a grid of starts."""
 
 import math
 from collections.abc import Mapping
@@ -14,7 +14,7 @@ from bouncing_ball.errors import ParameterError
 from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.signatures import check, count, takes
 
-# Impacts of one ball; and numbers along one axis.
+# Number of impacts of one ball, and numbers of starts or samples.
 Followed = Annotated[int, count(10_000_000, low=10)]
 Many = Annotated[int, count(100_000)]
 
@@ -91,7 +91,7 @@ def lyapunov_exponent(amplitude: AnyAmplitude, **given: Any) -> Labelled:
 def orbit_diagram(
     amplitudes: AnyAmplitude, *, starts: Many = 6, samples: Many = 64, impacts=1000, **impact: Any
 ) -> Labelled:
-    """The attractors over Λ, reached from several starts and by following them in Λ.
+    """The attractors over Λ, reached from several starts and by following balls in Λ.
 
     ``impacts`` and the model are given as in :func:`motion_of`.
 
@@ -142,7 +142,7 @@ def basins(
     impacts=2000,
     **impact: Any,
 ) -> Labelled:
-    """The motions on which a grid of impacts ends, and their shares.
+    """The motions on which balls end that start from a grid of first impacts, and their shares.
 
     ``amplitude``, ``impacts`` and the model are given as in :func:`motion_of`.
 
@@ -179,7 +179,10 @@ def basins(
 
 
 def _single(impact: Mapping[str, Any]) -> tuple[ImpactModel, Grid]:
-    """The model of parameters that are single numbers, which become attributes of the results."""
+    """The model, and the grid that makes its parameters attributes of the results.
+
+    Each parameter must be a single number.
+    """
     grid = Grid(**impact)
     for name in grid.coords:
         raise ParameterError(f"{{{name}}} must be a single number here")

@@ -1,4 +1,4 @@
-"""The model of the impact that the parameters of a call mean."""
+"""The model of the impact that the parameters of a call describe."""
 
 import inspect
 from collections.abc import Callable, Mapping
@@ -20,7 +20,7 @@ from bouncing_ball.orbits.restitution_orbit import rigid_speed
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.signatures import Range, check, count
 
-# Of frequency ratio and amplitude: beyond, their squares leave no digits.
+# Range of the frequency ratio and of the amplitude, beyond which their squares leave no digits.
 FrequencyRatio = Annotated[Any, Range(1e-8, 1e8, "[]")]
 AnyAmplitude = Annotated[Any, Range(0, 1e8, "[]")]
 Restitution = Annotated[Any, Range(0, 1, "(]")]
@@ -30,10 +30,11 @@ Index = Annotated[int, count(1000)]
 Rule = Literal["displacement", "force"]
 
 LOSS = ("restitution", "damping_ratio", "measured_restitution")
-"""The parameters that say how much an impact loses; one of them is needed."""
+"""The parameters that determine the loss of an impact; exactly one of them is needed."""
 
 LawAt = Callable[[type[ContactLaw], float, float], ContactLaw]
-"""The law of a kind whose free impact has r and D at the speed that a call is about."""
+"""A function that returns the contact law of a type whose free impact has the given r and D at the
+impact speed of the call."""
 
 
 def model(
@@ -94,8 +95,10 @@ def model(
 
 
 def model_of_limits(n: int, **impact: Any) -> ImpactModel:
-    """The model; a law given by r and D has them at the impact speed of the restitution model's
-    orbits.
+    """The model for a call about limits.
+
+    A contact law that is given by r and D has these values at the impact speed of the restitution
+    model's orbits.
 
     Examples
     --------
@@ -106,13 +109,16 @@ def model_of_limits(n: int, **impact: Any) -> ImpactModel:
 
 
 def model_of_impact(amplitude: Any, phase: Any, velocity: Any, **impact: Any) -> ImpactModel:
-    """The model; a law given by r and D has them at the speed of this impact."""
+    """The model for a call that starts with an impact.
+
+    A contact law that is given by r and D has these values at the speed of this impact.
+    """
     speed = np.asarray(amplitude) * np.cos(phase) - velocity
     return impact_model(impact, lambda kind, r, d: law_of_impact(kind, r, d, speed))
 
 
 def impact_model(given: Mapping[str, Any], law_at: LawAt | None) -> ImpactModel:
-    """The model of the parameters that are not None."""
+    """The model from those parameters that are not None."""
     given = {name: value for name, value in given.items() if value is not None}
     if isinstance(of := given.pop("model", None), ImpactModel):
         _refuse(given, tuple(given), "is not allowed with {model}, which has its parameters")
@@ -149,7 +155,7 @@ def impact_model(given: Mapping[str, Any], law_at: LawAt | None) -> ImpactModel:
 
 
 def _law(given: Mapping[str, Any], law_at: LawAt | None) -> ContactLaw:
-    """The contact law, by its parameters or by its free impact."""
+    """The contact law, from its parameters or from the r and D of a free impact."""
     kind, r, duration = law_named(given["law"]), given.get("restitution"), given.get("duration")
     if given.get("model") in ("restitution", "spring-damper"):
         why = f"{given['model']} has no {{law}}: give corrected, or no {{model}} for the law itself"
@@ -194,7 +200,7 @@ def _law_of_parameters(kind: type[ContactLaw], given: Mapping[str, Any]) -> Cont
 
 
 def _refuse(given: Mapping[str, Any], names: tuple[str, ...], why: str) -> None:
-    """Raise :class:`ParameterError` with the first of these parameters that is given."""
+    """Raise :class:`ParameterError` for the first of these parameters that is given."""
     for name in names:
         _demand(name not in given, f"{{{name}}} {why}")
 

@@ -8,7 +8,7 @@ from bouncing_ball.orbits.model import labelled
 from bouncing_ball.signatures import Range, check, count, takes
 
 Finite = Annotated[Any, Range()]
-# One impact takes a third of a millisecond of a processor: half a minute.
+# One impact takes a third of a millisecond, so that the largest number takes half a minute.
 Impacts = Annotated[int, count(100_000)]
 Periods = Annotated[float, Range(0, 10_000, "(]")]
 Samples = Annotated[int, count(100_000)]

@@ -19,7 +19,9 @@ Points = Annotated[int, count(10_000, low=10)]
 
 
 class Limits(NamedTuple):
-    """The two orbits that bound the stable range of a family; NaN where there is none."""
+    """The two orbits that bound the stable range of a family; their values are NaN where the
+    bifurcation does not exist.
+    """
 
     saddle_node: Orbit
     period_doubling: Orbit
@@ -104,14 +106,15 @@ def orbit(
 
 
 def _model_of_orbit(n: int, amplitude: float, side: Side, **impact: Any) -> ImpactModel:
-    """The model; a law given by r and D has them at the impact speed of this orbit."""
+    """The model for a call about one orbit.
+
+    A contact law that is given by r and D has these values at the impact speed of this orbit.
+    """
     return impact_model(impact, lambda kind, r, d: law_at_orbit(kind, r, d, n, amplitude, side))
 
 
 def _arrays(impact: Mapping[str, Any], *given: Any) -> bool:
-    """Whether any of the arguments is an array, except the parameters of a law, which are a
-    mapping.
-    """
+    """Whether any argument is an array; ``parameters``, a mapping, is not considered."""
     numbers = (value for name, value in impact.items() if name != "parameters")
     return any(np.ndim(x) > 0 for x in (*given, *numbers))
 

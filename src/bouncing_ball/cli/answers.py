@@ -1,6 +1,6 @@
 """The answers of the subcommands, as plain dictionaries.
 
-Options come from signatures: those of the public calls, and of the functions here.
+The options come from the signatures of the public calls and of the functions in this module.
 """
 
 import math
@@ -25,7 +25,7 @@ Answer = dict[str, Any]
 
 
 def _described(of: Any, speed: float = math.nan) -> Answer:
-    """r and ζ of a contact; for a contact law its parameters, and r and D at an impact speed."""
+    """r and ζ of a linear contact; of another law the parameters, and r and D at a speed."""
     match of:
         case SpringDamper():
             return {
@@ -59,7 +59,7 @@ def _orbit(found: Orbit) -> Answer:
 
 @takes(orbits.orbit)
 def orbit(n=1, **given: Any) -> Answer:
-    """The n-T orbit at Λ on a side of the saddle-node, or all of them, or one of all."""
+    """The n-T orbit at Λ on one side of the saddle-node, all orbits there, or one of these."""
     found = orbits.orbit(n, **given)
     several = [_orbit(found[k]) for k in range(found.size)] if found.shape else []
     answer = {"orbits": several} if several else _orbit(found)
@@ -68,12 +68,12 @@ def orbit(n=1, **given: Any) -> Answer:
 
 @takes(orbits.limits)
 def limits(n=1, **impact: Any) -> Answer:
-    """Saddle-node and period doubling, and whether the orbits there are admissible.
+    """Saddle-node and period doubling of a family, and whether their orbits are admissible.
 
     Raises
     ------
     NoOrbitError
-        If the branch lacks one of them.
+        If the branch has no saddle-node or no period doubling.
     """
     of = models.model_of_limits(n, **impact)
     found: Answer = {}
@@ -84,16 +84,18 @@ def limits(n=1, **impact: Any) -> Answer:
             raise NoOrbitError(f"no {what} was found on {branch}")
         found[name] = {key: float(getattr(orbit, key)) for key in OBSERVABLES[:3]}
         found[name]["is_admissible"] = bool(orbit.is_admissible())
-    # The limits have two impact speeds; a law is described at that of the restitution model.
+    # The two limits have different impact speeds, so that a contact law is described at the impact
+    # speed of the restitution model.
     return found | _described(orbit.law, float(restitution_speed(n, of)[0]))
 
 
 @takes(orbits.orbit, "n", "amplitude", "release", *models.LOSS)
 def error_law(n=1, **given: Any) -> Answer:
-    """K of each quantity: the modulus of its relative error is K/ϖ + O(1/ϖ²).
+    """The coefficient K of each quantity, whose relative error has the modulus K/ϖ + O(1/ϖ²).
 
-    The restitution model has the r of a free impact on the contact. ``signed`` has the sign of the
-    exact value minus the restitution model's; a quantity without a first-order law is null.
+    The restitution model has the r of a free impact on the contact. The sign in ``signed`` is that
+    of the relative error, exact value minus restitution model. A quantity without a first-order law
+    is null.
 
     Raises
     ------
@@ -101,7 +103,7 @@ def error_law(n=1, **given: Any) -> Answer:
         If Λ lies below the saddle-node of the restitution model.
     """
     amplitude = given.pop("amplitude")
-    # K is the error at ϖ = 1, continued by its law.
+    # The coefficients do not depend on ϖ; the contact with ϖ = 1 stands for all.
     of: Any = models.model(model="spring-damper", frequency_ratio=1.0, **given)
     contact = of.contact
     zeta, release = contact.damping_ratio, contact.release
@@ -126,7 +128,7 @@ def permanent_contact(*, frequency_ratio: models.FrequencyRatio, **given: Any) -
 
 @takes(motion.simulate)
 def simulate(amplitude, phase, velocity, impacts, **impact: Any) -> Answer:
-    """The sequence of impacts of one ball, as lists; null for an event that does not happen."""
+    """The sequence of impacts of one ball as lists, with null for an event that does not happen."""
     of = models.model_of_impact(amplitude, phase, velocity, **impact)
     found = of.simulate(amplitude, phase, velocity, impacts)
     names = ("time", "phase", "impact_velocity", "contact_duration", "bounce_velocity")

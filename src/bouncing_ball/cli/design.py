@@ -19,7 +19,7 @@ _SIMPLE = "error law", "corrected"
 
 
 class Answer(NamedTuple):
-    """The result, and whether all of it is printed."""
+    """The result of the calculator, and whether all numbers of each family are printed."""
 
     found: Design | Contact
     whole: bool = True
@@ -27,7 +27,7 @@ class Answer(NamedTuple):
 
 @takes(calculator.design)
 def design(*, plot: Path | None = None, all_families: bool = False, **given: Any) -> Answer:
-    """The calculator's answer, and the page to print; of an engine's contact without a table.
+    """The calculator's answer; with ``plot`` the page to print is written as well.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def _family_lines(one: Family) -> list[str]:
 
 
 def document(given: Answer) -> dict[str, Any]:
-    """The answer as its JSON has it, with the settings of the engine that it is for."""
+    """The answer as plain values for JSON, with the settings of an engine if one is named."""
     found = given.found
     answer = asdict(found)
     if found.question["engine"]:
@@ -115,7 +115,7 @@ def _engine_lines(engine: EngineSettings) -> list[str]:
 
 
 def _short(found: Design) -> list[str]:
-    """A line for each family, and the options that print the rest."""
+    """One line for each family, and a line on the options that print the other results."""
     quantity, least = found.needed.quantity, found.needed.tolerance
     error = f"{QUANTITIES[Quantity(quantity)]} off by"
     head = (

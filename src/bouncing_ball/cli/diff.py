@@ -34,7 +34,7 @@ def diff(
         comparison = compare_folders(record, results, artifacts)
         if html:
             write_text(html, to_html(comparison))
-    # 1 means that something differs, and a traceback would exit with it.
+    # A traceback would exit with status 1, which means that something differs.
     except Exception as error:
         fail(" ".join(str(error).split()) or type(error).__name__, status=2)
     say(to_terminal(comparison).rstrip("\n"))

@@ -1,4 +1,4 @@
-"""The subcommands and what their ``--help`` adds: an explanation, and examples to run."""
+"""The subcommands with their purposes, and the explanation and examples in their ``--help``."""
 
 import textwrap
 import tomllib

@@ -22,7 +22,7 @@ Points = Annotated[int, count(100_000, low=2)]
 
 @takes(long_run.motion_of)
 def motion(amplitude, **given: Any) -> Answer:
-    """The motion on which the ball ends; null for an exponent that is infinite or not known."""
+    """The motion on which the ball ends, with null for an exponent that is infinite or unknown."""
     found = long_run.motion_of(amplitude, **given)
     exponents = {name: float(found[name]) for name in ("lyapunov_exponent", "lyapunov_error")}
     answer: Answer = {name: found[name].item() for name in _MOTION}

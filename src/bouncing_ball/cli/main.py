@@ -15,7 +15,7 @@ from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError, extra
 
 
 def _module(command: str) -> Any:
-    """The module of a subcommand, with its call, and ``lines``, which makes its answer readable."""
+    """The module of a subcommand. It has its call, and may have ``lines`` for readable text."""
     try:
         with extra("pipeline"):
             return import_module(f"bouncing_ball.{COMMANDS[command]['module']}")
@@ -28,12 +28,12 @@ def _call(command: str) -> Callable[..., Any]:
 
 
 def _document(answer: Any) -> dict[str, Any]:
-    """An answer as JSON has it, for modules that do not define this."""
+    """The answer as a mapping for JSON, for modules that define no ``document`` themselves."""
     return answer if isinstance(answer, dict) else asdict(answer)
 
 
 def parser(arguments: list[str]) -> Parser:
-    """The parser of all subcommands, with the options of those that are named in the arguments."""
+    """The parser of all subcommands; only those named in the arguments have their options."""
     top = Parser(
         prog="bouncing-ball",
         description="Orbits and other motions of a ball on a vibrating table. Quantities are "

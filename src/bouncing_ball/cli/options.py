@@ -1,4 +1,4 @@
-"""Options of a subcommand, from the signature and the docstring of its call."""
+"""The options of a subcommand, made from the signature and the docstring of its call."""
 
 import argparse
 import builtins
@@ -21,20 +21,20 @@ _OTHER_NAMES |= {"amplitudes": "amplitude"}
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser whose errors are one line and exit status 2."""
+    """A parser that prints one line on an error and exits with status 2."""
 
     def __init__(self, *args: Any, **options: Any) -> None:
-        # The explanation and the examples have lines of their own.
+        # The line breaks of the explanation and of the examples are kept.
         options["formatter_class"] = argparse.RawDescriptionHelpFormatter
         super().__init__(*args, **options)
-        # A value such as -1e6 or -5N/m is not an option, as in Python 3.14.
+        # A value such as -1e6 or -5N/m is no option, as in Python 3.14.
         self._negative_number_matcher = re.compile(r"-\.?\d")
 
     def error(self, message: str) -> NoReturn:
         self.exit(2, f"{self.prog.split()[0]}: {escaped(message)}\n")
 
     def _print_message(self, message: str, file: Any = None) -> None:
-        # argparse has no message for help that cannot be written.
+        # argparse prints no message if the help cannot be written.
         if file is sys.stdout:
             say(message.rstrip("\n"))
         else:
@@ -42,7 +42,7 @@ class Parser(argparse.ArgumentParser):
 
 
 def option(name: str) -> str:
-    """The option of a parameter.
+    """The option of the command line for a parameter.
 
     Examples
     --------
@@ -53,7 +53,9 @@ def option(name: str) -> str:
 
 
 def meanings(call: Callable) -> dict[str, str]:
-    """The description of each parameter in the docstring, with those of parameters handed on.
+    """The description of each parameter from the docstring of a call.
+
+    Parameters that the call hands on are described by the docstring of the other call.
 
     Examples
     --------
@@ -71,7 +73,7 @@ def meanings(call: Callable) -> dict[str, str]:
 
 
 def _number(text: str, kind: Any = float) -> float:
-    """The number that a text gives; NaN if it gives none."""
+    """The number that a text represents; NaN if it is no number."""
     try:
         return int(text) if kind is int else float(text)
     except ValueError:
@@ -87,7 +89,7 @@ def _assignment(text: str) -> tuple[str, float]:
 
 
 def _within(allowed: Range) -> Callable[[str], Any]:
-    """A parser of numbers in a range, for ``type=``."""
+    """A parser of numbers in a range, for the argument ``type`` of an option."""
 
     def parse(text: str) -> Any:
         value = _number(text, int if allowed.whole else float)
@@ -99,7 +101,7 @@ def _within(allowed: Range) -> Callable[[str], Any]:
 
 
 def _reading(annotation: Any) -> dict[str, Any]:
-    """The settings with which argparse reads a value of a type."""
+    """The arguments of ``add_argument`` for a parameter with this annotation."""
     kinds = typing.get_args(annotation)
     if type(None) in kinds:
         # X | None is read as X.
@@ -117,24 +119,24 @@ def _reading(annotation: Any) -> dict[str, Any]:
             return {"type": _assignment, "action": "append", "metavar": "NAME=NUMBER"}
         case pathlib.Path:
             return {"type": pathlib.Path, "metavar": "FILE"}
-    # A text, or a quantity with its unit, which is read by the call.
+    # A text, or a quantity with a unit, which the call converts.
     return {"metavar": "X"}
 
 
 def positional(call: Callable) -> list[str]:
-    """The parameters that are given by position."""
+    """The parameters that are arguments by position on the command line."""
     found = inspect.signature(call).parameters.values()
     return [p.name for p in found if p.kind is p.POSITIONAL_ONLY]
 
 
 def add_options(parser: argparse.ArgumentParser, call: Callable) -> None:
-    """One option for each parameter, and arguments for those that are positional only."""
+    """Add one option for each parameter, and an argument for each positional-only parameter."""
     texts, parameters = meanings(call), inspect.signature(call, eval_str=True).parameters
     for name, parameter in parameters.items():
         reading, text = _reading(parameter.annotation), texts.get(name, "")
         required, default = parameter.default is parameter.empty, parameter.default
         if parameter.kind is parameter.POSITIONAL_ONLY:
-            # Without a default argparse would call several arguments required.
+            # Without a default, argparse would list an optional list of arguments as required.
             several: dict[str, Any] = {} if required else {"nargs": "*", "default": []}
             reading["metavar"] = name.upper()
             parser.add_argument(name, **reading, **several, help=text)

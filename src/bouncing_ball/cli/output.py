@@ -1,7 +1,7 @@
-"""The output of the command line, whatever the stream accepts.
+"""The output of the command line on streams of any encoding.
 
-Characters that the stream's encoding lacks are escaped. A reader who closes the pipe
-(``| head``) ends the output quietly, and a device that is full ends it with one line.
+Characters that the encoding of the stream does not have are escaped. If the reader closes the pipe
+(``| head``), the output ends without a message; if the device is full, it ends with one line.
 """
 
 import os
@@ -20,7 +20,10 @@ def fail(message: str, status: int) -> NoReturn:
 
 
 def say(text: str) -> None:
-    """Print a text; exit quietly if the reader has closed the pipe, and with 2 on another error."""
+    """Print a text.
+
+    If the reader has closed the pipe, exit without a message; on another error exit with status 2.
+    """
     encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
     try:
         print(text.encode(encoding, "backslashreplace").decode(encoding), flush=True)

@@ -1,10 +1,10 @@
-"""Answers as text: a table of values, and a simulation as columns."""
+"""Answers as text: values line by line, and a simulation as a table."""
 
 from typing import Any
 
 
 def _value(value: Any) -> str:
-    """Ten digits of a number, and words for anything else."""
+    """A number with ten digits; other values as words."""
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float):
@@ -27,7 +27,7 @@ def _rows(answer: dict[str, Any], prefix: str = "") -> list[str]:
 
 
 def _columns(sequence: dict[str, list]) -> list[str]:
-    """A heading, and a line for each impact."""
+    """A heading, and one line for each impact of a simulation."""
     head = "".join(f"{name.replace('_', ' '):>24}" for name in sequence)
     body = [
         "".join(f"{'never' if value is None else format(value, '.12g'):>24}" for value in line)
@@ -37,7 +37,7 @@ def _columns(sequence: dict[str, list]) -> list[str]:
 
 
 def lines(answer: dict[str, Any]) -> list[str]:
-    """The values; all orbits one after another, or a simulation as a table.
+    """The values line by line, several orbits one after another, and a simulation as a table.
 
     Examples
     --------

@@ -1,1 +1,1 @@
-"""The configuration: one reader of YAML, one checker, and one description made from the types."""
+"""The configuration of a run: reading YAML, checking it, and documenting it from the types."""

@@ -1,7 +1,7 @@
 """The check of the configuration, with one line per mistake.
 
-The type of each section is that of the ``parameters`` of the study which takes it, so that the
-allowed values and the reasons for them stand beside the study.
+The type of each section is that of the argument ``parameters`` of its study, so that the allowed
+values and the reasons for them are defined beside the study.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -18,7 +18,7 @@ from bouncing_ball.parameters import Parameters
 
 
 class _Sections(Parameters, strict=False):
-    """The complete configuration, in which the release rule is a text."""
+    """Base of the complete configuration; it converts values, because the release is a text."""
 
 
 def configuration_model(studies: Mapping[str, str], config: Mapping[str, Any]) -> type[BaseModel]:
@@ -29,12 +29,12 @@ def configuration_model(studies: Mapping[str, str], config: Mapping[str, Any]) -
     studies : mapping
         The study of each artifact.
     config : mapping
-        The configuration, which says in which section an artifact is.
+        The configuration, from which follows the section of each artifact.
 
     Raises
     ------
     ConfigurationError
-        If a study is missing, or the parameters of an artifact.
+        If a study, or the parameters of an artifact, are missing.
     """
     places: dict[str, dict[str, Any]] = {name: {} for name in SECTIONS}
     keys: dict[str, Any] = {"atlas": (Plan, ...)}
@@ -57,17 +57,16 @@ def check_configuration(
     Raises
     ------
     ConfigurationError
-        One line that names the file, or the key.
+        The message is one line that names the file or the key.
     """
     for where in files:
         try:
-            # Snakemake has read it already, but takes the last of equal keys without an error.
+            # Snakemake has read the file already, but accepts duplicate keys without an error.
             read_yaml(where)
         except ConfigurationError as error:
             raise ConfigurationError(f"{where}: {error}") from None
     try:
-        model = configuration_model(studies, config)
-        check(model, config)
+        check(configuration_model(studies, config), config)
     except ConfigurationError as error:
         raise ConfigurationError(f"configuration: {error}") from None
 
@@ -78,7 +77,7 @@ def check(model: type[BaseModel], config: Mapping[str, Any]) -> None:
     Raises
     ------
     ConfigurationError
-        One line that names the key, the value and what is allowed.
+        The message is one line that names the key, the value and the allowed values.
 
     Examples
     --------
@@ -92,13 +91,13 @@ samples? Allowed here: min, max, samples
     try:
         model.model_validate(config)
     except ValidationError as error:
-        # A mistyped key is reported as unknown and as missing, of which the first is clearer.
+        # Pydantic reports a mistyped key as unknown and as missing; the first report is clearer.
         first = min(error.errors(), key=lambda each: each["type"] != "extra_forbidden")
         raise ConfigurationError(_sentence(model, first)) from None
 
 
 def place(path: Sequence[str | int]) -> str:
-    """The name of a place in the configuration.
+    """A path of keys and indices in the configuration, as text.
 
     Examples
     --------
@@ -110,8 +109,9 @@ def place(path: Sequence[str | int]) -> str:
 
 
 def resolved(schema: Mapping[str, Any], root: Mapping[str, Any]) -> dict[str, Any]:
-    """A JSON schema in which a reference is replaced by its target; entries beside it take
-    precedence.
+    """A JSON schema whose reference is replaced by its target.
+
+    Entries beside the reference take precedence over those of the target.
 
     Examples
     --------
@@ -124,7 +124,7 @@ def resolved(schema: Mapping[str, Any], root: Mapping[str, Any]) -> dict[str, An
     return {**(root["$defs"][reference] if reference else {}), **own}
 
 
-# Expressions of pydantic, and what a user of YAML reads instead.
+# Expressions in the messages of pydantic, and the words for users of YAML in their place.
 _WORDS = {
     "Input should": "must",
     "Tuple should": "must",
@@ -137,7 +137,7 @@ _WORDS = {
 
 
 def _sentence(model: type[BaseModel], error: Any) -> str:
-    """One sentence for an error: the place, the value, what is allowed, and why."""
+    """One sentence for an error: the place, the value, the allowed values, and the reason."""
     root = model.model_json_schema()
     schema = parent = resolved(root, root)
     for part in error["loc"]:

@@ -45,7 +45,7 @@ def _rows(schema, root, default, path) -> Iterator[str]:
 
 
 def configuration_page(model: type[BaseModel], config: Mapping[str, Any]) -> str:
-    """The page in Markdown: a table for each section, with the values of ``config`` as defaults."""
+    """The page in Markdown, a table for each section; the defaults are the values of ``config``."""
     root, page = model.model_json_schema(), _HEAD
     for name, default in config.items():
         rows = "".join(_rows(root["properties"][name], root, default, [name]))

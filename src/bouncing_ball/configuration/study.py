@@ -1,9 +1,9 @@
 """The studies that the rules name, and the arguments that each takes from a run.
 
-A study declares by its signature what it takes: ``study(parameters, release, continuation)``. Its
-``parameters`` are a section of the configuration, for example ``figures.fig08``, ``data`` are the
-datasets that its rule names, ``follow`` what its shards have found, and each further argument is
-the setting of the run with that name.
+The signature of a study declares its arguments, for example ``study(parameters, release,
+continuation)``. ``parameters`` is a section of the configuration, such as ``figures.fig08``;
+``data`` holds the datasets that the rule names; ``follow`` returns the results of the shards; and
+each further argument is the setting of the run with that name.
 """
 
 import inspect
@@ -20,7 +20,7 @@ SECTIONS = ("figures", "tables", "extensions", "studies")
 
 
 def load(study: str) -> Callable[..., Any]:
-    """The function that a rule names.
+    """The function with this dotted name in the package.
 
     Raises
     ------
@@ -40,9 +40,9 @@ def load(study: str) -> Callable[..., Any]:
 
 
 def typed(study: Callable[..., Any]) -> Callable[..., Any]:
-    """The study as a function of parameters as they stand in the configuration.
+    """The study as a function of parameters in the form that the configuration has.
 
-    It raises :class:`pydantic.ValidationError` for parameters that are not allowed.
+    It raises :class:`pydantic.ValidationError` if a parameter is not allowed.
 
     Examples
     --------
@@ -57,7 +57,7 @@ def typed(study: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def taken(study: str) -> dict[str, Any]:
-    """The arguments of a study from the configuration, with their types.
+    """The arguments that a study takes from the configuration, with their types.
 
     Raises
     ------
@@ -74,7 +74,7 @@ def taken(study: str) -> dict[str, Any]:
 
 
 def section(artifact: str, run: Mapping[str, Any]) -> str:
-    """The section of the configuration that has an artifact's parameters.
+    """Name of the section of the configuration that holds the parameters of an artifact.
 
     Raises
     ------
@@ -95,12 +95,12 @@ def section(artifact: str, run: Mapping[str, Any]) -> str:
 
 
 def arguments(study: str, artifact: str, run: Mapping[str, Any]) -> dict[str, Any]:
-    """The arguments of a study for an artifact, as they stand in the configuration.
+    """The arguments of a study for an artifact, in the form that the configuration has.
 
     Raises
     ------
     ConfigurationError
-        If there is no such study, or no section has the artifact.
+        If there is no such study, or no section with this artifact.
 
     Examples
     --------

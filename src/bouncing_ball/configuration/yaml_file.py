@@ -1,6 +1,6 @@
-"""YAML files, read with one line per mistake.
+"""Reading YAML files, with a message of one line for a mistake.
 
-A key that is given twice is refused, because the last of two equal keys would win without an error.
+A duplicate key is an error, because otherwise the last value would be used without a warning.
 """
 
 from pathlib import Path
@@ -10,19 +10,20 @@ import yaml
 
 from bouncing_ball.errors import ModelError, escaped
 
-# Ten times as fast, where PyYAML was built with libyaml; both read the same language.
+# The loader of libyaml, where PyYAML was built with it, is ten times as fast. Both loaders read the
+# same language.
 _BASE = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
 class ConfigurationError(ModelError):
-    """A wrong key, type or value in a file; the message is one line that is safe to print."""
+    """A wrong key, type or value in a file. The message is one line that is safe to print."""
 
     def __init__(self, text: str) -> None:
         super().__init__(escaped(text))
 
 
 class _Loader(_BASE):  # type: ignore[misc, valid-type]
-    """The safe subset of YAML, in which a mapping has each key once."""
+    """A loader of the safe subset of YAML that refuses duplicate keys in a mapping."""
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict:
         seen = set()
@@ -40,7 +41,7 @@ def parse_yaml(text: str) -> Any:
     Raises
     ------
     ConfigurationError
-        One line: not YAML, or a duplicate key.
+        If the text is not YAML or has a duplicate key.
 
     Examples
     --------
@@ -57,7 +58,7 @@ def parse_yaml(text: str) -> Any:
         line = f" in line {error.problem_mark.line + 1}" if error.problem_mark else ""
         raise ConfigurationError(f"not YAML{line}: {error.problem}") from None
     except yaml.YAMLError as error:
-        # A character that is not allowed in a YAML file.
+        # For example a character that is not allowed in YAML.
         raise ConfigurationError(f"not YAML: {' '.join(str(error).split())}") from None
 
 
@@ -67,8 +68,8 @@ def read_yaml(path: str | Path) -> Any:
     Raises
     ------
     ConfigurationError
-        One line, which does not name the file, if it does not exist, is not UTF-8, or is
-        refused by :func:`parse_yaml`.
+        If the file does not exist, is not UTF-8, or :func:`parse_yaml` refuses its text. The
+        message does not name the file.
     """
     try:
         return parse_yaml(Path(path).read_text(encoding="utf-8"))

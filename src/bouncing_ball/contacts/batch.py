@@ -19,7 +19,7 @@ def _shape(value: Any) -> tuple[int, ...]:
 
 
 def _entry(value: Any, shape: tuple[int, ...], index: Any) -> Any:
-    """Some elements of a field; a scalar applies to all."""
+    """The elements of a field at an index; a scalar, which applies to all, is unchanged."""
     if isinstance(value, Batch):
         return value._entries(shape, index)
     if not np.ndim(value):
@@ -48,9 +48,10 @@ def in_words(value: Any) -> str:
 
 
 def plain(value: Any) -> Any:
-    """Results for a user: a single number as a Python number, a single object as a :class:`Single`.
+    """A result in the form that a user receives.
 
-    Arrays are unchanged. A method is wrapped, so that its result is converted in the same way.
+    A single number becomes a Python number, a single object a :class:`Single`; arrays are
+    unchanged. A method is wrapped, so that its result is converted in the same way.
 
     Examples
     --------
@@ -67,15 +68,15 @@ def plain(value: Any) -> Any:
 
 
 def plainly(call: Callable) -> Callable:
-    """The function whose results are :func:`plain`."""
+    """A function wrapped so that :func:`plain` is applied to its results."""
     return functools.wraps(call)(lambda *given, **more: plain(call(*given, **more)))
 
 
 class Single:
-    """One element of a batch, whose numbers are Python numbers.
+    """One element of a batch, whose numbers are returned as Python numbers.
 
-    Internally a batch computes with arrays of one element, whereas a user who requests one orbit
-    receives floats.
+    A batch computes with arrays, even if it has a single element, whereas a user who requests one
+    orbit receives floats.
 
     Examples
     --------
@@ -136,7 +137,7 @@ class Batch:
 
     @property
     def size(self) -> int:
-        """The number of elements; 1 for a single one."""
+        """The number of elements; 1 for a single element."""
         return math.prod(self.shape)
 
     def __len__(self) -> int:
@@ -154,16 +155,17 @@ class Batch:
         return self._entries(self.shape, index)
 
     def flat(self, shape: tuple[int, ...]) -> Self:
-        """The elements broadcast to a shape and flattened to a row; a single one remains single.
+        """The elements broadcast to a shape and flattened to a row.
 
-        It then applies to all elements of the row.
+        A single element is unchanged, because it applies to all elements of the row.
         """
         if not self.shape:
             return self
         return self._entries(shape, np.unravel_index(np.arange(math.prod(shape)), shape))
 
     def take(self, which: Any) -> Self:
-        """The elements of a row with these indices; a single one, which applies to all, is
-        unchanged.
+        """The elements of a row with these indices.
+
+        A single element is unchanged, because it applies to the whole row.
         """
         return self[which] if self.shape else self

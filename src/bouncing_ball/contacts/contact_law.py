@@ -1,13 +1,13 @@
-"""The interface of a contact law: a force, the rule that ends the contact, and its roots.
+"""The interface of a contact law: its force, the rule that ends the contact, and the root m.
 
-With the penetration p = -δ of the ball into the table a contact obeys ::
+The penetration p = -δ of the ball into the table obeys ::
 
     p″ = a - f(p, p′),    a = 1 - Λ sin(τ + φ),    p(0) = 0,  p′(0) = v > 0
 
 All quantities are dimensionless (times Ωt, lengths Ω²y/g); f is the force over
-the weight of the ball. The laws in use are not smooth where p = 0, but they are
-analytic functions of ``p^{1/m}`` and p′, with m = 2 for a force like p^{3/2} or
-p^{1/2}, and m = 4 for one like p^{1/4}. The number m is part of a law, because the
+the weight of the ball. A law need not be smooth where p = 0, but between its kinks it is an
+analytic function of ``p^{1/m}`` and p′: m = 1 for a linear force, m = 2 for terms such as
+p^{3/2} or p^{1/2}, and m = 4 for p^{1/4}. The number m is part of a law, because the
 numerical methods need it to keep their order at the ends of the contact.
 """
 
@@ -24,12 +24,12 @@ from bouncing_ball.contacts.instant import Instant
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.errors import ModelError, require
 
-# The imaginary step, as a part of p or of 1; its square is lost in rounding.
+# The imaginary step, relative to p and absolute for p′; its square is lost in rounding.
 _IMAGINARY = 1e-20
 
 
 class Unit(NamedTuple):
-    """The SI unit of a parameter, and its powers of mass, length and time."""
+    """The name of a parameter's SI unit, and its powers of mass, length and time."""
 
     name: str
     mass: float = 0.0
@@ -38,14 +38,14 @@ class Unit(NamedTuple):
 
 
 class Slopes(NamedTuple):
-    """Derivatives of a function of (p, p′), of the shape of the arguments."""
+    """Partial derivatives of a function of (p, p′), arrays of the shape of the arguments."""
 
     by_penetration: np.ndarray
     by_rate: np.ndarray
 
 
 def slopes_of(function: Callable, penetration: ArrayLike, rate: ArrayLike) -> Slopes:
-    """Derivatives by imaginary steps, exact up to rounding for an analytic expression.
+    """Partial derivatives by imaginary steps, exact up to rounding for an analytic function.
 
     Examples
     --------
@@ -64,16 +64,16 @@ def slopes_of(function: Callable, penetration: ArrayLike, rate: ArrayLike) -> Sl
 class ContactLaw(Batch, ABC):
     """A contact law: a frozen dataclass of its dimensionless parameters.
 
-    A subclass defines :meth:`force`; everything else has a default. ``root`` is m and
-    ``release`` the rule that ends the contact. A subclass checks its parameters in
-    ``__post_init__`` and raises :class:`~bouncing_ball.errors.ModelError`.
+    A subclass defines ``name``, ``formula`` and :meth:`force`; the other members have defaults.
+    ``root`` is m, and ``release`` the rule that ends the contact. A subclass checks its parameters
+    in ``__post_init__`` and raises :class:`~bouncing_ball.errors.ModelError`.
     """
 
     name: ClassVar[str]
     formula: ClassVar[str]
     """The force, as the help of the command line shows it."""
     units: ClassVar[dict[str, Unit]] = {}
-    """The units of those parameters that are not numbers."""
+    """The units of the parameters; a parameter that is not listed is a pure number."""
     root: ClassVar[int] = 2
     release = Release.DISPLACEMENT
 
@@ -91,58 +91,58 @@ class ContactLaw(Batch, ABC):
 
     @property
     def lag(self) -> Any:
-        """κ of a contact that ends where p + κ p′ = 0; None where the release depends on the force
-        itself.
+        """κ of a contact that ends where p + κ p′ = 0; None if its end has no such form, so that
+        the grip must be evaluated.
         """
         return 0.0 if self.release is Release.DISPLACEMENT else None
 
     feels_load: ClassVar[bool] = False
-    """Whether the force in contact depends on the load, as :meth:`loaded_force` says.
+    """Whether the contact force depends on the load through :meth:`loaded_force`.
 
-    The ball is then released where the grip under the load vanishes, or where p = 0, whichever
+    If it does, the ball is released where :meth:`loaded_grip` vanishes or where p = 0, whichever
     comes first.
     """
 
     def loaded_force(self, penetration: np.ndarray, rate: np.ndarray, load: Any) -> np.ndarray:
-        """The force under a load a, in which it is linear; by default f(p, p′)."""
+        """The force under a load a, a linear function of a; by default f(p, p′)."""
         return self.force(penetration, rate)
 
     @property
     def has_kink(self) -> bool:
-        """Whether the force is smooth only where :meth:`kink` does not change its sign."""
+        """Whether the force has kinks, where :meth:`kink` changes its sign."""
         return False
 
     def kink(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """A function that changes its sign where the force, which is continuous, has a kink."""
+        """A function that changes its sign where the continuous force has a kink."""
         return np.ones_like(penetration)
 
     def grip(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """The function that is positive in contact, and zero where the ball is released."""
+        """Grip function: positive in contact, zero at release."""
         lag = self.lag
         return self.force(penetration, rate) if lag is None else penetration + lag * rate
 
     def loaded_grip(self, penetration: np.ndarray, rate: np.ndarray, load: Any) -> np.ndarray:
-        """The grip under a load a, by default that without."""
+        """The grip function under a load a; by default the load has no effect."""
         return self.grip(penetration, rate)
 
     @property
     def signature(self) -> Instant | None:
-        """The signature of free impacts if it has a formula and is the same at every speed, else
-        None.
+        """The signature of free impacts if it has a closed form and is the same at every speed,
+        otherwise None.
         """
         return None
 
     @property
     def permanent_contact(self) -> Any:
-        """Λ up to which a steady contact is held, if it has a formula, else None."""
+        """The greatest Λ of permanent contact if it has a closed form, otherwise None."""
         return None
 
     @classmethod
     def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
-        """The law that at a speed v has the scale P of length, and a given dissipation.
+        """The law with the length scale P at the speed v, and the dissipation ``group``.
 
-        In units of P and P/v the impact at v is that of stiffness 1, damping
-        ``group`` and speed 1.
+        With P as the unit of length and P/v as that of time, its impact at the speed v is an
+        impact of stiffness 1, damping ``group`` and speed 1.
 
         Raises
         ------
@@ -153,22 +153,25 @@ class ContactLaw(Batch, ABC):
 
     @classmethod
     def group_of(cls, restitution: float) -> float | None:
-        """The dissipation ``group`` of a restitution coefficient r, if it has a closed form, else
-        None.
+        """The dissipation ``group`` that gives a restitution coefficient r if it has a closed
+        form, otherwise None.
         """
         return None
 
     @classmethod
     def parameter_names(cls) -> list[str]:
-        """Names of the law's numbers, which are its fields except the release."""
+        """Names of the law's numerical parameters: all fields except ``release``."""
         return [field.name for field in fields(cls) if field.name != "release"]
 
     def parameters(self) -> dict[str, Any]:
-        """Names and values of the law's numbers."""
+        """Names and values of the law's numerical parameters."""
         return {name: getattr(self, name) for name in self.parameter_names()}
 
     def in_si(self, mass: float, length: float, time: float) -> dict[str, float]:
-        """The numbers of a single law in SI units, from the units of mass, length and time."""
+        """The parameters of a single law in SI units.
+
+        The arguments are the units of mass, length and time of the dimensionless model, in SI.
+        """
         found = {}
         for name, value in self.parameters().items():
             unit = self.units.get(name, Unit(""))
@@ -177,7 +180,7 @@ class ContactLaw(Batch, ABC):
 
     @property
     def label(self) -> str:
-        """The name and the numbers of a single law as text."""
+        """The name and the parameters of a single law as text."""
         numbers = (f"{name.replace('_', ' ')} {float(x):.6g}" for name, x in
                    self.parameters().items())  # fmt: skip
         return f"{self.name} with {', '.join(numbers)}"

@@ -1,7 +1,7 @@
-"""Scales of a contact: penetration, speed, and from both the duration.
+"""Scales of a contact: its penetration and speed, whose quotient is a scale of its duration.
 
-They set the steps of the numerical methods and the starting points of their iterations; the
-results do not depend on them.
+They set the step lengths of the numerical methods and the starting points of their iterations; the
+results depend on them only within the error of the methods.
 """
 
 from typing import NamedTuple
@@ -11,27 +11,28 @@ import numpy as np
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.errors import ModelError
 
-# Newton's method for ln p, which takes one step for a power law, a few for a sum of powers.
+# Limit and tolerance of Newton's method for ln p, which takes one step for a power law and a few
+# for a sum of powers.
 _ITERATIONS = 40
 _ENOUGH = 1e-3
-# Steps of ln p: the one for the slope by differences, and the longest of Newton's method.
+# Steps of ln p: the one for the difference quotient, and the longest of Newton's method.
 _DIFFERENCE, _LONGEST = 1e-4, 10.0
 
 
 class Scales(NamedTuple):
-    """Length P and speed V of a contact, arrays of one shape; the contact takes a few P/V."""
+    """Length P and speed V of a contact, arrays of one shape; it lasts for a few P/V."""
 
     length: np.ndarray
     speed: np.ndarray
 
 
 def depth(law: ContactLaw, rate: np.ndarray, power: float, wanted: np.ndarray) -> np.ndarray:
-    """The penetration p at which f(p, p′) p^power reaches a value, of the shape of ``wanted``.
+    """The penetration p at which f(p, p′) p^power = ``wanted``, of the shape of ``wanted``.
 
     Raises
     ------
     ModelError
-        If the force does not grow to any value with the penetration.
+        If no such penetration was found, because the force does not grow without limit.
     """
 
     def logarithm(log):
@@ -62,7 +63,7 @@ def rest(law: ContactLaw) -> float:
     >>> round(rest(SpringDamper(2.0, 0.1)), 6)
     0.25
 
-    Of an impedance only the share 1 - d of the weight is left, at (1 - d)/ϖ²:
+    With a constant impedance d only the share 1 - d of the weight acts, so that p = (1 - d)/ϖ²:
 
     >>> from bouncing_ball.contacts.laws.impedance import Impedance
     >>> round(rest(Impedance(0.5, 0.1, 0.75)), 12)
@@ -72,7 +73,7 @@ def rest(law: ContactLaw) -> float:
     deepest = float(depth(law, 0 * weight, 0.0, weight)[0])
     if not law.feels_load:
         return deepest
-    # The load adds to the force, so that the ball lies less deep.
+    # The load adds to the force, so that the ball at rest lies less deep.
     from scipy.optimize import brentq
 
     def surplus(p: float) -> float:
@@ -82,10 +83,10 @@ def rest(law: ContactLaw) -> float:
 
 
 def scales(law: ContactLaw, speed: np.ndarray, load: np.ndarray) -> Scales:
-    """Scales of contacts with an impact speed under a load of at most ``load``.
+    """Scales of contacts with a given impact speed, under a load of at most ``load``.
 
-    ``f(P, V) P = V²``, where V² is the square of the impact speed and the gain by the load until
-    the contact carries it.
+    ``f(P, V) P = V²``. V² is the square of the impact speed, plus the load times the penetration at
+    which the contact force balances it.
 
     Raises
     ------

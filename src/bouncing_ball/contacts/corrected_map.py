@@ -1,7 +1,7 @@
-"""The corrected restitution map: an impact is an instant at the right time and depth.
+"""The corrected restitution map: each contact is an instantaneous impact at its centroid.
 
-At the instant the table has the phase ψ and the ball, in its continued flight,
-the absolute velocity p. It is below the table by h, and turns its closing
+At this instant the table has the phase ψ, and the ball, on its continued flight, has
+the absolute velocity p and is below the table by h. The impact turns the closing
 speed v into ``r_c v = r v + σ a`` with the load ``a = 1 - Λ sin ψ``::
 
     v = Λ cos ψ - p
@@ -25,17 +25,17 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.elementary import sine_and_cosine
 from bouncing_ball.contacts.signature import Instant, Signature
 
-# Iterations of ψ = φ + t_c(v), for laws whose delay depends on the speed. Each one
-# reduces the error by a factor a dt_c/dv, of the order of a D/v.
+# Iterations of ψ = φ + t_c(v), for laws whose delay depends on the speed. Each iteration
+# multiplies the error by a factor a dt_c/dv, of the order of a D/v.
 _ITERATIONS = 30
 _SETTLED = 1e-15
 
 
 class Hit(NamedTuple):
-    """An instant: the phase ψ, the velocity ``arrival`` p before it, and the quantities after it.
+    """An impact at its instant: the table's ``phase`` ψ, and ``arrival``, the velocity p before it.
 
-    ``speed`` is v, ``depth`` h, ``height`` and ``velocity`` are the absolute z and w
-    just after the instant, and ``instant`` is the signature at v.
+    ``speed`` is v, ``depth`` is h, ``height`` and ``velocity`` are the absolute z and w
+    just after the impact, and ``instant`` is the signature at v.
     """
 
     phase: np.ndarray
@@ -48,7 +48,7 @@ class Hit(NamedTuple):
 
 
 def impact(signature: Signature, amplitude: ArrayLike, phase: ArrayLike, arrival: ArrayLike) -> Hit:
-    """The instant at a phase ψ of the table, with the absolute velocity p before it.
+    """The impact at a phase ψ of the table, with the absolute velocity p before it.
 
     Examples
     --------
@@ -73,7 +73,7 @@ def impact(signature: Signature, amplitude: ArrayLike, phase: ArrayLike, arrival
 def meeting(
     signature: Signature, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike
 ) -> tuple[np.ndarray, np.ndarray]:
-    """ψ and p of the instant of a contact that starts at φ with the ball's absolute velocity z′.
+    """ψ and p of the contact that starts at φ, where the ball has the absolute velocity z′.
 
     Examples
     --------

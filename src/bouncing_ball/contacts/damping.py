@@ -1,9 +1,9 @@
 """Damping ratio and restitution coefficient of a linear contact (Eq. 16).
 
-Half a period of a free damped oscillator, without gravity, returns the
-velocity multiplied by ``r = exp(-π ζ / √(1 - ζ²))`` (Nagurka and Huang). If the
-contact ends where its force vanishes instead, at the angle π - 2 arcsin ζ, the
-velocity is multiplied by ``exp(-ζ (π - 2 arcsin ζ) / √(1 - ζ²))`` (Schwager and
+During half a period of a free damped oscillator, without gravity, the speed is
+multiplied by ``r = exp(-π ζ / √(1 - ζ²))`` (Nagurka and Huang). If instead the
+contact ends where its force vanishes, at the angle π - 2 arcsin ζ, the
+speed is multiplied by ``exp(-ζ (π - 2 arcsin ζ) / √(1 - ζ²))`` (Schwager and
 Pöschel, Granular Matter 9, 2007).
 """
 
@@ -14,10 +14,10 @@ from bouncing_ball.contacts.elementary import exponential, logarithm, sine_and_v
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.errors import require
 
-# Newton steps for β in 2β cot β = -ln r. The start has an error below 10 %, and each
-# step doubles the number of digits.
+# Newton steps for β in 2β cot β = -ln r. The initial error is below 10 %, and each
+# step doubles the number of correct digits.
 _NEWTON_STEPS = 6
-# π/2 without the double next to it.
+# The difference between π/2 and the double nearest to it.
 _REST = 6.123233995736766e-17
 
 
@@ -30,15 +30,15 @@ def damping_ratio(restitution: ArrayLike, release: Release = Release.DISPLACEMEN
     Parameters
     ----------
     restitution : array_like
-        r in (0, 1], and above e⁻² for the force release.
+        r in (0, 1] for the displacement release, in (e⁻², 1] for the force release.
     release : Release
-        What ends the contact in which r is measured.
+        The condition that ends the contact in which r is measured.
 
     Raises
     ------
     ModelError
-        If any r lies outside its range: no linear contact has r = 0, which is
-        the limit ζ → 1, as e⁻² is for the force release.
+        If any r lies outside its range. The lower bounds 0 and e⁻² are the limits
+        for ζ → 1.
 
     Examples
     --------
@@ -59,7 +59,7 @@ def damping_ratio(restitution: ArrayLike, release: Release = Release.DISPLACEMEN
 
 
 def _cosine(beta: np.ndarray) -> np.ndarray:
-    """cos β with all its digits next to π/2, whose rounding is added."""
+    """cos β, accurate near π/2 because the rounding error of π/2 is added."""
     return sine_and_versine((np.pi / 2 - beta) + _REST)[0]
 
 
@@ -67,8 +67,8 @@ def _half_angle(decrement: np.ndarray) -> np.ndarray:
     """β in (0, π/2] with ``2β cot β = decrement`` < 2, by Newton's method.
 
     2β cot β falls from 2 to 0 and is concave, so that the steps converge from
-    the right without leaving the interval. The start is the same curve as a
-    parabola through its ends, with the right slope at the second.
+    the right without leaving the interval. The starting point replaces the curve by
+    the parabola 2 - 8 (β/π)², which agrees with it at β = 0 and β = π/2.
     """
     start = np.pi / 2 * np.sqrt(1 - decrement / 2)
     beta = np.maximum(start, np.finfo(float).tiny)
@@ -85,20 +85,20 @@ def restitution_coefficient(
 ) -> np.ndarray:
     """Restitution coefficient of a free, underdamped linear contact.
 
-    ``r = exp(-(π - 2α) ζ/√(1 - ζ²))``, the inverse of :func:`damping_ratio`;
-    greater for the force release, whose contact ends before it pulls.
+    ``r = exp(-(π - 2α) ζ/√(1 - ζ²))``, the inverse of :func:`damping_ratio`. For the
+    force release r is greater, because the contact ends before its force pulls the ball.
 
     Parameters
     ----------
     damping : array_like
         ζ in [0, 1).
     release : Release
-        What ends the contact.
+        The condition that ends the contact.
 
     Raises
     ------
     ModelError
-        If any ζ lies outside [0, 1): at ζ ≥ 1 a free contact never returns.
+        If any ζ lies outside [0, 1): the formula holds for underdamped contacts only.
 
     Examples
     --------

@@ -1,11 +1,11 @@
-"""Elementary functions with the same digits on every processor.
+"""Elementary functions whose results have the same digits on every processor.
 
-NumPy's sine, exponential and others come from whichever library is fastest on the processor, and
-differ in the last digit from one to another. A chaotic ball makes of that a different motion.
-Addition, multiplication, division and the square root are exact to rounding everywhere
-(IEEE 754), and so is what is made of them here: rational approximations after a reduction of
-the argument (S. L. Moshier, Cephes; W. J. Cody and W. Waite). Errors are a few units in the last
-place of the result, or of 1 where it vanishes.
+For its sine and exponential numpy chooses the library that is fastest on the processor, and the
+results of these libraries differ in the last digit. In a chaotic motion such a difference grows.
+Addition, multiplication, division and the square root are rounded in the same way on every
+processor (IEEE 754). The functions here use only these operations: a reduction of the argument and
+a rational approximation (S. L. Moshier, Cephes; W. J. Cody and W. Waite). Their errors are a few
+units in the last place of the result, or of 1 near a zero of the function.
 """
 
 import math
@@ -14,10 +14,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-# Numbers of a formula are arrays without an axis: numpy converts a float anew at each operation,
-# which takes as long as the operation on some hundred balls.
-# 2π = _TURN_HIGH + _TURN_LOW; the first has 33 significant bits, so that its product with any
-# integer below 2²⁰ is exact (Cody and Waite). The same for ln 2.
+# The constants are arrays without an axis, because numpy converts a Python float again in each
+# operation, which takes as long as the operation on a few hundred balls.
+# 2π = _TURN_HIGH + _TURN_LOW, where _TURN_HIGH has 33 significant bits, so that its product with
+# any integer below 2²⁰ is exact (Cody and Waite). ln 2 is split in the same way.
 _TURN_HIGH = np.array(float.fromhex("0x1.921fb544p+2"))
 _TURN_LOW = np.array(float.fromhex("0x1.0b4611a626331p-32"))
 _TURNS = np.array(1 / (2 * np.pi))
@@ -30,7 +30,7 @@ def _arrays(*rows: Sequence[float]) -> list[list[np.ndarray]]:
     return [[np.array(x) for x in row] for row in rows]
 
 
-# Numerators and denominators, from the highest power; those of one power more begin with 1.
+# Coefficients of the numerators and denominators, from the highest power down.
 _TAN = _arrays(
     (-1.30936939181383734205e4, 1.15351664838587416140e6, -1.79565251976484877988e7),
     (1.0, 1.36812963470692954678e4, -1.32089234440210967447e6, 2.50083801823357915839e7,
@@ -46,7 +46,7 @@ _ATAN = _arrays(
     (1.0, 2.485846490142306297962e1, 1.650270098316988542046e2, 4.328810604912902668951e2,
      4.853903996359136964868e2, 1.945506571482613964425e2),
 )  # fmt: skip
-# Of ln((1 + f)/(1 - f))/2f in f², |f| ≤ 3 - 2√2.
+# Coefficients of the power series of ln((1 + f)/(1 - f))/2f in f², for |f| ≤ 3 - 2√2.
 (_LOG,) = _arrays([1 / (2 * k + 1) for k in range(12, -1, -1)])
 
 
@@ -59,11 +59,11 @@ def _polynomial(coefficients: Sequence[np.ndarray], x: np.ndarray) -> np.ndarray
 
 
 def reduce_angle(angle: np.ndarray) -> np.ndarray:
-    """The angle modulo 2π, in [-π, π], to the last digit up to 10⁶ turns.
+    """The angle modulo 2π, in [-π, π], accurate to the last digit up to 10⁶ turns.
 
     Examples
     --------
-    The second is what the double next to 2π lacks:
+    The second result is the difference between the double nearest to 2π and 2π:
 
     >>> float(reduce_angle(-1.0)), round(1e16 * float(reduce_angle(2 * np.pi)), 6)
     (-1.0, -2.449294)
@@ -75,7 +75,7 @@ def reduce_angle(angle: np.ndarray) -> np.ndarray:
 def sine_and_versine(angle: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """sin x and 1 - cos x, the latter without cancellation for small x.
 
-    By the tangent of x/4 and two doublings of the angle.
+    Both are computed from the tangent of x/4 by doubling the angle twice.
 
     Examples
     --------
@@ -101,7 +101,7 @@ def sine_and_cosine(angle: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
 
 
 def exponential(x: ArrayLike) -> np.ndarray:
-    """e^x; 0 where that is below the smallest normal number.
+    """e^x for x ≤ 709, and e^709 above; 0 where e^x is below 2^-1022.5.
 
     Examples
     --------
@@ -114,13 +114,13 @@ def exponential(x: ArrayLike) -> np.ndarray:
     square = rest * rest
     odd = rest * _polynomial(_EXP[0], square)
     value = _ONE + _TWO * (odd / (_polynomial(_EXP[1], square) - odd))
-    # 2^power by its bits.
+    # 2^power is assembled from its bits.
     scale = ((np.maximum(power, -1023.0).astype(np.int64) + 1023) << 52).view(np.float64)
     return value * scale
 
 
 def logarithm(x: ArrayLike) -> np.ndarray:
-    """ln x of positive numbers.
+    """ln x for x > 0.
 
     Examples
     --------

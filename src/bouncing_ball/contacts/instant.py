@@ -7,11 +7,11 @@ from numpy.typing import ArrayLike
 
 
 class Instant(NamedTuple):
-    """The signature at an impact speed v, and its derivatives along v.
+    """The signature at an impact speed v, and its derivatives with respect to v.
 
     ``delay`` t_c, ``restitution`` r, ``load`` σ and ``duration`` D are arrays that broadcast; t_c,
-    σ and D are times in units of 1/Ω, r is a number. ``d_delay``, ``d_restitution`` and ``d_load``
-    are the derivatives of t_c, r and σ.
+    σ and D are times in units of 1/Ω. ``d_delay``, ``d_restitution`` and ``d_load`` are the
+    derivatives of t_c, r and σ with respect to v.
     """
 
     delay: np.ndarray
@@ -23,12 +23,12 @@ class Instant(NamedTuple):
     d_load: np.ndarray | float = 0.0
 
     def tangent(self, speed: ArrayLike, load: ArrayLike) -> "tuple[Instant, np.ndarray]":
-        """The constant signature that agrees to first order near a speed v and a load a.
+        """The constant signature that agrees with this one to first order near v, under a load a.
 
         Its restitution is ``b = ∂(r v + σ a)/∂v = r + r′ v + σ′ a`` and its delay ``e = ∂(v t_c)/∂v
-        = t_c + t_c′ v``. The second result is the constant ``(b - r) v`` with which ``r_c v = b v +
-        σ a - (b - r) v₀`` to first order about v₀. A constant signature is its tangent, and this
-        constant is 0.
+        = t_c + t_c′ v``. The second result is the number (b - r) v₀ at the given speed v₀, so that
+        ``r_c v = b v + σ a - (b - r) v₀`` to first order about v₀. For a constant signature b = r
+        and e = t_c, and the second result is 0.
 
         Examples
         --------

@@ -1,8 +1,8 @@
 """The contact law with a given restitution coefficient and contact duration.
 
-In units of the scales P and P/v the restitution of a free impact depends on a single
-number, the law's *group*: C v, C or C v/P. It is determined from r once; the duration D then
-gives P, and both give K and C.
+In units of the scales P and P/v the restitution of a free impact depends on a single number,
+the law's *group*, which is C v, C, C v/P or ζ. The group follows from r and is computed once;
+the duration D then gives P, and the group and P give the parameters of the law.
 """
 
 from functools import lru_cache
@@ -18,13 +18,13 @@ from bouncing_ball.errors import ModelError, require
 
 Law = TypeVar("Law", bound=ContactLaw)
 
-# Groups tried until r is below the required one, and the absolute error of the group found.
+# Groups tried in turn until r is below the required one, and the absolute error of the result.
 _GROUPS = [0.25 * 2.0**k for k in range(8)]
 _SETTLED = 1e-15
 
 
 def law_named(name: str) -> type[ContactLaw]:
-    """The law with a name.
+    """The class of the contact law with this name.
 
     Raises
     ------
@@ -42,19 +42,19 @@ def law_named(name: str) -> type[ContactLaw]:
 
 
 def _free(kind: type[ContactLaw], group: float):
-    """r and D of the free impact in units of the scales."""
+    """r and D of the free impact with this group, in units of the scales."""
     impact = free_impact(kind.of_scales(group, 1.0, 1.0), 1.0)
     return float(impact.restitution), float(impact.duration)
 
 
 @lru_cache(maxsize=1024)
 def reference(kind: type[ContactLaw], restitution: float) -> tuple[float, float]:
-    """The group with a restitution coefficient r, and D v/P of its free impact.
+    """The group that gives a restitution coefficient r, and D v/P of its free impact.
 
     Raises
     ------
     ModelError
-        If r is not in (0, 1], or so small that no impact was found that has it.
+        If r is not in (0, 1], or so small that no group was found that gives it.
 
     Examples
     --------
@@ -104,12 +104,12 @@ def law_of_impact(
     Returns
     -------
     ContactLaw
-        Of this kind, and of the shape to which D and v broadcast.
+        A law of this kind, of the shape to which D and v broadcast.
 
     Raises
     ------
     ModelError
-        If a number is out of its range, or no law of this kind has these r and D.
+        If an argument is out of its range, or no law of this kind has these r and D.
 
     Examples
     --------

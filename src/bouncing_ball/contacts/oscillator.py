@@ -1,21 +1,21 @@
-r"""Exact response of a damped linear oscillator, for every damping.
+r"""Exact responses of a damped linear oscillator, for every damping.
 
-The contact is a linear oscillator, ``y″ + 2a y′ + q y = f(s)`` with
+A linear contact is an oscillator, ``y″ + 2a y′ + q y = f(s)`` with
 ``a = ζϖ`` and ``q = ϖ²``. The model needs two responses:
 
 * the impulse response *g* (f = 0, y(0) = 0, y′(0) = 1);
 * the exponential response *h* (f = e^{νs}, y(0) = y′(0) = 0), with ν = 0 for
   gravity and ν = i for the table.
 
-With ``w = q - a²``, ``C = cos(√w s)`` and ``S = sin(√w s)/√w``, entire functions
-of w, so that under-, critical and overdamped contacts are one case::
+Let ``w = q - a²``, ``C = cos(√w s)`` and ``S = sin(√w s)/√w``. C and S are entire functions
+of w, so that underdamped, critical and overdamped contacts need no distinction::
 
     g  = e^{-as} S                g′ = e^{-as} (C - a S)
     h  = [e^{νs} - g′ - (ν + 2a) g] / p(ν),      p(ν) = ν² + 2aν + q
     h′ = ν h + g,                 ∂h/∂ν = [s e^{νs} - g - 2 (ν + a) h] / p(ν)
 
-*h* has a removable singularity at resonance, p(ν) = 0 (ζ = 0, ϖ = 1 for the
-table), and loses digits to cancellation for short times. There the integrals are
+The quotient for *h* has a removable singularity at resonance, p(ν) = 0 (ζ = 0, ϖ = 1 for the
+table), and loses digits to cancellation for short times. In these cases the integrals are
 computed instead, with enough Gauss nodes for double precision::
 
     h = ∫₀ˢ g(s - u) e^{νu} du,   ∂h/∂ν = ∫₀ˢ u g(s - u) e^{νu} du
@@ -29,16 +29,17 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-# Below this |p(ν)| s² the quotient for h is not used, because the terms of the
-# numerator exceed the result, of order s²/2, by a factor of 4 or more.
+# Below this |p(ν)| s² the quotient for h is not used: its numerator is about p s²/2, but
+# the terms of the numerator are of order 1, so that they cancel when |p| s² is small.
 _CANCELLATION = 4.0
-# Nodes of the integral, to which one is added for each radian of the table: the phase of the
-# integrand changes by (1 + ϖ) s ≤ 2s + 2 there, which so many nodes resolve to rounding.
+# Nodes of the integral, to which one node is added for each radian of the table. Where the
+# integral is used the phase of the integrand changes by (1 + ϖ) s ≤ 2s + 2, and these nodes
+# resolve it to rounding.
 _NODES = 20
-# Longer integrals are cut into panels of at most so many radians of the table, because the
-# effort for the nodes of one panel grows with the cube of their number.
+# Longer integrals are divided into panels of at most this many radians of the table, because
+# the cost of computing the nodes of one panel grows with the cube of their number.
 _PANEL = 200
-# Contacts integrated at the same time: so many that the nodes stay in the cache.
+# Number of contacts integrated at the same time, chosen such that the nodes stay in the cache.
 _BLOCK = 512
 
 
@@ -80,7 +81,7 @@ def _damped(s, a, q, w):
 
 @lru_cache(maxsize=64)
 def _gauss(radians: int) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes and weights on [0, 1] of an integral over so many radians of the table."""
+    """Nodes and weights on [0, 1] for an integral over this many radians of the table."""
     panels = 1 + radians // _PANEL
     x, weight = np.polynomial.legendre.leggauss(_NODES - (-radians // panels))
     start = np.arange(panels)[:, np.newaxis]
@@ -88,7 +89,7 @@ def _gauss(radians: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _integrated(nu, s, a, q, w):
-    """h and ∂h/∂ν by their integrals."""
+    """h and ∂h/∂ν from their integrals."""
     x, weight = _gauss(int(np.max(np.abs(s))))
     s, a, q, w = (column[:, np.newaxis] for column in (s, a, q, w))
     push = s * weight * _damped(s * (1 - x), a, q, w)[1] * np.exp(nu * s * x)
@@ -110,12 +111,12 @@ def _exponential(nu, s, a, q, w, impulse: Response) -> tuple[Response, np.ndarra
 
 
 def responses(time: ArrayLike, frequency_ratio: ArrayLike, damping_ratio: ArrayLike) -> Responses:
-    """The responses of the contact at a time.
+    """The responses of the contact a time s after its start.
 
     Parameters
     ----------
     time, frequency_ratio, damping_ratio : array_like
-        s, ϖ > 0 and ζ ≥ 0, which broadcast. They are not checked.
+        s, ϖ > 0 and ζ ≥ 0, which broadcast. Their ranges are not checked.
 
     Examples
     --------
@@ -131,7 +132,7 @@ def responses(time: ArrayLike, frequency_ratio: ArrayLike, damping_ratio: ArrayL
     """
     args = (np.asarray(x, dtype=float) for x in (time, frequency_ratio, damping_ratio))
     s, omega, zeta = np.broadcast_arrays(*args)
-    # The product form of w keeps its digits near ζ = 1, which q - a² does not.
+    # The product form of w keeps its digits near ζ = 1, where q - a² would lose them.
     a, q, w = zeta * omega, omega * omega, omega * omega * (1 - zeta) * (1 + zeta)
     c, g = _damped(s, a, q, w)
     impulse = Response(g, c - a * g)

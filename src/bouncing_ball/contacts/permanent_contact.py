@@ -1,35 +1,34 @@
 r"""Amplitudes at which the ball never leaves the table (Eq. 9 and Eqs. 28-36).
 
-A ball on a rigid table stays down for Λ ≤ Λ_CR = 1. A ball on a
-spring-damper oscillates steadily, and with the displacement release it stays
-down while its displacement relative to the table never becomes positive::
+A ball on a rigid table never leaves it for Λ ≤ Λ_CR = 1. A ball on a
+spring-damper oscillates steadily, and with the displacement release it never
+leaves if its displacement relative to the table never becomes positive::
 
     Λ ≤ Λ_SD(ϖ) = √γ/ϖ² = √((1 - x)² + 4ζ² x),     x = 1/ϖ²       (Eq. 33)
 
-With the force release it stays down while the table always pushes. The force
+With the force release it never leaves if the table pushes it at all times. The force
 over the weight is 1 + z″, and the table's motion reaches the ball with the
 transmissibility (1 + 2iζ√x)/(1 - x + 2iζ√x), so that ::
 
     Λ ≤ Λ_F(ϖ) = √[((1 - x)² + 4ζ² x)/(1 + 4ζ² x)]
 
-For any other law there is no closed form. At the threshold the release condition is met
-exactly once in a period, without being crossed. The steady motion is then a contact of duration
-2π that starts and ends in the same state (p₀, p′₀), at which the grip g vanishes together with
-its rate of change::
+Most other laws have no closed form. At the threshold the grip g vanishes exactly once per period
+and does not change its sign. The steady motion is then a contact of duration 2π that starts and
+ends in the same state (p₀, p′₀), where g and its rate of change are zero::
 
     B = 2π [1 - Λ sin(φ + 2π S) - f],   gain B = 0,   p′₀ + lift B = 0
     g(p₀, p′₀) = 0,   ∂g/∂p p′₀ + ∂g/∂p′ (1 - Λ sin φ - f) = 0
 
-where φ and Λ are unknown too; for a release at p = 0 the last two are p₀ = p′₀ = 0. The nodes
-are those of :mod:`bouncing_ball.contacts.quadrature`. Near this state p is proportional to
-t², so that half as many roots as in an impact make the contact smooth. Newton's method
-starts from the contact that follows its load quasi-statically; the number of nodes is doubled
-until the Legendre coefficients have fallen.
+where φ and Λ are unknown too; for a release at p = 0 the last two equations are p₀ = p′₀ = 0. The
+nodes are those of :mod:`bouncing_ball.contacts.quadrature`. Near this state p is proportional to
+t², so that m/2 in place of m makes the motion smooth. Newton's method starts from a depth
+proportional to 1 - cos t, as the load is for Λ = 1 and φ = π/2. The number of nodes is increased
+until the last Legendre coefficients are small.
 
-A law with a kink is not smooth there, and its contact is the one that goes from its deepest part
-through the touch back to the same state in one period, by the panels of
-:mod:`bouncing_ball.contacts.collocation`, which end at kinks. If the law feels the load the ball
-may also touch the surface, p = p′ = 0, before the grip vanishes; the lower threshold counts.
+The motion under a law with a kink is not smooth at the kink. It is computed by the panels of
+:mod:`bouncing_ball.contacts.collocation`, which end at kinks, over one period that starts and ends
+half a period from the touch. If the force depends on the load, the ball may also touch the surface,
+p = p′ = 0, before the grip vanishes; the lower of the two thresholds is the result.
 
 All quantities are dimensionless.
 """
@@ -49,18 +48,18 @@ from bouncing_ball.errors import ModelError, require
 _LEVELS = (48, 96, 128, 192, 256, 384)
 _PERIOD = 2 * np.pi
 _ITERATIONS = 25
-# The last step of φ and Λ, their longest step, and the ratio of the last coefficients to the
-# largest, of which the error of the threshold is the square.
+# Step of φ and Λ at which the iteration ends, their longest step, and the largest ratio of the
+# last Legendre coefficients to the largest one; the error of Λ is of the order of its square.
 _SETTLED, _LONGEST, _SPECTRUM = 1e-11, 0.3, 1e-5
 _TAIL = 3
 _TINY = 1e-300
 
 RESTITUTION_THRESHOLD = 1.0
-"""Λ_CR: the table's acceleration reaches that of gravity (Eq. 9)."""
+"""Λ_CR, at which the greatest acceleration of the table equals that of gravity (Eq. 9)."""
 
 
 class Minimum(NamedTuple):
-    """Lowest threshold over all frequency ratios, and where it is reached."""
+    """Lowest threshold over all frequency ratios, and the ϖ at which it is reached."""
 
     threshold: np.ndarray
     frequency_ratio: np.ndarray
@@ -69,7 +68,7 @@ class Minimum(NamedTuple):
 def permanent_contact_threshold(
     frequency_ratio: ArrayLike, damping_ratio: ArrayLike, release: Release = Release.DISPLACEMENT
 ) -> np.ndarray:
-    """Largest Λ of permanent contact, Λ_SD(ϖ) (Eq. 33) or Λ_F(ϖ), of the shape of ϖ and ζ.
+    """Largest Λ of permanent contact: Λ_SD(ϖ) (Eq. 33) or, with the force release, Λ_F(ϖ).
 
     Raises
     ------
@@ -92,7 +91,7 @@ def permanent_contact_threshold(
 def permanent_contact_minimum(
     damping_ratio: ArrayLike, release: Release = Release.DISPLACEMENT
 ) -> Minimum:
-    """Lowest threshold over ϖ, where its derivative along x = 1/ϖ² vanishes ::
+    """Lowest threshold over ϖ, where its derivative with respect to x = 1/ϖ² vanishes ::
 
         x = 2m/(1 + √(1 + 8 sin²α m)),     m = 1 - 2ζ² + 2 sin²α
 
@@ -101,8 +100,8 @@ def permanent_contact_minimum(
     Raises
     ------
     ModelError
-        If ζ ≥ 1/√2 with the displacement release: Λ_SD then falls towards 1
-        for all ϖ and has no minimum.
+        If ζ < 0, or if ζ ≥ 1/√2 with the displacement release: Λ_SD then
+        decreases towards 1 as ϖ grows, and has no minimum.
 
     Examples
     --------
@@ -127,9 +126,9 @@ def _start(s: Scheme, law: ContactLaw) -> np.ndarray:
 
 
 def _touch(law: ContactLaw, unknowns: np.ndarray):
-    """The two conditions at the state where the contact begins and ends.
+    """Residuals of the two conditions on the state in which the contact begins and ends.
 
-    Their rows of the Jacobian are for (p₀, p′₀, φ, Λ).
+    The second result are their rows of the Jacobian, with respect to (p₀, p′₀, φ, Λ).
     """
     p, u, phase, lam = unknowns
     if law.release is Release.DISPLACEMENT:
@@ -145,7 +144,7 @@ def _touch(law: ContactLaw, unknowns: np.ndarray):
 
 
 def _equations(s: Scheme, law: ContactLaw, z: np.ndarray):
-    """Residual, Jacobian, and p and p′ at the nodes."""
+    """Residual and Jacobian of all equations, and p and p′ at the nodes."""
     n = len(s.node)
     push, (p0, u0, phase, lam) = z[:n], z[n:]
     side = np.where(s.early, s.share, -s.rest)
@@ -171,7 +170,7 @@ def _equations(s: Scheme, law: ContactLaw, z: np.ndarray):
 
 
 def _solved(s: Scheme, law: ContactLaw, z: np.ndarray) -> np.ndarray | None:
-    """The unknowns, if Newton's method converges from z to a contact that is held."""
+    """The unknowns if Newton's method converges from z to a contact without release, else None."""
     n = len(s.node)
     for _ in range(_ITERATIONS):
         residual, jacobian, depths, u = _equations(s, law, z)
@@ -190,13 +189,13 @@ def _solved(s: Scheme, law: ContactLaw, z: np.ndarray) -> np.ndarray | None:
 
 
 def _by_panels(law: ContactLaw, at_surface: bool) -> float:
-    """Λ of the steady contact that touches the surface, or its release; NaN if none was found."""
+    """Λ of the steady contact that touches the surface or just reaches its release, else NaN."""
     from scipy.optimize import root
 
     unit = rest(law)
 
     def motion(z: np.ndarray, times: ArrayLike):
-        """p and p′ after times from half a period before the touch."""
+        """p and p′ at times counted from half a period before the touch."""
         end = np.atleast_1d(times).astype(float)
         state = unit * z[0], unit * z[1], z[2] - _PERIOD / 2, z[3], 1.0
         found = march(law, Start(*(x + 0 * end for x in state)), MOST_PANELS, end)
@@ -222,12 +221,12 @@ def _by_panels(law: ContactLaw, at_surface: bool) -> float:
 
 
 def permanent_contact(law: ContactLaw) -> float:
-    """The threshold of one law, a value of Λ.
+    """The largest Λ of permanent contact of a single law.
 
     Raises
     ------
     ModelError
-        If no steady contact was found that meets its release condition once.
+        If no steady contact was found whose grip vanishes once per period.
 
     Examples
     --------
@@ -250,7 +249,7 @@ def permanent_contact(law: ContactLaw) -> float:
             if z is not None:
                 legendre = np.abs(s.spectrum @ z[:count])
                 if np.max(legendre[-_TAIL:]) <= _SPECTRUM * np.max(legendre):
-                    # The same motion, half a period later, has -Λ.
+                    # The same motion, shifted by half a period, is the solution with -Λ.
                     return abs(float(z[-1]))
     raise ModelError(
         f"no threshold of permanent contact was found for {law.label}, because it is too weakly "

@@ -1,15 +1,15 @@
-r"""Spectral integration along a contact, whose motion is singular at its ends.
+r"""Spectral integration along a contact whose motion is singular at its two ends.
 
 Time in contact is ``t = D S(x)``, x from 0 to 1, with S′ proportional to
 ``[x (1 - x)]^{m-1}``. Near both ends t is proportional to x^m, so that a function of t^{1/m} is
-analytic in x. It is represented by its values at the Gauss-Legendre nodes. The first and the
-second integral of the acceleration A, with ``B = D A``, are products with one matrix each ::
+analytic in x. It is represented by its values at Gauss-Legendre nodes. With ``B = D A``, the first
+and the second integral of the acceleration A are each a product with one matrix ::
 
     p′ = v + U B,              p = D (v S + P B)                    x ≤ 1/2
     p′ = p′_e + U B,           p = p_e + D (-p′_e (1 - S) + P B)    x > 1/2
 
-The second form counts back from the end of the contact, in order that p keeps its
-digits where it vanishes.
+The second form starts from the end of the contact, so that p keeps its relative
+accuracy where it vanishes.
 """
 
 from functools import lru_cache
@@ -41,7 +41,7 @@ class Scheme(NamedTuple):
 
 
 def share(x: np.ndarray, root: int) -> np.ndarray:
-    """S(x) for m = ``root``: a sum of positive terms, which keeps its digits as x → 0.
+    """S(x) for m = ``root``, as a sum of positive terms, which is accurate as x → 0.
 
     Examples
     --------
@@ -83,7 +83,8 @@ def scheme(count: int, root: int) -> Scheme:
     x = np.where(x <= 0.5, x, 1 - x[::-1])
     degrees = 2 * np.arange(count) + 1
     spectrum = (degrees * np.polynomial.legendre.legvander(y, count - 1)).T * w
-    # The integrals' polynomials are of degree below count + 2m.
+    # The integrands are polynomials of degree below count + 4m, which these points integrate
+    # exactly.
     points, weights = np.polynomial.legendre.leggauss(count // 2 + 2 * root)
     points, weights = (points + 1) / 2, weights / 2
     s = share(x, root)
@@ -95,7 +96,7 @@ def scheme(count: int, root: int) -> Scheme:
         push = x[i] * weights * share_rate(at, root)
         rate[i] = (push @ basis) @ spectrum
         path[i] = ((push * (s[i] - share(at, root))) @ basis) @ spectrum
-    # Counted back from the end, the same with the sign of p′ turned.
+    # Integrals from the end of the contact follow by symmetry; the sign of those for p′ changes.
     rate[half:] = -rate[:half][::-1, ::-1]
     path[half:] = path[:half][::-1, ::-1]
     gain = w * share_rate(x, root)

@@ -1,9 +1,9 @@
-"""The rule that ends a contact, as a number.
+"""The condition that ends a contact, and the number that represents it in formulas.
 
 A contact ends where ``δ + κ δ′ = 0``. With κ = 0 the ball is back at the
-table's level; with κ = 2ζ/ϖ the force of the contact vanishes. All formulas
-contain the rule as ``sin α = κϖ/2``, which is 0 or ζ, so that they need no case distinction; a
-free contact is released at the angle π - 2α.
+table's level; with κ = 2ζ/ϖ the contact force vanishes. Formulas
+contain the condition as ``sin α = κϖ/2``, which is 0 or ζ, so that both releases have the same
+formulas; a free contact ends at the angle π - 2α.
 """
 
 from enum import StrEnum
@@ -21,16 +21,16 @@ class Release(StrEnum):
     DISPLACEMENT = "displacement"
     """The ball is back at the table's level, δ = 0 (Eq. 23, the paper's)."""
     FORCE = "force"
-    """The contact force vanishes, 2ζϖ δ′ + ϖ² δ = 0: no tension."""
+    """The contact force vanishes, 2ζϖ δ′ + ϖ² δ = 0, so that it never pulls the ball."""
 
     @classmethod
     def of(cls, rule: str) -> "Release":
-        """The rule with this name.
+        """The release with this name.
 
         Raises
         ------
         ModelError
-            If there is no such rule.
+            If there is no such release.
 
         Examples
         --------
@@ -55,13 +55,13 @@ class Release(StrEnum):
         return zeta if self is Release.FORCE else np.zeros_like(zeta)
 
     def free_angle(self, damping_ratio: ArrayLike) -> np.ndarray:
-        """π - 2α: the angle ϖ_d s at which a free contact, ζ < 1, is released.
+        """π - 2α: the angle ϖ_d s at which a free contact with ζ < 1 ends.
 
         Examples
         --------
         >>> float(Release.DISPLACEMENT.free_angle(0.5)) == np.pi
         True
         """
-        # The arccosine keeps its digits as ζ → 1, which π - 2 arcsin does not.
+        # This form, 2 arccos, keeps its digits as ζ → 1, where π - 2 arcsin would lose them.
         sine = self.sine(damping_ratio)
         return 2 * arctangent(np.sqrt((1 - sine) * (1 + sine)), sine)

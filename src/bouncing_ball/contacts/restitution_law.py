@@ -1,4 +1,4 @@
-"""A law of an instantaneous impact: a restitution coefficient that depends on the speed."""
+"""Instantaneous impacts with a restitution coefficient that depends on the impact speed."""
 
 from abc import ABC, abstractmethod
 
@@ -7,15 +7,15 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.batch import Batch
 
-# The imaginary step as a part of the speed; its square is lost in rounding.
+# The imaginary step relative to the speed; its square is lost in rounding.
 _IMAGINARY = 1e-20
 
 
 class RestitutionLaw(Batch, ABC):
-    """r(v), as a frozen dataclass of its parameters.
+    """A restitution coefficient r(v), as a frozen dataclass of its parameters.
 
     A subclass defines :meth:`restitution` with numpy functions that are analytic in v, or piecewise
-    analytic; the derivative follows.
+    analytic; :meth:`slope` differentiates it.
 
     Examples
     --------
@@ -32,10 +32,10 @@ class RestitutionLaw(Batch, ABC):
 
     @abstractmethod
     def restitution(self, speed: np.ndarray) -> np.ndarray:
-        """r of impacts with speeds v > 0, of their shape."""
+        """r at impact speeds v > 0, of the shape of the speeds."""
 
     def slope(self, speed: np.ndarray) -> np.ndarray:
-        """d(r v)/dv at speeds v > 0, by an imaginary step, exact up to rounding."""
+        """d(r v)/dv at impact speeds v > 0, by an imaginary step, exact up to rounding."""
         v = np.asarray(speed, dtype=float)
         # The speed is NaN where there is no impact.
         with np.errstate(invalid="ignore"):
@@ -44,7 +44,7 @@ class RestitutionLaw(Batch, ABC):
 
 
 def rebound(law: RestitutionLaw | ArrayLike, speed: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    """r and d(r v)/dv of a law at impact speeds v > 0; for a number r both are r.
+    """r and d(r v)/dv at impact speeds v > 0; for a constant r both are r.
 
     Examples
     --------

@@ -2,24 +2,24 @@ r"""The effect of a contact on the motion outside it: the signature of an impact
 
 In the table's frame the ball obeys δ″ = -a + F, with the load ``a = 1 - Λ sin τ``
 and F the contact force over the mass. Continue the free flights before and
-after the contact into it. Both fall with the same a, so that their distance
-depends on the impulse of F only, whatever the motion of the table::
+after the contact into the contact. Both have the acceleration -a, so that their
+distance depends on F only, whatever the motion of the table::
 
     δ_out(t) - δ_in(t) = ∫ F(s) (t - s) ds = J (t - t_c),    J = ∫ F ds
 
-They meet at one moment, the centroid of the force, ``t_c = ∫ s F ds / J``: outside
-the contact, it is equivalent to an instantaneous impact at that moment, below the
+They meet at one instant, the centroid of the force, ``t_c = ∫ s F ds / J``. For the motion
+outside, the contact is equivalent to an instantaneous impact at this instant, below the
 table's level, with the restitution ``r_c = -δ′_out/δ′_in`` of the continued
 flights. This is exact. To second order in the duration of the contact
-its law enters by functions of the speed v = -δ′_in alone:
+the law enters only through functions of the speed v = -δ′_in:
 
 * the *delay* t_c(v), from the start of contact to the instant, and with it the
   depth h = v t_c of the instant below the table;
 * the *restitution* r(v) of the free impact, without load;
-* the *load sensitivity* σ(v), ``r_c = r + σ a/v``, v and a at the instant;
+* the *load sensitivity* σ(v), ``r_c = r + σ a/v``, with v and a at the instant;
 * the *duration* D(v) of the contact, which determines only when the ball leaves.
 
-For the linear contact they are constants in closed form. It ends where δ + κ δ′ = 0, see
+For the linear contact they are constants in closed form. The contact ends where δ + κ δ′ = 0, see
 :mod:`bouncing_ball.contacts.release`. The free impact ends with δ′ = r v and
 δ = -κ r v, hence from F = δ″ and one integration by parts ::
 
@@ -27,25 +27,26 @@ For the linear contact they are constants in closed form. It ends where δ + κ 
 
 A constant load a adds -a G to δ, ``G = (1 - g′ - 2ζϖ g)/ϖ²`` with g the impulse
 response. The release then comes later by ``(1 + r) a/(r v ϖ²)``, and the
-velocity there is less by ``[2ζ(1 + r)/ϖ - κ] a``, to first order. On the continued flights,
-from the release back to the instant and from the start on to it, the load acts during D - t_c
-with weight 1 and during t_c with weight -r, which gives ``[D - (1 + r) t_c] a``. Together ::
+velocity there is less by ``[2ζ(1 + r)/ϖ - κ] a``, to first order. The load also acts on the
+continued flights: during D - t_c, from the release back to the instant, with weight 1, and during
+t_c, from the start to the instant, with weight -r. This adds ``[D - (1 + r) t_c] a``. Together ::
 
     σ = (1 - r)(D + κ) - 2ζ (1 + r)/ϖ
 
-For any other law they come from its free impacts. One of speed v ends after D(v) with p_e
-and p′_e = -r v, and its force has its centroid at ``t_c = (p_e + D r v)/((1 + r) v)``. A
-small constant load a during the contact changes p′_e by a known derivative, and the
-continued flights before and after it by a t_c and a (D - t_c), so that at the speed of
+For any other law they are computed from free impacts. A free impact of speed v ends after D(v)
+with p_e and p′_e = -r v, and the centroid of its force is ``t_c = (p_e + D r v)/((1 + r) v)``. A
+small constant load a changes p′_e by its derivative ∂p′_e/∂a, and the velocities of the continued
+flights before and after the instant by a t_c and a (D - t_c), so that at the speed v of
 the instant ::
 
     σ = -∂p′_e/∂a + (D - t_c) - t_c d(r v)/dv
 
-One collocation at each speed gives all of these. Between speeds the four functions are
+One collocation at each speed gives all four numbers. Between these speeds the four functions are
 interpolated by Chebyshev polynomials in ln v, in which they are smooth. A panel covers a factor
-of eight in speed, and is computed when it is first needed. Where the deepest point of an impact
-reaches a kink at a given depth, they have only a few derivatives. The panels of such laws are
-therefore shorter, and the errors there are some 10⁻⁶ of t_c, σ and D, and 10⁻⁸ of r.
+of eight in speed, and is computed when it is first needed. At a speed at which the deepest point of
+the impact just reaches a kink of the force, the functions have only a few derivatives. The panels
+of such laws are therefore shorter, and the errors there are about 10⁻⁶ of t_c, σ and D, and 10⁻⁸
+of r.
 
 All quantities are dimensionless; all functions broadcast.
 """
@@ -67,16 +68,17 @@ from bouncing_ball.errors import ModelError
 # that of 1/(1 + C v), the interpolation error is of the order of 6⁻²⁴.
 _WIDTH = np.log(8.0)
 _NODES = 24
-# The number of panels in one of those, for a law with kinks at given depths.
+# Each panel is divided into this number of panels for a law with kinks at given depths.
 _PARTS = 16
-# Speeds beyond these are replaced by them, because no impact is so slow or so fast.
+# Speeds are clipped to this range, beyond which no impact lies.
 _SLOWEST, _FASTEST = 1e-30, 1e30
 
 
 def free_impact(law: ContactLaw, speed: ArrayLike) -> Instant:
     """The signature at impact speeds v > 0, by one collocation for each speed.
 
-    A law that knows its signature needs none. Derivatives in v are left at zero except that of r.
+    A signature in closed form is used instead if the law has one. Of the derivatives with respect
+    to v only that of r is computed; the others are left at zero.
 
     Raises
     ------
@@ -85,8 +87,8 @@ def free_impact(law: ContactLaw, speed: ArrayLike) -> Instant:
 
     Examples
     --------
-    An elastic contact pushes symmetrically, so that its centroid is in the middle and the effects
-    of the load cancel:
+    The force of an elastic contact is symmetric in time, so that its centroid is in the middle and
+    the effects of the load cancel:
 
     >>> from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
     >>> impact = free_impact(HuntCrossley(100.0, 0.0), 2.0)
@@ -127,23 +129,24 @@ def _panel(law_type: type[ContactLaw], values: tuple, number: int) -> np.ndarray
 
 @dataclass(frozen=True, repr=False)
 class Signature(Batch):
-    """The signature of a contact law as a function of speed, interpolated where the law has no
-    formula.
+    """The signature of a contact law as a function of the impact speed.
+
+    It is interpolated unless the law has a closed form.
 
     Parameters
     ----------
     law : ContactLaw
-        A single one, unless its signature has a formula.
+        A single law, unless its signature has a closed form.
 
     Raises
     ------
     ModelError
-        If the law does not release the ball, or would be interpolated for arrays of parameters.
+        If the law does not release the ball, or has arrays of parameters but no closed form.
 
     Examples
     --------
-    An elastic contact pushes symmetrically, so that its centroid is in the middle and the effects
-    of the load cancel:
+    The force of an elastic contact is symmetric in time, so that its centroid is in the middle and
+    the effects of the load cancel:
 
     >>> from bouncing_ball.contacts.spring_damper import SpringDamper
     >>> instant = Signature(SpringDamper(2.0, 0.0))()
@@ -174,13 +177,13 @@ class Signature(Batch):
 
     @property
     def label(self) -> str:
-        """The law and its parameters."""
+        """The name and the parameters of the law as text."""
         return self.law.label
 
     def __call__(self, speed: ArrayLike = 1.0) -> Instant:
-        """The signature of impacts with speeds v > 0 at the instant, of the shape of the speeds.
+        """The signature at speeds v > 0 of the continued flight at the instant.
 
-        The shape of the law broadcasts with it.
+        Its fields have the shape to which the speeds and the law broadcast.
         """
         v = np.asarray(speed, dtype=float)
         if self.is_constant:

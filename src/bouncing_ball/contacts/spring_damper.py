@@ -5,9 +5,9 @@ With δ = z - w, the ball in contact obeys ::
     δ″ + 2ζϖ δ′ + ϖ² δ = -1 + Λ sin(s + φ)
 
 where s is the time since the contact started and φ the phase of the table at
-that moment. The paper writes the solution with constants A and B that follow from
-the start of contact; here they are eliminated, so that the flow is affine in
-(δ₀, δ′₀, Λ cos φ, Λ sin φ) and regular at the resonance ζ = 0, ϖ = 1::
+that moment. The paper writes the solution with constants A and B, which are determined
+by the start of contact. Here they are eliminated: the flow is affine in
+(δ₀, δ′₀, Λ cos φ, Λ sin φ), and regular at the resonance ζ = 0, ϖ = 1::
 
     δ(s) = δ₀ (g′ + 2ζϖ g) + δ′₀ g - G + Λ cos φ · P + Λ sin φ · Q
 
@@ -37,10 +37,10 @@ ARGUMENTS = ("time", "displacement", "velocity", "phase", "amplitude", "frequenc
 
 
 class ContactFlow(NamedTuple):
-    """State δ, δ′ after a time in contact, δ″, and the exact Jacobian; arrays of one shape.
+    """δ, δ′ and δ″ after a time in contact, arrays of one shape, and the exact Jacobian.
 
-    ``jacobian`` has shape (..., 2, 6): rows (δ, δ′), columns as in
-    :data:`ARGUMENTS`.
+    ``jacobian`` has shape (..., 2, 6): its rows are the derivatives of δ and δ′, its columns are
+    in the order of :data:`ARGUMENTS`.
     """
 
     displacement: np.ndarray
@@ -53,7 +53,7 @@ class ContactFlow(NamedTuple):
 class SpringDamper(ContactLaw):
     """The paper's contact: ϖ, ζ and the rule that ends it, with f = ϖ² p + 2ζϖ p′ (Eq. 11).
 
-    It is the one contact law whose motion is known in closed form.
+    It is the only contact law whose motion is computed in closed form.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ class SpringDamper(ContactLaw):
 
     @classmethod
     def group_of(cls, restitution: float) -> float:
-        """ζ of a restitution coefficient r in (0, 1], with the displacement release (Eq. 16)."""
+        """ζ that gives r in (0, 1] with the displacement release (Eq. 16)."""
         return float(damping_ratio(restitution))
 
     @classmethod
@@ -122,8 +122,8 @@ class SpringDamper(ContactLaw):
         release : Release or str
             The condition that ends the contact.
         measured : bool
-            Whether r is that of a free impact with this release. Otherwise it is the r of
-            Eq. 16, that of the displacement release.
+            Whether r is the restitution coefficient of a free impact with this release.
+            Otherwise r is that of the displacement release (Eq. 16).
 
         Raises
         ------
@@ -162,7 +162,7 @@ class SpringDamper(ContactLaw):
 
     @property
     def free_angle(self) -> np.ndarray:
-        """π - 2α: the angle ϖ_d s at which the free contact, without table and weight, ends.
+        """π - 2α: the angle ϖ_d s at which a free contact, without load, ends.
 
         Raises
         ------
@@ -207,10 +207,10 @@ class SpringDamper(ContactLaw):
         Raises
         ------
         ModelError
-            If ζ ≥ 1: a free overdamped contact never ends.
+            If ζ ≥ 1: the formulas hold for underdamped contacts only.
         """
         duration, r = self.free_duration, self.restitution
-        # The time at which the flight after the contact, continued, rises through δ = 0.
+        # The time at which the flight after the contact rises through δ = 0.
         through = duration + self.lag
         loss = 2 * np.asarray(self.damping_ratio) / self.frequency_ratio
         load = (1 - r) * through - loss * (1 + r)
@@ -238,7 +238,7 @@ class SpringDamper(ContactLaw):
 
         Examples
         --------
-        Without table and damping, gravity and spring balance at δ = -1/ϖ²:
+        On a table at rest and without damping, gravity and spring balance at δ = -1/ϖ²:
 
         >>> flow = SpringDamper(2.0, 0.0).flow(3.0, -0.25, 0.0, 0.0, 0.0)
         >>> round(float(flow.displacement), 14), abs(round(float(flow.velocity), 14))
@@ -255,7 +255,7 @@ class SpringDamper(ContactLaw):
         d = d0 * free + v0 * g.value - G.value + np.imag(drive * h.value)
         v = v0 * g.rate - d0 * stiffness * g.value - G.rate + np.imag(drive * h.rate)
         acc = lam * np.sin(s + phi) - 1 - loss * v - stiffness * d
-        # ϖ² G and ϖ g depend on ϖs alone, and so does ϖ² h once ν is counted in ϖ.
+        # ϖ² G and ϖ g depend on ϖs alone, and so does ϖ² h if ν is measured in units of ϖ.
         table = np.imag(drive * (2 * h.value + 1j * by_nu))
         table_rate = np.imag(drive * (2 * h.rate + 1j * h.value - by_nu))
         by_omega = s * v - v0 * g.value + 2 * G.value - table

@@ -1,4 +1,4 @@
-"""Tables beside modules, and files that are written completely or not at all."""
+"""CSV tables stored beside modules, and files that are written completely or not at all."""
 
 import csv
 import os
@@ -8,7 +8,7 @@ from pathlib import Path
 
 
 def rows_beside(module: str) -> list[dict[str, str]]:
-    """The rows of the CSV table beside a module, of which ``__file__`` is given.
+    """The rows of the CSV table beside a module with the same name; ``module`` is its ``__file__``.
 
     Examples
     --------
@@ -22,9 +22,10 @@ def rows_beside(module: str) -> list[dict[str, str]]:
 
 @contextmanager
 def replacing(path: str | Path) -> Iterator[Path]:
-    """A temporary path in the same folder, which replaces ``path`` if no error occurs.
+    """A temporary path in the same folder, whose file replaces ``path`` if no error occurs.
 
-    Otherwise it is removed. Its suffix is that of ``path``, because a suffix names the format.
+    On an error the temporary file is removed. Its suffix is that of ``path``, because writers take
+    the format from the suffix.
 
     Raises
     ------
@@ -42,7 +43,7 @@ def replacing(path: str | Path) -> Iterator[Path]:
 
 
 def write_text(path: str | Path, text: str) -> None:
-    """Write UTF-8 text with the same line ends on every system.
+    """Write UTF-8 text, with the same line endings on every system.
 
     Raises
     ------

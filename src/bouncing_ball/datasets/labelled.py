@@ -1,8 +1,9 @@
-"""Labelled results of a call: an :class:`xarray.Dataset` that draws itself in one line.
+"""The labelled results of calls: :class:`xarray.Dataset` whose method ``plot`` draws their figure.
 
-``found.plot()`` is the figure of the dataset's ``kind``, an attribute; ``found.plot("name.png")``
-writes it as well. ``PLOTS`` of the package of figures says which function draws a kind. It is
-imported by the first picture, because computations need no matplotlib.
+The attribute ``kind`` of a dataset determines its figure. ``found.plot()`` returns the figure, and
+``found.plot("name.png")`` also writes it to a file. ``PLOTS`` in the package of figures gives the
+function that draws each kind. That package is imported by the first call of ``plot``, because
+computations do not need matplotlib.
 """
 
 import math
@@ -20,21 +21,21 @@ from bouncing_ball.errors import ParameterError, extra
 
 _FIGURES = "bouncing_ball.figures.plots"
 CASE = "case"
-"""The axis of results that are computed in a row, before they have the axes of a call."""
+"""The single axis of results before :meth:`Grid.unfold` gives them the axes of the call."""
 
 
 class Plot(DatasetPlotAccessor):
-    """The figure of a labelled dataset when it is called; xarray's plots as its methods."""
+    """Draws the figure of a labelled dataset when called; its methods are the plots of xarray."""
 
     __slots__ = ()
 
     def __call__(self, path: str | Path | None = None) -> Any:
-        """The figure as a :class:`matplotlib.figure.Figure`, written to ``path`` if there is one.
+        """The figure as a :class:`matplotlib.figure.Figure`, written to ``path`` if it is given.
 
         Raises
         ------
         ModelError
-            If the path does not end as a picture does or cannot be written.
+            If the suffix of the path is not that of a picture, or the file cannot be written.
         """
         with extra("plot"):
             figures = import_module(_FIGURES)
@@ -55,15 +56,15 @@ class Labelled(xr.Dataset):
 
     @property
     def plot(self) -> Plot:  # type: ignore[override]
-        """Draws the figure; ``plot.scatter`` and the others are those of xarray."""
+        """``plot()`` draws the figure; ``plot.scatter`` and other methods are those of xarray."""
         return Plot(self)
 
 
 class Grid:
-    """Arguments of a call, of which some are arrays: one axis for each, with its name.
+    """The arguments of a call and the grid that its arrays span, one axis for each array.
 
-    A list or an array is an axis named after its parameter, so that two of them make a grid.
-    :class:`xarray.DataArray` keep their axes: two along one axis are taken in pairs.
+    A list or an array becomes an axis named after its parameter, so that two arrays make a grid.
+    A :class:`xarray.DataArray` keeps its axis, so that two along the same axis are taken in pairs.
 
     Examples
     --------
@@ -92,11 +93,11 @@ class Grid:
 
     @property
     def size(self) -> int:
-        """Number of places."""
+        """Number of places of the grid."""
         return math.prod(self.shape)
 
     def row(self, name: str) -> np.ndarray:
-        """An argument with an entry for each place."""
+        """The values of an argument at all places of the grid, shape (size,)."""
         return np.broadcast_to(np.asarray(self.flat[name], dtype=float), self.size)
 
     def cells(self) -> list[dict[str, Any]]:
@@ -106,9 +107,9 @@ class Grid:
         return [self.single | dict(zip(rows, each, strict=True)) for each in places]
 
     def unfold(self, rows: xr.Dataset) -> Labelled:
-        """Results in a row, one for each place of the grid, with the grid's axes and labels.
+        """Results along one axis, with one entry for each place, given the axes of the grid.
 
-        The single arguments become attributes.
+        Arguments that are single values become attributes.
         """
         own = {name: each for name, each in rows.variables.items() if name not in self.coords}
         for name, each in own.items():

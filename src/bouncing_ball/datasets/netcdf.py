@@ -11,13 +11,13 @@ from bouncing_ball.datasets.files import replacing
 from bouncing_ball.errors import ModelError
 
 CONVENTIONS = "CF-1.11"
-"""The conventions that the files follow."""
+"""The netCDF conventions that the files follow."""
 
 
 def parameter_attributes(parameters: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
-    """Nested parameters as flat netCDF attributes, by CF names without points.
+    """Nested parameters as flat netCDF attributes, with CF names, which contain no points.
 
-    Lists of numbers remain lists; anything deeper becomes JSON.
+    Lists of numbers remain lists; lists of anything else become JSON.
 
     Examples
     --------
@@ -37,9 +37,9 @@ def parameter_attributes(parameters: Mapping[str, Any], prefix: str = "") -> dic
 
 
 def write_dataset(dataset: xr.Dataset, path: str | Path, *, compressed: bool = False) -> None:
-    """Write a dataset by the CF conventions, completely or not at all.
+    """Write a dataset under the CF conventions, completely or not at all.
 
-    Coordinates have no fill value, because none of their values is missing.
+    Coordinates have no fill value, because all their values exist.
 
     Raises
     ------
@@ -48,7 +48,7 @@ def write_dataset(dataset: xr.Dataset, path: str | Path, *, compressed: bool = F
     """
     encoding: dict[str, dict[str, Any]] = {str(x): {"_FillValue": None} for x in dataset.coords}
     for name, values in dataset.data_vars.items():
-        # A map of a few small integers is compressed to a small part.
+        # Compression makes a map of a few small integers many times smaller.
         if values.ndim and (compressed or values.dtype == "int8"):
             encoding[str(name)] = {"zlib": True, "complevel": 4}
     with replacing(path) as temporary:
@@ -61,13 +61,13 @@ def read_dataset(path: str | Path) -> xr.Dataset:
     Raises
     ------
     ModelError
-        If there is no such file, or it is damaged.
+        If the file does not exist or is damaged.
     """
     try:
         with xr.open_dataset(path, engine="netcdf4") as dataset:
             return dataset.load()
     except FileNotFoundError:
         raise ModelError(f"no dataset {path}") from None
-    # The error that the libraries raise depends on the place of the damage.
+    # The type of the error that the libraries raise depends on the place of the damage.
     except (OSError, ValueError, RuntimeError, AttributeError) as error:
         raise ModelError(f"{path} is damaged") from error

@@ -1,9 +1,9 @@
-"""Studies whose places are followed in pieces, each by a job of its own.
+"""Dividing a study into pieces that are computed by separate jobs.
 
-A study that takes long has an argument ``follow``, and calls it once with a function of its places
-and these, arrays whose last axes are the places. The function returns arrays by name, with the
-places along the last axis as well. Places do not depend on each other, so that the numbers do not
-depend on the pieces. By default ``follow`` is :func:`operator.call`.
+A long study has an argument ``follow``. The study calls it once, with a function and the arguments
+of this function: arrays with the places of the study along their last axis. The function returns
+arrays by name, with the places along the last axis as well. The places are independent, so that
+the results do not depend on the division. By default ``follow`` is :func:`operator.call`.
 """
 
 from collections.abc import Callable, Sequence
@@ -15,11 +15,11 @@ Follow = Callable[..., dict[str, np.ndarray]]
 
 
 class Followed(Exception):
-    """Ends a study of which one piece was to be followed; its argument is what was found."""
+    """Ends a study after one piece; the argument of the exception is the result of this piece."""
 
 
 def only(number: int, pieces: int) -> Follow:
-    """Follow one of several pieces, and end the study with :class:`Followed`.
+    """A function ``follow`` that computes one of several pieces and then raises :class:`Followed`.
 
     Examples
     --------
@@ -38,7 +38,7 @@ def only(number: int, pieces: int) -> Follow:
 
 
 def joined(pieces: Sequence[xr.Dataset]) -> Follow:
-    """Take what all pieces, in their order, have found.
+    """A function ``follow`` that returns the joined results of all pieces, given in their order.
 
     Examples
     --------
@@ -46,6 +46,6 @@ def joined(pieces: Sequence[xr.Dataset]) -> Follow:
     {'twice': array([0, 0, 1, 1])}
     """
     whole = {str(x): np.concatenate([p[x].values for p in pieces], axis=-1) for x in pieces[0]}
-    # A file returns texts as objects.
+    # Texts read from a file have the type object.
     found = {x: y.astype(str) if y.dtype == object else y for x, y in whole.items()}
     return lambda *_: found

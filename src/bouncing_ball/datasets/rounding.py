@@ -1,21 +1,22 @@
-"""Numbers of the size of rounding, as text that is the same on every processor."""
+"""Texts and ranks of numbers that are the same on every processor in spite of rounding."""
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-# The rounding error of a finite difference, √ε: at most at this size the digits of a number
-# may come from the processor and not from the model.
+# The rounding error of a finite difference, √ε. The digits of a number up to this size may come
+# from the processor and not from the model.
 ROUNDING_SIZE = float(np.sqrt(np.finfo(float).eps))
 
-# Distances that differ by less are equal. They are given in units of a last
-# printed digit, computed to 1e-8 and printed to 1e-2.
+# Values that differ by less count as equal. They are in units of a last printed digit, computed to
+# 1e-8 and printed to 1e-2.
 _SAME = 1e-6
 
 
 def levels(values: ArrayLike) -> np.ndarray:
-    """For each value the number of distinct smaller ones; values equal up to rounding count as one.
+    """For each value, the number of distinct smaller values; equal up to rounding is not distinct.
 
-    Decimals are not cut off, because rounding would then decide about values near a decimal.
+    Values are not rounded to decimals, because rounding errors would decide about a value halfway
+    between two decimals.
 
     Examples
     --------
@@ -25,7 +26,7 @@ def levels(values: ArrayLike) -> np.ndarray:
     values = np.asarray(values, dtype=float)
     order = np.argsort(values)
     ranked = values[order]
-    # Two infinite values are equal, which their difference would not show.
+    # A comparison, because the difference of two infinite values, which are equal, is NaN.
     apart = ranked[1:] > ranked[:-1] + _SAME
     found = np.empty(values.shape, dtype=int)
     found[order] = np.concatenate([[0], np.cumsum(apart)])
@@ -35,8 +36,8 @@ def levels(values: ArrayLike) -> np.ndarray:
 def compared_text(value: float, bound: float, form: str = ".4g") -> str:
     """The text of a number that is compared with a bound.
 
-    A number within a bound of the size of rounding is rounding itself: its digits change with the
-    processor, and only the bound is printed. Any other number is printed.
+    If the bound is of the size of rounding and the number is within it, the digits of the number
+    depend on the processor, and the bound is printed instead. Any other number is printed.
 
     Examples
     --------

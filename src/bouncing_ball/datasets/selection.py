@@ -1,4 +1,4 @@
-"""Places of a dataset: by the labels of its coordinates, or one after another."""
+"""Selecting places of a dataset by the labels of its coordinates, or one after another."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -8,17 +8,17 @@ import xarray as xr
 
 from bouncing_ball.errors import ModelError
 
-# Relative tolerance, because coordinates are computed from the numbers of the configuration.
+# Relative tolerance, because coordinates are computed from the configuration and are rounded.
 _MATCH = 1e-9
 
 
 def index_of(values: xr.DataArray, name: str, wanted: Any) -> int:
-    """Index of a label along a dimension; numbers are matched up to rounding.
+    """Index of a label along a dimension; numbers match up to rounding.
 
     Raises
     ------
     ModelError
-        If there is no such dimension, no such label, or more than one.
+        If there is no such dimension or label, or if several labels match.
 
     Examples
     --------
@@ -33,7 +33,7 @@ def index_of(values: xr.DataArray, name: str, wanted: Any) -> int:
     else:
         there = np.flatnonzero(np.isclose(labels, wanted, rtol=_MATCH, atol=0))
     if there.size != 1:
-        # Of many labels the first and the last.
+        # Of many labels, only the first and the last are named.
         known = np.array2string(labels, threshold=20, separator=", ", max_line_width=10**6)
         often = "is not among" if not there.size else f"is {there.size} times among"
         raise ModelError(f"{name} = {wanted} {often} {known}")

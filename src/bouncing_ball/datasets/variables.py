@@ -1,6 +1,6 @@
 """The vocabulary of the datasets, ``variables.csv``: symbol, equation and budget of each variable.
 
-A name means the same in every dataset. All quantities are dimensionless:
+A name has the same meaning in every dataset. All quantities are dimensionless:
 times are Ωt, lengths Ω²y/g, velocities Ωẏ/g, and phases and angles are in
 radians of the table's motion. Units follow the CF conventions ("1", "rad").
 """
@@ -18,7 +18,7 @@ VARIABLES: dict[str, dict[str, str]] = {
     row["name"]: {key: row[key] for key in ("long_name", "symbol", "units", "equation")}
     for row in _ROWS
 }
-"""The attributes of each variable; symbol and equation are empty where the paper has none."""
+"""The attributes of each variable; symbol or equation is empty if the paper has none for it."""
 BUDGETS: dict[str, tuple[float, str]] = {
     row["name"]: (float(row["budget"]), row["scale"]) for row in _ROWS if row["budget"]
 }
@@ -27,9 +27,9 @@ another variable, or of the range of its values; see :mod:`bouncing_ball.compare
 
 
 def describe(dataset: xr.Dataset) -> xr.Dataset:
-    """The dataset with the attributes of every variable and coordinate.
+    """The dataset with attributes for every variable and coordinate.
 
-    Dimensions without a coordinate get their index as one.
+    A dimension without a coordinate gets its index as the coordinate.
 
     Raises
     ------
@@ -49,7 +49,7 @@ def describe(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def described(variables: Mapping[str, Any], coords: Mapping[str, Any] | None = None) -> xr.Dataset:
-    """A dataset of these variables, with the attributes of each: see :func:`describe`.
+    """A dataset of these variables with their attributes, see :func:`describe`.
 
     Raises
     ------

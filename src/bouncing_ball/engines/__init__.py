@@ -1,6 +1,6 @@
-"""Physics engines: their contact parameters from k, c and m, and the contacts that they produce.
+"""Physics engines: their contact parameters from k, c and m, and the impacts that result.
 
-Quantities are in SI units here. None of the engines is imported, and none needs to be installed.
+All quantities are in SI units. The engines are not imported and need not be installed.
 """
 
 from bouncing_ball.engines.drake import Drake
@@ -24,7 +24,7 @@ def engine_named(name: str) -> Engine:
     Raises
     ------
     ModelError
-        If there is none; the message lists the engines.
+        If no engine has this name; the message lists the engines.
 
     Examples
     --------

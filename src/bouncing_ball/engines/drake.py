@@ -19,10 +19,11 @@ from bouncing_ball.engines.scheme import Scheme
 class Drake(Engine):
     """A discrete plant with the approximation "sap", whose contact is the linear spring-damper.
 
-    Drake combines two bodies: their springs are in series, and their relaxation times are added.
-    With the same numbers for ball and table these are 2k in N/m and τ/2 = c/(2k) in s. The other
-    approximations have Hunt and Crossley's damping in place of it, f = k p (1 + d p′), whose
-    ``hunt_crossley_dissipation`` d in s/m is that of both bodies if they are alike.
+    Drake combines the parameters of two bodies: their springs are in series, and their relaxation
+    times are added. If ball and table have the same parameters, these are 2k in N/m and
+    τ/2 = c/(2k) in s. The other approximations have the damping of Hunt and Crossley,
+    f = k p (1 + d p′), where d in s/m is the ``hunt_crossley_dissipation`` of both bodies if they
+    are alike.
 
     Examples
     --------

@@ -1,4 +1,5 @@
-"""The interface of an engine: parameters from k, c and m, a release, a scheme, a text to paste."""
+"""The interface of an engine: parameters from k, c and m, release rules, a time-stepping scheme,
+and a text to paste."""
 
 import math
 import re
@@ -16,7 +17,7 @@ from bouncing_ball.engines.scheme import Scheme, free_impact, steps_for
 from bouncing_ball.errors import ModelError, require
 
 ERROR = 0.001
-"""The error of a free impact's restitution that a time step may cause, by default."""
+"""The default of the largest error of a free impact's r that the time step may cause."""
 
 _PLACE = re.compile(r"@([\w.]+)@")
 Parameters = Mapping[str, float | list[float]]
@@ -47,17 +48,17 @@ class Physical(NamedTuple):
         return self.damping / (2 * self.mass * self.angular_frequency)
 
     def restitution(self, release: Release) -> float:
-        """r of a free impact.
+        """r of a free impact under a release rule.
 
         Raises
         ------
         ModelError
-            If ζ ≥ 1 with the displacement release, by which the ball does not come back.
+            If ζ ≥ 1 with the displacement release, under which the ball does not come back.
         """
         return free_impact(self.damping_ratio, release)[1]
 
     def contact_time(self, release: Release) -> float:
-        """Duration of a free impact, in s.
+        """Duration of a free impact under a release rule, in s.
 
         Raises
         ------
@@ -71,11 +72,11 @@ class Physical(NamedTuple):
 class EngineSettings:
     """The settings to write into an engine, and the restitution that they produce.
 
-    ``parameters`` are in the engine's units, under its names. ``time_step`` is in s: with ``steps``
-    of it in a contact the ``restitution`` of a free impact is within ``error``;
-    ``restitutions`` are those of the same contact by each release that the engine has. Of the
-    orbit that a design is about, ``max_height`` and ``penetration`` are in m and
-    ``contact_duration`` in s; None where there is no orbit.
+    ``parameters`` have the names and units of the engine. ``time_step`` is in s; with ``steps``
+    such steps in a contact the ``restitution`` of a free impact is met within ``error``.
+    ``restitutions`` has the r of the same contact under each release that the engine has.
+    ``max_height`` and ``penetration`` in m and ``contact_duration`` in s belong to the orbit of a
+    design; they are None if there is no orbit.
     """
 
     name: str
@@ -94,18 +95,18 @@ class EngineSettings:
 
 
 def text_of(name: str) -> str:
-    """A text to paste, with places for its numbers."""
+    """The text to paste of an engine, from its file, with placeholders for the numbers."""
     return files(__package__).joinpath(f"snippets/{name}.txt").read_text("utf-8")
 
 
 def filled(text: str, numbers: Mapping[str, str]) -> str:
-    """A text with numbers in their places, without the lines about numbers that do not exist."""
+    """A text with numbers for its placeholders; lines with a number not given are left out."""
     lines = (line for line in text.splitlines() if numbers.keys() >= {*_PLACE.findall(line)})
     return _PLACE.sub(lambda place: numbers[place[1]], "\n".join(lines))
 
 
 class Engine(ABC):
-    """A physics engine and its linear contact between a ball and a wall at rest or moved.
+    """A physics engine and its linear contact between a ball and a wall, at rest or moving.
 
     A subclass defines its ``name``, the ``names`` of its parameters, its ``releases`` with the
     default first, and the ``scheme`` by which it moves a ball in contact. Its text to paste is
@@ -117,14 +118,14 @@ class Engine(ABC):
     releases: ClassVar[tuple[Release, ...]]
     scheme: ClassVar[Scheme]
     laws: ClassVar[dict[str, str]] = {}
-    """Other contact laws of the engine, by the names that are asked for."""
+    """The names of the engine's other contact laws, by the names that users may give."""
 
     @abstractmethod
     def parameters(self, contact: Physical) -> Parameters:
         """The parameters of a contact, in the units and under the names of the engine."""
 
     def numbers(self, contact: Physical) -> dict[str, float]:
-        """The parameters of a contact, those in lists with their place after a dot."""
+        """The parameters of a contact as single numbers; an entry of a list is named NAME.INDEX."""
         found: dict[str, float] = {}
         for name, value in self.parameters(contact).items():
             many = {f"{name}.{k}": x for k, x in enumerate(np.ravel(value).tolist())}
@@ -132,17 +133,17 @@ class Engine(ABC):
         return found
 
     def template(self, release: Release) -> str:
-        """The text to paste, with the names of its numbers in their places, as ``@name@``.
+        """The text to paste for a release, with placeholders ``@name@`` for the numbers.
 
-        In the file ``snippets/NAME.txt`` the lines for one release only begin with its name.
+        A line of ``snippets/NAME.txt`` that is for one release only begins with the release's name.
         """
         lines = (line.rpartition("|") for line in text_of(self.name).splitlines())
         return "\n".join(line for rule, _, line in lines if rule in ("", release))
 
     def snippet(self, contact: Physical, release: Release, time_step: float) -> str:
-        """The text to paste for a contact, with a time step in s; its comments give the units.
+        """The text to paste for a contact and a time step in s; its comments give the units.
 
-        A line about a restitution that does not exist is left out.
+        It has no line about a release under which the ball would not rebound.
         """
         values = {"mass": contact.mass, "time_step": time_step, **self.numbers(contact)}
         texts = {name: repr(value) for name, value in values.items()}
@@ -151,7 +152,7 @@ class Engine(ABC):
 
     @abstractmethod
     def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
-        """The contact that has these parameters, in the engine's units, and a mass in kg.
+        """The contact with these parameters, in the engine's units, and with a mass in kg.
 
         Raises
         ------
@@ -162,19 +163,21 @@ class Engine(ABC):
     def law(
         self, parameters: Mapping[str, Any], time: float = 1.0, length: float = 1.0
     ) -> ContactLaw | None:
-        """The law of a contact with these parameters, in units of time and length in SI units.
+        """The contact law with these parameters, dimensionless with units of time in s and length
+        in m.
 
-        None if it is the spring and damper of :meth:`read`.
+        None if the contact is the spring and damper of :meth:`read`.
         """
         return None
 
     def of_law(
         self, settings: EngineSettings, mass: float, law: Mapping[str, Any]
     ) -> EngineSettings:
-        """Settings of a linear contact with the parameters and the text of a law in their place.
+        """The settings for a contact law, made from those of a linear contact.
 
-        ``law`` has the law's name and its parameters in SI units. The time step remains that of
-        the linear contact with the same restitution and duration.
+        ``law`` has the name of the law and its parameters in SI units, which replace those of the
+        linear contact. The time step remains that of the linear contact with the same restitution
+        and duration.
 
         Raises
         ------
@@ -184,7 +187,7 @@ class Engine(ABC):
         raise ModelError(f"{law['name']} is not written for {self.name}")
 
     def remarks(self, parameters: Mapping[str, Any]) -> tuple[str, ...]:
-        """Sentences on how the engine with these parameters differs from a spring and a damper."""
+        """Sentences on how the contact with these parameters differs from a spring and damper."""
         return ()
 
     def release(self, asked: str | None = None) -> Release:
@@ -204,13 +207,13 @@ class Engine(ABC):
         return release
 
     def restitutions(self, contact: Physical, release: Release) -> dict[Release, float]:
-        """r of a free impact by a release, and by the engine's other releases at which the ball
-        returns.
+        """r of a free impact under a release, and under those other releases of the engine under
+        which the ball rebounds.
 
         Raises
         ------
         ModelError
-            If ζ ≥ 1 and this is the displacement release.
+            If ζ ≥ 1 and ``release`` is the displacement release.
         """
         slow = contact.damping_ratio < 1
         rules = [rule for rule in self.releases if rule is release or slow]
@@ -219,7 +222,7 @@ class Engine(ABC):
     def settings(
         self, contact: Physical, release: str | None = None, error: float = ERROR
     ) -> EngineSettings:
-        """The settings for a contact, so that r of a free impact is within ``error``.
+        """The settings for a contact, with a time step that changes r by at most ``error``.
 
         Raises
         ------
@@ -228,7 +231,7 @@ class Engine(ABC):
             positive.
         """
         rule = self.release(release)
-        # Twelve digits, so that the rounding of products is not written.
+        # Twelve digits, so that the rounding errors of products are not written.
         contact = Physical(*(float(f"{value:.12g}") for value in contact))
         restitution = contact.restitution(rule)
         steps = steps_for(self.scheme, contact.damping_ratio, rule, error)
@@ -242,7 +245,7 @@ class Engine(ABC):
         )
 
     def _given(self, parameters: Mapping[str, Any], mass: float | None) -> float:
-        """The mass, after a check that it is given and that all parameters belong to the engine."""
+        """The mass in kg, after a check of it and of the names of all parameters."""
         if unknown := set(parameters) - set(self.names):
             names = " and ".join(self.names)
             raise ModelError(
@@ -256,7 +259,9 @@ class Engine(ABC):
         return float(mass)
 
     def _two(self, parameters: Mapping[str, Any], mass: float | None) -> tuple[float, float, float]:
-        """The mass, the stiffness, which must be positive, and the loss, in the engine's units."""
+        """The mass in kg, and the engine's parameters of stiffness, which must be positive, and of
+        damping, in the engine's units.
+        """
         m, found = self._given(parameters, mass), []
         for name in self.names:
             if name not in parameters:
@@ -272,9 +277,9 @@ class Engine(ABC):
 
 
 class Proportional(Engine):
-    """An engine whose two parameters are a k and b c, with factors that depend on the mass alone.
+    """An engine with two parameters a·k and b·c, whose factors a and b depend on the mass alone.
 
-    The factors are 1 unless a subclass defines others.
+    Both factors are 1 unless a subclass defines them.
     """
 
     def factors(self, mass: float) -> tuple[float, float]:

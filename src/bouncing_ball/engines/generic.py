@@ -9,7 +9,7 @@ from bouncing_ball.engines.scheme import Scheme
 
 
 class Generic(Proportional):
-    """m, k and c unchanged, with semi-implicit Euler steps, as in a simple script.
+    """The parameters m, k and c themselves, with semi-implicit Euler steps as in a simple script.
 
     Examples
     --------

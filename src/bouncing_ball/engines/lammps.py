@@ -1,9 +1,9 @@
 """LAMMPS and LIGGGHTS: granular walls with Hooke's law, whose damper is per unit of mass.
 
-The force of ``fix wall/gran hooke`` on a sphere is ``kn p - m gamman v``. A wall has no mass, so
-that the effective mass is that of the sphere; between two equal spheres it is half of it. By
-default the damper pulls until the ball has left the wall; ``limit_damping`` in LAMMPS and
-``limitForce`` in LIGGGHTS prevent that.
+The force of ``fix wall/gran hooke`` on a sphere is ``kn p - m gamman v``. On a wall the effective
+mass m is that of the sphere; between two equal spheres it is half of that. By default the damper
+pulls until the ball has left the wall; ``limit_damping`` in LAMMPS and ``limitForce`` in LIGGGHTS
+prevent that.
 """
 
 from bouncing_ball.contacts.release import Release

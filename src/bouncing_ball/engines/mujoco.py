@@ -1,17 +1,18 @@
-r"""MuJoCo: ``solref`` and ``solimp``, a spring-damper of accelerations that is weighted by d.
+r"""MuJoCo: ``solref`` and ``solimp``, a spring and damper of accelerations, weighted by d.
 
-A contact's acceleration is ``a₁ = (1 - d) a₀ - d (b v + κ x)``, with a₀ that of all other forces,
-x < 0 in contact and the impedance d of ``solimp`` (dmin at the surface, dmax from the depth
-``width`` on). From a ``solref`` of two negative numbers (-K, -B), the direct form, MuJoCo takes
-``κ = K d/dmax²`` and ``b = B/dmax``; from two positive ones, the time constant T and the damping
-ratio ζ, ``κ = d/(dmax² T² ζ²)`` and ``b = 2/(dmax T)``. Where d = dmax, the impedance cancels,
-and the contact has ::
+The acceleration in contact is ``a₁ = (1 - d) a₀ - d (b v + κ x)``, where a₀ is the acceleration by
+all other forces, x < 0 in contact, and d is the impedance of ``solimp`` (dmin at the surface, dmax
+from the depth ``width`` on). If ``solref`` consists of two negative numbers (-K, -B), the direct
+form, MuJoCo takes ``κ = K d/dmax²`` and ``b = B/dmax``. If it consists of two positive numbers, the
+time constant T and the damping ratio ζ, MuJoCo takes ``κ = d/(dmax² T² ζ²)`` and
+``b = 2/(dmax T)``. Where d = dmax, the impedance cancels, and the contact has ::
 
     k/m = K = 1/(T² ζ²),   c/m = B = 2/T,   c/(2√(km)) = ζ
 
-per unit of mass. The impedance then affects the load only: in contact the ball feels the share
-1 - d of gravity and of the table's acceleration. A spring and a damper have d = 0, and the smallest
-d of MuJoCo is 10⁻⁴. Any impedance is the law :mod:`bouncing_ball.contacts.laws.impedance`.
+per unit of mass. The impedance then affects the load only: in contact only the share 1 - d of
+gravity and of the table's acceleration acts on the ball. A spring and damper corresponds to d = 0,
+and the smallest d that MuJoCo allows is 10⁻⁴. Contacts with any impedance are the law
+:mod:`bouncing_ball.contacts.laws.impedance`.
 """
 
 from collections.abc import Mapping, Sequence
@@ -27,16 +28,16 @@ from bouncing_ball.engines.engine import Engine, Physical
 from bouncing_ball.engines.scheme import Scheme
 from bouncing_ball.errors import ModelError
 
-# dmin, dmax, width in m, midpoint and power of MuJoCo's default.
+# The defaults of MuJoCo: dmin, dmax, width in m, midpoint and power.
 _DEFAULT = (0.9, 0.95, 0.001, 0.5, 2.0)
 # The limits that MuJoCo imposes on an impedance.
 _LEAST, _MOST = 1e-4, 0.9999
-# Up to this impedance a contact is taken for a spring and a damper.
+# A contact with an impedance up to this value is treated as a spring and damper.
 _FELT = 0.01
 
 
 def _numbers(name: str, value: str | Sequence[float], counts: range) -> list[float]:
-    """The numbers of an attribute, which is a text as in XML, or a sequence."""
+    """The numbers of an attribute, given as a text, as in XML, or as a sequence."""
     parts = value.split() if isinstance(value, str) else np.ravel(value).tolist()
     allowed = f"{counts[0]} numbers" if len(counts) == 1 else f"{counts[0]} to {counts[-1]} numbers"
     try:
@@ -50,7 +51,7 @@ def _numbers(name: str, value: str | Sequence[float], counts: range) -> list[flo
 
 
 def impedance(solimp: str | Sequence[float] = ()) -> list[float]:
-    """dmin, dmax, width, midpoint and power, with MuJoCo's defaults for those not given.
+    """dmin, dmax, width, midpoint and power of ``solimp``; missing numbers are MuJoCo's defaults.
 
     Raises
     ------
@@ -70,7 +71,7 @@ def impedance(solimp: str | Sequence[float] = ()) -> list[float]:
             raise ModelError(f"solimp has the impedance {value:g}, which is not in [0, 1]")
     found = given + list(_DEFAULT[len(given) :])
     shares = [float(np.clip(d, _LEAST, _MOST)) for d in found[:2]]
-    # Without a width MuJoCo takes the mean.
+    # If the width is zero, MuJoCo takes the mean of dmin and dmax.
     return (shares if found[2] > 0 else [sum(shares) / 2] * 2) + found[2:]
 
 
@@ -85,12 +86,12 @@ class MuJoCo(Engine):
     >>> MuJoCo().read(MuJoCo().parameters(contact), 0.5) == contact
     True
 
-    The form of positive numbers, 20 ms and critical damping by default:
+    The form with two positive numbers, whose default is 20 ms and critical damping:
 
     >>> MuJoCo().read({"solref": "0.02 0.5"}, 1.0)
     Physical(mass=1.0, stiffness=10000.0, damping=100.0)
 
-    Its 100/s are ϖ = 50, if the unit of time 1/Ω is half a second:
+    Its frequency of 100 rad/s is ϖ = 50 if the unit of time 1/Ω is half a second:
 
     >>> MuJoCo().law({"solref": "0.02 0.5"}, time=0.5).frequency_ratio
     50.0
@@ -102,7 +103,7 @@ class MuJoCo(Engine):
     scheme = Scheme.SEMI_IMPLICIT
 
     def parameters(self, contact: Physical) -> dict[str, list[float]]:
-        # A difference, because the negative of no damping would be -0.0.
+        # A difference, because -c/m of a contact without damping would be -0.0.
         per_mass = [0.0 - value / contact.mass for value in contact[1:]]
         return {"solref": per_mass, "solimp": [_LEAST, _LEAST, 0.001]}
 
@@ -143,7 +144,7 @@ class MuJoCo(Engine):
             return (*found, high) if max(least, most) > _FELT else ()
         share = least / most
         spring = SpringDamper(law.frequency_ratio, law.damping_ratio, Release.FORCE)
-        # Deep below the width the impedance is constant.
+        # The impedance is constant at depths greater than the width.
         deep = Impedance(law.frequency_ratio, law.damping_ratio, most)
         new, old = (float(free_impact(each, 1.0).load) for each in (deep, spring))
         found += (

@@ -1,4 +1,4 @@
-"""PyBullet: a spring and a damper on each of two bodies, as one constraint."""
+"""PyBullet: a spring and a damper on each of the two bodies, which form one constraint."""
 
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.engines.engine import Proportional
@@ -6,9 +6,9 @@ from bouncing_ball.engines.scheme import Scheme
 
 
 class PyBullet(Proportional):
-    """``changeDynamics`` of both bodies, whose springs are in series and whose dampers are added.
+    """``changeDynamics`` of both bodies, whose springs are in series and whose dampings are added.
 
-    With the same numbers for ball and table these are 2k in N/m and c/2 in N s/m.
+    If ball and table have the same parameters, these are 2k in N/m and c/2 in N s/m.
 
     Examples
     --------

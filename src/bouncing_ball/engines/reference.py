@@ -1,6 +1,6 @@
-"""The engines as data: their texts with places for numbers, and settings to compare with.
+"""The engines as data: their texts with placeholders for numbers, and settings to compare with.
 
-The explorer's page writes the same texts in the reader's browser.
+The page of the explorer writes the same texts in the reader's browser.
 """
 
 import json
@@ -11,7 +11,7 @@ from bouncing_ball.contacts.release import Release
 from bouncing_ball.engines import ENGINES
 from bouncing_ball.engines.engine import Engine, Physical, text_of
 
-# m, k, r and the error of r that a time step may leave, from light to heavy and elastic.
+# m, k, r and the error of r that the time step may cause: from light to heavy and elastic balls.
 _CASES = (
     (0.5, 1e5, 0.75, 1e-3),
     (0.02, 3e7, 0.9, 0.01),
@@ -33,7 +33,7 @@ def _case(engine: Engine, release: Release, *case: float) -> dict[str, Any]:
 
 
 def as_json() -> str:
-    """The engines by name, and settings of four contacts under each of their releases."""
+    """The engines by name, and the settings of four contacts under each release of each engine."""
     pairs = [(engine, rule) for engine in ENGINES.values() for rule in engine.releases]
     engines = {
         engine.name: {
@@ -44,5 +44,5 @@ def as_json() -> str:
         for engine in ENGINES.values()
     }
     cases = [_case(*pair, *case) for pair in pairs for case in _CASES]
-    # In a page, no text opens or closes a tag.
+    # Without "<" no text can open or close a tag of the page.
     return json.dumps({"engines": engines, "cases": cases}, allow_nan=False).replace("<", "\\u003c")

@@ -1,8 +1,8 @@
 r"""A free impact as the time stepping of an engine computes it.
 
-In a free impact p″ = -p - 2ζ p′, with the time in units of 1/ω, ω = √(k/m). The height x = -p
-of the ball over the wall and its velocity v are advanced by a step h in one of two ways. Engines
-implement their contacts differently, but they amount to one of these maps:
+In a free impact p″ = -p - 2ζ p′, where time is in units of 1/ω, ω = √(k/m). The height x = -p
+of the ball above the wall and its velocity v are advanced by a step h in one of two ways. Engines
+implement their contacts differently, but each contact is equivalent to one of these maps:
 
 * *semi-implicit Euler*: ``v⁺ = v - h(x + 2ζv)``, ``x⁺ = x + h v⁺``. MuJoCo's Euler integrator
   with its constraint force; also LAMMPS, LIGGGHTS and MercuryDPM, whose velocity Verlet takes
@@ -10,9 +10,9 @@ implement their contacts differently, but they amount to one of these maps:
 * *implicit Euler*: ``v⁺ = v - h(x⁺ + 2ζv⁺)``, ``x⁺ = x + h v⁺``. Bullet's springs, which are
   constraints with ``cfm`` and ``erp``, and Drake's discrete contact (SAP).
 
-A ball is in contact in a step if x < 0 before it, and a contact with the force release only
-pushes. r depends on the part of a step in which the ball meets the wall. It is therefore computed
-for many values of this part.
+A ball is in contact during a step if x < 0 before this step. A contact with the force release only
+pushes. Because r depends on the instant within a step at which the ball meets the wall, it is
+computed for many such instants.
 """
 
 from enum import StrEnum
@@ -24,15 +24,15 @@ from bouncing_ball.contacts.damping import restitution_coefficient
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.errors import ModelError, require
 
-# Times from the surface to the first step that begins in contact, in steps.
+# Times from meeting the wall to the first step that begins in contact, in steps.
 _FRACTIONS = np.linspace(1e-9, 1.0, 33)
-# From so many steps N on the error is proportional to 1/N.
+# With this number N of steps or more, the error is proportional to 1/N.
 _ASYMPTOTIC = 4096
 _FEWEST = 8
 
 
 class Scheme(StrEnum):
-    """The scheme by which an engine moves a ball in contact."""
+    """The time-stepping scheme of an engine for a ball in contact."""
 
     SEMI_IMPLICIT = "semi-implicit Euler"
     IMPLICIT = "implicit Euler"
@@ -41,8 +41,9 @@ class Scheme(StrEnum):
 def free_impact(damping_ratio: float, release: Release) -> tuple[float, float]:
     """Duration in units of 1/ω and restitution of the exact free impact, ``(T, exp(-ζT))``.
 
-    T = (π - 2α)/√(1 - ζ²) (:mod:`bouncing_ball.contacts.release`). With the force release an
-    overdamped ball comes back, too: there T = 2 arcosh ζ/√(ζ² - 1), which is 2 at ζ = 1.
+    For ζ < 1, T = (π - 2α)/√(1 - ζ²) (:mod:`bouncing_ball.contacts.release`). With the force
+    release the ball rebounds for ζ ≥ 1 as well, after T = 2 arcosh ζ/√(ζ² - 1), which is 2 at
+    ζ = 1.
 
     Raises
     ------
@@ -65,7 +66,7 @@ def free_impact(damping_ratio: float, release: Release) -> tuple[float, float]:
 
 
 def _step(scheme: Scheme, zeta: float, h: float) -> tuple[np.ndarray, float]:
-    """The matrix of one step of (x, v), and λ: the contact pushes while x + λv < 0."""
+    """The matrix of one step of (x, v), and the λ for which the contact pushes if x + λv < 0."""
     loss = 2 * zeta
     if scheme is Scheme.SEMI_IMPLICIT:
         return np.array([[1 - h * h, h - loss * h * h], [-h, 1 - loss * h]]), loss
@@ -80,7 +81,7 @@ def restitution_in_steps(
     steps: int,
     fraction: ArrayLike = _FRACTIONS,
 ) -> np.ndarray:
-    """Restitution of free impacts in time steps of 1/N of the contact's duration.
+    """Restitution of free impacts computed with N time steps in the duration of the contact.
 
     Parameters
     ----------
@@ -92,7 +93,8 @@ def restitution_in_steps(
     steps : int
         N, the number of steps in a contact.
     fraction : array_like
-        In (0, 1]: the time from the surface to the first step that begins in contact, in steps.
+        Time, in steps and in (0, 1], from meeting the wall to the first step that begins in
+        contact.
 
     Returns
     -------
@@ -106,8 +108,8 @@ def restitution_in_steps(
 
     Examples
     --------
-    Without damping semi-implicit Euler conserves x² - h x v + v², and with it the speed of a ball
-    that leaves at the fraction at which it came; implicit Euler damps it:
+    Without damping semi-implicit Euler conserves x² - h x v + v², and therefore the speed of a ball
+    that arrives and leaves at the same |x|; implicit Euler damps the motion:
 
     >>> r = restitution_in_steps(Scheme.SEMI_IMPLICIT, 0.0, Release.DISPLACEMENT, 50)
     >>> bool(abs(r.mean() - 1) < 1e-3)
@@ -122,7 +124,7 @@ def restitution_in_steps(
     h = free_impact(zeta, release)[0] / steps
     power, lag = _step(scheme, zeta, h)
     start = np.asarray(fraction, dtype=float).ravel()
-    # The states of all impacts, whose number doubles with each power of the step.
+    # The states of all impacts; the number of steps doubles with each power of the matrix.
     states = np.stack([-h * start, -np.ones_like(start)])[:, None]
     while states.shape[1] < 2 * steps:
         states = np.concatenate([states, np.tensordot(power, states, 1)], axis=1)
@@ -133,7 +135,7 @@ def restitution_in_steps(
 
 
 def error_in_steps(scheme: Scheme, damping_ratio: float, release: Release, steps: int) -> float:
-    """The largest |r_N - r| of a contact in N steps, over the part of a step in which it begins.
+    """The largest |r_N - r| of a contact with N steps, over the instants of contact in a step.
 
     Raises
     ------
@@ -150,10 +152,10 @@ def error_in_steps(scheme: Scheme, damping_ratio: float, release: Release, steps
 
 
 def steps_for(scheme: Scheme, damping_ratio: float, release: Release, error: float) -> int:
-    """The smallest number of steps in a contact from which on r is within an error.
+    """The smallest number N of steps in a contact for which r is within an error.
 
-    The error falls like 1/N, and it does not rise again. N is found by doubling and bisection
-    below 4096, and by this law above.
+    The error falls as 1/N. Below 4096, N is found by doubling and bisection, and above by this
+    proportionality.
 
     Raises
     ------
@@ -171,7 +173,7 @@ def steps_for(scheme: Scheme, damping_ratio: float, release: Release, error: flo
         return int(np.ceil(_ASYMPTOTIC * last / error))
     good, bad = _ASYMPTOTIC, _FEWEST - 1
     while good - bad > 1:
-        # Halving until the number is bracketed, because the error at few steps follows no law.
+        # Halve until the number is bracketed, because the error at few steps follows no simple law.
         middle = max(good // 2, bad + 1) if bad < _FEWEST else (good + bad) // 2
         if error_in_steps(scheme, damping_ratio, release, middle) <= error:
             good = middle

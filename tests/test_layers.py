@@ -45,8 +45,8 @@ ALLOWED = {
     "configuration": ({"atlas"}, {"yaml", "pydantic"}),
     "claims": (
         {
-            *("datasets", "contacts", "continuation", "motion", "orbits", "accuracy", "studies"),
-            "configuration",
+            *("datasets", "contacts", "continuation", "motion", "orbits", "attractors"),
+            *("accuracy", "studies", "configuration"),
         },
         {"numpy", "scipy", "xarray"},
     ),

@@ -45,6 +45,12 @@ def test_a_drop_on_a_moving_table_meets_it_where_a_root_finder_says():
     np.testing.assert_allclose(found.table, lam * np.sin(phase + found.time), atol=1e-14)
 
 
+def test_a_ball_let_go_on_the_table_stays_behind_where_it_recedes_faster_than_the_ball_falls():
+    # From its highest point at Λ = 2 the table goes down with twice the acceleration of a fall.
+    found = bb.drop(2.0, 2.0, phase=np.pi / 2, restitution=0.5, periods=0.25)
+    np.testing.assert_allclose(found.ball, 2 - found.time**2 / 2, rtol=1e-14)
+
+
 @pytest.mark.parametrize(
     "given", [CONTACT, {"restitution": 0.85}, CONTACT | {"model": "corrected"}]
 )

@@ -10,6 +10,7 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_limits import (
     orbit_at,
+    orbits_at,
     saddle_node,
 )
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
@@ -148,3 +149,11 @@ def test_every_orbit_at_an_amplitude_comes_in_and_leaves():
     found = SpringDamperModel(SpringDamper(3.3, 0.1)).orbits(1, 4.0)
     assert found.size == 2
     assert np.all(found.relative_impact_velocity < 0) and np.all(found.apparent_restitution > 0)
+
+
+def test_longer_contacts_are_not_found_by_chance():
+    # The angle beyond half an oscillation is searched in steps of 0.02, up to 200000 of them.
+    contact = SpringDamper(781.3162393999957, 0.13815983841837418)
+    orbits = orbits_at(contact, 2, 1.2720391140979281)
+    angle = orbits.contact_duration * contact.damped_frequency
+    assert np.max(angle, initial=0.0) < 2e5 * 0.02 + np.pi

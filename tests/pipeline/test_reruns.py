@@ -45,7 +45,7 @@ def test_a_changed_parameter(stages, keys, value, expected):
     ("file", "expected"),
     [
         ("studies/restitution_families.py", {"fig02", "fig03"}),
-        ("claims/verdict.py", {"claims"}),
+        ("claims/verdict.py", {"claims", "statements"}),
         ("claims/tally.py", set()),
         ("figures/style.py", set()),
         ("configuration/check.py", set()),

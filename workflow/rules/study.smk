@@ -106,4 +106,4 @@ use rule study as beyond_the_paper with:
 use rule study as audit with:
     """The paper under audit: its formulas, Table 1, every orbit by three routes, its claims."""
     wildcard_constraints:
-        artifact="formulas|forensics|witness|claims",
+        artifact="formulas|forensics|witness|claims|statements",

@@ -1,8 +1,8 @@
 r"""The error of the restitution model, to first order in the contact duration.
 
 The corrected model (:mod:`bouncing_ball.orbits.corrected_branch`) differs from the
-exact one by the second order, and from the restitution model by the first, through the
-delay t_c and the load sensitivity σ. The first-order error of the
+exact model in the second order, and from the restitution model in the first order, through
+the delay t_c and the load sensitivity σ. The first-order error of the
 restitution model is therefore the derivative of the closed forms along (t_c, σ, D) at 0.
 With ``C = nπ (1 - r)/(1 + r)``, ``cos ψ₀ = C/Λ``, ``Y₀ = Λ sin ψ₀`` and
 ``a₀ = 1 - Y₀`` of the restitution model's orbit ::
@@ -23,10 +23,11 @@ two straight lines ::
 
 For a linear contact t_c, σ and D are inversely proportional to ϖ, so that the
 signature at ϖ = 1 gives the K of a relative error K/ϖ + O(1/ϖ²). The contact
-is compared with the restitution model of the r that a free impact on it has: with the force
-release this is not the r of Eq. 16, whose restitution model is not the limit of the contact.
+is compared with the restitution model whose r is that of a free impact on the contact. With the
+force release, the r of Eq. 16 differs from it, and its restitution model is not the limit of the
+contact.
 
-The permanent contact has no impact to correct, and its error is of the second
+Permanent contact has no impact to correct, and its error is of the second
 order: ``Λ_SD = 1 + K₂/ϖ² + O(1/ϖ⁴)`` with K₂ = -(1 - 2ζ²) for the
 displacement release and -1 for the force release.
 
@@ -38,8 +39,8 @@ The remainder is bounded by three numbers, δ = δ_SN + δ_load + δ_period::
 
 ``|error - K| ≤ M S δ``, with all terms at the ϖ of the contact, where S is the :func:`scale` of K
 and M = 4 for the phase and 2 for the other quantities. M is fitted: the largest factor among 20 000
-random orbits is 3.0 for the phase and 1.6 for the others, and no other sample has exceeded M,
-whatever δ is. The law says little where δ is of order 1: next to the saddle-node, within
+random orbits is 3.0 for the phase and 1.6 for the others, and no other sample has exceeded M at any
+δ. The law gives no useful bound where δ is of order 1: next to the saddle-node, within
 Λ - Λ_SN ~ 1/ϖ, for grazing and slow impacts, and for small r.
 """
 
@@ -56,22 +57,22 @@ from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits import restitution_orbit
 
 STATED = 0.3
-"""δ below which the law is of use: the remainder is less than 0.6 of the scale, or 1.2 of it for
-the phase."""
+"""δ below which the law is considered useful: the remainder is then less than 0.6 times the scale,
+or 1.2 times for the phase."""
 
 
 ByQuantity = dict[Quantity, np.ndarray]
-"""One array for each quantity of an impact, in their order."""
+"""One array for each quantity of an impact, in the order of :data:`OF_IMPACTS`."""
 
 REMAINDER = dict.fromkeys(OF_IMPACTS, 2.0) | {Quantity.PHASE: 4.0}
-"""M of each quantity: the remainder is at most M S δ. Fitted to a sample, not proved."""
+"""M of each quantity: the remainder is at most M S δ. M is fitted to a sample and not proved."""
 
 
 def first_order(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> ByQuantity:
     """Relative first-order errors of the restitution model at its orbit on the stable side.
 
-    The error of the saddle-node is infinite at r = 1, and that of the phase at the saddle-node,
-    because the value of the restitution model, to which it is relative, is 0 there.
+    Errors are relative to the value of the restitution model. The error of the saddle-node is
+    therefore infinite at r = 1, and that of the phase at the saddle-node, where this value is 0.
 
     Parameters
     ----------
@@ -85,7 +86,7 @@ def first_order(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> ByQuant
     Returns
     -------
     dict
-        An array for each quantity of an impact, of the shape to which the arguments broadcast.
+        One array for each quantity of an impact, with the shape to which the arguments broadcast.
 
     Raises
     ------
@@ -94,7 +95,7 @@ def first_order(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> ByQuant
 
     Examples
     --------
-    A ball that leaves 0.1 late, with no other effect of the contact:
+    A contact of duration 0.1 that has no other effect:
 
     >>> law = first_order(1, Instant(0.0, 0.5, 0.0, 0.1), 1.5)
     >>> abs(float(law["max_height"])), round(float(law["bounce_velocity"]) * np.pi, 15)
@@ -129,7 +130,7 @@ def _period_doubling(half, r, delay, load, fold):
 
 
 def small_parameter(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> np.ndarray:
-    """δ, in which the remainder of the law is of first order; infinite at the saddle-node.
+    """The small parameter δ of the bound of the remainder; infinite at the saddle-node.
 
     Arguments, shape and errors are those of :func:`first_order`.
 
@@ -148,10 +149,10 @@ def small_parameter(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> np.
 
 
 def scale(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> ByQuantity:
-    """S of each quantity: K with its terms added up without their signs.
+    """The scale S of each quantity: the sum of the moduli of the terms of K.
 
-    The apparent restitution is an exception. For a linear contact the terms of its K cancel up to
-    κ - 2ζ(1 + r)/ϖ, and its scale is the effect of the load over the entire contact,
+    The apparent restitution is an exception, because for a linear contact the terms of its K cancel
+    up to κ - 2ζ(1 + r)/ϖ. Its scale is the effect of the load over the entire contact,
     D (1 + |a₀|)/(r v₀). Arguments, shape and errors are those of :func:`first_order`.
 
     Examples
@@ -180,18 +181,18 @@ def scale(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> ByQuantity:
 
 
 class Remainder(NamedTuple):
-    """Errors against the law: ``factor`` is at most M."""
+    """Errors compared with the law, which states that ``factor`` is at most M."""
 
     law: np.ndarray
-    """The errors by the law, shape (quantity, ...)."""
+    """The first-order errors by the law, shape (quantity, ...)."""
     factor: np.ndarray
-    """|error - law|/(S δ) of each quantity; NaN without an error."""
+    """|error - law|/(S δ) of each quantity; NaN where the error is NaN."""
     small: np.ndarray
     """δ, without the axis of quantities."""
     stated: np.ndarray
-    """Where there is an error and δ is below :data:`STATED`, so that the law is of use."""
+    """Whether the error is finite and δ is below :data:`STATED`, so that the law is useful."""
     exceeded: np.ndarray
-    """Where the factor is above M, whatever δ is."""
+    """Whether the factor is above M, at any δ."""
 
 
 def remainder(
@@ -208,7 +209,7 @@ def remainder(
     n, instant, amplitude
         As in :func:`first_order`.
     error : ndarray, shape (quantity, ...)
-        Signed relative errors of these quantities; NaN where there is none.
+        Signed relative errors of the ``quantities``; NaN where an error is missing.
     quantities : iterable of Quantity
 
     Raises
@@ -256,7 +257,7 @@ def coefficients(
 
     Examples
     --------
-    The rule of thumb 1/(nε) for r → 1, here where Λ sin φ = 1:
+    The limit of the rule of thumb ϖ = 1/(nε), r → 1, at an orbit with Λ sin φ = 1:
 
     >>> law = coefficients(1, 0.0, 1.0)
     >>> round(float(law["max_height"]) * (1 + 2 / np.pi**2), 14)
@@ -269,9 +270,9 @@ def coefficients(
 def law_thresholds(
     n: ArrayLike, damping_ratio: ArrayLike, amplitude: ArrayLike, release: Release, tolerance: float
 ) -> ByQuantity:
-    """The ϖ from which each error is within a tolerance ε by the law, |K|/ε or √(|K₂|/ε).
+    """The ϖ above which each error is within a tolerance ε by the law, |K|/ε or √(|K₂|/ε).
 
-    Arguments and errors are those of :func:`coefficients`; the result has an array for each of the
+    Arguments and errors are those of :func:`coefficients`. The result has one array for each of the
     seven quantities.
 
     Examples

@@ -1,7 +1,7 @@
 r"""Relative errors of the simple models against the exact contact (Eqs. 37-38).
 
-The error of a quantity q is ``(q_SD - q)/q`` with q of the simple model: the
-restitution model, or the corrected one. It is signed; the paper's is its modulus.
+The error of a quantity is ``(q_SD - q)/q``, where q is the value in a simple model: the
+restitution model or the corrected model. The error is signed; the paper uses its modulus.
 """
 
 from collections.abc import Sequence
@@ -22,11 +22,11 @@ from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 
 SIMPLE = ("restitution", "corrected")
-"""The models that are compared with the exact one."""
+"""The simple models, which are compared with the exact model."""
 
 
 def models(contact: SpringDamper) -> tuple[SpringDamperModel, RestitutionModel, CorrectedModel]:
-    """The exact model of a contact, and both simple ones with the r that a free impact on it has.
+    """The exact model of a contact, and both simple models with the r of a free impact on it.
 
     Raises
     ------
@@ -46,10 +46,10 @@ def models(contact: SpringDamper) -> tuple[SpringDamperModel, RestitutionModel, 
 
 
 def relative(exact: ArrayLike, simple: ArrayLike) -> np.ndarray:
-    """Signed relative errors: exact less simple value, over the simple value.
+    """Signed relative errors: the exact value minus the simple value, over the simple value.
 
-    NaN where either is missing, and for 0/0. Infinite where the simple value is 0, as for the
-    saddle-node and the phase at r = 1.
+    The error is NaN where a value is missing, and for 0/0. It is infinite where the simple value
+    is 0, for example for the saddle-node at r = 1.
 
     Examples
     --------
@@ -116,8 +116,8 @@ def errors(
 ) -> np.ndarray:
     """Signed relative errors of both simple models on contacts, shape (model, quantity, ...).
 
-    See :func:`relative_errors`; the models are those of :func:`models`, in the order
-    :data:`SIMPLE`.
+    The arguments are those of :func:`relative_errors`, and the models those of :func:`models`, in
+    the order of :data:`SIMPLE`.
 
     Examples
     --------
@@ -129,11 +129,11 @@ def errors(
 
 
 def orbit_errors(orbit: SpringDamperOrbit) -> np.ndarray:
-    """Errors of the four quantities of exact orbits, shape (model, quantity, ...); NaN without
-    orbit.
+    """Errors of the four quantities of exact orbits, shape (model, quantity, ...); NaN where there
+    is no orbit.
 
-    They equal :func:`errors` at the Λ of the orbits. The corrected orbit needs no search, because
-    the signature of a linear contact is the same at every speed.
+    They equal :func:`errors` at the Λ of the orbits. The corrected orbit is found without a search,
+    because the signature of a linear contact is the same at every speed.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The seven quantities in which models are compared, and their values in a model."""
+"""The seven quantities by which models are compared, and their values in a model."""
 
 from collections.abc import Iterable
 from enum import StrEnum
@@ -25,15 +25,15 @@ class Quantity(StrEnum):
 OF_ORBITS = tuple(Quantity)[:4]
 """Quantities of an orbit: functions of the contact, n and Λ."""
 OF_LIMITS = tuple(Quantity)[4:]
-"""Values of Λ: functions of the contact and of n, the permanent contact's without n."""
+"""Values of Λ: functions of the contact and of n; the permanent contact does not depend on n."""
 OF_IMPACTS = tuple(Quantity)[:6]
-"""Quantities that depend on an impact, of which permanent contact has none."""
+"""Quantities that depend on an impact: all except the permanent contact, which has no impact."""
 
 
 def values(
     model: ImpactModel, n: ArrayLike, amplitude: ArrayLike, quantities: Iterable[str] = OF_IMPACTS
 ) -> np.ndarray:
-    """Quantities in a model, all those of the orbit from one search for it.
+    """Values of quantities in a model; one search for the orbit serves all its quantities.
 
     Parameters
     ----------

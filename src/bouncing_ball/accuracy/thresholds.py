@@ -1,7 +1,7 @@
 """The frequency ratio ϖ above which an error stays within a tolerance.
 
-The threshold is the largest ϖ at which the modulus of the error crosses the tolerance,
-within the range scanned. Where a model lacks the quantity, the error is infinite.
+The threshold is the largest ϖ in the scanned range at which the modulus of the error
+crosses the tolerance. Where a model lacks the quantity, the error is infinite.
 """
 
 from collections.abc import Callable, Sequence
@@ -21,13 +21,13 @@ from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 
 Numbered = Callable[[np.ndarray, np.ndarray], np.ndarray]
-"""Values at ratios ϖ of the functions with given numbers; all three arrays of one shape."""
+"""Values, at ratios ϖ, of the functions with given numbers; all three arrays have one shape."""
 Errors = Callable[[np.ndarray, np.ndarray, Sequence[str]], np.ndarray]
 """Signed relative errors of quantities, shape (quantity, m), at ratios ϖ of rows, shape (m,)."""
 
-# Errors are bounded for the root finder, because they may vanish or be infinite.
+# Errors are bounded for the root finder, because they may be zero or infinite.
 _SMALLEST, _LARGEST = 1e-300, 1e3
-# Tolerance of ln ϖ: the rounding of an error of 0.1 % moves its threshold by as much.
+# Tolerance of ln ϖ: rounding an error of 0.1 % moves its threshold by about this much.
 _CLOSE = 1e-13
 
 
@@ -40,7 +40,7 @@ class ThresholdStatus(StrEnum):
 
 
 class Thresholds(NamedTuple):
-    """Thresholds and how the search for them ended, arrays of one shape."""
+    """Thresholds and the outcomes of the searches for them, arrays of one shape."""
 
     ratio: np.ndarray
     """ϖ; NaN where the status is not ``FOUND``."""
@@ -56,7 +56,7 @@ def last_crossing(function: Numbered, ratios: np.ndarray, scanned: np.ndarray) -
     Parameters
     ----------
     function : callable
-        Values at ratios ϖ, of the functions with given numbers; see :data:`Numbered`.
+        Values, at ratios ϖ, of the functions with given numbers; see :data:`Numbered`.
     ratios : ndarray, shape (N,)
         Increasing grid.
     scanned : ndarray, shape (k, N)
@@ -89,7 +89,7 @@ def last_crossing(function: Numbered, ratios: np.ndarray, scanned: np.ndarray) -
                 args=(which,),
                 tolerances={"xatol": _CLOSE},
             )
-        # At a sample rounding may change the sign again; the root is then that sample.
+        # If a sample lies at the root, rounding may change its sign; the root is then the sample.
         values_at_ends = np.abs(root.f_bracket)
         end = np.where(values_at_ends[0] < values_at_ends[1], *bracket)
         found[which] = np.exp(np.where(root.success, root.x, end))
@@ -140,8 +140,8 @@ def thresholds(
 def by_quantity(errors: Errors, quantities: Sequence[str], rows: int) -> Numbered:
     """Errors of several quantities as one set of numbered functions, ``rows`` for each quantity.
 
-    Function number q·rows + k is quantity q of row k. The quantities of an orbit are computed
-    together, because one search finds the orbit for all of them.
+    The function of number q·rows + k is quantity q of row k. The quantities of an orbit are
+    computed together, because one search finds the orbit for all of them.
     """
     of_orbit = np.isin(quantities, OF_ORBITS)
     groups = [np.flatnonzero(of_orbit), *np.flatnonzero(~of_orbit)[:, np.newaxis]]
@@ -161,15 +161,15 @@ def by_quantity(errors: Errors, quantities: Sequence[str], rows: int) -> Numbere
 
 
 class Search(NamedTuple):
-    """The ϖ from which on each simple model is accurate, for several orbits."""
+    """The ϖ above which each simple model is accurate, for several orbits."""
 
     threshold: np.ndarray
     """ϖ, shape (model, quantity, orbit); NaN where the status is not ``FOUND``."""
     status: np.ndarray
     """:class:`ThresholdStatus`, shape (model, quantity, orbit)."""
     zero: np.ndarray
-    """The largest ϖ at which the restitution model's error changes its sign, shape
-    (quantity, orbit); NaN if it does not."""
+    """The largest ϖ at which the error of the restitution model changes its sign, shape
+    (quantity, orbit); NaN where it does not change its sign."""
 
 
 def search(
@@ -191,13 +191,13 @@ def search(
     ratios : ndarray, shape (N,)
         Increasing grid of ϖ.
     tolerance : float
-        Relative error tolerated.
+        The tolerated relative error.
     quantities : sequence of str
 
     Returns
     -------
     Search
-        The restitution model has the r that a free impact on the contact has.
+        The restitution model has the r of a free impact on the contact.
 
     Examples
     --------
@@ -233,7 +233,7 @@ def search(
     scanned = errors(ratios[ratio], orbit, quantities).swapaxes(0, 1)
     every = scanned.reshape(-1, ratios.size)
     found = thresholds(by_quantity(along, quantities, size[1] * size[2]), ratios, every, tolerance)
-    # The restitution model is the first one.
+    # The restitution model is the first model.
     own = scanned[:, 0].reshape(-1, ratios.size)
     zero = last_crossing(by_quantity(along, quantities, lam.size), ratios, own)
     threshold, status = (part.reshape(size).swapaxes(0, 1) for part in found)

@@ -1,4 +1,4 @@
-"""The atlas: how stiff a contact must be for each model to be accurate, for all orbits.
+"""The atlas: for all orbits, how stiff a contact must be for each simple model to be accurate.
 
 All quantities are dimensionless; ϖ stands for the dimension ``frequency_ratio`` of a dataset.
 """

@@ -1,8 +1,8 @@
-"""The answers kept of the orbits of tiles: thresholds and counts.
+"""The answers that are stored for the orbits of a tile: thresholds and counts.
 
-Nodes are walked in blocks. Of each node its thresholds and its errors at the examined ϖ are kept
-until the tiles of the block are complete. The answers of a tile, which the files contain, are
-maxima of these and counts, so that their size does not grow with the number of nodes.
+Nodes are walked in blocks. The thresholds of each node and its errors at the examined ϖ are kept
+until the tiles of the block are complete. The files contain the answers of tiles, which are maxima
+and counts over the nodes, so that the size of the files does not grow with the number of nodes.
 """
 
 import numpy as np
@@ -17,13 +17,14 @@ from bouncing_ball.atlas.walk import walk
 from bouncing_ball.contacts.signature import Signature
 
 BLOCK = 1024
-"""Nodes walked at the same time: enough for long arrays, few enough for the cache."""
+"""Number of nodes walked at the same time: the arrays are long and still fit into the cache."""
 PER_DECADE = 10
 """Number of bins per decade of ϖ in the histograms of thresholds."""
 
 
 def threshold_bins(ratios: np.ndarray) -> np.ndarray:
-    """Lower bounds of the bins: 0 for what holds at all ϖ, infinity for what never does.
+    """Lower bounds of the bins of thresholds: 0 for errors within the tolerance at all ϖ, and
+    infinity for errors that exceed it at the largest ϖ.
 
     ``ratios`` are the ϖ of the atlas, increasing, shape (k,).
 
@@ -48,7 +49,7 @@ def _of_nodes(plan: Plan, row: int, index: np.ndarray) -> xr.Dataset:
     at = np.flatnonzero(np.isin(down, plan.examined))[::-1]
     examined = np.moveaxis(error[at], 0, 2)
     signature = Signature(nodes.contact(down[at, np.newaxis]))
-    # One quantity after another, because the errors of all do not fit into the cache.
+    # One quantity after another, because the errors of all quantities do not fit into the cache.
     each = error.reshape(len(down), -1, len(index))
     found = [
         last_crossings(down, each[:, k], np.array(plan.tolerances)) for k in range(each.shape[1])
@@ -81,12 +82,13 @@ def row_answers(plan: Plan, row: int) -> xr.Dataset:
 
 
 def _of_tiles(plan: Plan, row: int, nodes: np.ndarray) -> xr.Dataset:
-    """The answers of some tiles of a row; until they are complete each node takes 3 kB."""
+    """The answers of some tiles of a row; during the computation each node takes 3 kB."""
     starts, bins = range(0, len(nodes), BLOCK), threshold_bins(plan.ratios)
     blocks = [_of_nodes(plan, row, nodes[k : k + BLOCK]) for k in starts]
     tiles = xr.concat(blocks, "node").coarsen(node=plan.nodes_per_tile)
     each = tiles.construct(node=("position", "own"))
-    # A bin is open at its upper end, except the first, which has the thresholds at the smallest ϖ.
+    # A bin excludes its upper end. The first bin is an exception: it contains the thresholds that
+    # are equal to the smallest ϖ.
     place = np.searchsorted(bins, each.threshold, side="right") - 1
     place = np.where(each.threshold <= plan.ratios[0] * (1 + 1e-12), 0, place)
     in_bins = np.stack([np.sum(place == k, axis=-1) for k in range(len(bins))])

@@ -1,42 +1,41 @@
 """The last ϖ at which an error exceeds each tolerance, from stiff contacts downwards.
 
-The threshold of an error is the ϖ from which on it stays within a tolerance: the first
-crossing that a walk from the largest ϖ to the smallest meets. It lies
-within one step of the walk and is interpolated there, in logarithms, in which the error
-is nearly a straight line, or along the error itself where that changes its sign. An
-excursion beyond the tolerance between two ϖ is detected by the parabola through the
-nearest three.
+The threshold of an error is the ϖ above which the error stays within a tolerance. It is the
+first crossing on a walk from the largest ϖ to the smallest. The threshold is interpolated
+within one step of the walk, in logarithms, because ln(error) is nearly a straight line in
+ln ϖ, or along the error itself if the error changes its sign. An excursion beyond the tolerance
+between two ϖ is detected by the parabola through the nearest three ϖ.
 """
 
 from itertools import pairwise
 
 import numpy as np
 
-# The error is bounded for the interpolation, because one of the models may have no orbit.
+# The error is bounded for the interpolation, because it is infinite where a model has no orbit.
 _LARGEST = 1e3
 _SMALLEST = 1e-300
 
 
 def last_crossings(ratios: np.ndarray, errors: np.ndarray, tolerances: np.ndarray) -> np.ndarray:
-    """Thresholds of many errors.
+    """The thresholds of many errors, for each of several tolerances.
 
     Parameters
     ----------
     ratios : ndarray, shape (k,)
         ϖ, decreasing.
     errors : ndarray, shape (k, ...)
-        The signed errors there, with at least one more dimension. NaN counts as infinite.
+        The signed errors at these ϖ, with at least one more dimension. NaN counts as infinite.
     tolerances : ndarray, shape (m,)
 
     Returns
     -------
     ndarray, shape (m, ...)
-        ϖ; infinite where the error exceeds the tolerance at the largest one, and the smallest
-        one where it never does.
+        ϖ; infinite where the error exceeds the tolerance at the largest ϖ, and the smallest ϖ
+        where it never exceeds the tolerance.
 
     Examples
     --------
-    An error 1/ϖ is within 1 % from ϖ = 100 on, and never within 0.01 %:
+    An error 1/ϖ is within 1 % above ϖ = 100, and is not within 0.01 % at any ϖ of the grid:
 
     >>> ratios = np.geomspace(1e3, 3.0, 20)
     >>> found = last_crossings(ratios, 1 / ratios[:, np.newaxis], np.array([0.5, 0.01, 0.0001]))
@@ -44,7 +43,7 @@ def last_crossings(ratios: np.ndarray, errors: np.ndarray, tolerances: np.ndarra
     [3.0, 100.0, inf]
     """
     x, errors = np.log(ratios), np.where(np.isnan(errors), np.inf, errors)
-    # The running maximum from the largest ϖ down; four times as fast as numpy's accumulate.
+    # The running maximum from the largest ϖ downwards; this is four times as fast as accumulate.
     largest = np.abs(errors)
     for above, here in pairwise(largest):
         np.maximum(above, here, out=here)
@@ -55,7 +54,8 @@ def last_crossings(ratios: np.ndarray, errors: np.ndarray, tolerances: np.ndarra
         first = np.count_nonzero(largest <= tolerance, axis=0)
         crosses = np.nonzero(first < len(x))
         one[crosses] = _crossing(x, errors, (first[crosses], *crosses), tolerance)
-        # Of several excursions before it the first one counts, and is therefore written last.
+        # If there are several excursions before the crossing, the first is the threshold. It is
+        # therefore written last.
         seen = (inside <= tolerance) & (tolerance < height) & (step <= first[entry])
         seen = np.flatnonzero(seen)[::-1]
         width = np.sqrt((height[seen] - tolerance) / -curve[seen])
@@ -65,9 +65,9 @@ def last_crossings(ratios: np.ndarray, errors: np.ndarray, tolerances: np.ndarra
 
 
 def _crossing(x: np.ndarray, errors: np.ndarray, at: tuple, tolerance: float) -> np.ndarray:
-    """ln ϖ at which errors reach their tolerance, within the step before the given place."""
+    """ln ϖ at which errors reach the tolerance, within the step that ends at the indices ``at``."""
     step, *entry = at
-    # Nothing is known beyond the largest ϖ.
+    # Beyond the largest ϖ no crossing can be located.
     start = step == 0
     left, right = np.where(start, 1.0, errors[step - 1, *entry]), errors[at]
     turned = (left * right < 0) & np.isfinite(right)
@@ -83,8 +83,8 @@ def _crossing(x: np.ndarray, errors: np.ndarray, at: tuple, tolerance: float) ->
 def _peaks(x: np.ndarray, errors: np.ndarray) -> tuple:
     """Parabolas through three neighbouring ϖ whose apex lies between them.
 
-    Returns the indices of the last of the three and of the entries, the modulus of the error in the
-    middle and at the apex, ln ϖ of the apex, and the curvature.
+    Returns the indices of the last of the three ϖ and of the entries, the modulus of the error at
+    the middle ϖ and at the apex, ln ϖ of the apex, and half the second derivative.
     """
     e0, e1, e2 = errors[:-2], errors[1:-1], errors[2:]
     with np.errstate(invalid="ignore"):

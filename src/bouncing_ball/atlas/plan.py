@@ -1,14 +1,14 @@
 r"""The orbits that the atlas covers, in tiles, and the division of the work.
 
-An orbit of the atlas is a node (release rule, n, r, p) at a frequency ratio ϖ. The
-position p in (0, 1) is that of Λ in the stable range of the restitution model ::
+An orbit of the atlas belongs to a node (release rule, n, r, p) and a frequency ratio ϖ.
+The position p in (0, 1) gives Λ in the stable range of the restitution model ::
 
     Λ = Λ_SN + p (Λ_PD - Λ_SN)
 
 A *tile* is a range of r times a range of p, for one rule and one n; its nodes are
-the midpoints of an even grid in it. A *row* is all tiles of one rule, one n and one
-range of r. Rows are computed one by one, and a *shard* is some rows in order, so that the
-numbers do not depend on the number of shards. All quantities are dimensionless.
+the midpoints of the cells of an even grid. A *row* consists of all tiles of one rule, one n
+and one range of r. A *shard* consists of consecutive rows. Rows are computed one by one, so
+that the results do not depend on the number of shards. All quantities are dimensionless.
 """
 
 from dataclasses import dataclass
@@ -34,9 +34,9 @@ from bouncing_ball.parameters import (
     number,
 )
 
-# A linear contact released by its force has a higher restitution coefficient.
+# Lower bounds of r: a linear contact with the force release has r > e⁻².
 _LOWEST = {Release.DISPLACEMENT: 0.0, Release.FORCE: float(np.exp(-2))}
-# Ratios that differ by less in ln ϖ are equal.
+# Frequency ratios that differ by less than this in ln ϖ are regarded as equal.
 _SAME = 1e-9
 
 
@@ -55,9 +55,7 @@ class Nodes:
         return np.asarray(damping_ratio(self.restitution, self.release))
 
     def contact(self, frequency_ratio: float | np.ndarray) -> SpringDamper:
-        """The contacts of the nodes at ϖ, an array of any shape that broadcasts with that of the
-        nodes.
-        """
+        """The contacts of the nodes at ϖ, whose shape broadcasts with that of the nodes."""
         return SpringDamper(frequency_ratio, self.damping_ratio, self.release)
 
 
@@ -100,29 +98,29 @@ class Plan(Parameters):
 
     @cached_property
     def ratios(self) -> np.ndarray:
-        """All ϖ, increasing: the grid merged with the examined ones."""
+        """All ϖ in increasing order: the grid merged with the examined ϖ."""
         grid, examined = self.frequency_ratio.grid(), np.sort(self.examined)
         apart = np.abs(np.log(grid[:, np.newaxis] / examined)) > _SAME
         return np.sort(np.concatenate([grid[np.all(apart, axis=1)], examined]))
 
     @property
     def resolution(self) -> float:
-        """Largest relative step of the grid; a threshold is known to lie within one step."""
+        """Largest relative step of the grid; a threshold is bracketed to within one step."""
         return float(np.max(self.ratios[1:] / self.ratios[:-1])) - 1
 
     @property
     def shape(self) -> tuple[int, int, int]:
-        """Numbers of rules, of families and of ranges of r, by which rows are numbered."""
+        """Numbers of rules, families and ranges of r: the shape of the array of all rows."""
         return len(self.release), len(self.n), self.restitution.tiles
 
     @cached_property
     def rows(self) -> np.ndarray:
-        """Numbers of the rows, without those whose range of r a rule does not reach."""
+        """Indices of the rows, without those whose range of r the rule does not reach."""
         reached = [self.edges[:-1] >= _LOWEST[rule] for rule in self.release]
         return np.flatnonzero(np.broadcast_to(np.array(reached)[:, np.newaxis], self.shape))
 
     def shard_rows(self) -> list[np.ndarray]:
-        """The rows of each shard; the sizes of the shards differ by one at most."""
+        """The rows of each shard; the numbers of rows of two shards differ by at most one."""
         return np.array_split(self.rows, min(self.shards, len(self.rows)))
 
     @property
@@ -141,8 +139,8 @@ class Plan(Parameters):
         return len(self.rows) * self.nodes_per_row * len(self.ratios)
 
     def nodes(self, row: int, index: np.ndarray) -> Nodes:
-        """Nodes of a row by their numbers ``index``, which run tile by tile, and in a tile r
-        by r.
+        """The nodes of a row with the numbers ``index``, which count tile by tile, and in a tile
+        through all p at one r after another.
         """
         count = self.position.tiles * self.position.samples
         p = _midpoints(0.0, 1.0, count).reshape(self.position.tiles, 1, -1)
@@ -150,12 +148,12 @@ class Plan(Parameters):
         return self.placed(row, *(x.ravel()[index] for x in each))
 
     def restitutions(self, row: int) -> np.ndarray:
-        """The r of a row's nodes, shape (samples,)."""
+        """The values of r of the nodes of a row, shape (samples,)."""
         low, high = self.edges[row % self.restitution.tiles :][:2]
         return _midpoints(float(low), float(high), self.restitution.samples)
 
     def placed(self, row: int, r: np.ndarray, p: np.ndarray) -> Nodes:
-        """Nodes at any r and p, arrays of one shape, for the rule and the n of a row."""
+        """Nodes with the rule and the n of a row, at given r and p, arrays of one shape."""
         rule, family, _ = np.unravel_index(row, self.shape)
         n = self.n[family]
         low, high = restitution_orbit.saddle_node(n, r), restitution_orbit.period_doubling(n, r)

@@ -33,15 +33,15 @@ def shard(plan: Plan, index: int) -> xr.Dataset:
 
 
 def limit_shard(plan: Plan) -> xr.Dataset:
-    """The ϖ needed for saddle-node, period doubling and permanent contact, of all rows.
+    """The ϖ needed for the saddle-node, the period doubling and the permanent contact, of all rows.
 
     ``limit_needed`` (row, model, limit_quantity, tolerance) is the largest threshold among the r of
-    a row, interpolated like those of the orbits.
+    a row; thresholds are interpolated like those of the orbits.
     """
     down, shape = plan.ratios[::-1], (len(SIMPLE), len(OF_LIMITS), len(plan.tolerances))
     needed = np.empty((len(plan.rows), *shape))
     for k, row in enumerate(plan.rows):
-        # The limits do not depend on the position.
+        # The limits do not depend on the position p.
         r = plan.restitutions(row)
         nodes = plan.placed(row, r, np.zeros_like(r))
         error = errors(nodes.contact(down[:, np.newaxis]), nodes.n, nodes.amplitude, OF_LIMITS)
@@ -64,12 +64,12 @@ def merge(plan: Plan, shards: Iterable[xr.Dataset], limits: xr.Dataset) -> xr.Da
     Raises
     ------
     ModelError
-        If the shards do not hold each row of the plan once.
+        If the shards do not contain each row of the plan exactly once.
     """
     seen, first = np.zeros(np.prod(plan.shape), dtype=int), None
     whole: dict[str, tuple[tuple[Hashable, ...], np.ndarray]] = {}
     coords: dict[str, object] = {}
-    # One shard at a time, so that memory holds the result and one part, and never all parts.
+    # One shard at a time, so that memory holds only the result and one part.
     for part in chain(shards, [limits]):
         first = part.coords.to_dataset() if first is None else first
         xr.align(first, part, join="exact", exclude={"row"})

@@ -1,7 +1,7 @@
 """The summary of the atlas, which is small enough for the accepted record.
 
-It has the frequency ratio needed for one tolerance over r, Λ and n; the shares of nodes on
-which a rule of thumb holds; the suprema of the errors; and the accuracy of the error law.
+It contains the frequency ratio needed for one tolerance over r, Λ and n; the shares of the nodes
+for which a rule of thumb holds; the suprema of the errors; and the accuracy of the error law.
 """
 
 import numpy as np
@@ -22,9 +22,10 @@ _TILES = ("restitution", "position")
 
 
 def summary(plan: Plan, atlas: xr.Dataset) -> xr.Dataset:
-    """The summary for a tolerance and a rule "ϖ above this is enough".
+    """The summary for one tolerance and for the rule that a ϖ above a given value is enough.
 
-    Both are those of the atlas that are nearest to the paper's.
+    The tolerance and the ϖ of the rule are those of the atlas that are nearest to
+    :data:`TOLERANCE` and :data:`RULE_OF_THUMB`.
     """
     near = atlas.sel({"tolerance": TOLERANCE, "frequency_ratio": RULE_OF_THUMB}, method="nearest")
     tolerance, rule = float(near.tolerance), float(near.frequency_ratio)
@@ -50,14 +51,14 @@ def summary(plan: Plan, atlas: xr.Dataset) -> xr.Dataset:
 
 
 def _share(atlas: xr.Dataset, name: str) -> xr.DataArray:
-    """Share of the nodes of each rule and n that a variable counts."""
+    """Share of the nodes of each rule and n that are counted by a variable of the atlas."""
     nodes = atlas.threshold_counts.isel(model=0, quantity=0, tolerance=0, drop=True)
     return atlas[name].sum(_TILES) / nodes.sum(("threshold_bin", *_TILES))
 
 
 def _quantiles(atlas: xr.Dataset) -> xr.DataArray:
-    """ϖ from which a share of the nodes is accurate: the upper end of a bin, or the largest
-    threshold.
+    """ϖ above which each share of :data:`QUANTILES` of the nodes is accurate: the upper end of a
+    bin, or the largest threshold if that is smaller.
     """
     counts = atlas.threshold_counts.sum(_TILES)
     share = counts.cumsum("threshold_bin") / counts.sum("threshold_bin")
@@ -69,7 +70,7 @@ def _quantiles(atlas: xr.Dataset) -> xr.DataArray:
 
 
 def _law(plan: Plan) -> xr.Variable:
-    """The modulus of the error law's K in the middles of the tiles, for the charts."""
+    """The modulus of K of the error law at the centres of the tiles, for the charts."""
     middle_r, middle_p = ((edges[1:] + edges[:-1]) / 2 for edges in (plan.edges, plan.positions))
     law = np.full((*plan.shape, len(middle_p), len(OF_ORBITS)), np.nan, "f4")
     for row in plan.rows:

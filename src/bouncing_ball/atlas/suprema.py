@@ -1,4 +1,4 @@
-"""Suprema of the errors over all orbits of the atlas, between its nodes too.
+"""Suprema of the errors over all orbits in the range of the atlas, including those between nodes.
 
 The modulus of an error is maximised over r and over the whole stable range, on a grid that is
 refined around its largest value. Next to the saddle-node, p = 0, where most errors are largest,
@@ -15,13 +15,14 @@ from bouncing_ball.accuracy.quantities import OF_LIMITS, Quantity
 from bouncing_ball.accuracy.thresholds import thresholds
 from bouncing_ball.atlas.plan import Plan
 
-# Points along r and √p, and grids, each of which divides their distances by four: a place is known
-# to 1/2000, and a maximum, which is flat there or in a corner, to the square of this.
+# Number of points along r and √p, and of grids. Each grid divides the distance of the points by
+# four, so that the place of a maximum is known to 1/2000 of the range. The maximum itself is known
+# to the square of this, unless it lies at an end of the range, which is a point of every grid.
 _POINTS, _ROUNDS = 9, 5
-# √p next to the saddle-node. The restitution model's phase is 0 there, so that its relative error
-# grows as 1/√p; no other error of an existing orbit is above this bound.
+# Smallest √p, next to the saddle-node. The phase of the restitution model is 0 at the saddle-node,
+# so that its relative error grows as 1/√p; no other error of an existing orbit exceeds this bound.
 _NEAREST, _UNBOUNDED = 1e-6, 1e3
-# At r = 1 the saddle-node is at Λ = 0, and its relative error 0/0.
+# Factor that keeps r below 1: at r = 1 the saddle-node is at Λ = 0, and its relative error is 0/0.
 _BELOW = 1 - 1e-9
 # Number of ϖ that are scanned for a crossing.
 _SCANNED = 12
@@ -32,11 +33,11 @@ def largest(
 ) -> float:
     """The largest error at ϖ over p and a range of r, or at one r, for the rule and n of a row.
 
-    ``kind`` is the model and the quantity. The error is infinite if it is unbounded, or if a model
-    lacks an orbit.
+    ``kind`` is the model and the quantity. The result is infinite if the error is unbounded, or if
+    a model lacks an orbit.
     """
     model, quantity = kind
-    # The limits of the range do not depend on the place in it.
+    # The bifurcations and the permanent contact do not depend on p.
     first = 1.0 if quantity in OF_LIMITS else _NEAREST
     start, end = np.array([(low, high or low), (first, 1.0)]).T
     for _ in range(_ROUNDS):
@@ -52,8 +53,9 @@ def largest(
 
 
 def tolerated(error: Callable[[float], float], grid: np.ndarray, tolerance: float) -> float:
-    """The place from which on an error is tolerated, by
-    :func:`~bouncing_ball.accuracy.thresholds.thresholds`; NaN if it is at all places or at none.
+    """The point of ``grid``'s range above which an error is within the tolerance, by
+    :func:`~bouncing_ball.accuracy.thresholds.thresholds`; NaN if the error is within the tolerance
+    at all points of the grid, or exceeds it at the last point.
 
     Examples
     --------
@@ -68,12 +70,13 @@ def tolerated(error: Callable[[float], float], grid: np.ndarray, tolerance: floa
 
 
 def suprema(plan: Plan, rule: float, tolerance: float) -> dict[str, tuple]:
-    """Variables of the suprema at a ϖ, and of the ϖ and r from which on they are tolerated.
+    """The suprema at one ϖ, and the ϖ and r above which they are within the tolerance.
 
-    Over (release, n, model, supremum_quantity) they are ``supremum`` at the ϖ of the rule and
-    ``supremum_needed``, the ϖ from which on all orbits are within the tolerance. Over
-    (release, n) it is ``failing_restitution``, the r below which the restitution model's greatest
-    height exceeds it at the rule's ϖ. The last two are those of :func:`tolerated`.
+    Over (release, n, model, supremum_quantity) the variables are ``supremum``, at the ϖ of the
+    rule, and ``supremum_needed``, the ϖ above which all orbits are within the tolerance. Over
+    (release, n) the variable is ``failing_restitution``: at the ϖ of the rule, the error of the
+    greatest height of the restitution model exceeds the tolerance below this r. The last two
+    variables are computed by :func:`tolerated`.
     """
     shape = *plan.shape[:2], len(SIMPLE), len(Quantity)
     found, failing = np.empty((2, *shape)), np.empty(shape[:2])

@@ -1,23 +1,23 @@
-r"""Orbits at given Λ along ϖ, by walking on the branch and not by root finding.
+r"""Orbits at given Λ along ϖ, by extrapolation along the branch instead of root finding.
 
 On the branch of :mod:`bouncing_ball.orbits.spring_damper_branch` the product t = ϖε is almost
-constant along ϖ, and (X, Y) almost a straight line along ε. The walk therefore starts at the
-stiffest contact and goes down. There the load a = 1 - Y alone delays the release, by
+constant along ϖ, and (X, Y) is almost a straight line along ε. The walk therefore starts at the
+stiffest contact and goes down. For stiff contacts only the load a = 1 - Y delays the release, by
 ``(1 + r) a/(r v ϖ²)`` for both rules (:mod:`bouncing_ball.contacts.signature`), with
-``v = 2nπ/(1 + r)``; as an angle of the contact's oscillation this is ::
+``v = 2nπ/(1 + r)``. Expressed as an angle of the oscillation of the contact, this is ::
 
     t = √(1 - ζ²) (1 + r)² (1 - Y)/(2nπ r)
 
-The smaller ϖ are taken eight at a time. There t is extrapolated by the polynomial through the
-last eight along ln ϖ, and corrected once. With X and Y straight along ε, Λ² is a parabola,
-and of the two d with ::
+The smaller ϖ are taken eight at a time. There t is extrapolated by the polynomial in ln ϖ
+through the last eight values, and corrected once. If X and Y are linear in ε, Λ² is a parabola,
+and of the two solutions d of ::
 
     (X + X′d)² + (Y + Y′d)² = Λ²
 
-the smaller one is that of the stable side. This takes two evaluations of the branch for each
+the smaller belongs to the stable side. This takes two evaluations of the branch for each
 orbit, whereas a bracketing root finder takes hundreds. Every result of the walk is an orbit
-of the closed form; only its Λ differs slightly from the requested one, by a known
-difference. Where it exceeds :data:`REACHED`, the orbit is computed by
+of the closed form; only its Λ differs slightly from the requested Λ, by a known
+difference. Where the difference exceeds :data:`REACHED`, the orbit is computed by
 :func:`bouncing_ball.orbits.spring_damper_limits.orbit_at`, which is authoritative.
 """
 
@@ -36,17 +36,17 @@ from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.stability import is_stable
 
 REACHED = 1e-6
-"""Largest relative distance of an orbit's Λ from the requested one. Errors are then those of a
-neighbouring orbit, computed exactly; the walk mostly stays within 1e-9."""
+"""Largest relative difference between the Λ of an orbit and the requested Λ. Errors of models are
+those of this neighbouring orbit, computed exactly; most differences are within 1e-9."""
 TOGETHER = 8
-"""Number of ϖ computed at the same time, so that few nodes make long arrays too; t is
-extrapolated from as many."""
+"""Number of ϖ computed at the same time, so that arrays are long even for few nodes; t is
+extrapolated from the same number of values."""
 # At the stiffest contacts there is nothing to extrapolate from, so that t is corrected more often.
 _FIRST_CORRECTIONS = 4
 
 
 class Step(NamedTuple):
-    """The orbits of the nodes at some ϖ, shape (ϖ, nodes); NaN where there is none."""
+    """The orbits of the nodes at several ϖ, shape (ϖ, nodes); NaN where there is no orbit."""
 
     frequency_ratio: np.ndarray
     orbit: SpringDamperOrbit
@@ -56,11 +56,11 @@ class Step(NamedTuple):
 
 
 def stiff_start(nodes: Nodes) -> np.ndarray:
-    """t = ϖε of the nodes as ϖ → ∞, of the nodes' shape.
+    """The limit of t = ϖε for ϖ → ∞, with the shape of the nodes.
 
     Examples
     --------
-    Where the table's acceleration balances gravity, Λ sin φ = 1, there is no load:
+    Where the acceleration of the table balances gravity, Λ sin φ = 1, the load is zero:
 
     >>> from bouncing_ball.contacts.release import Release
     >>> nodes = Nodes(Release.DISPLACEMENT, 1, np.array([1.0]), np.array([1.0]))
@@ -75,13 +75,13 @@ def stiff_start(nodes: Nodes) -> np.ndarray:
 
 
 def extrapolated(at: np.ndarray, past: np.ndarray, to: np.ndarray) -> np.ndarray:
-    """Values at some places of the polynomial through values at others (Lagrange).
+    """Values of the Lagrange polynomial through known values, at other points.
 
     Parameters
     ----------
     at : ndarray, shape (m,)
     past : ndarray, shape (m, ...)
-        The values at these places.
+        The known values at the points ``at``.
     to : ndarray, shape (k,)
 
     Returns
@@ -98,15 +98,15 @@ def extrapolated(at: np.ndarray, past: np.ndarray, to: np.ndarray) -> np.ndarray
     for i, j in permutations(places, 2):
         weights[:, i] *= (to - at[j]) / (at[i] - at[j])
     each = weights.reshape(*weights.shape, *(1,) * (past.ndim - 1))
-    # Not a matrix product, whose rounding depends on the number of nodes.
+    # The rounding of a matrix product would depend on the number of nodes.
     return sum(each[:, i] * past[i] for i in places)
 
 
 def correction(point: BranchPoint, amplitude: np.ndarray) -> np.ndarray:
-    """The d by which ε reaches Λ on the stable side, with X and Y straight along ε.
+    """The change d of ε that leads to Λ on the stable side, if X and Y are linear in ε.
 
-    Where the parabola does not come down to Λ², it is the d of the lowest point. The result has the
-    shape of the point's fields and ``amplitude``.
+    If the minimum of the parabola lies above Λ², the result is the d of the minimum. It has the
+    broadcast shape of the fields of ``point`` and of ``amplitude``.
     """
     square = point.d_x * point.d_x + point.d_y * point.d_y
     above = point.x * point.x + point.y * point.y - amplitude * amplitude
@@ -126,10 +126,10 @@ def walk(nodes: Nodes, ratios: np.ndarray) -> Iterator[Step]:
     Yields
     ------
     Step
-        At :data:`TOGETHER` ϖ, the last one at fewer.
+        The orbits at :data:`TOGETHER` values of ϖ; the last step may have fewer.
     """
     down = ratios[::-1]
-    # Before the first step t is that of ϖ → ∞, whatever ϖ is.
+    # The first step starts from the limit of t for ϖ → ∞.
     at, past = np.log(down[:1]), stiff_start(nodes)[np.newaxis]
     for k in range(0, len(down), TOGETHER):
         ratio = down[k : k + TOGETHER, np.newaxis]
@@ -149,9 +149,7 @@ def walk(nodes: Nodes, ratios: np.ndarray) -> Iterator[Step]:
 
 
 def _replaced(orbit: SpringDamperOrbit, sought: np.ndarray, contact: SpringDamper, nodes: Nodes):
-    """The orbits, in which those not reached by the walk are replaced by those of the root
-    finder.
-    """
+    """The orbits, where those that the walk did not reach are computed by the root finder."""
     asked = np.broadcast_to(nodes.amplitude, sought.shape)[sought]
     found = limits.orbit_at(contact[sought], nodes.n, asked)
     names = ("amplitude", "phase", "contact_duration", "impact_velocity")

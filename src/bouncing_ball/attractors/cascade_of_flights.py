@@ -1,23 +1,23 @@
 r"""The cascade of flights between permanent contact and chattering, for a linear contact.
 
-At Λ_SD permanent contact ends, and a T-periodic orbit begins that flies once per period
-(``docs/closed-form.md``, section 4). As Λ grows the contact after its landing oscillates higher,
-until it touches the table's level. There it opens, and beyond the orbit has one flight more. The
-flight grows from nothing and changes the return map as the power 3/2 of Λ - Λ_k, so that the orbit
-keeps its multipliers there and is followed on. Opening k, where flight k + 1 begins, is at
-``E_k = ϖ² (Λ_k - Λ_SD)``.
+At Λ_SD permanent contact ends, and a T-periodic orbit with one flight per period begins
+(``docs/closed-form.md``, section 4). As Λ grows, the contact after the landing oscillates higher,
+until the ball touches the level of the table. There the contact opens: above this Λ the orbit has
+one more flight. The new flight begins with zero length and changes the return map as the power 3/2
+of Λ - Λ_k, so that the multipliers are continuous there and the orbit can be followed further.
+Opening k, where flight k + 1 begins, is at ``E_k = ϖ² (Λ_k - Λ_SD)``.
 
-For a stiff contact E_k has a limit. The ball leaves near the top of the table. In the time s = ϖτ
-of the contact, measured from the top, with δ = x/ϖ⁴ and Λ = 1 + C/ϖ² the motion is ::
+For a stiff contact E_k has a limit. The ball leaves near the top of the table. Let s = ϖτ be the
+time of the contact, measured from the top, δ = x/ϖ⁴ and Λ = 1 + C/ϖ². The motion is then ::
 
     x″ + 2ζx′ + x = C - s²/2   in contact,      x″ = C - s²/2   in flight
 
-which does not contain ϖ. Before the first flight the ball follows ``p(s) = E - (s - 2ζ)²/2``,
+and does not depend on ϖ. Before the first flight the ball follows ``p(s) = E - (s - 2ζ)²/2``,
 E = C + 1 - 2ζ², because the oscillation of the long contact has decayed. For large E the flights
-chatter: the first landing has a speed of order E^{3/2} under an acceleration of order E, flight k
-is r^k times as fast, and the last one is that whose duration is of order 1. Hence
-``E_{k+1}/E_k → 1/r²``, up to a relative error of order k r^k: the time of k contacts over that of
-the first flight.
+chatter: the first landing has a speed of order E^{3/2} under an acceleration of order E, the speed
+of flight k is r^k times as large, and the last flight is that whose duration is of order 1. Hence
+``E_{k+1}/E_k → 1/r²``, up to a relative error of order k r^k, the ratio of the duration of k
+contacts to that of the first flight.
 """
 
 from dataclasses import dataclass
@@ -37,19 +37,19 @@ from bouncing_ball.motion.landing import Flight
 from bouncing_ball.motion.simulation import simulate
 from bouncing_ball.motion.tangent import Deviation, Jacobian
 
-# Samples of an oscillation, among which its first maximum is bracketed.
+# Number of samples of an oscillation, among which its first maximum is bracketed.
 _FINE = 400
-# The search for the next opening starts above the last one by this part, where the new flight is
-# resolved, and goes up in steps of this factor.
+# The search for the next opening starts above the last opening by this fraction, where the new
+# flight is resolved, and goes up in steps of this factor.
 _ABOVE, _STEP = 1e-3, 1.2
 _SETTINGS = NewtonSettings(max_iterations=10)
-# Difference in time at which a motion returns; a contact that opens elsewhere changes the times by
-# a part of an oscillation.
+# Largest difference in time at which a motion is regarded as returning. A contact that opens
+# elsewhere changes the times by far more, a considerable part of an oscillation.
 _CLOSE = 1e-6
 
 
 class Openings(NamedTuple):
-    """Λ_k and the larger modulus of the multipliers there; NaN where an opening was not found."""
+    """Λ_k and the larger modulus of the multipliers at Λ_k; NaN where no opening was found."""
 
     amplitude: np.ndarray
     multiplier: np.ndarray
@@ -59,12 +59,12 @@ class Openings(NamedTuple):
 class OpeningContacts:
     """T-periodic orbits with k flights whose long contact touches the table's level.
 
-    The k flights
-    and k contacts are 2k legs, and y = (φ, Λ, t, T_0, …, T_{2k-2}, v_0, …, v_{2k-1}): the phase φ
-    at the first release, the time t in the last contact at which it touches, the durations of all
-    legs but this one, and δ′ at their starts. Each leg ends at δ = 0 with the next δ′, and the
-    contact has δ = δ′ = 0 at t. The contact is continued in closed form, whether it opens or not.
-    ``law`` has a last axis of length 1, along which its legs are computed.
+    The k flights and k contacts are 2k legs. The unknowns are y = (φ, Λ, t, T_0, …, T_{2k-2}, v_0,
+    …, v_{2k-1}): the phase φ at the first release, Λ, the time t in the last contact at which the
+    ball touches the level of the table, the durations T of all legs except the last contact, and δ′
+    at the start of every leg. Each leg ends at δ = 0 with the δ′ of the next leg, and the last
+    contact has δ = δ′ = 0 at t. It is continued in closed form whether it opens at t or not.
+    ``law`` has a last axis of length 1, along which the legs are computed.
     """
 
     law: SpringDamper
@@ -72,9 +72,11 @@ class OpeningContacts:
 
     @cached_property
     def _linear(self) -> tuple[np.ndarray, np.ndarray]:
-        """The matrices by which y gives the time, δ′ at the start, phase and Λ of each leg and of
-        the touch, shape (2k + 1, 4, unknowns), but for 2π in the last contact; and δ and δ′ at
-        their ends, shape (2k + 1, 2, unknowns).
+        """Two matrices of linear functions of y, for all legs and for the touch.
+
+        The first, of shape (2k + 1, 4, unknowns), gives the duration, δ′ at the start, phase and Λ;
+        2π is to be added to the duration of the last contact. The second, of shape (2k + 1, 2,
+        unknowns), gives δ and δ′ at the end.
         """
         legs = 2 * self.flights
         phase, lam, touch, *rest = np.eye(2 * legs + 2)
@@ -87,7 +89,7 @@ class OpeningContacts:
 
     def legs(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(δ, δ′) at the end of each leg and at the touch, shape (..., 2k + 1, 2), and their
-        derivatives by the time in the leg, by δ′ at its start, by its phase and by Λ.
+        derivatives with respect to the duration of the leg, δ′ and the phase at its start, and Λ.
         """
         time, speed, phase, lam = np.moveaxis(np.inner(y, self._linear[0]), -1, 0)
         time[..., -2] += 2 * np.pi
@@ -97,7 +99,7 @@ class OpeningContacts:
         time, speed, phase, lam = time[flights], speed[flights], phase[flights], lam[flights]
         (x, z), (x1, z1) = table(phase, lam), table(phase + time, lam)
         height, rate, pull, _ = Flight(0.0, speed, x, z, lam).gap(time)
-        # The table's part of δ and δ′ is proportional to Λ.
+        # The contribution of the table to δ and δ′ is proportional to Λ.
         lifted, moved = (height - time * (speed - time / 2)) / lam, (rate - speed + time) / lam
         rows = [rate, time, x - x1 - z * time, lifted], [pull, 1 + 0 * time, z1 - z, moved]
         states[(*flights, slice(None))] = np.stack([height, rate], axis=-1)
@@ -107,13 +109,13 @@ class OpeningContacts:
         return states, changes
 
     def system(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """All equations, shape (..., 4k + 2), and their Jacobian."""
+        """The defects of all equations, shape (..., 4k + 2), and their Jacobian."""
         (states, changes), (by_leg, ends) = self.legs(y), self._linear
         missed, matrix = states - np.inner(y, ends), changes @ by_leg - ends
         return missed.reshape(y.shape), matrix.reshape(*y.shape, -1)
 
     def multiplier(self, y: np.ndarray) -> np.ndarray:
-        """Larger modulus of the multipliers, of the leading shape of y."""
+        """The larger modulus of the multipliers, with the leading shape of y."""
         states, changes = self.legs(y)
         one = np.ones(y.shape[:-1])
         whole = Jacobian(one, 0 * one, 0 * one, one)
@@ -129,7 +131,7 @@ class OpeningContacts:
 
 
 def _held(t, excess: float, aside: float, root: complex, swing: complex):
-    """x in the contact of the limit: p, and the free oscillation Re(swing e^{root t})."""
+    """x in the contact of the stiff limit: p plus the oscillation Re(swing e^{root t})."""
     return excess - (aside + t) ** 2 / 2 + np.real(swing * np.exp(root * t))
 
 
@@ -138,11 +140,11 @@ def _held_rate(t, excess: float, aside: float, root: complex, swing: complex):
 
 
 def _landings(excess: float, zeta: float, most: int) -> list[tuple[float, tuple[float, ...]]]:
-    """The landings of the limit at E until a contact stays closed; at most so many.
+    """The landings of the stiff limit at E until a contact stays closed; at most ``most``.
 
-    Each has the highest x in the contact that follows and the unknowns of
-    :class:`OpeningContacts`: the release, E, the time of the highest x, the durations of the legs
-    before, and the speeds.
+    Each landing has the highest x in the contact that follows, and the unknowns of
+    :class:`OpeningContacts`: the release, E, the time of the highest x, the durations of the
+    earlier legs, and the speeds.
     """
     root = complex(-zeta, np.sqrt((1 - zeta) * (1 + zeta)))
     speed = np.sqrt(2 * excess)
@@ -178,7 +180,9 @@ def _landings(excess: float, zeta: float, most: int) -> list[tuple[float, tuple[
 
 
 def _stiff_openings(zeta: float, most: int) -> list[np.ndarray]:
-    """The unknowns of :class:`OpeningContacts` at each opening, in units of the limit, E for Λ."""
+    """The unknowns of :class:`OpeningContacts` at the openings of the stiff limit, in its units and
+    with E in place of Λ.
+    """
     found: list[np.ndarray] = []
 
     def top(excess: float) -> float:
@@ -218,8 +222,8 @@ def stiff_openings(damping_ratio: float, most: int) -> np.ndarray:
 def openings(damping_ratio: ArrayLike, frequency_ratio: np.ndarray, most: int) -> Openings:
     """The openings of contacts with the displacement release, shape (ζ, most, ϖ).
 
-    They are followed from the limit of stiff contacts down to the ϖ at which Newton's method finds
-    none.
+    The openings are followed from the limit of stiff contacts down to the first ϖ at which Newton's
+    method does not converge.
 
     Parameters
     ----------
@@ -246,7 +250,7 @@ def openings(damping_ratio: ArrayLike, frequency_ratio: np.ndarray, most: int) -
             SpringDamper(omega[:, np.newaxis], zetas[:, np.newaxis, np.newaxis]), k + 1
         )
         points = _followed(problem, omega, start, held)
-        # Two openings of one Λ are the first of them.
+        # If two openings coincide in Λ, only the first is kept.
         new = points[..., 1] - before > _ABOVE * (points[..., 1] - held)
         points = np.where(new[..., np.newaxis], points, np.nan)
         points[~_returns(contact, k + 1, points)] = np.nan
@@ -256,10 +260,10 @@ def openings(damping_ratio: ArrayLike, frequency_ratio: np.ndarray, most: int) -
 
 
 def _returns(contact: SpringDamper, flights: int, points: np.ndarray) -> np.ndarray:
-    """Whether the simulation from the first landing returns to it after a period.
+    """Whether the simulation from the first landing returns to this landing after one period.
 
-    At the touch rounding decides whether the contact opens, by which there is one impact more. An
-    orbit one of whose contacts opens where the equations continue it does not return.
+    At the touch, rounding decides whether the contact opens, so that there may be one more impact.
+    The simulation does not return if a contact opens elsewhere, where the equations continue it.
     """
     safe = np.where(np.isfinite(points), points, 1.0)
     phase, amplitude = safe[..., 0] + safe[..., 3], safe[..., 1]
@@ -272,7 +276,7 @@ def _returns(contact: SpringDamper, flights: int, points: np.ndarray) -> np.ndar
 def _followed(
     problem: OpeningContacts, omega: np.ndarray, start: np.ndarray, held: np.ndarray
 ) -> np.ndarray:
-    """The orbits at the openings, from the limit on, shape (ζ, ϖ, unknowns)."""
+    """The unknowns at the openings, followed from the stiff limit, shape (ζ, ϖ, unknowns)."""
     size = start.shape[-1]
     power = np.repeat([1.0, 2.0, 1.0, 3.0], [1, 1, size // 2, size - 2 - size // 2])
     unit = omega[:, np.newaxis] ** -power
@@ -283,7 +287,7 @@ def _followed(
     known = np.broadcast_to(place == 0, points.shape[:2])
     rows, count = np.arange(len(start)), 0
     while known.sum() > count:
-        # A straight line in 1/ϖ² through the last two.
+        # Extrapolate by a straight line in 1/ϖ² through the last two points.
         count, last = known.sum(), known.sum(axis=1) - 1
         before = np.maximum(last - 1, 0)
         near, far = points[rows, last], points[rows, before]

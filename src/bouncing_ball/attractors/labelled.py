@@ -1,4 +1,4 @@
-"""Motions on which balls end as labelled datasets: of starts, over the amplitude, of a grid.
+"""Motions on which balls end, as labelled datasets: for given starts, over Λ, and for basins.
 
 All quantities are dimensionless, and phases are in radians.
 """
@@ -14,12 +14,12 @@ from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import ParameterError
 
 MOST_BALLS = 20_000_000
-"""Largest number of balls that are followed at the same time: they take some gigabytes."""
+"""Largest number of balls that are followed at the same time; they take some gigabytes."""
 
-# Balls start again from the ends of balls so many amplitudes away. The fractional parts of
-# multiples of the two numbers in _EVEN cover a square evenly.
+# Balls start again from the ends of balls that are this many amplitudes away. The fractional parts
+# of multiples of the two numbers in _EVEN cover a square evenly.
 _FURTHER = (1, 3)
-# Families of orbits beside which balls start, and the difference of their phase from the orbit's.
+# Families of orbits beside which balls start, and the difference between their phases.
 _FAMILIES, _BESIDE = (1, 2, 3), 1e-3
 _EVEN = np.array([0.7548776662466927, 0.5698402909980532])
 _SEEN = ("impact_phase", "impact_speed")
@@ -70,9 +70,10 @@ def motions(grid: Grid, model: Any, impacts: int) -> Labelled:
 
 
 def fastest(model: Any, amplitude: Any) -> np.ndarray:
-    """A speed of impact above which a ball that meets the table at a random phase slows down.
+    """A speed above which every impact slows the ball, (1 + r) max(Λ, 1)/(1 - r), 1 - r ≥ 0.05.
 
-    It is the speed of the balls that gain most, 2Λ(1 + r) at an impact with the r of a free impact.
+    An impact changes the absolute speed v of the ball to r v + (1 + r) Λ at most, which is less
+    than v above this value. r is that of a free impact with the speed 2π.
 
     Examples
     --------
@@ -88,10 +89,10 @@ def fastest(model: Any, amplitude: Any) -> np.ndarray:
 def diagram(model: Any, amplitude: np.ndarray, starts: int, samples: int, impacts: int) -> Labelled:
     """The attractors over Λ, from several starts and from the motions at neighbouring Λ.
 
-    Every ball then starts again from the end of the ball at the next lower Λ, and at the next
-    higher one, several times, so that an attractor is followed in both directions beyond the Λ at
-    which a start finds it. The motions are over (amplitude, start), and ``impact_phase`` and
-    ``impact_speed`` over (amplitude, start, impact), NaN beyond a period.
+    After the starts, balls start again at each Λ from the ends of balls at a lower and at a higher
+    Λ, several times. An attractor is thus followed in both directions beyond the Λ at which a start
+    finds it. The motions are over (amplitude, start). ``impact_phase`` and ``impact_speed`` are
+    over (amplitude, start, impact), NaN beyond the impacts of one period.
 
     Raises
     ------
@@ -101,14 +102,14 @@ def diagram(model: Any, amplitude: np.ndarray, starts: int, samples: int, impact
     require_memory(amplitude.size * (starts + 2) * samples, "amplitudes, starts and samples")
     lam = amplitude[:, np.newaxis]
     even = np.mod(0.5 + np.arange(1, starts + 1)[:, np.newaxis] * _EVEN, 1.0)
-    # Further balls start beside the orbits with one impact, which may attract few of the others.
+    # More balls start beside the orbits with one impact, which may attract few of the other balls.
     orbit = model.orbit(np.array(_FAMILIES), np.where(lam > 0, lam, np.nan))
     phase = 2 * np.pi * even[:, 0] - np.pi + 0 * lam, orbit.phase + _BESIDE
     speed = even[:, 1] * fastest(model, lam), -orbit.relative_impact_velocity
     found = _ends(model, lam, np.concatenate(phase, 1), np.concatenate(speed, 1), impacts)
     swept = found[:, [0, 0]]
     for step in _FURTHER:
-        # The ends of a ball at a lower Λ and of one at a higher Λ.
+        # The ends of a ball at a lower Λ and of a ball at a higher Λ.
         place = np.arange(amplitude.size)[:, np.newaxis] + step * np.array([-1, 1])
         place = np.clip(place, 0, amplitude.size - 1), [0, 1]
         phase, velocity = swept.end_phase[place], swept.end_velocity[place]
@@ -125,9 +126,9 @@ def diagram(model: Any, amplitude: np.ndarray, starts: int, samples: int, impact
 def _ends(
     model: Any, amplitude: np.ndarray, phase: np.ndarray, speed: np.ndarray, impacts: int
 ) -> Motions:
-    """The motions of balls that start with impacts of these speeds.
+    """The motions of balls that start with impacts of given speeds.
 
-    A ball without such a speed, for example one that stays on the table, starts with the speed 1.
+    If the speed is not positive, for example for a ball on the table, the ball starts with speed 1.
     """
     phase, speed = np.nan_to_num(phase), np.where(speed > 0, speed, 1.0)
     return label(model.impact_law, amplitude, phase, amplitude * np.cos(phase) - speed,
@@ -135,7 +136,7 @@ def _ends(
 
 
 def _impacts(model: Any, amplitude: np.ndarray, found: Motions, samples: int) -> np.ndarray:
-    """Phase and speed of impacts on the motions, shape (2, ..., samples); NaN beyond a period."""
+    """Phase and speed of the impacts of motions, shape (2, ..., samples); NaN beyond a period."""
     seen = np.full((2, samples, *found.shape), np.nan)
     lam = np.broadcast_to(amplitude, found.shape)
     falls = found.end_velocity < lam * np.cos(found.end_phase)
@@ -150,11 +151,11 @@ def _impacts(model: Any, amplitude: np.ndarray, found: Motions, samples: int) ->
 
 
 def basins(model: Any, amplitude: float, starts: int, fast: float | None, impacts: int) -> Labelled:
-    """The motions on which a grid of impacts (φ, δ′) ends, with their shares.
+    """The motions on which a grid of impacts (φ, δ′) ends, with their shares of the grid.
 
-    ``destination`` (start_speed, start_phase) is an index along ``motion``, over which
-    ``motion_kind``, ``motion_periods``, ``motion_impacts``, ``share`` and its standard error
-    ``share_error`` are given; ``lyapunov_exponent`` is over the starts.
+    ``destination`` (start_speed, start_phase) is an index along ``motion``. Over ``motion`` the
+    dataset has ``motion_kind``, ``motion_periods``, ``motion_impacts``, ``share`` and its standard
+    error ``share_error``; ``lyapunov_exponent`` is over the starts.
 
     Raises
     ------

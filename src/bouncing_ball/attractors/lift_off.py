@@ -1,20 +1,20 @@
 r"""From the lift-off to the next sticking: the locked orbits of the restitution model.
 
-A ball of the restitution model that sticks leaves in the state of the lift-off, so that its return
-to the table follows from (Λ, r) alone, and it locks if it sticks again. A contact changes this
-return by its delay at each impact. To first order its deviation e from the restitution model obeys,
-from impact j to impact j + 1, ::
+After sticking, a ball of the restitution model always leaves in the state of the lift-off. Its
+return to the table therefore follows from (Λ, r) alone, and the ball locks if it sticks again. A
+contact changes this return by its delay at each impact. To first order, the deviation e from the
+restitution model changes from impact j to impact j + 1 by ::
 
     e ← M_j e + K_j/ϖ
 
-with the Jacobian M_j of the flight and the difference K_j/ϖ of both maps, which is that of the
-corrected model's. The lift-off itself is the same up to 1/ϖ². The phase at which the chattering
-ends before the next sticking is then late by
+where M_j is the Jacobian of the flight, and K_j/ϖ the difference between the maps of the corrected
+and the restitution model. The lift-off itself is the same up to 1/ϖ². The phase at which the
+chattering ends before the next sticking is then late by
 
     S/ϖ,    S = |Σ_j (product of the expansions after j) K_j|
 
-and the ball misses the sticking if this exceeds the wait w until the table would release it: the
-locked orbit should be the same for ϖ > S/w.
+The ball misses the sticking if this delay exceeds the wait w until the table would release the
+ball: the locked orbit should be the same for ϖ > S/w.
 """
 
 from typing import NamedTuple
@@ -28,18 +28,20 @@ from bouncing_ball.motion.ensembles import pick
 from bouncing_ball.motion.simulation import in_a_row
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 
-# The ϖ of the corrected model from whose map the first order is taken; the second one contributes
-# a share of 1/ϖ, and rounding one of ε ϖ.
+# The ϖ of the corrected model from whose map the first order is computed. The relative error from
+# the second order is of order 1/ϖ, and that from rounding of order ε ϖ.
 _STIFF = 1e6
-# The delays of bounces are left out where all that follow last for less than this part of gravity.
+# The delay of a bounce is neglected if this bounce and all that follow take less time than this
+# number times 1 - Λ sin φ, the acceleration that presses the ball on the table.
 _CHATTER = 1e-2
 
 
 class Return(NamedTuple):
     """Returns from the lift-off, arrays of one shape; 0 or NaN for a ball that does not stick.
 
-    ``periods`` of the table and ``impacts`` until the ball sticks; ``sensitivity`` S of the phase
-    at which its chattering ends; ``wait`` w from there to the next lift-off.
+    ``periods`` and ``impacts`` are the numbers of periods of the table and of impacts until the
+    ball sticks. ``sensitivity`` is S, that of the phase at which the chattering ends, and ``wait``
+    is the time w from this phase to the next lift-off.
     """
 
     periods: np.ndarray
@@ -49,7 +51,7 @@ class Return(NamedTuple):
 
 
 def returns(restitution: ArrayLike, amplitude: ArrayLike, impacts: int) -> Return:
-    """The returns of balls that lift off from a table with Λ > 1, within so many impacts.
+    """The returns of balls that lift off from a table with Λ > 1, within a number of impacts.
 
     Examples
     --------
@@ -60,7 +62,7 @@ def returns(restitution: ArrayLike, amplitude: ArrayLike, impacts: int) -> Retur
     corrected = CorrectedModel.of_contact(
         SpringDamper.from_restitution(r.ravel() * 1.0, _STIFF, Release.DISPLACEMENT)
     )
-    # A ball that lies on the table, where it is pressed on it.
+    # A ball at rest on the table, at a phase at which the table presses on it.
     rest = np.full(r.shape, -np.pi / 2), np.zeros(r.shape)
     dynamics, state, shape = in_a_row(r, lam, *rest)
     other = in_a_row(corrected.impact_law, lam.ravel(), *(x.ravel() for x in rest))[0]

@@ -1,26 +1,26 @@
 r"""From the start of a ball to the motion on which it ends, for every model.
 
-A motion repeats if its state returns and its neighbours approach it. A ball is compared
-with its state at a mark, an impact that is moved forward from time to time (Brent's method), and
-the derivative M of the motion since the mark is kept. Consider the first impact at which the orbit
-that is fixed under the motion since the mark,
+A motion repeats if its state returns and neighbouring motions approach it. The state of a ball is
+compared with its state at a mark, an impact that is moved forward from time to time (Brent's
+method), and the derivative M of the motion F since the mark is stored. The fixed point of F near
+the state s of the mark is
 
-    s* = s + (I - M)⁻¹ (F(s) - s),
+    s* = s + (I - M)⁻¹ (F(s) - s).
 
-is nearer to the state s of the mark than a small distance, and at which the multipliers of M are
-smaller than 1 by a margin. The mark is then moved to this impact, and the motion repeats if the
-ball returns to it again in as many impacts or fewer. The distance is far above rounding and far
-below the distance of two orbits whose multipliers have that margin, so that neither affects the
-result.
+At the first impact at which s* is nearer to s than a small distance, and at which the multipliers
+of M are smaller than 1 by a margin, the mark is moved to this impact. The motion repeats if the
+ball then returns to the mark again in as many impacts or fewer. The small distance is far above
+rounding errors and far below the distance of two orbits whose multipliers have that margin, so that
+neither affects the result.
 
 With instantaneous impacts the motion after sticking does not depend on earlier impacts, because a
 ball always leaves in the state of the lift-off. A motion that sticks twice therefore repeats,
 unless rounding errors grow to its size in between. In a contact of finite stiffness the
 dependence decreases by a finite factor, and the state is compared as for any other motion.
 
-Balls are followed by + - × ÷ and √ only, so that the same bits give the same motion on every
-processor. A ball that wanders for long before it settles loses the digits of its start, and then
-the last of them decides where it ends: see ``digits_lost`` of
+Balls are followed with the operations + - × ÷ and √ only, so that the same bits give the same
+motion on every processor. A ball with a long transient loses the digits of its start, and the last
+digit then decides on which motion the ball ends: see ``digits_lost`` of
 :class:`~bouncing_ball.attractors.motions.Motions`.
 """
 
@@ -41,32 +41,34 @@ from bouncing_ball.motion.tangent import Jacobian
 IMPACTS = 2000
 """Number of impacts after which the search for a repetition ends."""
 
-# Distance of a state from the orbit at which a ball on its second turn is taken to be on it, as
-# NEAR on the first: an angle, and a velocity over 1 + Λ. Multipliers are then known to their
-# product with the curvature of the map; they must be below 1 by the margin.
+# Distance from the orbit within which a ball on its second turn is regarded as being on the orbit,
+# as NEAR is on the first turn: an angle, and a velocity over 1 + Λ. The error of the multipliers is
+# then this distance times the curvature of the map; they must be below 1 by the margin.
 _AGAIN, _MARGIN = 1e-6, 1e-3
 # Returns farther away than this are ignored.
 _SIGHT = 1e-2
-# A mark is moved on after this part of all impacts, and these.
+# A mark is moved forward after this fraction of all impacts so far, and at least this number.
 _SHARE, _LEAST = 0.5, 8
-# Standard errors by which an exponent is positive: once in three million by chance.
+# Number of standard errors by which the exponent of a chaotic motion must be positive; this happens
+# by chance once in three million.
 _ERRORS = 5.0
-# Balls followed at once: the late ones among fewer decide on the number of steps.
+# Number of balls followed at the same time, and the bytes that are allocated once at the start.
 _BLOCK, _KEPT = 1 << 16, 1 << 24
 _REASONS = list(Reason)
 
 
 class _Mark(NamedTuple):
-    """The impact with which each ball is compared, and the motion since then."""
+    """The impact with which the state of each ball is compared, and the motion since then."""
 
     impact: np.ndarray
     time: np.ndarray
     phase: np.ndarray
     velocity: np.ndarray
-    # The derivative of the motion since then, and the impacts that stuck.
+    # The derivative of the motion since the mark, and the number of stickings since the mark.
     since: Jacobian
     stuck: np.ndarray
-    # The impact at which the mark is moved on, and the impacts until a first return, 0 for none.
+    # The impact at which the mark is moved forward, and the number of impacts until a first return,
+    # 0 if there was none.
     until: np.ndarray
     turn: np.ndarray
 
@@ -76,13 +78,14 @@ class _Ball(NamedTuple):
 
     lane: np.ndarray
     amplitude: np.ndarray
-    # Impacts, and the time, since the start.
+    # The number of impacts, and the time, since the start.
     seen: np.ndarray
     time: np.ndarray
-    # The reason for which it may stay undecided, as a place in the list of reasons.
+    # The reason for which the motion may stay undecided, as an index into the list of reasons.
     doubt: np.ndarray
-    # The last lift-off of a ball that forgets: its impact, -1 for none, and its time; and the
-    # impacts between two of them that are farther apart than rounding allows, 0 for none.
+    # The last lift-off of a ball with instantaneous impacts: the number of its impact, -1 if there
+    # was none, and its time. A lap is the number of impacts between two lift-offs between which
+    # rounding errors have grown too much, 0 if there was none.
     lift: np.ndarray
     lift_time: np.ndarray
     lap: np.ndarray
@@ -115,8 +118,8 @@ def label(
     Parameters
     ----------
     law, amplitude, phase, velocity
-        As in :func:`bouncing_ball.motion.simulation.simulate`: φ and the absolute velocity z′
-        before the impact.
+        As in :func:`bouncing_ball.motion.simulation.simulate`. The phase is φ, and the velocity is
+        the absolute velocity z′ before the impact.
     impacts : int
         Number of impacts after which the search for a repetition ends. A motion is found if it
         repeats within about a third of them.
@@ -127,7 +130,7 @@ def label(
     Returns
     -------
     Motions
-        Of the shape to which the arguments broadcast.
+        Arrays of the shape to which the arguments broadcast.
 
     Raises
     ------
@@ -152,9 +155,10 @@ def label(
     ([20, 20], 0.0, True)
     """
     dynamics, start, relative, shape = first_impacts(law, amplitude, phase, velocity)
-    # Freed once, so much memory stays with the process, and is not asked for again at each step.
+    # After memory of this size has been freed once, the process keeps it and need not request it
+    # from the system at each step.
     np.empty(_KEPT, dtype=np.int8)
-    # Derivatives of long turns may overflow, and those of a ball that sticks are zero.
+    # The derivatives of a long turn may overflow, and those of a ball that sticks are zero.
     with np.errstate(all="ignore"):
         found = _follow(dynamics, start, relative, impacts, path)
     return Motions(*(x.reshape(shape) for x in vars(found).values()))
@@ -163,7 +167,7 @@ def label(
 def _follow(
     dynamics: Dynamics, start: np.ndarray, relative: np.ndarray, impacts: int, path: Any
 ) -> Motions:
-    """Follow all balls, in a block that is refilled when some of its balls are done."""
+    """Follow all balls, in a block to which new balls are added when a quarter of it is free."""
     found, size = Motions.unknown(start.size), start.size
     ball: Any = None
     impact: Any = None
@@ -193,7 +197,7 @@ def _follow(
 
 
 def _kept(going: np.ndarray, found: Motions, now: Dynamics, impact: Impact, *rows: Any) -> Any:
-    """The balls that go on, of all rows; the last impacts of the others are written down."""
+    """Select the balls that continue, in all arrays; store the last impacts of the other balls."""
     ball = rows[-1]
     if going.size < ball.lane.size:
         last = np.delete(np.arange(ball.lane.size), going)
@@ -206,7 +210,7 @@ def _kept(going: np.ndarray, found: Motions, now: Dynamics, impact: Impact, *row
 
 
 def _joined(one: Any, other: Any) -> Any:
-    """Two rows as one; a number applies to all balls."""
+    """Join the arrays of two groups of balls; a number applies to all balls and stays a number."""
     if isinstance(one, tuple):
         joined = (_joined(a, b) for a, b in zip(one, other, strict=True))
         return getattr(one, "_make", tuple)(joined)
@@ -221,7 +225,7 @@ def _write(found: Motions, ball: _Ball, which: np.ndarray, kind: ArrayLike, **va
 def _repeats(
     found: Motions, ball: _Ball, which: np.ndarray, kind: ArrayLike, *values: ArrayLike
 ) -> None:
-    """Store the periods, impacts and exponents of motions that repeat."""
+    """Store the kinds, periods, impacts and exponents of motions that repeat."""
     known = dict(zip(("periods", "impacts", "exponent"), values, strict=True))
     _write(found, ball, which, kind, exponent_error=0.0, **known)
 
@@ -229,7 +233,9 @@ def _repeats(
 def _resting(
     dynamics: Dynamics, impact: Impact, departure: Departure, ball: _Ball, found: Motions
 ) -> np.ndarray:
-    """Store which balls stay on the table, or stick for the second time; return the others."""
+    """Store which balls stay on the table, are not released, or lock because they stick again;
+    return the indices of the others.
+    """
     done = departure.status != Status.BOUNCING
     stays = departure.status == Status.PERMANENT_CONTACT
     if done.any():
@@ -254,7 +260,7 @@ def _periods(time: np.ndarray) -> np.ndarray:
 
 
 def _move(ball: _Ball, change: Jacobian, passed: np.ndarray, sticks: np.ndarray) -> None:
-    """Advance all arrays to the next impact."""
+    """Advance the counts, times, derivatives and deviations of all balls to the next impact."""
     mark, stretch = ball.mark, ball.stretch
     ball.seen[:] += 1
     ball.time[:] += passed
@@ -272,8 +278,8 @@ def _move(ball: _Ball, change: Jacobian, passed: np.ndarray, sticks: np.ndarray)
 def _returning(
     ball: _Ball, state: tuple[np.ndarray, np.ndarray], impacts: int, found: Motions
 ) -> np.ndarray:
-    """Compare balls with their marks, and store which repeat or reach the last impact; return the
-    others.
+    """Compare balls with their marks, and store which balls repeat or reach the last impact; return
+    the indices of the others.
     """
     mark, scale = ball.mark, 1 + ball.amplitude
     turned, faster = reduce_angle(state[0] - mark.phase), (state[1] - mark.velocity) / scale
@@ -307,9 +313,11 @@ def _returning(
 
 
 def _mark(ball: _Ball, here: np.ndarray, phase: np.ndarray, velocity: np.ndarray) -> None:
-    """Move the marks of some balls to their current impact; for one turn after a first return."""
+    """Move the marks of some balls to their current impact; after a first return the mark stays for
+    one more turn.
+    """
     mark, count = ball.mark, ball.seen[here]
-    # A second turn that did not come is forgotten.
+    # If the ball did not return for the second time, its first return no longer counts.
     turn = np.where(mark.until[here] > count, mark.turn[here], 0)
     later = np.where(turn, turn + 1, np.maximum(_LEAST, (_SHARE * count).astype(int)))
     state = count, ball.time[here], phase[here], velocity[here]
@@ -320,9 +328,9 @@ def _mark(ball: _Ball, here: np.ndarray, phase: np.ndarray, velocity: np.ndarray
 
 
 def _give_up(ball: _Ball, which: np.ndarray, found: Motions) -> None:
-    """Store which of the balls that have not repeated are chaotic."""
+    """Store which of the balls that have not repeated are chaotic, and which are undecided."""
     rate, error = ball.stretch.exponent(which, ball.lap[which])
-    # Next to a bifurcation neighbours part, and not exponentially.
+    # Next to a bifurcation neighbours may separate, but not exponentially.
     chaotic = (rate > _ERRORS * error) & (ball.stretch.sums[which, 1] > -np.log(NEAR))
     chaotic &= ball.doubt[which] != _REASONS.index(Reason.MARGINAL)
     _write(

@@ -1,4 +1,4 @@
-"""Means over time of balls: their flights, height, received power and the growth of deviations."""
+"""Means over time of the flights, height, received power and growth of deviations of balls."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,19 +14,21 @@ from bouncing_ball.motion.work import over_steps
 
 
 def means(law: Law, amplitude: ArrayLike, found: Motions, samples: int) -> np.ndarray:
-    """Means over the motions on which balls end: over a period, or over so many impacts.
+    """Means over the motions on which balls end: over one period, or over ``samples`` impacts if
+    the motion does not repeat.
 
     Returns
     -------
     array
-        Of each ball the flights per table period 2π, infinite in the restitution model if it
-        sticks; the mean of its height z; the power that the table transfers; and the growth of a
-        deviation's logarithm per table period, of a new deviation after each impact that none
-        survives. Shape (4, ...); NaN for a ball that stays on the table.
+        Shape (4, ...); NaN for a ball that stays on the table. For each ball, the entries are the
+        flights per table period 2π, infinite in the restitution model if the ball sticks; the mean
+        of the height z; the power that the table transfers; and the growth per table period of the
+        logarithm of a deviation. If an impact reduces the deviation to zero, a new deviation takes
+        its place.
 
     Examples
     --------
-    The 1-T orbit dissipates ½(1 - r²)v² with (1 + r) v = 2π a period:
+    In each period the 1-T orbit dissipates ½(1 - r²)v², where (1 + r) v = 2π:
 
     >>> from bouncing_ball.attractors.mapper import label
     >>> flights, _, power, _ = means(0.5, 1.2, label(0.5, 1.2, 1.0, -3.0), 100)
@@ -47,7 +49,7 @@ def means(law: Law, amplitude: ArrayLike, found: Motions, samples: int) -> np.nd
 
 
 def _add_up(dynamics: Dynamics, impact: Impact, left: np.ndarray, total: np.ndarray) -> None:
-    """Sums of times, flights, heights, works and logarithms over as many impacts as are left."""
+    """Add up times, flights, heights, works and logarithms in ``total``, over ``left`` impacts."""
     ball = np.arange(left.size)
     along, across, done = np.ones(left.size), np.zeros(left.size), 0
     total[:, left > 0] = 0.0
@@ -65,7 +67,7 @@ def _add_up(dynamics: Dynamics, impact: Impact, left: np.ndarray, total: np.ndar
         change = dynamics.jacobian(impact, departure, after, passed)
         along, across = change.apply(along, across)
         length = np.hypot(along, across)
-        # After a ball of a simple model has stuck no deviation is left.
+        # After a ball of a simple model has stuck, the deviation is zero.
         along, length = np.where(length > 0, along, 1.0), np.where(length > 0, length, 1.0)
         along, across = along / length, across / length
         flights = np.where(departure.settling > 0, np.inf, 1.0)
@@ -77,7 +79,9 @@ def _add_up(dynamics: Dynamics, impact: Impact, left: np.ndarray, total: np.ndar
 def _step(
     dynamics: Dynamics, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """∫ z dτ and the work from an impact to the next; in the corrected model between instants."""
+    """∫ z dτ and the work from one impact to the next, or from one instant to the next in the
+    corrected model.
+    """
     lam, flight, hit = dynamics.amplitude, departure.flight, impact.known
     start, end = impact[:3], (departure.phase, flight.displacement, flight.velocity)
     duration = departure.duration

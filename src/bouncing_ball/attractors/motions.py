@@ -14,17 +14,17 @@ class Kind(StrEnum):
     """The kind of motion on which a ball ends."""
 
     ORBIT = "orbit"
-    """It repeats after n periods of the table and k impacts that have no common divisor: an n-T
-    orbit with k impacts, without sticking."""
+    """The motion repeats after n periods of the table and k impacts, where n and k have no common
+    divisor: an n-T orbit with k impacts, without sticking."""
     SUBHARMONIC = "subharmonic"
-    """It repeats after m n periods and m k impacts only, m > 1, without sticking: for example
-    m = 2 beyond the period doubling of an n-T orbit."""
+    """The motion repeats only after m n periods and m k impacts, m > 1, without sticking: for
+    example m = 2 beyond the period doubling of an n-T orbit."""
     LOCKED = "locked"
-    """It repeats and sticks to the table on the way."""
+    """The motion repeats, and the ball sticks to the table in each repetition."""
     PERMANENT_CONTACT = "permanent contact"
     CHAOTIC = "chaotic"
-    """It has not repeated, or not before rounding errors have grown to its size, and its
-    neighbours leave it at an exponential rate."""
+    """The motion has not repeated before rounding errors have grown to its size, and neighbouring
+    motions separate from it at an exponential rate."""
     UNDECIDED = "undecided"
 
 
@@ -32,7 +32,7 @@ class Reason(StrEnum):
     """Why a motion is undecided."""
 
     NONE = ""
-    # The one that stands where nothing else is known.
+    # The reason that is given if nothing else is known.
     NO_RECURRENCE = "it has neither repeated nor shown an exponent beyond its error"
     MARGINAL = "it returns, and its neighbours come closer too slowly to tell that it repeats"
     ROUNDING = "rounding errors grow to the size of the motion before it repeats"
@@ -47,27 +47,28 @@ class Motions(Batch):
     ----------
     kind : array of Kind
     periods : array of int
-        Periods of the table after which the motion repeats; 0 if it does not.
+        Periods of the table after which the motion repeats; 0 if it does not repeat.
     impacts : array of int
-        Impacts after which it repeats, for the restitution model without the infinitely many that
-        are summed up before the ball sticks. 0 in permanent contact.
+        Impacts after which the motion repeats. In the restitution model the infinitely many impacts
+        that are summed up before the ball sticks are not counted. 0 in permanent contact.
     exponent : array
         Largest Lyapunov exponent per period of the table. For a motion that repeats it follows from
-        the larger multiplier, and is -∞ if that is zero; NaN where nothing is known.
+        the larger multiplier, and is -∞ if the multiplier is zero; NaN where it is not known.
     exponent_error : array
-        Its standard error; 0 for a motion that repeats, and NaN where the impacts do not tell it.
+        Standard error of the exponent; 0 for a motion that repeats, and NaN where it is not known.
     reason : array of Reason
         The reason for which a motion is undecided.
     followed : array of int
         Impacts after which the kind was known.
     end_phase, end_velocity : array
-        Table phase φ and absolute velocity z′_i at the last of these impacts, before it: a start
-        from which the ball is on the motion. NaN in permanent contact.
+        Table phase φ and absolute velocity z′_i before the last of these impacts: a start from
+        which the ball is on the motion at once. NaN in permanent contact.
     digits_lost : array
-        Decimal digits of the start that the motion has lost on the way: the logarithm of the most
-        by which a deviation has grown. A double has 16 digits. With more than about 14 lost, the
-        last one decides on which of several motions the ball ends, though the answer to the same
-        bits is the same everywhere. It grows with the impacts of a chaotic motion.
+        Decimal digits of the start that the motion has lost: the logarithm of the largest factor by
+        which a deviation has grown. A double has 16 digits. If more than about 14 digits are lost,
+        the last digit decides on which of several motions the ball ends, although the same bits
+        give the same answer on every computer. The number grows with the impacts of a chaotic
+        motion.
     """
 
     kind: np.ndarray
@@ -83,7 +84,7 @@ class Motions(Batch):
 
     @classmethod
     def unknown(cls, balls: int) -> Self:
-        """Arrays for so many balls, to be filled in."""
+        """Arrays for a number of balls, whose entries are not known yet."""
         text = (np.full(balls, "", dtype=np.array(list(names)).dtype) for names in (Kind, Reason))
         kind, reason = text
         periods, impacts, followed = np.zeros((3, balls), dtype=int)

@@ -1,13 +1,13 @@
 """Cascades of period doublings of the n-T orbits, for every model.
 
 An orbit with m = 2ᵏ impacts repeats after m n periods of the table. It is a fixed point of the
-m-th iterate of the map P from impact to impact, and its period doubles where a multiplier is -1,
+m-th iterate of the map P from impact to impact. Its period doubles where a multiplier is -1:
 
     Pᵐ(s) = s,    1 + tr M + det M = 0,    M = DPᵐ(s).
 
-Newton's method solves both together, on the orbit itself. The orbit of twice the period branches
-off there along the eigenvector of that multiplier. Because it attracts balls, iterating the map
-leads to a point near it.
+Newton's method solves these equations together for the orbit and Λ. At the doubling, the orbit of
+twice the period branches off along the eigenvector of that multiplier. Because this orbit is
+attracting, iterating the map leads to a point near it.
 """
 
 from dataclasses import dataclass
@@ -26,23 +26,24 @@ FEIGENBAUM = 4.669201609102990
 """Limit of the ratio of successive distances between period doublings of a dissipative map
 (M. J. Feigenbaum, 1978)."""
 
-# Step of the central differences, which affects the convergence of Newton's method only.
+# Step of the central differences; it affects only the convergence of Newton's method.
 _DIFFERENCE = 1e-6
 _SETTINGS = NewtonSettings(max_iterations=25, longest=0.3)
-# The doubled orbit is computed at this part of the estimated distance in Λ to its next doubling,
-# which is at first the second number and then follows from the ratio above. The map starts beside
-# the old orbit, by this part of the square root of the distance, and is iterated over so many
-# impacts, and turns at least: the first distances are the least certain.
+# The doubled orbit is computed at _SHARE of the estimated distance in Λ to its next doubling. The
+# first estimate is _FIRST; the later estimates follow from Feigenbaum's number. The map starts
+# beside the old orbit, at _ASIDE times the square root of the distance in Λ, and is iterated over
+# _IMPACTS impacts, and at least _TURNS turns.
 _SHARE, _FIRST, _ASIDE, _IMPACTS, _TURNS = 0.7, 0.12, 0.1, 48, 10
 MOST = 8
 """Largest number of doublings that double precision resolves."""
 
 
 class Cascade(NamedTuple):
-    """Orbits at their period doublings, shape (doublings, ...); NaN from where one is not found.
+    """Orbits at their period doublings, shape (doublings, ...); NaN from the first doubling that
+    was not found.
 
-    ``amplitude`` is Λ; ``phase`` and ``velocity`` are φ and δ′ of one of the 2ᵏ impacts, for the
-    corrected model at its instant. Everything is dimensionless.
+    ``amplitude`` is Λ; ``phase`` and ``velocity`` are φ and δ′ of one of the 2ᵏ impacts, and those
+    of the instant in the corrected model. All quantities are dimensionless.
     """
 
     amplitude: np.ndarray
@@ -64,9 +65,9 @@ class Turns:
     law : Law
         One law of the impact, or an array with an entry for each orbit.
     n : int
-        Table periods from impact to impact, in the mean.
+        Mean number of table periods from one impact to the next.
     impacts : int
-        m.
+        m, the number of impacts in one turn.
     """
 
     law: Law
@@ -74,7 +75,7 @@ class Turns:
     impacts: int
 
     def after(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, Jacobian]:
-        """φ, δ′ and the time after m impacts, and M; each of the leading shape of y."""
+        """φ, δ′ and the time after m impacts, and M; each has the leading shape of y."""
         phase, velocity, amplitude = np.moveaxis(y, -1, 0)
         dynamics, (phase, velocity), shape = in_a_row(self.law, amplitude, phase, velocity)
         impact = dynamics.at_section(phase, velocity)
@@ -83,7 +84,7 @@ class Turns:
             departure = dynamics.depart(impact)
             after, passed = dynamics.fly(departure)
             change = dynamics.jacobian(impact, departure, after, passed).after(change)
-            # Between two instants another time passes than between two contacts.
+            # The time between two instants differs from the time between two contacts.
             (start, _), (end, velocity) = dynamics.section(impact), dynamics.section(after)
             time += passed + reduce_angle(end - start - passed)
             impact = after
@@ -92,7 +93,8 @@ class Turns:
 
     def system(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The differences in time and velocity between Pᵐ(s) and s, and 1 + tr M + det M, shape
-        (..., 3), with their Jacobian; what M does not give is by central differences.
+        (..., 3), with their Jacobian; central differences give the entries that do not follow
+        from M.
         """
         steps = _DIFFERENCE * np.concatenate([np.zeros((1, 3)), np.eye(3), -np.eye(3)])
         moved = y + steps.reshape(7, *(1,) * (y.ndim - 1), 3)
@@ -112,9 +114,9 @@ def cascade(orbit: Orbit, doublings: int) -> Cascade:
     Parameters
     ----------
     orbit : Orbit
-        The n-T orbits at their period doubling, which is the first: one, or an array of them.
+        The n-T orbits at their period doubling, the first of the cascade: one orbit or an array.
     doublings : int
-        Number of period doublings to be computed, the first included, from 1 to 8.
+        Number of period doublings to be computed, including the first, from 1 to 8.
 
     Raises
     ------
@@ -139,7 +141,7 @@ def cascade(orbit: Orbit, doublings: int) -> Cascade:
 
 
 def _followed(row: Orbit, doublings: int) -> np.ndarray:
-    """Points at the doublings of orbits in a row, shape (doublings, orbits, 3)."""
+    """Points y at the doublings of a one-dimensional array of orbits, (doublings, orbits, 3)."""
     dynamics, start, _ = in_a_row(row.law, row.amplitude, row.phase, row.relative_impact_velocity)
     first = dynamics.section(dynamics.start(*start))
     y = np.stack(np.broadcast_arrays(*first, row.amplitude), axis=-1)
@@ -148,7 +150,7 @@ def _followed(row: Orbit, doublings: int) -> np.ndarray:
         old, turns = (Turns(row.law, row.n, 2**m) for m in (k - 1, k))
         near = _doubled(old, turns, y, _SHARE * gap)
         solved = solve(turns.system, near, _SETTINGS)
-        # A cascade rises in Λ; a doubling below the previous one is that of the old orbit.
+        # Λ rises along a cascade; a doubling at or below the previous Λ is that of the old orbit.
         good &= solved.converged & (solved.point[:, -1] > y[:, -1])
         gap = np.where(good, (solved.point[:, -1] - y[:, -1]) / FEIGENBAUM, gap)
         y = np.where(good[:, np.newaxis], solved.point, y)
@@ -157,9 +159,9 @@ def _followed(row: Orbit, doublings: int) -> np.ndarray:
 
 
 def _doubled(old: Turns, turns: Turns, y: np.ndarray, above: np.ndarray) -> np.ndarray:
-    """Points of the attracting orbits of twice the period, at Λ a little above their birth."""
+    """Points of the attracting orbits of twice the period, at Λ a little above the doubling."""
     change = old.after(y)[-1]
-    # (M - a₂₂, a₂₁) of an eigenvalue μ is its eigenvector.
+    # The eigenvector of an eigenvalue μ is (μ - d, c), here with μ = -1.
     along = np.stack([-1 - change.d, change.c], axis=-1)
     aside = _ASIDE * np.sqrt(above) / np.hypot(*np.moveaxis(along, -1, 0))
     y = y + np.concatenate([along * aside[:, np.newaxis], above[:, np.newaxis]], axis=-1)

@@ -1,8 +1,8 @@
 """How fast the neighbours of balls leave them: a deviation of each ball and its growth.
 
-The deviation is carried by the derivative of the map and has the length 1 after each impact; the
-logarithms of its growth add up. The Lyapunov exponent is the ratio of two means, of the growth and
-of the time, over stretches of 32 impacts, so that it has a standard error.
+The deviation is multiplied by the derivative of the map and normalised to length 1 after each
+impact; the logarithms of its growth are added up. The Lyapunov exponent is the ratio of the mean
+growth to the mean time, over sections of 32 impacts, so that its standard error can be computed.
 """
 
 from typing import Any, NamedTuple, Self
@@ -11,16 +11,16 @@ import numpy as np
 
 from bouncing_ball.motion.tangent import Jacobian
 
-# Distance of a state from the orbit at which a ball is taken to be on it.
+# Distance of a state from the orbit within which a ball is regarded as being on the orbit.
 NEAR = 1e-7
-# Logarithms of the growth from a rounding error to 1, and to the distance above.
+# Logarithms of the growth from a rounding error to 1, and to the distance NEAR.
 DIGITS = -float(np.log(np.finfo(float).eps))
 FORGOTTEN = DIGITS + float(np.log(NEAR))
-# Impacts of a mean of the stretching, and means left out.
+# Number of impacts of each mean of the growth, and number of first means that are left out.
 _BATCH, _TRANSIENT = 32, 2
-# Error of a rate that is rounding: sums of n squares have the relative error √(n ε).
+# Relative error of a rate that is due to rounding: sums of n squares give the error √(n ε).
 _EQUAL = 1e-6
-# Stretching by less is as good as forgetting.
+# If a deviation shrinks to less than this length in one impact, a new deviation is started.
 _TINY = 1e-300
 
 
@@ -30,26 +30,27 @@ class Stretching(NamedTuple):
     along: np.ndarray
     across: np.ndarray
     growth: np.ndarray
-    # The least that the growth has been, and the most by which it has grown: at all, the former
-    # since the ball forgot its past, and since the mark.
+    # least and lowest: the smallest growth since the last sticking, after which the motion does not
+    # depend on earlier impacts, and since the mark. most and worst: the largest rise of the growth
+    # above the former, at any time so far, and above the latter, since the mark.
     least: np.ndarray
     most: np.ndarray
     lowest: np.ndarray
     worst: np.ndarray
-    # Growth and time at the last mean; the number of means, sums of growth and time over them and
-    # of their products.
+    # Growth and time at the last mean; the number of means, and the sums over them of the growth,
+    # of the time and of their products.
     mean_growth: np.ndarray
     mean_time: np.ndarray
     sums: np.ndarray
 
     @classmethod
     def of(cls, balls: int) -> Self:
-        """The stretching of so many balls before their first flights."""
+        """The deviations of a number of balls before their first flights."""
         columns: Any = np.eye(9, 1) + np.zeros(balls)
         return cls._make([*columns, np.zeros((balls, 6))])
 
     def grow(self, change: Jacobian) -> np.ndarray:
-        """Carry the deviation to the next impact; the logarithm of its growth."""
+        """Carry the deviation to the next impact, and return the logarithm of its growth."""
         along, across = change.apply(self.along, self.across)
         length = np.sqrt(along * along + across * across)
         straight = length > _TINY
@@ -59,7 +60,7 @@ class Stretching(NamedTuple):
         return np.where(np.isnan(length), 0.0, np.log(length))
 
     def add(self, grown: np.ndarray, time: np.ndarray, seen: np.ndarray) -> None:
-        """Add the growth, at the time of the impact that is the ball's number ``seen``."""
+        """Add the growth at an impact; ``time`` and ``seen`` are its time and its number."""
         self.growth[:] += grown
         np.minimum(self.least, self.growth, out=self.least)
         np.maximum(self.most, self.growth - self.least, out=self.most)
@@ -73,13 +74,15 @@ class Stretching(NamedTuple):
             self.sums[at] += terms * (seen[at] > _TRANSIENT * _BATCH)[:, np.newaxis]
 
     def forget(self, which: np.ndarray, grown: np.ndarray, time: np.ndarray) -> None:
-        """Begin again with the balls whose later motion does not depend on the earlier one."""
+        """Begin again for balls whose later motion does not depend on earlier impacts."""
         for values in (self.growth, self.least, self.lowest, self.mean_growth, grown):
             values[which] = 0
         self.mean_time[which] = time[which]
 
     def lost(self) -> np.ndarray:
-        """Whether a rounding error has grown too much since the ball forgot its past."""
+        """Whether a rounding error has grown too much since the motion last became independent of
+        earlier impacts.
+        """
         return self.growth - self.least > FORGOTTEN
 
     def mark(self, which: np.ndarray) -> None:
@@ -87,11 +90,11 @@ class Stretching(NamedTuple):
         self.worst[which], self.lowest[which] = 0, self.growth[which]
 
     def exponent(self, which: np.ndarray, lap: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The growth per unit of time and its standard error, NaN where it is not known.
+        """The growth per unit of time, and its standard error, NaN where the error is not known.
 
-        The computed motion of a ball that has stuck to the table again after so many impacts, a
-        ``lap``, 0 for none, is the same in each lap, so that only the means of one lap count. Means
-        that are equal up to rounding are copies of one mean, which has no error.
+        ``lap`` is the number of impacts after which a ball has stuck to the table again, 0 if it
+        has not. The computed motion is the same in each lap, so that only the means of one lap are
+        independent. Means that are equal up to rounding are copies of one mean and give no error.
 
         Examples
         --------
@@ -106,7 +109,7 @@ class Stretching(NamedTuple):
         """
         number, growth, time, square, product, times = self.sums[which].T
         rate = growth / time
-        # The error of a ratio of means, each over a stretch of the motion.
+        # The standard error of a ratio of means, where each mean is over a section of the motion.
         rest = square - 2 * rate * product + rate * rate * times
         error = np.sqrt(np.maximum(rest, 0.0) * number / (number - 1)) / time
         laps = np.where(lap > 0, number * _BATCH / lap, 1.0)

@@ -249,21 +249,15 @@ def case_of(
         return Case(mass, table, SpringDamper(omega / table.angular_frequency, zeta, release))
     # A contact with ω = 1; its free duration over the given one is ϖ.
     unit = SpringDamper(1.0, loss(given, release), release)
-    law: ContactLaw | None = None
+    if modulus is not None and release is not Release.DISPLACEMENT:
+        raise ModelError("a Hertz contact with Tsuji's damping has the displacement release only")
+    of_unit, r = float(unit.free_duration), float(unit.restitution)
+    speed = rigid_speed(meant(asked, r, table.amplitude), r)
+    law: ContactLaw | None
     if modulus is None:
         duration = given["contact_time"] / table.time
-        if kind is not None:
-            r = float(unit.restitution)
-            speed = rigid_speed(meant(asked, r, table.amplitude), r)
-            law = law_of_impact(kind, r, duration, speed)
+        law = None if kind is None else law_of_impact(kind, r, duration, speed)
     else:
-        if release is not Release.DISPLACEMENT:
-            raise ModelError(
-                "a Hertz contact with Tsuji's damping has the displacement release only"
-            )
-        r = float(unit.restitution)
         law = hertz(mass, modulus, given["radius"], r, table)
-        speed = rigid_speed(meant(asked, r, table.amplitude), r)
         duration = float(free_impact(law, speed).duration)
-    ratio = float(unit.free_duration) / duration
-    return Case(mass, table, SpringDamper(ratio, unit.damping_ratio, release), law)
+    return Case(mass, table, SpringDamper(of_unit / duration, unit.damping_ratio, release), law)

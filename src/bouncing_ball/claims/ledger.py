@@ -1,4 +1,4 @@
-"""The ledger: every claim of the paper with its verdict, as a dataset."""
+"""The ledger: every claim of the paper, and every statement of ours, with its verdict."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
@@ -6,7 +6,7 @@ from dataclasses import asdict
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.claims import evidence, parameters
+from bouncing_ball.claims import evidence, parameters, whole_motion
 from bouncing_ball.claims.claim import Claim, checked, defined_in, name_of, paragraphs
 from bouncing_ball.claims.paper import (
     apparent_restitution,
@@ -103,9 +103,16 @@ def ledger(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
         evidence.permanent_contact_error,
     )
     numbers = {one.__name__: xr.DataArray(one(data)).reset_coords(drop=True) for one in printed}
-    return xr.merge([assess(CLAIMS, data), described(numbers)]).assign_attrs(
+    # No claim of the paper is about an estimate.
+    verdicts = assess(CLAIMS, data).drop_vars(["low", "high"])
+    return xr.merge([verdicts, described(numbers)]).assign_attrs(
         close_units=CLOSE_UNITS,
         tolerance=parameters.TOLERANCE,
         stiff_frequency_ratio=parameters.STIFF,
         permanent_contact_frequency_ratio=parameters.PERMANENT_CONTACT,
     )
+
+
+def statements(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
+    """The verdict on each of our statements about the whole motion: see :func:`assess`."""
+    return assess([*defined_in(whole_motion)], data)

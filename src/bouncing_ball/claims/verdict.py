@@ -33,6 +33,10 @@ class Verdict(StrEnum):
     """The verdict depends on how the claim is read."""
     NOT_ASKED = "not asked"
     """The datasets were not computed with the paper's parameters."""
+    CONFIRMED = "confirmed"
+    """A statement of ours that holds in the whole interval of the number found."""
+    NOT_DECIDED = "not decided"
+    """A statement of ours that holds in a part of the interval."""
 
 
 @dataclass(frozen=True)
@@ -42,6 +46,7 @@ class Finding:
     ``required`` is the printed number, or the condition as a formula; ``limit`` is the bound of the
     condition, NaN for a printed number. ``deviation_units`` and ``deviation`` are the difference
     from a printed number in units of its last digit and relative to it, NaN for a condition.
+    ``low`` and ``high`` are the limits of an estimate, NaN if the number is not an estimate.
     """
 
     found: float
@@ -50,6 +55,8 @@ class Finding:
     limit: float = np.nan
     deviation_units: float = np.nan
     deviation: float = np.nan
+    low: float = np.nan
+    high: float = np.nan
 
     def __str__(self) -> str:
         """The number found, or its bound if the bound is of the size of rounding."""
@@ -185,3 +192,24 @@ def against_print(value: float, printed: str) -> Finding:
     else:
         verdict = Verdict.CONTRADICTED
     return Finding(value, verdict, printed, np.nan, units, (value - wanted) / abs(wanted))
+
+
+def decided(estimate: ArrayLike, *, above: float = -np.inf, below: float = np.inf) -> Finding:
+    """The finding that the interval of an estimate lies above a bound, or below one.
+
+    ``estimate`` is a number, or a number with its lower and its upper limit. The statement is
+    contradicted if the whole interval lies beyond the bound, and not decided if a part of it does,
+    or if a limit is NaN.
+
+    Examples
+    --------
+    >>> [str(decided([x, x - 1, x + 1], above=3).verdict) for x in (5, 3, 1)]
+    ['confirmed', 'not decided', 'contradicted']
+    """
+    value, low, high = map(float, np.broadcast_to(estimate, 3))
+    # A mean life may be infinite.
+    holds = low > above and (high < below or np.isinf(below))
+    fails = high <= above or low >= below
+    verdict = Verdict.CONTRADICTED if fails else Verdict.NOT_DECIDED
+    required = f"> {above:g}" if np.isinf(below) else f"< {below:g}"
+    return Finding(value, Verdict.CONFIRMED if holds else verdict, required, low=low, high=high)

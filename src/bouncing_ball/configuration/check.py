@@ -66,8 +66,7 @@ def check_configuration(
         except ConfigurationError as error:
             raise ConfigurationError(f"{where}: {error}") from None
     try:
-        model = configuration_model(studies, config)
-        check(model, config)
+        check(configuration_model(studies, config), config)
     except ConfigurationError as error:
         raise ConfigurationError(f"configuration: {error}") from None
 

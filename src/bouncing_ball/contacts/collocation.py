@@ -1,23 +1,23 @@
 r"""One contact of any law, from its start to its release: Gauss collocation by panels.
 
-A law with m roots is smooth in ``q = p^{1/m}`` and p′. The motion is therefore smooth in a new
-time s, also at the ends of the contact where p = 0 ::
+A law with the root m is smooth in ``q = p^{1/m}`` and p′. In a new time s the motion is therefore
+smooth even at the ends of the contact, where p = 0 ::
 
     dq/ds = p′,    dp′/ds = F = λ [a - f(p, p′)],    dt/ds = λ = m q^{m-1}
 
 with the load ``a = w - Λ sin(φ + t)``. The contact is divided into panels. In each, the values of
-p′ at 12 Gauss nodes are found by Picard's iteration, for many contacts at the same time; a sweep
-is three products with one small matrix. The length of the panel that reaches the
-release is found in the same sweeps, by Newton's method.
+p′ at 12 Gauss nodes (16 if derivatives are computed) are found by Picard's iteration, for many
+contacts at the same time; a sweep consists of three products with one small matrix. The length of
+the panel that reaches the release is found in the same sweeps, by Newton's method.
 
-A panel is good if the sweeps have converged, if the last Legendre coefficients of the
-integrands are small, and if the ball is held at all nodes; otherwise it is tried again, shorter.
+A panel is accepted if the sweeps have converged, if the last Legendre coefficients of the
+integrands are small, and if the grip is positive at all nodes; otherwise a shorter panel is tried.
 The error at the end of a panel is of the order of the square of these coefficients (Gauss), so
-that the errors of D, p and p′ are below 10⁻¹² of their scales. It is not certified that the
-grip does not vanish and return between two nodes, which are a small part of an oscillation apart,
-and no contact is proved never to end.
+that the errors of D, p and p′ are below 10⁻¹² of their scales. Two limits remain: the grip could
+vanish and return between two nodes, which are a small part of an oscillation apart, and the method
+cannot prove that a contact never ends.
 
-The derivatives of the end follow from the linearised equations of the collocation, one linear
+The derivatives of the end follow from the linearised equations of the collocation: one linear
 system for each panel.
 """
 
@@ -31,42 +31,46 @@ from bouncing_ball.contacts.contact_law import ContactLaw, slopes_of
 from bouncing_ball.contacts.contact_scales import scales
 from bouncing_ball.contacts.release import Release
 
-# Nodes of a panel, and of one whose derivatives are wanted: their coefficients are larger by about
-# the number of nodes, and so need more of them for the same error of the end.
+# Nodes of a panel without and with derivatives. The Legendre coefficients of the derivatives are
+# larger by about the number of nodes, so that more nodes are needed for the same error of the end.
 _NODES, _FINER = 12, 16
-# The largest number of sweeps; the last change of p′ over V at which they stop; and the one at
-# which a panel is good enough, because the next change would be a hundredth of it. The few
-# panels that converge slowly are tried again, because they would delay all others.
+# The largest number of sweeps; the change of p′ over V at which they stop; and the change at
+# which a panel is still accepted, because the next change would be a hundredth of it. The sweeps
+# stop when the share _MOST of the panels has converged: the few others are tried again, because
+# they would delay all panels.
 _SWEEPS, _SETTLED, _ENOUGH = 22, 3e-13, 1e-12
 _MOST = 0.95
-# The remainder of the grip, or of the time, relative to its change over the panel, that is
-# corrected to first order; and the sweep from which on the end of the panel is computed.
+# The remainder of the grip, or of the time, relative to its change over the panel, up to which a
+# first-order correction suffices; and the first sweep that computes the end of the panel.
 _REACHED, _LOOK = 1e-12, 2
 # Bound of the last Legendre coefficients of the integrands over V or P/V, and the number of these
-# coefficients. An early sweep, and its change, which predicts the number of sweeps.
+# coefficients. An early sweep, and the change of p′ over V that is wanted there: the actual change
+# determines the length of the next panel.
 _SPECTRUM, _TAIL = 1e-6, 2
 _EARLY, _CHANGE = 5, 1e-3
-# Length of the first panel in parts of P^{1/m}/V, for each node.
+# Length of the first panel per node, in units of P^{1/m}/V.
 _FIRST = 0.05
-# Time of a panel of a descending ball over P/V, which is allowed even after a shorter panel.
+# Duration of a panel over P/V that is allowed for a descending ball even after a shorter panel.
 _DOWN = 0.7
-# Bounds of the change from one length to the next, and of that of a refused panel.
+# Bounds and safety factor of the ratio of successive lengths; the greatest ratio after a rejected
+# panel.
 _SHORTER, _LONGER, _SAFETY, _AGAIN = 0.3, 1.3, 0.9, 0.6
-# Contacts computed at the same time: so many that their nodes fit into the cache.
+# Number of contacts computed at the same time, chosen such that their nodes fit into the cache.
 _BLOCK = 1024
-# Bytes that are allocated and freed once, after which glibc keeps freed memory. Before that it
-# returns the temporary arrays of each sweep to the system, and a third of the time is spent on
-# allocating them again.
+# Number of bytes that are allocated and freed once. From then on glibc keeps freed memory;
+# otherwise it returns the temporary arrays of each sweep to the system, and a third of the time is
+# spent on allocating them again.
 _KEPT = 1 << 24
-# The largest number of panels of one contact: a dozen oscillations for orbits, some hundreds in
-# a simulation.
+# The largest number of panels of one contact: for a dozen oscillations in the computation of
+# orbits, and for some hundreds in a simulation.
 _PANELS, MOST_PANELS = 120, 2000
-# Change of p in a panel, as a part of p, up to which plain time is used: p = 0 is then more
-# than a panel away.
+# Relative change of p in a panel up to which plain time is used: p = 0 is then more than a panel
+# away.
 _FAR = 0.7
-# The speed over V given to a ball at rest on the table, without which q would not change.
+# The speed over V that is given to a ball at rest on the table, because otherwise q would not
+# change.
 _AT_REST = 1e-9
-# A time is that of the end if less than this part of the contact remains.
+# A time counts as the end of the contact if less than this part of the contact remains.
 _END = 1e-12
 _Until = np.ndarray | None
 
@@ -74,7 +78,8 @@ _Until = np.ndarray | None
 class Start(NamedTuple):
     """Starts of contact, one-dimensional arrays.
 
-    They are p, p′, the table's phase φ, Λ, and the weight w of the ball: 1, or 0 for a free impact.
+    The fields are p, p′, the table's phase φ, Λ, and the weight w, which is 1, or 0 for a free
+    impact.
     """
 
     depth: np.ndarray
@@ -85,11 +90,11 @@ class Start(NamedTuple):
 
 
 class Contacts(NamedTuple):
-    """Contacts by their ends D, p_e and p′_e; NaN where none was found.
+    """The ends of contacts: D, p_e and p′_e, NaN where no end was found.
 
-    ``jacobian`` has the derivatives of the end (D, p_e, p′_e) in the start (φ, v), Λ and the
-    weight, shape (..., 3, 4). ``contraction`` is the factor by which the contact multiplies areas
-    of the phase plane: exp(-∫ ∂f/∂p′ dt), and the effect of a step of the force at the release.
+    ``jacobian`` has the derivatives of (D, p_e, p′_e) with respect to (φ, v, Λ, w), shape
+    (..., 3, 4). ``contraction`` is the factor by which the contact multiplies areas of the phase
+    plane: exp(-∫ ∂f/∂p′ dt), times a factor for a step of the force at the release.
     """
 
     duration: np.ndarray
@@ -100,10 +105,10 @@ class Contacts(NamedTuple):
 
 
 class _Rule(NamedTuple):
-    """Gauss nodes in (0, 1) and the matrices of the integrals up to them and up to 1.
+    """Gauss nodes in (0, 1), and matrices that act on the values at the nodes.
 
-    ``tail`` gives the last Legendre coefficients of the values at the nodes, ``end`` the value at
-    1.
+    ``integral`` gives the integrals from 0 to each node and to 1, ``tail`` the last Legendre
+    coefficients, and ``end`` the value at 1.
     """
 
     node: np.ndarray
@@ -126,7 +131,7 @@ def _rule(count: int) -> _Rule:
 class _Motion(NamedTuple):
     """Balls in contact: q, p′, t and F, the length of the next panel, and the scales P and V.
 
-    ``side`` is the sign of the law's :meth:`~.ContactLaw.kink` at the ball.
+    ``side`` is the sign of the law's :meth:`~.ContactLaw.kink` in the state of the ball.
     """
 
     root: np.ndarray
@@ -142,9 +147,9 @@ class _Motion(NamedTuple):
 class _Panel(NamedTuple):
     """A panel of each ball: q, p′ and t at its nodes and its end, and F at the nodes.
 
-    ``final`` is F at the end, ``step`` its length and ``following`` the length of the next one;
-    ``good`` tells whether it is accurate, and ``last`` whether it ends the contact, which is by
-    p = 0 and not by the grip if it has ``surfaced``. ``turned`` panels end at the law's kink.
+    ``final`` is F at the end, ``step`` the length of the panel and ``following`` that of the next;
+    ``good`` marks accurate panels, ``last`` those that end the contact, ``surfaced`` those of them
+    that end at p = 0 with a positive grip, and ``turned`` those that end at a kink of the law.
     """
 
     root: np.ndarray
@@ -161,7 +166,7 @@ class _Panel(NamedTuple):
 
 
 def _some(which, *rows: Any) -> Any:
-    """Some of the contacts, from laws and from tuples of arrays, whose last axis they are along."""
+    """Some of the contacts, from laws and from tuples of arrays; contacts are the last axis."""
     return tuple(
         x.take(which) if isinstance(x, ContactLaw) else x._make(y[..., which] for y in x)
         for x in rows
@@ -169,7 +174,7 @@ def _some(which, *rows: Any) -> Any:
 
 
 def _lever(m: int, root, out=None):
-    """λ = dp/dq, by products, which are cheaper than a power."""
+    """λ = dp/dq = m q^{m-1}, by products, which cost less than a power."""
     lever = np.empty_like(root) if out is None else out
     lever[...] = m
     for _ in range(m - 1):
@@ -178,7 +183,7 @@ def _lever(m: int, root, out=None):
 
 
 def _load(start: Start, time):
-    """a = w - Λ sin(φ + t), by the tangent of the half angle, which is cheaper than a sine."""
+    """a = w - Λ sin(φ + t), by the tangent of the half angle, which costs less than a sine."""
     tangent = start.phase + time
     tangent *= 0.5
     np.tan(tangent, out=tangent)
@@ -198,7 +203,7 @@ def _grip(law: ContactLaw, m: int, root, rate, load):
 
 
 def _grip_slopes(law: ContactLaw, m: int, root, rate):
-    """The derivatives of this function by q and p′."""
+    """The derivatives of the function of :func:`_grip` with respect to q and p′."""
     one = np.ones_like(root)
     if law.release is Release.DISPLACEMENT:
         return one, 0 * one
@@ -208,15 +213,15 @@ def _grip_slopes(law: ContactLaw, m: int, root, rate):
 
 
 def _loading(law: ContactLaw, root):
-    """The derivative of the grip by the load."""
+    """The derivative of the grip with respect to the load."""
     return law.loaded_grip(root, 0 * root, 1.0) - law.grip(root, 0 * root)
 
 
 def _left(law: ContactLaw, m: int, start: Start, now: _Motion, until, root, rate, time):
     """Functions that are positive up to the end of a panel, one in each row.
 
-    They are the grip, or the time left; for a law that feels its load q, because the load may hold
-    the ball up to p = 0; and the function that changes its sign at the law's kink.
+    The rows are the grip, or the time that is left; q if the force depends on the load, because
+    such a contact may also end at p = 0; and the law's kink function, with its sign at the start.
     """
     if until is None:
         rows = [_grip(law, m, root, rate, _load(start, time) if law.feels_load else None)]
@@ -229,7 +234,7 @@ def _left(law: ContactLaw, m: int, start: Start, now: _Motion, until, root, rate
 
 
 def _falls(law: ContactLaw, m: int, start: Start, now: _Motion, until, root, rate, time, final):
-    """The derivatives of the functions of :func:`_left` in s."""
+    """The derivatives of the functions of :func:`_left` with respect to s."""
     lever = _lever(m, root)
     if until is None:
         by_root, by_rate = _grip_slopes(law, m, root, rate)
@@ -246,7 +251,7 @@ def _falls(law: ContactLaw, m: int, start: Start, now: _Motion, until, root, rat
 
 
 def _summed(begin, step, values, out):
-    """The integral of a rate up to the nodes and the end, added to a value at the start."""
+    """The value at the start plus the integral of a rate, up to each node and to the end."""
     np.matmul(_rule(len(values)).integral, values, out=out)
     out *= step
     out += begin
@@ -256,9 +261,10 @@ def _summed(begin, step, values, out):
 def _panel(
     law: ContactLaw, start: Start, now: _Motion, until: _Until, count: int = _NODES, m: int = 0
 ) -> _Panel:
-    """The next panel of each ball, up to the release, or to a time if that comes first.
+    """The next panel of each ball, which ends at the latest at the release.
 
-    With m = 1 it is in plain time; by default m is that of the law.
+    If times ``until`` are given, the panels end there, and releases are not looked for. With m = 1
+    the independent variable is plain time; by default m is that of the law.
     """
     (node, _, tail, end), m = _rule(count), m or law.root
     force = law.force if m == 1 else law.root_force
@@ -274,13 +280,13 @@ def _panel(
     for sweep in range(_SWEEPS):
         old, new = new, old
         rate = old[:-1]
-        # The nodes move with the end.
+        # If the length of the panel has changed, the nodes have moved.
         moved = longer is not step
         if moved:
             rate += node * ((longer - step) * push)
         step = longer
         _summed(now.root, step, rate, q)
-        # In plain time, m = 1, these do not change with the sweeps.
+        # In plain time, m = 1, these arrays change only if the nodes have moved.
         if m > 1 or moved or sweep == 0:
             _lever(m, inside, lever)
             _summed(now.time, step, lever, t)
@@ -313,7 +319,7 @@ def _panel(
         if np.mean(reached & (change <= _SETTLED)) >= _MOST:
             break
     rate = new[:-1]
-    # The remainder, to first order.
+    # The remainder is corrected to first order.
     q[-1] += new[-1] * more
     t[-1] += _lever(m, q[-1]) * more
     final = end @ push
@@ -321,13 +327,14 @@ def _panel(
     by_rate, by_time = (np.abs(tail @ x).max(axis=0) for x in (push, lever))
     error = np.maximum(by_rate / now.speed, by_time * now.speed / now.length) * step
     held = np.ones_like(last)
-    # Up to a time a smooth force may be continued, for a steady contact that is sought.
+    # If times are given, a smooth force is continued beyond the release, because the iterates for a
+    # steady contact may leave the table.
     if until is None or law.root > 1:
         full = _load(start, t[:-1]) if law.feels_load else None
         held = ((q[:-1] > 0) & (_grip(law, m, q[:-1], rate, full) > 0)).all(axis=0)
     if law.has_kink:
-        # Both turns of a sign that changes twice in a panel would be missed at its end. A panel up
-        # to a time may be so short that rounding gives the sign.
+        # A sign that changes twice within a panel is not seen at its end. A panel up to a given
+        # time may be so short that the sign is determined by rounding.
         smooth = (now.side * law.kink(q[:-1] ** m, rate) > 0).all(axis=0)
         held &= smooth if until is None else smooth | last
     turned = last & (first == len(left) - 1) if law.has_kink else np.zeros_like(last)
@@ -336,7 +343,7 @@ def _panel(
     slow = (early / _CHANGE) ** (-1 / (2 * _EARLY))
     slower = np.minimum((error / _SPECTRUM) ** (-1 / count), slow)
     factor = np.where(np.isnan(slower), _SHORTER, np.clip(_SAFETY * slower, _SHORTER, _LONGER))
-    # The length of a panel up to a kink is no measure for the next one.
+    # The length of a panel that ends at a kink is unrelated to that of the next panel.
     taken = np.where(turned, now.step, step)
     following = np.where(good, taken * factor, now.step * np.minimum(factor, _AGAIN))
     ends = last & ~turned, surfaced & ~turned, turned
@@ -344,7 +351,7 @@ def _panel(
 
 
 def _in_time(law: ContactLaw, start: Start, now: _Motion, until: _Until) -> _Panel:
-    """The next panels in plain time, which costs half as much and suffices where q hardly
+    """The next panels in plain time, which costs half as much and suffices if q hardly
     changes.
     """
     m, lever = law.root, _lever(law.root, now.root)
@@ -357,7 +364,7 @@ def _in_time(law: ContactLaw, start: Start, now: _Motion, until: _Until) -> _Pan
 
 
 def _next(law: ContactLaw, start: Start, now: _Motion, until: _Until) -> _Panel:
-    """The next panels, each in the cheaper of the two variables."""
+    """The next panels, each in plain time if that suffices and in s otherwise."""
     far = law.root * np.abs(now.rate) * now.step < _FAR * now.root
     sides, panels = [np.flatnonzero(far), np.flatnonzero(~far)], []
     for which, follow in zip(sides, (_in_time, _panel), strict=True):
@@ -370,7 +377,7 @@ def _next(law: ContactLaw, start: Start, now: _Motion, until: _Until) -> _Panel:
 
 
 def _longest(m: int, now: _Motion, panel: _Panel) -> np.ndarray:
-    """The length of the next panels that will do: time runs faster the deeper a ball is."""
+    """The greatest length of the next panels; time runs faster the deeper a ball is."""
     root, rate = panel.root[-1], panel.rate[-1]
     time = np.maximum(_LONGER * (panel.time[-1] - now.time), _DOWN * now.length / now.speed)
     deeper = (root**m + rate * time) ** (1 / m)
@@ -378,10 +385,10 @@ def _longest(m: int, now: _Motion, panel: _Panel) -> np.ndarray:
 
 
 def _derivatives(law: ContactLaw, start: Start, panel: _Panel, by: np.ndarray):
-    """The derivatives of (q, p′, t) at the end of panels by (φ, v, Λ, w), and ∫ ∂F/∂p′ ds.
+    """The derivatives of (q, p′, t) at the ends of panels, and ∫ ∂F/∂p′ ds.
 
-    ``by`` are the derivatives at the start, shape (..., 3, 4). The result solves the equations of
-    the collocation, linearised at the nodes ::
+    They are derivatives with respect to (φ, v, Λ, w), and ``by`` are those at the start of the
+    panels, shape (..., 3, 4). They solve the linearised equations of the collocation ::
 
         δF = F_q δq + F_u δp′ + F_t (δφ + δt) + F_Λ δΛ + F_w δw
     """
@@ -399,7 +406,7 @@ def _derivatives(law: ContactLaw, start: Start, panel: _Panel, by: np.ndarray):
 
     by_root = column(bend * panel.push.T / lever - lever * lever * slopes.by_penetration.T)
     by_rate = column(-lever * slopes.by_rate.T)
-    # The share of the load that acts on the ball; the force is linear in the load.
+    # The share of the load that the force carries; the force is linear in the load.
     carried = law.loaded_force(*state, 1.0) - law.force(*state) if law.feels_load else np.zeros(1)
     felt = lever * (1 - carried.T)
     by_time = column(-felt * start.amplitude[:, np.newaxis] * np.cos(angle))
@@ -422,7 +429,7 @@ def _derivatives(law: ContactLaw, start: Start, panel: _Panel, by: np.ndarray):
 
 
 def _at_release(law: ContactLaw, start: Start, panel: _Panel, by: np.ndarray, strain: np.ndarray):
-    """The derivatives of (D, p_e, p′_e), and the contraction, of panels that end with a release."""
+    """The derivatives of (D, p_e, p′_e) and the contraction, for panels that end at the release."""
     root, rate, final = panel.root[-1], panel.rate[-1], panel.final
     lever, angle = _lever(law.root, root), start.phase + panel.time[-1]
     by_root, by_rate = _grip_slopes(law, law.root, root, rate)
@@ -430,7 +437,7 @@ def _at_release(law: ContactLaw, start: Start, panel: _Panel, by: np.ndarray, st
     by_load = np.where(panel.surfaced, 0.0, _loading(law, root))
     turning = -start.amplitude * np.cos(angle)
     falls = by_root * rate + by_rate * final + by_load * turning * lever
-    # If the force has a step at the release, the grip vanishes at another rate.
+    # If the force has a step at the release, the rate of change of the grip has a step too.
     force = law.loaded_force(root**law.root, rate, _load(start, panel.time[-1]))
     step = np.where(by_rate == 0, 0.0, by_rate * lever * force)
     load = turning[:, np.newaxis] * by[:, 2]
@@ -444,7 +451,7 @@ def _at_release(law: ContactLaw, start: Start, panel: _Panel, by: np.ndarray, st
 
 
 def _begin(law: ContactLaw, start: Start) -> np.ndarray:
-    """The rows of :class:`_Motion` at the start."""
+    """The rows of :class:`_Motion` at the start of the contacts."""
     scale = scales(law, np.abs(start.rate), start.weight + np.abs(start.amplitude))
     rest = _AT_REST * scale.speed
     rate = np.where((start.depth == 0) & (start.rate < rest), rest, start.rate)
@@ -463,24 +470,25 @@ def march(
     *,
     differentiate: bool = False,
 ) -> Contacts:
-    """Contacts in a row, from states on the table or in it.
+    """A row of contacts, from states with p ≥ 0 to the release.
 
     Parameters
     ----------
     law : ContactLaw
         One law, or one for each contact.
     start : Start
-        p ≥ 0 and p′; from p = 0 the ball goes down, or is laid on the table.
+        The states. A ball at p = 0 moves down, or is at rest on the table.
     panels : int
-        How many are tried for each contact; an oscillation takes about eight.
+        The largest number of panels that are tried for each contact; an oscillation takes about
+        eight.
     until : array, optional
-        Times within the contacts at which p and p′ are computed, in place of the release.
+        Times after the start at which p and p′ are computed, instead of at the release.
     differentiate : bool
         Whether derivatives are computed, for contacts that start at p = 0; otherwise they are NaN.
 
     Examples
     --------
-    A quarter of an oscillation, down to the depth v/ϖ:
+    After a quarter of an oscillation the ball is at the depth v/ϖ:
 
     >>> from bouncing_ball.contacts.spring_damper import SpringDamper
     >>> zero = np.zeros(1)
@@ -527,7 +535,7 @@ def march(
             if not active.size:
                 break
     root, rate, time = (np.where(done, x, np.nan) for x in state[:3])
-    # Between two times of a motion that is sought a ball may be above the table.
+    # The iterates for a steady contact may be above the table.
     depth = root if law.root == 1 and until is not None else np.maximum(root, 0.0) ** law.root
     if until is None and law.release is Release.DISPLACEMENT:
         depth *= 0
@@ -535,9 +543,9 @@ def march(
 
 
 def states(law: ContactLaw, start: Start, end, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """p and p′ at times within contacts in a row, whose ends (D, p_e, p′_e) are known.
+    """p and p′ at times within contacts whose ends (D, p_e, p′_e) are known.
 
-    The arrays have one entry per contact.
+    All arrays have one entry per contact.
     """
     inside = np.flatnonzero((time > 0) & (time < (1 - _END) * end[0]))
     laws, own = _some(inside, law, start)
@@ -549,7 +557,7 @@ def states(law: ContactLaw, start: Start, end, time: np.ndarray) -> tuple[np.nda
 
 
 def _row(law: ContactLaw, *columns: ArrayLike):
-    """Everything broadcast and in a row, with the law of each, and the shape."""
+    """The laws and the columns, broadcast and flattened, and the shape to which they broadcast."""
     columns = (*(np.asarray(x, dtype=float) for x in columns), np.zeros(law.shape))
     arrays = np.broadcast_arrays(*columns)
     shape = arrays[0].shape
@@ -572,13 +580,13 @@ def contacts(
     speed, phase, amplitude : array_like
         v, φ and Λ.
     weight : array_like
-        1, or 0 for a free impact.
+        The weight w: 1, or 0 for a free impact.
 
     Returns
     -------
     Contacts
-        With the broadcast shape of the arguments. NaN where v ≤ 0, and where the ball is
-        not released within a dozen oscillations.
+        Arrays of the shape to which the arguments broadcast. They are NaN where v ≤ 0, and where
+        the ball is not released within a dozen oscillations.
 
     Examples
     --------
@@ -610,11 +618,11 @@ def path(
     ----------
     law : ContactLaw
     found : Contacts
-        What :func:`contacts` returned for these starts.
+        The result of :func:`contacts` for these starts.
     time : array_like
-        Its shape may have more axes in front.
+        The times; they may have additional leading axes.
     speed, phase, amplitude, weight : array_like
-        The starts.
+        The starts, as in :func:`contacts`.
 
     Examples
     --------

@@ -13,15 +13,15 @@ from bouncing_ball.continuation.step_control import StepControl
 
 
 class ContinuationError(RuntimeError):
-    """The continuation has no solution to start from, or a branch cannot be resampled."""
+    """The continuation finds no solution to start from, or a branch cannot be resampled."""
 
 
 class End(NamedTuple):
     """An end of a branch.
 
-    ``sentence`` is the reason, as which the end prints. ``finished`` tells whether the branch ends
-    there: it does not if it has reached the allowed number of points, or if it broke off at
-    an event that could not be located with the smallest step.
+    ``sentence`` gives the reason; it is also the text of the object. ``finished`` tells whether the
+    branch really ends here. It is false if the allowed number of points was reached, or if a
+    non-terminal event could not be located even with the smallest step.
     """
 
     sentence: str
@@ -43,9 +43,9 @@ class Branch:
     points, tangents : ndarray, shape (m, N + 1)
         y = (x, p) and the unit tangents.
     special : tuple of SpecialPoint
-        Located events, in order.
+        Located events, in order along the branch.
     start, end : End
-        Why the branch ends where it does, at either side.
+        The two ends of the branch, with their reasons.
     """
 
     points: np.ndarray
@@ -66,7 +66,7 @@ class Branch:
 
 
 def solve_at(problem: Problem, guess: np.ndarray) -> np.ndarray:
-    """The solution at the parameter of the guess, shape (N + 1,).
+    """The solution with the parameter of the guess, shape (N + 1,).
 
     Raises
     ------
@@ -98,13 +98,17 @@ def solve_at(problem: Problem, guess: np.ndarray) -> np.ndarray:
 
 
 class _Rejected(Exception):
-    """A step that must be shorter, with the :class:`End` of the branch if it cannot be shorter."""
+    """A step that must be repeated with half its length.
+
+    The arguments are those of the :class:`End` of the branch if the step cannot be shorter.
+    """
 
 
 def _located(problem, events, values, left, right):
-    """Events and points where test functions change sign within a step, up to a terminal one.
+    """The events within a step, with their points, in order, up to the first terminal event.
 
-    ``values`` holds the values of each test function at both ends of the step.
+    ``values`` holds the values of each test function at both ends of the step; an event is present
+    if their signs differ.
     """
     located, failure = [], None
     for event, (before, after) in zip(events, values, strict=True):
@@ -118,7 +122,7 @@ def _located(problem, events, values, left, right):
     located.sort(key=lambda pair: float((pair[1].point - left) @ (right - left)))
     ends = [k for k, (event, _) in enumerate(located) if event.terminal]
     if failure and not ends:
-        # The step may have left the domain in which the event makes sense.
+        # The step may have left the domain in which the test function is defined.
         raise _Rejected(*failure)
     return located[: ends[0] + 1] if ends else located
 
@@ -138,11 +142,11 @@ def continue_branch(
     ----------
     problem : Problem
     start : ndarray, shape (N + 1,)
-        A solution, or close to one: it is corrected at its parameter.
+        A solution or an approximation to it, which is corrected at fixed parameter.
     increasing : bool
         Whether the parameter increases at the start.
     events : sequence of Event
-        Events to be located; a terminal one ends the branch exactly on its zero.
+        Events to be located; a terminal event ends the branch exactly at its zero.
     control : StepControl
     max_points : int
         Number of points after which the branch is left unfinished.
@@ -150,7 +154,7 @@ def continue_branch(
     Returns
     -------
     Branch
-        From ``start`` on, with the reason for its end.
+        The branch from ``start`` on, with the reason for its end.
 
     Raises
     ------
@@ -187,7 +191,7 @@ def continue_branch(
     length, end = control.initial, None
 
     def step() -> tuple[np.ndarray, np.ndarray, list[float], list, float]:
-        """Predict, correct, and locate the events on the way."""
+        """Predict and correct a point, and locate the events within the step."""
         predicted = y + length * direction
         found = newton(problem, predicted, plane(direction, predicted))
         if not found.converged:
@@ -221,10 +225,10 @@ def continue_branch(
 
 
 def continue_both_ways(problem: Problem, start: np.ndarray, **options) -> Branch:
-    """Follow the branch through ``start`` to both sides, as one branch.
+    """Follow the branch through ``start`` in both directions, as one branch.
 
-    The parameter increases at ``start``. Options and errors are those of
-    :func:`continue_branch`, except ``increasing``.
+    The branch is oriented such that the parameter increases at ``start``. Options and errors are
+    those of :func:`continue_branch`, except ``increasing``.
     """
     back = continue_branch(problem, start, increasing=False, **options)
     ahead = continue_branch(problem, start, increasing=True, **options)
@@ -233,26 +237,26 @@ def continue_both_ways(problem: Problem, start: np.ndarray, **options) -> Branch
     return Branch(points, tangents, back.special[::-1] + ahead.special, back.end, ahead.end)
 
 
-# Rounds of equalising the chords between resampled points; each gains two to
-# four digits, and the rounding of the corrector is reached after five or six.
+# Number of rounds that equalise the chords between resampled points. Each round gains two to
+# four digits, and the rounding of the corrector is reached after five or six rounds.
 _EQUALISING_ROUNDS = 8
 
 
 def resample(problem: Problem, branch: Branch, count: int) -> np.ndarray:
     """Solutions at equal distances along a branch, shape (count, N + 1).
 
-    Cubic Hermite interpolation between the points of the branch is the predictor, Newton's method
-    the corrector; the first and last points are those of the branch. The chords between neighbours
-    are made equal, so that the result depends on the branch and on ``count``, and not on the
-    step control.
+    Cubic Hermite interpolation between the points of the branch is the predictor and Newton's
+    method the corrector; the first and last points are those of the branch. The chords between
+    neighbours are made equal, so that the result depends on the branch and on ``count``, but not
+    on the step control.
 
     Raises
     ------
     ContinuationError
-        If the corrector fails, because the branch was followed with too long steps, or if
+        If the corrector fails, because the steps along the branch are too long, or if
         the branch has a single point.
     """
-    # Imported here: not every run resamples.
+    # Imported here, because not every run needs it.
     from scipy.interpolate import CubicHermiteSpline
 
     arc = branch.arclength

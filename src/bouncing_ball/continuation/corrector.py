@@ -1,4 +1,4 @@
-"""Newton's method on square systems, on the problem with one condition added, and tangents."""
+"""Newton's method for square systems and for a problem with one added condition; tangents."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -11,12 +11,12 @@ _TINY = np.finfo(float).tiny
 
 
 class Correction(NamedTuple):
-    """Outcome of Newton iterations, one for each guess.
+    """Outcome of Newton iterations from one or many guesses.
 
-    ``point`` has the shape of the guesses. ``converged``, ``residual`` (the largest entry of the
-    extended residual at the last iteration) and ``step`` (the norm of the last Newton step
-    relative to 1 + |y|) have that of its leading axes. ``iterations`` is their number until all
-    guesses had converged or failed.
+    ``point`` has the shape of the guesses. ``converged``, ``residual`` (the largest modulus of an
+    equation at the last iteration) and ``step`` (the norm of the last Newton step relative to
+    1 + |y|) have the shape of its leading axes. ``iterations`` is the number of iterations until
+    all guesses had converged or failed.
     """
 
     point: np.ndarray
@@ -27,11 +27,11 @@ class Correction(NamedTuple):
 
 
 class NewtonSettings(NamedTuple):
-    """When a Newton iteration has converged, and when it has failed.
+    """Criteria for the convergence and the failure of a Newton iteration.
 
-    ``tolerance`` bounds the norm of the last step, relative to 1 + |y|. Since the
-    convergence is quadratic, the point is then as exact as F is computed. ``longest`` is the
-    greatest length of a step, and ``max_iterations`` their greatest number.
+    ``tolerance`` bounds the norm of the last step, relative to 1 + |y|. Because the
+    convergence is quadratic, the point is then as accurate as F is computed. ``longest`` is the
+    greatest length of a step, and ``max_iterations`` the greatest number of steps.
     """
 
     tolerance: float = 1e-12
@@ -60,14 +60,14 @@ def newton(
     guess : ndarray, shape (..., N + 1)
         Many guesses are iterated together; each stops when it has converged.
     condition : Condition
-        The equation number N + 1, for example a plane or a test function.
+        The equation N + 1, for example that of a plane, or a test function set to zero.
     settings : NewtonSettings
 
     Returns
     -------
     Correction
-        A guess has not converged if it ran out of iterations, met a singular matrix or left
-        the domain of F.
+        An iteration has not converged if it reached the greatest number of steps, met a singular
+        matrix or left the domain of F.
     """
 
     def equations(y):
@@ -81,7 +81,7 @@ def newton(
 def solve(
     equations: Equations, guess: np.ndarray, settings: NewtonSettings = NewtonSettings()
 ) -> Correction:
-    """Solve N equations in N unknowns, from many guesses together.
+    """Solve N equations in N unknowns, from one or many guesses of shape (..., N).
 
     Examples
     --------
@@ -113,7 +113,7 @@ def solve(
 
 
 def _solve(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """Solutions of linear systems; NaN for a singular matrix, or one with NaN entries."""
+    """Solutions of linear systems; NaN where the matrix is singular or has NaN entries."""
     try:
         return np.linalg.solve(matrix, right[..., np.newaxis])[..., 0]
     except np.linalg.LinAlgError:
@@ -139,10 +139,10 @@ def plane(normal: np.ndarray, through: np.ndarray) -> Condition:
 
 
 def tangent(jacobian: np.ndarray, along: np.ndarray) -> np.ndarray:
-    """Unit tangent of the solution curve, on the side of ``along``, shape (..., N + 1).
+    """Unit tangent of the solution curve, oriented along ``along``, shape (..., N + 1).
 
-    It is the null vector of the N × (N + 1) Jacobian, which also exists at a fold. The arguments
-    have shapes (..., N, N + 1) and (..., N + 1).
+    It is the null vector of the N × (N + 1) Jacobian, which is also defined at a fold. The
+    arguments have shapes (..., N, N + 1) and (..., N + 1).
 
     Examples
     --------

@@ -1,7 +1,7 @@
 """Special points on a branch: test functions, and the exact location of their zeros.
 
-An event is a zero of a test function g(y). A sign change between two points of the branch
-announces it; it is then located on the extended system ``F(y) = 0, g(y) = 0``, to the
+An event is a zero of a test function g(y). It is detected by a sign change between two points of
+the branch, and then located as a solution of the extended system ``F(y) = 0, g(y) = 0``, to the
 tolerance of Newton's method whatever the length of the step.
 """
 
@@ -14,12 +14,12 @@ import numpy as np
 from bouncing_ball.continuation.corrector import Condition, NewtonSettings, newton
 from bouncing_ball.continuation.problem import Problem
 
-# Step of the central differences for ∇g, near the optimum ε^(1/3). It determines how
-# fast the iteration converges, but not to which point, which depends on g alone.
+# Step of the central differences for ∇g, near the optimum ε^(1/3). It affects the speed of
+# convergence but not the limit, which depends on g alone.
 _DIFFERENCE = 6e-6
-# With an approximate gradient a few more iterations are needed than in the plain corrector.
+# With an approximate gradient more iterations are needed than in the plain corrector.
 _PATIENT = NewtonSettings(max_iterations=20)
-# Rounding may put a zero at an end of the bracket outside by this part of its length.
+# Rounding may move a zero at an end of the bracket outside, by at most this part of the bracket.
 _SLACK = 1e-6
 
 
@@ -30,13 +30,13 @@ class Event:
     Parameters
     ----------
     name : str
-        The name of its zeros in results.
+        The name of the located zeros in results.
     function : callable
         g(y), for y of shape (..., N + 1).
     terminal : bool
-        Whether the branch ends there. A terminal function is positive inside the domain.
+        Whether the branch ends at a zero. The function is then positive inside the domain.
     reason : str
-        The sentence that says why the branch ends at a terminal event.
+        The reason why the branch ends at a terminal event, as a sentence.
     """
 
     name: str
@@ -46,7 +46,7 @@ class Event:
 
 
 class SpecialPoint(NamedTuple):
-    """A located event: its name, the point y of shape (N + 1,), and the largest residual left."""
+    """A located event: its name, its point y of shape (N + 1,), and the remaining residual."""
 
     name: str
     point: np.ndarray
@@ -54,7 +54,7 @@ class SpecialPoint(NamedTuple):
 
 
 def fold(problem: Problem, name: str = "fold") -> Event:
-    """The event at which ∂F/∂x is singular, so that the branch turns in the parameter."""
+    """The event at which ∂F/∂x is singular, where the branch turns in the parameter."""
 
     return Event(name, lambda y: np.linalg.det(problem.jacobian(y)[..., :-1]))
 
@@ -73,7 +73,7 @@ def parameter_bound(bound: float, upper: bool, reason: str) -> Event:
 
 
 def vanishing(function: Callable[[np.ndarray], np.ndarray]) -> Condition:
-    """The condition that a test function is zero, with its gradient by central differences.
+    """The condition that a test function vanishes, with its gradient by central differences.
 
     Examples
     --------
@@ -96,11 +96,11 @@ def vanishing(function: Callable[[np.ndarray], np.ndarray]) -> Condition:
 def locate(
     problem: Problem, event: Event, left: np.ndarray, right: np.ndarray
 ) -> SpecialPoint | None:
-    """The zero of an event between two points of the branch, shape (N + 1,) each.
+    """The zero of an event between two points of the branch, each of shape (N + 1,).
 
     Newton's method on the extended system starts from the secant estimate. The result is None if
-    it leaves the bracket, because a step of the continuation was too long or because there is no
-    zero.
+    the method does not converge, or converges outside the bracket, because a step of the
+    continuation was too long or because there is no zero.
     """
     values, chord = [float(event.function(y)) for y in (left, right)], right - left
     guess = left + values[0] / (values[0] - values[1]) * chord

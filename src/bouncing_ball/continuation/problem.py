@@ -1,4 +1,4 @@
-"""The interface of a problem for the continuation."""
+"""The interface of a problem that can be continued."""
 
 from typing import Protocol
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 class Problem(Protocol):
-    """N equations F(y) = 0 in N unknowns x and one parameter p, y = (x, p).
+    """N equations F(y) = 0 for N unknowns x and one parameter p, with y = (x, p).
 
     Both methods broadcast over leading axes. The unknowns should be scaled to
     order one, because the arclength is the Euclidean norm of y.

@@ -7,17 +7,17 @@ from dataclasses import dataclass
 class StepControl:
     """Adaptive step in arclength.
 
-    The step grows when the corrector needed fewer iterations than
-    ``target_iterations`` and shrinks when it needed more; it shrinks as well
-    when the tangent turns by more than ``max_angle``, so that folds are
-    resolved and the branch is not left for another.
+    The step grows if the corrector needed fewer iterations than
+    ``target_iterations``, and shrinks if it needed more. It is also limited such that the
+    tangent turns by less than ``max_angle``, so that folds are
+    resolved and the continuation does not jump to another branch.
 
     Parameters
     ----------
     initial, smallest, largest : float
-        Steps in arclength.
+        The initial, smallest and largest step in arclength.
     target_iterations : int
-        Newton iterations at which the step stays as it is.
+        Number of Newton iterations at which the step is unchanged.
     max_angle : float
         Largest angle in radians between the tangents of neighbouring points.
     """
@@ -29,7 +29,7 @@ class StepControl:
     max_angle: float = 0.2
 
     def after(self, step: float, iterations: int, angle: float) -> float:
-        """The next step in arclength after an accepted one.
+        """The length of the next step after an accepted step.
 
         Examples
         --------

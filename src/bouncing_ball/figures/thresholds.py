@@ -1,7 +1,4 @@
-"""Thresholds along ϖ: of permanent contact, and of an error (Figs. 11, 14, 16).
-
-ext_release shows the influence of the release rule on them and on the bifurcations of Table 1.
-"""
+"""Thresholds along ϖ: of permanent contact, and of an error (Figs. 11, 14, 16)."""
 
 import numpy as np
 import xarray as xr
@@ -9,13 +6,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bouncing_ball.figures.branches import draw_curve
-from bouncing_ball.figures.canvas import WIDE, canvas, coloured, legend_below, logarithmic
-from bouncing_ball.figures.labels import QUANTITIES, note, parameters
-from bouncing_ball.figures.style import CONTACT, GUIDE, MODELS, PERIOD_DOUBLING, SADDLE_NODE, Look
+from bouncing_ball.figures.canvas import canvas, logarithmic
+from bouncing_ball.figures.labels import note, parameters
+from bouncing_ball.figures.style import CONTACT, GUIDE, MODELS, Look
 
 _RIGID: Look = MODELS["restitution"] | {"linestyle": "--"}
-_DASHES = {SADDLE_NODE: "-", PERIOD_DOUBLING: (0, (4, 1.5))}
-_MARKS = ("o", "x", "s")
 
 
 def permanent_contact(data: xr.Dataset) -> Figure:
@@ -54,15 +49,6 @@ def permanent_contact_error(data: xr.Dataset) -> Figure:
     return figure
 
 
-def release_rules(data: xr.Dataset) -> Figure:
-    """ext_release: shift of the bifurcations (left) and thresholds of each quantity (right)."""
-    figure, (left, right) = canvas(WIDE, 3.8, columns=2, width_ratios=(1.0, 1.25))
-    _draw_shifts(left, data)
-    _draw_by_quantity(right, data)
-    legend_below(figure, right.get_legend_handles_labels()[0], ncols=3)
-    return figure
-
-
 def _draw_threshold(axes: Axes, data: xr.Dataset) -> None:
     """Λ_SD, or Λ_F of the force release, with its minimum."""
     high, minimum = float(data.frequency_ratio[-1]), float(data.minimum_threshold)
@@ -93,34 +79,3 @@ def _draw_error(axes: Axes, data: xr.Dataset, name: str, digits: int) -> None:
         value = rf"$\varpi_{{{name},{100 * tolerance:g}\%}}={found:.{digits}f}$"
         note(axes, value, (found, tolerance), (5, 5), fontsize=8)
     logarithmic(axes, data.frequency_ratio, yscale="log", ylabel="relative error")
-
-
-def _draw_shifts(axes: Axes, data: xr.Dataset) -> None:
-    """Shift of the bifurcations with ϖ, one curve for each family and bifurcation."""
-    for family, colour in coloured(data, "n"):
-        for bound, dashes in _DASHES.items():
-            amplitude = family.bifurcation_amplitude.sel(bound=bound)
-            shift = amplitude.diff("release").squeeze()
-            label = f"$n={family.n:d}$, {bound}"
-            axes.plot(data.frequency_ratio, shift, color=colour, linestyle=dashes, label=label)
-    axes.axhline(0.0, **GUIDE)
-    ylabel, title = r"shift of $\Lambda$, force minus displacement", parameters(data, "restitution")
-    logarithmic(axes, data.frequency_ratio, ylabel=ylabel, title=title)
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.17), ncols=2)
-
-
-def _draw_by_quantity(axes: Axes, data: xr.Dataset) -> None:
-    """Threshold of each quantity, one mark for each reading; an arrow where there is none."""
-    limit = data.attrs["thresholds__frequency_ratio__max"]
-    names = np.array([QUANTITIES[name] for name in data["quantity"].values])
-    for (one, colour), mark in zip(coloured(data, "reading"), _MARKS, strict=False):
-        look: Look = {"color": colour, "linestyle": "none", "markerfacecolor": "none"}
-        axes.plot(one.error_threshold, names, marker=mark, label=one.reading.item(), **look)
-        never = names[one.error_threshold.isnull()]
-        axes.plot(np.full(never.size, limit / 1.25), never, marker=">", **look)
-    axes.invert_yaxis()
-    axes.grid(axis="y", **GUIDE)
-    tolerance = f"{100 * data.attrs['thresholds__tolerance']:g} %"
-    title = parameters(data, "n", "restitution", "amplitude", of="thresholds__")
-    xlabel = rf"$\varpi$ for an error of {tolerance}; arrows: never within it"
-    logarithmic(axes, xlabel=xlabel, xlim=(1, limit), title=title)

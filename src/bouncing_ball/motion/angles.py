@@ -1,4 +1,4 @@
-"""The table at its phase, by functions that have the same digits on every processor."""
+"""The table's motion, by functions whose results have the same digits on every processor."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ __all__ = ["reduce_angle", "sine_and_versine", "table"]
 
 
 def table(phase: np.ndarray, amplitude: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
-    """Λ cos φ and Λ sin φ: velocity and height of the table, and minus its jerk and acceleration.
+    """Λ cos φ and Λ sin φ: the table's velocity and height, or minus its jerk and acceleration.
 
     Examples
     --------

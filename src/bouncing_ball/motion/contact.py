@@ -1,13 +1,13 @@
-r"""Contacts with a duration, of any law: contact, release, flight, landing.
+r"""Contacts of finite duration, with any law: contact, release, flight, landing.
 
-A state on the Poincaré section is (φ, δ′) at the start of contact. With a release by
-vanishing force a contact may also start at δ < 0, see
-:mod:`bouncing_ball.motion.resumption`; each such start is an impact.
+A state on the Poincaré section is (φ, δ′) at the start of contact. If the release is
+where the force vanishes, a contact may also start at δ < 0, see
+:mod:`bouncing_ball.motion.resumption`; each such start counts as an impact.
 
-A contact is followed by :func:`bouncing_ball.contacts.collocation.march`. The contact of an
-underdamped spring-damper has a closed form (:mod:`bouncing_ball.motion.linear_contact`),
-except at the undamped resonance. With the closed form the release is certified to be the first,
-and contacts that never end are recognised. Landings are certified to be the first for every law.
+The motion in contact is computed by :func:`bouncing_ball.contacts.collocation.march`. For an
+underdamped spring-damper it has a closed form (:mod:`bouncing_ball.motion.linear_contact`),
+except at the undamped resonance. With the closed form the release is proved to be the first,
+and contacts that never end are recognised. Landings are proved to be the first for every law.
 """
 
 from dataclasses import dataclass
@@ -33,14 +33,15 @@ from bouncing_ball.motion.tangent import Deviation, Jacobian
 class ContactDynamics(Dynamics):
     """Contacts of any :class:`~bouncing_ball.contacts.contact_law.ContactLaw`, and flights."""
 
-    # The collocation divides into blocks itself; larger blocks here share the few long contacts.
+    # The collocation divides its contacts into blocks itself. Large blocks here cost less, because
+    # the few long contacts are then computed together.
     block: ClassVar[int] = 1 << 16
 
     def depart(self, impact: Impact) -> Departure:
-        """The end of each contact; undecided where none was found.
+        """The end of each contact; the status is undecided where no end was found.
 
-        Under a load that pulls, a slow ball meets no force. Its contact has no duration, and it
-        flies on into the table.
+        If the force depends on the load and the load pulls, a slow ball meets no force at p = 0.
+        Its contact then has the duration 0, and the ball continues its flight below p = 0.
         """
         one = np.ones_like(impact.phase)
         # Without the maximum a displacement of 0 gives the depth -0.
@@ -48,11 +49,11 @@ class ContactDynamics(Dynamics):
         load = 1 - table(impact.phase, self.amplitude)[1]
         grip = self.law.loaded_grip(depth, -impact.velocity, load)
         free = (depth == 0) & (grip < 0) & self.law.feels_load
-        # No contact is sought for these, because none of its panels would be accepted.
+        # No contact is computed for these balls, because none of its panels would be accepted.
         rate = np.where(free, np.nan, -impact.velocity)
         start = Start(depth, rate, impact.phase, self.amplitude * one, one)
         end = march(self.law, start, MOST_PANELS)
-        # Below the table's level a ball that is released may sink, if the load pulls it.
+        # A ball that is released below the table's level may move down, if the load pulls it.
         rate = np.where(end.penetration > 0, -end.rate, np.maximum(-end.rate, 0.0))
         for column, value in zip(end[:3], (0 * depth, depth, -impact.velocity), strict=True):
             column[free] = value[free]
@@ -64,7 +65,7 @@ class ContactDynamics(Dynamics):
         return Departure(phase, duration, Flight(*state, self.amplitude), status)
 
     def fly(self, departure: Departure) -> tuple[Impact, np.ndarray]:
-        """The landing, or the resumption of the contact if that comes first."""
+        """The landing or an earlier resumption, and the time from the last impact to it."""
         flight = departure.flight
         start, resumed = resumption(flight, self.law)
         landing = land(flight, start)
@@ -78,7 +79,7 @@ class ContactDynamics(Dynamics):
     def jacobian(
         self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
     ) -> Jacobian:
-        """Derivative of the map over contact and flight; NaN from or to a resumption."""
+        """Derivative of the map over contact and flight; NaN if either impact is a resumption."""
         one = np.ones_like(passed)
         start = Start(0 * one, -impact.velocity, impact.phase, self.amplitude * one, one)
         by = march(self.law, start, MOST_PANELS, differentiate=True).jacobian
@@ -91,10 +92,10 @@ class ContactDynamics(Dynamics):
         return self.landed(released, departure, after, passed)
 
     def sticks(self, impact: Impact, departure: Departure) -> np.ndarray:
-        """Whether the contact lasts for more than twice that of a free impact of this speed.
+        """Whether the contact lasts more than twice as long as a free impact of this speed.
 
-        Without damping and with a constant load a contact that starts with zero speed lasts so
-        long, so that a longer contact is one that the load ends.
+        An undamped linear contact that starts at zero speed under a constant load lasts exactly
+        twice as long. A longer contact therefore ends because the load changes.
         """
         free = Signature(self.law)(np.maximum(-impact.velocity, np.finfo(float).tiny)).duration
         return departure.duration > 2 * free
@@ -109,7 +110,7 @@ class LinearContactDynamics(ContactDynamics):
     block: ClassVar[int] = BLOCK
 
     def depart(self, impact: Impact) -> Departure:
-        """The end of each contact, or the proof that it has none."""
+        """The end of each contact, or permanent contact if it is proved never to end."""
         x, y = table(impact.phase, self.amplitude)
         state = impact.displacement, impact.velocity
         motion = ContactMotion(self.law, self.amplitude, *state, x, y)
@@ -117,7 +118,7 @@ class LinearContactDynamics(ContactDynamics):
         end = first_zero(motion, motion.sure())
         phase = impact.phase + end.time
         x, y = table(phase, self.amplitude)
-        # Where the ball just touches the table's level, rounding may give it a downward velocity.
+        # If the ball just reaches the table's level, rounding may give it a downward velocity.
         displacement, velocity = motion.state(np.maximum(end.rate, 0.0), y)
         status = np.where(end.ended, Status.PERMANENT_CONTACT, Status.BOUNCING)
         status[end.undecided] = Status.UNDECIDED
@@ -144,7 +145,7 @@ class LinearContactDynamics(ContactDynamics):
         first = (y - 1) - loss * rate - stiffness * depth
         left, speed = flight.displacement, flight.velocity
         last = (flight.y - 1) - loss * speed - stiffness * left
-        # A deviation along the motion changes the time only.
+        # A deviation along the motion changes only the time.
         fall = speed - level * rate - impulse * first
         pull = last + stiffness * impulse * rate - impulse_rate * first
         before, held = (np.where(x < 0, lag, 0.0) for x in (depth, after.displacement))
@@ -155,9 +156,9 @@ class LinearContactDynamics(ContactDynamics):
         return self.landed(released, departure, after, passed, held)
 
     def sticks(self, impact: Impact, departure: Departure) -> np.ndarray:
-        """Whether the contact lasts longer than a damped oscillation.
+        """Whether the contact lasts longer than one damped oscillation.
 
-        Without damping and with a constant load a contact that starts with zero speed lasts so
-        long, so that a longer contact is one that the load ends.
+        An undamped contact that starts at zero speed under a constant load lasts exactly one
+        oscillation. A longer contact therefore ends because the load changes.
         """
         return departure.duration * self.law.damped_frequency > 2 * np.pi

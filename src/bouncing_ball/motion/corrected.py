@@ -1,19 +1,20 @@
 """Impacts of the corrected restitution model: instant, release, flight, landing.
 
-The impact is that of :mod:`bouncing_ball.contacts.corrected_map`; the flight that
-follows is considered from the end of the contact on, D - t_c after the
-instant. There the ball leaves if it rises and comes above the table's level.
-If it does not, the impact was too weak for its load, v of the order of a D, and the
-ball stays until the table recedes with more than gravity, at Λ sin τ = 1 on
-the way up. For Λ ≤ 1 it never leaves.
+The impact is that of :mod:`bouncing_ball.contacts.corrected_map`. The flight that
+follows counts from the end of the contact on, D - t_c after the
+instant. The ball leaves there if it rises and comes above the table's level.
+If it does not, the impact was too weak for its load (v is of the order of a D), and the
+ball stays on the table until the table's downward acceleration exceeds gravity, at Λ sin τ = 1
+while the table rises. For Λ ≤ 1 it never leaves.
 
-The landing on the table's level is found as in both other models, and certified to
-be the first. From there Newton's method on the continued flight leads to the instant, where the
-ball has the depth h = v t_c(v), in a few steps that start from the solution
-for a constant load.
+The landing on the table's level is found as in the other two models, and is proved to be the
+first. On the flight continued from there, the instant is where the ball has the depth
+h = v t_c(v). A few steps of Newton's method find it, starting from the solution for a constant
+load.
 
 A state on the Poincaré section is (φ, δ′) at the start of contact, t_c before
-the instant. There the continued flight meets the table's level up to a t_c²/2.
+the instant. The height of the continued flight at this start differs from the table's level by
+about a t_c²/2.
 """
 
 from dataclasses import dataclass
@@ -40,20 +41,20 @@ class CorrectedDynamics(Dynamics):
     forgets: ClassVar[bool] = True
 
     def start(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
-        """First impacts at the table's level, at phases φ with δ′, and their instants."""
+        """First impacts that start at phases φ with δ′ at the table's level, and their instants."""
         arrival = velocity + table(phase, self.amplitude)[0]
         instant = corrected_map.meeting(self.law, self.amplitude, phase, arrival)
         hit = corrected_map.impact(self.law, self.amplitude, *instant)
         return Impact.at_level(phase, velocity, hit)
 
     def at_section(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
-        """Impacts with instants at phases ψ, with the relative velocity before them."""
+        """Impacts whose instants are at phases ψ, with the given relative velocity before them."""
         arrival = velocity + table(phase, self.amplitude)[0]
         hit = corrected_map.impact(self.law, self.amplitude, phase, arrival)
         return Impact.at_level(*corrected_map.start_of(self.amplitude, hit), hit)
 
     def depart(self, impact: Impact) -> Departure:
-        """The end of each contact on the flight from its instant, or a rest on the table."""
+        """The end of each contact, or of the rest on the table that follows it."""
         hit, amplitude = impact.known, self.amplitude
         x, y = table(hit.phase, amplitude)
         rest = hit.instant.duration - hit.instant.delay
@@ -68,7 +69,7 @@ class CorrectedDynamics(Dynamics):
         return stay(departure, ~leaves, amplitude)
 
     def fly(self, departure: Departure) -> tuple[Impact, np.ndarray]:
-        """The start of the contact whose instant follows the landing, and the time until then."""
+        """The start of the next contact, and the time from the last start to it."""
         flight = departure.flight
         landing = land(flight, np.maximum(departure.aloft, flight.sure()))
         at_level = departure.phase + landing.time
@@ -104,7 +105,7 @@ class CorrectedDynamics(Dynamics):
     ) -> Jacobian:
         """Derivative of the map from one instant to the next.
 
-        It is zero where the ball sticks, because its later motion does not depend on the impact.
+        It is zero if the ball sticks, because its later motion does not depend on the impact.
         """
         hit, then = impact.known, after.known
         (x, y), none = table(hit.phase, self.amplitude), np.zeros_like(passed)
@@ -120,10 +121,10 @@ class CorrectedDynamics(Dynamics):
         return Jacobian.of_columns(*columns)
 
     def sticks(self, impact: Impact, departure: Departure) -> np.ndarray:
-        """Whether the ball leaves by lift-off."""
+        """Whether the ball leaves by lift-off after a rest on the table."""
         return lifted(departure, self.amplitude)
 
     def section(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
-        """The phase of the instant and the velocity before it."""
+        """The phase of the instant and the relative velocity before it."""
         hit = impact.known
         return reduce_angle(hit.phase), -hit.speed

@@ -1,5 +1,5 @@
-"""The interface of a model of the impact to the simulation: contacts and flights of balls in a
-row.
+"""The interface between the models of the impact and the simulation: the contacts and flights of
+many balls.
 """
 
 from abc import ABC, abstractmethod
@@ -17,7 +17,7 @@ from bouncing_ball.motion.tangent import Deviation, Jacobian
 
 
 class Impact(NamedTuple):
-    """Starts of contact: table phase, δ and δ′, and further results of the model about them."""
+    """Starts of contact: the table's phase, δ and δ′, and further results of the model."""
 
     phase: np.ndarray
     displacement: np.ndarray
@@ -31,11 +31,11 @@ class Impact(NamedTuple):
 
 
 class Departure(NamedTuple):
-    """Ends of contact: table phase, the contact's duration, the flight that follows and the
-    :class:`~bouncing_ball.motion.sequence.Status`.
+    """Ends of contact: the table's phase, the duration of the contact, the flight that follows and
+    the :class:`~bouncing_ball.motion.sequence.Status`.
 
-    ``settling`` is the part of the duration in which the ball still bounces; ``aloft`` is a time
-    of flight before which the ball has not landed, where the model knows a better one than
+    ``settling`` is the part of the duration in which the ball still bounces. ``aloft`` is a time
+    of flight before which the ball has not landed; it is used if it exceeds
     :meth:`Flight.sure <bouncing_ball.motion.landing.Flight.sure>`.
     """
 
@@ -51,8 +51,8 @@ class Departure(NamedTuple):
 class Dynamics(Batch, ABC):
     """A law of the impact on a table of amplitude Λ.
 
-    A kind of impact is a subclass that computes the end of a contact, and the end of a flight if
-    that is not the landing. All arrays are rows with an entry per ball, and ``block`` is the
+    Each model is a subclass, which computes the ends of contacts, and the ends of flights if these
+    are not landings. All arrays are one-dimensional with an entry per ball, and ``block`` is the
     largest number of balls computed at the same time.
     """
 
@@ -61,14 +61,14 @@ class Dynamics(Batch, ABC):
 
     block: ClassVar[int] = BLOCK
     forgets: ClassVar[bool] = False
-    """Whether the state in which a ball leaves after sticking is independent of its past."""
+    """Whether the state in which a ball leaves after sticking is independent of earlier impacts."""
 
     def start(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
-        """First impacts at the table's level, at phases φ with δ′."""
+        """First impacts, which start at phases φ with δ′ at the table's level."""
         return Impact.at_level(phase, velocity)
 
     def at_section(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
-        """The impacts with a state of :meth:`section`."""
+        """The impacts with these states, in the coordinates of :meth:`section`."""
         return self.start(phase, velocity)
 
     @abstractmethod
@@ -81,7 +81,7 @@ class Dynamics(Batch, ABC):
         Raises
         ------
         ModelError
-            If a flight is too long for floating point.
+            If a flight is too long for floating-point numbers.
         """
         landing = land(departure.flight, departure.flight.sure())
         impact = Impact.at_level(departure.phase + landing.time, -landing.rate)
@@ -91,17 +91,17 @@ class Dynamics(Batch, ABC):
     def jacobian(
         self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
     ) -> Jacobian:
-        """Derivative of the map from one impact to the next, on the section of :meth:`section`.
+        """Derivative of the map from one impact to the next, in the coordinates of :meth:`section`.
 
-        ``passed`` is the time between the two.
+        ``passed`` is the time between the two impacts.
         """
 
     @abstractmethod
     def sticks(self, impact: Impact, departure: Departure) -> np.ndarray:
-        """Whether the ball stays on the table until the table recedes with more than gravity."""
+        """Whether the ball stays until the table's downward acceleration exceeds gravity."""
 
     def section(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
-        """The state (phase, relative velocity) of an impact by which motions are compared."""
+        """The state of an impact on the Poincaré section: a phase and a relative velocity."""
         return impact.phase, impact.velocity
 
     def landed(
@@ -112,9 +112,9 @@ class Dynamics(Batch, ABC):
         passed: np.ndarray,
         lag: np.ndarray | float = 0.0,
     ) -> Jacobian:
-        """The derivative whose columns are two deviations at the release, carried over the flight.
+        """The derivative whose columns are the two deviations at the release after the flight.
 
-        The flight ends where δ + κ δ′ = 0 with the ``lag`` κ.
+        The flight ends where δ + κ δ′ = 0, with κ = ``lag``.
         """
         flight, end = departure.flight, table(after.phase, self.amplitude)
         time = passed - departure.duration

@@ -5,7 +5,7 @@ from typing import Any, Self
 
 import numpy as np
 
-# Largest number of balls in a block: so many that the arrays stay in the cache. Smaller blocks
+# Largest number of balls in a block, chosen such that the arrays stay in the cache. Smaller blocks
 # cost more, because a few slow balls determine the number of steps of each block.
 BLOCK = 8192
 
@@ -23,12 +23,10 @@ def blocks(size: int, largest: int = BLOCK) -> list[slice]:
 
 
 class Row:
-    """An object each of whose attributes is a flat array over balls, or a number that applies to
-    all.
-    """
+    """An object whose attributes are flat arrays over balls, or numbers that apply to all balls."""
 
     def take(self, which: Any) -> Self:
-        """The same object for some of the balls."""
+        """The same object, restricted to some of the balls."""
         part = object.__new__(type(self))
         vars(part).update({name: pick(value, which) for name, value in vars(self).items()})
         return part

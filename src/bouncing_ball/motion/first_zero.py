@@ -4,22 +4,22 @@ Let y(s) < 0, with y″ ≤ K and \|y‴\| ≤ J from s on. Then ::
 
     y(s + h) ≤ y + y′ h + K h²/2
 
-Hence no zero lies before the positive root h₀ of this parabola. Within any
-H ≥ h the bound may be replaced by a local one, with \|y⁗\| ≤ L ::
+Hence no zero lies before the positive root h₀ of this parabola. For steps h ≤ H
+the bound K may be replaced by a local bound, with \|y⁗\| ≤ L ::
 
     K_H = min(K, y″ + H max(y‴, 0)/3 + L H²/12)
 
-and the step is as long as the best H = 4h₀, 16h₀, ... allows. Such steps
-approach a simple zero from the left with third order, and slow down, but do
-not fail, where two zeros lie close together or the function only touches
-zero. They are taken until
+and the step is the longest that H = 4h₀, 16h₀, ... allows. Such steps
+approach a simple zero from the left with third order. Where two zeros lie close
+together, or the function only touches zero, they become slow but do not fail. They are
+taken until both
 
-* ``2K \|y\| ≤ θ y′²``, y′ > 0: the next zero is then simple and near (Newton
+* ``2K \|y\| ≤ θ y′²`` and y′ > 0, so that the next zero is simple and near (Newton
   and Kantorovich), and
-* ``(\|y‴\| + L h₀) h₀² ≤ κ y′``: one more step, by the parabola of the function
-  and without the safeguard, reaches the last digit; its error is of order κ⁴ h₀.
+* ``(\|y‴\| + L h₀) h₀² ≤ κ y′``, so that one more step, to the zero of the function's
+  parabola, reaches the last digit; its error is of order κ⁴ h₀.
 
-Flight and contact are both *motions* of this kind, see :class:`Motion`.
+Flights and contacts are both *motions* of this kind, see :class:`Motion`.
 """
 
 from abc import ABC, abstractmethod
@@ -34,18 +34,18 @@ _SIMPLE = 0.25
 _CLOSE = 3e-4
 # Ratio of successive H.
 _REACH = 4.0
-# Steps after which the search ends as undecided. Each step is a considerable part of the
-# shorter of the function's time scales, so that this is hundreds of oscillations.
+# Number of steps after which the search ends as undecided. Each step is a considerable part of
+# the shortest time scale of the function, so that these are hundreds of oscillations.
 _MAX_STEPS = 3000
-# As in :mod:`bouncing_ball.contacts.elementary`.
+# Constants as arrays without an axis, as in :mod:`bouncing_ball.contacts.elementary`.
 _ZERO, _THIRD, _TINY = map(np.array, (0.0, 1 / 3, 1e-300))
 
 
 class State(NamedTuple):
     """y and its derivatives at one time, and the bounds K, J, L from this time on.
 
-    ``ended`` marks entries for which the search may stop without a zero; ``None`` means
-    none of them.
+    ``ended`` marks the functions for which the search may stop without a zero; ``None`` means
+    that there are no such functions.
     """
 
     value: np.ndarray
@@ -63,21 +63,22 @@ class Motion(Row, ABC):
 
     @abstractmethod
     def __call__(self, time: np.ndarray) -> State:
-        """The functions at one time each."""
+        """The state of each function at its time."""
 
     def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
         """A later time before which there is certainly no zero, or the time itself.
 
-        ``steps`` is the number of steps taken; an expensive bound may wait for a few of them.
+        ``steps`` is the number of steps taken so far, because an expensive bound is worth its cost
+        only after several steps.
         """
         return time
 
 
 class Zero(NamedTuple):
-    """First upward zeros: the time and y′ there, with marks for functions without one.
+    """First upward zeros: their times, and y′ there.
 
-    ``ended`` marks the functions whose motion ended the search, ``undecided`` those for which it
-    took too many steps.
+    ``ended`` marks the functions whose search stopped without a zero (see :class:`State`), and
+    ``undecided`` those for which it took too many steps.
     """
 
     time: np.ndarray
@@ -87,9 +88,9 @@ class Zero(NamedTuple):
 
 
 def _root(bound, v, rising, square, twice):
-    """Positive root of y + v h + (bound) h²/2; a long step if there is none.
+    """Positive root h of y + v h + (bound) h²/2; a long step if there is none.
 
-    The arguments are v, its sign and its square, and -2y.
+    Further arguments are v = y′, whether v > 0, v², and -2y.
     """
     root = np.sqrt(np.maximum(square + bound * twice, _ZERO))
     falling = (root - v) / np.maximum(bound, _TINY)
@@ -97,11 +98,11 @@ def _root(bound, v, rising, square, twice):
 
 
 def safe_step(state: State) -> tuple[np.ndarray, np.ndarray]:
-    """The longest certified step, and whether the zero is within reach after it.
+    """The longest step that certainly passes no zero, and whether it may be the last.
 
     Examples
     --------
-    Exact for a parabola, here y = s² - 1 seen from s = 0:
+    The step is exact for a parabola, here y = s² - 1 at s = 0:
 
     >>> one = np.ones(1)
     >>> step, _ = safe_step(State(-one, 0 * one, 2 * one, 0 * one, 2.0, 0.0, 0.0))
@@ -109,7 +110,7 @@ def safe_step(state: State) -> tuple[np.ndarray, np.ndarray]:
     [1.0]
     """
     v, rising, square = state.rate, state.rate > 0, state.rate * state.rate
-    # Where y touches zero from below, rounding may give a positive value.
+    # If y touches zero from below, rounding may give a positive value.
     twice = -2 * np.minimum(state.value, _ZERO)
     start = v, rising, square, twice
     first = _root(state.second_bound, *start)
@@ -123,7 +124,7 @@ def safe_step(state: State) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _prolonged(first, start, state: State):
-    """Steps at least as long as the certified ``first`` ones."""
+    """Certified steps, at least as long as the ``first`` ones."""
     step, now = first.copy(), first
     which: Any = slice(None)
     own = *start, state.second, state.third, state.second_bound, state.fourth_bound
@@ -133,7 +134,7 @@ def _prolonged(first, start, state: State):
         growth = np.maximum(third, _ZERO) + 0.25 * fourth_bound * reach
         bound = np.minimum(second + reach * growth * _THIRD, second_bound)
         longer = np.minimum(_root(bound, *start), reach)
-        # Where the reach limited the step, a longer reach is tried.
+        # If the reach limited the step, a longer reach is tried.
         further = ((longer == reach) & (longer > now)).nonzero()[0]
         now = np.maximum(now, longer)
         step[which] = now
@@ -145,10 +146,10 @@ def _prolonged(first, start, state: State):
 
 
 def first_zero(motion: Motion, start: np.ndarray) -> Zero:
-    """First upward zero of each motion after the time ``start``, which must precede it.
+    """First upward zero of each motion, searched from the time ``start`` on.
 
-    There is no zero between 0 and ``start``, where the function itself may be zero;
-    if it rises there, this is the zero. The arrays are one-dimensional.
+    The caller guarantees that no zero lies between 0 and ``start``. If the function is zero at
+    ``start`` and rises, ``start`` is the result. The arrays are one-dimensional.
     """
     time = np.array(start, dtype=float)
     ended = np.zeros(time.shape, dtype=bool)
@@ -157,7 +158,7 @@ def first_zero(motion: Motion, start: np.ndarray) -> Zero:
         state = part(now)
         step, done = safe_step(state)
         later = part.skip(now + step, steps)
-        # The current time is a zero: at the start, or where y touches zero up to rounding.
+        # The current time is a zero at the start, or if y touches zero up to rounding.
         rate = state.rate
         here = (state.value >= 0) & ((rate > 0) | ((rate == 0) & (state.second >= 0)))
         if state.ended is not None:
@@ -181,13 +182,13 @@ def first_zero(motion: Motion, start: np.ndarray) -> Zero:
 
 
 def _to_the_last_digit(motion, time):
-    """The time improved by one step of the function's parabola, and the rate of change there."""
+    """The times, improved by one step to the zero of the function's parabola, and y′ there."""
     state = motion(time)
     v, acceleration = state.rate, state.second
     twice = -2 * state.value
     square = v * v
     root = np.sqrt(np.maximum(square + acceleration * twice, 0.0))
-    # Where the zero is not certainly simple (y touches zero), the time is not changed.
+    # If the zero may be multiple, because y touches zero, the time is not changed.
     simple = (v > 0) & (state.second_bound * np.abs(twice) <= square)
     step = np.where(simple, twice / (v + root + _TINY), 0.0)
     rate = v + step * (acceleration + 0.5 * step * state.third)

@@ -1,4 +1,4 @@
-"""Dense time histories of one ball, from its sequence of impacts."""
+"""The motion of one ball at arbitrary times, from its sequence of impacts."""
 
 from typing import NamedTuple
 
@@ -15,8 +15,8 @@ from bouncing_ball.motion.sequence import ImpactSequence, Status
 class History(NamedTuple):
     """Height z and velocity z′ of the ball, height w of the table, and δ = z - w, at each time.
 
-    ``touching`` is true in contact and false in flight. Entries are NaN before the first impact and
-    after the last contact, because the end of its flight is not known.
+    ``touching`` is true in contact and false in flight. The ball's entries are NaN before the first
+    impact, and after the last contact, because the end of the last flight is not known.
     """
 
     time: np.ndarray
@@ -33,9 +33,10 @@ def history(sequence: ImpactSequence, time: ArrayLike) -> History:
     Parameters
     ----------
     sequence : ImpactSequence
-        Of one ball, from any model; ``sequence[3]`` is that of one of several.
+        The impacts of one ball, from any model. If there are several balls, ``sequence[3]`` selects
+        one of them.
     time : array_like
-        In any order.
+        Times in any order.
 
     Raises
     ------

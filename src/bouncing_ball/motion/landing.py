@@ -1,12 +1,12 @@
 r"""Free flight and the landing that ends it.
 
-Measured from the moment the ball leaves, with relative displacement δ_b and
-velocity v, and with X = Λ cos φ_b, Y = Λ sin φ_b of the table's phase then::
+Let s be the time since the ball left the table, δ_b and v its relative displacement and
+velocity at s = 0, and X = Λ cos φ_b, Y = Λ sin φ_b at the table's phase φ_b. Then ::
 
     δ(s) = δ_b + v s - s²/2 + Y (1 - cos s) + X (s - sin s)
     δ″   = -1 + Λ sin(φ_b + s) ≥ -(1 + Λ),    |δ‴| ≤ Λ
 
-which loses no digits in a short flight. The ball cannot land while it is
+This form loses no digits in a short flight. The ball cannot land while it is
 above the table's highest point, z > Λ, and the search skips this part.
 """
 
@@ -18,7 +18,7 @@ from bouncing_ball.motion.first_zero import Motion, State, Zero, first_zero
 
 
 class Flight(Motion):
-    """The motion y = -δ of balls in flight, whose first upward zero is the landing.
+    """The motion y = -δ of balls in flight; its first upward zero is the landing.
 
     Parameters
     ----------
@@ -36,11 +36,11 @@ class Flight(Motion):
         thrown = velocity + x
         over = thrown * thrown + 2 * (displacement + (y - amplitude))
         root = np.sqrt(np.maximum(over, 0.0))
-        # z > Λ between these two times; without such a range the second is not above the first.
+        # z > Λ between these two times; they are equal if z never exceeds Λ.
         self.above, self.below = thrown - root, thrown + root
 
     def gap(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """δ, δ′, δ″, δ‴ after a time of flight."""
+        """δ, δ′, δ″ and δ‴ after a time of flight."""
         sine, versine = sine_and_versine(time)
         x, y = self.x, self.y
         late = time - sine
@@ -60,8 +60,8 @@ class Flight(Motion):
         return np.where((time >= self.above) & (time < self.below), self.below, time)
 
     def room(self) -> np.ndarray:
-        """v² + 2(1 + Λ)δ_b, which is positive if the ball certainly rises above the table's
-        level.
+        """v² + 2(1 + Λ)δ_b; if it is positive and v > 0, the ball certainly comes above the
+        table's level.
         """
         return self.velocity * self.velocity + 2 * (1 + self.amplitude) * self.displacement
 
@@ -69,8 +69,8 @@ class Flight(Motion):
         """A time before which the ball has certainly not landed.
 
         It is the flight time of a ball thrown with v from δ_b against the strongest
-        relative gravity, 1 + Λ. From rest on a table that recedes, Y ≥ 1,
-        ``δ ≥ (Y - 1) s²/2 + X s³/6 - Λ s⁴/24``.
+        relative gravity, 1 + Λ. For a ball at rest on a table with Y ≥ 1, which recedes, it
+        follows from ``δ ≥ (Y - 1) s²/2 + X s³/6 - Λ s⁴/24``.
         """
         time = (self.velocity + np.sqrt(np.maximum(self.room(), 0.0))) / (1 + self.amplitude)
         if np.all(self.velocity):
@@ -83,7 +83,7 @@ class Flight(Motion):
 
 
 class Rise(Motion):
-    """The motion δ of balls below the table's level, until they rise no more and fall faster."""
+    """The motion δ of balls below the table's level; the search stops if they fall ever faster."""
 
     def __init__(self, flight: Flight):
         self.flight = flight
@@ -96,7 +96,7 @@ class Rise(Motion):
 
 
 class Fall(Motion):
-    """The motion -δ′ of a ball that rises relative to the table, until it falls."""
+    """The motion -δ′ of balls that rise relative to the table; its first zero is their top."""
 
     def __init__(self, flight: Flight):
         self.flight = flight
@@ -104,41 +104,41 @@ class Fall(Motion):
     def __call__(self, time: np.ndarray) -> State:
         _, rate, second, third = self.flight.gap(time)
         lam = self.flight.amplitude
-        # The fourth derivative of δ is minus that of the table.
+        # The fourth derivative of δ is minus that of the table: δ⁗ = -Λ sin τ = -(1 + δ″).
         return State(-rate, -second, -third, second + 1, lam, lam, lam)
 
 
 def emerge(flight: Flight) -> tuple[np.ndarray, np.ndarray]:
-    """Balls released at the table's level or below it: whether they rise above it.
+    """Whether balls released at the table's level or below it rise above it.
 
-    The first result is a time before which they have certainly not landed.
+    The results are a time before which they have certainly not landed, and whether they rise.
     """
     time, rising = flight.sure(), flight.velocity > 0
     unsure = np.flatnonzero(rising & (flight.room() <= 0))
     if unsure.size:
         part = flight.take(unsure)
-        # Highest where it first stops rising, which no step can pass over.
+        # The ball is highest where it first stops rising, and no step can pass over this time.
         top = part.gap(first_zero(Fall(part), np.zeros(unsure.size)).time)[0]
         rise = first_zero(Rise(part), np.zeros(unsure.size))
         rising[unsure] = (top > 0) & ~(rise.ended | rise.undecided) & (rise.rate > 0)
-        # From the table's level on the flight is against the strongest relative gravity.
+        # Above the table's level the flight is bounded by that against the gravity 1 + Λ.
         time[unsure] = rise.time + 2 * rise.rate / (1 + part.amplitude)
     return time, rising
 
 
 def land(flight: Flight, start: np.ndarray) -> Zero:
-    """The landing after a time ``start`` before which there is none.
+    """The first landing; ``start`` is a time before which there is certainly none.
 
-    ``rate`` of the result is minus the relative impact velocity.
+    The ``rate`` of the result is minus the relative impact velocity.
 
     Raises
     ------
     ModelError
-        If the numbers are too large for floating point.
+        If no landing was found, because the flight is too long for floating-point numbers.
 
     Examples
     --------
-    A ball thrown up at 3 from a table at rest comes back after s = 6:
+    A ball thrown up with the velocity 3 from a table at rest comes back after s = 6:
 
     >>> zero, three = np.zeros(1), np.full(1, 3.0)
     >>> flight = Flight(zero, three, zero, zero, 0.0)

@@ -1,16 +1,15 @@
 r"""Contact with the spring-damper, from its start to its release.
 
-The function followed is ``y = δ + κ δ′``, with κ = 0 for the displacement release
-and κ = 2ζ/ϖ for the force release, where ``-ϖ² y`` is the force of the table
-over the weight. In both cases y < 0 in contact, the release is the first
-upward zero, and ::
+The release is the first upward zero of ``y = δ + κ δ′``, which is negative in contact. For the
+displacement release κ = 0; for the force release κ = 2ζ/ϖ, so that ``-ϖ² y`` is the force of
+the table over the weight. In both cases ::
 
     y″ + 2a y′ + ϖ² y = -1 + Λ sin τ + κ Λ cos τ,       a = ζϖ
     y(s) = e^{-as} (A cos ϖ_d s + B sin ϖ_d s) - 1/ϖ² + C sin s + D cos s
 
-(Eqs. 12-13 for κ = 0). The transient's derivatives of order k are below
-``ϖ^k R e^{-as}``, R = √(A² + B²), those of the steady part below ρ = √(C² + D²).
-The contact therefore never ends if at some time ::
+(Eqs. 12-13 for κ = 0). The transient's derivative of order k is at most
+``ϖ^k R e^{-as}``, R = √(A² + B²), and each derivative of the steady part at most
+ρ = √(C² + D²). The contact therefore never ends if at some time ::
 
     R e^{-as} + ρ ≤ 1/ϖ²
 """
@@ -21,11 +20,11 @@ from bouncing_ball.contacts.elementary import arctangent, exponential, sine_and_
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.first_zero import Motion, State
 
-# √γ below which the steady part loses too many digits: its relative error is ε/√γ.
+# The closed form is used for √γ above this value: the relative error of the steady part is ε/√γ.
 _RESONANCE = 1e-4
-# Steps after which the expensive bound of :meth:`ContactMotion.skip` is used.
+# Number of steps after which the expensive bound of :meth:`ContactMotion.skip` is used.
 _PATIENCE = 12
-# Rounding of the three terms of the certificate.
+# Bound of the rounding errors of the three terms of the inequality above.
 _ROUNDING = 8 * np.finfo(float).eps
 
 
@@ -48,12 +47,12 @@ def has_closed_form(contact: SpringDamper) -> bool:
 
 
 class ContactMotion(Motion):
-    """The motion y of balls in contact.
+    """The motion y = δ + κ δ′ of balls in contact.
 
     Parameters
     ----------
     contact : SpringDamper
-        One for which :func:`has_closed_form`, or one for each ball.
+        One contact, or one for each ball, for which :func:`has_closed_form` is true.
     amplitude : float or array
         Λ.
     displacement, velocity : array
@@ -68,12 +67,12 @@ class ContactMotion(Motion):
         self.damped = contact.damped_frequency
         detuning, loss = _resistance(contact)
         gamma = detuning * detuning + loss * loss
-        # The steady response to Λ sin τ + κ Λ cos τ, over Λ sin τ and Λ cos τ.
+        # Coefficients of Λ sin τ and Λ cos τ in the steady response to Λ sin τ + κ Λ cos τ.
         in_phase, quadrature = (detuning + lag * loss) / gamma, (lag * detuning - loss) / gamma
         self.steady = amplitude * np.sqrt(in_phase * in_phase + quadrature * quadrature)
         self.forcing = amplitude * np.sqrt(1 + lag * lag)
         self.sine, self.cosine = in_phase * x - quadrature * y, in_phase * y + quadrature * x
-        # The forcing now.
+        # The forcing Λ sin φ + κ Λ cos φ at the start.
         self.push = y + lag * x
         self.start, self.start_rate = self._observed(displacement, velocity, y)
         self.a = self.start + (1 / self.stiffness - self.cosine)
@@ -86,7 +85,7 @@ class ContactMotion(Motion):
         return displacement + self.lag * velocity, velocity + self.lag * acceleration
 
     def state(self, displacement_rate, y):
-        """δ and δ′ at a release with the rate y′, where Λ sin τ is ``y``."""
+        """δ and δ′ at a release with the rate y′, where ``y`` is the table's height Λ sin τ."""
         lag = self.lag
         velocity = displacement_rate - lag * (y - 1)
         return -lag * velocity, velocity
@@ -117,10 +116,10 @@ class ContactMotion(Motion):
         )
 
     def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
-        """A time up to which even the transient's envelope leaves y negative.
+        """A time up to which y is negative, because its bound by the transient's envelope is.
 
-        This holds until the steady part rises through 1/ϖ² - R e^{-as}; a stiff,
-        weakly damped contact would need steps for about ϖ oscillations otherwise.
+        The bound is negative until the steady part rises through 1/ϖ² - R e^{-as}. Without it
+        a stiff, weakly damped contact would need steps over about ϖ oscillations.
         """
         if steps < _PATIENCE:
             return time
@@ -131,23 +130,24 @@ class ContactMotion(Motion):
         rising = arctangent(ratio, np.sqrt((1 - ratio) * (1 + ratio)))
         now = time + arctangent(self.cosine, self.sine)
         below = inside & (sine_and_cosine(now)[0] < ratio)
-        # The time stays before the crossing by more than the rounding of the crossing.
+        # The result precedes the crossing by more than the rounding error of the crossing.
         wait = np.mod(rising - now, 2 * np.pi) - 1e-9
-        # Rounding must not turn a crossing that is due now into one a turn later.
+        # Rounding must not postpone a crossing at the present time by a full turn.
         wait = np.where(wait > 2 * np.pi - 1e-6, 0.0, wait)
         return time + np.where(below, np.maximum(wait, 0.0), 0.0)
 
     def sure(self) -> np.ndarray:
         """A time before which the contact has certainly not ended, within half a period.
 
-        With a constant forcing P, the largest within the half period, the
-        contact would end earlier, because the impulse response is positive there.
-        That contact is ``e^{-as} (A′ cos θ + B′ sin θ) + P/ϖ²``, which is
+        Replace the forcing by a constant P, its largest value within the half period. The
+        contact then ends earlier, because the impulse response is positive there.
+        Its motion is ``e^{-as} (A′ cos θ + B′ sin θ) + P/ϖ²``, which is
         negative where ``A′ cos θ + B′ sin θ < -e^{aπ/ϖ_d} P/ϖ²``; once it is
         positive it remains positive for longer than half a period.
         """
         half = np.pi / self.damped
-        # Near critical damping any number of this size makes the bound that uses it ineffective.
+        # Near critical damping the exponent is limited against overflow; a factor of this size
+        # already makes the bound ineffective.
         growth = exponential(np.minimum(self.decay * half, 690.0))
         forcing = np.minimum(self.push + self.forcing * half, self.forcing) - 1
         level = np.maximum(forcing, 0.0) / self.stiffness
@@ -155,8 +155,8 @@ class ContactMotion(Motion):
         b = (self.start_rate + self.decay * a) / self.damped
         radius = np.sqrt(a * a + b * b)
         depth = np.minimum(growth * level / np.maximum(radius, 1e-300), 1.0)
-        # The angle of (-a, -b), rotated by half a turn as that avoids a jump for a < 0, and the
-        # one whose cosine is the depth: their sum is within half a turn.
+        # The angle of (a, b), rotated by half a turn because that avoids a jump for a < 0, and the
+        # angle whose cosine is ``depth``: their sum is within half a turn.
         rest = np.sqrt((1 - depth) * (1 + depth))
         angle = arctangent(-b * depth - a * rest, b * rest - a * depth)
         angle = np.where((depth < 1) & (angle > 0), angle, 0.0)

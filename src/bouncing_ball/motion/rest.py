@@ -1,8 +1,8 @@
 """Rest on the table, and the lift-off that ends it.
 
-A ball rests on the table while g = 1 - Λ sin τ > 0. It leaves at Λ sin τ = 1 on the way
-up, where the table begins to recede with more than gravity, or at once where g ≤ 0 already; for
-Λ ≤ 1 it never leaves.
+A ball rests on the table while the load g = 1 - Λ sin τ is positive. It leaves when Λ sin τ rises
+through 1, because the table's downward acceleration then exceeds gravity. If g ≤ 0 already, it
+leaves at once. For Λ ≤ 1 it never leaves.
 """
 
 import numpy as np
@@ -33,7 +33,7 @@ def _lift(top: np.ndarray) -> np.ndarray:
 
 
 def pressed(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Whether a ball at rest stays on the table, where Λ cos τ = x and Λ sin τ = y.
+    """Whether a ball at rest stays on the table at the phase with Λ cos τ = x and Λ sin τ = y.
 
     Examples
     --------
@@ -44,9 +44,9 @@ def pressed(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def stay(departure: Departure, rests: np.ndarray, amplitude: np.ndarray) -> Departure:
-    """Departures in which the balls marked by ``rests`` rest on the table first.
+    """The departures after the balls marked by ``rests`` have rested on the table.
 
-    These balls lie on the table from the departure's phase on, and leave it by lift-off.
+    These balls rest on the table from the phase of the given departure on until they lift off.
     """
     if not rests.any():
         return departure
@@ -55,7 +55,7 @@ def stay(departure: Departure, rests: np.ndarray, amplitude: np.ndarray) -> Depa
     top = np.maximum(amplitude, 1.0)
     lift = _lift(top)
     wait = np.where(held, np.mod(reduce_angle(lift - departure.phase), 2 * np.pi), 0.0)
-    # Rounding must not delay a lift-off that is due now by a turn.
+    # Rounding must not postpone a lift-off at the present phase by a full turn.
     wait = np.where(wait > 2 * np.pi - 1e-9, 0.0, wait)
     # At lift-off Λ sin τ = 1 exactly.
     x, y = np.where(held, np.sqrt((top - 1) * (top + 1)), x), np.where(held, 1.0, y)
@@ -71,7 +71,7 @@ def stay(departure: Departure, rests: np.ndarray, amplitude: np.ndarray) -> Depa
 
 
 def lifted(departure: Departure, amplitude: np.ndarray) -> np.ndarray:
-    """Whether balls leave by lift-off, in the state that all balls have then."""
+    """Whether balls leave by lift-off, a state that does not depend on their earlier motion."""
     rests = (departure.flight.velocity == 0) & (departure.flight.displacement == 0)
     which = rests.nonzero()[0]
     rests[which] = departure.phase[which] == lift_off_phase(pick(amplitude, which))

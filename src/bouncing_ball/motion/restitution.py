@@ -1,14 +1,14 @@
 """Impacts with a restitution coefficient: flight, impact, chattering, sticking.
 
-An impact turns δ′ into ``-r δ′`` (Eq. 5). Where the table recedes with less
-than gravity, g = 1 - Λ sin τ > 0, infinitely many ever smaller bounces take a finite
-time. For v = δ′ after an impact, with g growing at the rate ``g′ = -Λ cos τ``, it is
+An impact turns δ′ into ``-r δ′`` (Eq. 5). While the relative gravity g = 1 - Λ sin τ is
+positive, infinitely many ever smaller bounces take a finite time T. Let v be δ′ after an impact,
+and ``g′ = -Λ cos τ`` the rate of change of g. Then ::
 
     T = T₀ (1 - g′ T₀/(3g) + ...),    T₀ = 2v/(g (1 - r))
 
 This sum replaces the bounces once Λ T₀ and T₀ are below 10⁻⁵ g, where the
-next term is below 10⁻¹⁵. The ball then sticks to the table until it lifts off,
-at Λ sin τ = 1 on the way up; for Λ ≤ 1 it stays.
+next term is below 10⁻¹⁵. The ball then sticks to the table until it lifts off
+when Λ sin τ rises through 1; for Λ ≤ 1 it never lifts off.
 """
 
 from dataclasses import dataclass
@@ -23,27 +23,27 @@ from bouncing_ball.motion.landing import Flight
 from bouncing_ball.motion.rest import lifted, pressed, stay
 from bouncing_ball.motion.tangent import Deviation, Jacobian
 
-# Λ T₀/g and T₀/g below which chattering is summed up.
+# Bound of Λ T₀/g and T₀/g below which chattering is summed up.
 _CHATTER = 1e-5
-# A time below rounding is not resolved either, where g is tiny (Λ next to 1).
+# Where g is tiny (Λ near 1), chattering is also summed up if T₀ is below rounding.
 _INSTANT = np.finfo(float).eps
 
 
 @dataclass(frozen=True, repr=False)
 class RestitutionDynamics(Dynamics):
-    """Impacts and flights of the restitution model; ``law`` is r, or a law r(v)."""
+    """Impacts and flights of the restitution model; ``law`` is a number r or a law r(v)."""
 
     forgets: ClassVar[bool] = True
 
     def depart(self, impact: Impact) -> Departure:
-        """The flight after each impact, or the rest on the table after the last one."""
+        """The flight after each impact, or the rest on the table after chattering."""
         r, amplitude = self.law, self.amplitude
         if isinstance(r, RestitutionLaw):
             r = r.restitution(np.maximum(-impact.velocity, np.finfo(float).tiny))
         velocity = -r * impact.velocity
         x, y = table(impact.phase, amplitude)
         gravity, down = 1 - y, pressed(x, y)
-        # T₀ is not used where the table recedes faster than the ball falls, or for r = 1.
+        # T₀ has no meaning where the relative gravity is not positive, or for r = 1.
         loss = gravity * (1 - r)
         usable = down & (loss > 0)
         total = np.where(usable, 2 * velocity, 0.0) / np.where(usable, loss, 1.0)
@@ -64,7 +64,7 @@ class RestitutionDynamics(Dynamics):
     ) -> Jacobian:
         """Derivative of the map over impact and flight.
 
-        It is zero where the ball sticks, because its later motion does not depend on either.
+        It is zero if the ball sticks, because its later motion does not depend on the impact.
         """
         slope = rebound(self.law, np.maximum(-impact.velocity, np.finfo(float).tiny))[1]
         none, free = np.zeros_like(passed), np.where(self.sticks(impact, departure), 0.0, 1.0)
@@ -72,5 +72,5 @@ class RestitutionDynamics(Dynamics):
         return self.landed(released, departure, after, passed)
 
     def sticks(self, impact: Impact, departure: Departure) -> np.ndarray:
-        """Whether the ball leaves by lift-off."""
+        """Whether the ball leaves by lift-off after a rest on the table."""
         return lifted(departure, self.amplitude)

@@ -1,19 +1,19 @@
-r"""Flight after a release by vanishing force, below the table's level.
+r"""Flight below the table's level, after a release by vanishing force.
 
-With a release by force the ball is released at δ_b < 0, rising, where the grip vanishes:
-y = δ + κ δ′ = 0 for the laws with a lag κ. In free flight y first rises from 0. Either δ
-reaches 0 first, and the flight ends with a landing like any other; or y falls back to 0
-while δ < 0, and the contact resumes there, at δ < 0 and with the ball still rising.
+Such a release has δ_b < 0 and a rising ball: the grip vanishes, which is y = δ + κ δ′ = 0 for the
+laws with a lag κ. In the free flight y first rises from 0. Either δ reaches 0 first, and the
+flight ends with a landing as usual, or y falls back to 0 while δ < 0. The contact then resumes
+at δ < 0, while the ball is still rising.
 
-Most balls leave fast: with G = 1 + Λ the strongest relative gravity,
+Most balls leave fast. With G = 1 + Λ, the strongest relative gravity, the conditions ::
 
     v² + 2Gδ_b > 0   and   √(v² + 2Gδ_b) ≥ κ G
 
-are sufficient for δ to reach 0 while y increases. Only the other balls are
-followed, by the same certified steps. A ball that meets no force when it lands, because the load
-pulls it, is followed in the same way while it sinks. If a law has no lag, κ follows from the slopes
-of its grip at the release, and the grip of slow balls is sampled until they are out of the table;
-it is not certified that the grip does not return between two samples.
+are sufficient for δ to reach 0 while y increases. The other balls are followed by the certified
+steps of :mod:`bouncing_ball.motion.first_zero`. A ball that meets no force at p = 0, because the
+load pulls it, is followed in the same way while it sinks. If a law has no lag, κ follows from the
+slopes of its grip at the release, and the grip of slow balls is sampled until they are above the
+table; a return of the grip between two samples would be missed.
 """
 
 import numpy as np
@@ -22,13 +22,13 @@ from bouncing_ball.contacts.contact_law import ContactLaw, slopes_of
 from bouncing_ball.motion.first_zero import Motion, State, first_zero
 from bouncing_ball.motion.landing import Flight, Rise
 
-# Samples of the grip of a slow ball, and bisections of its return.
+# Number of samples of the grip of a slow ball, and of bisections for the time of its return.
 _SAMPLES = 65
 _BISECTIONS = 60
 
 
 class _Unloaded(Motion):
-    """The motion -y in free flight, which ends where δ ≥ 0."""
+    """The motion -y in free flight; the search ends where δ ≥ 0."""
 
     def __init__(self, flight: Flight, lag):
         self.flight, self.lag = flight, lag
@@ -37,17 +37,17 @@ class _Unloaded(Motion):
     def __call__(self, time: np.ndarray) -> State:
         lag, forcing = self.lag, self.forcing
         displacement, rate, second, third = self.flight.gap(time)
-        # y is exactly zero at the release, which must not count as the zero that is looked for.
+        # At the release y = 0 but for rounding; this zero is not the one that is searched for.
         y = np.where(time == 0, 0.0, displacement + lag * rate)
-        # The fourth derivative of δ is minus that of the table.
+        # The fourth derivative of δ is minus that of the table: δ⁗ = -Λ sin τ = -(1 + δ″).
         falls = -(rate + lag * second), -(second + lag * third), -(third - lag * (1 + second))
         return State(-y, *falls, 1 + forcing, forcing, forcing, displacement >= 0)
 
 
 def resumption(flight: Flight, law: ContactLaw) -> tuple[np.ndarray, np.ndarray]:
-    """A time before which released balls have certainly not landed, and whether they are held then.
+    """A time before which released balls have certainly not landed, and whether contact resumes.
 
-    A ball that is held again at this time resumes its contact.
+    If a ball's contact resumes, it does so at this time.
     """
     time, resumed = flight.sure(), np.zeros(flight.velocity.shape, dtype=bool)
     if np.any(law.lag != 0):
@@ -60,13 +60,13 @@ def resumption(flight: Flight, law: ContactLaw) -> tuple[np.ndarray, np.ndarray]
 
 
 def _leaves_fast(flight: Flight, law: ContactLaw) -> np.ndarray:
-    """Whether δ certainly reaches 0 before the force can return."""
+    """Whether δ certainly reaches 0 before the grip can return."""
     lag, late = law.lag, 0.0
     if lag is None:
         state = -flight.displacement, -flight.velocity
         slopes = slopes_of(law.grip, *state)
         lag = slopes.by_rate / slopes.by_penetration
-        # A grip that knows the load changes with it too, by Λ a unit of time at most.
+        # A grip that depends on the load also changes with it; |a′| is at most Λ.
         late = (law.loaded_grip(*state, 1.0) - law.loaded_grip(*state, 0.0)) / slopes.by_penetration
     inside, table = flight.room(), flight.amplitude
     return (
@@ -77,13 +77,13 @@ def _leaves_fast(flight: Flight, law: ContactLaw) -> np.ndarray:
 
 
 def _certified(flight: Flight, law: ContactLaw) -> tuple[np.ndarray, np.ndarray]:
-    """The time at which y falls back to 0 or δ reaches 0, and whether it is the former."""
+    """The time at which y falls back to 0 or δ reaches 0, and whether y falls back first."""
     found = first_zero(_Unloaded(flight, law.lag), np.zeros_like(flight.velocity))
     return found.time, ~found.ended
 
 
 def _sampled(flight: Flight, law: ContactLaw) -> tuple[np.ndarray, np.ndarray]:
-    """The time at which the grip returns or δ reaches 0, and whether it is the former."""
+    """The time at which the grip returns or δ reaches 0, and whether the grip returns first."""
 
     def held(time):
         displacement, rate, second, _ = flight.gap(time)
@@ -93,13 +93,13 @@ def _sampled(flight: Flight, law: ContactLaw) -> tuple[np.ndarray, np.ndarray]:
     share = np.linspace(0, 1, _SAMPLES)[1:-1, np.newaxis]
     now = held(share * rise.time)
     found = now.any(axis=0)
-    # The first sample that is held, and the one before it.
+    # The first sample with a positive grip, and the sample before it.
     right = np.where(found, share[now.argmax(axis=0), 0], 1.0) * rise.time
     left = np.maximum(right - rise.time / (_SAMPLES - 1), 0.0)
     for _ in range(_BISECTIONS):
         middle = (left + right) / 2
         now = held(middle)
         left, right = np.where(now, left, middle), np.where(now, middle, right)
-    # A ball that falls back into the table is held at its highest point at the latest.
+    # For a ball that falls back before it reaches δ = 0 the grip returns at its top at the latest.
     back = found | rise.ended | (rise.rate <= 0)
     return np.where(back, right, rise.time), back

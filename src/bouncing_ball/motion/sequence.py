@@ -29,9 +29,10 @@ class Status(IntEnum):
 
 
 class Cycle(NamedTuple):
-    """The next impact: phase in [-π, π], relative velocity δ′ ≤ 0, δ, and the time until it.
+    """The next impact: its phase in [-π, π], δ′, δ, and the time until it.
 
-    The state is NaN and the time infinite after a contact that never ends.
+    δ = 0 and δ′ ≤ 0, except where a contact resumes at δ < 0 with δ′ > 0. After a contact that
+    never ends the state is NaN and the time infinite.
     """
 
     phase: np.ndarray
@@ -42,10 +43,10 @@ class Cycle(NamedTuple):
 
 @dataclass(frozen=True, repr=False)
 class ImpactSequence:
-    """Impacts in order, shape (impacts, ...) with one entry per ball behind.
+    """Impacts in order: arrays of shape (impacts, ...), where ... is the shape of the balls.
 
-    An impact is the start of a contact. After a contact that does not end the
-    rows are NaN. Everything is dimensionless, and relative means relative to
+    An impact is the start of a contact. The rows after a contact that does not end
+    are NaN. Everything is dimensionless, and "relative" means relative to
     the table.
 
     Parameters
@@ -53,15 +54,15 @@ class ImpactSequence:
     amplitude : array
         Λ of each ball.
     contact : ContactLaw or None
-        The contact's law, or None where an impact is an instant.
+        The contact law, or None if impacts are instantaneous.
     time, phase : array
         Time of the impact since the first one, and the table's phase, in [-π, π].
     displacement, relative_velocity : array
         δ and δ′ at the impact. δ = 0, except where a contact that ended by its
         force resumes below the table's level, with δ′ > 0.
     contact_duration : array
-        Time until the ball leaves; 0 for an impact with a restitution coefficient
-        unless the ball sticks; infinite for permanent contact.
+        Time until the ball leaves. It is 0 for an impact with a restitution coefficient
+        unless the ball sticks, and infinite for permanent contact.
     release_displacement, relative_bounce_velocity : array
         δ and δ′ when the ball leaves.
     status : array of int
@@ -94,7 +95,7 @@ class ImpactSequence:
         return "\n".join([head, *values])
 
     def __getitem__(self, balls: Any) -> Self:
-        """The impacts of one of the balls, or of some, along their first axis.
+        """The impacts of some of the balls, by an index along the first axis of the balls.
 
         Examples
         --------
@@ -109,7 +110,7 @@ class ImpactSequence:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """The shape of the balls, without that of the impacts."""
+        """The shape of the balls, without the axis of the impacts."""
         return self.status.shape
 
     @property

@@ -20,7 +20,7 @@ from bouncing_ball.motion.restitution import RestitutionDynamics
 from bouncing_ball.motion.sequence import RECORDED, Cycle, ImpactSequence, Status
 
 Law = ContactLaw | Signature | RestitutionLaw | ArrayLike
-"""A contact's law, its signature, or the restitution coefficient, a law r(v) or a number."""
+"""A contact law, the signature of one, or a restitution coefficient: a law r(v) or numbers r."""
 
 # Rounding may give a ball at rest on the table a small upward velocity.
 _ROUNDING = 8 * np.finfo(float).eps
@@ -42,7 +42,7 @@ def _dynamics(law: Law, amplitude: ArrayLike) -> Dynamics:
 
 
 def in_a_row(law: Law, amplitude: ArrayLike, *states: ArrayLike):
-    """The dynamics and the states of balls in a row, and the shape of all of them.
+    """The dynamics and the states of balls, flattened, and the shape to which they broadcast.
 
     Raises
     ------
@@ -58,7 +58,7 @@ def in_a_row(law: Law, amplitude: ArrayLike, *states: ArrayLike):
 def first_impacts(
     law: Law, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike
 ) -> tuple[Dynamics, np.ndarray, np.ndarray, tuple[int, ...]]:
-    """The dynamics of balls in a row, φ and δ′ ≤ 0 of their first impacts, and their shape.
+    """The dynamics of balls, and φ and δ′ ≤ 0 of their first impacts, flattened; and their shape.
 
     Raises
     ------
@@ -82,20 +82,21 @@ def simulate(
     Parameters
     ----------
     law : ContactLaw, Signature, RestitutionLaw or array_like
-        The contact with its duration; or its signature, for the corrected model; or r, a law
-        or a number in (0, 1]. Arrays of parameters have one entry per ball.
+        The contact law, for contacts of finite duration; its signature, for the corrected model;
+        or the restitution coefficient, a law r(v) or a number in (0, 1]. Arrays of parameters have
+        one entry per ball.
     amplitude : array_like
         Λ ≥ 0.
     phase, velocity : array_like
-        Table phase φ and absolute velocity z′_i of the ball at the first impact, before it.
+        The table's phase φ and the absolute velocity z′_i of the ball just before the first impact.
     impacts : int
-        Rows of the result, for every ball that does not stay on the table. The bounces that
-        are summed up before a ball sticks are not rows.
+        Number of impacts to compute. The bounces that are summed up before a ball sticks are not
+        counted. Balls that remain on the table have fewer impacts.
 
     Returns
     -------
     ImpactSequence
-        With the broadcast shape of the arguments behind the rows.
+        Its rows have the shape to which the arguments broadcast.
 
     Raises
     ------
@@ -104,7 +105,7 @@ def simulate(
 
     Examples
     --------
-    An elastic ball on a stiff table at rest keeps its speed, and with r = 1/2 it has half:
+    On a table at rest an undamped contact preserves the speed, and r = 1/2 halves it:
 
     >>> simulate(SpringDamper(100.0, 0.0), 0.0, 0.0, -2.0, 3).impact_velocity.round(13).tolist()
     [-2.0, -2.0, -2.0]
@@ -127,7 +128,7 @@ def simulate(
 
 
 def _run(dynamics: Dynamics, impact: Impact, rows: list[np.ndarray], status: np.ndarray) -> None:
-    """Fill the rows of one block, impact by impact."""
+    """Fill the rows and the status of one block of balls, impact by impact."""
     time = np.zeros_like(impact.phase)
     alive: Any = slice(None)
     impacts = len(rows[0])
@@ -151,23 +152,23 @@ def _run(dynamics: Dynamics, impact: Impact, rows: list[np.ndarray], status: np.
 def next_impact(
     law: Law, amplitude: ArrayLike, phase: ArrayLike, relative_velocity: ArrayLike
 ) -> Cycle:
-    """The Poincaré map: from one impact (φ, δ′) to the next, with the arguments' shape.
+    """The Poincaré map from one impact (φ, δ′) to the next, for arguments that broadcast.
 
     Parameters
     ----------
     law, amplitude
         As in :func:`simulate`.
     phase, relative_velocity : array_like
-        Table phase φ and δ′ ≤ 0 of the ball at an impact, before it.
+        The table's phase φ and the ball's δ′ ≤ 0 just before an impact.
 
     Raises
     ------
     ModelError
-        If r or Λ is outside its range, or if a flight is too long for floating point.
+        If r or Λ is outside its range, or if a flight is too long for floating-point numbers.
 
     Examples
     --------
-    On a table at rest an undamped ball returns with the velocity it came with:
+    On a table at rest a ball whose contact is undamped returns with the same velocity:
 
     >>> from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
     >>> cycle = next_impact(HuntCrossley(1e6, 0.0), 0.0, 0.0, -2.0)

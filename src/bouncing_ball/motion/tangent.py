@@ -1,13 +1,13 @@
 """Growth of small deviations of a ball from one impact to the next.
 
-A deviation (dφ, dδ, dδ′) is carried by the linearised flow of a flight or of a contact, and
-then along the motion to the next event, ``δ + κ δ′ = 0``. This is the landing with κ = 0; the
-release or the resumption of a contact by its force with the lag κ; and with κ = -dh/dv the
-instant of the corrected model at the depth h(v). On such a section ``dδ = -κ dδ′``, which leaves
-two numbers, (dφ, dδ′).
+A deviation (dφ, dδ, dδ′) is mapped by the linearised flow of a flight or of a contact, and then
+along the motion to the next event, ``δ + κ δ′ = 0``. For κ = 0 the event is a landing; for κ equal
+to the lag of a contact it is the release or the resumption of this contact; and for κ = -dh/dv it
+is the instant of the corrected model at the depth h(v). On such a section ``dδ = -κ dδ′``, so that
+the two numbers (dφ, dδ′) remain.
 
-The flow of a flight depends on the table at its two ends only. With X = Λ cos φ, Y = Λ sin φ, and
-the index 1 for the end after a time T::
+The derivative of the flow of a flight depends only on the table's state at the two ends. With
+X = Λ cos φ, Y = Λ sin φ, and the index 1 for the end after a time T::
 
     ∂δ/∂φ = X - X₁ - Y T,    ∂δ′/∂φ = Y₁ - Y,    ∂δ/∂δ′ = T
 """
@@ -18,23 +18,24 @@ import numpy as np
 
 
 class Deviation(NamedTuple):
-    """The deviations dφ, dδ and dδ′, with an entry per ball."""
+    """The deviations dφ, dδ and dδ′, arrays with one entry per ball."""
 
     phase: np.ndarray
     displacement: np.ndarray
     velocity: np.ndarray
 
     def to_event(self, velocity, acceleration, lag) -> Self:
-        """The deviation at the event δ + κ δ′ = 0, where the motion has δ′ and δ″."""
+        """The deviation at the event δ + κ δ′ = 0, at which the motion has δ′ and δ″."""
         missing = self.displacement + lag * self.velocity
         later = -missing / (velocity + lag * acceleration)
         place, pace = self.displacement + velocity * later, self.velocity + acceleration * later
         return type(self)(self.phase + later, place, pace)
 
     def flown(self, start, end, time, velocity, lag) -> Self:
-        """The deviation at the next event, after a flight with the table's (X, Y) at its ends.
+        """The deviation at the event that ends a flight.
 
-        ``time`` is the time of flight, ``velocity`` δ′ at the event and ``lag`` its κ.
+        ``start`` and ``end`` are the table's (X, Y) at both ends of the flight, ``time`` is its
+        duration, ``velocity`` is δ′ at the event, and ``lag`` is κ.
         """
         (x, y), (x1, y1) = start, end
         fall = self.displacement + self.velocity * time + self.phase * (x - x1 - y * time)
@@ -43,7 +44,7 @@ class Deviation(NamedTuple):
 
 
 class Jacobian(NamedTuple):
-    """∂(φ₁, δ′₁)/∂(φ, δ′), row by row, with an entry per ball."""
+    """The matrix ∂(φ₁, δ′₁)/∂(φ, δ′), row by row, as arrays with one entry per ball."""
 
     a: np.ndarray
     b: np.ndarray
@@ -57,7 +58,7 @@ class Jacobian(NamedTuple):
 
     @classmethod
     def identity(cls, balls: int) -> Self:
-        """The identity for so many balls."""
+        """The identity matrix for each of this number of balls."""
         one, zero = np.ones(balls), np.zeros(balls)
         return cls(one, zero, zero.copy(), one.copy())
 
@@ -72,7 +73,7 @@ class Jacobian(NamedTuple):
         return Jacobian(a, b, c, d)
 
     def spectral_radius(self) -> np.ndarray:
-        """Modulus of the larger multiplier.
+        """The larger modulus of the two multipliers, which are the eigenvalues of the matrix.
 
         Examples
         --------
@@ -87,7 +88,7 @@ class Jacobian(NamedTuple):
     def to_fixed_point(
         self, phase: np.ndarray, velocity: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Newton's step (I - M)⁻¹ (φ₁ - φ, δ′₁ - δ′) from a state to the orbit next to it."""
+        """Newton's step to a fixed point: (I - M)⁻¹ applied to (φ₁ - φ, δ′₁ - δ′)."""
         a, d = 1 - self.a, 1 - self.d
         det = a * d - self.b * self.c
         return (d * phase + self.b * velocity) / det, (self.c * phase + a * velocity) / det

@@ -1,19 +1,19 @@
-"""Height and received power of a ball in a spring-damper contact, integrated in closed form.
+"""Integrals of a ball's height and of the power it receives, over contacts and flights.
 
 The work of the table w = Λ sin τ on a ball is, per unit of mass, ::
 
     ∫ (z″ + 1) w′ dτ = [z′ w′ + w] + ∫ z′ w dτ
 
-because w″ = -w. In a linear contact ϖ² δ = w - 1 - δ″ - l δ′ with l = 2ζϖ. Integrated by parts this
+because w″ = -w. In a linear contact ϖ² δ = w - 1 - δ″ - l δ′ with l = 2ζϖ. Integration by parts
 gives ::
 
     ϖ² ∫ δ dτ = -[w′ + δ′ + l δ] - D
     (ϖ² - 1) I + l J = [w²/2 - w - δ′ w′ - δ w - l δ w′],                 I = ∫ δ w′ dτ
     (ϖ² - 1) J - l I = Λ² D/2 + [w′ - w w′/2 - δ′ w + δ w′ - l δ w],      J = ∫ δ w dτ
 
-The work is none in a flight, and in the mean over a long time it is what the contacts dissipate. At
-an instantaneous impact it is the impulse times w′, and while a ball rests on the table it is the
-integral of (1 - w) w′.
+The table does no work in a flight. Over a long time its mean work equals the mean dissipation of
+the contacts. At an instantaneous impact the work is the impulse times w′, and while a ball rests on
+the table it is the integral of (1 - w) w′.
 """
 
 from typing import Any
@@ -26,7 +26,7 @@ from bouncing_ball.motion.angles import table
 
 
 def change(values: np.ndarray) -> np.ndarray:
-    """The difference of the values at the end and at the start of a contact."""
+    """The value at the end of a contact minus the value at its start."""
     return values[1] - values[0]
 
 
@@ -47,7 +47,7 @@ def over_contact(
 
     Examples
     --------
-    On a table at rest z = δ, and no power is received:
+    On a table at rest z = δ, and the table does no work:
 
     >>> law, still = SpringDamper(2.0, 0.0), np.zeros((2, 1))
     >>> gap, rate = np.array([[0.0], [0.0]]), np.array([[-1.0], [1.0]])
@@ -75,12 +75,12 @@ def over_steps(
     flown: Any,
     inside: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The integral ∫ z dτ and the work of the table over contacts and the flights after them.
+    """The integral ∫ z dτ and the work of the table, over contacts and the flights after them.
 
     Parameters
     ----------
     law : SpringDamper or None
-        None where an impact is an instant, and a contact that lasts is a rest on the table.
+        None if impacts are instantaneous; a contact with a duration is then a rest on the table.
     amplitude, duration : array_like
         Λ and the duration D of the contacts.
     phase, gap, rate : array, shape (2, ...)
@@ -88,7 +88,7 @@ def over_steps(
     flown : array_like
         The duration of the flights.
     inside : tuple of array, optional
-        ∫ z dτ and ∫ z′ w dτ over the contacts of another law.
+        ∫ z dτ and ∫ z′ w dτ over the contacts, for a law other than a spring-damper.
 
     Examples
     --------

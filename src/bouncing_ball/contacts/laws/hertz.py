@@ -1,4 +1,4 @@
-"""Base class of the laws of a ball: Hertz' stiffness, and a number for the damping."""
+"""Base class of the contact laws of a sphere: Hertz' stiffness and a damping parameter."""
 
 from abc import abstractmethod
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from bouncing_ball.contacts.contact_law import ContactLaw, Unit, check_damping, 
 
 @dataclass(frozen=True, repr=False)
 class Hertz(ContactLaw):
-    """``f = K p^{3/2}`` and a damping.
+    """``f = K p^ν`` plus a damping force, by default with Hertz' power ν = 3/2.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ class Hertz(ContactLaw):
         check_damping(self.damping, "damping C")
 
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """f(p, p′) as a function of the root q = p^{1/m}, in which it is a polynomial."""
+        """f(p, p′), by :meth:`root_force`, which is a polynomial in the root q = p^{1/m}."""
         root = np.sqrt(penetration)
         return self.root_force(np.sqrt(root) if self.root == 4 else root, rate)
 

@@ -1,7 +1,7 @@
 r"""Hertz contact with Hunt and Crossley's damping.
 
 ``f = K p^{3/2} (1 + C p′)``, released at p = 0, where the force vanishes too. The force never
-pulls, because a free ball leaves with p′ > -1/C. The restitution coefficient
+pulls a free ball, because the ball leaves with p′ > -1/C. The restitution coefficient
 depends on C v alone and falls with the speed, as 1 - (2/3) C v for a slow impact.
 
 Physical parameters: a ball of mass m on a plane with the force
@@ -55,9 +55,9 @@ class HuntCrossley(Hertz):
 
 @dataclass(frozen=True, repr=False)
 class LinearHuntCrossley(HuntCrossley):
-    """A linear spring with this damping, as Drake's point contact has it.
+    """A linear spring with Hunt and Crossley's damping, as in Drake's point contact.
 
-    The power of p does not enter the restitution coefficient.
+    The restitution coefficient does not depend on the power of p.
 
     Parameters
     ----------

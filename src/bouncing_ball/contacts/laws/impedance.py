@@ -1,4 +1,4 @@
-r"""MuJoCo's contact, whose impedance d(p) scales the load on the ball and, if it varies, the force.
+r"""MuJoCo's contact: its impedance d(p) scales the load on the ball and, if d varies, the force.
 
 MuJoCo gives a contact the acceleration ``a₁ = (1 - d) a₀ - d (b v + k x)``, with a₀ that of all
 other forces, x = -p, and from a direct ``solref`` ``b = 2ζϖ/d_max``, ``k = ϖ² d/d_max²``. With
@@ -14,15 +14,15 @@ of the midpoint c, ::
 for x ≤ c and c ≤ x ≤ 1. Its slope or curvature has steps at p = cW and p = W, which count as kinks
 of the force. The ball is released where the force vanishes, or where p = 0 if that comes first.
 
-If d is constant, s = 1, and d affects the load alone. Without load the impact is then that of the
-spring-damper with its force release, with the same t_c, r and D. A load a moves the ball in contact
-by the share 1 - d of its effect on the spring-damper. At the release, where p + κ p′ = -d a/ϖ², the
-acceleration without load is zero, so that ∂p′_e/∂a is also 1 - d of that of the spring-damper,
-whereas the flights outside feel all of a. Hence, with κ = 2ζ/ϖ, ::
+If d is constant, s = 1, and d scales the load only. Without load the impact is then that of the
+spring-damper with its force release, with the same t_c, r and D. The effect of a load a on the ball
+in contact is 1 - d times that on the spring-damper. At the release, where p + κ p′ = -d a/ϖ², the
+acceleration without load is zero, so that ∂p′_e/∂a is also 1 - d times that of the spring-damper,
+whereas the whole load acts during the flights. Hence, with κ = 2ζ/ϖ, ::
 
     σ_d = (1 - r) D - (2 - d) κ r = σ + d κ r
 
-and a steady contact without a flight needs both p and the force to stay positive ::
+In a steady contact without a flight both p and the force remain positive, which requires ::
 
     Λ ≤ |ϖ² - 1 + 2iζϖ| / max(ϖ², |ϖ² - d + 2iζϖ|)
 
@@ -93,7 +93,7 @@ class Impedance(ContactLaw):
     feels_load: ClassVar[bool] = True
 
     def __post_init__(self):
-        # The spring-damper checks the ranges of ϖ and ζ.
+        # The signature of the spring-damper exists only if ϖ and ζ are in their ranges.
         _ = self._spring.signature
         if self.at_surface is None:
             object.__setattr__(self, "at_surface", self.share)
@@ -124,24 +124,24 @@ class Impedance(ContactLaw):
         return np.where(self._varies, ends, 1.0)
 
     def impedance(self, penetration: np.ndarray) -> np.ndarray:
-        """d(p)."""
+        """The impedance d(p), of the shape of p."""
         if not self.has_kink:
             return self.share + 0 * penetration
         x = np.minimum(np.maximum(penetration / self.width, 0.0), 1.0)
-        # Both sides of the midpoint have one formula, from their ends.
+        # One formula serves both sides of the midpoint, with x counted from the end of each side.
         low = np.real(x) < self.midpoint
         end, side = np.where(low, x, 1 - x), np.where(low, self.midpoint, 1 - self.midpoint)
         y = end * (end / side) ** (self.power - 1)
         return self.at_surface + (self.share - self.at_surface) * np.where(low, y, 1 - y)
 
     def _part(self, penetration: np.ndarray) -> np.ndarray:
-        """s = d/d_max."""
+        """The ratio s = d/d_max, of the shape of p."""
         if not self.has_kink:
             return np.ones_like(penetration)
         return np.where(self._varies, self.impedance(penetration) / self.share, 1.0)
 
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """s (ϖ² s p + 2ζϖ p′), the force over the weight without the share d of the load."""
+        """s (ϖ² s p + 2ζϖ p′), the force over the weight without the part d a due to the load."""
         s = self._part(penetration)
         return s * self._spring.force(s * penetration, rate)
 
@@ -168,7 +168,7 @@ class Impedance(ContactLaw):
 
     @property
     def permanent_contact(self) -> Any:
-        """Λ up to which a steady contact never releases the ball; None if d varies."""
+        """The largest Λ at which a steady contact never releases the ball; None if d varies."""
         if self.has_kink:
             return None
         omega, zeta = np.asarray(self.frequency_ratio), np.asarray(self.damping_ratio)
@@ -178,11 +178,11 @@ class Impedance(ContactLaw):
 
     @classmethod
     def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
-        """The law with ϖ = v/P and ζ = group, and a constant d of 0.95."""
+        """The law with ϖ = v/P, ζ = group and the constant d = 0.95."""
         ratio = np.asarray(speed, dtype=float) / np.asarray(length, dtype=float)
         return cls(ratio, group + 0 * ratio)
 
     @classmethod
     def group_of(cls, restitution: float) -> float:
-        """ζ of a restitution coefficient r in (e⁻², 1], with the force release."""
+        """ζ that gives a restitution coefficient r in (e⁻², 1] with the force release."""
         return float(damping_ratio(restitution, Release.FORCE))

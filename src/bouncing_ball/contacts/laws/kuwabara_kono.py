@@ -1,12 +1,12 @@
 r"""Viscoelastic Hertz contact, of Kuwabara and Kono, and of Brilliantov et al.
 
-``f = K (p^{3/2} + C √p p′)``, released where the force vanishes, p + C p′ = 0: the
-surfaces do not adhere, and the ball leaves the still deformed contact. The
+``f = K (p^{3/2} + C √p p′)``, released where the force vanishes, p + C p′ = 0, because the
+surfaces do not adhere; the contact is still deformed when the ball leaves. The
 restitution coefficient depends on C v^{1/5} K^{2/5} alone and falls with the speed, as
 1 - 1.15 C K^{2/5} v^{1/5} for a slow impact.
 
-Physical parameters: a ball of mass m with the force ``k (x^{3/2} + (3/2) A √x ẋ)``
-of a dissipative time A has ``K = k √g/(m Ω³)`` and ``C = (3/2) A Ω``.
+Physical parameters: a ball of mass m with the force ``k (x^{3/2} + (3/2) A √x ẋ)``, where A is
+a time that describes the dissipation, has ``K = k √g/(m Ω³)`` and ``C = (3/2) A Ω``.
 
 Sources: G. Kuwabara and K. Kono, Japanese Journal of Applied Physics 26 (1987)
 1230-1233, as quoted by the CGNS standard (``HertzKuwabaraKono``; the last page from
@@ -54,7 +54,7 @@ class KuwabaraKono(Hertz):
 
     @property
     def lag(self) -> float | np.ndarray:
-        """C, because the force vanishes together with p + C p′."""
+        """C, because the force vanishes where p + C p′ = 0."""
         return self.damping
 
     @staticmethod

@@ -1,4 +1,4 @@
-r"""Hertz contact with Tsuji's damping, as codes for granular matter use it.
+r"""Hertz contact with Tsuji's damping, which codes for granular matter use.
 
 ``f = K p^{3/2} + C √K p^{1/4} p′``, released at p = 0. With q = p^{5/4} and
 ds = p^{1/4} dt a free impact is linear, ::
@@ -6,7 +6,7 @@ ds = p^{1/4} dt a free impact is linear, ::
     d²q/ds² + C √K dq/ds + (5/4) K q = 0
 
 so that the restitution coefficient does not depend on the speed, and
-``C = √5 (-ln r)/√(π² + ln² r)`` exactly; with C ≥ √5 the ball does not leave.
+``C = √5 (-ln r)/√(π² + ln² r)`` exactly; for C ≥ √5 the ball does not leave.
 
 Physical parameters: a ball of mass m with the force ``k x^{3/2} + α √(m k) x^{1/4} ẋ``
 has ``K = k √g/(m Ω³)`` and C = α.
@@ -14,9 +14,9 @@ has ``K = k √g/(m Ω³)`` and C = α.
 Sources: Y. Tsuji, T. Tanaka and T. Ishida, Powder Technology 71 (1992) 239-250, as
 quoted by LAMMPS (``pair_style granular``); D. Antypov and J. A. Elliott, *On an
 analytical solution for the damped Hertzian spring*, Europhysics Letters 94 (2011)
-50004, as quoted by Yade (``doc/references.bib``, and the formula with its Eq. 17 in
-the sources). Y. T. Feng, arXiv:2603.27764 (2026), has the same change of variable
-and the formula for any power (abstract read).
+50004, as quoted by Yade (``doc/references.bib``; its sources give the formula as Eq. 17).
+Y. T. Feng, arXiv:2603.27764 (2026), gives the same change of variable
+and the formula for any power (only its abstract was read).
 """
 
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ from bouncing_ball.errors import require
 
 
 def tsuji_damping(restitution: ArrayLike) -> np.ndarray:
-    """C of a restitution coefficient r in (0, 1], ``√5 (-ln r)/√(π² + ln² r)``; r is not checked.
+    """``C = √5 (-ln r)/√(π² + ln² r)`` for r in (0, 1]; the range of r is not checked.
 
     Examples
     --------
@@ -78,5 +78,5 @@ class Tsuji(Hertz):
 
     @classmethod
     def group_of(cls, restitution: float) -> float:
-        """C of a restitution coefficient r in (0, 1]."""
+        """C that gives a restitution coefficient r in (0, 1]."""
         return float(tsuji_damping(restitution))

@@ -1,0 +1,54 @@
+"""Our statements about the whole motion on the accepted datasets, and on false ones."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.claims import whole_motion
+from bouncing_ball.claims.claim import defined_in
+from bouncing_ball.claims.ledger import statements
+from bouncing_ball.claims.verdict import decided
+from bouncing_ball.datasets.files import rows_beside
+
+# A false value of what decides a statement that is no row of the table.
+FALSE = {
+    "cascade moves as a whole": ("ext_cascades", "cascade_coefficient", [1, 2] * 3),
+    "end of the first order": ("ext_cascades", "cascade_error", 0.1),
+    "corrected cascades": ("ext_cascades", "cascade_second_order", 1.0),
+    "feigenbaum": ("ext_cascades", "contact_cascade_ratio", 4.5),
+    "measured doublings": ("ext_cascades", "restitution_cascade", 1.5),
+    "longer transients": ("ext_locked", "mean_life", 50.0),
+}
+# The bound itself is false for every statement of the table.
+FALSE |= {
+    row["id"]: (row["dataset"], row["variable"], float(row["bound"]))
+    for row in rows_beside(whole_motion.__file__)
+}
+CLAIMS = {one.id: one for one in defined_in(whole_motion)}
+
+
+@pytest.fixture(scope="module")
+def data(recorded, table):
+    return {name: recorded[name] for name in table["statements"]["reads"]}
+
+
+def test_the_statements_on_the_accepted_datasets(data, described):
+    found = described(statements(data))
+    open_ones = found.claim[found.verdict == "not decided"].values.tolist()
+    assert open_ones == ["fractal when stiffer", "chaotic for ever"]
+    assert set(found.verdict.values) == {"confirmed", "not decided"}
+    assert np.all(found.low <= found.found) and np.all(found.found <= found.high)
+
+
+@pytest.mark.parametrize("name", CLAIMS)
+def test_a_false_dataset_turns_the_statement(data, name):
+    dataset, variable, value = FALSE[name]
+    whole = data[dataset].copy(deep=True)
+    shape = np.broadcast_to(value, whole[variable].shape)
+    ends = [x for x in ("", "_low", "_high") if f"{variable}{x}" in whole]
+    whole = whole.assign({f"{variable}{x}": (whole[variable].dims, shape) for x in ends})
+    assert CLAIMS[name].decide({**data, dataset: whole}).verdict == "contradicted"
+
+
+def test_a_missing_limit_decides_nothing():
+    assert decided([5, np.nan, 6], above=3).verdict == "not decided"
+    assert decided([5, 4, np.inf], above=3).verdict == "confirmed"

@@ -2,6 +2,7 @@
 # dataset out. workflow/artifacts.yaml says by which study. All values are dimensionless: times Ωt,
 # lengths Ω²y/g, velocities Ωẏ/g, with phases in radians. Figures 1 and 4 are drawn without data.
 
+
 rule shard:
     """The places of a study with `shards` in its parameters, followed by jobs of their own."""
     message:

@@ -15,12 +15,14 @@ from bouncing_ball.contacts.laws.tsuji import Tsuji
 from bouncing_ball.contacts.signature import Signature, free_impact
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.orbits.continued import orbits_at as by_branch
 from bouncing_ball.orbits.continued import restitution_speed
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.law_model import LawModel, law_at_orbit
 from bouncing_ball.orbits.orbit import OBSERVABLES
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
+from bouncing_ball.orbits.spring_damper_limits import orbits_at as by_formula
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import Side
 
@@ -153,3 +155,13 @@ def test_just_above_the_fold_two_orbits_part_as_the_root_of_the_distance(r, dura
     # The next order of the root is smaller by the distance itself.
     assert apart[1] / apart[0] == pytest.approx(10, rel=1e-3)
     assert apart[2] / apart[1] == pytest.approx(10, rel=0.1)
+
+
+@pytest.mark.parametrize(("amplitude", "number"), [(0.9, 3), (3.0, 1)])
+def test_a_branch_that_turns_again_is_followed_to_all_of_its_orbits(amplitude, number):
+    """Also from far above the fold, which is at Λ = 0.18: the closed form has the same orbits."""
+    contact = SpringDamper(2.0, 0.05)
+    found = by_branch(SpringDamperModel(contact), 1, amplitude)
+    known = by_formula(contact, 1, amplitude)
+    assert found.contact_duration.shape == (number,)
+    assert np.abs(found.contact_duration - known.contact_duration).max() < 1e-11

@@ -29,6 +29,7 @@ if found.resolve() != HERE.resolve():
 
 from bouncing_ball.configuration.study import arguments
 from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
+from bouncing_ball.pipeline.atlas import numbered
 from bouncing_ball.pipeline.sources import sources
 
 # Snakemake writes these two lines before every job, and they do not name it.
@@ -62,3 +63,11 @@ def words_before(wildcards):
     templates = (f"{ARTICLE}/{wildcards.table}_{part}.md.j2" for part in ("head", "columns"))
     needed = [*templates, *modules("figures.article.render")]
     return needed if wildcards.table == "claims" else []
+
+
+# The shards that a study merges, if it has several. The dataset is that of one job, byte for byte,
+# and a run that was interrupted goes on with the next shard.
+def shards_of(wildcards):
+    given = arguments(STUDIES[wildcards.artifact], wildcards.artifact, config)
+    names = numbered(given.get("parameters", {}).get("shards", 1))
+    return expand(rules.shard.output.data, shard=names, **wildcards) if len(names) > 1 else []

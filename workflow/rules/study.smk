@@ -2,8 +2,6 @@
 # dataset out. workflow/artifacts.yaml says by which study. All values are dimensionless: times Ωt,
 # lengths Ω²y/g, velocities Ωẏ/g, with phases in radians. Figures 1 and 4 are drawn without data.
 
-from bouncing_ball.pipeline.atlas import numbered
-
 
 rule shard:
     """The places of a study with `shards` in its parameters, followed by jobs of their own."""
@@ -23,13 +21,6 @@ rule shard:
         "results/benchmarks/shards/{artifact}/{shard}.tsv"
     script:
         "../scripts/shard.py"
-
-
-# The dataset is that of one job, byte for byte; a run that was interrupted goes on with the next.
-def shards_of(wildcards):
-    given = arguments(STUDIES[wildcards.artifact], wildcards.artifact, config)
-    names = numbered(given.get("parameters", {}).get("shards", 1))
-    return expand(rules.shard.output.data, shard=names, **wildcards) if len(names) > 1 else []
 
 
 rule study:

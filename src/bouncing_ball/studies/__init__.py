@@ -1,6 +1,6 @@
 """The stages of the pipeline: parameters in, described datasets out.
 
-Each study is a pure function of the parameters of one artifact, as they stand
+Each study is a pure function of the parameters of one artifact, as given
 in the configuration, and of settings of the whole run, such as the release rule. It returns an
 :class:`xarray.Dataset` whose variables and dimensions are those of
 :mod:`bouncing_ball.datasets.variables`, which also gives their symbols and units: everything is

@@ -1,7 +1,8 @@
-"""What balls end on in the three models: over (Λ, r), and over Λ (beyond the paper).
+"""The motions on which balls end in the three models: over (Λ, r), and over Λ (beyond the paper).
 
-Where a motion is chaotic, or lies next to the boundary of a basin, rounding decides after some
-tens of impacts. Datasets therefore hold what a motion is, and means over many impacts.
+If a motion is chaotic, or lies next to the boundary of a basin, rounding errors decide its course
+after some tens of impacts. Datasets therefore contain the kinds of motions, and means over many
+impacts.
 """
 
 from operator import call
@@ -90,8 +91,8 @@ class Locking(Grid):
     impact_speed: Annotated[float, number("relative speed -δ′ of the first impact", gt=0, le=1000)]
 
 
-# A motion repeats within 1e-6 of its state, so that its multipliers are known to about that times
-# the curvature of the map, which is some units.
+# A motion repeats within 1e-6 of its state, so that the error of its multipliers is about 1e-6
+# times the curvature of the map, which is of order one to ten.
 _KNOWN = 1e-5
 
 
@@ -110,14 +111,15 @@ class Diagram(Parameters):
 SIMPLE = ("restitution", "corrected")
 MODELS = (*SIMPLE, "spring-damper")
 LIMITS = ("", "_low", "_high")
-"""Ends of the names of an estimate and of the limits of its interval."""
+"""Suffixes of the names of an estimate and of the two limits of its interval."""
 GROUPS = ("all", "orbit", "subharmonic", "locked", "locked, 1 to 4 T", "locked, above 10 T",
           "chaotic")  # fmt: skip
-"""Nodes by what the ball of the simple model ends on; ``all`` has permanent contact as well."""
+"""Groups of nodes by the motion on which the ball of the simple model ends; ``all`` also contains
+permanent contact."""
 
 
 def models(restitution: np.ndarray, ratio: float | np.ndarray, release: Release) -> tuple:
-    """Restitution, corrected and spring-damper model, with the r that the contact really has."""
+    """Restitution, corrected and spring-damper model with the r of a free impact on the contact."""
     exact, *simple = of_contact(SpringDamper.from_restitution(restitution, ratio, release))
     return *simple, exact
 
@@ -131,9 +133,9 @@ def group(found: Motions, name: str) -> np.ndarray:
 
 
 def share(chosen: np.ndarray, confidence: float) -> tuple[float, float, float, float]:
-    """The number of truth values, the share of those that hold, and Wilson's limits of it.
+    """The number of truth values, the share of those that are true, and its Wilson limits.
 
-    The limits are those of independent values. NaN if there are none.
+    The limits hold for independent values. The share and its limits are NaN if there are no values.
     """
     if not chosen.size:
         return 0, np.nan, np.nan, np.nan
@@ -142,8 +144,10 @@ def share(chosen: np.ndarray, confidence: float) -> tuple[float, float, float, f
 
 
 def with_limits(estimates: dict[str, tuple]) -> dict[str, tuple]:
-    """Variables with their limits, from their dimensions and estimates, which have those, an
-    estimate and its limits along the last axis.
+    """The variables of estimates and of their limits, under names with the suffixes :data:`LIMITS`.
+
+    The values of ``estimates`` are pairs of dimensions and arrays, whose last axis holds an
+    estimate, its lower limit and its upper limit.
     """
     return {
         f"{name}{end}": (dims, np.array(values)[..., k])
@@ -155,8 +159,8 @@ def with_limits(estimates: dict[str, tuple]) -> dict[str, tuple]:
 def agreement(simple: Motions, contact: Motions, confidence: float) -> np.ndarray:
     """Shares of the nodes at which two models have motions of one kind and period.
 
-    Nodes at which one of the motions is undecided are left out. Nodes of a regular grid are spread
-    more evenly than independent ones, for which the limits hold.
+    Nodes at which one of the motions is undecided are left out. The limits hold for independent
+    nodes; the nodes of a regular grid are spread more evenly.
 
     Returns
     -------
@@ -173,12 +177,13 @@ def locking(parameters: Locking, release: Release, follow: Follow = call) -> xr.
 
     ``kind``, ``periods``, ``impacts``, ``lyapunov_exponent`` and ``lyapunov_error`` (model,
     restitution, amplitude) are those of :func:`bouncing_ball.attractors.mapper.label` at the first
-    ϖ, one ball for each node; no error of an exponent is below 1e-5. ``agreement`` (simple,
-    frequency_ratio, motion_group) is the share of nodes at which the contact's ball ends on a
-    motion of the same kind and period as that of the simple model, with ``agreement_low`` and
-    ``agreement_high`` of its Wilson interval, and ``agreement_nodes`` the nodes of the group at
-    which both are known: see :func:`agreement`. ``saddle_node_amplitude`` and
-    ``period_doubling_amplitude`` (model, restitution) are of the 1-T orbit.
+    ϖ, with one ball for each node; the error of an exponent is at least 1e-5. ``agreement``
+    (simple, frequency_ratio, motion_group) is the share of nodes at which the ball of the contact
+    ends on a motion of the same kind and period as the ball of the simple model.
+    ``agreement_low`` and ``agreement_high`` are the limits of its Wilson interval, and
+    ``agreement_nodes`` is the number of nodes of the group at which both motions are known: see
+    :func:`agreement`. ``saddle_node_amplitude`` and ``period_doubling_amplitude`` (model,
+    restitution) are those of the 1-T orbit.
     """
     ratios, level = np.array(parameters.frequency_ratio), parameters.confidence
 
@@ -226,13 +231,13 @@ def locking(parameters: Locking, release: Release, follow: Follow = call) -> xr.
 
 
 def orbit_diagrams(parameters: Diagram, release: Release) -> xr.Dataset:
-    """Where impacts fall on the attractors of each model over Λ.
+    """The phases of the impacts on the attractors of each model, over Λ.
 
     ``phase_density`` (model, amplitude, bin_phase) is the share of the impacts within a range of
     phases, whose middle is ``bin_phase``, averaged over the motions on which the balls of
     :func:`bouncing_ball.attractors.labelled.diagram` end. ``lyapunov_exponent`` (model,
-    amplitude) is the largest of the exponents of these, -∞ where all are locked, and
-    ``lyapunov_error`` its standard error, 1e-5 at least.
+    amplitude) is the largest exponent of these motions, -∞ where all are locked, and
+    ``lyapunov_error`` its standard error, which is at least 1e-5.
     """
     lam, bins = parameters.amplitude.grid(), parameters.bins
     edges = np.linspace(-np.pi, np.pi, bins + 1)

@@ -1,4 +1,4 @@
-"""Where balls end that start at many phases and speeds, in the three models (beyond the paper)."""
+"""The motions on which balls with many starts end, in the three models (beyond the paper)."""
 
 from typing import Annotated
 
@@ -15,8 +15,8 @@ from bouncing_ball.studies.transients import Place
 from bouncing_ball.studies.uncertainty import exponent
 
 MOTIONS = ("permanent contact", "1-T orbit", "other orbits", "locked", "no repetition")
-"""The motions on which a ball may end. An orbit whose contact lasts longer than an oscillation is
-locked."""
+"""The motions on which a ball may end. An orbit is called locked if one of its contacts lasts
+longer than an oscillation."""
 
 
 class Case(Place):
@@ -48,14 +48,14 @@ def _destination(found: Motions) -> np.ndarray:
 
 
 def basins(parameters: Basins, release: Release) -> xr.Dataset:
-    """Where balls end that start with an impact at (φ, δ′), in three models of each case.
+    """The motions on which balls end after first impacts (φ, δ′), in three models of each case.
 
-    ``destination`` (case, model, start_speed, start_phase) is an index into :data:`MOTIONS`, with φ
-    in rad and the speed -δ′ at the middles of cells. Of the random starts, ``basin_share`` (case,
-    model, motion) is the share that ends on a motion, and ``uncertain_share`` (case, model, shift)
-    the share that ends on another one if φ changes by the shift, with ``uncertainty_exponent``
-    (case, model). Each has limits, ``_low`` and ``_high``. ``case_restitution``, ``case_ratio`` and
-    ``case_amplitude`` are over the case.
+    ``destination`` (case, model, start_speed, start_phase) is an index into :data:`MOTIONS`; φ in
+    rad and the speed -δ′ are at the middles of cells. For the random starts, ``basin_share`` (case,
+    model, motion) is the share that ends on a motion, ``uncertain_share`` (case, model, shift) is
+    the share that ends on another motion if φ changes by the shift, and ``uncertainty_exponent``
+    (case, model) is the exponent of this share. Each has limits, ``_low`` and ``_high``.
+    ``case_restitution``, ``case_ratio`` and ``case_amplitude`` are over the case.
     """
     r, lam, ratio = (np.array([getattr(x, y) for x in parameters.cases]) for y in Case.model_fields)
     count, level = parameters.starts, parameters.confidence

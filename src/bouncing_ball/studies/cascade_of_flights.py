@@ -1,4 +1,4 @@
-"""The orbits into which permanent contact continues: their cascade of flights."""
+"""The cascade of flights of the T-periodic orbits into which permanent contact continues."""
 
 from typing import Annotated
 
@@ -22,13 +22,13 @@ class Flights(Parameters):
 
 
 def cascade_of_flights(parameters: Flights, release: Release) -> xr.Dataset:
-    """The amplitudes at which the T-periodic orbit above Λ_SD has one flight more per period.
+    """The amplitudes above which the T-periodic orbit above Λ_SD has one more flight per period.
 
-    The dataset has ``threshold_amplitude`` Λ_SD (restitution, ϖ); ``opening_amplitude`` and
-    ``opening_multiplier`` (restitution, flights, ϖ), the Λ up to which the orbit has so many
-    flights and the larger modulus of its multipliers there, NaN where no stable one was found; and
-    ``stiff_opening`` (restitution, flights), the limit of E = ϖ²(Λ - Λ_SD) for stiff contacts. All
-    but the first are NaN unless the release is the displacement's.
+    The dataset has ``threshold_amplitude`` Λ_SD (restitution, ϖ). ``opening_amplitude``
+    (restitution, flights, ϖ) is the Λ up to which the orbit has this number of flights, and
+    ``opening_multiplier`` the larger modulus of its multipliers there; both are NaN where no stable
+    orbit was found. ``stiff_opening`` (restitution, flights) is the limit of E = ϖ²(Λ - Λ_SD) for
+    stiff contacts. All except the first are NaN unless the release is the displacement release.
     """
     restitution, ratio = np.array(parameters.restitution), parameters.frequency_ratio.grid()
     zeta, most = damping_ratio(restitution), parameters.flights

@@ -46,20 +46,22 @@ class Cascades(Parameters):
 
 
 _STIFF = np.array([1000.0, 2000.0])
-"""Two ϖ for K: higher orders contribute at smaller ϖ, and rounding at much larger ones."""
+"""Two ϖ from which K is computed: higher orders contribute at smaller ϖ, and rounding errors at
+much larger ϖ."""
 
 
 def cascades(parameters: Cascades, release: Release) -> xr.Dataset:
     """Λ at the period doublings of the orbits of 2ᵏ n table periods, k = 0, 1, …
 
-    ``restitution_cascade`` (restitution, doubling) is Λ of the restitution model, and
-    ``cascade_ratio`` (restitution, step) the ratios of its distances, which tend to Feigenbaum's
-    number; ``contact_cascade_ratio`` (restitution, step, ϖ) is the contact's.
+    ``restitution_cascade`` (restitution, doubling) is Λ of the restitution model.
+    ``cascade_ratio`` (restitution, step) are the ratios of successive distances in Λ, which tend to
+    Feigenbaum's number, and ``contact_cascade_ratio`` (restitution, step, ϖ) those of the contact.
     ``cascade_error`` (model, restitution, doubling, ϖ) is the signed relative error of each simple
-    model. The restitution model's is K/ϖ to first order with K = ``cascade_coefficient``
-    (restitution, doubling), and the corrected model's C/ϖ² with C = ``cascade_second_order``, both
-    measured at two stiff contacts with the next order eliminated (Richardson). NaN where a
-    doubling was not found. ``measured_cascade`` (doubling,) is Λ of a measurement.
+    model. To leading order, the error of the restitution model is K/ϖ, where K is
+    ``cascade_coefficient`` (restitution, doubling), and that of the corrected model is C/ϖ², where
+    C is ``cascade_second_order``. Both are measured at two stiff contacts, and the next order is
+    eliminated (Richardson). Values are NaN where a doubling was not found. ``measured_cascade``
+    (doubling,) is Λ of a measurement.
     """
     r, ratios = np.array(parameters.restitution), parameters.frequency_ratio.grid()
     known = np.array(parameters.measured.amplitudes) / _GRAVITY
@@ -67,7 +69,7 @@ def cascades(parameters: Cascades, release: Release) -> xr.Dataset:
     measured = np.pad(known, (0, parameters.doublings - known.size), constant_values=np.nan)
     along = np.concatenate([ratios, _STIFF])
     contact = SpringDamper.from_restitution(r[:, np.newaxis], along, release)
-    # The restitution model, which has the r of a free impact on the contact, has no ϖ.
+    # The restitution model has the r of a free impact on the contact and does not depend on ϖ.
     of_models = models(contact[:, :1])[1], models(contact)[2], models(contact)[0]
     simple, corrected, exact = (
         cascade(model.period_doubling(parameters.n), parameters.doublings) for model in of_models

@@ -1,10 +1,11 @@
-"""The paper's comparison on the contacts that engineers use (beyond the paper).
+"""The paper's comparison for contact laws that engineers use (beyond the paper).
 
 All laws have the same restitution coefficient r and the same centroid t_c of the force of the free
-impact, at the impact speed of the orbit in question. With D its duration and κ = -δ_b/δ′_b at its
-end, t_c = r (D + κ)/(1 + r) for every law, and to first order the errors depend on D through this
-number. A Hertz contact has no ϖ; π/(D + κ) takes its place, which is ϖ of the elastic linear
-contact with the same centroid. Errors are relative to the simple model as in Eqs. 37-38.
+impact, at the impact speed of the orbit in question. If D is the duration of the free impact and
+κ = -δ_b/δ′_b at its end, t_c = r (D + κ)/(1 + r) for every law, and to first order the errors
+depend on D only through t_c. A Hertz contact has no ϖ. It is replaced by π/(D + κ), the ϖ of the
+elastic linear contact with the same D + κ. Errors are relative to the simple model as in
+Eqs. 37-38.
 """
 
 from collections.abc import Callable
@@ -39,7 +40,7 @@ HERTZ = ("hunt-crossley", "tsuji", "kuwabara-kono")
 LINEAR = {"linear": Release.DISPLACEMENT, "linear, force release": Release.FORCE}
 NAMES = (*LINEAR, *HERTZ)
 BOUNDS = (Quantity.SADDLE_NODE, Quantity.PERIOD_DOUBLING)
-# Differences in ln ϖ of the orbits that locate a threshold.
+# Distances in ln ϖ from a first estimate of a threshold to the orbits that locate it.
 _BESIDE = np.linspace(-0.02, 0.02, 5)
 QUANTITIES = (Quantity.MAX_HEIGHT, Quantity.BOUNCE_VELOCITY, Quantity.PHASE, *BOUNDS)
 
@@ -74,7 +75,7 @@ def share_in_contact(name: str, restitution: float) -> float:
 def exact_model(
     name: str, restitution: float, duration: ArrayLike, speed: ArrayLike
 ) -> ImpactModel:
-    """The exact models of contacts with r and D at their speeds, arrays of one shape.
+    """The exact models of contacts that have r and D at given speeds, arrays of one shape.
 
     Parameters
     ----------
@@ -91,7 +92,7 @@ def exact_model(
 
     Examples
     --------
-    A linear contact has them at every speed:
+    A linear contact has the same r and D at every speed:
 
     >>> float(exact_model("linear", 1.0, np.pi, 2.0).contact.frequency_ratio)
     1.0
@@ -124,7 +125,7 @@ def own_models(name: str, orbit: OneOrbit, ratios: np.ndarray) -> Any:
 def along(name: str, orbit: OneOrbit, value: Callable[[Any], np.ndarray]) -> np.ndarray:
     """A quantity of the exact models along π/(D + κ), shape (..., ϖ).
 
-    It is NaN below the most compliant contact from which on all contacts have their orbit.
+    It is NaN for contacts below the smallest π/(D + κ) above which all contacts have the orbit.
 
     Raises
     ------
@@ -165,8 +166,8 @@ def _errors(name: str, parameters: LawErrors) -> tuple[np.ndarray, float]:
     outside = np.flatnonzero(errors[0, 0] > parameters.tolerance)
     if not outside.size or outside[-1] == ratios.size - 1:
         return errors, np.nan
-    # ln(error/tolerance) is nearly a straight line in ln ϖ: its zero between two nodes, and then by
-    # the polynomial through orbits beside that, which is exact to rounding.
+    # ln(error/tolerance) is nearly a straight line in ln ϖ. Its zero is first interpolated between
+    # two nodes, and then by the polynomial through nearby orbits, which is exact to rounding.
     sides = outside[-1] + np.arange(2)
     guess = np.interp(0, -np.log(errors[0, 0, sides] / parameters.tolerance), np.log(ratios[sides]))
     exact = own_models(name, parameters, np.exp(guess + _BESIDE)).orbit(n, lam)

@@ -1,7 +1,7 @@
-"""The continuation of n-T orbits of the spring-damper model, as the paper does it.
+"""The continuation of n-T orbits of the spring-damper model, by the method of the paper.
 
-It starts from the restitution model's orbit at a very stiff contact, follows the orbit along ϖ
-to the contact in question, and then follows the branch along Λ to both sides.
+The continuation starts from the orbit of the restitution model at a very stiff contact, follows
+the orbit along ϖ to the contact in question, and then follows the branch along Λ to both sides.
 """
 
 from typing import Annotated
@@ -81,13 +81,13 @@ def _start(
     """A point of the branch along Λ of a contact, up to Λ = ``top``.
 
     Λ is half way between the two bifurcations of the restitution model's orbit, or between the
-    saddle-node and ``top`` if that is lower. Where this orbit cannot be followed to the contact,
-    the branch starts from an orbit of the closed form.
+    saddle-node and ``top`` if ``top`` is below the period doubling. If this orbit cannot be
+    followed to the contact, the branch starts from an orbit of the closed form.
 
     Raises
     ------
     NoOrbitError
-        If the closed form has no orbit there either.
+        If the closed form has no orbit at any of the Λ that are tried either.
     """
     rigid = RestitutionModel(restitution)
     node, doubling = (float(x.amplitude) for x in (rigid.saddle_node(n), rigid.period_doubling(n)))
@@ -123,7 +123,7 @@ def branch_along_amplitude(
     restitution, frequency_ratio : float
         r, which gives ζ by Eq. 16, and ϖ.
     amplitude_max : float
-        Λ at which the branch is left.
+        Λ at which the branch ends.
     release : Release
     continuation : Continuation
 

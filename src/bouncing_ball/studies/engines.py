@@ -1,10 +1,12 @@
-r"""Errors by the time steps of physics engines, against those of the models (beyond the paper).
+r"""Errors due to the time steps of physics engines, compared with those of the models (beyond the
+paper).
 
-An engine's contact in N time steps has the restitution r_N of its scheme, which depends
-on the part of a step in which the contact begins (:mod:`bouncing_ball.engines.scheme`). The ball
-is therefore simulated here from event to event with the exact contact that has this r, which
-changes from impact to impact. Errors of heights are relative to the engine's, or to the model's, as
-in Eq. 37. The results of the engines are read from the accepted dataset of their runs.
+A contact that an engine resolves by N time steps has the restitution r_N of its scheme, which
+depends on the fraction of a step at which the contact begins (:mod:`bouncing_ball.engines.scheme`).
+The ball is therefore simulated here from event to event with the exact contact that has this r,
+which changes from impact to impact. Errors of heights are relative to the height of the engine, or
+of the model, as in Eq. 37. The results of the engines are read from the accepted dataset of their
+runs.
 """
 
 from collections.abc import Mapping
@@ -56,7 +58,7 @@ def greatest_heights(orbit: Orbit, restitution: np.ndarray) -> np.ndarray:
     Returns
     -------
     ndarray, shape (impacts, ...)
-        Of the flights after the impacts.
+        The greatest heights of the flights after the impacts.
 
     Examples
     --------
@@ -80,7 +82,8 @@ def greatest_heights(orbit: Orbit, restitution: np.ndarray) -> np.ndarray:
 def step_errors(orbit: Orbit, parameters: EngineOrbit) -> np.ndarray:
     """Root mean square errors of the height of a bounce, shape (scheme, orbit, steps).
 
-    Each impact begins in a random part of a time step. All simulations have the same random parts.
+    Each impact begins at a random fraction of a time step; the fractions are the same in all
+    simulations.
     """
     p, zeta = parameters, float(np.ravel(orbit.law.damping_ratio)[0])
     tables = np.array(
@@ -99,7 +102,7 @@ def step_errors(orbit: Orbit, parameters: EngineOrbit) -> np.ndarray:
 def model_errors(orbit: Orbit, impacts: int) -> np.ndarray:
     """Relative errors of the height in the simple models and the simulation, shape (model, ...).
 
-    The simulation runs from event to event, and its error is the largest of some impacts.
+    The simulation runs from event to event; its error is the largest over ``impacts`` impacts.
     """
     off = errors(orbit.law, orbit.n, orbit.amplitude, ["max_height"])[:, 0]
     own = np.broadcast_to(orbit.law.restitution, (impacts, *orbit.amplitude.shape))
@@ -108,7 +111,8 @@ def model_errors(orbit: Orbit, impacts: int) -> np.ndarray:
 
 
 def steps_of(steps: np.ndarray, errors: np.ndarray, error: float) -> float:
-    """The steps with an error, by a power law between those next to it; NaN beyond them.
+    """The number of steps with a given error, by a power law between neighbouring errors; NaN
+    outside the range of ``errors``.
 
     Examples
     --------

@@ -129,7 +129,7 @@ def permanent_contact_error(parameters: PermanentContactError, release: Release)
     ModelError
         If the damping is too strong for a minimum of the threshold to exist.
     """
-    # The threshold of permanent contact depends neither on n nor on Λ.
+    # n and Λ have no influence, because the threshold of permanent contact depends on neither.
     nowhere = OrbitsAlongRatio.model_construct(n=1, amplitude=1.0, **dict(parameters))
     asked = [Quantity.PERMANENT_CONTACT]
     dataset = thresholds_along(nowhere, release, asked, [parameters.tolerance])

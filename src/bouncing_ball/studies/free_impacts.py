@@ -1,7 +1,7 @@
 """A free impact of a spring-damper contact, by the damping ratio (beyond the paper).
 
-Without gravity, k, c and m act through ω = √(k/m) and ζ = c/(2√(km)) alone, which users of physics
-engines need to know. Times are ωt, as those of a contact with ϖ = 1.
+Without gravity the impact depends on k, c and m only through ω = √(k/m) and ζ = c/(2√(km)), which
+users of physics engines need to know. Times are ωt, which are the times of a contact with ϖ = 1.
 """
 
 import numpy as np

@@ -16,7 +16,7 @@ from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.parameters import Amplitude, Family, Many, Parameters, Restitution, Span
 from bouncing_ball.studies.parameters import OrbitAmplitude, require_orbit
 
-# Relative distance of two frequency ratios that differ by the rounding of a grid only.
+# Relative distance below which two frequency ratios differ only by the rounding of a grid.
 _ROUNDING = 1e-12
 
 
@@ -51,9 +51,9 @@ class Sweep(Parameters):
 
 
 def with_round_values(ratios: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """A grid of ϖ with 2, 5 and the decades of its range added, and a mask of these.
+    """A grid of ϖ with 2, 5 and the decades of its range added, and a mask of these round values.
 
-    A sample that equals one of them up to rounding is replaced by it.
+    A sample that equals a round value up to rounding is replaced by this value.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def with_round_values(ratios: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     Returns
     -------
     ratios, labelled : ndarray
-        The merged grid, increasing, and where it has one of the round values.
+        The merged grid, increasing, and a mask that is True at the round values.
 
     Examples
     --------

@@ -38,20 +38,21 @@ def correlation(one: np.ndarray, other: np.ndarray, confidence: float) -> np.nda
 
 
 def locked_orbits(parameters: LockedOrbits, release: Release) -> xr.Dataset:
-    """Where a contact has the restitution model's locked orbit, and what predicts it.
+    """The places at which a contact has the locked orbit of the restitution model, and predictors.
 
-    The places are uniformly distributed in Λ and r. Over each ``node``, ``restitution``,
-    ``amplitude``, ``periods``, ``sensitivity`` S and ``wait`` w are those of
-    :func:`bouncing_ball.attractors.lift_off.returns`, 0 or NaN where a ball that lifts off is not
-    seen to stick again; shares are of the others. ``needed_ratio`` is the smallest ϖ of those tried
-    from which on the contact locks with the same period from a rest on the table, infinite if that
-    is not seen at the largest one.
-    ``same`` (frequency_ratio) is the share with the same period, and ``same_by_prediction``
-    (predicted) that by ranges of ϖ w/S, for all ϖ together. ``rank_correlation`` (predictor) is
-    that with the smallest ϖ. ``jump_share`` (shift) is the share of the places next to a
-    discontinuity, whose period changes with a change of Λ, or is not found any more, and
-    ``uncertainty_exponent`` its exponent. Each has a lower and an upper limit, ``_low`` and
-    ``_high``. The variables of :func:`bouncing_ball.studies.transients.transients` are added.
+    The places are uniformly distributed in Λ and r. Over ``node`` the dataset has ``restitution``
+    and ``amplitude``, and ``periods``, ``sensitivity`` S and ``wait`` w of
+    :func:`bouncing_ball.attractors.lift_off.returns`, which are 0 or NaN where the ball is not
+    found to stick again; such places are left out of all shares. ``needed_ratio`` is the smallest
+    of the given ϖ above which the contact locks with the same period after a rest on the table; it
+    is infinite if the contact does not do so at the largest ϖ.
+    ``same`` (frequency_ratio) is the share of places with the same period, and
+    ``same_by_prediction`` (predicted) this share in ranges of ϖ w/S, for all ϖ together.
+    ``rank_correlation`` (predictor) is the correlation of a predictor with the smallest ϖ.
+    ``jump_share`` (shift) is the share of places next to a discontinuity, at which the period
+    changes, or is not found, if Λ changes by the shift, and ``uncertainty_exponent`` its exponent.
+    Each has a lower and an upper limit, ``_low`` and ``_high``. The variables of
+    :func:`bouncing_ball.studies.transients.transients` are added.
     """
     level, random = parameters.confidence, np.random.default_rng(parameters.seed)
     r, lam = (

@@ -1,4 +1,5 @@
-"""From which ϖ on the means over a motion are right, over (Λ, r) (beyond the paper)."""
+"""The ϖ above which a simple model has accurate means over a motion, over (Λ, r) (beyond the
+paper)."""
 
 from operator import call
 from typing import Annotated
@@ -16,13 +17,15 @@ from bouncing_ball.parameters import Seed, Tolerance, number
 from bouncing_ball.studies.attractors import LIMITS, SIMPLE, Grid, models, share
 
 DECISIONS = ("from this on", "not at any", "undecided", "no number")
-"""What is known of the smallest ϖ: it is known, the largest one is not enough, the interval of
-some error contains the tolerance, or the simple model's value is infinite."""
+"""The result for the smallest ϖ above which a mean is accurate. In this order: it is known; even
+the largest ϖ is not enough; the interval of an error contains the tolerance; or the value of the
+simple model is infinite."""
 MEANS = ("power", "height", "flights", "exponent")
 
 # Speeds of balls at the start are up to this times Λ.
 _FASTEST = 4.0
-# Half the width of an interval at least: a motion that repeats is found within 1e-6 of its state.
+# Lower bound of half the width of an interval: a motion that repeats is found within 1e-6 of its
+# state.
 _KNOWN = 1e-6
 
 
@@ -38,8 +41,8 @@ class MeanMotions(Grid):
 
 
 def needed(error: np.ndarray, margin: np.ndarray, tolerance: float) -> tuple[np.ndarray, ...]:
-    """The place of the smallest ϖ from which on an error is within the tolerance, and what is
-    known of it, an index into :data:`DECISIONS`.
+    """The index of the smallest ϖ above which an error is within the tolerance, and whether it is
+    known, as an index into :data:`DECISIONS`.
 
     Parameters
     ----------
@@ -53,7 +56,7 @@ def needed(error: np.ndarray, margin: np.ndarray, tolerance: float) -> tuple[np.
     [[2], [0]]
     """
     size, last = np.abs(error), len(error)
-    # From the largest ϖ down to the first at which the error is not known to be small.
+    # From the largest ϖ down to the first ϖ at which the error is not known to be small.
     within = (size + margin <= tolerance)[::-1]
     right = np.argmin(np.concatenate([within, within[:1] & False]), axis=0)
     at = np.minimum(right, last - 1)[np.newaxis]
@@ -63,8 +66,8 @@ def needed(error: np.ndarray, margin: np.ndarray, tolerance: float) -> tuple[np.
 
 
 def _errors(simple: np.ndarray, contact: np.ndarray, confidence: float) -> np.ndarray:
-    """Relative errors of a simple model and half the widths of their intervals, from paired balls
-    along the last axis.
+    """Relative errors of a simple model and half the widths of their intervals, from pairs of balls
+    with the same start along the last axis.
     """
     balls = contact.shape[-1]
     width = student.ppf((1 + confidence) / 2, balls - 1) / np.sqrt(balls)
@@ -76,18 +79,19 @@ def _errors(simple: np.ndarray, contact: np.ndarray, confidence: float) -> np.nd
 
 
 def mean_motions(parameters: MeanMotions, release: Release, follow: Follow = call) -> xr.Dataset:
-    """The smallest ϖ from which on the means of a simple model are right, over (Λ, r).
+    """The smallest ϖ above which the means of a simple model are accurate, over (Λ, r).
 
     The balls of a node start with the same impacts in all models, random in phase and speed. Each
-    of them gives a mean over the motion on which it ends, and the paired differences of these give
-    the error of the simple model with its interval by Student's distribution, whatever the balls
-    end on. ``mean_error`` and ``mean_margin``, half the interval's width, (simple, mean, ϖ,
-    restitution, amplitude) are (contact - simple)/simple of the power, height, flights per period
-    and exponent. ``needed_ratio`` (simple, mean, restitution, amplitude) is the smallest ϖ of those
-    tried from which on all errors are within the tolerance, NaN where ``decision`` is not "from
-    this on", see :data:`DECISIONS`. ``right`` (simple, mean, ϖ) is the share of the nodes that are
-    known to be right from this ϖ on, of those with a number, with its Wilson limits ``right_low``
-    and ``right_high`` and the number of nodes ``right_nodes``.
+    ball gives a mean over the motion on which it ends, of any kind. The paired differences of these
+    means give the error of the simple model, and its interval by Student's distribution.
+    ``mean_error`` (simple, mean, ϖ, restitution, amplitude) is (contact - simple)/simple of the
+    power, height, flights per period and exponent, and ``mean_margin`` half the width of its
+    interval. ``needed_ratio`` (simple, mean, restitution, amplitude) is the smallest of the given ϖ
+    above which all errors are within the tolerance, NaN where ``decision`` is not "from this on";
+    see :data:`DECISIONS`. ``right`` (simple, mean, ϖ) is the share of the nodes at which the mean
+    is known to be accurate above this ϖ, among the nodes where the value of the simple model is
+    finite. ``right_low`` and ``right_high`` are its Wilson limits, and ``right_nodes`` is the
+    number of nodes.
     """
     ratios = np.array(parameters.frequency_ratio)
     random, balls = np.random.default_rng(parameters.seed), parameters.starts

@@ -1,6 +1,6 @@
-"""Types of parameters that require an orbit: amplitudes at which there is one.
+"""Types of parameters that require an orbit: amplitudes at which an orbit exists.
 
-A type reads the parameters that stand before it in its class, ``n`` and ``restitution``.
+A type reads the parameters ``n`` and ``restitution``, which are declared before it in its class.
 """
 
 from collections.abc import Callable
@@ -52,7 +52,7 @@ def require_orbit(amplitude: float, n: int, restitution: float) -> float:
 
 def _has_orbits(families: Callable[[np.ndarray], int]) -> AfterValidator:
     def check(amplitude: float, info: ValidationInfo) -> float:
-        # If one of these is missing or wrong, that is the mistake to be reported.
+        # If n or r is missing or wrong, that mistake is reported instead.
         if {"n", "restitution"} <= info.data.keys():
             n = families(np.atleast_1d(info.data["n"]))
             require_orbit(amplitude, n, info.data["restitution"])
@@ -62,7 +62,7 @@ def _has_orbits(families: Callable[[np.ndarray], int]) -> AfterValidator:
 
 
 OrbitAmplitude = Annotated[Amplitude, _has_orbits(min)]
-"""Λ at which the family, or the lowest of several, has an orbit."""
+"""Λ at which the family, or the lowest of several families, has an orbit."""
 
 
 class OrbitParameters(Parameters):
@@ -91,7 +91,7 @@ class OrbitErrors(OrbitsAlongRatio):
 
 
 BranchEnd = Annotated[AmplitudeMax, _has_orbits(max)]
-"""Λ up to which branches are followed, above where the highest family begins."""
+"""Λ up to which branches are followed, at or above the saddle-node of the highest family."""
 Points = Annotated[int, listed("Points")]
 
 

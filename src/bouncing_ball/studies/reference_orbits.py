@@ -1,4 +1,4 @@
-"""Random orbits with all their quantities, and balls, against which others can check themselves.
+"""Random orbits with all their quantities, and motions of balls, as references for other programs.
 
 The page of the explorer computes them again in the reader's browser.
 """
@@ -23,8 +23,8 @@ _SHOWN = (
     *("phase", "contact_duration", "impact_velocity", "bounce_velocity"),
     *("apparent_restitution", "max_height"),
 )
-# Balls that end at rest, on an orbit, on a doubled one, and locked. None comes near chaos, which
-# no two computers have in common.
+# Balls that end at rest, on an orbit, on a period-doubled orbit, and on a locked orbit. None is
+# near chaos, where the results of two computers differ.
 _GIVEN = ("ball_restitution", "ball_frequency_ratio", "ball_amplitude", "start_phase", "velocity")
 _BALLS = np.broadcast_arrays(0.5, 80.0, [0.6, 1.2, 1.6, 2.5], 1.0, -3.0)
 _ENDS = ("periods", "impacts", "end_impact", "end_phase", "end_speed", "end_time")

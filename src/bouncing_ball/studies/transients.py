@@ -22,9 +22,9 @@ from bouncing_ball.parameters import (
 )
 from bouncing_ball.studies.attractors import LIMITS, Confidence, models
 
-# Distance from an impact of the final motion at which a ball has arrived there.
+# Distance from an impact of the final motion within which a ball has reached this motion.
 _NEAR = 1e-3
-# Times at which survival is given.
+# Number of times at which the survival is given.
 _TIMES = 60
 
 
@@ -47,9 +47,9 @@ class Transients(Parameters):
 
 
 def mean_life(time: np.ndarray, ends: np.ndarray, confidence: float) -> tuple[float, ...]:
-    """Mean life with a constant rate of ends, and its limits, from times of ends or of giving up.
+    """Mean life at a constant rate, and its limits, from times until an end or until censoring.
 
-    It is the sum of all times over the number of ends, whose interval is that of a Poisson count.
+    It is the sum of all times over the number of ends; its interval is that of a Poisson count.
 
     Examples
     --------
@@ -64,13 +64,12 @@ def mean_life(time: np.ndarray, ends: np.ndarray, confidence: float) -> tuple[fl
 
 
 def transients(parameters: Transients, release: Release) -> xr.Dataset:
-    """The shares of balls that have not arrived at the motion on which they lock.
+    """The shares of balls that have not yet reached the motion on which they lock.
 
-    ``survival`` (case, life_ratio, life) is Kaplan and Meier's estimate after so many periods
-    of the table; ``mean_life`` (case, life_ratio) with its limits is in periods as well, see
-    :func:`mean_life`. A ball that
-    is not seen to lock counts as given up at its last impact, and one that ends on an orbit
-    without sticking does not count. The restitution model has ϖ = ∞.
+    ``survival`` (case, life_ratio, life) is the estimate of Kaplan and Meier, over the time in
+    periods of the table. ``mean_life`` (case, life_ratio) and its limits are also in periods; see
+    :func:`mean_life`. A ball that is not found to lock is censored at its last impact, and a ball
+    that ends on an orbit without sticking is left out. The restitution model has ϖ = ∞.
     ``case_restitution`` and ``case_amplitude`` are over the case.
     """
     random, balls = np.random.default_rng(parameters.seed), parameters.balls

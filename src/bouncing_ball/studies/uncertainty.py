@@ -1,7 +1,7 @@
-"""How the share of starts, or of parameters, whose result changes depends on the size of a change.
+"""The share of starts, or of parameters, whose result changes if they are changed by ε.
 
-For a boundary of dimension D in a plane it is in proportion to ε^α with α = 2 - D, the exponent of
-uncertainty (C. Grebogi, S. W. McDonald, E. Ott and J. A. Yorke, 1983).
+For a boundary of dimension D in a plane this share is proportional to ε^α, where α = 2 - D is the
+uncertainty exponent (C. Grebogi, S. W. McDonald, E. Ott and J. A. Yorke, 1983).
 """
 
 import numpy as np
@@ -10,11 +10,11 @@ _RESAMPLED, _SEED = 400, 1
 
 
 def exponent(changes: np.ndarray, size: np.ndarray, confidence: float) -> np.ndarray:
-    """α and its lower and upper limit, from whether each of independent results changes.
+    """α with its lower and upper limit, from independent results that change or do not change.
 
-    ``changes`` has a row for each result and a column for each size of the change. The line
-    through ln ε and the logarithm of the share is that of least squares, and the interval that of
-    samples drawn again. A share of 0 counts as half a change.
+    ``changes`` has a row for each result and a column for each size ε of the change. α is the slope
+    of the least-squares line of the logarithm of the share over ln ε, and its interval is that of a
+    bootstrap. A share of 0 counts as half a change.
 
     Examples
     --------

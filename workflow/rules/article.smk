@@ -1,5 +1,5 @@
-# The replication article with its supplement, every number from a dataset, and the tally of the
-# claims.
+# The replication article with its supplement, in which every number comes from a dataset, and the
+# tally of the claims.
 
 ARTICLE = os.path.relpath(Path(ROOT, "workflow/report/paper"))
 
@@ -31,7 +31,7 @@ rule paper:
         "../scripts/paper.py"
 
 
-# Not part of a run, because nothing else needs Typst.
+# The PDFs are not part of a run, because only they need Typst.
 rule paper_pdf:
     name:
         "paper.pdf"

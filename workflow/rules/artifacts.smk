@@ -1,5 +1,5 @@
-# Targets by name, for example `snakemake fig08`: all files of the artifact, with its dataset, which
-# Snakemake would not miss as long as the figure exists.
+# Targets by name, for example `snakemake fig08`: all files of the artifact, including its dataset,
+# because Snakemake would not make a missing dataset again while the figure exists.
 
 
 def files(name):

@@ -1,5 +1,5 @@
-# The atlas: how stiff is stiff enough, everywhere. Not part of a run. Its summary is
-# accepted by hand, see docs/atlas.md, and the article takes its numbers from there.
+# The atlas: how stiff is stiff enough for all orbits. It is not part of a run. Its summary is
+# accepted by hand, see docs/atlas.md, and the article takes its numbers from this summary.
 
 from bouncing_ball.pipeline.atlas import shard_minutes, shard_names
 
@@ -15,7 +15,7 @@ rule atlas_shard:
     output:
         data="results/atlas/shards/{shard}.nc",
     wildcard_constraints:
-        # Some rows of tiles; or saddle-node, period doubling and permanent contact of all.
+        # Some rows of tiles; or saddle-node, period doubling and permanent contact of all tiles.
         shard=r"\d+-of-\d+|limits",
     params:
         title="The atlas: the answers of some rows of tiles, or about the limits of all families",

@@ -1,6 +1,6 @@
 # The configuration is checked before anything runs, against the studies of all stages.
 
-# Jobs need not check it again.
+# Jobs do not check the configuration again.
 if workflow.is_main_process:
     from bouncing_ball.configuration.check import check_configuration
 

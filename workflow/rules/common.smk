@@ -7,19 +7,19 @@ import sys
 from importlib.util import find_spec
 from pathlib import Path
 
-# What Snakemake has imported stays in use. Excluding it from garbage collection saves half a
-# second of each start.
+# The modules that Snakemake has imported remain in use. Excluding them from garbage collection
+# saves half a second at each start.
 gc.freeze()
 
-# Snakemake starts jobs by the path of Python as it is.
+# Snakemake starts jobs with the path of Python without quotes.
 if shlex.quote(sys.executable) != sys.executable:
     sys.exit(
         f"{sys.executable}: a path of Python with a space or a quote in it; put the .venv elsewhere"
     )
 
-# The repository, whichever Snakefile was called.
+# The repository, for both Snakefiles.
 ROOT = os.path.abspath(Path(str(workflow.current_basedir), "..", ".."))
-# The package may belong to another checkout, if its environment is active.
+# The package may belong to another checkout whose environment is active.
 HERE = Path(ROOT, "src", "bouncing_ball")
 found = Path(getattr(find_spec("bouncing_ball"), "origin", "nowhere/at/all")).parent
 if found.resolve() != HERE.resolve():
@@ -35,30 +35,30 @@ from bouncing_ball.pipeline.sources import sources
 # Snakemake writes these two lines before every job, and they do not name it.
 logger.addFilter(lambda record: not str(record.msg).startswith(("Select jobs", "Execute ")))
 
-# Every artifact with what it is made by.
+# Every artifact with its study, drawing and table.
 TABLE = read_yaml(Path(ROOT, "workflow/artifacts.yaml"))
 STUDIES, DRAWINGS, TABLES = (
     {name: entry[key] for name, entry in TABLE.items() if key in entry}
     for key in ("study", "drawing", "table")
 )
-# Datasets accepted by hand, which a run reads and does not make.
+# Datasets that are accepted by hand; a run reads them and does not make them.
 ACCEPTED = {"engines": "config/engines.nc", "ext_atlas": "config/atlas.nc"}
 ACCEPTED |= {name: f"config/{name}.nc" for name, entry in TABLE.items() if "accepted" in entry}
 
 
-# The dataset that figures, claims and the article are made from.
+# The dataset from which figures, claims and the article are made.
 def dataset(name):
     return ACCEPTED.get(name, f"results/figures/{name}.nc")
 
 
-# Source files that a job uses: those modules and all that they import. Relative paths, so
-# that a folder may be moved without running all again.
+# Source files that a job uses: the named modules and all modules that they import. The paths are
+# relative, so that a folder may be moved without running all jobs again.
 def modules(*names):
     files = sources("bouncing_ball.pipeline.job", *(f"bouncing_ball.{name}" for name in names))
     return [os.path.relpath(file) for file in files]
 
 
-# Words before a table: the template and what it includes, and the modules that render it.
+# Inputs of the text before a table: its templates, and the modules that render them.
 def words_before(wildcards):
     templates = (f"{ARTICLE}/{wildcards.table}_{part}.md.j2" for part in ("head", "columns"))
     needed = [*templates, *modules("figures.article.render")]

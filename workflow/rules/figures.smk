@@ -1,5 +1,5 @@
-# Datasets in, figures out: each figure from the dataset of its name. The schematics, Figures 1
-# and 4, have none.
+# From datasets to figures: each figure is made from the dataset with its name. The schematics,
+# Figures 1 and 4, have no dataset.
 
 CAPTIONS = [path.stem for path in Path(ROOT, "workflow/report").glob("*.rst")]
 
@@ -35,7 +35,7 @@ for name, drawing in DRAWINGS.items():
 EXPLORER = os.path.relpath(HERE / "figures/explorer")
 
 
-# The page to explore the models, with the orbits that it checks itself against.
+# The page to explore the models, with reference orbits for the check of its results.
 rule draw_explorer:
     message:
         "Writing results/figures/explorer.html"

@@ -1,4 +1,4 @@
-# The accepted record, figures/, paper.md and supplement.md, which git holds; its log is
+# The accepted record in git: figures/, paper.md and supplement.md. Its history is
 # `git log figures/`.
 # Both rules have no outputs, so that Snakemake runs them at each call.
 
@@ -32,12 +32,12 @@ rule diff:
         "../scripts/diff.py"
 
 
-# Each job that makes a file says how many of them are done.
+# Each job that makes a file prints how many of these jobs are done.
 onstart:
     begin(sum(bool(job.is_script and job.output) for job in workflow.dag.needrun_jobs()))
 
 
-# A difference or a refusal is not a failure of its job: it gives one line, and exit status 1.
+# A difference or a refusal is not a failure of the job: it gives one line, and exit status 1.
 onsuccess:
     if conclusion := concluded():
         sys.exit(conclusion)

@@ -1,4 +1,4 @@
-# Datasets in, tables out: CSV and Markdown, each table from the dataset of its name.
+# From datasets to tables as CSV and Markdown: each table is made from the dataset with its name.
 
 
 rule set_table:

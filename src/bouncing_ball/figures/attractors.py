@@ -1,4 +1,4 @@
-"""What balls end on in the three models, side by side on the same axes."""
+"""The motions on which balls end in the three models, side by side on the same axes."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -15,7 +15,7 @@ from bouncing_ball.figures.canvas import WIDE, canvas, legend_below, logarithmic
 from bouncing_ball.figures.labels import number, parameters
 from bouncing_ball.figures.style import COLOURS, GUIDE, MODELS, Look
 
-# Lowest period of each colour of a locked motion.
+# The lowest period of each colour for locked motions.
 _PERIODS = (1, 2, 3, 4, 5, 9, 17, 33)
 _LOCKED = colormaps["viridis_r"](np.linspace(0.08, 1, len(_PERIODS)))
 _OTHERS = {
@@ -25,8 +25,8 @@ _OTHERS = {
     "chaotic": "#f3d3c1",
     "undecided": "#ffffff",
 }
-# In grey too, what does not repeat is told by its dots, what is unknown by crosses, and other
-# areas whose grey is that of a period by strokes.
+# Marks that also distinguish areas in greyscale: dots for motions that do not repeat, crosses for
+# unknown motions, and strokes for other areas whose grey level is that of a period.
 _DOTS: dict[str, Look] = {
     "chaotic": {"marker": ".", "markersize": 1.3, "color": "#AA3A00", "markeredgewidth": 0},
     "undecided": {"marker": "x", "markersize": 1.6, "color": "#000000", "markeredgewidth": 0.3},
@@ -38,9 +38,9 @@ _MEANS = {name: (name, colour, marker) for name, colour, marker in zip(
     ("power", "height", "flights", "exponent"), COLOURS, "osv^", strict=False)}  # fmt: skip
 _HATCHES = {"chaotic": "......", "undecided": "xxxx", "subharmonic": "||||||"}
 _HATCHES |= dict.fromkeys(("permanent contact", "no number"), "------")
-# Exponents beyond are drawn as these.
+# Exponents outside of this range are drawn as its ends.
 _LOWEST, _HIGHEST = -1.5, 1.5
-# Lighter throughout, from blue below 0 to yellow above.
+# Colours that become lighter throughout, from blue below 0 to yellow above 0.
 _FALLING = colormaps["Blues_r"](np.linspace(0, 0.65, 128))
 _GROWING = colormaps["YlOrBr_r"](np.linspace(0.5, 1, 128))
 _RATES = ListedColormap([*_FALLING, *_GROWING]).with_extremes(bad=_OTHERS["permanent contact"])
@@ -142,7 +142,7 @@ def _patches(fills: Iterable[tuple[str, Any]]) -> list[Patch]:
 
 
 def _draw_shares(axes: Axes, one: xr.Dataset, name: str, dim: str, looks: Mapping) -> None:
-    """Shares along ϖ with their intervals, side by side, at places along a dimension."""
+    """Shares along ϖ with confidence intervals, side by side for the places along a dimension."""
     for k, (place, (text, colour, marker)) in enumerate(looks.items()):
         ratio = one.frequency_ratio.values * 1.06 ** (k - 2)
         bars(axes, ratio, one.sel({dim: place}), name, color=colour, marker=marker, label=text)
@@ -150,7 +150,7 @@ def _draw_shares(axes: Axes, one: xr.Dataset, name: str, dim: str, looks: Mappin
 
 
 def bars(axes: Axes, place: np.ndarray, data: xr.Dataset, name: str, **look) -> None:
-    """A variable over its place, with its limits ``_low`` and ``_high`` as error bars."""
+    """A variable at given places, with error bars between its limits ``_low`` and ``_high``."""
     middle, low, high = (data[f"{name}{end}"].values for end in ("", "_low", "_high"))
     look = {"markersize": 4, "linewidth": 0.8, "capsize": 2} | look
     axes.errorbar(place, middle, [middle - low, high - middle], **look)
@@ -201,7 +201,7 @@ def orbit_diagrams(data: xr.Dataset) -> Figure:
     lam, phase = data["amplitude"].values, data.bin_phase.values / np.pi
     for axes, model in zip(panels, models, strict=False):
         one = data.sel(model=model)
-        # The root shows an orbit and a chaotic motion in one picture.
+        # The square root of the density shows an orbit and a chaotic motion in one picture.
         shade = np.sqrt(one.phase_density.values.T)
         axes.pcolormesh(lam, phase, shade, cmap="gist_heat_r", vmin=0, vmax=0.5, rasterized=True)
         axes.set(ylabel=r"phase of impact $\varphi/\pi$", ylim=(-1, 1))

@@ -1,4 +1,4 @@
-"""Where balls end that start at many phases and speeds, in three models."""
+"""The motions on which balls with many initial phases and speeds end, in three models."""
 
 import numpy as np
 import xarray as xr
@@ -15,8 +15,9 @@ _FILLS = ("#ffffff", "#d3e6f2", "#e0a030", "#3f7fae", "#000000")
 
 
 def basins(data: xr.Dataset) -> Figure:
-    """A row for each case, with a panel for each model in which each start has the colour of the
-    motion it leads to, and the exponent of uncertainty.
+    """A row for each case, with a panel for each model and one for the uncertainty exponent.
+
+    In the panel of a model each start has the colour of the motion on which the ball ends.
     """
     cases, models = data.sizes["case"], data["model"].values
     size: Look = {"rows": cases, "columns": len(models), "sharex": True, "sharey": True}

@@ -1,6 +1,7 @@
 """Branches of n-T orbits with stability and bifurcations: phase of the table against Λ.
 
-Solid where stable, dashed where unstable, dotted where inadmissible (Figs. 3, 8, 9, 15).
+Lines are solid for stable, dashed for unstable and dotted for inadmissible orbits (Figs. 3, 8, 9,
+15).
 """
 
 from itertools import cycle, pairwise
@@ -23,7 +24,7 @@ def restitution_families(data: xr.Dataset) -> Figure:
     for family, colour in coloured(data, "n"):
         _draw_branch(axes, family, family.phase, colour)
         _draw_named_points(axes, family.sel(impact_map="exact"), colour)
-        # The name is at the branch itself, because five colours cannot be distinguished in grey.
+        # The name is beside the branch, because five colours cannot be distinguished in grey.
         top = family.isel(point=family.phase.fillna(-np.inf).argmax("point"))
         end, name = (top.amplitude, top.phase / np.pi), f"$n={family.n.item()}$"
         axes.annotate(name, end, (3, 0), textcoords="offset points", va="center", color=colour)
@@ -45,9 +46,7 @@ def domains(data: xr.Dataset) -> Figure:
 
 
 def over_amplitude(data: xr.Dataset) -> Figure:
-    """Branches as in Figs. 8 and 9, of a labelled dataset, each named by the arguments that
-    differ.
-    """
+    """Branches of a labelled dataset as in Figs. 8 and 9, named by the arguments that differ."""
     figure, axes = canvas(WIDE, 4.2)
     rows, names = in_a_row(data, "point", "special", "multiplier", "end")
     _name_curves(axes, [name for name in names if name])
@@ -63,7 +62,7 @@ def over_amplitude(data: xr.Dataset) -> Figure:
 
 
 def both_domains(data: xr.Dataset) -> Figure:
-    """Fig. 15: the branch of both models."""
+    """Fig. 15: the branches of both models."""
     figure, axes = canvas(5.6, 3.4)
     of_branch = ("amplitude", "phase", "stable", "admissible")
     rigid = xr.Dataset({name: data[f"restitution_{name}"] for name in of_branch})
@@ -73,7 +72,7 @@ def both_domains(data: xr.Dataset) -> Figure:
     _draw_named_points(axes, data, COLOURS[0])
     curve = data.squeeze("frequency_ratio")
     _draw_spring_damper(axes, curve, COLOURS[1], COLOURS[2])
-    # The contact may have no such branch, and then all its values are NaN.
+    # If the contact has no such branch, all its values are NaN.
     lowest = float(curve.amplitude.fillna(data.saddle_node_amplitude).min())
     title = parameters(data, "n", "restitution", "frequency_ratio")
     _name_axes(axes, data, r"phase of the table over $\pi$", title, left=0.9 * lowest)
@@ -84,8 +83,8 @@ def both_domains(data: xr.Dataset) -> Figure:
 def up_to_second_saddle_node(curve: xr.Dataset) -> xr.Dataset:
     """The branch from its short contacts to the saddle-node at which its unstable side turns back.
 
-    Beyond that saddle-node the contact is longer than at it. A branch whose unstable side
-    does not turn back is returned unchanged.
+    Beyond that saddle-node the contacts are longer. A branch whose unstable side does not turn back
+    is returned unchanged.
     """
     durations = curve.special_contact_duration.values[curve.special_kind.values == SADDLE_NODE]
     if len(durations) < 2:
@@ -98,7 +97,7 @@ def up_to_second_saddle_node(curve: xr.Dataset) -> xr.Dataset:
 
 
 def draw_curve(axes: Axes, x: Any, y: Any, admissible: Any, **look: Any) -> None:
-    """A curve of orbits with a given look, dotted where they are inadmissible."""
+    """A curve of orbits with a given look, dotted where the orbits are inadmissible."""
     x, y, shown = np.asarray(x), np.asarray(y), np.asarray(admissible, dtype=bool)
     axes.plot(x, np.where(shown, y, np.nan), **look)
     if not np.all(shown):
@@ -117,7 +116,7 @@ def _name_curves(axes: Axes, names: list[str]) -> None:
 
 
 def _draw_branch(axes: Axes, curve: xr.Dataset, phase: xr.DataArray, colour: str) -> None:
-    """A branch in runs of one look, each extended to the first point of the next one."""
+    """A branch in pieces of one look, each extended to the first point of the next piece."""
     x, y = curve.amplitude.values, phase.values / np.pi
     kinds = np.where(curve.admissible, np.where(curve.stable, "stable", "unstable"), "inadmissible")
     edges = [0, *(np.flatnonzero(kinds[1:] != kinds[:-1]) + 1), len(kinds)]
@@ -135,7 +134,7 @@ def _draw_named_points(axes: Axes, data: xr.Dataset, colour: str) -> None:
 
 
 def _draw_spring_damper(axes: Axes, curve: xr.Dataset, start: str, end: str) -> None:
-    """The phases at the start and at the end of contact, with special points."""
+    """The phases at the start and at the end of contact, with the special points."""
     for phase, place, colour in (
         (curve.phase, curve.special_phase, start),
         (curve.release_phase, curve.special_phase + curve.special_contact_duration, end),

@@ -31,7 +31,7 @@ def canvas(
 def legend_below(figure: Figure, handles: Any = None, **options: Any) -> None:
     """A legend below all panels.
 
-    Without given handles it has those of the first panel, each name once.
+    Without given handles the legend has those of the first panel, each name once.
     """
     if handles is None:
         drawn, names = figure.axes[0].get_legend_handles_labels()
@@ -42,8 +42,8 @@ def legend_below(figure: Figure, handles: Any = None, **options: Any) -> None:
 def logarithmic(axes: Axes, ratio: xr.DataArray | None = None, **settings: Any) -> None:
     """A logarithmic axis of the frequency ratio with plain numbers at the decades.
 
-    With the values of ϖ it is also labelled, and limited to their range. Further settings are those
-    of :meth:`matplotlib.axes.Axes.set`.
+    If the values of ϖ are given, the axis is labelled and limited to their range. Further settings
+    are those of :meth:`matplotlib.axes.Axes.set`.
     """
     if ratio is not None:
         axes.set(xlabel=r"frequency ratio $\varpi$", xlim=(float(ratio[0]), float(ratio[-1])))
@@ -53,5 +53,5 @@ def logarithmic(axes: Axes, ratio: xr.DataArray | None = None, **settings: Any) 
 
 
 def coloured(data: xr.Dataset, dim: str) -> Iterator[tuple[xr.Dataset, str]]:
-    """The dataset at each place along a dimension, with the colours in turn."""
+    """The dataset at each place along a dimension, with the next colour for each place."""
     return zip(each(data, dim), cycle(COLOURS))

@@ -1,4 +1,4 @@
-"""One page to print: the answer of ``bouncing-ball design`` about a contact."""
+"""The answer of ``bouncing-ball design`` about a contact, as one page to print."""
 
 import textwrap
 from collections.abc import Mapping, Sequence
@@ -23,7 +23,7 @@ def draw(design: Mapping[str, Any], data: xr.Dataset, values: Sequence[tuple[str
     Parameters
     ----------
     design : mapping
-        The answer, with the keys of its JSON.
+        The answer under the keys of its JSON.
     data : Dataset
         Chart and motion (:mod:`bouncing_ball.calculator.page_data`).
     values : sequence of (str, str)
@@ -49,7 +49,7 @@ def draw(design: Mapping[str, Any], data: xr.Dataset, values: Sequence[tuple[str
 
 
 def _title(figure: Figure, design: Mapping[str, Any]) -> float:
-    """What the ball does, the verdict and the reason; the place below them."""
+    """Write the motion, the verdict and the reason; the result is the height below these texts."""
     top = 0.972
     for text, width, size, weight, step in (
         (design["headline"], 112, 9.5, "normal", 0.0165),
@@ -97,10 +97,10 @@ def _errors(axes: Axes, design: Mapping[str, Any]) -> None:
 
 
 def _curves(axes: Axes, time: xr.DataArray, heights: xr.DataArray, title: str) -> None:
-    """All models over each other, in seconds and metres with a prefix."""
+    """The curves of all models in one panel, in seconds and metres with a prefix."""
     for name in heights["model"].values:
         if heights.sel(model=name).notnull().any():
-            # The contact may be of any law.
+            # A contact with another law has the look of the spring-damper model.
             look = MODELS.get(name, MODELS["spring-damper"])
             axes.plot(time, heights.sel(model=name), label=name, **look)
     axes.xaxis.set_major_formatter(EngFormatter("s"))

@@ -1,4 +1,4 @@
-"""Figures of the motions on which balls end: over the amplitude, of starts, and their basins.
+"""Figures of the motions on which balls end: over Λ, over another argument, and over starts.
 
 The datasets are those of :mod:`bouncing_ball.attractors.labelled`.
 """
@@ -56,7 +56,7 @@ def orbit_diagram(data: xr.Dataset) -> Figure:
 
 
 def _rows(data: xr.Dataset) -> tuple[xr.Dataset, np.ndarray, str]:
-    """The results in a row, what they are drawn over, and its name."""
+    """The results along one axis, the values over which they are drawn, and the name of these."""
     rows, _ = in_a_row(data)
     if len(data.dims) == 1:
         (name,) = data.dims

@@ -24,13 +24,13 @@ def save(figure: Figure, path: str | Path, metadata: Mapping[str, str]) -> None:
     OSError
         If the file cannot be written.
     """
-    # No time and no version, which matplotlib would write otherwise.
+    # Without time and version, which matplotlib would write by default.
     texts: dict[str, Any] = {"Software": None, **metadata}
     if Path(path).suffix == ".svg":
         texts = {"Date": None, "Creator": None, "Description": json.dumps(dict(metadata))}
     kind = Path(path).suffix.removeprefix(".")
     with replacing(path) as temporary, style():
         figure.set_dpi(rcParams["savefig.dpi"])
-        # Not savefig, which would draw each figure once more to find its extent.
+        # savefig would draw each figure once more to find its extent.
         canvas = get_registered_canvas_class(kind)(figure)
         getattr(canvas, f"print_{kind}")(temporary, metadata=texts)

@@ -30,7 +30,8 @@ def free_impacts(data: xr.Dataset) -> Figure:
     force.fill_between(
         data.time, load.where(load <= 0), facecolor="#e6e6e6", hatch="////", edgecolor=TABLE
     )
-    # The first release is where the contact is over, the second where its force vanishes.
+    # The displacement release is at the end of the contact; the force release, where the force is
+    # zero.
     for (rule, look), height in zip(_LOOKS.items(), (float(load[-1]), 0.0), strict=True):
         one = data.sel(release=rule)
         restitution.plot(data.damping_ratio, one.restitution, label=f"{rule} release", **look)

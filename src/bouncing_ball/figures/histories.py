@@ -18,7 +18,7 @@ _RIGID = "#b3b3b3"
 
 
 def restitution_history(data: xr.Dataset) -> Figure:
-    """Fig. 2: ball and table against time in periods of the table, restitution model."""
+    """Fig. 2: ball and table over time in periods of the table, in the restitution model."""
     figure, axes = canvas(height=2.4)
     periods = data.time / (2 * np.pi)
     axes.plot(periods, data.ball, color=COLOURS[0], label="ball $z$")
@@ -31,9 +31,7 @@ def restitution_history(data: xr.Dataset) -> Figure:
 
 
 def over_time(data: xr.Dataset) -> Figure:
-    """Balls and table over time; several balls in colours, each named by the arguments that
-    differ.
-    """
+    """Balls and table over time; balls differ in colour and are named by the differing arguments."""
     figure, axes = canvas(WIDE, 2.8)
     balls, names = in_a_row(data, "time")
     periods = data.time / (2 * np.pi)
@@ -66,7 +64,7 @@ def contact_history(data: xr.Dataset) -> Figure:
     ):
         axes.plot([instant, instant], [low, height], **GUIDE)
         axes.plot(instant, height, "o", color="black", markersize=3.5, zorder=5)
-        # The tangent into the impact, or out of the release, of a fixed length in τ.
+        # The tangent before the impact, or after the release, with a fixed length in τ.
         side = np.copysign(reach, velocity)
         here, far = (instant, height), (instant + side, height + side * velocity)
         head, tail = (here, far) if velocity < 0 else (far, here)
@@ -88,7 +86,7 @@ def contact_history(data: xr.Dataset) -> Figure:
 
 
 def both_histories(data: xr.Dataset) -> Figure:
-    """Fig. 12: height over τ, with the table at Λ sin τ for all curves; at the right the apex."""
+    """Fig. 12: height over τ, with the table Λ sin τ of all curves; on the right the apex."""
     figure, (axes, summit) = canvas(WIDE, 3.4, columns=2, width_ratios=(2.4, 1.0))
     n, amplitude = data.attrs["n"], data.attrs["amplitude"]
     period = 2 * np.pi * n
@@ -112,9 +110,9 @@ def both_histories(data: xr.Dataset) -> Figure:
 
 
 def meeting_flights(data: xr.Dataset) -> Figure:
-    """ext_instant: the flights before and after a contact, continued; below, the contact force.
+    """ext_instant: the continued flights before and after a contact; below, the contact force.
 
-    The flights meet at the centroid of the force.
+    The continued flights meet at the centroid of the force.
     """
     figure, (top, below) = canvas(4.2, 3.6, rows=2, sharex=True, height_ratios=(2.2, 1.0))
     time, end = data.time.values, float(data.contact_duration)
@@ -144,11 +142,11 @@ def meeting_flights(data: xr.Dataset) -> Figure:
 
 
 def _draw_both_models(axes: Axes, data: xr.Dataset, period: float) -> None:
-    """Both models; the restitution model is a broad line, over which the others remain visible."""
+    """Both models; the restitution model is a broad line, on which the other lines are visible."""
     phase = data.time.values + float(data.restitution_phase)
     rigid = _three_cycles(phase, data.restitution_ball.values, period)
     axes.plot(*rigid, color=_RIGID, label="restitution", linewidth=3.5)
-    # The stiffest contact is black, solid and above the others, whatever their number.
+    # The stiffest contact is black, solid and above the others for any number of contacts.
     stiffest_first = coloured(data.sortby("frequency_ratio", ascending=False), "frequency_ratio")
     for k, ((curve, colour), dashes) in enumerate(zip(stiffest_first, cycle(_DASHES))):
         flight = _three_cycles(curve.table_phase.values, curve.ball.values, period)
@@ -159,11 +157,10 @@ def _draw_both_models(axes: Axes, data: xr.Dataset, period: float) -> None:
 def _three_cycles(
     phase: np.ndarray, ball: np.ndarray, period: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Phase and height of an orbit over three cycles, of which the outer ones repeat the middle
-    one.
+    """Phase and height of an orbit over three cycles; the outer cycles repeat the middle cycle.
 
-    A point between two cycles is taken once, because a segment without length would restart the
-    dashes of the line.
+    The point between two cycles occurs only once, because a segment of zero length would restart
+    the dashes of the line.
     """
     shifted = np.concatenate([phase[:-1] - period, phase[:-1], phase + period])
     return shifted, np.concatenate([ball[:-1], ball[:-1], ball])

@@ -15,7 +15,7 @@ _SYMBOLS = {row["name"]: row["symbol"] for row in _ROWS if row["symbol"]}
 
 
 def number(value: float) -> str:
-    r"""A parameter as a label shows it, in LaTeX from 10⁴ on.
+    r"""A parameter as text for a label, with a power of ten in LaTeX from 10⁴ on.
 
     Examples
     --------
@@ -30,8 +30,7 @@ def number(value: float) -> str:
 
 
 def parameters(data: xr.Dataset, *names: str, of: str = "") -> str:
-    """Parameters of a dataset, as a title shows them; ``of`` is a prefix of their attributes'
-    names.
+    """Parameters of a dataset as text for a title; ``of`` is a prefix of the attributes' names.
 
     Examples
     --------
@@ -42,23 +41,21 @@ def parameters(data: xr.Dataset, *names: str, of: str = "") -> str:
 
 
 def symbol(name: str) -> str:
-    """The symbol of a parameter, or its name in words."""
+    """The symbol of a parameter, or its name in words if it has no symbol."""
     return f"${_SYMBOLS[name]}$" if name in _SYMBOLS else name.replace("_", " ")
 
 
 def title(data: xr.Dataset) -> str:
-    """The parameters that a labelled dataset has as attributes, and the names of its model and
-    law.
-    """
+    """A title of a labelled dataset: the parameters among its attributes, its model and its law."""
     known = [name for name in _SYMBOLS if name in data.attrs]
     words = [str(data.attrs[name]) for name in ("model", "law") if name in data.attrs]
     return ", ".join(x for x in (*words, parameters(data, *known)) if x)
 
 
 def in_a_row(data: xr.Dataset, *kept: str) -> tuple[xr.Dataset, list[str]]:
-    """A labelled dataset with the axes of its arguments merged into one, "case", and their labels.
+    """A labelled dataset with the axes of its arguments merged into one, "case", and labels.
 
-    The dimensions ``kept`` remain. The labels name each case by its arguments.
+    The dimensions ``kept`` remain. The label of a case has its arguments.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What predicts the stiffness at which a contact has the locked orbit of the restitution model."""
+"""Predictors of the stiffness at which a contact has the restitution model's locked orbit."""
 
 import numpy as np
 import xarray as xr

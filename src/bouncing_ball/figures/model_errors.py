@@ -1,7 +1,7 @@
 """Errors of the restitution and of the corrected model, quantity by quantity.
 
-They are shown on linear contacts (ext_orders), on contacts of other laws (ext_laws) and beside
-physics engines (ext_engines).
+The errors are drawn for linear contacts (ext_orders), for contacts of other laws (ext_laws) and
+together with those of physics engines (ext_engines).
 """
 
 import xarray as xr
@@ -14,7 +14,7 @@ from bouncing_ball.figures.canvas import WIDE, canvas, legend_below, logarithmic
 from bouncing_ball.figures.labels import QUANTITIES, number, parameters
 from bouncing_ball.figures.style import COLOURS, GUIDE, LAWS, MODELS, Look
 
-# Time stepping of engines by dashes, and engines by shapes.
+# Dashes distinguish the schemes of time stepping, and markers the engines.
 _SCHEMES: dict[str, Look] = {
     "semi-implicit Euler": {"color": COLOURS[1], "linewidth": 1.3},
     "implicit Euler": {"color": COLOURS[2], "linewidth": 1.3, "linestyle": (0, (6, 1.5, 1, 1.5))},
@@ -32,7 +32,7 @@ def orders(data: xr.Dataset) -> Figure:
             part, look = data.sel(model=model, quantity=quantity), MODELS[model]
             error = part.relative_error.values
             axes.plot(ratio, error, label=model, **look)
-            # A guide of the slope through the last point.
+            # A guide with this slope through the last point.
             axes.plot(ratio, error[-1] * (ratio[-1] / ratio) ** order, **GUIDE)
             name = f"order {float(part.order.median()):.2f}"
             place: Look = {"transform": axes.transAxes, "ha": "right", "va": "top"}
@@ -47,7 +47,7 @@ def orders(data: xr.Dataset) -> Figure:
 
 
 def contact_laws(data: xr.Dataset) -> Figure:
-    """ext_laws: errors of both models on five laws, over the share of the cycle that D + κ is."""
+    """ext_laws: errors of both models for five laws, over D + κ as a share of the cycle."""
     figure, axes_of = _by_quantity(data, 5.0, r"share of the cycle, $(D+\kappa)/(2\pi n)$")
     share = 1 / (2 * data.attrs["n"] * data.centroid_ratio.values)
     for quantity, axes in axes_of.items():
@@ -63,7 +63,7 @@ def contact_laws(data: xr.Dataset) -> Figure:
         "upper five: restitution model\nlower five: corrected model\ndotted: slopes 1 and 2\n"
         + parameters(data, "n", "restitution", "amplitude")
     )
-    # The first of the two lines of each law.
+    # Each law has two lines; the legend takes the first.
     lines = figure.axes[0].lines[: 2 * data.sizes["law"] : 2]
     spare.legend(lines, data["law"].values, loc="upper left", title=title)
     return figure
@@ -72,9 +72,9 @@ def contact_laws(data: xr.Dataset) -> Figure:
 def engines(data: xr.Dataset) -> Figure:
     """Draw the errors of a bounce's height over the time steps in a period (ext_engines).
 
-    There is a panel for each ϖ, with a line for each scheme of time stepping, marks of the engines
-    and a level for each model without steps. What one corrected impact saves is noted as a number
-    of steps.
+    There is a panel for each ϖ, with a line for each scheme of time stepping, markers of the
+    engines, and a level for each model without steps. A note gives the number of steps that one
+    corrected impact saves.
     """
     figure, slots = canvas(
         WIDE, 3.3, columns=data.sizes["frequency_ratio"], sharex=True, sharey=True
@@ -88,7 +88,7 @@ def engines(data: xr.Dataset) -> Figure:
             axes.plot(one.bounce_steps, one.bounce_error, **look)
             alone = {"markerfacecolor": "black", "label": "_single bounces"}
             axes.plot(one.single_bounce, one.single_error, **look | alone)
-        # The error of the simulation is rounding, far below the panel.
+        # The error of the event-driven simulation is rounding, far below the panel.
         look = MODELS["spring-damper"] | {"transform": axes.transAxes}
         axes.plot([0, 1], [0.025, 0.025], label="event-driven, no steps: rounding", **look)
         for model in ("restitution", "corrected"):
@@ -108,7 +108,7 @@ def engines(data: xr.Dataset) -> Figure:
 
 
 def _draw_steps(axes: Axes, part: xr.Dataset, scheme: str) -> None:
-    """The error of a scheme over its steps, with a mark where it is the corrected model's."""
+    """The error of a scheme over its steps, with a mark where it equals the corrected model's."""
     axes.plot(part.steps_in_bounce, part.step_error, label=scheme, **_SCHEMES[scheme])
     end, level = float(part.equal_steps), abs(float(part.model_error.sel(model="corrected")))
     axes.plot(end, level, marker="|", markersize=9, color="black")
@@ -118,7 +118,7 @@ def _draw_steps(axes: Axes, part: xr.Dataset, scheme: str) -> None:
 
 
 def _by_quantity(data: xr.Dataset, height: float, xlabel: str) -> tuple[Figure, dict[str, Axes]]:
-    """Two rows of three panels, one for the errors of each quantity, with labels outside only."""
+    """Two rows of three panels, one for the errors of each quantity, with labels at the outside."""
     figure, slots = canvas(WIDE, height, 2, 3, sharex=True, sharey=True)
     for axes in slots.flat:
         axes.set(xlabel=xlabel, ylabel="relative error")

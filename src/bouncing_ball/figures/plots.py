@@ -1,4 +1,4 @@
-"""The figure of a labelled dataset, by its kind, in the look of all figures."""
+"""The figure of a labelled dataset, chosen by its kind, in the common style."""
 
 from importlib import import_module
 from pathlib import Path
@@ -20,20 +20,21 @@ PLOTS = {
     "exponent": "diagram.exponent",
     "basins": "diagram.basins",
 }
-"""Where each kind is drawn: ``module.function`` of this package."""
+"""The function that draws each kind, as ``module.function`` of this package."""
 
 SUFFIXES = (".pdf", ".png", ".svg")
 
 
 def plot(data: xr.Dataset, path: str | Path | None = None) -> Figure:
-    """The figure of a dataset whose attribute ``kind`` is in :data:`PLOTS`, written if there is a
-    path.
+    """The figure of a dataset whose attribute ``kind`` is in :data:`PLOTS`.
+
+    If a path is given, the figure is written to this file.
 
     Raises
     ------
     ModelError
-        If the kind has no figure, or if the path does not end as a picture does or cannot be
-        written.
+        If the kind has no figure, if the suffix of the path is not that of a picture, or if the
+        file cannot be written.
     """
     kind = data.attrs.get("kind")
     if kind not in PLOTS:
@@ -52,7 +53,7 @@ def write(figure: Figure, path: Path, title: str) -> None:
     Raises
     ------
     ModelError
-        If the path does not end as a picture does or cannot be written.
+        If the suffix of the path is not that of a picture, or the file cannot be written.
     """
     if path.suffix not in SUFFIXES:
         raise ModelError(f"'{path}' does not end in {' or '.join(SUFFIXES)}")

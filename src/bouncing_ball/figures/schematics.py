@@ -12,7 +12,7 @@ _LINE: Look = {"color": "black", "linewidth": 1.0, "solid_capstyle": "round"}
 
 
 def restitution_model() -> Figure:
-    """Fig. 1: the ball in flight over the table, without contact elements."""
+    """Fig. 1: the ball in flight above the table, without contact elements."""
     figure, axes = _scene(2.6, (-0.56, 4.42), 2.7, 2.7, r"$a\,\sin(\Omega t)$")
     axes.plot([1.7, 1.7], [1.0, 2.28], **GUIDE)
     axes.text(1.8, 1.2, "impact: $r$", ha="left", va="center", fontsize=8)
@@ -33,9 +33,7 @@ def spring_damper_model() -> Figure:
 def _scene(
     width: float, span: tuple[float, float], ball: float, low: float, motion: str
 ) -> tuple[Figure, Axes]:
-    """The ball at its height, the moving table, and the arrows of y(t) and g from the height
-    ``low``.
-    """
+    """The ball, the moving table, and arrows of y(t) and g that start at the height ``low``."""
     figure, axes = canvas(width, 1.5)
     axes.set(xlim=span, ylim=(0.4, low + 0.75), aspect="equal")
     axes.axis("off")

@@ -25,7 +25,7 @@ ARROW |= {"shrinkA": 0, "shrinkB": 0}
 GUIDE: Look = {"color": "#8c8c8c", "linewidth": 0.7, "linestyle": (0, (1, 1.5))}
 
 SADDLE_NODE, PERIOD_DOUBLING = "saddle-node", "period doubling"
-"""The bifurcations as datasets name them."""
+"""The names of the bifurcations in the datasets."""
 
 
 def _look(entry: Look) -> Look:

@@ -23,7 +23,7 @@ from bouncing_ball.figures.style import (
 )
 
 _DASHES = ("-", (0, (5, 1.5)), (0, (1, 1)), (0, (5, 1.5, 1, 1.5)))
-# Above this frequency ratio the points are close to that of the restitution model.
+# Above this frequency ratio the points are close to the point of the restitution model.
 _NAMED_UP_TO = 10.0
 _LIMIT: Look = {"markersize": 9, "zorder": 5, "linestyle": "none", "color": RESTITUTION}
 
@@ -34,7 +34,7 @@ def apparent_restitution(data: xr.Dataset) -> Figure:
     for restitution in data.restitution.values:
         axes.axhline(restitution, **GUIDE)
     _draw_cases(axes, data, "apparent_restitution", "apparent restitution $r_a$")
-    # Between the lowest curve and the next, if they are far apart.
+    # The legend is between the lowest curve and the next curve, if these are far apart.
     axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.12), title=parameters(data, "n"))
     return figure
 
@@ -53,7 +53,7 @@ def bounce_velocity(data: xr.Dataset) -> Figure:
 def poincare_map(data: xr.Dataset) -> Figure:
     """Fig. 13: phase and velocity, over π, at the start and at the end of contact.
 
-    Each curve is parametrised by ϖ, of which a few values are marked.
+    Each curve is parametrised by ϖ, and a few values of ϖ are marked.
     """
     figure, axes = canvas(4.4, 4.0)
     for k, (curve, colour) in enumerate(zip(each(data, "case"), cycle(COLOURS[1:]))):
@@ -79,7 +79,8 @@ def poincare_map(data: xr.Dataset) -> Figure:
 def orbits(data: xr.Dataset) -> Figure:
     """Phase of impact and greatest height of orbits over the last axis of a labelled dataset.
 
-    Solid where the orbit is stable, dashed where it is not; a curve for each place of the others.
+    There is a curve for each place along the other axes; it is solid for stable orbits and dashed
+    for unstable orbits.
     """
     figure, panels = canvas(WIDE, 2.8, columns=2)
     figure.suptitle(title(data))
@@ -111,7 +112,7 @@ def limits(data: xr.Dataset) -> Figure:
 def _curves(
     data: xr.Dataset, panels: Sequence[Axes]
 ) -> Iterator[tuple[xr.Dataset, np.ndarray, Look]]:
-    """Each curve of a labelled dataset with its look, over its last axis, which is named."""
+    """Each curve of a labelled dataset over the last axis, with its look; the axis is labelled."""
     along = str(list(data.dims)[-1])
     rows, names = in_a_row(data, along)
     place = data[along].values
@@ -133,9 +134,9 @@ def _draw_cases(axes: Axes, data: xr.Dataset, name: str, ylabel: str) -> None:
 
 
 def _draw_trace(axes: Axes, curve: xr.Dataset, phase, velocity, label, look: Look) -> None:
-    """Phase and velocity over π as ϖ varies, with its round values marked.
+    """Phase and velocity over π as ϖ varies; round values of ϖ are marked.
 
-    On a curve with a label the small values are named; names on further curves would overlap.
+    Small values are named on curves with a label only, because names on all curves would overlap.
     """
     x, y = phase.values / np.pi, velocity.values / np.pi
     marked = np.flatnonzero(curve.labelled.values)
@@ -144,7 +145,7 @@ def _draw_trace(axes: Axes, curve: xr.Dataset, phase, velocity, label, look: Loo
     for k, at in enumerate(marked):
         ratio = float(curve.frequency_ratio[at])
         if label and ratio <= _NAMED_UP_TO:
-            # Neighbours on both sides of the curve.
+            # The names of neighbours are on different sides of the curve.
             offset, side = ((5, 4), "left") if k % 2 == 0 else ((-5, -4), "right")
             name, point = rf"$\varpi={number(ratio)}$", (x[at], y[at])
             note(axes, name, point, offset, ha=side, va="center", fontsize=8)

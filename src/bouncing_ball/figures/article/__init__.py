@@ -1,1 +1,1 @@
-"""The replication article from its templates, with every number from a dataset."""
+"""The replication article, made from templates that take every number from a dataset."""

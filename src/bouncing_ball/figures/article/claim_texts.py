@@ -11,8 +11,8 @@ from bouncing_ball.figures.tables.rows import found_text
 class Claims:
     """Access to the claims of a dataset by name and by verdict, or to ``all`` in their order.
 
-    A claim has the dataset's variables over ``claim`` as attributes, its ``id``, and ``found`` as
-    in the table of claims.
+    A claim has as attributes its ``id``, the variables of the dataset over ``claim``, and ``found``
+    in the form of the table of claims.
     """
 
     def __init__(self, data: xr.Dataset) -> None:
@@ -23,13 +23,13 @@ class Claims:
         self.all = list(self._claims.values())
 
     def __call__(self, name: str) -> Any:
-        """The claim with an id."""
+        """The claim with this id."""
         return self._claims[name]
 
     def count(self, verdict: str = "", *, table: str = "", group: str = "independent") -> int:
-        """Number of claims with a verdict, or of all without one; of one table if it is named.
+        """Number of claims with a verdict, or of all if it is empty; of one table if that is named.
 
-        ``group`` is ``independent`` for all claims but restatements, ``all``, or the name of one
+        ``group`` is ``independent`` for all claims except restatements, ``all``, or the name of a
         group.
         """
         return sum(
@@ -40,9 +40,9 @@ class Claims:
         )
 
     def asked(self, name: str) -> bool:
-        """Whether a claim has a verdict, because the run has the paper's parameters for it."""
+        """Whether a claim has a verdict, for which the run must have the paper's parameters."""
         return self(name).verdict != "not asked"
 
     def not_asked(self) -> list[str]:
-        """The reasons for which claims have no verdict: parameters that are not the paper's."""
+        """The reasons why claims have no verdict: parameters that differ from the paper's."""
         return sorted({self(name).reason for name in self._claims if not self.asked(name)})

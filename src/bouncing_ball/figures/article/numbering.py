@@ -10,16 +10,16 @@ _REFERENCE = re.compile(r"«([^»\n]+)»")
 
 
 def numbered(text: str) -> str:
-    """The text with numbers in its headings and in place of ``«name»``.
+    """The text with numbers in its headings and in place of the references ``«name»``.
 
-    A section is referred to by its heading. Figures and tables are numbered in the order of their
-    captions, ``**Figure «name»`` and ``**Table «name»``: after the 16 figures and the table that
-    have the numbers of the paper, and in a supplement from S1.
+    The name of a section is its heading. Figures and tables are numbered in the order of their
+    captions, ``**Figure «name»`` and ``**Table «name»``. The numbers follow those of the 16 figures
+    and the table of the paper; in a supplement they begin with S1.
 
     Raises
     ------
     KeyError
-        If nothing has the name of a reference.
+        If no section, figure or table has the name of a reference.
 
     Examples
     --------

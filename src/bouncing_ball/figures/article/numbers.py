@@ -1,4 +1,4 @@
-"""Numbers of datasets as texts."""
+"""The formats of numbers in the article."""
 
 import math
 from collections.abc import Iterable
@@ -9,24 +9,24 @@ _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def _typeset(number: str) -> str:
-    """A number as Python prints it, with a minus sign, infinity, and a dash for NaN."""
+    """A number printed by Python, with typographic signs for minus, infinity and NaN (a dash)."""
     return number.replace("nan", "–").replace("inf", "∞").replace("-", "−")
 
 
 def decimal(value: float, digits: int) -> str:
-    """A number with so many decimals; a dash for NaN.
+    """A number with the given number of decimals; a dash for NaN.
 
     Examples
     --------
     >>> decimal(82.1774, 2), decimal(float("nan"), 2), decimal(float("inf"), 2)
     ('82.18', '–', '∞')
     """
-    # Rounding has no sign.
+    # Adding 0.0 removes the sign of a zero that results from rounding.
     return _typeset(f"{round(float(value), digits) + 0.0:.{digits}f}")
 
 
 def short(value: float, digits: int = 6) -> str:
-    """A parameter without trailing zeros; small and large ones with a power of ten.
+    """A parameter without trailing zeros; small and large values have a power of ten.
 
     Examples
     --------
@@ -50,7 +50,7 @@ def percent(share: float, digits: int = 3) -> str:
     >>> percent(0.01), percent(0.0279, 2)
     ('1 %', '2.8 %')
     """
-    # A share of a sample may lie between two texts, where its last digit must not decide.
+    # A share of a sample may lie halfway between two texts; rounding errors must not decide there.
     return f"{short(100 * float(share) * (1 + 1e-9), digits)} %"
 
 

@@ -1,4 +1,4 @@
-"""Conversions by pandoc, which knows citations and Typst; it comes inside ``pypandoc_binary``."""
+"""Conversions by pandoc, which handles citations and Typst and is part of ``pypandoc_binary``."""
 
 import re
 from pathlib import Path
@@ -7,7 +7,7 @@ import pypandoc
 
 from bouncing_ball.errors import ModelError
 
-# A citation as pandoc writes it, and the place of the list of the works cited.
+# A citation in the syntax of pandoc, and the place of the list of the works cited.
 _CITATION = re.compile(r"\[@[^\]]+\]")
 _LIST = '<div id="refs"></div>\n'
 
@@ -28,10 +28,9 @@ def pandoc(text: str, reader: str, writer: str, *options: str) -> str:
 
 
 def with_citations(markdown: str, folder: str | Path) -> str:
-    """The text with numbers in place of ``[@key; ...]``, and the list of works in place of
-    ``#refs``.
+    """The text with numbers in place of ``[@key; ...]``, and with the list of works at ``#refs``.
 
-    Pandoc makes both from ``references.yaml`` and ``numbered.csl`` in a folder; the rest of the
+    Pandoc makes both from ``references.yaml`` and ``numbered.csl`` in the folder; the rest of the
     text is unchanged.
 
     Raises

@@ -1,6 +1,6 @@
-"""The article as a PDF: pandoc converts Markdown to Typst, which sets it.
+"""The article as a PDF: pandoc converts Markdown to Typst, and Typst sets the pages.
 
-Typst is needed for this only (the extra ``pdf``). The figures are embedded as vectors. The same
+Only the PDF needs Typst (the extra ``pdf``). The figures are embedded as vector graphics. The same
 text and figures give the same bytes, because the file contains neither a time nor fonts of the
 machine.
 """
@@ -12,9 +12,9 @@ from typing import Any
 from bouncing_ball.errors import ModelError
 from bouncing_ball.figures.article.pandoc import pandoc
 
-# A figure of the article: the picture, and its caption on the lines after it.
+# A figure of the article: the picture, and the caption on the lines after the picture.
 _FIGURE = re.compile(r"^!\[[^\]\n]*\]\((\S+)\.png\)\n((?:.+\n)+)", re.MULTILINE)
-# The caption of a table, in the paragraph before it.
+# The caption of a table is the paragraph before the table.
 _TABLE = re.compile(r"^(\*\*Table (?:.+\n)+)(?=\n\|)", re.MULTILINE)
 _STICKY = "```{=typst}\n#block(sticky: true)[\n```\n\n\\1\n```{=typst}\n]\n```\n"
 # A link to a file of the repository that is not among the results.
@@ -24,9 +24,9 @@ _READER = "commonmark_x+implicit_figures-smart"
 
 
 def for_pdf(markdown: str) -> str:
-    r"""The text with vector figures, each with its caption, and tables on the page of theirs.
+    r"""The text with vector figures, each with its caption, and with tables beside their captions.
 
-    Links to files of the repository start from ``results``, where the PDF is.
+    Links to files of the repository are relative to ``results``, the folder of the PDF.
 
     Examples
     --------
@@ -41,12 +41,12 @@ def for_pdf(markdown: str) -> str:
 
 
 def article_pdf(markdown: str, template: str | Path, folder: str | Path) -> bytes:
-    """The PDF of an article, set with a Typst template of pandoc; its pictures are in a folder.
+    """The PDF of an article, set with a Typst template of pandoc and the pictures in a folder.
 
     Raises
     ------
     ModelError
-        One line, if the article cannot be set or the tools are not installed.
+        If the article cannot be set or the tools are not installed.
     """
     try:
         import typst
@@ -55,7 +55,7 @@ def article_pdf(markdown: str, template: str | Path, folder: str | Path) -> byte
     # The heading of the first level is the title.
     options = ["--standalone", f"--template={template}", "--shift-heading-level-by=-1"]
     source = pandoc(for_pdf(markdown), _READER, "typst", *options).encode()
-    # Its types know a text and a folder of one kind only.
+    # The type hints of Typst require a text and a folder of the same type.
     compiler: Any = typst.compile
     try:
         return compiler(source, root=str(folder), ignore_system_fonts=True)

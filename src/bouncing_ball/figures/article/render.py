@@ -1,4 +1,4 @@
-"""The article and its supplement as Markdown, from templates, datasets, tables, references."""
+"""The article and its supplement as Markdown, from templates, datasets, tables and references."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -15,17 +15,18 @@ from bouncing_ball.figures.article.pandoc import with_citations
 def render_article(
     template: str | Path, data: Mapping[str, xr.Dataset], tables: Mapping[str, str]
 ) -> str:
-    """The text of a template, numbered and with its citations; it may include others beside it.
+    """The text of a template with numbered sections, figures, tables and citations.
 
-    Templates can use ``data`` and ``tables`` by name, ``claims``, and the number formats of
-    :mod:`bouncing_ball.figures.article.numbers`; they cite as pandoc does, ``[@key]``.
+    A template may include other templates of its folder. Templates can use ``data`` and ``tables``
+    by name, ``claims``, and the number formats of :mod:`bouncing_ball.figures.article.numbers`.
+    Citations have the syntax of pandoc, ``[@key]``.
 
     Raises
     ------
     ModelError
         If a reference does not exist.
     KeyError, jinja2.UndefinedError
-        If a template names anything else that does not exist.
+        If a template uses any other name that does not exist.
     """
     folder = Path(template).parent
     environment = Environment(

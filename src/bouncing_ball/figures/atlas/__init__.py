@@ -1,1 +1,1 @@
-"""The charts and tables of the atlas, from its summary."""
+"""The charts and tables of the atlas, made from the summary of the atlas."""

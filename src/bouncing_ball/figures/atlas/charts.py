@@ -1,4 +1,4 @@
-"""The charts of the atlas: the ϖ from which on each model is accurate, from the summary."""
+"""The charts of the atlas: the ϖ above which each model is accurate."""
 
 from collections.abc import Iterator
 
@@ -13,30 +13,30 @@ from bouncing_ball.figures.labels import QUANTITIES
 from bouncing_ball.figures.style import CORRECTED, GUIDE, Look
 
 LEVELS = (3, 5, 10, 20, 50, 100, 200, 500, 1000)
-"""Bounds of the colours; the last colour is for larger values."""
+"""Bounds between the colours; the last colour is for larger values."""
 _LAW_LEVELS = (20, 50, 100, 200, 500)
 _LAW: Look = {"colors": CORRECTED, "linewidths": 0.8, "linestyles": "--"}
 NEAR = 1
-"""Ranges of positions next to the saddle-node that the colours of the page leave out."""
+"""Ranges of positions next to the saddle-node, which the colours of the page do not include."""
 _RIGHT, _CORRECTED, _NEITHER = "#ffffff", "#b9d7ea", "#7f7f7f"
 _SPAN = 3.0, 1e3
-# Neither is dotted, because the rule of thumb is.
+# Neither line is dotted, because the rule of thumb is dotted.
 _BESIDE = {"restitution": "--", "corrected": "-."}
 _LINE: Look = {"color": "black", "linewidth": 0.8}
 
 
 def charts(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
-    """All charts by name: the page, and a map for each quantity."""
+    """All charts with their names: the page, and a map for each quantity."""
     yield "page", page(data)
     for quantity in data["quantity"].values:
         yield str(quantity), over_range(data, str(quantity))
 
 
 def page(data: xr.Dataset, release: str = "displacement") -> Figure:
-    """A panel for each quantity: the simplest model that is accurate, by contact (r, ϖ).
+    """A panel for each quantity with the simplest accurate model over the contacts (r, ϖ).
 
-    It is accurate for all families and all positions in the stable range except those nearest to
-    the saddle-node, for which lines show the ϖ needed.
+    A model must be accurate for all families and for all positions in the stable range except those
+    nearest to the saddle-node; for these, lines show the ϖ needed.
     """
     figure, grid = canvas(WIDE, 9.2, 4, 2, sharex=True, sharey=True)
     slots = list(grid.flat)

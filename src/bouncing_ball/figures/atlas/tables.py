@@ -10,7 +10,7 @@ from bouncing_ball.figures.tables.formats import Table, words
 def shares(data: xr.Dataset) -> Table:
     """Accuracy of the models on all nodes, by release rule and quantity; header and rows.
 
-    Shares are those of nodes, which a limit of the families has none of; suprema are those of all
+    Shares refer to nodes, so that a limit of the families has no share; suprema refer to all
     orbits.
     """
     rule, tolerance = float(data.rule_of_thumb), float(data.summary_tolerance)
@@ -26,7 +26,7 @@ def shares(data: xr.Dataset) -> Table:
     ]
     body = []
     at = data.sel({"tolerance": tolerance})  # the keyword is another argument of sel
-    # Without a threshold an error is tolerated at every ϖ or, if it is not at the rule's, at none.
+    # Without a threshold, an error is tolerated at every ϖ, or at no ϖ if it is not at the rule's.
     never = at.supremum_needed.isnull() & (at.supremum > tolerance)
     at = at.assign(supremum_needed=at.supremum_needed.where(~never, np.inf))
     for one in each(at.sel(frequency_ratio=rule), "release"):
@@ -46,7 +46,7 @@ def shares(data: xr.Dataset) -> Table:
 
 
 def _ratio(value: float | xr.DataArray) -> str:
-    """A frequency ratio rounded up, so that it suffices."""
+    """A frequency ratio, rounded up so that the contact is stiff enough."""
     number = float(value)
     if not np.isfinite(number):
         return "none"

@@ -1,8 +1,7 @@
 """The explorer's page: model, drawings and reference orbits in one file.
 
-The scripts and the style are files beside this module. A content-security policy admits exactly
-these texts, by their checksums, so that the page can run no other script and load nothing from
-anywhere.
+The scripts and the style are files beside this module. A content-security policy admits these texts
+alone, by their checksums, so that the page can neither run another script nor load anything.
 """
 
 import base64
@@ -20,7 +19,7 @@ SCRIPTS = "model law engines simulation plot state orbit sound stage page".split
 
 
 def references(data: xr.Dataset) -> str:
-    """The reference orbits and balls as JSON, one per line; what does not exist is null."""
+    """The reference orbits and balls as JSON, one per line; a missing value is null."""
     found: dict[str, Any] = {"commit": str(data.attrs.get("provenance_commit", "unknown"))}
     for kind, dims in {"orbits": {"release", "sample"}, "balls": {"model", "motion"}}.items():
         table = data.drop_dims(set(data.dims) - dims).to_dataframe().reset_index()
@@ -30,13 +29,13 @@ def references(data: xr.Dataset) -> str:
 
 
 def _allowed(text: str) -> str:
-    """The source expression of the policy that admits one inline text."""
+    """The source expression by which the policy admits one inline text."""
     digest = base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
     return f"'sha256-{digest}'"
 
 
 def to_html(data: xr.Dataset, engines: str) -> str:
-    """The page with what it checks itself against.
+    """The page, including the reference values with which it checks its results.
 
     Parameters
     ----------

@@ -13,7 +13,7 @@ Table = tuple[list[str], list[list[str]]]
 
 
 def words(name: object) -> str:
-    """A name as a table shows it.
+    """A name in words, as in a table.
 
     Examples
     --------
@@ -24,7 +24,7 @@ def words(name: object) -> str:
 
 
 def number(value: Any, form: str, none: str = "–") -> str:
-    """A number in a format, or ``none`` for a NaN or infinite one.
+    """A number in a format, or ``none`` if it is NaN or infinite.
 
     Examples
     --------

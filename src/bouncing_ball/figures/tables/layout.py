@@ -8,7 +8,7 @@ import xarray as xr
 from bouncing_ball.figures.tables.formats import Table, number, words
 
 Column = Callable[[xr.Dataset], str]
-"""The text of a cell from the part of the dataset that its row is about."""
+"""A function that makes the text of a cell from the part of the dataset for its row."""
 Columns = dict[str, Column]
 """Columns by their headings."""
 
@@ -26,12 +26,12 @@ def table(parts: Iterable[xr.Dataset], columns: Columns) -> Table:
 
 
 def text(name: str) -> Column:
-    """The column of a variable, unformatted."""
+    """The column of a variable as text without a number format."""
     return lambda part: str(part[name].item())
 
 
 def quantity(part: xr.Dataset) -> str:
-    """The cell with the quantity of a row."""
+    """The name of the quantity of a row."""
     return words(part["quantity"].item())
 
 
@@ -41,5 +41,5 @@ def value(name: str, form: str, none: str = "–") -> Column:
 
 
 def at(column: Column, **where: Any) -> Column:
-    """A column that takes one place along dimensions over which the rows do not run."""
+    """A column at one place along dimensions over which the rows do not run."""
     return lambda part: column(part.sel(where))

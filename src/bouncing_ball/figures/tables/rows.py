@@ -1,7 +1,7 @@
-"""The tables of the run: a function of its dataset for each, with the table's name.
+"""The tables of the run: for each table a function of its dataset, with the name of the table.
 
-Each returns the header and the rows as texts, made of parts of the dataset and columns, see
-:mod:`.layout`.
+Each function returns the header and the rows as texts, made from parts of the dataset and columns
+(:mod:`.layout`).
 """
 
 from functools import partial
@@ -18,7 +18,7 @@ from bouncing_ball.figures.tables.layout import Columns, at, quantity, table, te
 def table1(data: xr.Dataset) -> Table:
     """Stability ranges over Λ: each end of each range computed, printed, and their difference.
 
-    The unit of the difference is that of Λ. The rows of the restitution model have nothing printed.
+    Differences are in Λ. The rows of the restitution model have no printed values.
     """
     ends: Columns = {"n": text("n"), "bound": text("bound")}
     contacts: Columns = {
@@ -39,8 +39,7 @@ def table1(data: xr.Dataset) -> Table:
 def thresholds(data: xr.Dataset) -> Table:
     """The ϖ needed for each tolerance, quantity by quantity.
 
-    Where the threshold lies outside the range scanned, the entry is the end of
-    the range after < or >.
+    If the threshold is outside the range scanned, the entry is the end of the range after < or >.
     """
     low, high = (f"{float(data.frequency_ratio[k]):g}" for k in (0, -1))
     found = _threshold(".5g", f"< {low}", f"> {high}")
@@ -49,7 +48,7 @@ def thresholds(data: xr.Dataset) -> Table:
 
 
 def _threshold(form: str, within: str, never: str):
-    """A column of thresholds, with the given texts where they are outside the range scanned."""
+    """A column of thresholds, with the given texts for thresholds outside the range scanned."""
 
     def column(part: xr.Dataset) -> str:
         outside = within if part.threshold_status.item().startswith("within") else never
@@ -61,7 +60,7 @@ def _threshold(form: str, within: str, never: str):
 def formulas(data: xr.Dataset) -> Table:
     """Printed formulas: the comparison, the disagreement, and the disagreement allowed.
 
-    Disagreements of the size of rounding are given by their bound.
+    For a disagreement of the size of rounding the entry is its bound.
     """
     columns: Columns = {
         "formula": text("formula"),
@@ -77,7 +76,7 @@ def formulas(data: xr.Dataset) -> Table:
 def forensics(data: xr.Dataset) -> Table:
     """Readings of Table 1, the closest first; differences in units of the last digit.
 
-    A dash stands where a reading has no orbit.
+    The entry is a dash if a reading has no orbit.
     """
     columns: Columns = {"rank": text("rank"), "reading": text("reading")}
     for name in data.rows.values[:2]:
@@ -94,9 +93,9 @@ def forensics(data: xr.Dataset) -> Table:
 def witness(data: xr.Dataset) -> Table:
     """Largest disagreement between the routes to the orbits of each figure or table.
 
-    An entry is a bound of the largest disagreement, which is the budget unless
-    it is exceeded, and in brackets the number of orbits. The disagreement itself
-    is rounding, which differs between processors.
+    An entry is a bound of the largest disagreement, which is the budget unless this is exceeded,
+    and the number of orbits in brackets. The disagreement itself is not printed, because it
+    consists of rounding errors, which differ between processors.
     """
 
     def entry(part: xr.Dataset) -> str:
@@ -130,7 +129,7 @@ def claims(data: xr.Dataset) -> Table:
 def found_text(claim: xr.Dataset) -> str:
     """The number found, with two digits more than printed, or four digits if nothing is printed.
 
-    A number of the size of rounding is given by its bound.
+    For a number of the size of rounding the text is its bound.
     """
     printed = claim.printed_text.item()
     if not printed and np.isfinite(claim.found):
@@ -145,7 +144,7 @@ def deviation_text(claim: xr.Dataset) -> str:
 
 
 def ext_orders(data: xr.Dataset) -> Table:
-    """The error law by quantity, with the permanent contact last, which has no correction.
+    """The error law by quantity; the permanent contact, which has no correction, comes last.
 
     C is the corrected model's error times ϖ²; the last column is the ϖ at which
     the restitution model's error changes its sign.
@@ -168,8 +167,8 @@ def ext_orders(data: xr.Dataset) -> Table:
 def ext_laws(data: xr.Dataset) -> Table:
     """Errors on contacts of five laws with the same restitution coefficient and centroid.
 
-    Both models at three π/(D + κ), the smallest, the middle and the largest of the grid, and the
-    threshold of the height.
+    Columns give both models at the smallest, the middle and the largest π/(D + κ) of the grid, and
+    the threshold of the height.
     """
     grid = data.centroid_ratio.values
     columns: Columns = {"quantity": quantity, "law": text("law")}
@@ -191,8 +190,8 @@ _OF_ENGINES = (
 def ext_engines(data: xr.Dataset) -> Table:
     """Physics engines and models: restitution, steps, and the heights of orbits.
 
-    Errors are those at the largest step, the mean of the bounces ± their scatter, and those at the
-    limit of small steps. Times are over the simulation's, from event to event.
+    Errors are given at the largest step, as the mean of the bounces ± their scatter, and in the
+    limit of small steps. Times are relative to that of the event-driven simulation.
     """
     tolerance = data.tolerance.max()
     columns: Columns = {
@@ -212,7 +211,7 @@ def ext_engines(data: xr.Dataset) -> Table:
             part.bounce_time, ".1f"
         ),
     }
-    # The keyword is another argument of sel.
+    # A dictionary, because the keyword tolerance is another argument of sel.
     shown = data.sel({"tolerance": tolerance}).isel(refinement=0)
     parts: list[xr.Dataset] = []
     for case in each(shown, "release", "restitution", "n"):
@@ -226,15 +225,15 @@ def ext_engines(data: xr.Dataset) -> Table:
 
 
 def _listed(values: xr.DataArray, form: str) -> str:
-    """Those of some numbers that exist, in a cell."""
+    """The numbers that are not NaN, in one cell."""
     return ", ".join(f"{x:{form}}" for x in values.values.ravel() if np.isfinite(x))
 
 
 def _error(name: str, part: xr.Dataset) -> str:
-    """The mean error of a height, or its limit, and the scatter, in per cent."""
+    """The mean error of a height, or its limit for small steps, and the scatter, in per cent."""
     error, scatter = (100 * float(part[f"{name}_{what}"]) for what in ("error", "scatter"))
     if not np.isfinite(error):
         return "–"
-    # Rounding has no sign.
+    # Adding 0.0 removes the sign of a zero that results from rounding.
     mean = f"{round(error, 3) + 0.0:+.3f}"
     return f"{mean} ± {scatter:.2f} %" if np.isfinite(scatter) else f"{mean} %"

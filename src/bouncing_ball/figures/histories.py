@@ -31,7 +31,7 @@ def restitution_history(data: xr.Dataset) -> Figure:
 
 
 def over_time(data: xr.Dataset) -> Figure:
-    """Balls and table over time; balls differ in colour and are named by the differing arguments."""
+    """Balls and table over time; each ball has a colour and the differing arguments as its name."""
     figure, axes = canvas(WIDE, 2.8)
     balls, names = in_a_row(data, "time")
     periods = data.time / (2 * np.pi)

@@ -8,7 +8,7 @@ from scipy.optimize import minimize_scalar
 
 from bouncing_ball.accuracy.errors import SIMPLE, errors
 from bouncing_ball.accuracy.quantities import Quantity
-from bouncing_ball.atlas.suprema import largest, tolerated
+from bouncing_ball.atlas.suprema import largest, suprema, tolerated
 
 
 def error(plan, row, r, place, kind, ratio=100.0):
@@ -56,3 +56,15 @@ def test_a_maximum_inside_is_found(small):
     )
     found = largest(plan, row, kind, 100.0, 0.2, 0.9)
     assert 0.3 < other.x < 0.8 and found == pytest.approx(-other.fun, rel=1e-6)
+
+
+def test_crossings_are_looked_for_from_the_first_ratio_on(small, monkeypatch):
+    plan = small()
+    first, second = plan.ratios[:2]
+    middle = (first * second) ** 0.5
+    monkeypatch.setattr(
+        "bouncing_ball.atlas.suprema.largest",
+        lambda _, row, kind, ratio, *span, **more: middle / ratio,
+    )
+    dims, needed = suprema(plan, 100.0, 1.0)["supremum_needed"][:2]
+    assert "n" in dims and np.allclose(needed, middle, rtol=1e-9)

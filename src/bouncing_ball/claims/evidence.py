@@ -1,6 +1,7 @@
 """The numbers that decide the verbal statements of the paper, taken from the figures' datasets.
 
-This module simulates and solves nothing.
+This module simulates and solves nothing. A *softening* is the change from one row of Table 1 to the
+next row, whose contact is more compliant.
 """
 
 from collections.abc import Mapping
@@ -143,7 +144,7 @@ def _rows(data: Data, source: str) -> xr.DataArray:
     return data["table1"][source].sortby("frequency_ratio", ascending=False)
 
 
-def row_shift(data: Data) -> xr.DataArray:
+def softening(data: Data) -> xr.DataArray:
     """Change of the computed ends of Table 1 from each row to the next more compliant row."""
     return _rows(data, "computed").diff("frequency_ratio")
 

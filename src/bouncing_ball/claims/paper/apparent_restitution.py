@@ -45,8 +45,8 @@ def dip_at_12(data):
     return {reading: at_least(evidence.dip(data, 1.2), limit) for reading, limit in seen.items()}
 
 
-@claim("Fig. 6", printed="0.81", id="compliant end of 1.2")
-def compliant_end_of_12(data):
+@claim("Fig. 6", printed="0.81", id="soft end of 1.2")
+def soft_end_of_12(data):
     """at an amplitude of 1.2 the apparent restitution tends to this value at a frequency ratio of 1
 
     Remark: the value has the same digits at the other two amplitudes

@@ -15,7 +15,7 @@ def stiff_limit(data):
 
 
 @claim("Abstract")
-def compliant_divergence(data):
+def soft_divergence(data):
     """the models diverge when the stiffness decreases
 
     Condition: no relative error is below 1 % at the most compliant contact scanned

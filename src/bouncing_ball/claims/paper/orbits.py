@@ -57,7 +57,7 @@ def superimposed_when_stiff(data):
 
 
 @claim(_FIGURES)
-def apart_when_compliant(data):
+def apart_when_soft(data):
     """the curves of both phases diverge as the frequency ratio decreases
 
     Condition: every contact of the most compliant branch is longer than a hundredth of a radian
@@ -73,7 +73,7 @@ def saddle_node_falls(data):
 
     Remark: the introduction says that the existence conditions of the orbits change
     """
-    return below(evidence.row_shift(data).sel(bound=Bifurcation.SADDLE_NODE), 0)
+    return below(evidence.softening(data).sel(bound=Bifurcation.SADDLE_NODE), 0)
 
 
 @claim("Figs. 8 and 9, Table 1", explanation=why.period_doubling_turns)
@@ -85,7 +85,7 @@ def period_doubling_rises_when_stiff(data):
 
     Answer: against the restitution model of Eq. 8 it does rise
     """
-    ends = evidence.row_shift(data).sel(bound=Bifurcation.PERIOD_DOUBLING)
+    ends = evidence.softening(data).sel(bound=Bifurcation.PERIOD_DOUBLING)
     return above(ends.sel(frequency_ratio=10), 0)
 
 
@@ -95,7 +95,7 @@ def period_doubling_rises_when_compliant(data):
 
     Condition: it rises from the second row of Table 1 to the third, for every n
     """
-    ends = evidence.row_shift(data).sel(bound=Bifurcation.PERIOD_DOUBLING)
+    ends = evidence.softening(data).sel(bound=Bifurcation.PERIOD_DOUBLING)
     return above(ends.sel(frequency_ratio=2), 0)
 
 
@@ -105,7 +105,7 @@ def range_widens(data):
 
     Condition: the width grows from every row of Table 1 to the next more compliant one, for every n
     """
-    return above(evidence.row_shift(data).diff("bound"), 0)
+    return above(evidence.softening(data).diff("bound"), 0)
 
 
 def _entry(ratio: float, n: int, bound: str) -> Claim:

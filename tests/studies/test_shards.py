@@ -1,5 +1,6 @@
 """The dataset of a study is the same, to the last bit, from three shards as from one job."""
 
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -15,20 +16,21 @@ GIVEN = read_yaml(Path(__file__).parents[2] / "config/config.yaml")["extensions"
 LOW = {"restitution": {"min": 0.1, "max": 0.2, "samples": 2}}
 GRID = LOW | {"amplitude": {"min": 0.8, "max": 1.6, "samples": 7}}
 HIGH = {"min": 1.5, "max": 2.0, "samples": 11}
-LIVES = GIVEN["ext_locked"]["transients"] | {"balls": 12, "impacts": 50}
 PLACES = {
     # Here a ball ends on another motion if it starts from the fourth amplitude beside its own.
     "ext_diagram": {"restitution": 0.2, "amplitude": HIGH, "samples": 10},
     "ext_locking": GRID,
     "ext_means": GRID | {"starts": 5, "samples": 10},
-    "ext_locked": LOW | {"nodes": 20, "transients": LIVES},
+    "ext_locked": LOW | {"nodes": 20},
+    "ext_lives": {"balls": 12, "impacts": 50},
     "ext_basins": {"starts": 10, "random": 25},
 }
 
 
 @pytest.mark.parametrize("name", PLACES)
-def test_shards_give_the_dataset_of_one_job(name, table, tmp_path, refusal):
+def test_shards_give_the_dataset_of_one_job(name, table, recorded, tmp_path, refusal):
     places, study = (typed(load(table[name][x])) for x in ("places", "study"))
+    study = partial(study, data=recorded) if "reads" in table[name] else study
     given, parts = GIVEN[name] | PLACES[name], []
     for shard in shard_names(3):
         found = places(given, "displacement", part=part_of(shard))

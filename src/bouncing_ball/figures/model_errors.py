@@ -17,7 +17,12 @@ from bouncing_ball.figures.style import COLOURS, GUIDE, LAWS, MODELS, Look
 # Dashes distinguish the schemes of time stepping, and markers the engines.
 _SCHEMES: dict[str, Look] = {
     "semi-implicit Euler": {"color": COLOURS[1], "linewidth": 1.3},
-    "implicit Euler": {"color": COLOURS[2], "linewidth": 1.3, "linestyle": (0, (6, 1.5, 1, 1.5))},
+    "implicit Euler": {"color": COLOURS[2], "linewidth": 0.6, "linestyle": (0, (6, 1.5, 1, 1.5))},
+    "compensated implicit Euler": {
+        "color": COLOURS[2],
+        "linewidth": 1.3,
+        "linestyle": (0, (6, 1.5, 1, 1.5)),
+    },
 }
 _ENGINES = "osxD"
 _MARKED: Look = {"linestyle": "none", "color": "black", "markerfacecolor": "none", "markersize": 4}

@@ -36,20 +36,17 @@ def test_there_and_back(name, mass, stiffness, r):
     settings = made.engine_settings()
     parameters = dict(settings.parameters)
     if engine.scheme is Scheme.COMPENSATED:
-        alone = design(mass=mass, from_engine=name, parameters=parameters)
-        assert alone.notes[0].startswith(f"a time step of {name} damps as well")
-        assert alone.measured_restitution >= r
+        (note,) = design(mass=mass, from_engine=name, parameters=parameters).notes
+        assert note.startswith(f"a time step of {name} damps as well")
         parameters["time_step"] = settings.time_step
     again = design(mass=mass, from_engine=name, parameters=parameters)
-    assert again.notes == ()
-    assert again.measured_restitution == pytest.approx(r, abs=2 * ERROR)
-    if engine.scheme is Scheme.COMPENSATED and min(parameters.values()) == 0:
-        # With a loss so small that the step alone has it, within the error that is allowed.
-        return
+    # A step that alone damps as much as the contact is within the error that is allowed.
+    rough = engine.scheme is Scheme.COMPENSATED and parameters[engine.names[1]] == 0
     # Twelve digits are written; of r near 1 the distance to 1 is that of c.
-    assert again.stiffness == pytest.approx(stiffness, rel=2e-11)
-    assert again.damping == pytest.approx(made.damping, rel=2e-11)
-    assert again.measured_restitution == pytest.approx(r, rel=1e-10)
+    assert again.stiffness == pytest.approx(stiffness, rel=ERROR if rough else 2e-11)
+    assert again.measured_restitution == pytest.approx(r, rel=2 * ERROR if rough else 1e-10)
+    if not rough:
+        assert again.damping == pytest.approx(made.damping, rel=2e-11)
 
 
 @pytest.mark.parametrize(("name", "release"), BOTH)

@@ -32,14 +32,14 @@ from bouncing_ball.contacts.oscillator import responses
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.errors import require
 
-ARGUMENTS = ("time", "displacement", "velocity", "phase", "amplitude", "frequency_ratio")
+ARGUMENTS = ("time", "displacement", "velocity", "phase", "amplitude")
 """Order of the last axis of :attr:`ContactFlow.jacobian`."""
 
 
 class ContactFlow(NamedTuple):
     """δ, δ′ and δ″ after a time in contact, arrays of one shape, and the exact Jacobian.
 
-    ``jacobian`` has shape (..., 2, 6): its rows are the derivatives of δ and δ′, its columns are
+    ``jacobian`` has shape (..., 2, 5): its rows are the derivatives of δ and δ′, its columns are
     in the order of :data:`ARGUMENTS`.
     """
 
@@ -249,20 +249,13 @@ class SpringDamper(ContactLaw):
         args = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in args))
         s, d0, v0, phi, lam, omega, zeta = args
         loss, stiffness = 2 * zeta * omega, omega * omega
-        g, G, h, by_nu = responses(s, omega, zeta)
+        g, G, h = responses(s, omega, zeta)
         turn = np.exp(1j * phi)
         drive, free = lam * turn, g.rate + loss * g.value
         d = d0 * free + v0 * g.value - G.value + np.imag(drive * h.value)
         v = v0 * g.rate - d0 * stiffness * g.value - G.rate + np.imag(drive * h.rate)
         acc = lam * np.sin(s + phi) - 1 - loss * v - stiffness * d
-        # ϖ² G and ϖ g depend on ϖs alone, and so does ϖ² h if ν is measured in units of ϖ.
-        table = np.imag(drive * (2 * h.value + 1j * by_nu))
-        table_rate = np.imag(drive * (2 * h.rate + 1j * h.value - by_nu))
-        by_omega = s * v - v0 * g.value + 2 * G.value - table
-        by_omega_rate = v + s * acc - v0 * g.rate + 2 * G.rate - table_rate
-        jacobian = [
-            [v, free, g.value, np.real(drive * h.value), np.imag(turn * h.value), by_omega / omega],
-            [acc, -stiffness * g.value, g.rate, np.real(drive * h.rate),
-             np.imag(turn * h.rate), by_omega_rate / omega],
-        ]  # fmt: skip
+        table = ((np.real(drive * x), np.imag(turn * x)) for x in h)
+        free_columns = (v, free, g.value), (acc, -stiffness * g.value, g.rate)
+        jacobian = [(*one, *by) for one, by in zip(free_columns, table, strict=True)]
         return ContactFlow(d, v, acc, np.moveaxis(np.array(jacobian), (0, 1), (-2, -1)))

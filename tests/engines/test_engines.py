@@ -37,7 +37,7 @@ def test_there_and_back(name, mass, stiffness, r):
     parameters = dict(settings.parameters)
     if engine.scheme is Scheme.COMPENSATED:
         (note,) = design(mass=mass, from_engine=name, parameters=parameters).notes
-        assert note.startswith(f"a time step of {name} damps as well")
+        assert note.startswith("k, c and r are those in the limit of small time steps")
         parameters["time_step"] = settings.time_step
     again = design(mass=mass, from_engine=name, parameters=parameters)
     # A step that alone damps as much as the contact is within the error that is allowed.

@@ -20,9 +20,6 @@ from bouncing_ball.errors import ModelError, require
 ERROR = 0.001
 """The default of the largest error of a free impact's r that the time step may cause."""
 
-TIME_STEP = "time_step"
-"""Name of the time step in s among given parameters of an engine."""
-
 _PLACE = re.compile(r"@([\w.]+)@")
 Parameters = Mapping[str, float | list[float]]
 
@@ -152,11 +149,11 @@ class Engine(ABC):
         ModelError
             See :meth:`read`; or if the time step is not positive.
         """
-        if self.scheme is not Scheme.COMPENSATED or TIME_STEP not in parameters:
+        if self.scheme is not Scheme.COMPENSATED or "time_step" not in parameters:
             return self.read(parameters, mass)
         values = dict(parameters)
-        step = values.pop(TIME_STEP)
-        require(0 < step < math.inf, step, TIME_STEP, "a positive number of s")
+        step = values.pop("time_step")
+        require(0 < step < math.inf, step, "time_step", "a positive number of s")
         m, k, c = self.read(values, mass)
         return Physical(m, *(value * m for value in represented(k / m, c / m, step)))
 
@@ -181,7 +178,7 @@ class Engine(ABC):
 
         It has no line about a release under which the ball would not rebound.
         """
-        values = {**contact._asdict(), TIME_STEP: time_step}
+        values = {**contact._asdict(), "time_step": time_step}
         values |= self.numbers(self.for_step(contact, time_step))
         texts = {name: repr(value) for name, value in values.items()}
         texts |= {rule: f"{r:.4f}" for rule, r in self.restitutions(contact, release).items()}
@@ -225,12 +222,10 @@ class Engine(ABC):
 
     def remarks(self, parameters: Mapping[str, Any]) -> tuple[str, ...]:
         """Sentences on how the contact with these parameters differs from a spring and damper."""
-        if self.scheme is not Scheme.COMPENSATED or TIME_STEP in parameters:
+        if self.scheme is not Scheme.COMPENSATED or "time_step" in parameters:
             return ()
-        return (
-            f"a time step of {self.name} damps as well: k, c and r are those in the limit of small "
-            f"steps, and with the parameter {TIME_STEP}, in s, those of this step",
-        )
+        limit = "k, c and r are those in the limit of small time steps, which damp less"
+        return (f"{limit}; with the parameter time_step, in s, they are those of this step",)
 
     def release(self, asked: str | None = None) -> Release:
         """The release with this name, or the engine's default.

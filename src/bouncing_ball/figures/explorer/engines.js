@@ -181,8 +181,8 @@ function caseOf({given, engine, release, r, n, t, one, two, m, k, f}) {
     const omega = Math.sqrt(stiffness / mass), zeta = damping / (2 * mass * omega);
     const imposed = given === "mujoco" ? solimpOf(two) : null;
     const remarks = imposed ? impedanceRemarks(imposed, omega, zeta) : STEPPED.includes(given)
-      ? [`a time step of ${given} damps as well: k, c and r are those in the limit of small steps, and with the `
-        + "parameter time_step, in s, those of this step"] : [];
+      ? ["k, c and r are those in the limit of small time steps, which damp less; with the parameter time_step, in s, "
+        + "they are those of this step"] : [];
     const root = Math.sqrt(zeta * zeta - 1), r = Math.exp(-2 * zeta * (root > 0 ? Math.asinh(root) / root : 1));
     refuseIf(!(zeta < 1), `damping ratio ζ = ${repr(zeta)} is not below 1: a free impact `
       + `${release === "force" ? `has r = ${r.toFixed(4)}` : "does not end"}, and orbits are computed for less damping only`);

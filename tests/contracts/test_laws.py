@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from bouncing_ball.contacts.collocation import contacts, path
-from bouncing_ball.contacts.contact_law import ContactLaw, slopes_of
+from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley, LinearHuntCrossley
 from bouncing_ball.contacts.laws.impedance import Impedance
@@ -185,18 +185,6 @@ def test_the_force_does_the_work_and_the_release_is_the_first(law):
 
     gained = energy(end.penetration, end.rate, duration) - energy(0.0, SPEED, 0.0)
     assert gained == pytest.approx(work, abs=1e-9)
-
-
-@every_law
-def test_slopes_are_the_derivatives(law):
-    p, u = np.array([0.01, 0.3]), np.array([2.0, -0.5])
-    steps, weights = 1e-3 * np.array([[-2.0], [-1.0], [1.0], [2.0]]), np.array([1, -8, 8, -1]) / 12
-    for function in (law.force, law.grip):
-        exact = slopes_of(function, p, u)
-        by_depth = weights @ function(p * (1 + steps), u) / (1e-3 * p)
-        np.testing.assert_allclose(exact.by_penetration, by_depth, rtol=1e-9, atol=1e-9)
-        by_rate = weights @ function(p, u + steps) / 1e-3
-        np.testing.assert_allclose(exact.by_rate, by_rate, rtol=1e-9, atol=1e-9)
 
 
 @every_law

@@ -51,25 +51,6 @@ def test_residual_against_the_papers_solution(reference, values):
     assert computed == pytest.approx(np.array(expected), abs=3e-11)
 
 
-@given(anywhere)
-def test_jacobian_against_differences(values):
-    n, zeta, omega, lam, release, phase, impact, angle = values
-    system = SpringDamperSystem(n, SpringDamper(omega, zeta, release))
-    y = np.array([phase, impact, angle, lam])
-    h = 1e-3
-    columns = []
-    for k in range(4):
-        offset = np.zeros(4)
-        offset[k] = h
-        steps = np.array([system.residual(y + m * offset) for m in (-2, -1, 1, 2)])
-        columns.append(np.array([1, -8, 8, -1]) / 12 @ steps / h)
-    computed = system.jacobian(y)
-    # h⁴/30 times fifth derivatives of order 4⁵ at most in these scaled
-    # unknowns, times the size of the row; roundings 1e-13/h.
-    size = np.abs(computed).max(axis=1, keepdims=True) + 20
-    assert np.all(np.abs(computed - np.array(columns).T) <= 1e-9 * size)
-
-
 def follow_unstable_side(n, omega, r, lam, largest=0.2):
     contact = SpringDamper(omega, float(damping_ratio(r)))
     system, orbit = SpringDamperSystem(n, contact), orbit_at(contact, n, lam)

@@ -37,7 +37,7 @@ class ContactDynamics(Dynamics):
     # the few long contacts are then computed together.
     block: ClassVar[int] = 1 << 16
 
-    def depart(self, impact: Impact) -> Departure:
+    def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
         """The end of each contact; the status is undecided where no end was found.
 
         If the force depends on the load and the load pulls, a slow ball meets no force at p = 0.
@@ -52,7 +52,7 @@ class ContactDynamics(Dynamics):
         # No contact is computed for these balls, because none of its panels would be accepted.
         rate = np.where(free, np.nan, -impact.velocity)
         start = Start(depth, rate, impact.phase, self.amplitude * one, one)
-        end = march(self.law, start, MOST_PANELS)
+        end = march(self.law, start, MOST_PANELS, differentiate=differentiate)
         # A ball that is released below the table's level may move down, if the load pulls it.
         rate = np.where(end.penetration > 0, -end.rate, np.maximum(-end.rate, 0.0))
         for column, value in zip(end[:3], (0 * depth, depth, -impact.velocity), strict=True):
@@ -62,7 +62,8 @@ class ContactDynamics(Dynamics):
         state = -end.penetration, rate, *table(phase, self.amplitude)
         status = np.where(lost, Status.UNDECIDED, Status.BOUNCING)
         duration = np.where(lost, np.inf, end.duration)
-        return Departure(phase, duration, Flight(*state, self.amplitude), status)
+        flight = Flight(*state, self.amplitude)
+        return Departure(phase, duration, flight, status, by=end.jacobian)
 
     def fly(self, departure: Departure) -> tuple[Impact, np.ndarray]:
         """The landing or an earlier resumption, and the time from the last impact to it."""
@@ -79,11 +80,10 @@ class ContactDynamics(Dynamics):
     def jacobian(
         self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
     ) -> Jacobian:
-        """Derivative of the map over contact and flight; NaN if either impact is a resumption."""
-        one = np.ones_like(passed)
-        start = Start(0 * one, -impact.velocity, impact.phase, self.amplitude * one, one)
-        by = march(self.law, start, MOST_PANELS, differentiate=True).jacobian
-        known = (impact.displacement >= 0) & (after.displacement >= 0)
+        """Derivative of the map over contact and flight; NaN if either impact is a resumption, or
+        if the ball meets no force.
+        """
+        known, by = (impact.displacement >= 0) & (after.displacement >= 0), departure.by
         after = after._replace(velocity=np.where(known, after.velocity, np.nan))
         released = (
             Deviation(k + sign * by[:, 0, c], -sign * by[:, 1, c], -sign * by[:, 2, c])
@@ -109,7 +109,7 @@ class LinearContactDynamics(ContactDynamics):
 
     block: ClassVar[int] = BLOCK
 
-    def depart(self, impact: Impact) -> Departure:
+    def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
         """The end of each contact, or permanent contact if it is proved never to end."""
         x, y = table(impact.phase, self.amplitude)
         state = impact.displacement, impact.velocity

@@ -134,24 +134,25 @@ class Impedance(ContactLaw):
         y = end * (end / side) ** (self.power - 1)
         return self.at_surface + (self.share - self.at_surface) * np.where(low, y, 1 - y)
 
-    def _part(self, penetration: np.ndarray) -> np.ndarray:
-        """The ratio s = d/d_max, of the shape of p."""
+    def _part(self, impedance: np.ndarray) -> np.ndarray:
+        """The ratio s = d/d_max for impedances d; 1 if d is constant, even where it is 0."""
         if not self.has_kink:
-            return np.ones_like(penetration)
-        return np.where(self._varies, self.impedance(penetration) / self.share, 1.0)
+            return np.ones_like(impedance)
+        return np.where(self._varies, impedance / self.share, 1.0)
 
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """s (ϖ² s p + 2ζϖ p′), the force over the weight without the part d a due to the load."""
-        s = self._part(penetration)
-        return s * self._spring.force(s * penetration, rate)
+        return self.loaded_force(penetration, rate, 0.0)
 
     def loaded_force(self, penetration: np.ndarray, rate: np.ndarray, load: Any) -> np.ndarray:
         """f + d a, the whole force on the ball with a load a."""
-        return self.force(penetration, rate) + self.impedance(penetration) * load
+        d = self.impedance(penetration)
+        s = self._part(d)
+        return s * self._spring.force(s * penetration, rate) + d * load
 
     def grip(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """s p + κ p′, the grip without load."""
-        return self._part(penetration) * penetration + self._spring.lag * rate
+        return self._part(self.impedance(penetration)) * penetration + self._spring.lag * rate
 
     def loaded_grip(self, penetration: np.ndarray, rate: np.ndarray, load: Any) -> np.ndarray:
         """s p + κ p′ + d_max a/ϖ², the grip with a load a."""

@@ -224,7 +224,8 @@ def cloned(shared, warm, coarse) -> Tree:
             text = text[:start] + fewer + text[end:]
         config.write_text(text, encoding="utf-8")
         # Who looks at pictures looks at those of `make`.
-        tree.rewrite("src/bouncing_ball/figures/matplotlibrc", "savefig.dpi: 300", "savefig.dpi: 50")
+        settings = "src/bouncing_ball/figures/matplotlibrc"
+        tree.rewrite(settings, "savefig.dpi: 300", "savefig.dpi: 50")
         tree.git("init", "--quiet")
         tree.commit("All")
         # Once, and not by every process of every copy.

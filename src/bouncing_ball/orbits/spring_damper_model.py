@@ -12,7 +12,7 @@ from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.signature import Instant, Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits import spring_damper_limits as limits
-from bouncing_ball.orbits.model import ImpactModel, Route
+from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.spring_damper_branch import nearest_excess
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
@@ -46,7 +46,7 @@ class SpringDamperModel(ImpactModel):
 
     name: ClassVar[str] = "spring-damper"
     orbit_type: ClassVar[type[Orbit]] = SpringDamperOrbit
-    routes: ClassVar[frozenset[Route]] = frozenset(Route)
+    has_closed_form: ClassVar[bool] = True
 
     @property
     def label(self) -> str:

@@ -33,7 +33,7 @@ from bouncing_ball.motion.simulation import next_impact, simulate
 from bouncing_ball.orbits import continued
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.stability import Bifurcation, Side
-from bouncing_ball.orbits.system import ContactSystem, OrbitSystem
+from bouncing_ball.orbits.system import OrbitSystem
 
 
 def labelled() -> Any:
@@ -84,10 +84,9 @@ class ImpactModel(Batch, ABC):
 
     A subclass is a frozen dataclass with one field, which holds the law. ``name`` is the name of
     the model in messages, ``has_closed_form`` says whether its branch is known as a formula, and
-    ``orbit_type`` is the class of its orbits. A subclass defines :meth:`signature`. It defines its orbits either by a type with
-    the constructor ``at`` or by a :meth:`system` of equations. Orbits at Λ, the reasons for their
-    absence and their bifurcations then follow by continuation; a model with a closed form overrides
-    these methods.
+    ``orbit_type`` is the class of its orbits, with the constructor ``at``. A subclass defines
+    :meth:`signature`. Orbits at Λ, the reasons for their absence and their bifurcations then follow
+    by continuation; a model with a closed form overrides these methods.
     """
 
     name: ClassVar[str]
@@ -122,7 +121,7 @@ class ImpactModel(Batch, ABC):
     def system(self, n: int | np.ndarray) -> OrbitSystem:
         """The equations of the orbits as a continuation problem in Λ."""
         orbits: Any = self.orbit_type
-        return ContactSystem(n, self.impact_law, orbits.at)
+        return OrbitSystem(n, self.impact_law, orbits.at)
 
     def orbit(self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> Any:
         """The n-T orbits at given Λ, on one side of the saddle-node.

@@ -16,7 +16,6 @@ from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.spring_damper_branch import nearest_excess
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
-from bouncing_ball.orbits.spring_damper_system import SpringDamperSystem
 from bouncing_ball.orbits.stability import Side
 
 # Bound of the rounding error of a Λ that is exactly 0, in units in the last place of z′_i; the
@@ -98,10 +97,6 @@ class SpringDamperModel(ImpactModel):
         duration = orbit.contact_duration * contact.damped_frequency - contact.free_angle
         x, y = orbit.amplitude * np.cos(orbit.phase), orbit.amplitude * np.sin(orbit.phase)
         return SpringDamperOrbit.on_branch(nearest_excess(contact, n, x, y, duration), contact, n)
-
-    def system(self, n: int | np.ndarray) -> SpringDamperSystem:
-        """The paper's equations (Eqs. 21-27) as a continuation problem in Λ."""
-        return SpringDamperSystem(n, self.contact)
 
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ up to which the ball stays on the table.

@@ -33,7 +33,7 @@ def read_engine(said: Mapping[str, Any]) -> tuple[Source | None, dict[str, Any]]
     Without such an engine, None and the arguments unchanged.
     """
     names, name = ("solref", "solimp"), said.get("from_engine")
-    values = {**{x: said.get(x) for x in names}, **dict(said.get("parameters") or {})}
+    values = {**{x: said.get(x) for x in names}, **(said.get("parameters") or {})}
     values = {x: value for x, value in values.items() if value is not None}
     if name is None:
         if values:

@@ -19,7 +19,11 @@ from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley, LinearHuntCr
 from bouncing_ball.contacts.laws.impedance import Impedance
 from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.contacts.laws.tsuji import Tsuji
-from bouncing_ball.contacts.permanent_contact import permanent_contact, permanent_contact_threshold
+from bouncing_ball.contacts.permanent_contact import (
+    known_threshold,
+    permanent_contact,
+    permanent_contact_threshold,
+)
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.signature import Signature, free_impact
 from bouncing_ball.contacts.spring_damper import SpringDamper
@@ -295,7 +299,9 @@ hertz = pytest.mark.parametrize("law", HERTZ, ids=[law.name for law in HERTZ])
 @hertz
 def test_a_ball_on_a_table_at_rest_comes_to_rest(law, few_panels):
     sequence = simulate(law, 0.0, 0.0, -2.0, 200)
-    assert sequence.status == Status.UNDECIDED
+    # The threshold of the first law is not known, because it is too weakly damped.
+    known = np.isfinite(known_threshold(law))
+    assert sequence.status == (Status.PERMANENT_CONTACT if known else Status.UNDECIDED)
     speed = -sequence.relative_velocity[np.isfinite(sequence.time)]
     assert np.all(np.diff(speed) < 0)
 

@@ -114,8 +114,6 @@ def test_what_is_refused():
             law_of_impact(HuntCrossley, r, duration, speed)
     with pytest.raises(ModelError, match="hardly leaves"):
         law_of_impact(HuntCrossley, 1e-6, 0.1, 1.0)
-    with pytest.raises(ModelError, match="no closed form"):
-        LawModel(Tsuji(1e3, 0.3)).nearest(None)
 
 
 def test_far_above_the_fold_orbits_are_walked_to_or_said_not_to_be_found(monkeypatch):

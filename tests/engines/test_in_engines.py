@@ -24,6 +24,7 @@ from pandas import DataFrame
 
 from bouncing_ball import design, limits, simulate
 from bouncing_ball.accuracy.errors import relative
+from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.contacts.collocation import contacts
 from bouncing_ball.contacts.damping import damping_ratio, restitution_coefficient
 from bouncing_ball.contacts.laws.impedance import Impedance
@@ -41,6 +42,7 @@ from bouncing_ball.engines.scheme import (
 )
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.provenance.origin import CONFIGURATION, gather
 
 ROOT = Path(__file__).parents[2]
 RADIUS = 1.0
@@ -328,7 +330,10 @@ def record():
     data = xr.merge(parts, join="outer").reindex(engine=list(RUN))
     made = [version(name) if installed(name) else "not installed" for name in RUN]
     data["engine_version"] = ("engine", made)
-    write_dataset(describe(data), ROOT / "results" / "config" / "engines.nc")
+    written = read_yaml(ROOT / CONFIGURATION)
+    origin = gather("make test-engines", ["figures/ext_engines.nc"], ROOT, written)
+    target = ROOT / "results" / "config" / "engines.nc"
+    write_dataset(describe(data).assign_attrs(origin), target)
 
 
 @pytest.mark.engines

@@ -24,7 +24,7 @@ from bouncing_ball.cli.main import main
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.datasets.netcdf import read_dataset
 from bouncing_ball.datasets.variables import VARIABLES
-from bouncing_ball.studies.continuation import Continuation
+from bouncing_ball.studies.orbit_branches import Continuation
 
 ROOT = Path(__file__).resolve().parents[1]
 # Programs that the tests start keep what they have compiled, whatever the shell says: else

@@ -74,7 +74,7 @@ Seed = Annotated[int, listed("Seed")]
 
 
 class Sharded(Parameters):
-    """The parameters of a study whose places jobs of their own may follow in pieces."""
+    """The parameters of a study whose places may be divided among jobs."""
 
     shards: Annotated[int, number("jobs among which places are divided", ge=1, le=2000)] = 1
 

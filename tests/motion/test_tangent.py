@@ -26,7 +26,7 @@ def step(law, phase, velocity):
     """The two states of a step on the section, its Jacobian and the contact's duration."""
     dynamics, *state, _ = first_impacts(law, LAM, phase, velocity + LAM * np.cos(phase))
     impact = dynamics.start(*state)
-    departure = dynamics.depart(impact)
+    departure = dynamics.depart(impact, differentiate=True)
     after, passed = dynamics.fly(departure)
     jacobian = dynamics.jacobian(impact, departure, after, passed)
     sections = np.array([dynamics.section(impact), dynamics.section(after)])

@@ -8,32 +8,17 @@ from hypothesis import strategies as st
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
-from bouncing_ball.continuation.branch import (
-    continue_branch,
-    solve_at,
-)
+from bouncing_ball.continuation.branch import continue_branch
 from bouncing_ball.continuation.events import fold, parameter_bound
 from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_limits import orbit_at
-from bouncing_ball.orbits.spring_damper_system import SpringDamperSystem
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 
 releases = st.sampled_from(list(Release))
-parameters = st.sampled_from(["amplitude", "log frequency ratio"])
-
-
-def build(n, zeta, parameter, omega, lam, release):
-    """A system and the last entry of y that gives (ϖ, Λ)."""
-    contact = SpringDamper(omega, zeta, release)
-    if parameter == "amplitude":
-        return SpringDamperSystem(n, contact), lam
-    return SpringDamperSystem(n, contact, lam), np.log(omega)
-
-
 anywhere = st.tuples(
     st.integers(1, 3),
     st.one_of(st.just(0.0), st.floats(0.0, 0.9)),
-    parameters,
     st.floats(np.log(0.7), np.log(1e4)).map(lambda x: float(np.exp(x))),
     st.floats(0.1, 3.0),
     releases,
@@ -45,10 +30,10 @@ anywhere = st.tuples(
 
 @given(anywhere)
 def test_residual_against_the_papers_solution(reference, values):
-    n, zeta, parameter, omega, lam, release, phase, impact, angle = values
+    n, zeta, omega, lam, release, phase, impact, angle = values
     if abs(omega - 1) < 0.05:  # the paper's form is singular at the resonance
         omega = 1.1
-    system, p = build(n, zeta, parameter, omega, lam, release)
+    system = SpringDamperModel(SpringDamper(omega, zeta, release)).system(n)
     duration = angle / omega
     state = reference.paper_contact(impact - lam * np.cos(phase), phase, lam, omega, zeta)
     d, v = state(duration)
@@ -62,52 +47,13 @@ def test_residual_against_the_papers_solution(reference, values):
     ]
     # The paper's constants lose 1/√γ at ϖ ≈ 1: some hundred roundings of
     # velocities of order 20 and heights of order 400.
-    computed = system.residual(np.array([phase, impact, angle, p]))
+    computed = system.residual(np.array([phase, impact, angle, lam]))
     assert computed == pytest.approx(np.array(expected), abs=3e-11)
-
-
-@given(anywhere)
-def test_jacobian_against_differences(values):
-    n, zeta, parameter, omega, lam, release, phase, impact, angle = values
-    system, p = build(n, zeta, parameter, omega, lam, release)
-    y = np.array([phase, impact, angle, p])
-    h = 1e-3
-    columns = []
-    for k in range(4):
-        offset = np.zeros(4)
-        offset[k] = h
-        steps = np.array([system.residual(y + m * offset) for m in (-2, -1, 1, 2)])
-        columns.append(np.array([1, -8, 8, -1]) / 12 @ steps / h)
-    computed = system.jacobian(y)
-    # h⁴/30 times fifth derivatives of order 4⁵ at most in these scaled
-    # unknowns, times the size of the row; roundings 1e-13/h.
-    size = np.abs(computed).max(axis=1, keepdims=True) + 20
-    assert np.all(np.abs(computed - np.array(columns).T) <= 1e-9 * size)
-
-
-@pytest.mark.parametrize("release", list(Release))
-@pytest.mark.parametrize(("n", "r", "lam"), [(1, 0.85, 0.7), (2, 0.65, 1.5)])
-def test_continuation_along_the_frequency_ratio(n, r, lam, release):
-    zeta = float(damping_ratio(r))
-    system = SpringDamperSystem(n, SpringDamper(1e4, zeta, release), lam)
-    start = solve_at(system, system.guess(lam, 1e4))
-    target = parameter_bound(np.log(2.0), False, "there")
-    way = continue_branch(system, start, increasing=False, events=(*system.events(), target))
-    assert str(way.end) == "there"
-    expected = orbit_at(SpringDamper(2.0, zeta, release), n, lam)
-    # As in the comparison above.
-    assert way.points[-1] == pytest.approx(
-        np.array(
-            [expected.phase, expected.impact_velocity, 2 * expected.contact_duration, np.log(2.0)],
-            dtype=float,
-        ),
-        abs=1e-11,
-    )
 
 
 def follow_unstable_side(n, omega, r, lam, largest=0.2):
     contact = SpringDamper(omega, float(damping_ratio(r)))
-    system, orbit = SpringDamperSystem(n, contact), orbit_at(contact, n, lam)
+    system, orbit = SpringDamperModel(contact).system(n), orbit_at(contact, n, lam)
     start = np.array([orbit.phase, orbit.impact_velocity, omega * orbit.contact_duration, lam])
     events = (*system.events(), fold(system), parameter_bound(10.0, True, "window"))
     control = StepControl(largest=largest)
@@ -134,7 +80,7 @@ def test_the_branch_ends_in_permanent_contact(omega, r, largest, reasons):
     # Λ is off by the square of the flight left: up to 4e-5 at ϖ = 10, where
     # the impact velocity meets its margin of 1e-4.
     end = system.orbit(branch.points[-1])
-    expected = float(permanent_contact_threshold(omega, system.contact.damping_ratio))
+    expected = float(permanent_contact_threshold(omega, system.law.damping_ratio))
     assert branch.points[-1, 3] == pytest.approx(expected, abs=float(end.flight_time) ** 2 + 1e-12)
     assert float(end.flight_time) < 1e-2
     if str(branch.end) == CONTACT_LOST:
@@ -145,7 +91,7 @@ def test_flight_lost():
     # ϖ = 0.6, n = 2: a branch that reaches contacts as long as the cycle.
     zeta, n, omega = float(damping_ratio(0.3)), 2, 0.6
     contact = SpringDamper(omega, zeta)
-    system = SpringDamperSystem(n, contact)
+    system = SpringDamperModel(contact).system(n)
     fill = (2 * np.pi * n - 0.1) * omega
     point = branch_point(fill * np.sqrt(1 - zeta**2) - np.pi, contact, n)
     start = np.array([point.phase, point.u + point.x, fill, point.amplitude])

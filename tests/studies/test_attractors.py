@@ -1,9 +1,6 @@
 """Maps of what balls end on, against orbits, an independent trial, and a changed rounding."""
 
-from functools import partial
-
 import numpy as np
-import pytest
 import xarray as xr
 from scipy.stats import norm
 
@@ -11,8 +8,6 @@ from bouncing_ball.attractors.mapper import label
 from bouncing_ball.compare.data import compare_datasets
 from bouncing_ball.configuration.study import typed
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
-from bouncing_ball.datasets.pieces import Followed, joined, only
 from bouncing_ball.studies.attractors import GROUPS, agreement, locking, models, orbit_diagrams
 
 START = {"phase": 1.0, "impact_speed": 10.0, "impacts": 200, "confidence": 0.95}
@@ -73,19 +68,6 @@ def test_diagrams_have_the_stable_orbit_with_its_phase_and_exponent():
         # Every other motion there is locked, and attracts more strongly.
         modulus = np.abs(orbit.multipliers()).max(axis=-1)
         assert np.allclose(one.lyapunov_exponent, np.log(modulus), atol=1e-5)
-
-
-def test_pieces_give_the_dataset_of_one_job(tmp_path):
-    grid = {"min": 0.7, "max": 0.9, "samples": 3}
-    given = START | {"amplitude": grid, "restitution": grid, "frequency_ratio": [30.0, 300.0]}
-    run, parts = partial(typed(locking), given, Release.DISPLACEMENT), []
-    for number in range(4):
-        with pytest.raises(Followed) as found:
-            run(follow=only(number, 4))
-        part = {x: ([*"abc"], y) for x, y in found.value.args[0].items()}
-        write_dataset(xr.Dataset(part), tmp_path / "part.nc")
-        parts.append(read_dataset(tmp_path / "part.nc"))
-    assert run(follow=joined(parts)).identical(run())
 
 
 def test_rounding_may_decide_at_few_nodes_only(recorded):

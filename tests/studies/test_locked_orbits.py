@@ -69,5 +69,5 @@ def test_a_ball_has_arrived_where_phase_and_velocity_agree(monkeypatch):
     monkeypatch.setattr(transients, "label", label)
     case = {"cases": [{"restitution": 0.5, "amplitude": 2.5}], "frequency_ratio": [10.0]}
     asked = transients.Transients(**case, balls=10, impacts=50, confidence=0.95, seed=1)
-    data = transients.transients(asked, Release.DISPLACEMENT)
+    data = transients.transients(asked, transients.lives(asked, Release.DISPLACEMENT))
     assert np.all(data.mean_life == 3)

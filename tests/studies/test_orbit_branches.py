@@ -7,17 +7,17 @@ from bouncing_ball.configuration.study import typed
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
-from bouncing_ball.continuation.branch import ContinuationError
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_limits import period_doubling, saddle_node
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
-from bouncing_ball.studies.continuation import _on_the_way, branch_along_amplitude
 from bouncing_ball.studies.orbit_branches import (
     PERIOD_DOUBLING,
     SADDLE_NODE,
+    Branches,
     both_domains,
     first_limits,
+    followed,
     orbit_branches,
     stability_ranges,
 )
@@ -37,6 +37,17 @@ def bifurcations(n, r, omega, release="displacement"):
         float(branch_point(find(contact, n), contact, n).amplitude)
         for find in (saddle_node, period_doubling)
     ]
+
+
+@pytest.fixture
+def follow(continuation_settings):
+    """The equations and the branch of n-T orbits up to ``top``."""
+
+    def along(n, r, omega, top):
+        given = Branches(n=n, restitution=r, amplitude_max=top, points=11)
+        return followed(n, omega, given, Release.DISPLACEMENT, continuation_settings)
+
+    return along
 
 
 @pytest.fixture(scope="module")
@@ -159,30 +170,16 @@ def test_both_domains(continuation_settings, described):
     )
 
 
-def test_a_contact_stiffer_than_the_start(continuation_settings):
-    # The continuation then starts at that contact itself.
-    _, branch = branch_along_amplitude(
-        1, 0.85, 1e5, 1.2, Release.DISPLACEMENT, continuation_settings
-    )
+def test_a_very_stiff_contact(follow):
+    _, branch = follow(1, 0.85, 1e5, 1.2)
     assert first_limits(branch)[:, -1] == pytest.approx(bifurcations(1, 0.85, 1e5), abs=1e-12)
 
 
-def test_both_ends_in_contact_with_each_other(continuation_settings):
+def test_both_ends_in_contact_with_each_other(follow):
     # ϖ = 0.6, n = 2: the branch lies between permanent contact at both ends.
-    _, branch = branch_along_amplitude(2, 0.3, 0.6, 10.0, "displacement", continuation_settings)
+    _, branch = follow(2, 0.3, 0.6, 10.0)
     reasons = (str(branch.start), str(branch.end))
     assert all(reason.startswith(("flight lost", "contact lost")) for reason in reasons)
-
-
-@pytest.mark.slow
-def test_a_branch_that_no_way_leads_to_starts_at_the_closed_form(continuation_settings, refusal):
-    # At ϖ = 0.6 all ways from the restitution orbit are blocked.
-    with refusal(
-        ContinuationError, "1-T orbit at Λ = 0.6465", "ϖ = 10000", "before 0.6", "lost: the"
-    ):
-        _on_the_way(1, SpringDamper.from_restitution(0.85, 0.6), 0.6465, continuation_settings)
-    with refusal(NoOrbitError, "finds a 1-T orbit", "ϖ = 0.6", "up to Λ = 1.5"):
-        branch_along_amplitude(1, 0.85, 0.6, 1.5, "displacement", continuation_settings)
 
 
 def test_a_branch_that_does_not_exist_is_missing_and_says_why(continuation_settings):
@@ -190,15 +187,16 @@ def test_a_branch_that_does_not_exist_is_missing_and_says_why(continuation_setti
     data = orbit_branches(parameters, "displacement", continuation_settings)
     assert np.isfinite(data.amplitude[0]).all() and np.isnan(data.amplitude[1]).all()
     assert not data.stable[1].any() and not data.admissible[1].any()
-    assert all("finds a 1-T orbit" in str(reason) for reason in data.end_reason[1].values)
+    assert all(
+        "no 1-T orbit up to Λ = 1.5 for ϖ = 0.6" in str(reason)
+        for reason in data.end_reason[1].values
+    )
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("n", "r", "top"), [(1, 0.3, 10.0), (2, 0.85, 1.5)])
-def test_another_way_round_a_blocked_one(continuation_settings, n, r, top):
-    # Half way between the bifurcations the branch along ϖ turns, or ends, before
-    # 0.6; at another Λ it gets there.
-    system, branch = branch_along_amplitude(n, r, 0.6, top, "displacement", continuation_settings)
+def test_a_contact_slower_than_the_table(follow, n, r, top):
+    system, branch = follow(n, r, 0.6, top)
     assert np.max(np.abs(system.residual(branch.points))) < 1e-10
     assert branch.points[:, -1].min() >= 0 and branch.points[:, -1].max() <= top * (1 + 1e-12)
 
@@ -211,7 +209,7 @@ def test_a_window_without_a_period_doubling(continuation_settings):
     assert "no period doubling" in why and "left the window at amplitude 0.9" in why
 
 
-def test_a_branch_without_a_saddle_node(continuation_settings, refusal):
-    _, branch = branch_along_amplitude(1, 0.85, 1.0, 1.5, "displacement", continuation_settings)
+def test_a_branch_without_a_saddle_node(follow, refusal):
+    _, branch = follow(1, 0.85, 1.0, 1.5)
     with refusal(NoOrbitError, "no saddle-node"):
         first_limits(branch)

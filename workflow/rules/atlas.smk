@@ -1,7 +1,7 @@
 # The atlas: how stiff is stiff enough for all orbits. It is not part of a run. Its summary is
 # accepted by hand, see docs/atlas.md, and the article takes its numbers from this summary.
 
-from bouncing_ball.pipeline.atlas import shard_minutes, shard_names
+from bouncing_ball.pipeline.atlas import minutes, names
 
 ATLAS = config["atlas"]
 CHARTS = ["max_height", "bounce_velocity", "phase", "apparent_restitution", "page"]
@@ -21,7 +21,7 @@ rule atlas_shard:
         title="The atlas: the answers of some rows of tiles, or about the limits of all families",
         parameters=ATLAS,
     resources:
-        runtime=lambda wildcards: shard_minutes(ATLAS),
+        runtime=lambda wildcards: minutes(ATLAS),
         mem_mb=1000,
     log:
         "results/logs/atlas/shards/{shard}.log",
@@ -36,7 +36,7 @@ rule atlas_merge:
         "Atlas: one file from its shards"
     input:
         parts=lambda wildcards: expand(
-            rules.atlas_shard.output.data, shard=[*shard_names(ATLAS), "limits"]
+            rules.atlas_shard.output.data, shard=[*names(ATLAS), "limits"]
         ),
         source=modules("atlas.shards", "pipeline.atlas"),
     output:

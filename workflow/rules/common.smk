@@ -29,7 +29,6 @@ if found.resolve() != HERE.resolve():
 
 from bouncing_ball.configuration.study import arguments
 from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
-from bouncing_ball.pipeline.atlas import numbered
 from bouncing_ball.pipeline.sources import sources
 
 # Snakemake writes these two lines before every job, and they do not name it.
@@ -68,6 +67,9 @@ def words_before(wildcards):
 # The shards that a study merges, if it has several. The dataset is that of one job, byte for byte,
 # and a run that was interrupted goes on with the next shard.
 def shards_of(wildcards):
+    from bouncing_ball.datasets.shards import shard_names
+
     given = arguments(STUDIES[wildcards.artifact], wildcards.artifact, config)
-    names = numbered(given.get("parameters", {}).get("shards", 1))
-    return expand(rules.shard.output.data, shard=names, **wildcards) if len(names) > 1 else []
+    count = given.get("parameters", {}).get("shards", 1)
+    names = shard_names(count) if count > 1 else []
+    return expand(rules.shard.output.data, shard=names, **wildcards)

@@ -4,15 +4,15 @@
 
 
 rule shard:
-    """The places of a study with `shards` in its parameters, followed by jobs of their own."""
+    """Some of the places of a study that has `shards` in its parameters."""
     message:
         "{wildcards.artifact}: shard {wildcards.shard}"
     input:
-        source=lambda w: modules(STUDIES[w.artifact].rpartition(".")[0]),
+        source=lambda w: modules(TABLE[w.artifact]["places"].rpartition(".")[0]),
     output:
         data="results/shards/{artifact}/{shard}.nc",
     params:
-        study=lambda w: STUDIES[w.artifact],
+        places=lambda w: TABLE[w.artifact]["places"],
         title=lambda w: f"{TABLE[w.artifact]['title']}: the places of one shard",
         arguments=lambda w: arguments(STUDIES[w.artifact], w.artifact, config),
     log:

@@ -23,6 +23,8 @@ _FURTHER = (1, 3)
 _FAMILIES, _BESIDE = (1, 2, 3), 1e-3
 _EVEN = np.array([0.7548776662466927, 0.5698402909980532])
 _SEEN = ("impact_phase", "impact_speed")
+REACH = sum(_FURTHER)
+"""The motions at one Λ depend on at most this number of amplitudes on each side."""
 
 
 def require_memory(balls: int, what: str) -> None:

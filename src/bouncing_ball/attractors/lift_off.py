@@ -70,7 +70,7 @@ def returns(restitution: ArrayLike, amplitude: ArrayLike, impacts: int) -> Retur
     found = np.zeros((2, r.size), dtype=int), np.full((2, r.size), np.nan)
     ball, time, late = np.arange(r.size), np.zeros(r.size), np.zeros((2, r.size))
     for count in range(impacts):
-        departure = dynamics.depart(impact)
+        departure = dynamics.depart(impact, differentiate=True)
         sticks = dynamics.sticks(impact, departure) if count else np.zeros(ball.size, dtype=bool)
         if sticks.any():
             held = (departure.duration - departure.settling)[sticks]

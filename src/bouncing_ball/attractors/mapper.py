@@ -183,7 +183,7 @@ def _follow(
         if path is not None:
             thrown = impact.velocity + table(impact.phase, ball.amplitude)[0]
             path.reshape(3, impacts, -1)[:, ball.seen, ball.lane] = ball.time, impact.phase, thrown
-        departure = now.depart(impact)
+        departure = now.depart(impact, differentiate=True)
         going = _resting(now, impact, departure, ball, found)
         now, impact, departure, ball = _kept(going, found, now, impact, departure, ball)
         if going.size:

@@ -54,7 +54,7 @@ def _add_up(dynamics: Dynamics, impact: Impact, left: np.ndarray, total: np.ndar
     along, across, done = np.ones(left.size), np.zeros(left.size), 0
     total[:, left > 0] = 0.0
     while True:
-        departure = dynamics.depart(impact)
+        departure = dynamics.depart(impact, differentiate=True)
         total[:, ball[departure.status != Status.BOUNCING]] = np.nan
         going = np.flatnonzero((left[ball] > done) & (departure.status == Status.BOUNCING))
         if going.size < ball.size:

@@ -81,7 +81,7 @@ class Turns:
         impact = dynamics.at_section(phase, velocity)
         change, time = Jacobian.identity(phase.size), np.zeros(phase.size)
         for _ in range(self.impacts):
-            departure = dynamics.depart(impact)
+            departure = dynamics.depart(impact, differentiate=True)
             after, passed = dynamics.fly(departure)
             change = dynamics.jacobian(impact, departure, after, passed).after(change)
             # The time between two instants differs from the time between two contacts.

@@ -2,8 +2,9 @@
 
 The signature of a study declares its arguments, for example ``study(parameters, release,
 continuation)``. ``parameters`` is a section of the configuration, such as ``figures.fig08``;
-``data`` holds the datasets that the rule names; ``follow`` returns the results of the shards; and
-each further argument is the setting of the run with that name.
+``data`` holds the datasets that the rule names; ``part`` and ``found`` are those of
+:mod:`bouncing_ball.datasets.shards`; and each further argument is the setting of the run with that
+name.
 """
 
 import inspect
@@ -15,6 +16,7 @@ from pydantic import ConfigDict, validate_call
 
 from bouncing_ball.configuration.yaml_file import ConfigurationError
 
+_OF_JOB = ("data", "part", "found")
 SECTIONS = ("figures", "tables", "extensions", "studies")
 """Sections of the configuration in which each key is an artifact."""
 
@@ -70,7 +72,7 @@ def taken(study: str) -> dict[str, Any]:
     ['parameters', 'release', 'continuation']
     """
     signature = inspect.signature(load(study)).parameters.items()
-    return {name: each.annotation for name, each in signature if name not in ("data", "follow")}
+    return {name: each.annotation for name, each in signature if name not in _OF_JOB}
 
 
 def section(artifact: str, run: Mapping[str, Any]) -> str:

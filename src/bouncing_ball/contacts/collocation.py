@@ -70,6 +70,8 @@ _FAR = 0.7
 # The speed over V that is given to a ball at rest on the table, because otherwise q would not
 # change.
 _AT_REST = 1e-9
+# An imaginary step in s, whose square is lost in rounding.
+_STEP = 1e-20j
 # A time counts as the end of the contact if less than this part of the contact remains.
 _END = 1e-12
 _Until = np.ndarray | None
@@ -234,20 +236,9 @@ def _left(law: ContactLaw, m: int, start: Start, now: _Motion, until, root, rate
 
 
 def _falls(law: ContactLaw, m: int, start: Start, now: _Motion, until, root, rate, time, final):
-    """The derivatives of the functions of :func:`_left` with respect to s."""
-    lever = _lever(m, root)
-    if until is None:
-        by_root, by_rate = _grip_slopes(law, m, root, rate)
-        rows = [by_root * rate + by_rate * final]
-        if law.feels_load:
-            turning = start.amplitude * np.cos(start.phase + time) * lever
-            rows = [rows[0] - _loading(law, root) * turning, rate]
-    else:
-        rows = [-lever]
-    if law.has_kink:
-        by = slopes_of(law.kink, root**m, rate)
-        rows.append(now.side * (by.by_penetration * lever * rate + by.by_rate * final))
-    return np.array(rows)
+    """The derivatives of the functions of :func:`_left` along the motion, with respect to s."""
+    moved = root + _STEP * rate, rate + _STEP * final, time + _STEP * _lever(m, root)
+    return np.imag(_left(law, m, start, now, until, *moved)) / _STEP.imag
 
 
 def _summed(begin, step, values, out):

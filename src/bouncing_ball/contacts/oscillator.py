@@ -12,13 +12,13 @@ of w, so that underdamped, critical and overdamped contacts need no distinction:
 
     g  = e^{-as} S                g′ = e^{-as} (C - a S)
     h  = [e^{νs} - g′ - (ν + 2a) g] / p(ν),      p(ν) = ν² + 2aν + q
-    h′ = ν h + g,                 ∂h/∂ν = [s e^{νs} - g - 2 (ν + a) h] / p(ν)
+    h′ = ν h + g
 
 The quotient for *h* has a removable singularity at resonance, p(ν) = 0 (ζ = 0, ϖ = 1 for the
 table), and loses digits to cancellation for short times. In these cases the integrals are
 computed instead, with enough Gauss nodes for double precision::
 
-    h = ∫₀ˢ g(s - u) e^{νu} du,   ∂h/∂ν = ∫₀ˢ u g(s - u) e^{νu} du
+    h = ∫₀ˢ g(s - u) e^{νu} du
 
 All quantities are dimensionless; all functions broadcast.
 """
@@ -53,14 +53,13 @@ class Response(NamedTuple):
 class Responses(NamedTuple):
     """The responses at a time, as arrays of one shape.
 
-    ``impulse`` is g, ``gravity`` the response G to a constant unit force, ``table`` is h = Q + iP,
-    the complex response to e^{is}, and ``by_table`` its derivative ∂h/∂ν at ν = i.
+    ``impulse`` is g, ``gravity`` the response G to a constant unit force, and ``table`` is
+    h = Q + iP, the complex response to e^{is}.
     """
 
     impulse: Response
     gravity: Response
     table: Response
-    by_table: np.ndarray
 
 
 def _damped(s, a, q, w):
@@ -89,25 +88,23 @@ def _gauss(radians: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _integrated(nu, s, a, q, w):
-    """h and ∂h/∂ν from their integrals."""
+    """h from its integral."""
     x, weight = _gauss(int(np.max(np.abs(s))))
     s, a, q, w = (column[:, np.newaxis] for column in (s, a, q, w))
-    push = s * weight * _damped(s * (1 - x), a, q, w)[1] * np.exp(nu * s * x)
-    return push.sum(axis=1), (s * x * push).sum(axis=1)
+    return (s * weight * _damped(s * (1 - x), a, q, w)[1] * np.exp(nu * s * x)).sum(axis=1)
 
 
-def _exponential(nu, s, a, q, w, impulse: Response) -> tuple[Response, np.ndarray]:
-    """The response to e^{νs} from rest, and ∂h/∂ν; real for ν = 0."""
+def _exponential(nu, s, a, q, w, impulse: Response) -> Response:
+    """The response to e^{νs} from rest; real for ν = 0."""
     g, p = impulse.value, nu * nu + 2 * a * nu + q
     delicate = np.abs(p) * s * s < _CANCELLATION
     p, wave = np.where(delicate, 1.0, p), np.exp(nu * s)
     h = np.asarray((wave - impulse.rate - (nu + 2 * a) * g) / p)
-    by_nu = np.asarray((s * wave - g - 2 * (nu + a) * h) / p)
     which = np.flatnonzero(delicate)
     for start in range(0, which.size, _BLOCK):
         at = which[start : start + _BLOCK]
-        h.flat[at], by_nu.flat[at] = _integrated(nu, *(x.flat[at] for x in (s, a, q, w)))
-    return Response(h, nu * h + g), by_nu
+        h.flat[at] = _integrated(nu, *(x.flat[at] for x in (s, a, q, w)))
+    return Response(h, nu * h + g)
 
 
 def responses(time: ArrayLike, frequency_ratio: ArrayLike, damping_ratio: ArrayLike) -> Responses:
@@ -136,5 +133,4 @@ def responses(time: ArrayLike, frequency_ratio: ArrayLike, damping_ratio: ArrayL
     a, q, w = zeta * omega, omega * omega, omega * omega * (1 - zeta) * (1 + zeta)
     c, g = _damped(s, a, q, w)
     impulse = Response(g, c - a * g)
-    gravity, _ = _exponential(0, s, a, q, w, impulse)
-    return Responses(impulse, gravity, *_exponential(1j, s, a, q, w, impulse))
+    return Responses(impulse, *(_exponential(nu, s, a, q, w, impulse) for nu in (0, 1j)))

@@ -20,26 +20,26 @@ All quantities are dimensionless: time Ωt, length Ω²y/g.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple, Self
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.contact_law import ContactLaw, Unit, check_damping, check_positive
+from bouncing_ball.contacts.contact_law import OscillatorLaw
 from bouncing_ball.contacts.damping import damping_ratio, restitution_coefficient
 from bouncing_ball.contacts.instant import Instant
 from bouncing_ball.contacts.oscillator import responses
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.errors import require
 
-ARGUMENTS = ("time", "displacement", "velocity", "phase", "amplitude", "frequency_ratio")
+ARGUMENTS = ("time", "displacement", "velocity", "phase", "amplitude")
 """Order of the last axis of :attr:`ContactFlow.jacobian`."""
 
 
 class ContactFlow(NamedTuple):
     """δ, δ′ and δ″ after a time in contact, arrays of one shape, and the exact Jacobian.
 
-    ``jacobian`` has shape (..., 2, 6): its rows are the derivatives of δ and δ′, its columns are
+    ``jacobian`` has shape (..., 2, 5): its rows are the derivatives of δ and δ′, its columns are
     in the order of :data:`ARGUMENTS`.
     """
 
@@ -50,7 +50,7 @@ class ContactFlow(NamedTuple):
 
 
 @dataclass(frozen=True, repr=False)
-class SpringDamper(ContactLaw):
+class SpringDamper(OscillatorLaw):
     """The paper's contact: ϖ, ζ and the rule that ends it, with f = ϖ² p + 2ζϖ p′ (Eq. 11).
 
     It is the only contact law whose motion is computed in closed form.
@@ -74,30 +74,19 @@ class SpringDamper(ContactLaw):
     (<Release.FORCE: 'force'>, 10.0)
     """
 
-    frequency_ratio: float | np.ndarray
-    damping_ratio: float | np.ndarray
     release: Release = Release.DISPLACEMENT
 
     name: ClassVar[str] = "linear"
     formula: ClassVar[str] = "W² p + 2 Z W p′"
-    root: ClassVar[int] = 1
-    units: ClassVar[dict[str, Unit]] = {"frequency_ratio": Unit("rad/s", 0, 0, -1)}
 
     def __post_init__(self):
-        check_positive(self.frequency_ratio, "frequency ratio ϖ")
-        check_damping(self.damping_ratio, "damping ratio ζ")
+        super().__post_init__()
         object.__setattr__(self, "release", Release.of(self.release))
 
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """The force over the weight, ϖ² p + 2ζϖ p′."""
         omega = self.frequency_ratio
         return omega * (omega * penetration + 2 * self.damping_ratio * rate)
-
-    @classmethod
-    def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
-        """The contact with ϖ = v/P and ζ = group."""
-        omega = np.asarray(speed, dtype=float) / np.asarray(length, dtype=float)
-        return cls(omega, np.asarray(group, dtype=float) + 0 * omega)
 
     @classmethod
     def group_of(cls, restitution: float) -> float:
@@ -249,20 +238,13 @@ class SpringDamper(ContactLaw):
         args = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in args))
         s, d0, v0, phi, lam, omega, zeta = args
         loss, stiffness = 2 * zeta * omega, omega * omega
-        g, G, h, by_nu = responses(s, omega, zeta)
+        g, G, h = responses(s, omega, zeta)
         turn = np.exp(1j * phi)
         drive, free = lam * turn, g.rate + loss * g.value
         d = d0 * free + v0 * g.value - G.value + np.imag(drive * h.value)
         v = v0 * g.rate - d0 * stiffness * g.value - G.rate + np.imag(drive * h.rate)
         acc = lam * np.sin(s + phi) - 1 - loss * v - stiffness * d
-        # ϖ² G and ϖ g depend on ϖs alone, and so does ϖ² h if ν is measured in units of ϖ.
-        table = np.imag(drive * (2 * h.value + 1j * by_nu))
-        table_rate = np.imag(drive * (2 * h.rate + 1j * h.value - by_nu))
-        by_omega = s * v - v0 * g.value + 2 * G.value - table
-        by_omega_rate = v + s * acc - v0 * g.rate + 2 * G.rate - table_rate
-        jacobian = [
-            [v, free, g.value, np.real(drive * h.value), np.imag(turn * h.value), by_omega / omega],
-            [acc, -stiffness * g.value, g.rate, np.real(drive * h.rate),
-             np.imag(turn * h.rate), by_omega_rate / omega],
-        ]  # fmt: skip
+        table = ((np.real(drive * x), np.imag(turn * x)) for x in h)
+        free_columns = (v, free, g.value), (acc, -stiffness * g.value, g.rate)
+        jacobian = [(*one, *by) for one, by in zip(free_columns, table, strict=True)]
         return ContactFlow(d, v, acc, np.moveaxis(np.array(jacobian), (0, 1), (-2, -1)))

@@ -7,7 +7,10 @@ where the force vanishes, a contact may also start at δ < 0, see
 The motion in contact is computed by :func:`bouncing_ball.contacts.collocation.march`. For an
 underdamped spring-damper it has a closed form (:mod:`bouncing_ball.motion.linear_contact`),
 except at the undamped resonance. With the closed form the release is proved to be the first,
-and contacts that never end are recognised. Landings are proved to be the first for every law.
+and a contact that never ends is proved to be permanent. With any other law a contact without a
+release in hundreds of oscillations is permanent if Λ is below the law's threshold of permanent
+contact, which is no proof, and undecided above it. Landings are proved to be the first for every
+law.
 """
 
 from dataclasses import dataclass
@@ -17,6 +20,7 @@ import numpy as np
 
 from bouncing_ball.contacts.collocation import MOST_PANELS, Start, march
 from bouncing_ball.contacts.elementary import exponential
+from bouncing_ball.contacts.permanent_contact import known_threshold
 from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.motion.angles import reduce_angle, sine_and_versine, table
 from bouncing_ball.motion.dynamics import Departure, Dynamics, Impact
@@ -37,8 +41,9 @@ class ContactDynamics(Dynamics):
     # the few long contacts are then computed together.
     block: ClassVar[int] = 1 << 16
 
-    def depart(self, impact: Impact) -> Departure:
-        """The end of each contact; the status is undecided where no end was found.
+    def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
+        """The end of each contact. Where no end was found, the contact is permanent if Λ is at most
+        the law's threshold of permanent contact, and the status is undecided above it.
 
         If the force depends on the load and the load pulls, a slow ball meets no force at p = 0.
         Its contact then has the duration 0, and the ball continues its flight below p = 0.
@@ -52,7 +57,7 @@ class ContactDynamics(Dynamics):
         # No contact is computed for these balls, because none of its panels would be accepted.
         rate = np.where(free, np.nan, -impact.velocity)
         start = Start(depth, rate, impact.phase, self.amplitude * one, one)
-        end = march(self.law, start, MOST_PANELS)
+        end = march(self.law, start, MOST_PANELS, differentiate=differentiate)
         # A ball that is released below the table's level may move down, if the load pulls it.
         rate = np.where(end.penetration > 0, -end.rate, np.maximum(-end.rate, 0.0))
         for column, value in zip(end[:3], (0 * depth, depth, -impact.velocity), strict=True):
@@ -61,8 +66,12 @@ class ContactDynamics(Dynamics):
         phase, lost = impact.phase + end.duration, np.isnan(end.duration)
         state = -end.penetration, rate, *table(phase, self.amplitude)
         status = np.where(lost, Status.UNDECIDED, Status.BOUNCING)
+        for k in np.flatnonzero(lost):
+            if start.amplitude[k] <= known_threshold(self.law.take(k)):
+                status[k] = Status.PERMANENT_CONTACT
         duration = np.where(lost, np.inf, end.duration)
-        return Departure(phase, duration, Flight(*state, self.amplitude), status)
+        flight = Flight(*state, self.amplitude)
+        return Departure(phase, duration, flight, status, by=end.jacobian)
 
     def fly(self, departure: Departure) -> tuple[Impact, np.ndarray]:
         """The landing or an earlier resumption, and the time from the last impact to it."""
@@ -79,11 +88,10 @@ class ContactDynamics(Dynamics):
     def jacobian(
         self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
     ) -> Jacobian:
-        """Derivative of the map over contact and flight; NaN if either impact is a resumption."""
-        one = np.ones_like(passed)
-        start = Start(0 * one, -impact.velocity, impact.phase, self.amplitude * one, one)
-        by = march(self.law, start, MOST_PANELS, differentiate=True).jacobian
-        known = (impact.displacement >= 0) & (after.displacement >= 0)
+        """Derivative of the map over contact and flight; NaN if either impact is a resumption, or
+        if the ball meets no force.
+        """
+        known, by = (impact.displacement >= 0) & (after.displacement >= 0), departure.by
         after = after._replace(velocity=np.where(known, after.velocity, np.nan))
         released = (
             Deviation(k + sign * by[:, 0, c], -sign * by[:, 1, c], -sign * by[:, 2, c])
@@ -109,7 +117,7 @@ class LinearContactDynamics(ContactDynamics):
 
     block: ClassVar[int] = BLOCK
 
-    def depart(self, impact: Impact) -> Departure:
+    def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
         """The end of each contact, or permanent contact if it is proved never to end."""
         x, y = table(impact.phase, self.amplitude)
         state = impact.displacement, impact.velocity

@@ -53,7 +53,7 @@ class CorrectedDynamics(Dynamics):
         hit = corrected_map.impact(self.law, self.amplitude, phase, arrival)
         return Impact.at_level(*corrected_map.start_of(self.amplitude, hit), hit)
 
-    def depart(self, impact: Impact) -> Departure:
+    def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
         """The end of each contact, or of the rest on the table that follows it."""
         hit, amplitude = impact.known, self.amplitude
         x, y = table(hit.phase, amplitude)

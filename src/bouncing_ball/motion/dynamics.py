@@ -36,7 +36,8 @@ class Departure(NamedTuple):
 
     ``settling`` is the part of the duration in which the ball still bounces. ``aloft`` is a time
     of flight before which the ball has not landed; it is used if it exceeds
-    :meth:`Flight.sure <bouncing_ball.motion.landing.Flight.sure>`.
+    :meth:`Flight.sure <bouncing_ball.motion.landing.Flight.sure>`. ``by`` has the derivatives of
+    the contact's end, if they are computed together with it.
     """
 
     phase: np.ndarray
@@ -45,6 +46,7 @@ class Departure(NamedTuple):
     status: np.ndarray
     settling: np.ndarray | float = 0.0
     aloft: np.ndarray | float = 0.0
+    by: Any = None
 
 
 @dataclass(frozen=True, repr=False)
@@ -72,8 +74,10 @@ class Dynamics(Batch, ABC):
         return self.start(phase, velocity)
 
     @abstractmethod
-    def depart(self, impact: Impact) -> Departure:
-        """The ends of the contacts that start with these impacts."""
+    def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
+        """The ends of the contacts that start with these impacts; with ``differentiate`` also what
+        :meth:`jacobian` needs.
+        """
 
     def fly(self, departure: Departure) -> tuple[Impact, np.ndarray]:
         """The next impact of balls that leave, and the time from the last impact to it.

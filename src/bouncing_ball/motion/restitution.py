@@ -35,7 +35,7 @@ class RestitutionDynamics(Dynamics):
 
     forgets: ClassVar[bool] = True
 
-    def depart(self, impact: Impact) -> Departure:
+    def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
         """The flight after each impact, or the rest on the table after chattering."""
         r, amplitude = self.law, self.amplitude
         if isinstance(r, RestitutionLaw):

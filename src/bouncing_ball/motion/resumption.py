@@ -52,10 +52,11 @@ def resumption(flight: Flight, law: ContactLaw) -> tuple[np.ndarray, np.ndarray]
     time, resumed = flight.sure(), np.zeros(flight.velocity.shape, dtype=bool)
     if np.any(law.lag != 0):
         slow = np.flatnonzero(~_leaves_fast(flight, law))
-        find = _sampled if law.lag is None else _certified
-        part = flight.take(slow)
-        time[slow], back = find(part, law.take(slow))
-        resumed[slow] = back & (part.gap(time[slow])[0] < 0)
+        if slow.size:
+            find = _sampled if law.lag is None else _certified
+            part = flight.take(slow)
+            time[slow], back = find(part, law.take(slow))
+            resumed[slow] = back & (part.gap(time[slow])[0] < 0)
     return time, resumed
 
 

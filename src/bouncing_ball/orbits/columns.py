@@ -14,7 +14,9 @@ from bouncing_ball.continuation.branch import (
 )
 from bouncing_ball.continuation.events import parameter_bound
 from bouncing_ball.continuation.step_control import StepControl
+from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits.grazing import grazing_points
+from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import Bifurcation
@@ -27,6 +29,10 @@ OBSERVED = (
 PLACE = ("amplitude", "phase", "contact_duration")
 """The quantities of special orbits that the datasets contain."""
 GRAZING = "grazing"
+# By default a branch ends at this multiple of the Λ of its period doubling. A fold below the
+# second number belongs to an elastic contact. The third is the number of orbits that are tried as
+# starting points of a branch.
+_BEYOND, _LOWEST, _STARTS = 1.4, 1e-4, 16
 
 
 def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:
@@ -45,19 +51,48 @@ def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:
     return {name: getattr(orbit, name) for name in names} | judged
 
 
-def followed(
-    system: OrbitSystem, start: np.ndarray, low: float, high: float, largest_step: float
+def whole_branch(
+    model: ImpactModel, n: int, amplitude_max: float | None, largest_step: float
 ) -> Branch:
-    """The branch through a point, followed to both sides while Λ is between ``low`` and ``high``.
+    """The branch of n-T orbits of a single model, from one end to the other, up to some Λ.
+
+    It is followed to both sides from the orbit in the middle of the stable range, or from the
+    orbit at the nearest Λ that has one.
+
+    Parameters
+    ----------
+    model : ImpactModel
+    n : int
+        Index of the family.
+    amplitude_max : float, optional
+        Λ at which the branch ends; by default 1.4 times that of the period doubling.
+    largest_step : float
+        Largest step in arclength.
 
     Raises
     ------
+    NoOrbitError
+        If the branch begins above this Λ, or if no orbit is found to start from.
     ContinuationError
         If the continuation stops before an end of the branch or a bound of Λ.
     """
+    fold, doubling = (float(f(n).amplitude) for f in (model.saddle_node, model.period_doubling))
+    low = fold if fold > 0 else 0.0
+    top = amplitude_max or _BEYOND * (doubling if doubling > low else max(2 * low, 1.0))
+    none = f"no {n}-T orbit up to Λ = {top:g} for {model.label}"
+    if low >= top:
+        raise NoOrbitError(f"{none}: the branch begins at Λ = {low:.6g}")
+    stable = min(doubling, top)
+    tried = np.linspace(low, top, _STARTS + 1)[1:]
+    middle = (low + (stable if stable > low else top)) / 2
+    tried = np.append(middle, tried[np.argsort(np.abs(tried - middle))])
+    system, orbits = model.system(n), model.orbit(n, tried)
+    if not np.any(orbits.exists):
+        raise NoOrbitError(f"{none} was found to start from")
+    start = system.point(orbits[int(np.argmax(orbits.exists))])
     bounds = [
         parameter_bound(x, upper, f"left the window at amplitude {x:g}")
-        for x, upper in ((low, False), (high, True))
+        for x, upper in ((_LOWEST, False), (top, True))
     ]
     control = StepControl(largest=largest_step)
     found = continue_both_ways(system, start, events=(*system.events(), *bounds), control=control)

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.continuation.branch import Branch, ContinuationError
+from bouncing_ball.continuation.branch import ContinuationError
 from bouncing_ball.datasets.labelled import CASE, Grid, Labelled
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import ModelError, NoOrbitError, require
@@ -20,7 +20,7 @@ from bouncing_ball.motion.angles import table
 from bouncing_ball.motion.history import history as of_one_ball
 from bouncing_ball.motion.landing import Flight, land
 from bouncing_ball.motion.sequence import Status
-from bouncing_ball.orbits.columns import branch_columns, columns, followed, joined, no_branch
+from bouncing_ball.orbits.columns import branch_columns, columns, joined, no_branch, whole_branch
 from bouncing_ball.orbits.orbit import OBSERVABLES, Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.stability import Side
@@ -30,10 +30,6 @@ _FIRST, _MOST = 64, 65_536
 # Largest number of states of all balls. A state takes about fifty bytes, and as much again while
 # it is computed.
 _STATES = 10_000_000
-# By default a branch ends at this multiple of the Λ of its period doubling. A fold below the
-# second number belongs to an elastic contact. The third is the number of orbits that are tried as
-# starting points of a branch.
-_BEYOND, _LOWEST, _STARTS = 1.4, 1e-4, 16
 _LARGEST_STEP = 0.1
 _SHOWN = {"ball": "height", "ball_velocity": "velocity", "table": "table", "contact": "touching"}
 
@@ -226,32 +222,8 @@ def branch(model: Any, n: int, amplitude_max: float | None, points: int) -> xr.D
     NoOrbitError
         If the branch begins above this Λ, or if it cannot be followed.
     """
-    fold, doubling = (float(f(n).amplitude) for f in (model.saddle_node, model.period_doubling))
-    low = fold if fold > 0 else 0.0
-    top = amplitude_max or _BEYOND * (doubling if doubling > low else max(2 * low, 1.0))
-    if low >= top:
-        raise NoOrbitError(
-            f"no {n}-T orbit up to Λ = {top:g} for {model.label}: "
-            f"the branch begins at Λ = {low:.6g}"
-        )
     try:
-        found = branch_columns(
-            model.system(n), _along(model, n, low, min(doubling, top), top), points
-        )
+        found = whole_branch(model, n, amplitude_max, _LARGEST_STEP)
+        return branch_columns(model.system(n), found, points)
     except ContinuationError as error:
         raise NoOrbitError(f"the branch of {n}-T orbits for {model.label}: {error}") from None
-    return found
-
-
-def _along(model: Any, n: int, low: float, stable: float, top: float) -> Branch:
-    system = model.system(n)
-    # The branch is followed from the middle of the stable range, or from the nearest Λ that has an
-    # orbit.
-    tried = np.linspace(low, top, _STARTS + 1)[1:]
-    middle = (low + (stable if stable > low else top)) / 2
-    tried = np.append(middle, tried[np.argsort(np.abs(tried - middle))])
-    orbits = model.orbit(n, tried)
-    if not np.any(orbits.exists):
-        raise ContinuationError("no orbit to start from was found")
-    start = system.point(orbits[int(np.argmax(orbits.exists))])
-    return followed(system, start, _LOWEST, top, _LARGEST_STEP)

@@ -1,4 +1,4 @@
-"""The names of shards, and the time limits of the atlas's shards, for the rules.
+"""The names and the time limits of the atlas's shards, for the rules.
 
 Every job reads the rules. The plan of the atlas is therefore imported only when it is needed.
 """
@@ -12,25 +12,15 @@ _SECONDS_PER_ORBIT = 3e-6
 _LEAST_MINUTES = 10
 
 
-def numbered(count: int) -> list[str]:
-    """Names of shards with their number and count, so that another division has other names.
-
-    Examples
-    --------
-    >>> numbered(2)
-    ['0000-of-0002', '0001-of-0002']
-    """
-    return [f"{k:04d}-of-{count:04d}" for k in range(count)]
-
-
-def shard_names(parameters: Mapping[str, Any]) -> list[str]:
+def names(parameters: Mapping[str, Any]) -> list[str]:
     """The names of the atlas's shards."""
     from bouncing_ball.atlas.plan import Plan
+    from bouncing_ball.datasets.shards import shard_names
 
-    return numbered(len(Plan(**parameters).shard_rows()))
+    return shard_names(len(Plan(**parameters).shard_rows()))
 
 
-def shard_minutes(parameters: Mapping[str, Any]) -> int:
+def minutes(parameters: Mapping[str, Any]) -> int:
     """The time limit of a shard on a cluster, in minutes."""
     from bouncing_ball.atlas.plan import Plan
 

@@ -23,7 +23,7 @@ from bouncing_ball.datasets.netcdf import (
     read_dataset,
     write_dataset,
 )
-from bouncing_ball.datasets.pieces import joined
+from bouncing_ball.datasets.shards import joined
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.progress import advance
 from bouncing_ball.provenance.origin import gather
@@ -112,7 +112,7 @@ def make_dataset(snakemake: Any) -> None:
         given = dict(job.arguments)
         others: dict[str, Any] = {"data": data} if data else {}
         if shards := snakemake.input.get("shards"):
-            others["follow"] = joined([read_input(path) for path in shards])
+            others["found"] = joined([read_input(path) for path in shards])
         dataset = typed(load(job.study))(**given, **others)
         named = given.pop("parameters", {}) | given
         parameters = dataset.attrs or parameter_attributes(named)

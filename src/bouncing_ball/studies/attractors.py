@@ -5,7 +5,6 @@ after some tens of impacts. Datasets therefore contain the kinds of motions, and
 impacts.
 """
 
-from operator import call
 from typing import Annotated
 
 import numpy as np
@@ -14,11 +13,11 @@ from pydantic import Field
 from scipy.stats import binomtest
 
 from bouncing_ball.accuracy.errors import models as of_contact
-from bouncing_ball.attractors.labelled import diagram
+from bouncing_ball.attractors.labelled import REACH, diagram
 from bouncing_ball.attractors.mapper import label
 from bouncing_ball.attractors.motions import Kind, Motions
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
-from bouncing_ball.datasets.pieces import Follow
+from bouncing_ball.datasets.shards import Arrays, Found, Part
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.parameters import (
     Amplitude,
@@ -27,7 +26,6 @@ from bouncing_ball.parameters import (
     Interval,
     LossyRestitution,
     Many,
-    Parameters,
     Sharded,
     listed,
     number,
@@ -70,10 +68,10 @@ class Grid(Sharded):
     impacts: Impacts
     confidence: Confidence
 
-    def places(self) -> list[np.ndarray]:
-        """r and Λ of all nodes in a row, those with one r after each other."""
+    def places(self) -> np.ndarray:
+        """r and Λ of all nodes, those with one r after each other, shape (2, nodes)."""
         axes = np.meshgrid(self.restitution.grid(), self.amplitude.grid(), indexing="ij")
-        return [x.ravel() for x in axes]
+        return np.reshape(axes, (2, -1))
 
     def unfolded(self, values: np.ndarray) -> np.ndarray:
         """Values over all nodes, their last axis, over (restitution, amplitude)."""
@@ -96,7 +94,7 @@ class Locking(Grid):
 _KNOWN = 1e-5
 
 
-class Diagram(Parameters):
+class Diagram(Sharded):
     """Several balls at each of many amplitudes of one contact."""
 
     restitution: LossyRestitution
@@ -172,7 +170,21 @@ def agreement(simple: Motions, contact: Motions, confidence: float) -> np.ndarra
     return np.array([share(same[known & group(simple, x)], confidence) for x in GROUPS]).T
 
 
-def locking(parameters: Locking, release: Release, follow: Follow = call) -> xr.Dataset:
+def motions_at_nodes(parameters: Locking, release: Release, part: Part = np.asarray) -> Arrays:
+    """The fields of :class:`~bouncing_ball.attractors.motions.Motions`, over (model, ϖ, node)."""
+    ratios = np.array(parameters.frequency_ratio)
+    r, lam = part(parameters.places())
+    start = parameters.phase, lam * np.cos(parameters.phase) - parameters.impact_speed
+    found = [
+        vars(label(model.impact_law, lam, *start, impacts=parameters.impacts))
+        for model in models(r, ratios[:, np.newaxis], release)
+    ]
+    # The restitution model is the same at every ϖ.
+    shape = ratios.size, lam.size
+    return {x: np.stack([np.broadcast_to(each[x], shape) for each in found]) for x in found[0]}
+
+
+def locking(parameters: Locking, release: Release, found: Found = None) -> xr.Dataset:
     """The motions on which balls end over (Λ, r), and where the models agree on them.
 
     ``kind``, ``periods``, ``impacts``, ``lyapunov_exponent`` and ``lyapunov_error`` (model,
@@ -186,18 +198,7 @@ def locking(parameters: Locking, release: Release, follow: Follow = call) -> xr.
     restitution) are those of the 1-T orbit.
     """
     ratios, level = np.array(parameters.frequency_ratio), parameters.confidence
-
-    def of_nodes(r, lam):
-        start = parameters.phase, lam * np.cos(parameters.phase) - parameters.impact_speed
-        found = [
-            vars(label(model.impact_law, lam, *start, impacts=parameters.impacts))
-            for model in models(r, ratios[:, np.newaxis], release)
-        ]
-        # The restitution model is the same at every ϖ.
-        shape = ratios.size, lam.size
-        return {x: np.stack([np.broadcast_to(each[x], shape) for each in found]) for x in found[0]}
-
-    motions = Motions(**follow(of_nodes, *parameters.places()))
+    motions = Motions(**(found or motions_at_nodes(parameters, release)))
     pairs = [[(motions[k, m], motions[-1, m]) for m in range(ratios.size)] for k in range(2)]
     shares = [[agreement(*pair, level) for pair in each] for each in pairs]
     dims = ("model", "restitution", "amplitude")
@@ -205,16 +206,16 @@ def locking(parameters: Locking, release: Release, follow: Follow = call) -> xr.
     nodes, *limits = np.moveaxis(np.array(shares), 2, 0)
     r = parameters.restitution.grid()
     first = models(r, ratios[0], release)
-    found = {x: parameters.unfolded(y[:, 0]) for x, y in vars(motions).items()}
+    maps = {x: parameters.unfolded(y[:, 0]) for x, y in vars(motions).items()}
     ends = {
         "saddle_node_amplitude": [each.saddle_node(1) for each in first],
         "period_doubling_amplitude": [each.period_doubling(1) for each in first],
     }
     return described(
         {
-            **{x: (dims, found[x]) for x in ("kind", "periods", "impacts")},
-            "lyapunov_exponent": (dims, found["exponent"]),
-            "lyapunov_error": (dims, np.maximum(_KNOWN, found["exponent_error"])),
+            **{x: (dims, maps[x]) for x in ("kind", "periods", "impacts")},
+            "lyapunov_exponent": (dims, maps["exponent"]),
+            "lyapunov_error": (dims, np.maximum(_KNOWN, maps["exponent_error"])),
             **{x: (dims[:2], np.stack([o.amplitude for o in y])) for x, y in ends.items()},
             "agreement_nodes": (of_shares, nodes),
             **{f"agreement{x}": (of_shares, y) for x, y in zip(LIMITS, limits, strict=True)},
@@ -230,7 +231,35 @@ def locking(parameters: Locking, release: Release, follow: Follow = call) -> xr.
     )
 
 
-def orbit_diagrams(parameters: Diagram, release: Release) -> xr.Dataset:
+def phases_of_impacts(parameters: Diagram, release: Release, part: Part = np.asarray) -> Arrays:
+    """The variables of :func:`orbit_diagrams`, with Λ along the last axis."""
+    lam, bins = parameters.amplitude.grid(), parameters.bins
+    own = part(np.arange(lam.size))
+    # Balls start again from the ends of balls at neighbouring Λ, which have neighbours themselves.
+    near = np.arange(max(own[0] - REACH, 0), min(own[-1] + REACH + 1, lam.size))
+    edges = np.linspace(-np.pi, np.pi, bins + 1)
+    columns = []
+    for model in models(np.array(parameters.restitution), parameters.frequency_ratio, release):
+        found = diagram(model, lam[near], parameters.starts, parameters.samples, parameters.impacts)
+        found = found.isel(amplitude=own - near[0])
+        phase = found.impact_phase.values
+        at = np.isfinite(phase)
+        weight = 1 / np.maximum(at.sum(axis=-1, keepdims=True), 1)
+        known = at.any(axis=-1).sum(axis=1)
+        place = np.broadcast_to(np.arange(own.size)[:, np.newaxis, np.newaxis], phase.shape)[at]
+        density, *_ = np.histogram2d(
+            *(phase[at], place),
+            bins=(edges, np.arange(own.size + 1) - 0.5),
+            weights=np.broadcast_to(weight, phase.shape)[at],
+        )
+        best = found.isel(start=found.lyapunov_exponent.fillna(-np.inf).argmax("start"))
+        exponent, error = best.lyapunov_exponent.fillna(-np.inf), best.lyapunov_error
+        columns.append((density / np.maximum(known, 1), exponent, np.fmax(error, _KNOWN)))
+    density, exponent, error = (np.stack(x) for x in zip(*columns, strict=True))
+    return {"phase_density": density, "lyapunov_exponent": exponent, "lyapunov_error": error}
+
+
+def orbit_diagrams(parameters: Diagram, release: Release, found: Found = None) -> xr.Dataset:
     """The phases of the impacts on the attractors of each model, over Λ.
 
     ``phase_density`` (model, amplitude, bin_phase) is the share of the impacts within a range of
@@ -239,32 +268,14 @@ def orbit_diagrams(parameters: Diagram, release: Release) -> xr.Dataset:
     amplitude) is the largest exponent of these motions, -∞ where all are locked, and
     ``lyapunov_error`` its standard error, which is at least 1e-5.
     """
-    lam, bins = parameters.amplitude.grid(), parameters.bins
-    edges = np.linspace(-np.pi, np.pi, bins + 1)
-    columns = []
-    for model in models(np.array(parameters.restitution), parameters.frequency_ratio, release):
-        found = diagram(model, lam, parameters.starts, parameters.samples, parameters.impacts)
-        phase = found.impact_phase.values
-        at = np.isfinite(phase)
-        weight = 1 / np.maximum(at.sum(axis=-1, keepdims=True), 1)
-        known = at.any(axis=-1).sum(axis=1)[:, np.newaxis]
-        place = np.broadcast_to(np.arange(lam.size)[:, np.newaxis, np.newaxis], phase.shape)[at]
-        density, *_ = np.histogram2d(
-            *(place, phase[at]),
-            bins=(np.arange(lam.size + 1) - 0.5, edges),
-            weights=np.broadcast_to(weight, phase.shape)[at],
-        )
-        exponent = np.where(np.isnan(found.lyapunov_exponent), -np.inf, found.lyapunov_exponent)
-        largest = exponent.argmax(axis=1)[:, np.newaxis]
-        error = np.take_along_axis(found.lyapunov_error.values, largest, 1)[:, 0]
-        exponent = np.take_along_axis(exponent, largest, 1)[:, 0]
-        columns.append((density / np.maximum(known, 1), exponent, np.fmax(error, _KNOWN)))
-    density, exponent, error = (np.stack(x) for x in zip(*columns, strict=True))
+    found = found or phases_of_impacts(parameters, release)
+    edges = np.linspace(-np.pi, np.pi, parameters.bins + 1)
+    dims = ("model", "bin_phase", "amplitude")
     return described(
-        {
-            "phase_density": (("model", "amplitude", "bin_phase"), density),
-            "lyapunov_exponent": (("model", "amplitude"), exponent),
-            "lyapunov_error": (("model", "amplitude"), error),
+        {x: (dims if y.ndim == 3 else dims[::2], y) for x, y in found.items()},
+        coords={
+            "model": list(MODELS),
+            "amplitude": parameters.amplitude.grid(),
+            "bin_phase": (edges[1:] + edges[:-1]) / 2,
         },
-        coords={"model": list(MODELS), "amplitude": lam, "bin_phase": (edges[1:] + edges[:-1]) / 2},
-    )
+    ).transpose("model", "amplitude", ...)

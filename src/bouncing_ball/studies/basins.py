@@ -8,10 +8,11 @@ import xarray as xr
 from bouncing_ball.attractors.mapper import label
 from bouncing_ball.attractors.motions import Kind, Motions
 from bouncing_ball.contacts.spring_damper import Release
+from bouncing_ball.datasets.shards import Arrays, Found, Part
 from bouncing_ball.datasets.variables import described
-from bouncing_ball.parameters import FrequencyRatio, Many, Parameters, Seed, listed, number
+from bouncing_ball.parameters import FrequencyRatio, Many, Seed, Sharded, listed, number
 from bouncing_ball.studies.attractors import MODELS, Confidence, Impacts, models, share, with_limits
-from bouncing_ball.studies.transients import Place
+from bouncing_ball.studies.transients import Place, columns
 from bouncing_ball.studies.uncertainty import exponent
 
 MOTIONS = ("permanent contact", "1-T orbit", "other orbits", "locked", "no repetition")
@@ -25,7 +26,7 @@ class Case(Place):
     frequency_ratio: FrequencyRatio
 
 
-class Basins(Parameters):
+class Basins(Sharded):
     """Starts on an even grid for the picture, and random ones for shares and exponents."""
 
     cases: Many[Case]
@@ -37,6 +38,11 @@ class Basins(Parameters):
     confidence: Confidence
     seed: Seed
 
+    def grid(self) -> np.ndarray:
+        """Phases and speeds at middles of cells, shape (2, starts)."""
+        middle = (np.arange(self.starts) + 0.5) / self.starts
+        return np.stack([2 * np.pi * middle - np.pi, self.velocity_max * middle])
+
 
 def _destination(found: Motions) -> np.ndarray:
     """Indices of motions in :data:`MOTIONS`."""
@@ -47,7 +53,27 @@ def _destination(found: Motions) -> np.ndarray:
     return np.select(where, range(len(where)), len(where))
 
 
-def basins(parameters: Basins, release: Release) -> xr.Dataset:
+def destinations(parameters: Basins, release: Release, part: Part = np.asarray) -> Arrays:
+    """Indices into :data:`MOTIONS`, over (case, model, start): for the starts of the picture, and
+    then for the random ones, first without a change of their phases.
+    """
+    random = np.random.default_rng(parameters.seed)
+    drawn = random.uniform(-np.pi, np.pi, parameters.random)
+    fast = random.uniform(0, parameters.velocity_max, parameters.random)
+    beside = drawn + np.array([[0.0], *np.array(parameters.shifts)[:, np.newaxis]])
+    sample = np.stack([beside, fast + 0 * beside]).reshape(2, -1)
+    image = np.reshape(np.meshgrid(*parameters.grid()), (2, -1))
+    start, towards = part(np.concatenate([image, sample], axis=1))
+    r, lam, ratio = columns(parameters.cases)[..., np.newaxis]
+    ends = []
+    for model in models(r, ratio, release):
+        velocity = lam * np.cos(start) - towards
+        found = label(model.impact_law, lam, start, velocity, impacts=parameters.impacts)
+        ends.append(_destination(found))
+    return {"destination": np.stack(ends, axis=1).astype(np.int8)}
+
+
+def basins(parameters: Basins, release: Release, found: Found = None) -> xr.Dataset:
     """The motions on which balls end after first impacts (φ, δ′), in three models of each case.
 
     ``destination`` (case, model, start_speed, start_phase) is an index into :data:`MOTIONS`; φ in
@@ -57,23 +83,10 @@ def basins(parameters: Basins, release: Release) -> xr.Dataset:
     (case, model) is the exponent of this share. Each has limits, ``_low`` and ``_high``.
     ``case_restitution``, ``case_ratio`` and ``case_amplitude`` are over the case.
     """
-    r, lam, ratio = (np.array([getattr(x, y) for x in parameters.cases]) for y in Case.model_fields)
-    count, level = parameters.starts, parameters.confidence
-    random = np.random.default_rng(parameters.seed)
-    middle, shifts = (np.arange(count) + 0.5) / count, np.array(parameters.shifts)
-    phase, speed = 2 * np.pi * middle - np.pi, parameters.velocity_max * middle
-    drawn = random.uniform(-np.pi, np.pi, parameters.random)
-    fast = random.uniform(0, parameters.velocity_max, parameters.random)
-    beside = drawn + np.array([0.0, *shifts])[:, np.newaxis]
-    start = np.concatenate([np.meshgrid(phase, speed)[0].ravel(), beside.ravel()])
-    towards = np.concatenate([np.repeat(speed, count), np.tile(fast, shifts.size + 1)])
-    amplitude = lam[:, np.newaxis]
+    (r, lam, ratio), (phase, speed) = columns(parameters.cases), parameters.grid()
+    count, level, shifts = parameters.starts, parameters.confidence, np.array(parameters.shifts)
+    ends = (found or destinations(parameters, release))["destination"]
     shape = lam.size, len(MODELS)
-    ends = np.empty((*shape, start.size), dtype=np.int8)
-    for k, model in enumerate(models(r[:, np.newaxis], ratio[:, np.newaxis], release)):
-        velocity = amplitude * np.cos(start) - towards
-        found = label(model.impact_law, amplitude, start, velocity, impacts=parameters.impacts)
-        ends[:, k] = _destination(found)
     image, sample = np.split(ends, [count * count], axis=-1)
     first, *others = np.moveaxis(sample.reshape(*shape, -1, parameters.random), 2, 0)
     changed = np.stack([x != first for x in others], axis=2)

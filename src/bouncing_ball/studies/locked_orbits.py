@@ -10,10 +10,11 @@ from bouncing_ball.attractors.lift_off import returns
 from bouncing_ball.attractors.mapper import label
 from bouncing_ball.attractors.motions import Kind
 from bouncing_ball.contacts.spring_damper import Release
+from bouncing_ball.datasets.shards import Arrays, Found, Part
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.parameters import Many, Seed, number
 from bouncing_ball.studies.attractors import Grid, models, share, with_limits
-from bouncing_ball.studies.transients import Transients, transients
+from bouncing_ball.studies.transients import Transients, lives, transients
 from bouncing_ball.studies.uncertainty import exponent
 
 # Edges of the ranges of ϖ w/S.
@@ -29,6 +30,10 @@ class LockedOrbits(Grid):
     seed: Seed
     transients: Transients
 
+    def places(self) -> np.ndarray:
+        random, of = np.random.default_rng(self.seed), (self.restitution, self.amplitude)
+        return np.array([random.uniform(x.min, x.max, self.nodes) for x in of])
+
 
 def correlation(one: np.ndarray, other: np.ndarray, confidence: float) -> np.ndarray:
     """Spearman's rank correlation with its limits (D. G. Bonett and T. A. Wright, 2000)."""
@@ -37,7 +42,21 @@ def correlation(one: np.ndarray, other: np.ndarray, confidence: float) -> np.nda
     return np.array([rho, *np.tanh(np.arctanh(rho) + width * np.array([-1, 1]))])
 
 
-def locked_orbits(parameters: LockedOrbits, release: Release) -> xr.Dataset:
+def orbits_and_lives(parameters: LockedOrbits, release: Release, part: Part = np.asarray) -> Arrays:
+    """The fields of :class:`~bouncing_ball.attractors.lift_off.Return`, first without a change of Λ
+    and then after each change; whether the contact has the same period, over ϖ; and
+    :func:`bouncing_ball.studies.transients.lives`, whose places are balls.
+    """
+    r, lam = part(parameters.places())
+    ratios, shifts = (np.array([x]).T for x in (parameters.frequency_ratio, parameters.shifts))
+    found = returns(r, lam + np.concatenate([[[0.0]], shifts]), parameters.impacts)
+    contact = models(r, ratios, release)[-1].impact_law
+    motion = label(contact, lam, -np.pi / 2, 0.0, impacts=parameters.impacts)
+    same = (motion.kind == Kind.LOCKED) & (motion.periods == found.periods[0])
+    return {**found._asdict(), "same": same, **lives(parameters.transients, release, part)}
+
+
+def locked_orbits(parameters: LockedOrbits, release: Release, found: Found = None) -> xr.Dataset:
     """The places at which a contact has the locked orbit of the restitution model, and predictors.
 
     The places are uniformly distributed in Λ and r. Over ``node`` the dataset has ``restitution``
@@ -54,19 +73,11 @@ def locked_orbits(parameters: LockedOrbits, release: Release) -> xr.Dataset:
     Each has a lower and an upper limit, ``_low`` and ``_high``. The variables of
     :func:`bouncing_ball.studies.transients.transients` are added.
     """
-    level, random = parameters.confidence, np.random.default_rng(parameters.seed)
-    r, lam = (
-        random.uniform(x.min, x.max, parameters.nodes)
-        for x in (parameters.restitution, parameters.amplitude)
-    )
+    found, level = found or orbits_and_lives(parameters, release), parameters.confidence
     ratios, shifts = (np.array(x) for x in (parameters.frequency_ratio, parameters.shifts))
-    # All changes of Λ, of which the first is 0, are followed together.
-    found = returns(r, lam + np.array([[0.0], *shifts[:, np.newaxis]]), parameters.impacts)
-    (period, *moved), s, wait = found.periods, found.sensitivity[0], found.wait[0]
+    (r, lam), (period, *moved), same = parameters.places(), found["periods"], found["same"]
+    s, wait = found["sensitivity"][0], found["wait"][0]
     sticks, changed = period > 0, np.array(moved) != period
-    contact = models(r, ratios[:, np.newaxis], release)[-1].impact_law
-    motion = label(contact, lam, -np.pi / 2, 0.0, impacts=parameters.impacts)
-    same = (motion.kind == Kind.LOCKED) & (motion.periods == period)
     right = np.logical_and.accumulate(same[::-1])[::-1]
     least = np.where(right.any(axis=0), ratios[np.argmax(right, axis=0)], np.inf)
     place = np.digitize(ratios[:, np.newaxis] * wait / s, _EDGES) - 1
@@ -91,4 +102,4 @@ def locked_orbits(parameters: LockedOrbits, release: Release) -> xr.Dataset:
             "shift": shifts,
         },
     )
-    return data.merge(transients(parameters.transients, release))
+    return data.merge(transients(parameters.transients, found))

@@ -1,7 +1,6 @@
 """The ϖ above which a simple model has accurate means over a motion, over (Λ, r) (beyond the
 paper)."""
 
-from operator import call
 from typing import Annotated
 
 import numpy as np
@@ -11,7 +10,7 @@ from scipy.stats import t as student
 from bouncing_ball.attractors.mapper import label
 from bouncing_ball.attractors.means import means
 from bouncing_ball.contacts.spring_damper import Release
-from bouncing_ball.datasets.pieces import Follow
+from bouncing_ball.datasets.shards import Arrays, Found, Part
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.parameters import Seed, Tolerance, number
 from bouncing_ball.studies.attractors import LIMITS, SIMPLE, Grid, models, share
@@ -78,7 +77,29 @@ def _errors(simple: np.ndarray, contact: np.ndarray, confidence: float) -> np.nd
     return np.where(np.isfinite(found[0]), found, np.nan)
 
 
-def mean_motions(parameters: MeanMotions, release: Release, follow: Follow = call) -> xr.Dataset:
+def errors_at_nodes(parameters: MeanMotions, release: Release, part: Part = np.asarray) -> Arrays:
+    """``mean_error`` and ``mean_margin`` of :func:`mean_motions`, over
+    (simple, mean, ϖ, node).
+    """
+    random, balls = np.random.default_rng(parameters.seed), parameters.starts
+    phase, speed = random.uniform(-np.pi, np.pi, balls), random.uniform(0.0, _FASTEST, balls)
+    r, lam = part(parameters.places())[..., np.newaxis]
+    ratios = np.array(parameters.frequency_ratio)[:, np.newaxis, np.newaxis]
+    velocity, values = lam * (np.cos(phase) - speed), []
+    for model in models(r, ratios, release):
+        law = model.impact_law
+        found = label(law, lam, phase, velocity, impacts=parameters.impacts)
+        flights, height, power, exponent = means(law, lam, found, parameters.samples)
+        exponent = np.where(found.periods > 0, found.exponent, exponent)
+        of = np.stack([power, height, flights, exponent])
+        # Over the mean, ϖ, the node and the ball; the restitution model has one ϖ.
+        values.append(of.reshape(len(MEANS), -1, lam.size, balls))
+    *simple, contact = values
+    errors = np.stack([_errors(x, contact, parameters.confidence) for x in simple], axis=1)
+    return {"mean_error": errors[0], "mean_margin": errors[1]}
+
+
+def mean_motions(parameters: MeanMotions, release: Release, found: Found = None) -> xr.Dataset:
     """The smallest ϖ above which the means of a simple model are accurate, over (Λ, r).
 
     The balls of a node start with the same impacts in all models, random in phase and speed. Each
@@ -94,25 +115,7 @@ def mean_motions(parameters: MeanMotions, release: Release, follow: Follow = cal
     number of nodes.
     """
     ratios = np.array(parameters.frequency_ratio)
-    random, balls = np.random.default_rng(parameters.seed), parameters.starts
-    phase, speed = random.uniform(-np.pi, np.pi, balls), random.uniform(0.0, _FASTEST, balls)
-
-    def of_nodes(r, lam):
-        r, lam = r[:, np.newaxis], lam[:, np.newaxis]
-        velocity, values = lam * (np.cos(phase) - speed), []
-        for model in models(r, ratios[:, np.newaxis, np.newaxis], release):
-            law = model.impact_law
-            found = label(law, lam, phase, velocity, impacts=parameters.impacts)
-            flights, height, power, exponent = means(law, lam, found, parameters.samples)
-            exponent = np.where(found.periods > 0, found.exponent, exponent)
-            of = np.stack([power, height, flights, exponent])
-            # Over the mean, ϖ, the node and the ball; the restitution model has one ϖ.
-            values.append(of.reshape(len(MEANS), -1, lam.size, balls))
-        *simple, contact = values
-        errors = np.stack([_errors(x, contact, parameters.confidence) for x in simple], axis=1)
-        return {"mean_error": errors[0], "mean_margin": errors[1]}
-
-    found = follow(of_nodes, *parameters.places())
+    found = found or errors_at_nodes(parameters, release)
     along = {x: parameters.unfolded(y) for x, y in found.items()}
     error, margin = (np.moveaxis(x, 2, 0) for x in along.values())
     place, known = needed(error, margin, parameters.tolerance)

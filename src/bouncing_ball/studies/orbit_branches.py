@@ -1,22 +1,45 @@
 """Existence and stability of n-T orbits by continuation (Figs. 8, 9 and 15, Table 1)."""
 
+from typing import Annotated
+
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.contacts.spring_damper import Release
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.continuation.branch import Branch, ContinuationError
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
-from bouncing_ball.orbits.columns import PLACE, branch_columns, columns, joined, no_branch
+from bouncing_ball.orbits.columns import (
+    PLACE,
+    branch_columns,
+    columns,
+    joined,
+    no_branch,
+    whole_branch,
+)
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import Bifurcation
-from bouncing_ball.parameters import Family, FrequencyRatio, LossyRestitution, Many, Parameters
-from bouncing_ball.studies.continuation import Continuation, branch_along_amplitude
+from bouncing_ball.orbits.system import OrbitSystem
+from bouncing_ball.parameters import (
+    Family,
+    FrequencyRatio,
+    LossyRestitution,
+    Many,
+    Parameters,
+    listed,
+)
 from bouncing_ball.studies.parameters import BranchEnd, Points
 from bouncing_ball.studies.printed_table1 import printed_table
 
 SADDLE_NODE, PERIOD_DOUBLING = Bifurcation
+
+
+class Continuation(Parameters):
+    """Settings of the continuation for the whole run."""
+
+    largest_step: Annotated[float, listed("largest_step")]
 
 
 class Branches(Parameters):
@@ -49,14 +72,28 @@ class Ranges(Parameters):
     amplitude_max: BranchEnd
 
 
+def followed(
+    n: int, ratio: float, given: Branches | Ranges, release: Release, continuation: Continuation
+) -> tuple[OrbitSystem, Branch]:
+    """The equations of one contact, and their solutions from the unstable to the stable side.
+
+    Raises
+    ------
+    NoOrbitError, ContinuationError
+        As :func:`~bouncing_ball.orbits.columns.whole_branch`.
+    """
+    model = SpringDamperModel(SpringDamper.from_restitution(given.restitution, ratio, release))
+    found = whole_branch(model, n, given.amplitude_max, continuation.largest_step)
+    return model.system(n), found
+
+
 def _branch(
     ratio: float, parameters: Branches, release: Release, continuation: Continuation
 ) -> xr.Dataset:
     """The branch of one contact; NaN, with the reason, where it cannot be followed."""
-    r, top = parameters.restitution, parameters.amplitude_max
     try:
-        followed = branch_along_amplitude(parameters.n, r, ratio, top, release, continuation)
-        found = branch_columns(*followed, parameters.points)
+        branch = followed(parameters.n, ratio, parameters, release, continuation)
+        found = branch_columns(*branch, parameters.points)
     except (NoOrbitError, ContinuationError) as error:
         found = no_branch(parameters.points, error)
     return found.assign_coords(frequency_ratio=ratio)
@@ -141,17 +178,18 @@ def stability_ranges(
     is NaN where the paper has no entry.
     """
     families, ratios = parameters.n, parameters.frequency_ratio
-    r, top, shape = parameters.restitution, parameters.amplitude_max, (len(ratios), len(families))
+    shape = len(ratios), len(families)
     found, absence = np.full((*shape, 2, len(PLACE)), np.nan), np.full(shape, "", dtype=object)
     for at in np.ndindex(shape):
         n, ratio = families[at[1]], ratios[at[0]]
         try:
-            system, branch = branch_along_amplitude(n, r, ratio, top, release, continuation)
+            system, branch = followed(n, ratio, parameters, release, continuation)
             limits = system.orbit(first_limits(branch))
             found[at] = np.stack([getattr(limits, name) for name in PLACE], axis=-1)
         except (NoOrbitError, ContinuationError) as error:
             absence[at] = str(error)
-    rigid, maps = RestitutionModel(r).saddle_node(np.array(families)), restitution_orbits.ImpactMap
+    r, maps = parameters.restitution, restitution_orbits.ImpactMap
+    rigid = RestitutionModel(r).saddle_node(np.array(families))
     doublings = [restitution_orbits.period_doubling(np.array(families), r, kind) for kind in maps]
     rigid_ranges = np.array([np.stack([rigid.amplitude, each], axis=-1) for each in doublings])
     dims = ("frequency_ratio", "n", "bound")

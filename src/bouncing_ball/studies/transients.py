@@ -1,5 +1,6 @@
 """How long balls wander before they lock, in the restitution model and in contacts."""
 
+from collections.abc import Sequence
 from typing import Annotated
 
 import numpy as np
@@ -9,6 +10,7 @@ from scipy.stats import CensoredData, chi2, ecdf
 from bouncing_ball.attractors.mapper import label
 from bouncing_ball.attractors.motions import Kind
 from bouncing_ball.contacts.spring_damper import Release
+from bouncing_ball.datasets.shards import Arrays, Part
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.parameters import (
@@ -46,6 +48,11 @@ class Transients(Parameters):
     seed: Seed
 
 
+def columns(cases: Sequence[Place]) -> np.ndarray:
+    """The values of cases, shape (values, cases)."""
+    return np.array([[value for _, value in case] for case in cases]).T
+
+
 def mean_life(time: np.ndarray, ends: np.ndarray, confidence: float) -> tuple[float, ...]:
     """Mean life at a constant rate, and its limits, from times until an end or until censoring.
 
@@ -63,23 +70,17 @@ def mean_life(time: np.ndarray, ends: np.ndarray, confidence: float) -> tuple[fl
     return total / count, low, 2 * total / chi2.ppf((1 - confidence) / 2, 2 * count)
 
 
-def transients(parameters: Transients, release: Release) -> xr.Dataset:
-    """The shares of balls that have not yet reached the motion on which they lock.
-
-    ``survival`` (case, life_ratio, life) is the estimate of Kaplan and Meier, over the time in
-    periods of the table. ``mean_life`` (case, life_ratio) and its limits are also in periods; see
-    :func:`mean_life`. A ball that is not found to lock is censored at its last impact, and a ball
-    that ends on an orbit without sticking is left out. The restitution model has ϖ = ∞.
-    ``case_restitution`` and ``case_amplitude`` are over the case.
+def lives(parameters: Transients, release: Release, part: Part = np.asarray) -> Arrays:
+    """Times in periods until balls reach the motion on which they end, or until the last impact,
+    and the kinds of these motions, over (case, life_ratio, ball).
     """
     random, balls = np.random.default_rng(parameters.seed), parameters.balls
     phase, speed = random.uniform(-np.pi, np.pi, balls), random.uniform(1.0, 9.0, balls)
-    r, lam = (np.array([getattr(x, y) for x in parameters.cases]) for y in Place.model_fields)
-    ratios = np.array(parameters.frequency_ratio)
-    table = lam[:, np.newaxis, np.newaxis]
+    phase, speed = part(np.stack([phase, speed]))
+    r, table = columns(parameters.cases)[..., np.newaxis, np.newaxis]
     start = table, phase, table * np.cos(phase) - speed
     times, kinds = [], []
-    simple, _, contact = models(r[:, np.newaxis, np.newaxis], ratios[:, np.newaxis], release)
+    simple, _, contact = models(r, np.array(parameters.frequency_ratio)[:, np.newaxis], release)
     for model in (contact, simple):
         shape = np.broadcast_shapes(model.shape, table.shape, phase.shape)
         passed, at, velocity = path = np.full((3, parameters.impacts, *shape), np.nan)
@@ -89,7 +90,20 @@ def transients(parameters: Transients, release: Release) -> xr.Dataset:
         kinds.append(found.kind)
         last = np.where(found.kind == Kind.LOCKED, (apart < _NEAR).argmax(axis=0), len(at) - 1)
         times.append(np.take_along_axis(passed, last[np.newaxis], axis=0)[0] / (2 * np.pi))
-    time, kind = (np.concatenate(x, axis=1) for x in (times, kinds))
+    return {"life": np.concatenate(times, axis=1), "life_kind": np.concatenate(kinds, axis=1)}
+
+
+def transients(parameters: Transients, found: Arrays) -> xr.Dataset:
+    """The shares of balls that have not yet reached the motion on which they lock, from
+    :func:`lives`.
+
+    ``survival`` (case, life_ratio, life) is the estimate of Kaplan and Meier, over the time in
+    periods of the table. ``mean_life`` (case, life_ratio) and its limits are also in periods; see
+    :func:`mean_life`. A ball that is not found to lock is censored at its last impact, and a ball
+    that ends on an orbit without sticking is left out. The restitution model has ϖ = ∞.
+    ``case_restitution`` and ``case_amplitude`` are over the case.
+    """
+    time, kind, (r, lam) = found["life"], found["life_kind"], columns(parameters.cases)
     end, other = kind == Kind.LOCKED, (kind == Kind.ORBIT) | (kind == Kind.SUBHARMONIC)
     grid, level = np.linspace(0, parameters.impacts, _TIMES), parameters.confidence
     shape = time.shape[:-1]
@@ -106,5 +120,5 @@ def transients(parameters: Transients, release: Release) -> xr.Dataset:
             "case_restitution": ("case", r),
             "case_amplitude": ("case", lam),
         },
-        coords={"life_ratio": [*ratios, np.inf], "life": grid},
+        coords={"life_ratio": [*parameters.frequency_ratio, np.inf], "life": grid},
     )

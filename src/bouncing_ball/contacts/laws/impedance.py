@@ -34,12 +34,11 @@ Source: MuJoCo's documentation, *Solver parameters*, read with the engine itself
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.contact_law import ContactLaw, Unit, check_positive
+from bouncing_ball.contacts.contact_law import OscillatorLaw, Unit, check_positive
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.instant import Instant
 from bouncing_ball.contacts.release import Release
@@ -48,7 +47,7 @@ from bouncing_ball.errors import require
 
 
 @dataclass(frozen=True, repr=False)
-class Impedance(ContactLaw):
+class Impedance(OscillatorLaw):
     """A spring-damper on which only the share 1 - d of the load acts.
 
     Parameters
@@ -76,8 +75,6 @@ class Impedance(ContactLaw):
     array([0.25  , 0.3125, 0.6875, 0.75  ])
     """
 
-    frequency_ratio: float | np.ndarray
-    damping_ratio: float | np.ndarray
     share: float | np.ndarray = 0.95
     at_surface: Any = None
     width: float | np.ndarray = 1.0
@@ -86,8 +83,7 @@ class Impedance(ContactLaw):
 
     name: ClassVar[str] = "impedance"
     formula: ClassVar[str] = "ϖ² p + 2ζϖ p′ and d of the load"
-    root: ClassVar[int] = 1
-    units: ClassVar[dict[str, Unit]] = SpringDamper.units | {"width": Unit("m", 0, 1, 0)}
+    units: ClassVar[dict[str, Unit]] = OscillatorLaw.units | {"width": Unit("m", 0, 1, 0)}
     release = Release.FORCE
     lag: ClassVar[None] = None
     feels_load: ClassVar[bool] = True
@@ -134,24 +130,25 @@ class Impedance(ContactLaw):
         y = end * (end / side) ** (self.power - 1)
         return self.at_surface + (self.share - self.at_surface) * np.where(low, y, 1 - y)
 
-    def _part(self, penetration: np.ndarray) -> np.ndarray:
-        """The ratio s = d/d_max, of the shape of p."""
+    def _part(self, impedance: np.ndarray) -> np.ndarray:
+        """The ratio s = d/d_max for impedances d; 1 if d is constant, even where it is 0."""
         if not self.has_kink:
-            return np.ones_like(penetration)
-        return np.where(self._varies, self.impedance(penetration) / self.share, 1.0)
+            return np.ones_like(impedance)
+        return np.where(self._varies, impedance / self.share, 1.0)
 
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """s (ϖ² s p + 2ζϖ p′), the force over the weight without the part d a due to the load."""
-        s = self._part(penetration)
-        return s * self._spring.force(s * penetration, rate)
+        return self.loaded_force(penetration, rate, 0.0)
 
     def loaded_force(self, penetration: np.ndarray, rate: np.ndarray, load: Any) -> np.ndarray:
         """f + d a, the whole force on the ball with a load a."""
-        return self.force(penetration, rate) + self.impedance(penetration) * load
+        d = self.impedance(penetration)
+        s = self._part(d)
+        return s * self._spring.force(s * penetration, rate) + d * load
 
     def grip(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """s p + κ p′, the grip without load."""
-        return self._part(penetration) * penetration + self._spring.lag * rate
+        return self._part(self.impedance(penetration)) * penetration + self._spring.lag * rate
 
     def loaded_grip(self, penetration: np.ndarray, rate: np.ndarray, load: Any) -> np.ndarray:
         """s p + κ p′ + d_max a/ϖ², the grip with a load a."""
@@ -175,12 +172,6 @@ class Impedance(ContactLaw):
         stiffness, loss = omega * omega, 2 * zeta * omega
         held = np.maximum(stiffness, np.hypot(stiffness - self.share, loss))
         return np.hypot(stiffness - 1, loss) / held
-
-    @classmethod
-    def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
-        """The law with ϖ = v/P, ζ = group and the constant d = 0.95."""
-        ratio = np.asarray(speed, dtype=float) / np.asarray(length, dtype=float)
-        return cls(ratio, group + 0 * ratio)
 
     @classmethod
     def group_of(cls, restitution: float) -> float:

@@ -37,10 +37,12 @@ from bouncing_ball.engines.engine import ERROR, EngineSettings, Physical
 from bouncing_ball.engines.scheme import Scheme, steps_for
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.provenance.origin import CONFIGURATION, gather
 from bouncing_ball.studies.engines import EngineOrbit, model_errors, step_errors, steps_of
 
 ROOT = Path(__file__).parents[2]
-PARAMETERS = read_yaml(ROOT / "config" / "config.yaml")["extensions"]["ext_engines"]
+WRITTEN = read_yaml(ROOT / CONFIGURATION)
+PARAMETERS = WRITTEN["extensions"]["ext_engines"]
 RADIUS = 1.0
 
 
@@ -292,7 +294,9 @@ def record():
     data = xr.merge(parts, join="outer").reindex(engine=list(RUN))
     made = [version(name) if installed(name) else "not installed" for name in RUN]
     data["engine_version"] = ("engine", made)
-    write_dataset(describe(data), ROOT / "results" / "config" / "engines.nc")
+    origin = gather("make test-engines", [], ROOT, WRITTEN)
+    target = ROOT / "results" / "config" / "engines.nc"
+    write_dataset(describe(data).assign_attrs(origin), target)
 
 
 @pytest.mark.engines

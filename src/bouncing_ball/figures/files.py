@@ -36,7 +36,7 @@ def save(figure: Figure, path: str | Path, metadata: Mapping[str, str]) -> None:
     with replacing(path) as temporary, style():
         figure.set_dpi(rcParams["savefig.dpi"])
         if engine := figure.get_layout_engine():
-            # Laid out once for all formats, on the canvas of a PNG, which keeps the extents of texts.
+            # Laid out once for all formats. The canvas of a PNG keeps the extents of the texts.
             FigureCanvasAgg(figure)
             engine.execute(figure)
             figure.set_layout_engine("none")

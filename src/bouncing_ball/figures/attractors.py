@@ -38,6 +38,8 @@ _MEANS = {name: (name, colour, marker) for name, colour, marker in zip(
     ("power", "height", "flights", "exponent"), COLOURS, "osv^", strict=False)}  # fmt: skip
 _HATCHES = {"chaotic": "......", "undecided": "xxxx", "subharmonic": "||||||"}
 _HATCHES |= dict.fromkeys(("permanent contact", "no number"), "------")
+# Signs of the models in the panel of exponents.
+_SIGNS = {"restitution": "o", "corrected": "x", "spring-damper": "+"}
 # Exponents outside of this range are drawn as its ends.
 _LOWEST, _HIGHEST = -1.5, 1.5
 # Colours that become lighter throughout, from blue below 0 to yellow above 0.
@@ -209,7 +211,13 @@ def orbit_diagrams(data: xr.Dataset) -> Figure:
         shown = ["restitution"] if model == "restitution" else ["restitution", "frequency_ratio"]
         axes.set_title(f"{model} model; {parameters(data, *shown)}")
         exponent = one.lyapunov_exponent.values.clip(_LOWEST, _HIGHEST)
-        panels[-1].plot(lam, exponent, label=f"{model} model", **MODELS[model])
+        # A line through the exponents of chaotic and locked motions in turn would hide them.
+        look: Look = MODELS[model] | {
+            "linestyle": "none",
+            "markersize": 2.5,
+            "markeredgewidth": 0.6,
+        }
+        panels[-1].plot(lam, exponent, _SIGNS[model], label=f"{model} model", **look)
     panels[-1].axhline(0, **GUIDE)
     panels[-1].set(xlabel=r"amplitude $\Lambda$", ylabel=r"largest $\lambda$ per $T$")
     legend_below(figure, panels[-1].get_legend_handles_labels()[0], ncols=3)

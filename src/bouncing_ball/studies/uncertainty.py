@@ -13,8 +13,9 @@ def exponent(changes: np.ndarray, size: np.ndarray, confidence: float) -> np.nda
     """α with its lower and upper limit, from independent results that change or do not change.
 
     ``changes`` has a row for each result and a column for each size ε of the change. α is the slope
-    of the least-squares line of the logarithm of the share over ln ε, and its interval is that of a
-    bootstrap. A share of 0 counts as half a change.
+    of the least-squares line of the logarithm of the share over ln ε, weighted with the number of
+    changes, because the variance of the logarithm of a small count is about the inverse of the
+    count. Its interval is that of a bootstrap. A share of 0 counts as half a change.
 
     Examples
     --------
@@ -26,5 +27,5 @@ def exponent(changes: np.ndarray, size: np.ndarray, confidence: float) -> np.nda
     drawn = np.random.default_rng(_SEED).integers(count, size=(_RESAMPLED, count))
     drawn[0] = np.arange(count)
     share = np.maximum(changes[drawn].mean(axis=1), 0.5 / count)
-    slope = np.polyfit(np.log(size), np.log(share).T, 1)[0]
+    slope = np.polyfit(np.log(size), np.log(share).T, 1, w=np.sqrt(share[0]))[0]
     return np.array([slope[0], *np.quantile(slope, [(1 - confidence) / 2, (1 + confidence) / 2])])

@@ -23,7 +23,7 @@ _OTHERS = {
     "subharmonic": "#d9d9d9",
     "permanent contact": "#8c8c8c",
     "chaotic": "#f3d3c1",
-    "undecided": "#ffffff",
+    "undecided": "#b5b5b5",
 }
 # Marks that also distinguish areas in greyscale: dots for motions that do not repeat, crosses for
 # unknown motions, and strokes for other areas whose grey level is that of a period.
@@ -33,6 +33,8 @@ _DOTS: dict[str, Look] = {
     "permanent contact": {"marker": "_", "markersize": 2.5, "markeredgewidth": 0.4},
     "subharmonic": {"marker": "|", "markersize": 2.5, "markeredgewidth": 0.4},
 }
+# Largest number of restitution coefficients at which nodes are marked.
+_MARKED = 43
 _UNKNOWN = {"not at any": "#000000", "undecided": "#ffffff", "no number": "#c8c8c8"}
 _MEANS = {name: (name, colour, marker) for name, colour, marker in zip(
     ("power", "height", "flights", "exponent"), COLOURS, "osv^", strict=False)}  # fmt: skip
@@ -104,7 +106,9 @@ def _draw_exponent(axes: Axes, one: xr.Dataset):
 
 
 def _dot(axes: Axes, one: xr.Dataset, chosen: xr.DataArray, look: Look) -> None:
-    r, lam = np.nonzero(chosen.values)
+    # On a finer grid only some nodes have marks, which would cover the colours.
+    skip = -(-chosen.restitution.size // _MARKED)
+    r, lam = skip * np.array(np.nonzero(chosen.values[::skip, ::skip]))
     place = one.amplitude.values[lam], one.restitution.values[r]
     drawn: Look = {"color": "#000000", "linestyle": "none", "rasterized": True, **look}
     axes.plot(*place, **drawn)

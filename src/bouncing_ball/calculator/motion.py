@@ -83,7 +83,8 @@ def of_family(case: Case, family: Family, tolerance: float) -> Motion:
     if kinds[0] == kinds[1] and kinds[0][1] and kinds[0][0] != Kind.PERMANENT_CONTACT:
         values["greatest"] = {name: _greatest(case, name, start, x) for name, x in found.items()}
     elif Kind.PERMANENT_CONTACT not in (kinds[0][0], kinds[1][0]):
-        values = _compared(case, (exact, simple), start, tolerance)
+        lengths = {name: kind[2] for name, kind in zip(found, kinds, strict=True)}
+        values = _compared(case, lengths, start, tolerance)
     return Motion(*kinds[0], None, *kinds[1], **values)
 
 
@@ -121,19 +122,26 @@ def _greatest(case: Case, name: str, start: _Start, motion: Any) -> float:
 
 
 def _compared(
-    case: Case, names: tuple[str, str], start: _Start, tolerance: float
+    case: Case, lengths: Mapping[str, int], start: _Start, tolerance: float
 ) -> dict[str, Any]:
-    """Means of both models over balls that start alike, in m and W, and their relative errors."""
+    """Means of both models over balls that start alike, in m and W, and their relative errors.
+
+    ``lengths`` is the number of impacts after which each motion repeats, 0 if it does not. Motions
+    that repeat are averaged over whole repetitions: all balls end on the same motion, so that the
+    error of a part of a repetition would not show in their scatter.
+    """
     balls, rounds, impacts, before = _SAMPLES if case.law is None else _SAMPLES_OF_LAW
     table, means = case.table, np.zeros((2, 2, 0))
     velocity = start.velocity * (1 + _BESIDE * np.arange(1, rounds * balls + 1) / balls)
     for one in np.split(velocity, rounds):
         found = []
-        for name in names:
-            run = case.models[name].simulate(table.amplitude, start.phase, one, impacts)
+        for name, length in lengths.items():
+            length = max(length, 1)
+            whole = max((impacts - 1 - before) // length, 1) * length
+            run = case.models[name].simulate(table.amplitude, start.phase, one, before + whole + 1)
             if np.any(run.status != Status.BOUNCING):
                 # Some balls come to rest, so that the means do not exist.
-                return {"mean_height": dict.fromkeys(names), "mean_power": dict.fromkeys(names)}
+                return {"mean_height": dict.fromkeys(lengths), "mean_power": dict.fromkeys(lengths)}
             found.append(height_and_power(run, before))
         means = np.concatenate([means, np.array(found)], axis=-1)
         exact, simple = means
@@ -147,7 +155,7 @@ def _compared(
     for k, (name, unit) in enumerate(zip(("height", "power"), units, strict=True)):
         middle, width = means[:, k].mean(axis=-1) * unit, _half_width(means[:, k]) * unit
         pairs = map(Mean, middle.tolist(), width.tolist())
-        values[f"mean_{name}"] = dict(zip(names, pairs, strict=True))
+        values[f"mean_{name}"] = dict(zip(lengths, pairs, strict=True))
         values["mean_error"][name] = Mean(float(off[k]), float(margin[k]))
     return values
 

@@ -32,7 +32,7 @@ Steps = Annotated[int, number("time steps in a contact, at least 8 to resolve it
 
 
 class EngineOrbit(Parameters):
-    """One of the orbits that were run in the engines, and how it is simulated here with few and with
+    """One of the orbits that were run in the engines, and how it is simulated here in few and in
     many time steps.
     """
 

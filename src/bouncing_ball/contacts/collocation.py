@@ -168,7 +168,12 @@ class _Panel(NamedTuple):
 
 
 def _some(which, *rows: Any) -> Any:
-    """Some of the contacts, from laws and from tuples of arrays; contacts are the last axis."""
+    """Some of the contacts, from laws and from tuples of arrays; contacts are the last axis.
+
+    The indices are in ascending order, so that all of them select the rows themselves.
+    """
+    if which.size == rows[-1][0].shape[-1]:
+        return rows
     return tuple(
         x.take(which) if isinstance(x, ContactLaw) else x._make(y[..., which] for y in x)
         for x in rows
@@ -296,7 +301,7 @@ def _panel(
             falls = _falls(law, m, start, now, until, *state, end @ push)
             near = np.where(falls < 0, -left / falls, np.where(left > 0, np.inf, -step))
             first = near.argmin(axis=0)
-            more, falls = (np.take_along_axis(x, first[np.newaxis], 0)[0] for x in (near, falls))
+            more, falls = (x[first, np.arange(first.size)] for x in (near, falls))
             unit = np.abs(falls) * step if until is None else 1e-4 * now.length / now.speed
             reached = ~last | (np.abs(more * falls) <= _REACHED * unit)
             more = np.where(last, np.maximum(np.minimum(more, step / 2), -step / 2), 0.0)
@@ -307,7 +312,7 @@ def _panel(
         change = np.abs(rate, out=rate).max(axis=0) / now.speed
         if sweep == _EARLY:
             early = change
-        if np.mean(reached & (change <= _SETTLED)) >= _MOST:
+        if np.count_nonzero(reached & (change <= _SETTLED)) >= _MOST * change.size:
             break
     rate = new[:-1]
     # The remainder is corrected to first order.

@@ -4,12 +4,15 @@ All of them derive from :class:`ValueError`, so that callers can catch them with
 """
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
+
+
+_Known = TypeVar("_Known")
 
 
 class ModelError(ValueError):
@@ -93,6 +96,25 @@ def require(valid: "ArrayLike", value: "ArrayLike", name: str, allowed: str) -> 
         valid, value = np.broadcast_arrays(valid, value)
         first = value[~valid][0]
         raise ModelError(f"{name} = {first} is not {allowed}")
+
+
+def one_of(kind: str, name: str, known: Mapping[str, _Known]) -> _Known:
+    """What a name that a user gave stands for.
+
+    Raises
+    ------
+    ModelError
+        If the name is unknown; the error lists the names that are known.
+
+    Examples
+    --------
+    >>> one_of("side", "left", {"stable": 1, "unstable": -1})
+    Traceback (most recent call last):
+    bouncing_ball.errors.ModelError: unknown side 'left': one of stable, unstable
+    """
+    if name not in known:
+        raise ModelError(f"unknown {kind} {name!r}: one of {', '.join(known)}")
+    return known[name]
 
 
 def escaped(text: str) -> str:

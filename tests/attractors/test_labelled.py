@@ -122,6 +122,10 @@ def test_the_command_line_says_the_same(capsys, tmp_path):
     assert [row["amplitude"] for row in rows] == [1.0, 1.25, 1.5, 1.75, 2.0]
     assert all(sum(x["share"] for x in row["motions"]) == pytest.approx(1) for row in rows)
     assert picture.exists()
+    main("motion --law tsuji --set stiffness=900 --set damping=0.4 --amplitude 1 --json".split())
+    answer = json.loads(capsys.readouterr().out)
+    parameters = {"stiffness": 900.0, "damping": 0.4}
+    assert answer["kind"] == bb.motion_of(1.0, law="tsuji", parameters=parameters).kind
     with pytest.raises(SystemExit):
         main("diagram --restitution 0.5 --amplitude 2 1".split())
     assert capsys.readouterr().err.count("\n") == 1

@@ -129,6 +129,7 @@ LOCKED = ("locked", "locked")
         (motion(*LOCKED, greatest={"a": 1.04, "b": 1.0}), True, "is 4 % off, within 5 %"),
         (motion(*LOCKED, greatest={"a": 1.06, "b": 1.0}), False, "is 6 % off, beyond 5 %"),
         (motion("chaotic", "chaotic"), False, "is not known"),
+        (motion("undecided", "permanent contact"), False, "is not known"),
         (means(0.02, 0.005), True, "height is 2 % ± 0.5 % off and the mean power is 1 % ± 0 % off"),
         (means(0.0, 0.02), True, "height is at most 2 % off and the mean power is 1 % ± 0 % off"),
         (means(0.04, 0.02), False, "not decided at 5 %: the mean height is 4 % ± 2 % off"),

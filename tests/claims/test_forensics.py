@@ -56,7 +56,7 @@ def cycle(phase, u, orbit, reference, *, weight, rise):
 @pytest.mark.parametrize(
     ("orbit_at", "monodromy", "weight", "rise"),
     [
-        (WeightlessOrbit.at, WeightlessOrbit.monodromy, 0, True),
+        (WeightlessOrbit.on_branch, WeightlessOrbit.monodromy, 0, True),
         (SpringDamperOrbit.on_branch, high_bounce_monodromy, 1, False),
         (SpringDamperOrbit.on_branch, SpringDamperOrbit.monodromy, 1, True),
     ],

@@ -97,6 +97,7 @@ def test_with_a_table_it_is_a_design(ask):
         (("design", *OTHER), "the mass is missing"),
         ((*BALL, *OTHER), "gamma_n is missing: the parameters of lammps are kn and gamma_n"),
         ((*BALL, *OTHER, "--set", "gamma=2"), "lammps has no 'gamma'"),
+        ((*BALL, *OTHER, "--set", "kn=2"), "argument --set: kn is given twice"),
         ((*BALL, *OTHER, "--set", "gamma_n=x"), "'gamma_n=x' is not NAME=NUMBER"),
         (("design", *OTHER, "--set", "gamma_n=2", "--mass", "0"), "mass = 0.0 is not a positive"),
         ((*STIFF[:1], *STIFF[3:], "--engine", "mujoco", "--mass", "0"), "mass = 0 kg is not a"),

@@ -41,14 +41,6 @@ def test_a_contact_below_the_threshold_is_held_and_above_it_is_not(kind):
     assert abs(next_to) < 2e-3
 
 
-def test_it_tends_to_gravity_for_a_hard_contact():
-    soft, hard = (
-        permanent_contact(law_of_impact(KuwabaraKono, 0.65, duration, 3.8))
-        for duration in (0.4, 0.2)
-    )
-    assert 1 - hard < (1 - soft) / 2
-
-
 def test_a_contact_that_is_weakly_damped_is_refused():
     with pytest.raises(ModelError, match="too weakly damped"):
         permanent_contact(Tsuji(1e9, 1e-3))

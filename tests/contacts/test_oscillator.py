@@ -107,20 +107,3 @@ def test_start_from_rest():
         g, gravity, table = responses(0.0, omega, zeta)
         assert (float(g.value), float(g.rate)) == (0.0, 1.0)
         assert not np.any([*gravity, *table])
-
-
-def test_arrays_and_scalars_agree_and_broadcast():
-    # Some entries are integrals, by nodes as many as the longest needs, and some quotients.
-    s = np.array([[1e-3], [0.5], [4.0]])
-    omega, zeta = np.array([1.0, 2.0, 300.0, 1e4]), np.array([0.0, 0.3, 1.0, 1.5])
-
-    def fields(at):
-        return [*at.impulse, *at.gravity, *at.table]
-
-    many = fields(responses(s, omega, zeta))
-    assert all(field.shape == (3, 4) for field in many)
-    for i in range(3):
-        for j in range(4):
-            one = fields(responses(s[i, 0], omega[j], zeta[j]))
-            for x, y in zip(many, one, strict=True):
-                assert complex(x[i, j]) == pytest.approx(complex(y), rel=20 * EPS, abs=0)

@@ -18,16 +18,6 @@ class Circle:
         return 2 * y[..., np.newaxis, :]
 
 
-class Bounded:
-    """x = p, defined for p ≤ 1 only."""
-
-    def residual(self, y):
-        return np.where(y[..., 1:] > 1, np.nan, y[..., :1] - y[..., 1:])
-
-    def jacobian(self, y):
-        return np.broadcast_to([[1.0, -1.0]], (*y.shape[:-1], 1, 2))
-
-
 def test_converges_to_the_intersection_with_a_plane():
     # The line x = 2p meets the circle at p = 1/√5.
     normal = np.array([1.0, -2.0])
@@ -85,25 +75,6 @@ def test_singular_matrix():
     assert not found.converged
     assert (found.iterations, found.residual, found.step) == (1, 1.0, np.inf)
     assert found.point.tolist() == [0.0, 0.0]
-
-
-def test_leaving_the_domain():
-    guess = np.array([0.5, 2.0])
-    found = newton(Bounded(), guess, plane(np.array([0.0, 1.0]), guess))
-    assert not found.converged
-    assert np.isnan(found.residual)
-    assert found.iterations == 1
-
-
-def test_running_out_of_iterations():
-    # The plane p = 2 misses the circle: no solution at all.
-    guess = np.array([1.0, 2.0])
-    found = newton(
-        Circle(), guess, plane(np.array([0.0, 1.0]), guess), NewtonSettings(max_iterations=5)
-    )
-    assert not found.converged
-    assert found.iterations == 5
-    assert found.step > 1e-3
 
 
 def test_tangent_is_the_unit_null_vector_on_the_given_side():

@@ -3,17 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.continuation.events import Event, fold, locate, parameter_bound
-
-
-class Circle:
-    """The branch x² + p² = 1."""
-
-    def residual(self, y):
-        return np.sum(y * y, axis=-1, keepdims=True) - 1
-
-    def jacobian(self, y):
-        return 2 * y[..., np.newaxis, :]
+from bouncing_ball.continuation.events import Event, locate
 
 
 class Line:
@@ -26,42 +16,11 @@ class Line:
         return np.broadcast_to([[1.0, -1.0]], (*y.shape[:-1], 1, 2))
 
 
-def on_circle(angle):
-    return np.array([np.cos(angle), np.sin(angle)])
-
-
-def test_fold_of_the_circle():
-    # ∂F/∂x = 2x vanishes at (0, 1).
-    event = fold(Circle())
-    assert event.name == "fold" and not event.terminal
-    assert float(event.function(np.array([0.25, 0.0]))) == 0.5
-    found = locate(Circle(), event, on_circle(1.4), on_circle(1.7))
-    # Newton stops at a last step of 1e-12; the point is then exact.
-    assert found.point == pytest.approx(np.array([0.0, 1.0]), abs=1e-14)
-    assert found.residual < 1e-14
-    assert found.name == "fold"
-
-
 def test_location_is_not_limited_by_the_gradients_differences():
     # sin(20 x) = 0.5 at x = π/120; third derivatives of 8000 spoil ∇g.
     event = Event("level", lambda y: np.sin(20 * y[..., 0]) - 0.5)
     found = locate(Line(), event, np.array([0.0, 0.0]), np.array([0.05, 0.05]))
     assert found.point == pytest.approx(np.full(2, np.pi / 120), abs=1e-15)
-
-
-@pytest.mark.parametrize(("upper", "inside"), [(True, 1.0), (False, 3.0)])
-def test_parameter_bound_is_positive_inside(upper, inside):
-    event = parameter_bound(2.0, upper, "left the window")
-    assert event.terminal and event.reason == "left the window"
-    assert float(event.function(np.array([7.0, inside]))) == 1.0
-    assert float(event.function(np.array([7.0, 4.0 - inside]))) == -1.0
-
-
-def test_event_exactly_on_the_left_point():
-    event = Event("zero", lambda y: y[..., 1])
-    found = locate(Circle(), event, np.array([1.0, 0.0]), on_circle(-0.1))
-    assert found.point.tolist() == [1.0, 0.0]
-    assert found.residual == 0.0
 
 
 def test_the_zero_inside_the_bracket_is_found():

@@ -13,13 +13,17 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from bouncing_ball.contacts.collocation import contacts, path
-from bouncing_ball.contacts.contact_law import ContactLaw, slopes_of
+from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley, LinearHuntCrossley
 from bouncing_ball.contacts.laws.impedance import Impedance
 from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.contacts.laws.tsuji import Tsuji
-from bouncing_ball.contacts.permanent_contact import permanent_contact, permanent_contact_threshold
+from bouncing_ball.contacts.permanent_contact import (
+    known_threshold,
+    permanent_contact,
+    permanent_contact_threshold,
+)
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.signature import Signature, free_impact
 from bouncing_ball.contacts.spring_damper import SpringDamper
@@ -188,18 +192,6 @@ def test_the_force_does_the_work_and_the_release_is_the_first(law):
 
 
 @every_law
-def test_slopes_are_the_derivatives(law):
-    p, u = np.array([0.01, 0.3]), np.array([2.0, -0.5])
-    steps, weights = 1e-3 * np.array([[-2.0], [-1.0], [1.0], [2.0]]), np.array([1, -8, 8, -1]) / 12
-    for function in (law.force, law.grip):
-        exact = slopes_of(function, p, u)
-        by_depth = weights @ function(p * (1 + steps), u) / (1e-3 * p)
-        np.testing.assert_allclose(exact.by_penetration, by_depth, rtol=1e-9, atol=1e-9)
-        by_rate = weights @ function(p, u + steps) / 1e-3
-        np.testing.assert_allclose(exact.by_rate, by_rate, rtol=1e-9, atol=1e-9)
-
-
-@every_law
 def test_the_delay_and_the_load_are_those_of_the_continued_flights(law):
     # Contacts under small loads ±a, the parabolas before and after continued to where they meet.
     a, v, speeds, delays = 1e-3, 3.0, [], []
@@ -307,7 +299,9 @@ hertz = pytest.mark.parametrize("law", HERTZ, ids=[law.name for law in HERTZ])
 @hertz
 def test_a_ball_on_a_table_at_rest_comes_to_rest(law, few_panels):
     sequence = simulate(law, 0.0, 0.0, -2.0, 200)
-    assert sequence.status == Status.UNDECIDED
+    # The threshold of the first law is not known, because it is too weakly damped.
+    known = np.isfinite(known_threshold(law))
+    assert sequence.status == (Status.PERMANENT_CONTACT if known else Status.UNDECIDED)
     speed = -sequence.relative_velocity[np.isfinite(sequence.time)]
     assert np.all(np.diff(speed) < 0)
 

@@ -11,7 +11,7 @@ def other(record, texts):
     """
     table = record["table1"].assign(printed=record["table1"].printed * np.nan)
     changed = {"table1": table.assign_attrs(restitution=0.8)}
-    changed["ext_rattling"] = record["ext_rattling"].assign_attrs(release="force")
+    changed["ext_flights"] = record["ext_flights"].assign_attrs(release="force")
     return texts(record | changed)
 
 
@@ -38,7 +38,7 @@ def test_its_claims_are_not_asked(other):
     assert "Claims: Table 1" not in other["supplement"]
 
 
-def test_rattling_under_the_other_release(other, accepted):
+def test_the_cascade_under_the_other_release(other, accepted):
     """The limit at Λ_SD is stated for the paper's release only."""
     for words in (
         "Permanent contact therefore continues into a stable orbit",

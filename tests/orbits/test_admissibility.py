@@ -10,8 +10,8 @@ from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import RestitutionOrbit
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_limits import Side, orbit_at
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
-from bouncing_ball.orbits.spring_damper_system import SpringDamperSystem
 
 SHARES = np.linspace(0, 1, 2001)[1:-1, np.newaxis]
 
@@ -62,7 +62,7 @@ def test_random_orbits_against_samples(release):
 @pytest.mark.parametrize(("omega", "r_zeta", "release"), [(10.0, 0.05, r) for r in Release])
 def test_grazing_is_located(omega, r_zeta, release):
     # On the unstable side the table rises into the flight from Λ ≈ 2.1 on.
-    system = SpringDamperSystem(1, SpringDamper(omega, r_zeta, release))
+    system = SpringDamperModel(SpringDamper(omega, r_zeta, release)).system(1)
     lam = np.linspace(1.9, 2.4, 6)
     orbit = orbit_at(SpringDamper(omega, r_zeta, release), 1, lam, Side.UNSTABLE)
     y = np.stack([orbit.phase, orbit.impact_velocity, omega * orbit.contact_duration, lam], axis=-1)

@@ -106,16 +106,6 @@ def test_a_law_by_its_restitution_and_duration(kind):
         assert float(impact.duration) == pytest.approx(duration, rel=1e-13)
 
 
-def test_an_orbit_is_not_invented():
-    model = LawModel(HuntCrossley(2e3, 0.08))
-    with pytest.raises(NoOrbitError, match="below the saddle-node at Λ = "):
-        model.require_orbit(1, 0.1)
-    assert np.isnan(model.orbit(1, 0.1).phase)
-    orbits = model.orbit([1, 2], [[0.1], [2.0]])
-    assert orbits.shape == (2, 2)
-    assert orbits.exists.tolist() == [[False, False], [True, True]]
-
-
 def test_what_is_refused():
     with pytest.raises(ModelError, match=r"unknown contact law 'rubber': one of hunt-crossley"):
         law_named("rubber")
@@ -124,8 +114,6 @@ def test_what_is_refused():
             law_of_impact(HuntCrossley, r, duration, speed)
     with pytest.raises(ModelError, match="hardly leaves"):
         law_of_impact(HuntCrossley, 1e-6, 0.1, 1.0)
-    with pytest.raises(ModelError, match="no closed form"):
-        LawModel(Tsuji(1e3, 0.3)).nearest(None)
 
 
 def test_far_above_the_fold_orbits_are_walked_to_or_said_not_to_be_found(monkeypatch):

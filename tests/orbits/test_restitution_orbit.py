@@ -110,13 +110,6 @@ def test_no_branch_below_the_saddle_node(refusal):
         branch(2, 0.85, 0.5, 7)
 
 
-@pytest.mark.parametrize("n", [0, -1, 1.5, np.nan, np.inf, [1, 0]])
-def test_family_outside_its_range(n, refusal):
-    # Of several the first bad one is named.
-    with refusal(ModelError, f"n = {np.ravel(n)[-1]}", "positive integer"):
-        saddle_node(n, 0.85)
-
-
 @pytest.mark.parametrize("r", [0.0, 1.01, np.nan])
 def test_restitution_outside_its_range(r, refusal):
     for call in (

@@ -10,8 +10,8 @@ from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.errors import ModelError
 from bouncing_ball.orbits.spring_damper_branch import branch_point, nearest_excess
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
-from bouncing_ball.orbits.spring_damper_system import SpringDamperSystem
 
 EPS = np.finfo(float).eps
 
@@ -40,7 +40,7 @@ def test_every_point_satisfies_the_papers_equations(log_omega, zeta, n, release,
     # end (where the three equations become dependent).
     excess = share * start if share < 0 else min(share, 0.95 * (omega_d * 2 * np.pi * n - start))
     point = branch_point(excess, contact, n)
-    system = SpringDamperSystem(n, contact)
+    system = SpringDamperModel(contact).system(n)
     # A 3 × 3 solve: its condition costs about two digits.
     assert np.all(np.abs(scaled_residual(system, point, contact)) < 1e-13)
 

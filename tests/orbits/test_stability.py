@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bouncing_ball.orbits.stability import Bifurcation, is_stable, multipliers
+from bouncing_ball.orbits.stability import is_stable, multipliers
 
 EPS = np.finfo(float).eps
 # Rounded, to keep subnormal numbers away.
@@ -34,17 +34,6 @@ def test_stable_means_inside_the_unit_circle(trace, det):
     largest = np.abs(roots).max() if len(roots) else 0.0
     if abs(largest - 1) > 1e-7:  # a double root is that uncertain
         assert bool(is_stable(trace, det)) == (largest < 1)
-
-
-@pytest.mark.parametrize("other", [0.3, -0.7, 1e-9])
-def test_functions_vanish_at_their_multiplier(other):
-    # Multipliers +1 and m: tr = 1 + m, det = m. Multipliers -1 and m likewise.
-    saddle_node, period_doubling = Bifurcation
-    assert abs(float(saddle_node.test(1 + other, other))) <= 2 * EPS
-    assert abs(float(period_doubling.test(-1 + other, -other))) <= 2 * EPS
-    # Inside both are positive.
-    assert float(saddle_node.test(0.5 + other, 0.5 * other)) > 0
-    assert float(period_doubling.test(-0.5 + other, -0.5 * other)) > 0
 
 
 def test_small_multiplier_keeps_its_digits():

@@ -223,6 +223,9 @@ def cloned(shared, warm, coarse) -> Tree:
             fewer = re.sub(rf"\b({key}: )\d+", rf"\g<1>{number}", text[start:end])
             text = text[:start] + fewer + text[end:]
         config.write_text(text, encoding="utf-8")
+        # Who looks at pictures looks at those of `make`.
+        settings = "src/bouncing_ball/figures/matplotlibrc"
+        tree.rewrite(settings, "savefig.dpi: 300", "savefig.dpi: 50")
         tree.git("init", "--quiet")
         tree.commit("All")
         # Once, and not by every process of every copy.

@@ -20,7 +20,7 @@ def test_a_commit_runs_nothing_again_and_a_change_what_it_decides(complete):
     (complete.path / "results/figures/formulas.nc").unlink()
     assert complete.planned() == {
         *("fig12", "Drawing fig12"),
-        "Drawing ext_rattling",
+        "Drawing ext_flights",
         *("forensics", "Setting forensics"),
         # The branches of the figures are of one study with the table.
         *("table1", "Setting table1"),

@@ -25,7 +25,7 @@ IMPORTED = (
     *("xarray.backends.netCDF4_", "pandas", "netCDF4", "pydantic", "jinja2"),
     *("scipy.optimize.elementwise", "scipy.integrate", "scipy.interpolate", "scipy.special"),
     *("matplotlib.pyplot", "matplotlib.backends.backend_agg", "matplotlib.backends.backend_svg"),
-    *("PIL.Image", "PIL.PngImagePlugin"),
+    *("PIL.Image", "PIL.PngImagePlugin", "scipy.stats", "pint"),
 )
 PYTHON = """#!{python} -IS
 import json, os, socket, sys

@@ -10,13 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.accuracy.quantities import OF_IMPACTS, OF_ORBITS, values
-from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.orbits import corrected_branch
 from bouncing_ball.orbits.corrected_model import CorrectedModel
-from bouncing_ball.orbits.corrected_orbit import CorrectedOrbit
 from bouncing_ball.orbits.model import ImpactModel
-from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
@@ -132,8 +128,7 @@ def orbit_errors(orbit: SpringDamperOrbit) -> np.ndarray:
     """Errors of the four quantities of exact orbits, shape (model, quantity, ...); NaN where there
     is no orbit.
 
-    They equal :func:`errors` at the Λ of the orbits. The corrected orbit is found without a search,
-    because the signature of a linear contact is the same at every speed.
+    They equal :func:`errors` at the Λ of the orbits.
 
     Examples
     --------
@@ -142,13 +137,6 @@ def orbit_errors(orbit: SpringDamperOrbit) -> np.ndarray:
     >>> orbit_errors(orbit_at(SpringDamper(100.0, 0.1), 1, 1.0)).round(4)[:, 0].tolist()
     [-0.0083, -0.0]
     """
-    n, lam, signature = orbit.n, orbit.amplitude, Signature(orbit.law)
-    psi = corrected_branch.instant_phase(n, signature(), lam)
-    # A simple model has no orbit below its saddle-node, or where the exact orbit is missing.
-    simple: tuple[Orbit, Orbit] = (
-        RestitutionModel(orbit.law.restitution).orbit(n, lam),
-        CorrectedOrbit.at(n, signature, lam, psi),
-    )
-    return np.stack(
-        [[relative(getattr(orbit, q), getattr(model, q)) for q in OF_ORBITS] for model in simple]
-    )
+    exact = [getattr(orbit, quantity) for quantity in OF_ORBITS]
+    simple = (values(x, orbit.n, orbit.amplitude, OF_ORBITS) for x in models(orbit.law)[1:])
+    return np.stack([[*map(relative, exact, each)] for each in simple])

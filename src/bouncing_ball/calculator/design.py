@@ -29,7 +29,7 @@ from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.engines import engine_named
 from bouncing_ball.engines.engine import ERROR, Physical
-from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError, require
+from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError, one_of, require
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.signatures import Range
 
@@ -188,8 +188,7 @@ def design(
     question = given | {"n": n, "release": release, "quantity": quantity, "engine": engine}
     question["law"], kind = law, _of_law(law, engine, said["release"], given)
     rule = _under(engine, said["release"], given)
-    if quantity not in QUANTITIES:
-        raise ModelError(f"unknown quantity {quantity!r}: one of {', '.join(QUANTITIES)}")
+    one_of("quantity", quantity, {str(each): each for each in QUANTITIES})
     if n is not None and (n != int(n) or n < 1):
         raise ModelError(f"index of the family n = {n} is not a positive integer")
     known, remarks = given.keys(), source.remarks() if source else ()

@@ -74,8 +74,10 @@ def judged_by_motion(motion: Motion, tolerance: float, n: int) -> Verdict:
     if kinds == (Kind.PERMANENT_CONTACT,) * 2:
         sentence = "The restitution model is good enough: the ball rests in both models."
         return Verdict(True, sentence, about)
-    # Locked and chaotic motions may be alike in the mean, but other kinds that differ are not.
-    if len({*kinds}) > 1 and {*kinds} & {Kind.PERMANENT_CONTACT, Kind.ORBIT, Kind.SUBHARMONIC}:
+    # Locked and chaotic motions may be alike in the mean, but other kinds that differ are not. An
+    # undecided motion may be of any kind.
+    different = len({*kinds}) > 1 and Kind.UNDECIDED not in kinds
+    if different and {*kinds} & {Kind.PERMANENT_CONTACT, Kind.ORBIT, Kind.SUBHARMONIC}:
         sentence = f"its motion is {_named(kinds[1])}, and the contact's is {_named(kinds[0])}"
         return Verdict(False, f"The restitution model is not good enough: {sentence}.", about)
     if motion.greatest is not None:

@@ -185,7 +185,7 @@ def _law(given: Mapping[str, Any], law_at: LawAt | None) -> ContactLaw:
 
 
 def _law_of_parameters(kind: type[ContactLaw], given: Mapping[str, Any]) -> ContactLaw:
-    named = {name.replace("-", "_"): value for name, value in dict(given["parameters"]).items()}
+    named = {name.replace("-", "_"): value for name, value in given["parameters"].items()}
     known = kind.parameter_names()
     for name in named:
         all_of = f"its parameters are {', '.join(known)}"

@@ -6,9 +6,11 @@ linearised flight neglects the displacement of the table, as Holmes' map does.
 """
 
 from collections.abc import Callable
+from typing import Self
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from bouncing_ball.claims import as_printed
 from bouncing_ball.contacts.damping import damping_ratio
@@ -32,7 +34,7 @@ class WeightlessOrbit(SpringDamperOrbit):
     """n-T orbits with gravity in flight, but not in contact."""
 
     @classmethod
-    def at(cls, excess: np.ndarray, contact: SpringDamper, n: np.ndarray) -> "WeightlessOrbit":
+    def on_branch(cls, excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> Self:
         """The orbits with excess angles ε of the contact.
 
         At a fixed duration Eqs. 23-25 are linear in u = δ′ at the start, Λ cos φ and Λ sin φ.
@@ -139,7 +141,7 @@ def readings() -> dict[str, np.ndarray]:
         "damping as printed": of_model(PRINTED_DAMPING),
         "damping to first order": of_model(-np.log(RESTITUTION) / np.pi),
         "force release": of_model(release=Release.FORCE),
-        "no gravity in contact": altered(WeightlessOrbit.at, WeightlessOrbit.monodromy),
+        "no gravity in contact": altered(WeightlessOrbit.on_branch, WeightlessOrbit.monodromy),
         "high-bounce stability": altered(SpringDamperOrbit.on_branch, high_bounce_monodromy),
         "all rows from Eqs. 7-8": np.stack(ends, axis=-1),
     }

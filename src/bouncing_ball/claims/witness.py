@@ -18,7 +18,6 @@ from bouncing_ball.continuation.events import vanishing
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.errors import ModelError
 from bouncing_ball.motion.angles import reduce_angle
-from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
@@ -53,7 +52,7 @@ class Shown(NamedTuple):
     ``admissible`` tells for each orbit whether it is admissible according to the dataset.
     """
 
-    model: ImpactModel
+    model: RestitutionModel | SpringDamperModel
     orbit: Any
     bifurcation: Bifurcation | None = None
     admissible: Any = None

@@ -3,7 +3,6 @@
 import json
 import sys
 from collections.abc import Callable
-from dataclasses import asdict
 from importlib import import_module
 from typing import Any
 
@@ -25,11 +24,6 @@ def _module(command: str) -> Any:
 
 def _call(command: str) -> Callable[..., Any]:
     return getattr(_module(command), command.replace("-", "_"))
-
-
-def _document(answer: Any) -> dict[str, Any]:
-    """The answer as a mapping for JSON, for modules that define no ``document`` themselves."""
-    return answer if isinstance(answer, dict) else asdict(answer)
 
 
 def parser(arguments: list[str]) -> Parser:
@@ -71,7 +65,7 @@ def main(arguments: list[str] | None = None) -> None:
         with np.errstate(all="ignore"):
             answer, module = call(*places, **given), _module(command)
             if as_json:
-                found = getattr(module, "document", _document)(answer)
+                found = module.document(answer) if hasattr(module, "document") else answer
                 text = json.dumps(found, allow_nan=False)
             else:
                 text = "\n".join(module.lines(answer))

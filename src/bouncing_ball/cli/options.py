@@ -88,6 +88,16 @@ def _assignment(text: str) -> tuple[str, float]:
     return name, number
 
 
+class _Assignments(argparse.Action):
+    """Collects assignments to different names in a dictionary."""
+
+    def __call__(self, parser: Any, namespace: Any, values: Any, option_string: Any = None) -> None:
+        found = getattr(namespace, self.dest) or {}
+        if values[0] in found:
+            parser.error(f"argument {option_string}: {values[0]} is given twice")
+        setattr(namespace, self.dest, found | {values[0]: values[1]})
+
+
 def _within(allowed: Range) -> Callable[[str], Any]:
     """A parser of numbers in a range, for the argument ``type`` of an option."""
 
@@ -116,7 +126,7 @@ def _reading(annotation: Any) -> dict[str, Any]:
         case builtins.bool:
             return {"action": "store_true"}
         case collections.abc.Mapping:
-            return {"type": _assignment, "action": "append", "metavar": "NAME=NUMBER"}
+            return {"type": _assignment, "action": _Assignments, "metavar": "NAME=NUMBER"}
         case pathlib.Path:
             return {"type": pathlib.Path, "metavar": "FILE"}
     # A text, or a quantity with a unit, which the call converts.

@@ -209,3 +209,30 @@ def check_damping(value: ArrayLike, name: str) -> None:
     """
     x = np.asarray(value, dtype=float)
     require(np.isfinite(x) & (x >= 0), x, name, "a finite number ≥ 0")
+
+
+@dataclass(frozen=True, repr=False)
+class OscillatorLaw(ContactLaw):
+    """A law with the parameters of a damped oscillator, ϖ > 0 and ζ ≥ 0.
+
+    Raises
+    ------
+    ModelError
+        If ϖ or ζ is outside its range.
+    """
+
+    frequency_ratio: float | np.ndarray
+    damping_ratio: float | np.ndarray
+
+    root: ClassVar[int] = 1
+    units: ClassVar[dict[str, Unit]] = {"frequency_ratio": Unit("rad/s", 0, 0, -1)}
+
+    def __post_init__(self):
+        check_positive(self.frequency_ratio, "frequency ratio ϖ")
+        check_damping(self.damping_ratio, "damping ratio ζ")
+
+    @classmethod
+    def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
+        """The law with ϖ = v/P and ζ = group, and the defaults of all other parameters."""
+        ratio = np.asarray(speed, dtype=float) / np.asarray(length, dtype=float)
+        return cls(ratio, group + 0 * ratio)

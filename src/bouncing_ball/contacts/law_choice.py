@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.laws import LAWS
 from bouncing_ball.contacts.signature import free_impact
-from bouncing_ball.errors import ModelError, require
+from bouncing_ball.errors import ModelError, one_of, require
 
 Law = TypeVar("Law", bound=ContactLaw)
 
@@ -36,9 +36,7 @@ def law_named(name: str) -> type[ContactLaw]:
     >>> law_named("tsuji").__name__
     'Tsuji'
     """
-    if name not in LAWS:
-        raise ModelError(f"unknown contact law {name!r}: one of {', '.join(LAWS)}")
-    return LAWS[name]
+    return one_of("contact law", name, LAWS)
 
 
 def _free(kind: type[ContactLaw], group: float):

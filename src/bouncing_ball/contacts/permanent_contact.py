@@ -33,6 +33,7 @@ p = p′ = 0, before the grip vanishes; the lower of the two thresholds is the r
 All quantities are dimensionless.
 """
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -255,3 +256,19 @@ def permanent_contact(law: ContactLaw) -> float:
         f"no threshold of permanent contact was found for {law.label}, because it is too weakly "
         "damped"
     )
+
+
+@lru_cache(maxsize=1024)
+def known_threshold(law: ContactLaw) -> float:
+    """The result of :func:`permanent_contact`, or NaN where no threshold was found.
+
+    Examples
+    --------
+    >>> from bouncing_ball.contacts.laws.tsuji import Tsuji
+    >>> known_threshold(Tsuji(1e9, 1e-3))
+    nan
+    """
+    try:
+        return permanent_contact(law)
+    except ModelError:
+        return np.nan

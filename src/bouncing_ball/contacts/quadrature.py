@@ -25,10 +25,9 @@ class Scheme(NamedTuple):
     ``node`` is x, ``share`` and ``rest`` are S and 1 - S at the nodes, ``rate`` and ``path`` the
     matrices U and P above. Over the entire contact ``gain @ B`` is the change of p′, and
     ``D lift @ B`` is added to p. ``spectrum`` turns B into its Legendre coefficients, and ``early``
-    marks x ≤ 1/2; ``root`` is m.
+    marks x ≤ 1/2.
     """
 
-    root: int
     node: np.ndarray
     share: np.ndarray
     rest: np.ndarray
@@ -102,4 +101,4 @@ def scheme(count: int, root: int) -> Scheme:
     gain = w * share_rate(x, root)
     rest = s[::-1]
     lift = gain * rest
-    return Scheme(root, x, s, rest, rate, path, gain, lift, spectrum, np.arange(count) < half)
+    return Scheme(x, s, rest, rate, path, gain, lift, spectrum, np.arange(count) < half)

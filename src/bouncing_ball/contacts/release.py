@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.elementary import arctangent
-from bouncing_ball.errors import ModelError
+from bouncing_ball.errors import one_of
 
 
 class Release(StrEnum):
@@ -37,11 +37,7 @@ class Release(StrEnum):
         >>> Release.of("force")
         <Release.FORCE: 'force'>
         """
-        try:
-            return cls(rule)
-        except ValueError:
-            allowed = ", ".join(cls)
-            raise ModelError(f"unknown release {rule!r}: one of {allowed}") from None
+        return one_of("release", rule, {str(each): each for each in cls})
 
     def sine(self, damping_ratio: ArrayLike) -> np.ndarray:
         """``sin α = κϖ/2``: 0 for the displacement release, ζ for the force release.

@@ -20,12 +20,12 @@ All quantities are dimensionless: time Ωt, length Ω²y/g.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple, Self
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.contact_law import ContactLaw, Unit, check_damping, check_positive
+from bouncing_ball.contacts.contact_law import OscillatorLaw
 from bouncing_ball.contacts.damping import damping_ratio, restitution_coefficient
 from bouncing_ball.contacts.instant import Instant
 from bouncing_ball.contacts.oscillator import responses
@@ -50,7 +50,7 @@ class ContactFlow(NamedTuple):
 
 
 @dataclass(frozen=True, repr=False)
-class SpringDamper(ContactLaw):
+class SpringDamper(OscillatorLaw):
     """The paper's contact: ϖ, ζ and the rule that ends it, with f = ϖ² p + 2ζϖ p′ (Eq. 11).
 
     It is the only contact law whose motion is computed in closed form.
@@ -74,30 +74,19 @@ class SpringDamper(ContactLaw):
     (<Release.FORCE: 'force'>, 10.0)
     """
 
-    frequency_ratio: float | np.ndarray
-    damping_ratio: float | np.ndarray
     release: Release = Release.DISPLACEMENT
 
     name: ClassVar[str] = "linear"
     formula: ClassVar[str] = "W² p + 2 Z W p′"
-    root: ClassVar[int] = 1
-    units: ClassVar[dict[str, Unit]] = {"frequency_ratio": Unit("rad/s", 0, 0, -1)}
 
     def __post_init__(self):
-        check_positive(self.frequency_ratio, "frequency ratio ϖ")
-        check_damping(self.damping_ratio, "damping ratio ζ")
+        super().__post_init__()
         object.__setattr__(self, "release", Release.of(self.release))
 
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """The force over the weight, ϖ² p + 2ζϖ p′."""
         omega = self.frequency_ratio
         return omega * (omega * penetration + 2 * self.damping_ratio * rate)
-
-    @classmethod
-    def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
-        """The contact with ϖ = v/P and ζ = group."""
-        omega = np.asarray(speed, dtype=float) / np.asarray(length, dtype=float)
-        return cls(omega, np.asarray(group, dtype=float) + 0 * omega)
 
     @classmethod
     def group_of(cls, restitution: float) -> float:

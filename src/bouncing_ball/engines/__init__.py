@@ -10,7 +10,7 @@ from bouncing_ball.engines.lammps import Lammps, Liggghts
 from bouncing_ball.engines.mercurydpm import MercuryDPM
 from bouncing_ball.engines.mujoco import MuJoCo
 from bouncing_ball.engines.pybullet import PyBullet
-from bouncing_ball.errors import ModelError
+from bouncing_ball.errors import one_of
 
 _ALL = (Generic(), MuJoCo(), Lammps(), Liggghts(), PyBullet(), Drake(), MercuryDPM())
 
@@ -31,6 +31,4 @@ def engine_named(name: str) -> Engine:
     >>> engine_named("mujoco").releases
     (<Release.FORCE: 'force'>,)
     """
-    if name not in ENGINES:
-        raise ModelError(f"unknown engine {name!r}: one of {', '.join(ENGINES)}")
-    return ENGINES[name]
+    return one_of("engine", name, ENGINES)

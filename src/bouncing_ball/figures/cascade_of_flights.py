@@ -13,7 +13,7 @@ _RATIO = r"frequency ratio $\varpi$"
 
 
 def cascade_of_flights(data: xr.Dataset) -> Figure:
-    """ext_rattling: E of the openings over ϖ for the first r, and their limits for all r."""
+    """ext_flights: E of the openings over ϖ for the first r, and their limits for all r."""
     figure, (left, right) = canvas(WIDE, 3.2, columns=2)
     shown, ratio = data.isel(restitution=0), data.frequency_ratio.values
     excess = ratio**2 * (shown.opening_amplitude - shown.threshold_amplitude)

@@ -7,7 +7,10 @@ where the force vanishes, a contact may also start at δ < 0, see
 The motion in contact is computed by :func:`bouncing_ball.contacts.collocation.march`. For an
 underdamped spring-damper it has a closed form (:mod:`bouncing_ball.motion.linear_contact`),
 except at the undamped resonance. With the closed form the release is proved to be the first,
-and contacts that never end are recognised. Landings are proved to be the first for every law.
+and a contact that never ends is proved to be permanent. With any other law a contact without a
+release in hundreds of oscillations is permanent if Λ is below the law's threshold of permanent
+contact, which is no proof, and undecided above it. Landings are proved to be the first for every
+law.
 """
 
 from dataclasses import dataclass
@@ -17,6 +20,7 @@ import numpy as np
 
 from bouncing_ball.contacts.collocation import MOST_PANELS, Start, march
 from bouncing_ball.contacts.elementary import exponential
+from bouncing_ball.contacts.permanent_contact import known_threshold
 from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.motion.angles import reduce_angle, sine_and_versine, table
 from bouncing_ball.motion.dynamics import Departure, Dynamics, Impact
@@ -38,7 +42,8 @@ class ContactDynamics(Dynamics):
     block: ClassVar[int] = 1 << 16
 
     def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
-        """The end of each contact; the status is undecided where no end was found.
+        """The end of each contact. Where no end was found, the contact is permanent if Λ is at most
+        the law's threshold of permanent contact, and the status is undecided above it.
 
         If the force depends on the load and the load pulls, a slow ball meets no force at p = 0.
         Its contact then has the duration 0, and the ball continues its flight below p = 0.
@@ -61,6 +66,9 @@ class ContactDynamics(Dynamics):
         phase, lost = impact.phase + end.duration, np.isnan(end.duration)
         state = -end.penetration, rate, *table(phase, self.amplitude)
         status = np.where(lost, Status.UNDECIDED, Status.BOUNCING)
+        for k in np.flatnonzero(lost):
+            if start.amplitude[k] <= known_threshold(self.law.take(k)):
+                status[k] = Status.PERMANENT_CONTACT
         duration = np.where(lost, np.inf, end.duration)
         flight = Flight(*state, self.amplitude)
         return Departure(phase, duration, flight, status, by=end.jacobian)

@@ -23,9 +23,10 @@ class Status(IntEnum):
     BOUNCING = 0
     """More impacts follow."""
     PERMANENT_CONTACT = 1
-    """The last contact never ends."""
+    """The last contact never ends. This is proved for the linear contact only, see
+    :mod:`bouncing_ball.motion.contact`."""
     UNDECIDED = 2
-    """The last contact lasts for hundreds of oscillations, without proof that it never ends."""
+    """The last contact lasts for hundreds of oscillations at a Λ at which none is permanent."""
 
 
 class Cycle(NamedTuple):

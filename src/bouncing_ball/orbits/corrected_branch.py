@@ -140,22 +140,3 @@ def period_doubling(n: ArrayLike, instant: Instant) -> tuple[np.ndarray, np.ndar
     stable_side = ((1 + r) * y + load * x > 0) & (lever > 0)
     amplitude = np.where(stable_side, np.hypot(x, y), np.nan)
     return amplitude, np.where(stable_side, np.arctan2(y, x), np.nan)
-
-
-def nearest(
-    n: ArrayLike, instant: Instant, amplitude: ArrayLike, phase: ArrayLike
-) -> tuple[np.ndarray, np.ndarray]:
-    """Λ and ψ of the point of the line that is nearest to (Λ cos ψ, Λ sin ψ).
-
-    Examples
-    --------
-    >>> amplitude, phase = nearest(1, Instant(0.0, 1.0, 0.0, 0.0), 2.0, np.pi / 6)
-    >>> round(float(amplitude), 12), float(phase) == np.pi / 2
-    (1.0, True)
-    """
-    side, radius, _ = _level(n, instant)
-    x, y = np.asarray(amplitude) * np.cos(phase), np.asarray(amplitude) * np.sin(phase)
-    a, b = (1 + np.asarray(instant.restitution)) / radius, -np.asarray(instant.load) / radius
-    off = a * x + b * y - side / radius
-    x, y = x - off * a, y - off * b
-    return np.hypot(x, y), np.arctan2(y, x)

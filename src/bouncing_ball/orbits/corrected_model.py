@@ -13,7 +13,7 @@ from bouncing_ball.contacts.signature import Instant, Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits import corrected_branch as formulas
 from bouncing_ball.orbits.corrected_orbit import CorrectedOrbit
-from bouncing_ball.orbits.model import ImpactModel, Route
+from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.orbit import Orbit, check_index
 from bouncing_ball.orbits.stability import Side
 
@@ -58,7 +58,7 @@ class CorrectedModel(ImpactModel):
 class ConstantCorrectedModel(CorrectedModel):
     """The corrected model with a signature that does not depend on the speed, in closed form."""
 
-    routes: ClassVar[frozenset[Route]] = frozenset(Route)
+    has_closed_form: ClassVar[bool] = True
 
     @property
     def _instant(self) -> Instant:
@@ -81,8 +81,3 @@ class ConstantCorrectedModel(CorrectedModel):
         """The orbits at the period doubling; NaN where there is no period doubling."""
         check_index(n)
         return CorrectedOrbit.at(n, self.law, *formulas.period_doubling(n, self._instant))
-
-    def nearest(self, orbit: CorrectedOrbit) -> CorrectedOrbit:
-        """The nearest points of the branch, a straight line in the plane (Λ cos ψ, Λ sin ψ)."""
-        found = formulas.nearest(orbit.n, orbit.instant, orbit.amplitude, orbit.hit.phase)
-        return CorrectedOrbit.at(orbit.n, orbit.law, *found)

@@ -33,7 +33,7 @@ from bouncing_ball.motion.simulation import next_impact, simulate
 from bouncing_ball.orbits import continued
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.stability import Bifurcation, Side
-from bouncing_ball.orbits.system import ContactSystem, OrbitSystem
+from bouncing_ball.orbits.system import OrbitSystem
 
 
 def labelled() -> Any:
@@ -64,21 +64,6 @@ def _call(name: str) -> Any:
     return method
 
 
-class Route(StrEnum):
-    """Numerical routes to a model's orbits, which the tests compare with each other.
-
-    They share the equations of impact and flight, so their agreement checks the numerical methods
-    and not these equations.
-    """
-
-    CONTINUATION = "continuation"
-    """Newton's method on the model's equations, :meth:`ImpactModel.system`."""
-    FORMULA = "formula"
-    """A closed form of the branch, :meth:`ImpactModel.nearest`."""
-    SIMULATION = "simulation"
-    """The motion from event to event, :meth:`ImpactModel.cycle`."""
-
-
 class Absence(StrEnum):
     """Why there is no orbit on a side of the branch at some Λ."""
 
@@ -90,7 +75,7 @@ class Absence(StrEnum):
 
 
 # The methods that return Python numbers for arguments that are single numbers.
-_ANSWERS = ("orbit", "absence", "saddle_node", "period_doubling", "nearest", "simulate", "cycle",
+_ANSWERS = ("orbit", "absence", "saddle_node", "period_doubling", "simulate", "cycle",
             "permanent_contact_threshold")  # fmt: skip
 
 
@@ -98,15 +83,14 @@ class ImpactModel(Batch, ABC):
     """A law of the impact together with its n-T orbits.
 
     A subclass is a frozen dataclass with one field, which holds the law. ``name`` is the name of
-    the model in messages, ``routes`` are the routes to its orbits, and ``orbit_type`` is the class
-    of its orbits. A subclass defines :meth:`signature`. It defines its orbits either by a type with
-    the constructor ``at`` or by a :meth:`system` of equations. Orbits at Λ, the reasons for their
-    absence and their bifurcations then follow by continuation; a model with a closed form overrides
-    these methods.
+    the model in messages, ``has_closed_form`` says whether its branch is known as a formula, and
+    ``orbit_type`` is the class of its orbits, with the constructor ``at``. A subclass defines
+    :meth:`signature`. Orbits at Λ, the reasons for their absence and their bifurcations then follow
+    by continuation; a model with a closed form overrides these methods.
     """
 
     name: ClassVar[str]
-    routes: ClassVar[frozenset[Route]] = frozenset({Route.CONTINUATION, Route.SIMULATION})
+    has_closed_form: ClassVar[bool] = False
     orbit_type: ClassVar[type[Orbit]]
 
     def __init_subclass__(cls) -> None:
@@ -135,9 +119,9 @@ class ImpactModel(Batch, ABC):
     # Everything below has a default, mostly by continuation.
 
     def system(self, n: int | np.ndarray) -> OrbitSystem:
-        """The equations of the orbits as a continuation problem in Λ (route CONTINUATION)."""
+        """The equations of the orbits as a continuation problem in Λ."""
         orbits: Any = self.orbit_type
-        return ContactSystem(n, self.impact_law, orbits.at)
+        return OrbitSystem(n, self.impact_law, orbits.at)
 
     def orbit(self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> Any:
         """The n-T orbits at given Λ, on one side of the saddle-node.
@@ -184,7 +168,7 @@ class ImpactModel(Batch, ABC):
         """
         missing, fold = ~self.orbit(n, amplitude, side).exists, self.saddle_node(n).amplitude
         other = Absence.NOT_FOUND
-        if Route.FORMULA in self.routes:
+        if self.has_closed_form:
             # The search along the closed form is complete.
             no_fold = np.isnan(fold) & (side == Side.UNSTABLE)
             other = np.where(no_fold, Absence.NO_OTHER_SIDE, Absence.NOT_REACHED)
@@ -213,16 +197,6 @@ class ImpactModel(Batch, ABC):
         """
         return continued.bifurcation(self, n, Bifurcation.PERIOD_DOUBLING)
 
-    def nearest(self, orbit: Any) -> Any:
-        """The points of the closed-form branch that are nearest to given orbits (route FORMULA).
-
-        Raises
-        ------
-        ModelError
-            If the model has no closed form.
-        """
-        raise ModelError(f"the orbits of the {self.name} model have no closed form")
-
     def simulate(
         self, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int
     ) -> ImpactSequence:
@@ -239,7 +213,7 @@ class ImpactModel(Batch, ABC):
     orbit_diagram = _call("long_run.orbit_diagram")
 
     def cycle(self, amplitude: ArrayLike, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
-        """The Poincaré map, from an impact (φ, δ′) to the next one (route SIMULATION).
+        """The Poincaré map, from an impact (φ, δ′) to the next one.
 
         The arguments are those of :func:`bouncing_ball.motion.simulation.next_impact`.
         """

@@ -299,6 +299,10 @@ class Orbit(Batch, ABC):
         contact = np.moveaxis(self.contact_jacobian() @ inner, -2, 0)
         return np.stack(self.flight_jacobian(np.eye(3), contact), axis=-2)
 
+    def system_jacobian(self) -> np.ndarray:
+        """Jacobian of the equations by the :attr:`unknowns` and Λ, shape (..., N, N + 1)."""
+        return self.jacobian()
+
     def monodromy(self) -> np.ndarray:
         """Jacobian of the return map (τ, δ′) → (τ₁, δ′₁), shape (..., 2, 2).
 

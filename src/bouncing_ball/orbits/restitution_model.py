@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.restitution_law import RestitutionLaw, rebound
 from bouncing_ball.contacts.signature import Instant
 from bouncing_ball.orbits import restitution_orbit as formulas
-from bouncing_ball.orbits.model import ImpactModel, Route
+from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_orbit import RestitutionOrbit
 from bouncing_ball.orbits.stability import Side
@@ -86,7 +86,7 @@ class RestitutionModel(_Instants):
     restitution: float | np.ndarray
 
     name: ClassVar[str] = "restitution"
-    routes: ClassVar[frozenset[Route]] = frozenset(Route)
+    has_closed_form: ClassVar[bool] = True
 
     def __post_init__(self):
         formulas.check_family(1, self.restitution)

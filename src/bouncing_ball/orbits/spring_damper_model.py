@@ -12,11 +12,10 @@ from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.signature import Instant, Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits import spring_damper_limits as limits
-from bouncing_ball.orbits.model import ImpactModel, Route
+from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.spring_damper_branch import nearest_excess
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
-from bouncing_ball.orbits.spring_damper_system import SpringDamperSystem
 from bouncing_ball.orbits.stability import Side
 
 # Bound of the rounding error of a Λ that is exactly 0, in units in the last place of z′_i; the
@@ -46,7 +45,7 @@ class SpringDamperModel(ImpactModel):
 
     name: ClassVar[str] = "spring-damper"
     orbit_type: ClassVar[type[Orbit]] = SpringDamperOrbit
-    routes: ClassVar[frozenset[Route]] = frozenset(Route)
+    has_closed_form: ClassVar[bool] = True
 
     @property
     def label(self) -> str:
@@ -98,10 +97,6 @@ class SpringDamperModel(ImpactModel):
         duration = orbit.contact_duration * contact.damped_frequency - contact.free_angle
         x, y = orbit.amplitude * np.cos(orbit.phase), orbit.amplitude * np.sin(orbit.phase)
         return SpringDamperOrbit.on_branch(nearest_excess(contact, n, x, y, duration), contact, n)
-
-    def system(self, n: int | np.ndarray) -> SpringDamperSystem:
-        """The paper's equations (Eqs. 21-27) as a continuation problem in Λ."""
-        return SpringDamperSystem(n, self.contact)
 
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ up to which the ball stays on the table.

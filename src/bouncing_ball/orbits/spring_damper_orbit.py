@@ -39,6 +39,19 @@ class SpringDamperOrbit(Orbit):
         """
         return cls.from_branch(branch_point(excess, contact, n), contact, n)
 
+    @classmethod
+    def at(
+        cls, n: ArrayLike, law: SpringDamper, amplitude: np.ndarray, *unknowns: np.ndarray
+    ) -> Self:
+        """The orbits with these :attr:`unknowns`, which need not be solutions."""
+        phase, velocity, angle = unknowns
+        return cls(n, law, amplitude, phase, angle / law.frequency_ratio, velocity)
+
+    @property
+    def unknowns(self) -> tuple[np.ndarray, ...]:
+        """(φ, z′_i, ϖ τ_b): the duration is measured in units of 1/ϖ and is then of order one."""
+        return *super().unknowns, self.contact_duration * self.clock
+
     @property
     def clock(self) -> ArrayLike:
         """ϖ, the frequency of the contact over that of the table."""
@@ -79,6 +92,22 @@ class SpringDamperOrbit(Orbit):
         duration = -released / pace[..., np.newaxis]
         state = state + by_time[..., :, np.newaxis] * duration[..., np.newaxis, :]
         return np.concatenate([duration[..., np.newaxis, :], state], axis=-2)
+
+    def system_jacobian(self) -> np.ndarray:
+        """Exact derivatives of the three residuals by (φ, z′_i, ϖ τ_b, Λ), shape (..., 3, 4)."""
+        omega, flow = self.law.frequency_ratio, self.contact_flow(self.contact_duration)
+        # Derivatives of (τ, δ, δ′, φ, Λ) of the flow with respect to these.
+        inner = np.zeros((*self.shape, 5, 4))
+        inner[..., 0, 2] = 1 / omega
+        inner[..., 2, 0], inner[..., 2, 1] = self.amplitude * np.sin(self.phase), 1
+        inner[..., 2, 3] = -np.cos(self.phase)
+        inner[..., 3, 0] = inner[..., 4, 3] = 1
+        d_duration, _, _, d_phase, d_lam = np.moveaxis(inner, -2, 0)
+        ends = np.moveaxis(flow.jacobian @ inner, -2, 0)
+        scale, sine = (np.asarray(x)[..., np.newaxis] for x in (omega, self.law.release_sine))
+        release = scale * ends[0] + 2 * sine * ends[1]
+        start = d_phase, np.eye(4)[1], d_lam
+        return np.stack([release, *self.flight_jacobian(start, [d_duration, *ends])], axis=-2)
 
     def determinant(self) -> np.ndarray:
         """exp(-2ζϖ τ_b), exactly, because areas contract only in contact, at the rate 2ζϖ."""

@@ -5,9 +5,13 @@ at the impact, and the parameter is Λ. The contact then gives its duration and 
 end, and two equations remain, for the velocity and the height of the flight that follows
 (Eqs. 24-25). Both are of order one however short the contact is. In the corrected model the only
 unknown is the phase of the instant.
+
+A linear contact may also pass the release and end at a later one, as on some orbits that are not
+admissible. Its duration is therefore a third unknown, ϖ τ_b, and its release (Eq. 23) a third
+equation. Of the paper's six unknowns, A and B follow from the start of contact (Eqs. 21-22) and
+z′_b from the periodicity (Eq. 27), all linearly.
 """
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -33,52 +37,11 @@ _ENDS: tuple[tuple[str, str, Callable[[Any], np.ndarray]], ...] = (
 )  # fmt: skip
 
 
-class OrbitSystem(ABC):
+@dataclass(frozen=True)
+class OrbitSystem:
     """A model's equations as a :class:`~bouncing_ball.continuation.problem.Problem`.
 
-    The last axis of y holds the N unknowns and, as its last entry, the continuation parameter.
-    """
-
-    @abstractmethod
-    def orbit(self, y: np.ndarray) -> Any:
-        """The orbits at points y of shape (..., N + 1), with all their observables."""
-
-    @abstractmethod
-    def point(self, orbit: Any) -> np.ndarray:
-        """The points y of given orbits, shape (..., N + 1): the inverse of :meth:`orbit`."""
-
-    @abstractmethod
-    def jacobian(self, y: np.ndarray) -> np.ndarray:
-        """Exact Jacobian of the residual, shape (..., N, N + 1)."""
-
-    def residual(self, y: np.ndarray) -> np.ndarray:
-        """The last N defects of the orbits, shape (..., N).
-
-        These are the velocity and landing defects if the contact is determined by its start.
-        """
-        return self.orbit(y).residual()[..., 1 - y.shape[-1] :]
-
-    def events(self) -> tuple[Event, ...]:
-        """Events along a branch: the bifurcations, and the ends of the domain in which orbits
-        exist.
-
-        Three events are terminal: the ball no longer approaches the table at impact, it no longer
-        leaves the table at the end of contact, or its flight time vanishes.
-        """
-
-        def bifurcation(kind: Bifurcation) -> Event:
-            return Event(kind, lambda y: kind.test(*self.orbit(y).trace_and_determinant()))
-
-        def end(name: str, why: str, left: Callable[[Any], np.ndarray]) -> Event:
-            reason = f"{name}: {why}"
-            return Event(name, lambda y: left(self.orbit(y)), terminal=True, reason=reason)
-
-        return (*map(bifurcation, Bifurcation), *(end(*each) for each in _ENDS))
-
-
-@dataclass(frozen=True)
-class ContactSystem(OrbitSystem):
-    """The system of orbits whose contact is determined by its start; y = (φ, z′_i, Λ) or (ψ, Λ).
+    The last axis of y holds the N unknowns and, as its last entry, the continuation parameter Λ.
 
     Parameters
     ----------
@@ -93,7 +56,7 @@ class ContactSystem(OrbitSystem):
     Examples
     --------
     >>> from bouncing_ball.orbits.restitution_orbit import RestitutionOrbit
-    >>> system = ContactSystem(1, 1.0, RestitutionOrbit.at)
+    >>> system = OrbitSystem(1, 1.0, RestitutionOrbit.at)
     >>> defects = system.residual(np.array([np.pi / 2, -np.pi, 1.0]))
     >>> [abs(round(float(x), 12)) for x in defects]
     [0.0, 0.0]
@@ -123,4 +86,28 @@ class ContactSystem(OrbitSystem):
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """Exact Jacobian of the residual, shape (..., N, N + 1)."""
-        return self.orbit(y).jacobian()
+        return self.orbit(y).system_jacobian()
+
+    def residual(self, y: np.ndarray) -> np.ndarray:
+        """The last N defects of the orbits, shape (..., N).
+
+        These are the velocity and landing defects if the contact is determined by its start.
+        """
+        return self.orbit(y).residual()[..., 1 - y.shape[-1] :]
+
+    def events(self) -> tuple[Event, ...]:
+        """Events along a branch: the bifurcations, and the ends of the domain in which orbits
+        exist.
+
+        Three events are terminal: the ball no longer approaches the table at impact, it no longer
+        leaves the table at the end of contact, or its flight time vanishes.
+        """
+
+        def bifurcation(kind: Bifurcation) -> Event:
+            return Event(kind, lambda y: kind.test(*self.orbit(y).trace_and_determinant()))
+
+        def end(name: str, why: str, left: Callable[[Any], np.ndarray]) -> Event:
+            reason = f"{name}: {why}"
+            return Event(name, lambda y: left(self.orbit(y)), terminal=True, reason=reason)
+
+        return (*map(bifurcation, Bifurcation), *(end(*each) for each in _ENDS))

@@ -45,15 +45,12 @@ _BESIDE = np.linspace(-0.02, 0.02, 5)
 QUANTITIES = (Quantity.MAX_HEIGHT, Quantity.BOUNCE_VELOCITY, Quantity.PHASE, *BOUNDS)
 
 
-class OneOrbit(OrbitsAlongRatio):
-    """One orbit on contacts of several durations; ϖ stands for π over the duration."""
+class LawErrors(OrbitsAlongRatio):
+    """One orbit on contacts of several durations, and the tolerated relative error of its greatest
+    height; ``frequency_ratio`` stands for π/(D + κ).
+    """
 
     restitution: LawRestitution
-
-
-class LawErrors(OneOrbit):
-    """One orbit along π/(D + κ), and the relative error tolerated of its greatest height."""
-
     tolerance: Tolerance
 
 
@@ -105,7 +102,7 @@ def exact_model(
     return LawModel(law_of_impact(LAWS[name], restitution, duration, speed))
 
 
-def own_models(name: str, orbit: OneOrbit, ratios: np.ndarray) -> Any:
+def own_models(name: str, orbit: LawErrors, ratios: np.ndarray) -> Any:
     """The exact models of contacts with r and π/(D + κ) at the impact speeds of their orbits.
 
     ``ratios`` are the values of π/(D + κ), shape (m,).
@@ -122,7 +119,7 @@ def own_models(name: str, orbit: OneOrbit, ratios: np.ndarray) -> Any:
     return LawModel(law_at_orbit(LAWS[name], r, duration, orbit.n, orbit.amplitude))
 
 
-def along(name: str, orbit: OneOrbit, value: Callable[[Any], np.ndarray]) -> np.ndarray:
+def along(name: str, orbit: LawErrors, value: Callable[[Any], np.ndarray]) -> np.ndarray:
     """A quantity of the exact models along π/(D + κ), shape (..., ϖ).
 
     It is NaN for contacts below the smallest π/(D + κ) above which all contacts have the orbit.

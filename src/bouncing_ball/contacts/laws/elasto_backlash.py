@@ -18,19 +18,17 @@ issue 2247.
 """
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.contact_law import ContactLaw, Unit, check_damping, check_positive
+from bouncing_ball.contacts.contact_law import OscillatorLaw
 from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.contacts.spring_damper import SpringDamper
 
 
 @dataclass(frozen=True, repr=False)
-class ElastoBacklash(ContactLaw):
+class ElastoBacklash(OscillatorLaw):
     """A spring-damper whose damping force is at most that of the spring.
 
     Parameters
@@ -50,19 +48,10 @@ class ElastoBacklash(ContactLaw):
     [6.0, 8.0]
     """
 
-    frequency_ratio: float | np.ndarray
-    damping_ratio: float | np.ndarray
-
     name: ClassVar[str] = "elasto-backlash"
     formula: ClassVar[str] = "ϖ² p + min(2ζϖ p′, ϖ² p)"
-    root: ClassVar[int] = 1
-    units: ClassVar[dict[str, Unit]] = SpringDamper.units
     release = Release.FORCE
     has_kink: ClassVar[Any] = True
-
-    def __post_init__(self):
-        check_positive(self.frequency_ratio, "frequency ratio ϖ")
-        check_damping(self.damping_ratio, "damping ratio ζ")
 
     @property
     def lag(self) -> np.ndarray:
@@ -84,9 +73,3 @@ class ElastoBacklash(ContactLaw):
         """Λ_F(ϖ), the threshold of the spring-damper with the force release."""
         ratio, zeta = self.frequency_ratio, self.damping_ratio
         return permanent_contact_threshold(ratio, zeta, Release.FORCE)
-
-    @classmethod
-    def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
-        """The law with ϖ = v/P and ζ = group."""
-        ratio = np.asarray(speed, dtype=float) / np.asarray(length, dtype=float)
-        return cls(ratio, group + 0 * ratio)

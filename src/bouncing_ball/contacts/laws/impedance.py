@@ -34,12 +34,11 @@ Source: MuJoCo's documentation, *Solver parameters*, read with the engine itself
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.contact_law import ContactLaw, Unit, check_positive
+from bouncing_ball.contacts.contact_law import OscillatorLaw, Unit, check_positive
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.instant import Instant
 from bouncing_ball.contacts.release import Release
@@ -48,7 +47,7 @@ from bouncing_ball.errors import require
 
 
 @dataclass(frozen=True, repr=False)
-class Impedance(ContactLaw):
+class Impedance(OscillatorLaw):
     """A spring-damper on which only the share 1 - d of the load acts.
 
     Parameters
@@ -76,8 +75,6 @@ class Impedance(ContactLaw):
     array([0.25  , 0.3125, 0.6875, 0.75  ])
     """
 
-    frequency_ratio: float | np.ndarray
-    damping_ratio: float | np.ndarray
     share: float | np.ndarray = 0.95
     at_surface: Any = None
     width: float | np.ndarray = 1.0
@@ -86,8 +83,7 @@ class Impedance(ContactLaw):
 
     name: ClassVar[str] = "impedance"
     formula: ClassVar[str] = "ϖ² p + 2ζϖ p′ and d of the load"
-    root: ClassVar[int] = 1
-    units: ClassVar[dict[str, Unit]] = SpringDamper.units | {"width": Unit("m", 0, 1, 0)}
+    units: ClassVar[dict[str, Unit]] = OscillatorLaw.units | {"width": Unit("m", 0, 1, 0)}
     release = Release.FORCE
     lag: ClassVar[None] = None
     feels_load: ClassVar[bool] = True
@@ -174,12 +170,6 @@ class Impedance(ContactLaw):
         stiffness, loss = omega * omega, 2 * zeta * omega
         held = np.maximum(stiffness, np.hypot(stiffness - self.share, loss))
         return np.hypot(stiffness - 1, loss) / held
-
-    @classmethod
-    def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
-        """The law with ϖ = v/P, ζ = group and the constant d = 0.95."""
-        ratio = np.asarray(speed, dtype=float) / np.asarray(length, dtype=float)
-        return cls(ratio, group + 0 * ratio)
 
     @classmethod
     def group_of(cls, restitution: float) -> float:

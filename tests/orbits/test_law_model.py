@@ -69,7 +69,11 @@ def test_a_soft_contact_has_its_long_orbit_too():
     np.testing.assert_allclose(found.contact_duration, expected.contact_duration, rtol=1e-11)
 
 
-@pytest.mark.parametrize("name", [*LAWS, "by depth"])
+# A law that feels its load, a Hertz contact and one with a kink; the others weekly.
+SELDOM = [pytest.param(x, marks=pytest.mark.long) for x in LAWS if x not in ("tsuji", "impedance")]
+
+
+@pytest.mark.parametrize("name", ["tsuji", "impedance", "by depth", *SELDOM])
 def test_the_orders_of_the_corrected_model_and_the_error_law(name):
     errors = []
     for duration in (0.04, 0.02):

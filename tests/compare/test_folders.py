@@ -41,8 +41,8 @@ def test_what_engines_gave_is_compared_where_they_ran(pair, refusal):
     # Another machine and another version: other times, and heights that a step may give.
     moved = read_dataset(pair.new / "config/engines.nc")
     moved.bounce_time.values *= 2
-    for off, outcome in ((9, Outcome.WITHIN), (2, Outcome.DRIFTED)):
-        moved.height_error.values += off * moved.step_allowance.values
+    for off, outcome in ((0.9, Outcome.WITHIN), (0.2, Outcome.DRIFTED)):
+        moved.height_error.values += off * moved.step_scatter.values
         write_dataset(moved, pair.new / "config/engines.nc")
         assert pair.artifact("engines").outcome is outcome
 

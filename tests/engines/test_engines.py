@@ -13,7 +13,7 @@ from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.engines import ENGINES, engine_named
 from bouncing_ball.engines.engine import ERROR, Physical
-from bouncing_ball.engines.scheme import error_in_steps
+from bouncing_ball.engines.scheme import Scheme, error_in_steps
 from bouncing_ball.errors import ModelError
 
 CONTACT = Physical(mass=0.02, stiffness=3e5, damping=7.0)
@@ -33,12 +33,20 @@ def test_there_and_back(name, mass, stiffness, r):
     engine = ENGINES[name]
     assert engine.name == name and repr(engine) == f"{type(engine).__name__}()"
     made = design(mass=mass, stiffness=stiffness, restitution=r, engine=name)
-    parameters = made.engine_settings().parameters
+    settings = made.engine_settings()
+    parameters = dict(settings.parameters)
+    if engine.scheme is Scheme.COMPENSATED:
+        (note,) = design(mass=mass, from_engine=name, parameters=parameters).notes
+        assert note.startswith("k, c and r are those in the limit of small time steps")
+        parameters["time_step"] = settings.time_step
     again = design(mass=mass, from_engine=name, parameters=parameters)
+    # A step that alone damps as much as the contact is within the error that is allowed.
+    rough = engine.scheme is Scheme.COMPENSATED and parameters[engine.names[1]] == 0
     # Twelve digits are written; of r near 1 the distance to 1 is that of c.
-    assert again.stiffness == pytest.approx(stiffness, rel=2e-11)
-    assert again.damping == pytest.approx(made.damping, rel=2e-11)
-    assert again.measured_restitution == pytest.approx(r, rel=1e-10)
+    assert again.stiffness == pytest.approx(stiffness, rel=ERROR if rough else 2e-11)
+    assert again.measured_restitution == pytest.approx(r, rel=2 * ERROR if rough else 1e-10)
+    if not rough:
+        assert again.damping == pytest.approx(made.damping, rel=2e-11)
 
 
 @pytest.mark.parametrize(("name", "release"), BOTH)
@@ -66,7 +74,8 @@ def test_the_snippet_has_the_numbers(name, release):
 @pytest.mark.parametrize(("name", "release"), BOTH)
 def test_a_text_with_places_for_numbers_is_the_snippet(name, release):
     engine, step = ENGINES[name], 1.25e-6
-    values = engine.numbers(CONTACT) | {"mass": CONTACT.mass, "time_step": step}
+    values = engine.numbers(engine.for_step(CONTACT, step)) | CONTACT._asdict()
+    values["time_step"] = step
     texts = {key: repr(value) for key, value in values.items()}
     texts |= {str(rule): f"{CONTACT.restitution(rule):.4f}" for rule in Release}
     text = re.sub(r"@([\w.]+)@", lambda found: texts[found[1]], engine.template(release))
@@ -108,11 +117,13 @@ def test_the_release_is_written_where_there_are_two():
         ("lammps", {"kn": 1.0}, 1.0, "gamma_n is missing: the parameters of lammps are"),
         ("pybullet", {"contactStiffness": 0.0, "contactDamping": 1.0}, 1.0, "is not positive"),
         ("generic", {"stiffness": 1.0, "damping": -1.0}, 1.0, "damping = -1.0 is not a number of"),
+        ("generic", {"stiffness": 1.0, "time_step": 1.0}, 1.0, "generic has no 'time_step'"),
+        ("drake", {"time_step": 0.0}, 1.0, "time_step = 0.0 is not a positive number of s"),
     ],
 )
 def test_parameters_that_cannot_be_read(name, parameters, mass, says, refusal):
     with refusal(ModelError, says):
-        ENGINES[name].read(parameters, mass)
+        ENGINES[name].contact(parameters, mass)
 
 
 @pytest.mark.parametrize(

@@ -23,7 +23,8 @@ import xarray as xr
 from pandas import DataFrame
 
 from bouncing_ball import design, limits, simulate
-from bouncing_ball.accuracy.errors import relative
+from bouncing_ball.accuracy.errors import SIMPLE, relative
+from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.contacts.collocation import contacts
 from bouncing_ball.contacts.damping import damping_ratio, restitution_coefficient
 from bouncing_ball.contacts.laws.impedance import Impedance
@@ -32,17 +33,16 @@ from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.engines import ENGINES
-from bouncing_ball.engines.engine import EngineSettings, Physical
-from bouncing_ball.engines.scheme import (
-    Scheme,
-    error_in_steps,
-    restitution_in_steps,
-    steps_for,
-)
+from bouncing_ball.engines.engine import ERROR, EngineSettings, Physical
+from bouncing_ball.engines.scheme import Scheme, steps_for
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.provenance.origin import CONFIGURATION, gather
+from bouncing_ball.studies.engines import EngineOrbit, model_errors, step_errors, steps_of
 
 ROOT = Path(__file__).parents[2]
+WRITTEN = read_yaml(ROOT / CONFIGURATION)
+PARAMETERS = WRITTEN["extensions"]["ext_engines"]
 RADIUS = 1.0
 
 
@@ -186,10 +186,6 @@ RELEASES = [(name, release) for name in RUN for release in ENGINES[name].release
 LOSSES, FAMILIES, RATIOS = (0.65, 0.85), (1, 2), (10, 20, 50)
 TOLERANCES = (0.01, 0.001)
 SKIPPED, KEPT = 8, 16
-# Of r, by the time step of an orbit, divided by the refinement: implicit Euler is dear. With 0.03
-# less than 0.65 the orbit of n = 2 is at its saddle-node, and with more it is lost.
-STEP_ERROR = {Scheme.SEMI_IMPLICIT: 0.005, Scheme.IMPLICIT: 0.03}
-REFINEMENTS = (1, 2, 4)
 # Single bounces at the steps whose error is the corrected model's, if a bounce needs no more steps.
 BOUNCES = 4
 AFFORDED = {"mujoco": 4e6, "lammps": 4e6, "pybullet": 5e5, "drake": 5e5}
@@ -198,14 +194,12 @@ ORBIT = ("release", "restitution", "n", "frequency_ratio")
 
 
 @cache
-def exact_orbit(release, restitution, n, frequency_ratio, amplitude=None):
-    """The orbit in the middle of its family's stable range, or at an amplitude."""
+def exact_orbit(release, restitution, n, frequency_ratio):
+    """The orbit in the middle of its family's stable range."""
     zeta = float(damping_ratio(restitution, release))
     model = SpringDamperModel(SpringDamper(frequency_ratio, zeta, release))
-    if amplitude is None:
-        ends = limits(n, frequency_ratio=frequency_ratio, damping_ratio=zeta, release=str(release))
-        amplitude = (ends.saddle_node.amplitude + ends.period_doubling.amplitude) / 2
-    return model.orbit(n, float(amplitude))
+    ends = limits(n, frequency_ratio=frequency_ratio, damping_ratio=zeta, release=str(release))
+    return model.orbit(n, (ends.saddle_node.amplitude + ends.period_doubling.amplitude) / 2)
 
 
 @cache
@@ -236,16 +230,16 @@ def settings(name, release, restitution, mass, stiffness, error):
     return ENGINES[name].settings(contact, release, error)
 
 
-def bounces(name, case, found, start, skipped, kept):
+def bounces(name, case, found, skipped, kept):
     """Relative errors of the greatest heights of an engine's cycles, and seconds for a bounce.
 
-    The ball begins on an orbit at its amplitude, where the table is at its lowest.
+    The ball begins on its orbit, where the table is at its lowest.
     """
     n, exact, step = case[2], exact_orbit(*case), found.time_step
     # Back along the flight, from the impact to the table's lowest point.
-    back = float(start.phase) + np.pi / 2
-    velocity, amplitude = float(start.impact_velocity), float(exact.amplitude)
-    height = amplitude * (1 + np.sin(start.phase)) - velocity * back - back**2 / 2
+    back = float(exact.phase) + np.pi / 2
+    velocity, amplitude = float(exact.impact_velocity), float(exact.amplitude)
+    height = amplitude * (1 + np.sin(exact.phase)) - velocity * back - back**2 / 2
     period, cycles = 2 * np.pi * n, skipped + kept
     trial = Trial(
         *(found, 1.0, float(height), velocity + back),
@@ -257,44 +251,18 @@ def bounces(name, case, found, start, skipped, kept):
     return relative(exact.max_height, np.maximum.reduceat(ball, first)), spent / cycles
 
 
-def orbit_in_steps(name, case, steps):
-    """The orbit whose contacts have the mean r of an engine's time steps."""
-    release, restitution, n, ratio = case
-    zeta, lam = float(damping_ratio(restitution, release)), float(exact_orbit(*case).amplitude)
-    taken = restitution_in_steps(ENGINES[name].scheme, zeta, release, steps).mean()
-    return exact_orbit(release, float(taken), n, ratio, lam)
+def simulated(name, case, steps):
+    """Errors of bounces that begin at random fractions of so many steps, and the corrected model's.
 
-
-def allowance(name, case, found):
-    """How far a time step may move the height of an orbit, as a share of it.
-
-    By the error that it leaves in r. And the time grid delays an impact by up to a step: of an
-    orbit, whose speeds follow from its period, this moves only the table's height, Λ a step.
+    The bounces are simulated with the engine's scheme, and err by their root mean square.
     """
     release, restitution, n, ratio = case
-    orbit, zeta = exact_orbit(*case), float(damping_ratio(restitution, release))
-    error = error_in_steps(ENGINES[name].scheme, zeta, release, found.steps)
-    others = [
-        exact_orbit(release, r, n, ratio, float(orbit.amplitude)).max_height
-        for r in (restitution - error, restitution + error)
-    ]
-    late = orbit.amplitude * found.time_step / orbit.max_height
-    return float(max(abs(relative(orbit.max_height, others))) + late)
-
-
-def without_steps(steps, means, scatters):
-    """The error at the limit of small steps, Richardson's extrapolation, and its scatter.
-
-    The polynomial in 1/N through all errors is taken at 0. Its uncertainty has two parts: the
-    scatter of single bounces at each step, and what the largest step changes.
-    """
-
-    def weights(x):
-        return np.linalg.solve(np.vander(x, increasing=True).T, np.eye(x.size)[0])
-
-    x = 1 / steps
-    limit, fewer = weights(x) @ means, weights(x[1:]) @ means[1:]
-    return limit, float(np.linalg.norm([*weights(x) * scatters, limit - fewer]))
+    contact = SpringDamper(np.array([ratio]), damping_ratio(restitution, release), release)
+    orbit = SpringDamperModel(contact).orbit(n, exact_orbit(*case).amplitude)
+    asked = {"n": n, "restitution": restitution, "release": release, "steps": steps}
+    errors = step_errors(orbit, EngineOrbit(**PARAMETERS | asked))
+    level = model_errors(orbit, 1)[SIMPLE.index("corrected"), 0]
+    return errors[[*Scheme].index(ENGINES[name].scheme), 0], abs(float(level))
 
 
 def installed(name):
@@ -314,21 +282,21 @@ def record():
     if not all(rows):
         return
     free, shaken, alone = rows
-    whole = DataFrame(shaken).set_index(["engine", *ORBIT, "refinement"])
+    whole = DataFrame(shaken).set_index(["engine", *ORBIT])
     exact = whole[["amplitude", "max_height"]].groupby(level=[*ORBIT]).first()
     whole = whole.drop(columns=exact.columns)
     first = DataFrame(free).set_index(["engine", "release", "restitution", "tolerance"])
-    ends = whole.pop("limit_error"), whole.pop("limit_scatter")
-    ends = DataFrame(ends).T.dropna().droplevel("refinement")
     single = DataFrame(alone).set_index(["engine", "frequency_ratio"])
-    parts = [part.to_xarray() for part in (first, exact, whole, ends, single)]
-    seconds = [seconds_per_bounce(model, *whole.index[0][1:-1]) for model in MODELS]
+    parts = [part.to_xarray() for part in (first, exact, whole, single)]
+    seconds = [seconds_per_bounce(model, *whole.index[0][1:]) for model in MODELS]
     parts.append(xr.Dataset({"model_time": ("model", np.divide(seconds, seconds[-1]))}))
     parts[-1]["model"] = list(MODELS)
     data = xr.merge(parts, join="outer").reindex(engine=list(RUN))
     made = [version(name) if installed(name) else "not installed" for name in RUN]
     data["engine_version"] = ("engine", made)
-    write_dataset(describe(data), ROOT / "results" / "config" / "engines.nc")
+    origin = gather("make test-engines", [], ROOT, WRITTEN)
+    target = ROOT / "results" / "config" / "engines.nc"
+    write_dataset(describe(data).assign_attrs(origin), target)
 
 
 @pytest.mark.engines
@@ -411,25 +379,17 @@ def test_an_orbit_has_the_exact_height(name, release, restitution, n, frequency_
     only_if_installed(name)
     case = (release, restitution, n, frequency_ratio)
     orbit, baseline = exact_orbit(*case), seconds_per_bounce(MODELS[-1], *case)
-    exact = {"amplitude": float(orbit.amplitude), "max_height": float(orbit.max_height)}
-    rows = []
-    for refinement in REFINEMENTS:
-        most = STEP_ERROR[ENGINES[name].scheme] / refinement
-        found = settings(name, release, restitution, 1.0, float(frequency_ratio) ** 2, most)
-        start = orbit_in_steps(name, case, found.steps)
-        off, seconds = bounces(name, case, found, start, SKIPPED, KEPT)
-        error, scatter = float(off.mean()), float(off.std(ddof=1))
-        allowed = allowance(name, case, found)
-        row = dict(zip(ORBIT, (str(release), *case[1:]), strict=True)) | exact
-        row |= {"engine": name, "refinement": refinement, "contact_steps": found.steps}
-        row |= {"height_error": error, "height_scatter": scatter, "step_allowance": allowed}
-        rows.append(row | {"bounce_time": seconds / baseline})
-        assert abs(error) <= scatter + allowed
-    columns = DataFrame(rows)[["contact_steps", "height_error", "height_scatter"]]
-    limit, scatter = without_steps(*columns.to_numpy().T)
-    rows[-1] |= {"limit_error": limit, "limit_scatter": scatter}
-    record[1].extend(rows)
-    assert abs(limit) <= scatter
+    found = settings(name, release, restitution, 1.0, float(frequency_ratio) ** 2, ERROR)
+    off, seconds = bounces(name, case, found, SKIPPED, KEPT)
+    error, scatter = float(off.mean()), float(off.std(ddof=1))
+    row = dict(zip(ORBIT, (str(release), *case[1:]), strict=True))
+    row |= {"amplitude": float(orbit.amplitude), "max_height": float(orbit.max_height)}
+    row |= {"engine": name, "contact_steps": found.steps, "bounce_time": seconds / baseline}
+    row |= {"height_error": error, "height_scatter": scatter}
+    # Bounces that are in step with the time grid begin at one and the same fraction of a step.
+    row["step_scatter"] = simulated(name, case, [found.steps])[0].item()
+    record[1].append(row)
+    assert abs(error) <= row["step_scatter"]
 
 
 @pytest.mark.engines
@@ -438,13 +398,10 @@ def test_an_orbit_has_the_exact_height(name, release, restitution, n, frequency_
 @pytest.mark.parametrize("name", RUN)
 def test_a_bounce_is_as_right_as_the_corrected_models(name, frequency_ratio, record):
     only_if_installed(name)
-    data = read_dataset(ROOT / "figures" / "ext_engines.nc").sel(frequency_ratio=frequency_ratio)
-    release, r, n = (data.attrs[name] for name in ORBIT[:3])
-    errors = data.model_error.sel(release=release, restitution=r, n=n, model="corrected")
-    level, release = abs(float(errors)), Release.of(release)
-    case = release, r, n, frequency_ratio
-    equal = data.equal_steps.sel(scheme=ENGINES[name].scheme) / data.steps_in_bounce * data.steps
-    steps = round(float(equal[0]))
+    release, r, n = Release.of(PARAMETERS["release"]), PARAMETERS["restitution"], PARAMETERS["n"]
+    case, many = (release, r, n, frequency_ratio), np.array(PARAMETERS["steps"])
+    errors, level = simulated(name, case, PARAMETERS["steps"])
+    steps = round(steps_of(many, errors, level))
     row = {"engine": name, "frequency_ratio": frequency_ratio, "single_steps": steps}
     zeta = float(damping_ratio(r, release))
     contact = Physical(1.0, frequency_ratio**2, 2 * zeta * frequency_ratio)
@@ -457,9 +414,7 @@ def test_a_bounce_is_as_right_as_the_corrected_models(name, frequency_ratio, rec
         text = ENGINES[name].snippet(contact, release, duration / many)
         coarse = settings(name, release, r, 1.0, frequency_ratio**2, 0.03)
         found = replace(coarse, time_step=duration / many, steps=many, snippet=text)
-        # Where bounces with this r go on: the first one with a wrong r loses more height.
-        start = orbit_in_steps(name, case, many)
-        single.append(bounces(name, case, found, start, 0, 1)[0][0])
+        single.append(bounces(name, case, found, 0, 1)[0][0])
     row["single_error"] = float(np.sqrt(np.mean(np.square(single))))
     record[2].append(row)
     # One of a few bounces may err three times as much as the mean of many.
@@ -471,8 +426,7 @@ def test_the_accepted_heights_are_those_of_the_model():
     assert set(data.engine.values) == set(RUN)
     runs = data.stack(run=["engine", *ORBIT]).dropna("run", subset=["height_error"])
     assert runs.sizes["run"] == 12 * len(RELEASES)
-    assert (abs(runs.height_error) <= runs.height_scatter + runs.step_allowance).all()
-    assert (abs(data.limit_error) <= data.limit_scatter).sum() == 12 * len(RELEASES)
+    assert (abs(runs.height_error) <= runs.step_scatter).all()
     away = abs(data.measured_restitution / data.restitution - 1)
     assert (away.max([*away.dims][:3]) <= data.tolerance + 1e-5 / min(LOSSES)).all()
     for place in np.argwhere(data.free_steps.notnull().values):

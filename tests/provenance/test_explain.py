@@ -94,6 +94,11 @@ def test_another_commit_dirt_and_other_versions(results, ask, monkeypatch):
     assert ask("explain", str(path))["checked_out"] is None
 
 
+def test_what_a_command_makes_is_made_again_by_it(results, ask):
+    write_dataset(xr.Dataset(attrs=made("make test-engines")), results / "engines.nc")
+    assert ask("explain", "results/engines.nc")["make_again"] == ["make test-engines"]
+
+
 def test_another_configuration_is_named_and_written_again(results, ask, said):
     changed = {"figures": {"fig11": {"restitution": 0.7}}, "release": "it's"}
     path = results / "figures" / "fig11.png"

@@ -47,7 +47,7 @@ def read_engine(said: Mapping[str, Any]) -> tuple[Source | None, dict[str, Any]]
             raise ParameterError(f"{{{other}}} is not allowed with {{from_engine}}")
     mass, rule = said.get("mass"), said.get("release")
     mass = None if mass is None else number("mass", mass, Unit("kg", "20 g"))
-    contact = source.engine.read(values, mass)
+    contact = source.engine.contact(values, mass)
     # If the contact is written for another engine, that engine determines the release.
     rule = rule if said.get("engine") else str(source.engine.release(rule))
     return source, {**said, **contact._asdict(), "mass": mass, "release": rule}

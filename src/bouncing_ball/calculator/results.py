@@ -280,7 +280,7 @@ class Design(_ForEngines):
         contact, one = Physical(self.case.mass, self.stiffness, self.damping), self.judged
         settings = self._settings(contact, self.case.contact.release)
         if self.law is not None:
-            settings = engine_named(settings.name).of_law(settings, self.case.mass, self.law)
+            settings = engine_named(settings.name).of_law(settings, contact, self.law)
         return replace(
             settings,
             max_height=one.max_height,

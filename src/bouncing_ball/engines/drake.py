@@ -12,8 +12,9 @@ from bouncing_ball.engines.engine import (
     Physical,
     filled,
     text_of,
+    written,
 )
-from bouncing_ball.engines.scheme import Scheme
+from bouncing_ball.engines.scheme import Scheme, steps_for
 
 
 class Drake(Engine):
@@ -37,7 +38,7 @@ class Drake(Engine):
     name = "drake"
     names = ("point_contact_stiffness", "relaxation_time")
     releases = (Release.FORCE,)
-    scheme = Scheme.IMPLICIT
+    scheme = Scheme.COMPENSATED
     laws: ClassVar[dict[str, str]] = {"hunt-crossley": "hunt-crossley-linear"}
 
     def parameters(self, contact: Physical) -> Parameters:
@@ -49,12 +50,19 @@ class Drake(Engine):
         return Physical(m, double / 2, double * half_time)
 
     def of_law(
-        self, settings: EngineSettings, mass: float, law: Mapping[str, Any]
+        self, settings: EngineSettings, contact: Physical, law: Mapping[str, Any]
     ) -> EngineSettings:
-        values = {
-            "point_contact_stiffness": float(f"{2 * law['stiffness']:.12g}"),
-            "hunt_crossley_dissipation": float(f"{law['damping']:.12g}"),
-        }
-        numbers = {"mass": float(f"{mass:.12g}"), "time_step": settings.time_step, **values}
+        # This damper grows with the penetration, so that it cannot take back that of the step.
+        contact, rule = Physical(*map(written, contact)), self.releases[0]
+        steps = steps_for(Scheme.IMPLICIT, contact.damping_ratio, rule, settings.error)
+        step = written(contact.contact_time(rule) / steps)
+        both = (written(2 * law["stiffness"]), written(law["damping"]))
+        values = dict(
+            zip(("point_contact_stiffness", "hunt_crossley_dissipation"), both, strict=True)
+        )
+        numbers = {"mass": contact.mass, "time_step": step, **values}
         text = filled(text_of("drake-hunt-crossley"), {x: repr(y) for x, y in numbers.items()})
-        return replace(settings, parameters=values, snippet=text)
+        scheme = str(Scheme.IMPLICIT)
+        return replace(
+            settings, parameters=values, snippet=text, steps=steps, time_step=step, scheme=scheme
+        )

@@ -13,6 +13,7 @@ import numpy as np
 
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.release import Release
+from bouncing_ball.engines.compensation import compensated, represented
 from bouncing_ball.engines.scheme import Scheme, free_impact, steps_for
 from bouncing_ball.errors import ModelError, require
 
@@ -21,6 +22,11 @@ ERROR = 0.001
 
 _PLACE = re.compile(r"@([\w.]+)@")
 Parameters = Mapping[str, float | list[float]]
+
+
+def written(value: float) -> float:
+    """A number with twelve digits, so that the rounding errors of products are not written."""
+    return float(f"{value:.12g}")
 
 
 class Physical(NamedTuple):
@@ -72,7 +78,8 @@ class Physical(NamedTuple):
 class EngineSettings:
     """The settings to write into an engine, and the restitution that they produce.
 
-    ``parameters`` have the names and units of the engine. ``time_step`` is in s; with ``steps``
+    ``parameters`` have the names and units of the engine; those of a compensated scheme hold for
+    the time step only. ``time_step`` is in s; with ``steps``
     such steps in a contact the ``restitution`` of a free impact is met within ``error``.
     ``restitutions`` has the r of the same contact under each release that the engine has.
     ``max_height`` and ``penetration`` in m and ``contact_duration`` in s belong to the orbit of a
@@ -124,6 +131,32 @@ class Engine(ABC):
     def parameters(self, contact: Physical) -> Parameters:
         """The parameters of a contact, in the units and under the names of the engine."""
 
+    def for_step(self, contact: Physical, time_step: float) -> Physical:
+        """The contact whose parameters let the engine compute a contact with a time step in s."""
+        if self.scheme is not Scheme.COMPENSATED:
+            return contact
+        m, k, c = contact
+        return Physical(m, *(written(x * m) for x in compensated(k / m, c / m, time_step)))
+
+    def contact(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
+        """The contact that the engine computes with these parameters, and a ``time_step`` in s.
+
+        The time step is a parameter of engines with a compensated scheme only. Without it the
+        contact is the limit of small steps.
+
+        Raises
+        ------
+        ModelError
+            See :meth:`read`; or if the time step is not positive.
+        """
+        if self.scheme is not Scheme.COMPENSATED or "time_step" not in parameters:
+            return self.read(parameters, mass)
+        values = dict(parameters)
+        step = values.pop("time_step")
+        require(0 < step < math.inf, step, "time_step", "a positive number of s")
+        m, k, c = self.read(values, mass)
+        return Physical(m, *(value * m for value in represented(k / m, c / m, step)))
+
     def numbers(self, contact: Physical) -> dict[str, float]:
         """The parameters of a contact as single numbers; an entry of a list is named NAME.INDEX."""
         found: dict[str, float] = {}
@@ -145,7 +178,8 @@ class Engine(ABC):
 
         It has no line about a release under which the ball would not rebound.
         """
-        values = {"mass": contact.mass, "time_step": time_step, **self.numbers(contact)}
+        values = {**contact._asdict(), "time_step": time_step}
+        values |= self.numbers(self.for_step(contact, time_step))
         texts = {name: repr(value) for name, value in values.items()}
         texts |= {rule: f"{r:.4f}" for rule, r in self.restitutions(contact, release).items()}
         return filled(self.template(release), texts)
@@ -171,13 +205,13 @@ class Engine(ABC):
         return None
 
     def of_law(
-        self, settings: EngineSettings, mass: float, law: Mapping[str, Any]
+        self, settings: EngineSettings, contact: Physical, law: Mapping[str, Any]
     ) -> EngineSettings:
-        """The settings for a contact law, made from those of a linear contact.
+        """The settings for a contact law, made from those of the linear contact with the same
+        restitution and duration.
 
         ``law`` has the name of the law and its parameters in SI units, which replace those of the
-        linear contact. The time step remains that of the linear contact with the same restitution
-        and duration.
+        linear contact. The time step is the one that the linear contact needs without compensation.
 
         Raises
         ------
@@ -188,7 +222,10 @@ class Engine(ABC):
 
     def remarks(self, parameters: Mapping[str, Any]) -> tuple[str, ...]:
         """Sentences on how the contact with these parameters differs from a spring and damper."""
-        return ()
+        if self.scheme is not Scheme.COMPENSATED or "time_step" in parameters:
+            return ()
+        limit = "k, c and r are those in the limit of small time steps, which damp less"
+        return (f"{limit}; with the parameter time_step, in s, they are those of this step",)
 
     def release(self, asked: str | None = None) -> Release:
         """The release with this name, or the engine's default.
@@ -231,13 +268,12 @@ class Engine(ABC):
             positive.
         """
         rule = self.release(release)
-        # Twelve digits, so that the rounding errors of products are not written.
-        contact = Physical(*(float(f"{value:.12g}") for value in contact))
+        contact = Physical(*map(written, contact))
         restitution = contact.restitution(rule)
         steps = steps_for(self.scheme, contact.damping_ratio, rule, error)
-        step = float(f"{contact.contact_time(rule) / steps:.12g}")
+        step = written(contact.contact_time(rule) / steps)
         text = self.snippet(contact, rule, step)
-        found = self.parameters(contact)
+        found = self.parameters(self.for_step(contact, step))
         by_rule = {str(one): r for one, r in self.restitutions(contact, rule).items()}
         return EngineSettings(
             *(self.name, found, step, str(rule), restitution, by_rule),

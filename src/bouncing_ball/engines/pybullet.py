@@ -8,7 +8,10 @@ from bouncing_ball.engines.scheme import Scheme
 class PyBullet(Proportional):
     """``changeDynamics`` of both bodies, whose springs are in series and whose dampings are added.
 
-    If ball and table have the same parameters, these are 2k in N/m and c/2 in N s/m.
+    If ball and table have the same parameters, these are 2k in N/m and c/2 in N s/m. By default,
+    Bullet also has contacts of bodies that do not touch yet, at distances that depend on their
+    sizes: the damper then acts from the surface on, so that r is ``exp(-ζh)`` times the value
+    without such contacts. The text to paste allows none, and no slop.
 
     Examples
     --------
@@ -23,7 +26,7 @@ class PyBullet(Proportional):
     name = "pybullet"
     names = ("contactStiffness", "contactDamping")
     releases = (Release.FORCE,)
-    scheme = Scheme.IMPLICIT
+    scheme = Scheme.COMPENSATED
 
     def factors(self, mass: float) -> tuple[float, float]:
         return 2.0, 0.5

@@ -7,12 +7,20 @@ implement their contacts differently, but each contact is equivalent to one of t
 * *semi-implicit Euler*: ``v⁺ = v - h(x + 2ζv)``, ``x⁺ = x + h v⁺``. MuJoCo's Euler integrator
   with its constraint force; also LAMMPS, LIGGGHTS and MercuryDPM, whose velocity Verlet takes
   the damper's speed from the last half step: v is then that of the half steps.
-* *implicit Euler*: ``v⁺ = v - h(x⁺ + 2ζv⁺)``, ``x⁺ = x + h v⁺``. Bullet's springs, which are
-  constraints with ``cfm`` and ``erp``, and Drake's discrete contact (SAP).
+* *implicit Euler*: ``v⁺ = v - h(x⁺ + 2ζv⁺)``, ``x⁺ = x + h v⁺``. Drake's discrete contact.
+* *compensated implicit Euler*: the same with the parameters of
+  :mod:`bouncing_ball.engines.compensation`, which take the damping of the step back, in place of
+  1 and 2ζ. Drake's linear contact (SAP), and Bullet's springs, which are constraints with ``cfm``
+  and ``erp``.
 
 A ball is in contact during a step if x < 0 before this step. A contact with the force release only
 pushes. Because r depends on the instant within a step at which the ball meets the wall, it is
 computed for many such instants.
+
+The compensated positions are those of an exact contact, which begins in the middle of the step
+before the first one in contact: up to half a step before or after the ball meets the wall. The
+damper therefore acts for up to half a step more or less, so that r has the errors ``±ζhr``, and a
+mean error of second order in h. The force release, where v is greatest, adds a second order only.
 """
 
 from enum import StrEnum
@@ -22,20 +30,22 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.damping import restitution_coefficient
 from bouncing_ball.contacts.release import Release
+from bouncing_ball.engines.compensation import compensated
 from bouncing_ball.errors import ModelError, require
 
 # Times from meeting the wall to the first step that begins in contact, in steps.
 _FRACTIONS = np.linspace(1e-9, 1.0, 33)
-# With this number N of steps or more, the error is proportional to 1/N.
+# With this number N of steps or more, the error falls at least as 1/N.
 _ASYMPTOTIC = 4096
 _FEWEST = 8
 
 
 class Scheme(StrEnum):
-    """The time-stepping scheme of an engine for a ball in contact."""
+    """The time-stepping scheme of an engine for a ball in contact, and the choice of parameters."""
 
     SEMI_IMPLICIT = "semi-implicit Euler"
     IMPLICIT = "implicit Euler"
+    COMPENSATED = "compensated implicit Euler"
 
 
 def free_impact(damping_ratio: float, release: Release) -> tuple[float, float]:
@@ -65,13 +75,13 @@ def free_impact(damping_ratio: float, release: Release) -> tuple[float, float]:
     return float(duration), float(np.exp(-zeta * duration))
 
 
-def _step(scheme: Scheme, zeta: float, h: float) -> tuple[np.ndarray, float]:
+def _step(scheme: Scheme, loss: float, h: float) -> tuple[np.ndarray, float]:
     """The matrix of one step of (x, v), and the λ for which the contact pushes if x + λv < 0."""
-    loss = 2 * zeta
     if scheme is Scheme.SEMI_IMPLICIT:
         return np.array([[1 - h * h, h - loss * h * h], [-h, 1 - loss * h]]), loss
-    q = 1 + loss * h + h * h
-    return np.array([[1 - h * h / q, h / q], [-h / q, 1 / q]]), loss + h
+    k, c = compensated(1.0, loss, h) if scheme is Scheme.COMPENSATED else (1.0, loss)
+    q = 1 + c * h + k * h * h
+    return np.array([[1 - k * h * h / q, h / q], [-k * h / q, 1 / q]]), c / k + h
 
 
 def restitution_in_steps(
@@ -122,7 +132,7 @@ def restitution_in_steps(
         raise ModelError(f"{steps} steps in a contact are too few: use at least {_FEWEST}")
     zeta = float(damping_ratio)
     h = free_impact(zeta, release)[0] / steps
-    power, lag = _step(scheme, zeta, h)
+    power, lag = _step(scheme, 2 * zeta, h)
     start = np.asarray(fraction, dtype=float).ravel()
     # The states of all impacts; the number of steps doubles with each power of the matrix.
     states = np.stack([-h * start, -np.ones_like(start)])[:, None]
@@ -154,8 +164,8 @@ def error_in_steps(scheme: Scheme, damping_ratio: float, release: Release, steps
 def steps_for(scheme: Scheme, damping_ratio: float, release: Release, error: float) -> int:
     """The smallest number N of steps in a contact for which r is within an error.
 
-    The error falls as 1/N. Below 4096, N is found by doubling and bisection, and above by this
-    proportionality.
+    The error falls as 1/N or faster. Below 4096, N is found by doubling and bisection, and above
+    from 1/N.
 
     Raises
     ------

@@ -14,10 +14,12 @@ from bouncing_ball.figures.canvas import WIDE, canvas, legend_below, logarithmic
 from bouncing_ball.figures.labels import QUANTITIES, number, parameters
 from bouncing_ball.figures.style import COLOURS, GUIDE, LAWS, MODELS, Look
 
+_IMPLICIT: Look = {"color": COLOURS[2], "linestyle": (0, (6, 1.5, 1, 1.5))}
 # Dashes distinguish the schemes of time stepping, and markers the engines.
 _SCHEMES: dict[str, Look] = {
     "semi-implicit Euler": {"color": COLOURS[1], "linewidth": 1.3},
-    "implicit Euler": {"color": COLOURS[2], "linewidth": 1.3, "linestyle": (0, (6, 1.5, 1, 1.5))},
+    "implicit Euler": _IMPLICIT | {"linewidth": 0.6},
+    "compensated implicit Euler": _IMPLICIT | {"linewidth": 1.3},
 }
 _ENGINES = "osxD"
 _MARKED: Look = {"linestyle": "none", "color": "black", "markerfacecolor": "none", "markersize": 4}

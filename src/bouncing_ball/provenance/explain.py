@@ -57,7 +57,8 @@ def _parameters(path: Path, commit: str) -> dict[str, Any]:
 def _commands(made: Mapping[str, Any], target: str, checked_out: bool | None) -> list[str]:
     """The commands that make a file again, ready to paste into a shell."""
     # --force, because Snakemake does not make a file again that is up to date.
-    commands = [f"snakemake --cores 2 --force {shlex.quote(target)}"]
+    force = "snakemake --cores 2 --force"
+    commands = [target if target.startswith("make ") else f"{force} {shlex.quote(target)}"]
     if changed := made["configuration"]:
         text = shlex.quote(json.dumps(changed))
         commands = [

@@ -68,9 +68,9 @@ def gather(
         Attributes of a dataset, or metadata of a picture: ``commit``, the full hash or unknown;
         ``dirty``, whether the tree had uncommitted changes (yes, no or unknown); ``configuration``,
         as JSON the values of the run that differ from config/config.yaml; ``target``, the file to
-        request from Snakemake to make the artifact again; ``inputs`` and ``versions``, as JSON the
-        files that it is made from and the versions of Python and the libraries. Each name begins
-        with :data:`PREFIX`.
+        request from Snakemake to make the artifact again, or a command ``make …``; ``inputs`` and
+        ``versions``, as JSON the files that it is made from and the versions of Python and the
+        libraries. Each name begins with :data:`PREFIX`.
 
     Raises
     ------

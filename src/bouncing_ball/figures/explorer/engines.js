@@ -15,6 +15,8 @@ const ENGINE_NUMBERS = {
   mercurydpm: (m, k, c) => ({stiffness: k, dissipation: c}),
 };
 
+const COMPENSATED = "compensated implicit Euler";
+
 // A number as Python writes it.
 function repr(x) {
   const [digits, power] = x.toExponential().split("e"), exponent = Number(power);
@@ -22,17 +24,31 @@ function repr(x) {
   return `${digits}e${exponent < 0 ? "-" : "+"}${String(Math.abs(exponent)).padStart(2, "0")}`;
 }
 
+// Of a mass of one: k and c with which implicit Euler has the positions of the exact contact, by
+// exp(-hμ) - 1 for its rate μ (bouncing_ball.engines.compensation).
+function compensated(k, c, step) {
+  const discriminant = c * c / 4 - k, root = Math.sqrt(Math.abs(discriminant));
+  if (discriminant >= 0) {
+    const first = Math.expm1(step * (c / 2 + root)), second = Math.expm1(step * k / (c / 2 + root));
+    return [first * second / step ** 2, (first + second) / step];
+  }
+  const growth = Math.expm1(step * c / 2), angle = step * root;
+  const real = growth - (growth + 1) * 2 * Math.sin(angle / 2) ** 2, imaginary = (growth + 1) * Math.sin(angle);
+  return [(real * real + imaginary * imaginary) / step ** 2, Math.max(0, 2 * real / step)];
+}
+
 // The largest error of r of a free impact in N steps, wherever within a step it begins.
 function errorInSteps(scheme, contact, steps) {
-  const {zeta, release} = contact, loss = 2 * zeta, r = ownRestitution(contact);
+  const {zeta, release} = contact, r = ownRestitution(contact);
   const h = freeAngle(contact) / Math.sqrt((1 - zeta) * (1 + zeta)) / steps;
-  const implicit = scheme === "implicit Euler", q = 1 + loss * h + h * h;
-  const lag = release === "force" ? (implicit ? loss + h : loss) : 0;
+  const [stiff, loss] = scheme === COMPENSATED ? compensated(1, 2 * zeta, h) : [1, 2 * zeta];
+  const implicit = scheme !== "semi-implicit Euler", q = 1 + loss * h + stiff * h * h;
+  const lag = release === "force" ? (implicit ? loss / stiff + h : loss) : 0;
   let worst = 0;
   for (let place = 0; place < 33; place++) {
     let x = -h * (1e-9 + place * (1 - 1e-9) / 32), v = -1;
     for (let k = 0; k < 2 * steps && x + lag * v < 0; k++) {
-      v = implicit ? (v - h * x) / q : v - h * (x + loss * v);
+      v = implicit ? (v - h * stiff * x) / q : v - h * (x + loss * v);
       x += h * v;
     }
     worst = Math.max(worst, Math.abs(v - r));
@@ -152,6 +168,8 @@ const LAW_UNITS = {
   "elasto-backlash": {"frequency ratio": ["rad/s", 0, 0, -1]},
   "impedance": {"frequency ratio": ["rad/s", 0, 0, -1], width: ["m", 0, 1, 0]},
 };
+// Engines whose scheme is compensated, so that their parameters belong to a time step.
+const STEPPED = ["pybullet", "drake"];
 // Engines that have a law besides the linear one, by its name.
 const ENGINE_LAWS = {drake: {"hunt-crossley": "hunt-crossley-linear", "hunt-crossley-linear": "hunt-crossley-linear"}};
 
@@ -162,7 +180,9 @@ function caseOf({given, engine, release, r, n, t, one, two, m, k, f}) {
     const [stiffness, damping] = readEngine(given, mass, [one, two]);
     const omega = Math.sqrt(stiffness / mass), zeta = damping / (2 * mass * omega);
     const imposed = given === "mujoco" ? solimpOf(two) : null;
-    const remarks = imposed ? impedanceRemarks(imposed, omega, zeta) : [];
+    const remarks = imposed ? impedanceRemarks(imposed, omega, zeta) : STEPPED.includes(given)
+      ? ["k, c and r are those in the limit of small time steps, which damp less; with the parameter time_step, in s, "
+        + "they are those of this step"] : [];
     const root = Math.sqrt(zeta * zeta - 1), r = Math.exp(-2 * zeta * (root > 0 ? Math.asinh(root) / root : 1));
     refuseIf(!(zeta < 1), `damping ratio ζ = ${repr(zeta)} is not below 1: a free impact `
       + `${release === "force" ? `has r = ${r.toFixed(4)}` : "does not end"}, and orbits are computed for less damping only`);
@@ -198,15 +218,19 @@ const inSi = ({law, mass, time, length}) => Object.entries(law.numbers).map(([na
 
 // What to write into an engine for a contact of mass, stiffness and damping, with the law of it.
 function settingsOf(engines, name, release, {mass, stiffness, damping}, error, law = null) {
-  const {scheme, snippets} = engines[name], [m, k, c] = [mass, stiffness, damping].map(rounded);
+  // Drake's law cannot take back the damping of a step.
+  const {snippets} = engines[name], scheme = law ? "implicit Euler" : engines[name].scheme;
+  const [m, k, c] = [mass, stiffness, damping].map(rounded);
   const omega = Math.sqrt(k / m), zeta = c / (2 * m * omega);
   const of = rule => ({omega, zeta, release: rule, sine: rule === "force" ? zeta : 0});
   const contact = of(release), steps = stepsFor(scheme, contact, error);
   const time_step = rounded(freeAngle(contact) / dampedFrequency(contact) / steps);
+  const written = scheme !== COMPENSATED ? [k, c]
+    : compensated(k / m, c / m, time_step).map(x => rounded(x * m));
   const numbers = law ? {point_contact_stiffness: rounded(2 * law.stiffness),
-    hunt_crossley_dissipation: rounded(law.damping)} : ENGINE_NUMBERS[name](m, k, c);
+    hunt_crossley_dissipation: rounded(law.damping)} : ENGINE_NUMBERS[name](m, ...written);
   const texts = Object.fromEntries(
-    Object.entries({mass: m, time_step, ...numbers}).map(([key, x]) => [key, repr(x)]));
+    Object.entries({mass: m, stiffness: k, damping: c, time_step, ...numbers}).map(([key, x]) => [key, repr(x)]));
   for (const rule of ["displacement", "force"]) texts[rule] = ownRestitution(of(rule)).toFixed(4);
   return {scheme, steps, time_step, restitution: ownRestitution(contact),
     snippet: snippets[law ? "hunt-crossley" : release].replace(/@([\w.]+)@/g, (_, key) => texts[key])};

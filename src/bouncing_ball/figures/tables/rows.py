@@ -4,8 +4,6 @@ Each function returns the header and the rows as texts, made from parts of the d
 (:mod:`.layout`).
 """
 
-from functools import partial
-
 import numpy as np
 import xarray as xr
 
@@ -182,16 +180,14 @@ def ext_laws(data: xr.Dataset) -> Table:
     return table(each(data, "quantity", "law"), columns)
 
 
-_OF_ENGINES = (
-    "free_steps measured_restitution contact_steps height_scatter limit_error limit_scatter".split()
-)
+_OF_ENGINES = "free_steps measured_restitution contact_steps height_scatter".split()
 
 
 def ext_engines(data: xr.Dataset) -> Table:
     """Physics engines and models: restitution, steps, and the heights of orbits.
 
-    Errors are given at the largest step, as the mean of the bounces ± their scatter, and in the
-    limit of small steps. Times are relative to that of the event-driven simulation.
+    Errors are the mean of the bounces ± their scatter. Times are relative to that of the
+    event-driven simulation.
     """
     tolerance = data.tolerance.max()
     columns: Columns = {
@@ -203,8 +199,7 @@ def ext_engines(data: xr.Dataset) -> Table:
         "r got": value("measured_restitution", ".4f"),
         "steps in a contact": lambda part: number(part.contact_steps.max(), ".0f"),
         **{
-            f"{name} error, ϖ = {ratio:g}": at(partial(_error, name), frequency_ratio=ratio)
-            for name in ("height", "limit")
+            f"height error, ϖ = {ratio:g}": at(_error, frequency_ratio=ratio)
             for ratio in data.frequency_ratio.values
         },
         f"time of a bounce, ϖ = {_listed(data.frequency_ratio, 'g')}": lambda part: _listed(
@@ -212,7 +207,7 @@ def ext_engines(data: xr.Dataset) -> Table:
         ),
     }
     # A dictionary, because the keyword tolerance is another argument of sel.
-    shown = data.sel({"tolerance": tolerance}).isel(refinement=0)
+    shown = data.sel({"tolerance": tolerance})
     parts: list[xr.Dataset] = []
     for case in each(shown, "release", "restitution", "n"):
         parts += [one for one in each(case, "engine") if np.isfinite(one.free_steps)]
@@ -229,9 +224,9 @@ def _listed(values: xr.DataArray, form: str) -> str:
     return ", ".join(f"{x:{form}}" for x in values.values.ravel() if np.isfinite(x))
 
 
-def _error(name: str, part: xr.Dataset) -> str:
-    """The mean error of a height, or its limit for small steps, and the scatter, in per cent."""
-    error, scatter = (100 * float(part[f"{name}_{what}"]) for what in ("error", "scatter"))
+def _error(part: xr.Dataset) -> str:
+    """The mean error of a height and its scatter, in per cent."""
+    error, scatter = 100 * float(part.height_error), 100 * float(part.height_scatter)
     if not np.isfinite(error):
         return "–"
     # Adding 0.0 removes the sign of a zero that results from rounding.

@@ -71,7 +71,12 @@ LAWS = {
     "impedance, by depth and deep": Impedance(10.0, 0.05, 0.6, 0.2, 0.05, 0.3, 3.0),
 }
 # Other parameters of laws that are tried often: weekly.
-SELDOM = ("tsuji, strong", "elasto-backlash, strong", "impedance, weak", "impedance, by depth and deep")
+SELDOM = (
+    "tsuji, strong",
+    "elasto-backlash, strong",
+    "impedance, weak",
+    "impedance, by depth and deep",
+)
 every_law = pytest.mark.parametrize(
     "law",
     [pytest.param(LAWS[x], id=x, marks=[pytest.mark.long] * (x in SELDOM)) for x in LAWS],

@@ -137,6 +137,16 @@ def test_the_ranges_of_an_impedance():
             Impedance(2.0, 0.5, **wrong)
 
 
+@pytest.mark.parametrize(("zeta", "angle"), [(1.0, 2.0), (1.25, 8 / 3 * np.log(2))])
+def test_an_impedance_without_oscillation_releases_the_ball(zeta, angle):
+    # ϖD = 2 arcosh ζ/√(ζ² - 1) and r = exp(-ζϖD), and σ_d as for ζ < 1.
+    omega, d, r = 50.0, 0.95, np.exp(-zeta * angle)
+    impact, lag = free_impact(Impedance(omega, zeta, d), 1.0), 2 * zeta / omega
+    load = (1 - r) * angle / omega - (2 - d) * lag * r
+    expected = [r * (angle / omega + lag) / (1 + r), r, load, angle / omega]
+    assert impact[:4] == pytest.approx(expected, rel=1e-12)
+
+
 def test_what_a_law_cannot_do_is_said():
     with pytest.raises(ModelError, match="sinking: a free impact of speed 2 does not end"):
         free_impact(_Sinking(), 2.0)

@@ -23,7 +23,6 @@ import numpy as np
 from bouncing_ball.contacts.laws.impedance import Impedance
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.signature import free_impact
-from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.engines.engine import Engine, Physical
 from bouncing_ball.engines.scheme import Scheme
 from bouncing_ball.errors import ModelError
@@ -128,37 +127,35 @@ class MuJoCo(Engine):
     ) -> Impedance | None:
         least, most, width, *shape = impedance(parameters.get("solimp", ()))
         contact = self.read(parameters, 1.0)
-        if max(least, most) <= _FELT or contact.damping_ratio >= 1:
+        if max(least, most) <= _FELT:
             return None
         own = contact.angular_frequency * time, contact.damping_ratio
         return Impedance(*own, most, least, (width or 1.0) / length, *shape)
 
     def remarks(self, parameters: Mapping[str, Any]) -> tuple[str, ...]:
-        law, (least, most, *_) = self.law(parameters), impedance(parameters.get("solimp", ()))
+        law = self.law(parameters)
+        if law is None:
+            return ()
+        # The impedance is constant at depths greater than the width; d = 0 is a spring and damper.
+        least, most = law.at_surface, law.share
+        deep, spring = (
+            free_impact(Impedance(law.frequency_ratio, law.damping_ratio, d), 1.0)
+            for d in (most, 0.0)
+        )
         found = (
             f"with the impedance {most:g} a contact feels {1 - most:.2g} of the load (gravity, "
             'table), and a spring and a damper all of it: solimp = "1e-4 1e-4 0.001"',
-        )
-        if law is None:
-            high = "this contact has ζ ≥ 1, for which σ and r at each depth are not computed"
-            return (*found, high) if max(least, most) > _FELT else ()
-        share = least / most
-        spring = SpringDamper(law.frequency_ratio, law.damping_ratio, Release.FORCE)
-        # The impedance is constant at depths greater than the width.
-        deep = Impedance(law.frequency_ratio, law.damping_ratio, most)
-        new, old = (float(free_impact(each, 1.0).load) for each in (deep, spring))
-        found += (
-            f"under a load a this r is r + σ a/v with σ = {new:.4g} s, and {old:.4g} s for "
-            "a spring and a damper",
+            f"under a load a this r is r + σ a/v with σ = {deep.load:.4g} s, and "
+            f"{spring.load:.4g} s for a spring and a damper",
         )
         if law.has_kink:
-            speeds = law.width * law.frequency_ratio * np.array([0.1, 1.0, 10.0])
+            share, speeds = least / most, law.width * law.frequency_ratio * np.array([0.1, 1, 10])
             impacts = free_impact(law, speeds).restitution
             each = (f"{r:.4f} at {v:.3g} m/s" for r, v in zip(impacts, speeds, strict=True))
             found += (
                 f"this is the contact below the depth of {law.width:g} m; at the surface the "
                 f"spring is {share**2:.2g} and the damper {share:.2g} of it",
-                f"a free impact has r = {', '.join(each)}, and {float(spring.restitution):.4f} "
+                f"a free impact has r = {', '.join(each)}, and {spring.restitution:.4f} "
                 "where it is much deeper than that",
             )
         return found

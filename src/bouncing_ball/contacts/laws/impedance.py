@@ -26,8 +26,9 @@ In a steady contact without a flight both p and the force remain positive, which
 
     Λ ≤ |ϖ² - 1 + 2iζϖ| / max(ϖ², |ϖ² - d + 2iζϖ|)
 
-If d varies, r depends on the speed, and the signature comes from free impacts. Physical
-parameters: ``k/m = Ω² ϖ²``, ``c/m = 2Ωζϖ``, and the width is W g/Ω².
+If d varies, r depends on the speed, and the signature comes from free impacts; for ζ ≥ 1 as well,
+where r and D have other formulas and that of σ_d holds. Physical parameters: ``k/m = Ω² ϖ²``,
+``c/m = 2Ωζϖ``, and the width is W g/Ω².
 
 Source: MuJoCo's documentation, *Solver parameters*, read with the engine itself.
 """
@@ -53,7 +54,7 @@ class Impedance(OscillatorLaw):
     Parameters
     ----------
     frequency_ratio, damping_ratio : float or array
-        ϖ > 0 and ζ in [0, 1).
+        ϖ > 0 and ζ ≥ 0. Because the force only pushes, the ball rebounds for ζ ≥ 1 as well.
     share : float or array
         d_max in [0, 1), the impedance from the depth ``width`` on; MuJoCo's default is 0.95.
     at_surface : float or array, optional
@@ -89,8 +90,7 @@ class Impedance(OscillatorLaw):
     feels_load: ClassVar[bool] = True
 
     def __post_init__(self):
-        # The signature of the spring-damper exists only if ϖ and ζ are in their ranges.
-        _ = self._spring.signature
+        super().__post_init__()
         if self.at_surface is None:
             object.__setattr__(self, "at_surface", self.share)
         for d in map(np.asarray, (self.share, self.at_surface)):
@@ -157,8 +157,8 @@ class Impedance(OscillatorLaw):
 
     @property
     def signature(self) -> Instant | None:
-        """The signature of the spring-damper with σ_d in place of σ; None if d varies."""
-        if self.has_kink:
+        """The signature of the spring-damper with σ_d in place of σ; None if d varies or ζ ≥ 1."""
+        if self.has_kink or np.any(np.asarray(self.damping_ratio) >= 1):
             return None
         free, spring = self._spring.signature, self._spring
         return free._replace(load=free.load + self.share * spring.lag * free.restitution)

@@ -24,15 +24,10 @@ function repr(x) {
   return `${digits}e${exponent < 0 ? "-" : "+"}${String(Math.abs(exponent)).padStart(2, "0")}`;
 }
 
-// Of a mass of one: k and c with which implicit Euler has the positions of the exact contact, by
-// exp(-hμ) - 1 for its rate μ (bouncing_ball.engines.compensation).
+// Of a mass of one, and ζ < 1: k and c with which implicit Euler has the positions of the exact
+// contact, by exp(-hμ) - 1 for its rate μ (bouncing_ball.engines.compensation).
 function compensated(k, c, step) {
-  const discriminant = c * c / 4 - k, root = Math.sqrt(Math.abs(discriminant));
-  if (discriminant >= 0) {
-    const first = Math.expm1(step * (c / 2 + root)), second = Math.expm1(step * k / (c / 2 + root));
-    return [first * second / step ** 2, (first + second) / step];
-  }
-  const growth = Math.expm1(step * c / 2), angle = step * root;
+  const growth = Math.expm1(step * c / 2), angle = step * Math.sqrt(k - c * c / 4);
   const real = growth - (growth + 1) * 2 * Math.sin(angle / 2) ** 2, imaginary = (growth + 1) * Math.sin(angle);
   return [(real * real + imaginary * imaginary) / step ** 2, Math.max(0, 2 * real / step)];
 }
@@ -143,7 +138,6 @@ function impedanceRemarks([least, most, width, midpoint, power], omega, zeta) {
   const found = [`with the impedance ${general(most, 6)} a contact feels ${general(1 - most, 2)} of the load `
     + '(gravity, table), and a spring and a damper all of it: solimp = "1e-4 1e-4 0.001"'];
   if (Math.max(least, most) <= FELT) return [];
-  if (zeta >= 1) return [...found, "this contact has ζ ≥ 1, for which σ and r at each depth are not computed"];
   const spring = {omega, zeta, release: "force", sine: zeta}, r = ownRestitution(spring), {load} = signatureOf(spring);
   found.push(`under a load a this r is r + σ a/v with σ = ${general(load + most * 2 * zeta / omega * r, 4)} s, and `
     + `${general(load, 4)} s for a spring and a damper`);
@@ -186,6 +180,7 @@ function caseOf({given, engine, release, r, n, t, one, two, m, k, f}) {
     const root = Math.sqrt(zeta * zeta - 1), r = Math.exp(-2 * zeta * (root > 0 ? Math.asinh(root) / root : 1));
     refuseIf(!(zeta < 1), `damping ratio ζ = ${repr(zeta)} is not below 1: a free impact `
       + `${release === "force" ? `has r = ${r.toFixed(4)}` : "does not end"}, and orbits are computed for less damping only`);
+    const remarks = imposed ? impedanceRemarks(imposed, omega, zeta) : [];
     const sine = release === "force" ? zeta : 0, contact = {omega: omega * time, zeta, release, sine};
     let law = null;
     if (imposed && engine === "none" && Math.max(...imposed.slice(0, 2)) > FELT) {

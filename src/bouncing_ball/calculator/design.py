@@ -164,7 +164,8 @@ def design(
     solimp
         For MuJoCo: "DMIN DMAX WIDTH MIDPOINT POWER", or the first of these numbers.
     parameters
-        For the other engines: a parameter by its name, such as kn=1e5.
+        For the other engines: a parameter by its name, such as kn=1e5; for PyBullet and Drake also
+        time_step, in s.
 
     Raises
     ------

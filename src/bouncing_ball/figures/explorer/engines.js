@@ -24,15 +24,10 @@ function repr(x) {
   return `${digits}e${exponent < 0 ? "-" : "+"}${String(Math.abs(exponent)).padStart(2, "0")}`;
 }
 
-// Of a mass of one: k and c with which implicit Euler has the positions of the exact contact, by
-// exp(-hμ) - 1 for its rate μ (bouncing_ball.engines.compensation).
+// Of a mass of one, and ζ < 1: k and c with which implicit Euler has the positions of the exact
+// contact, by exp(-hμ) - 1 for its rate μ (bouncing_ball.engines.compensation).
 function compensated(k, c, step) {
-  const discriminant = c * c / 4 - k, root = Math.sqrt(Math.abs(discriminant));
-  if (discriminant >= 0) {
-    const first = Math.expm1(step * (c / 2 + root)), second = Math.expm1(step * k / (c / 2 + root));
-    return [first * second / step ** 2, (first + second) / step];
-  }
-  const growth = Math.expm1(step * c / 2), angle = step * root;
+  const growth = Math.expm1(step * c / 2), angle = step * Math.sqrt(k - c * c / 4);
   const real = growth - (growth + 1) * 2 * Math.sin(angle / 2) ** 2, imaginary = (growth + 1) * Math.sin(angle);
   return [(real * real + imaginary * imaginary) / step ** 2, Math.max(0, 2 * real / step)];
 }

@@ -9,10 +9,6 @@ with logged(snakemake) as lines, style():
     draw = load(snakemake.params.drawing)
     data = map(read_input, snakemake.input.get("data", []))
     figure, metadata = draw(*data), provenance(snakemake)
-    # Laid out once for both formats.
-    if engine := figure.get_layout_engine():
-        engine.execute(figure)
-        figure.set_layout_engine("none")
     for path in snakemake.output:
         save(figure, path, metadata)
     lines += snakemake.output

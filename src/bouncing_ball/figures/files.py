@@ -7,6 +7,7 @@ from typing import Any
 
 from matplotlib import rcParams
 from matplotlib.backend_bases import get_registered_canvas_class
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from bouncing_ball.datasets.files import replacing
@@ -24,13 +25,22 @@ def save(figure: Figure, path: str | Path, metadata: Mapping[str, str]) -> None:
     OSError
         If the file cannot be written.
     """
+    kind, given = Path(path).suffix.removeprefix("."), dict(metadata)
     # Without time and version, which matplotlib would write by default.
-    texts: dict[str, Any] = {"Software": None, **metadata}
-    if Path(path).suffix == ".svg":
-        texts = {"Date": None, "Creator": None, "Description": json.dumps(dict(metadata))}
-    kind = Path(path).suffix.removeprefix(".")
+    options: dict[str, Any] = {"metadata": {"Software": None, **given}}
+    if kind == "svg":
+        options = {"metadata": {"Date": None, "Creator": None, "Description": json.dumps(given)}}
+    if kind == "png":
+        # A third of the time, and files of one tenth more.
+        options["pil_kwargs"] = {"compress_level": 3}
     with replacing(path) as temporary, style():
         figure.set_dpi(rcParams["savefig.dpi"])
+        if engine := figure.get_layout_engine():
+            # Laid out once for all formats. The canvas of a PNG keeps the extents of the texts.
+            FigureCanvasAgg(figure)
+            engine.execute(figure)
+            figure.set_layout_engine("none")
+        canvas = get_registered_canvas_class(kind)
         # savefig would draw each figure once more to find its extent.
-        canvas = get_registered_canvas_class(kind)(figure)
-        getattr(canvas, f"print_{kind}")(temporary, metadata=texts)
+        draw = figure.canvas if isinstance(figure.canvas, canvas) else canvas(figure)
+        getattr(draw, f"print_{kind}")(temporary, **options)

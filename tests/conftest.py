@@ -128,7 +128,7 @@ def reference():
 @pytest.fixture(scope="session")
 def recorded():
     """The accepted datasets by name."""
-    paths = [*sorted((ROOT / "figures").glob("*.nc")), ROOT / "config/ext_means.nc"]
+    paths = [*sorted((ROOT / "figures").glob("*.nc")), *(ROOT / "config").glob("ext_*.nc")]
     return {path.stem: read_dataset(path) for path in paths}
 
 
@@ -153,10 +153,11 @@ def coarse():
     return {
         ("ext_basins", "starts"): 20,
         ("ext_cascades", "samples"): 5,
+        ("ext_cascades", "doublings"): 4,
         ("ext_diagram", "samples"): 12,
-        ("ext_locked", "nodes"): 60,
+        ("ext_locked", "nodes"): 30,
         ("ext_means", "starts"): 3,
-        ("ext_locking", "samples"): 8,
+        ("ext_locking", "samples"): 6,
     }
 
 

@@ -33,9 +33,9 @@ def test_limits_of_estimates():
 
 
 def test_a_contact_agrees_where_the_prediction_says():
-    place = {"restitution": 0.5, "amplitude": 2.5}
-    transients = {"cases": [place], "frequency_ratio": [1000.0], "balls": 20, "impacts": 250}
-    common = {"confidence": 0.95, "seed": 5}
+    place, common = {"restitution": 0.5, "amplitude": 2.5}, {"confidence": 0.95, "seed": 5}
+    balls = {"cases": [place], "frequency_ratio": [1000.0], "balls": 20, "impacts": 250}
+    lives = typed(transients.transients)(balls | common, "displacement")
     given = {
         "amplitude": {"min": 2.0, "max": 4.0, "samples": 2},
         "restitution": {"min": 0.2, "max": 0.5, "samples": 2},
@@ -43,9 +43,8 @@ def test_a_contact_agrees_where_the_prediction_says():
         "impacts": 200,
         "nodes": 40,
         "shifts": [1e-2, 1e-4],
-        "transients": transients | common,
     }
-    data = typed(locked_orbits)(given | common, "displacement")
+    data = typed(locked_orbits)({"ext_lives": lives}, given | common, "displacement")
     stiff = 1000 * data.wait / data.sensitivity
     right = data.needed_ratio <= 1000
     # By chance a few of the others have the same period.
@@ -69,5 +68,5 @@ def test_a_ball_has_arrived_where_phase_and_velocity_agree(monkeypatch):
     monkeypatch.setattr(transients, "label", label)
     case = {"cases": [{"restitution": 0.5, "amplitude": 2.5}], "frequency_ratio": [10.0]}
     asked = transients.Transients(**case, balls=10, impacts=50, confidence=0.95, seed=1)
-    data = transients.transients(asked, transients.lives(asked, Release.DISPLACEMENT))
+    data = transients.transients(asked, Release.DISPLACEMENT)
     assert np.all(data.mean_life == 3)

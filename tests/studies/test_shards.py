@@ -15,26 +15,27 @@ GIVEN = read_yaml(Path(__file__).parents[2] / "config/config.yaml")["extensions"
 LOW = {"restitution": {"min": 0.1, "max": 0.2, "samples": 2}}
 GRID = LOW | {"amplitude": {"min": 0.8, "max": 1.6, "samples": 7}}
 HIGH = {"min": 1.5, "max": 2.0, "samples": 11}
-LIVES = GIVEN["ext_locked"]["transients"] | {"balls": 12, "impacts": 50}
 PLACES = {
     # Here a ball ends on another motion if it starts from the fourth amplitude beside its own.
     "ext_diagram": {"restitution": 0.2, "amplitude": HIGH, "samples": 10},
     "ext_locking": GRID,
     "ext_means": GRID | {"starts": 5, "samples": 10},
-    "ext_locked": LOW | {"nodes": 20, "transients": LIVES},
-    "ext_basins": {"starts": 10, "random": 25},
+    "ext_locked": LOW | {"nodes": 20},
+    "ext_lives": {"balls": 12, "impacts": 50},
+    "ext_basins": {"cases": GIVEN["ext_basins"]["cases"][1:], "starts": 10, "random": 25},
 }
 
 
 @pytest.mark.parametrize("name", PLACES)
-def test_shards_give_the_dataset_of_one_job(name, table, tmp_path, refusal):
+def test_shards_give_the_dataset_of_one_job(name, table, recorded, tmp_path, refusal):
     places, study = (typed(load(table[name][x])) for x in ("places", "study"))
-    given, parts = GIVEN[name] | PLACES[name], []
+    given, parts = {"parameters": GIVEN[name] | PLACES[name], "release": "displacement"}, []
+    read = {"data": recorded} if "reads" in table[name] else {}
     for shard in shard_names(3):
-        found = places(given, "displacement", part=part_of(shard))
+        found = places(**given, part=part_of(shard))
         part = {x: ([f"{x}_{k}" for k in range(y.ndim)], y) for x, y in found.items()}
         write_dataset(xr.Dataset(part), tmp_path / "part.nc")
         parts.append(read_dataset(tmp_path / "part.nc"))
-    assert study(given, "displacement", found=joined(parts)).identical(study(given, "displacement"))
+    assert study(**given, **read, found=joined(parts)).identical(study(**given, **read))
     with refusal(ParameterError, "shards: 2000 are more than the "):
-        places(given, "displacement", part=part_of("0000-of-2000"))
+        places(**given, part=part_of("0000-of-2000"))

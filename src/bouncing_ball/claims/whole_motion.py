@@ -95,7 +95,7 @@ def longer_transients(data):
     Condition: so do the mean lives at r = 0.6, Λ = 3, with the farthest limits of both
     """
     lives = (
-        limits(data["ext_locked"], "mean_life", {"case": 2, "life_ratio": x}) for x in (1e4, np.inf)
+        limits(data["ext_lives"], "mean_life", {"case": 2, "life_ratio": x}) for x in (1e4, np.inf)
     )
     contact, simple = lives
     return decided(contact / simple[[0, 2, 1]], above=10)

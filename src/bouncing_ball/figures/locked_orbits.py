@@ -46,6 +46,6 @@ def locked_orbits(data: xr.Dataset) -> Figure:
         name = "restitution" if np.isinf(ratio) else rf"$\varpi={number(float(ratio))}$"
         lives.plot([], [], color="#8c8c8c", linestyle=dashes, label=name)
     lives.set(xlabel="table periods", ylabel="share of balls not locked", title="transients")
-    lives.set(yscale="log", ylim=(0.01, 6))
+    lives.set(xscale="log", yscale="log", ylim=(0.01, 6))
     lives.legend(fontsize=6, ncols=2, loc="upper right")
     return figure

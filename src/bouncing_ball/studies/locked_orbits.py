@@ -1,5 +1,6 @@
 """At which ϖ a contact has the locked orbit of the restitution model (beyond the paper)."""
 
+from collections.abc import Mapping
 from typing import Annotated
 
 import numpy as np
@@ -14,7 +15,6 @@ from bouncing_ball.datasets.shards import Arrays, Found, Part
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.parameters import Many, Seed, number
 from bouncing_ball.studies.attractors import Grid, models, share, with_limits
-from bouncing_ball.studies.transients import Transients, lives, transients
 from bouncing_ball.studies.uncertainty import exponent
 
 # Edges of the ranges of ϖ w/S.
@@ -23,12 +23,11 @@ PREDICTORS = ("S/w", "periods")
 
 
 class LockedOrbits(Grid):
-    """Random places in the range of (Λ, r)."""
+    """Random places in a range of (Λ, r), and places at which transients are followed."""
 
     nodes: Annotated[int, number("random places", ge=10, le=100000)]
     shifts: Many[Annotated[float, number("changes of Λ", gt=0, le=1)]]
     seed: Seed
-    transients: Transients
 
     def places(self) -> np.ndarray:
         random, of = np.random.default_rng(self.seed), (self.restitution, self.amplitude)
@@ -42,10 +41,11 @@ def correlation(one: np.ndarray, other: np.ndarray, confidence: float) -> np.nda
     return np.array([rho, *np.tanh(np.arctanh(rho) + width * np.array([-1, 1]))])
 
 
-def orbits_and_lives(parameters: LockedOrbits, release: Release, part: Part = np.asarray) -> Arrays:
+def returns_at_places(
+    parameters: LockedOrbits, release: Release, part: Part = np.asarray
+) -> Arrays:
     """The fields of :class:`~bouncing_ball.attractors.lift_off.Return`, first without a change of Λ
-    and then after each change; whether the contact has the same period, over ϖ; and
-    :func:`bouncing_ball.studies.transients.lives`, whose places are balls.
+    and then after each change; and whether the contact has the same period, over ϖ.
     """
     r, lam = part(parameters.places())
     ratios, shifts = (np.array([x]).T for x in (parameters.frequency_ratio, parameters.shifts))
@@ -53,10 +53,15 @@ def orbits_and_lives(parameters: LockedOrbits, release: Release, part: Part = np
     contact = models(r, ratios, release)[-1].impact_law
     motion = label(contact, lam, -np.pi / 2, 0.0, impacts=parameters.impacts)
     same = (motion.kind == Kind.LOCKED) & (motion.periods == found.periods[0])
-    return {**found._asdict(), "same": same, **lives(parameters.transients, release, part)}
+    return {**found._asdict(), "same": same}
 
 
-def locked_orbits(parameters: LockedOrbits, release: Release, found: Found = None) -> xr.Dataset:
+def locked_orbits(
+    data: Mapping[str, xr.Dataset],
+    parameters: LockedOrbits,
+    release: Release,
+    found: Found = None,
+) -> xr.Dataset:
     """The places at which a contact has the locked orbit of the restitution model, and predictors.
 
     The places are uniformly distributed in Λ and r. Over ``node`` the dataset has ``restitution``
@@ -71,9 +76,9 @@ def locked_orbits(parameters: LockedOrbits, release: Release, found: Found = Non
     ``jump_share`` (shift) is the share of places next to a discontinuity, at which the period
     changes, or is not found, if Λ changes by the shift, and ``uncertainty_exponent`` its exponent.
     Each has a lower and an upper limit, ``_low`` and ``_high``. The variables of
-    :func:`bouncing_ball.studies.transients.transients` are added.
+    :func:`bouncing_ball.studies.transients.transients`, ``ext_lives``, are added.
     """
-    found, level = found or orbits_and_lives(parameters, release), parameters.confidence
+    found, level = found or returns_at_places(parameters, release), parameters.confidence
     ratios, shifts = (np.array(x) for x in (parameters.frequency_ratio, parameters.shifts))
     (r, lam), (period, *moved), same = parameters.places(), found["periods"], found["same"]
     s, wait = found["sensitivity"][0], found["wait"][0]
@@ -93,7 +98,7 @@ def locked_orbits(parameters: LockedOrbits, release: Release, found: Found = Non
         "jump_share": ("shift", [share(x, level)[1:] for x in changed]),
         "uncertainty_exponent": ((), exponent(changed.T, shifts, level)),
     }
-    data = described(
+    orbits = described(
         {name: ("node", values) for name, values in nodes.items()} | with_limits(limited),
         coords={
             "frequency_ratio": ratios,
@@ -102,4 +107,4 @@ def locked_orbits(parameters: LockedOrbits, release: Release, found: Found = Non
             "shift": shifts,
         },
     )
-    return data.merge(transients(parameters.transients, found))
+    return orbits.merge(data["ext_lives"])

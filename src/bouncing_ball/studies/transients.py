@@ -10,7 +10,7 @@ from scipy.stats import CensoredData, chi2, ecdf
 from bouncing_ball.attractors.mapper import label
 from bouncing_ball.attractors.motions import Kind
 from bouncing_ball.contacts.spring_damper import Release
-from bouncing_ball.datasets.shards import Arrays, Part
+from bouncing_ball.datasets.shards import Arrays, Found, Part
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.parameters import (
@@ -20,9 +20,10 @@ from bouncing_ball.parameters import (
     Many,
     Parameters,
     Seed,
+    Sharded,
     number,
 )
-from bouncing_ball.studies.attractors import LIMITS, Confidence, models
+from bouncing_ball.studies.attractors import Confidence, models, share, with_limits
 
 # Distance from an impact of the final motion within which a ball has reached this motion.
 _NEAR = 1e-3
@@ -37,7 +38,7 @@ class Place(Parameters):
     amplitude: Amplitude
 
 
-class Transients(Parameters):
+class Transients(Sharded):
     """Balls with random starts, at several places."""
 
     cases: Many[Place]
@@ -93,30 +94,36 @@ def lives(parameters: Transients, release: Release, part: Part = np.asarray) -> 
     return {"life": np.concatenate(times, axis=1), "life_kind": np.concatenate(kinds, axis=1)}
 
 
-def transients(parameters: Transients, found: Arrays) -> xr.Dataset:
-    """The shares of balls that have not yet reached the motion on which they lock, from
-    :func:`lives`.
+def transients(parameters: Transients, release: Release, found: Found = None) -> xr.Dataset:
+    """The shares of balls that have not yet reached the motion on which they lock.
 
     ``survival`` (case, life_ratio, life) is the estimate of Kaplan and Meier, over the time in
     periods of the table. ``mean_life`` (case, life_ratio) and its limits are also in periods; see
     :func:`mean_life`. A ball that is not found to lock is censored at its last impact, and a ball
-    that ends on an orbit without sticking is left out. The restitution model has ϖ = ∞.
+    that ends on an orbit without sticking is left out. If some balls lock, those that are chaotic
+    to the end are taken to be on another attractor and left out of the mean life;
+    ``chaotic_share`` (case, life_ratio) is their share of all. The restitution model has ϖ = ∞.
     ``case_restitution`` and ``case_amplitude`` are over the case.
     """
-    time, kind, (r, lam) = found["life"], found["life_kind"], columns(parameters.cases)
+    found, (r, lam) = found or lives(parameters, release), columns(parameters.cases)
+    time, kind = found["life"], found["life_kind"]
     end, other = kind == Kind.LOCKED, (kind == Kind.ORBIT) | (kind == Kind.SUBHARMONIC)
-    grid, level = np.linspace(0, parameters.impacts, _TIMES), parameters.confidence
+    chaotic = kind == Kind.CHAOTIC
+    apart = chaotic & end.any(axis=-1, keepdims=True)
+    grid, level = np.geomspace(1, parameters.impacts, _TIMES), parameters.confidence
     shape = time.shape[:-1]
-    survival, life = np.empty((*shape, _TIMES)), np.empty((3, *shape))
+    survival, (life, lasting) = np.empty((*shape, _TIMES)), np.empty((2, *shape, 3))
     for k in np.ndindex(shape):
         own, locks = time[k][~other[k]], end[k][~other[k]]
         survival[k] = ecdf(CensoredData.right_censored(own, ~locks)).sf.evaluate(grid)
-        life[:, *k] = mean_life(own, locks, level)
+        stays = ~(other | apart)[k]
+        life[k] = mean_life(time[k][stays], end[k][stays], level)
+        lasting[k] = share(chaotic[k], level)[1:]
     dims = ("case", "life_ratio")
     return described(
         {
             "survival": ((*dims, "life"), survival),
-            **{f"mean_life{x}": (dims, y) for x, y in zip(LIMITS, life, strict=True)},
+            **with_limits({"mean_life": (dims, life), "chaotic_share": (dims, lasting)}),
             "case_restitution": ("case", r),
             "case_amplitude": ("case", lam),
         },

@@ -81,14 +81,10 @@ def last_crossing(function: Numbered, ratios: np.ndarray, scanned: np.ndarray) -
     last = turns.shape[1] - 1 - np.argmax(turns[which, ::-1], axis=1)
     found = np.full(len(scanned), np.nan)
     if which.size:
+        low, high = (np.log(ratios[last + k]) for k in range(2))
         # If a sample lies at the root, rounding may change its sign; the root is then the sample.
-        found[which] = np.exp(
-            bracketed_roots(
-                lambda x, k: function(np.exp(x), which[k]),
-                *(np.log(ratios[last + k]) for k in range(2)),
-                _CLOSE,
-            )
-        )
+        root = bracketed_roots(lambda x, k: function(np.exp(x), which[k]), low, high, _CLOSE)
+        found[which] = np.exp(root)
     return found
 
 

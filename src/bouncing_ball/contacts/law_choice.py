@@ -82,8 +82,8 @@ def _search(kind: type[ContactLaw], restitution: float) -> float:
             f"restitution coefficient r = {restitution:g} is too small: no {kind.name} contact "
             "with it was found; damped so strongly, the ball hardly leaves"
         ) from None
-    ends = np.array([[0.0], [enough]])
-    return float(bracketed_roots(np.vectorize(lambda x, _: surplus(x)), *ends, _SETTLED)[0])
+    each = np.vectorize(lambda group, _: surplus(group))
+    return float(bracketed_roots(each, np.zeros(1), np.full(1, enough), _SETTLED)[0])
 
 
 def law_of_impact(

@@ -153,10 +153,11 @@ def coarse():
     return {
         ("ext_basins", "starts"): 20,
         ("ext_cascades", "samples"): 5,
+        ("ext_cascades", "doublings"): 4,
         ("ext_diagram", "samples"): 12,
-        ("ext_locked", "nodes"): 60,
+        ("ext_locked", "nodes"): 30,
         ("ext_means", "starts"): 3,
-        ("ext_locking", "samples"): 8,
+        ("ext_locking", "samples"): 6,
     }
 
 

@@ -20,7 +20,7 @@ ABSENT = [MODULES.get(name, name) for name in PACKAGES if name != "bouncing-ball
 
 CONTACT = ["--restitution", "0.85", "--frequency-ratio", "10"]
 TABLE = ["--mass", "20 g", "--frequency", "50 Hz", "--acceleration", "0.8 g"]
-DESIGN = ["design", *TABLE, "--stiffness", "1e7 N/m", "--restitution", "0.85"]
+DESIGN = ["design", *TABLE, "--stiffness", "1e7 N/m", "--restitution", "0.85", "--n", "1"]
 COMMANDS = [
     ["orbit", "--amplitude", "1", *CONTACT],
     ["limits", *CONTACT],

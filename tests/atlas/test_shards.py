@@ -24,7 +24,13 @@ def test_every_variable_is_described(atlas, described):
 
 
 # A row has 24 nodes, a tile 8: blocks that end in the middle of tiles.
-@pytest.mark.parametrize(("order", "block"), [(range(10), 64), ([2, 0, 1], 5), ([0], 17)])
+@pytest.mark.parametrize(
+    ("order", "block"),
+    [
+        ([2, 0, 1], 17),
+        *(pytest.param(*x, marks=pytest.mark.long) for x in ((range(10), 64), ([0], 5))),
+    ],
+)
 def test_neither_shards_nor_blocks_change_a_byte(small, atlas, limits, order, block, monkeypatch):
     monkeypatch.setattr(answers, "BLOCK", block)
     plan = small(shards=len(order))

@@ -33,11 +33,11 @@ def beside(model, n, amplitude, moved=1e-3):
     [
         (0.6, 3.0, 13),
         (contact(0.6, 80.0), 3.0, 8),
-        (contact(0.6, 320.0), 3.0, 43),
+        pytest.param(contact(0.6, 320.0), 3.0, 43, marks=pytest.mark.long),
         (contact(0.6, 1280.0), 3.0, 23),
-        (Signature(contact(0.6, 80.0)), 3.0, 8),
+        pytest.param(Signature(contact(0.6, 80.0)), 3.0, 8, marks=pytest.mark.long),
         (0.5, 2.5, 6),
-        (contact(0.5, 1280.0), 2.5, 6),
+        pytest.param(contact(0.5, 1280.0), 2.5, 6, marks=pytest.mark.long),
         (Signature(contact(0.5, 80.0)), 2.5, 15),
     ],
 )

@@ -10,12 +10,12 @@ from bouncing_ball.attractors.mapper import label
 from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 rng = np.random.default_rng(5)
-r, lam, phase = rng.uniform([[0.1], [0.9], [-3]], [[0.95], [5], [3]], (3, 200))
+r, lam, phase = rng.uniform([[0.1], [0.9], [-3]], [[0.95], [5], [3]], (3, 60))
 contact = SpringDamper.from_restitution(r, 100.0)
 for law in (r, contact, Signature(contact)):
-    found = label(law, lam, phase, -lam - rng.uniform(0, 12, 200), impacts=200)
+    found = label(law, lam, phase, -lam - rng.uniform(0, 12, 60), impacts=200)
     # A chaotic ball of 200 impacts has made a last digit into another motion long ago.
-    assert (found.kind == "chaotic").sum() > 20
+    assert (found.kind == "chaotic").sum() > 5
     for values in (found.end_phase, found.end_velocity, found.periods, found.impacts):
         print(hashlib.sha256(values.tobytes()).hexdigest())
 """

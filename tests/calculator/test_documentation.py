@@ -17,7 +17,11 @@ def test_every_script_is_on_the_page():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("script", SHOWN)
+@pytest.mark.parametrize(
+    # A Hertz contact for each family takes seconds.
+    "script",
+    [pytest.param(x, marks=[pytest.mark.long] * ("steel" in x)) for x in SHOWN],
+)
 def test_a_worked_example(script, capsys):
     runpy.run_path(str(ROOT / script))
     assert capsys.readouterr().out == SHOWN[script]

@@ -70,7 +70,17 @@ LAWS = {
     "impedance, by depth": Impedance(10.0, 0.136, 0.95, 0.5, width=0.2),
     "impedance, by depth and deep": Impedance(10.0, 0.05, 0.6, 0.2, 0.05, 0.3, 3.0),
 }
-every_law = pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
+# Other parameters of laws that are tried often: weekly.
+SELDOM = (
+    "tsuji, strong",
+    "elasto-backlash, strong",
+    "impedance, weak",
+    "impedance, by depth and deep",
+)
+every_law = pytest.mark.parametrize(
+    "law",
+    [pytest.param(LAWS[x], id=x, marks=[pytest.mark.long] * (x in SELDOM)) for x in LAWS],
+)
 every_release = pytest.mark.parametrize("release", list(Release))
 SPEED, PHASE, AMPLITUDE = 3.5, 0.8, 1.2
 START = SPEED, PHASE, AMPLITUDE

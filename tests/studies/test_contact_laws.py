@@ -83,7 +83,9 @@ def height_by_one_impact(law):
 
 
 @slow
-@pytest.mark.parametrize("name", TRIED)
+@pytest.mark.parametrize(
+    "name", [pytest.param(x, marks=() if "linear" in x else pytest.mark.long) for x in TRIED]
+)
 def test_the_errors_are_those_of_the_trial(name):
     rigid = float(RestitutionModel(0.65).orbit(1, 1.0).max_height)
     for duration, (restitution, corrected) in zip(DURATIONS, TRIED[name], strict=True):

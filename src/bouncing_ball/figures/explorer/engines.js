@@ -174,13 +174,12 @@ function caseOf({given, engine, release, r, n, t, one, two, m, k, f}) {
     const [stiffness, damping] = readEngine(given, mass, [one, two]);
     const omega = Math.sqrt(stiffness / mass), zeta = damping / (2 * mass * omega);
     const imposed = given === "mujoco" ? solimpOf(two) : null;
-    const remarks = imposed ? impedanceRemarks(imposed, omega, zeta) : STEPPED.includes(given)
-      ? ["k, c and r are those in the limit of small time steps, which damp less; with the parameter time_step, in s, "
-        + "they are those of this step"] : [];
     const root = Math.sqrt(zeta * zeta - 1), r = Math.exp(-2 * zeta * (root > 0 ? Math.asinh(root) / root : 1));
     refuseIf(!(zeta < 1), `damping ratio ζ = ${repr(zeta)} is not below 1: a free impact `
       + `${release === "force" ? `has r = ${r.toFixed(4)}` : "does not end"}, and orbits are computed for less damping only`);
-    const remarks = imposed ? impedanceRemarks(imposed, omega, zeta) : [];
+    const remarks = imposed ? impedanceRemarks(imposed, omega, zeta) : STEPPED.includes(given)
+      ? ["k, c and r are those in the limit of small time steps, which damp less; with the parameter time_step, in s, "
+        + "they are those of this step"] : [];
     const sine = release === "force" ? zeta : 0, contact = {omega: omega * time, zeta, release, sine};
     let law = null;
     if (imposed && engine === "none" && Math.max(...imposed.slice(0, 2)) > FELT) {

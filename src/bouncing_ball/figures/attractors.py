@@ -40,8 +40,6 @@ _MEANS = {name: (name, colour, marker) for name, colour, marker in zip(
     ("power", "height", "flights", "exponent"), COLOURS, "osv^", strict=False)}  # fmt: skip
 _HATCHES = {"chaotic": "......", "undecided": "xxxx", "subharmonic": "||||||"}
 _HATCHES |= dict.fromkeys(("permanent contact", "no number"), "------")
-# Signs of the models in the panel of exponents.
-_SIGNS = {"restitution": "o", "corrected": "x", "spring-damper": "+"}
 # Exponents outside of this range are drawn as its ends.
 _LOWEST, _HIGHEST = -1.5, 1.5
 # Colours that become lighter throughout, from blue below 0 to yellow above 0.
@@ -205,7 +203,7 @@ def orbit_diagrams(data: xr.Dataset) -> Figure:
     ratios = [1.0] * len(models) + [0.6]
     figure, panels = canvas(WIDE, 8.0, rows=len(ratios), sharex=True, height_ratios=ratios)
     lam, phase = data["amplitude"].values, data.bin_phase.values / np.pi
-    for axes, model in zip(panels, models, strict=False):
+    for axes, model, sign in zip(panels, models, "ox+", strict=False):
         one = data.sel(model=model)
         # The square root of the density shows an orbit and a chaotic motion in one picture.
         shade = np.sqrt(one.phase_density.values.T)
@@ -221,7 +219,7 @@ def orbit_diagrams(data: xr.Dataset) -> Figure:
             "markersize": 2.5,
             "markeredgewidth": 0.6,
         }
-        panels[-1].plot(lam, exponent, _SIGNS[model], label=f"{model} model", **look)
+        panels[-1].plot(lam, exponent, sign, label=f"{model} model", **look)
     panels[-1].axhline(0, **GUIDE)
     panels[-1].set(xlabel=r"amplitude $\Lambda$", ylabel=r"largest $\lambda$ per $T$")
     legend_below(figure, panels[-1].get_legend_handles_labels()[0], ncols=3)

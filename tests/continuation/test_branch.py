@@ -12,7 +12,7 @@ from bouncing_ball.continuation.branch import (
     resample,
     solve_at,
 )
-from bouncing_ball.continuation.events import Event, fold, parameter_bound
+from bouncing_ball.continuation.events import Event, parameter_bound
 from bouncing_ball.continuation.step_control import StepControl
 
 # Newton's last step is below 1e-12 and converges quadratically, so points are
@@ -38,6 +38,10 @@ class Scalar:
 CIRCLE = Scalar(lambda x, p: x**2 + p**2 - 1, lambda x, p: 2 * x, lambda x, p: 2 * p)
 CUBIC = Scalar(lambda x, p: x**3 - x + p, lambda x, p: 3 * x**2 - 1, lambda x, p: 1.0)
 LINE = Scalar(lambda x, p: x - 2 * p, lambda x, p: 1.0, lambda x, p: -2.0)
+
+
+def fold(problem):
+    return Event("fold", lambda y: problem.jacobian(y)[..., 0, 0])
 
 
 def along(problem, *start, **given):

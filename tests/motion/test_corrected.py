@@ -77,22 +77,6 @@ def test_the_order_is_lost_with_any_of_the_numbers(release, change):
     assert np.median(found) < 1.9
 
 
-@pytest.mark.parametrize("release", RELEASES)
-def test_every_observable_of_an_impact_is_of_second_order(release):
-    rng = np.random.default_rng(8)
-    lam, phase = rng.uniform(0.1, 2, BALLS), rng.uniform(-np.pi, np.pi, BALLS)
-    velocity = lam * np.cos(phase) - rng.uniform(2, 8, BALLS)
-    found = []
-    for omega in (500.0, 1000.0):
-        contact = SpringDamper(omega, 0.2, release)
-        exact = simulate(contact, lam, phase, velocity, 1)
-        got = simulate(Signature(contact), lam, phase, velocity, 1)
-        names = ("contact_duration", "relative_bounce_velocity", "release_displacement")
-        found.append([np.abs(getattr(got, k)[0] - getattr(exact, k)[0]) for k in names])
-    first, second = np.array(found)
-    assert np.all(np.abs(np.median(np.log2(first / second), axis=1) - 2) < 0.02)
-
-
 def test_without_delay_and_load_it_is_the_restitution_model():
     lam, phase, velocity, _ = states(7)
     law = Changed(Signature(SpringDamper(5.0, 0.2)), delay=0.0, load=0.0, duration=0.0)

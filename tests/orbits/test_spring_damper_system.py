@@ -9,7 +9,7 @@ from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.continuation.branch import continue_branch
-from bouncing_ball.continuation.events import fold, parameter_bound
+from bouncing_ball.continuation.events import parameter_bound
 from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_limits import orbit_at
@@ -55,7 +55,7 @@ def follow_unstable_side(n, omega, r, lam, largest=0.2):
     contact = SpringDamper(omega, float(damping_ratio(r)))
     system, orbit = SpringDamperModel(contact).system(n), orbit_at(contact, n, lam)
     start = np.array([orbit.phase, orbit.impact_velocity, omega * orbit.contact_duration, lam])
-    events = (*system.events(), fold(system), parameter_bound(10.0, True, "window"))
+    events = (*system.events(), parameter_bound(10.0, True, "window"))
     control = StepControl(largest=largest)
     return system, continue_branch(system, start, increasing=False, events=events, control=control)
 

@@ -42,7 +42,7 @@ _SAME = 1e-9
 
 @dataclass(frozen=True)
 class Nodes:
-    """Nodes of one rule and one n, with r and Λ as arrays of one shape."""
+    """Nodes of one release rule and one family n, with r and Λ as arrays of one shape."""
 
     release: Release
     n: int
@@ -67,7 +67,7 @@ class Ranges(Parameters):
 
 
 class RestitutionRanges(Interval, Ranges):
-    """Ranges of r, without those that a release rule does not reach."""
+    """Equal ranges of r. A release rule has nodes only in the ranges that its contacts reach."""
 
     min: Annotated[Restitution, Field(description="smallest r, for rules that reach it")]
     max: Annotated[Restitution, Field(description="largest r, above min")]

@@ -75,8 +75,9 @@ def judged_by_motion(motion: Motion, tolerance: float, n: int) -> Verdict:
         sentence = "The restitution model is good enough: the ball rests in both models."
         return Verdict(True, sentence, about)
     # Locked and chaotic motions may be alike in the mean, but other kinds that differ are not. An
-    # undecided motion may be of any kind.
-    different = len({*kinds}) > 1 and Kind.UNDECIDED not in kinds
+    # undecided motion may be of any kind, but is not the n-T orbit, on which no ball stays.
+    on_orbit = kinds[1] == Kind.ORBIT and motion.restitution_periods == n
+    different = len({*kinds}) > 1 and (on_orbit or Kind.UNDECIDED not in kinds)
     if different and {*kinds} & {Kind.PERMANENT_CONTACT, Kind.ORBIT, Kind.SUBHARMONIC}:
         sentence = f"its motion is {_named(kinds[1])}, and the contact's is {_named(kinds[0])}"
         return Verdict(False, f"The restitution model is not good enough: {sentence}.", about)

@@ -18,7 +18,7 @@ from bouncing_ball.parameters import Parameters
 
 
 class _Sections(Parameters, strict=False):
-    """Base of the complete configuration; it converts values, because the release is a text."""
+    """Base of the complete configuration; it converts values, because YAML has no release rules."""
 
 
 def configuration_model(studies: Mapping[str, str], config: Mapping[str, Any]) -> type[BaseModel]:

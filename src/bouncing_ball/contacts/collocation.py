@@ -96,7 +96,9 @@ class Contacts(NamedTuple):
 
     ``jacobian`` has the derivatives of (D, p_e, p′_e) with respect to (φ, v, Λ, w), shape
     (..., 3, 4). ``contraction`` is the factor by which the contact multiplies areas of the phase
-    plane: exp(-∫ ∂f/∂p′ dt), times a factor for a step of the force at the release.
+    plane: exp(-∫ ∂f/∂p′ dt), times a factor for a step of the force at the release. ``integrals``
+    has ∫ p dt and ∫ p′ w dt over the contact, with the table's level w = Λ sin(φ + t), shape
+    (..., 2); they are NaN unless they are computed.
     """
 
     duration: np.ndarray
@@ -104,6 +106,7 @@ class Contacts(NamedTuple):
     rate: np.ndarray
     jacobian: np.ndarray
     contraction: np.ndarray
+    integrals: np.ndarray
 
 
 class _Rule(NamedTuple):
@@ -168,7 +171,12 @@ class _Panel(NamedTuple):
 
 
 def _some(which, *rows: Any) -> Any:
-    """Some of the contacts, from laws and from tuples of arrays; contacts are the last axis."""
+    """Some of the contacts, from laws and from tuples of arrays; contacts are the last axis.
+
+    The indices are in ascending order, so that all of them select the rows themselves.
+    """
+    if which.size == rows[-1][0].shape[-1]:
+        return rows
     return tuple(
         x.take(which) if isinstance(x, ContactLaw) else x._make(y[..., which] for y in x)
         for x in rows
@@ -296,7 +304,7 @@ def _panel(
             falls = _falls(law, m, start, now, until, *state, end @ push)
             near = np.where(falls < 0, -left / falls, np.where(left > 0, np.inf, -step))
             first = near.argmin(axis=0)
-            more, falls = (np.take_along_axis(x, first[np.newaxis], 0)[0] for x in (near, falls))
+            more, falls = (x[first, np.arange(first.size)] for x in (near, falls))
             unit = np.abs(falls) * step if until is None else 1e-4 * now.length / now.speed
             reached = ~last | (np.abs(more * falls) <= _REACHED * unit)
             more = np.where(last, np.maximum(np.minimum(more, step / 2), -step / 2), 0.0)
@@ -307,7 +315,7 @@ def _panel(
         change = np.abs(rate, out=rate).max(axis=0) / now.speed
         if sweep == _EARLY:
             early = change
-        if np.mean(reached & (change <= _SETTLED)) >= _MOST:
+        if np.count_nonzero(reached & (change <= _SETTLED)) >= _MOST * change.size:
             break
     rate = new[:-1]
     # The remainder is corrected to first order.
@@ -441,6 +449,14 @@ def _at_release(law: ContactLaw, start: Start, panel: _Panel, by: np.ndarray, st
     return np.stack(ends, axis=1), np.exp(strain) * falls / (falls + step)
 
 
+def _integrals(law: ContactLaw, start: Start, panel: _Panel) -> np.ndarray:
+    """∫ p dt and ∫ p′ Λ sin(φ + t) dt over panels in s, shape (contacts, 2)."""
+    (root, rate, time), weight = (x[:-1] for x in panel[:3]), _rule(len(panel.push)).integral[-1]
+    passed = weight[:, np.newaxis] * panel.step * _lever(law.root, root)
+    values = root**law.root, rate * (start.weight - _load(start, time))
+    return np.stack([(x * passed).sum(axis=0) for x in values], axis=1)
+
+
 def _begin(law: ContactLaw, start: Start) -> np.ndarray:
     """The rows of :class:`_Motion` at the start of the contacts."""
     scale = scales(law, np.abs(start.rate), start.weight + np.abs(start.amplitude))
@@ -460,6 +476,7 @@ def march(
     until: np.ndarray | None = None,
     *,
     differentiate: bool = False,
+    integrate: bool = False,
 ) -> Contacts:
     """A row of contacts, from states with p ≥ 0 to the release.
 
@@ -476,6 +493,8 @@ def march(
         Times after the start at which p and p′ are computed, instead of at the release.
     differentiate : bool
         Whether derivatives are computed, for contacts that start at p = 0; otherwise they are NaN.
+    integrate : bool
+        Whether the integrals are computed, for a table with gravity (w = 1).
 
     Examples
     --------
@@ -492,12 +511,13 @@ def march(
     by, strain = np.zeros((size, 3, 4)), np.zeros(size)
     by[:, 1, 1] = 1.0
     jacobian, contraction = np.full((size, 3, 4), np.nan), np.full(size, np.nan)
+    integrals = np.full((size, 2), 0.0 if integrate else np.nan)
     done = np.zeros(size, dtype=bool)
     with np.errstate(all="ignore"):
         active = np.flatnonzero(np.isfinite(start).all(axis=0))
         state = np.full((len(_Motion._fields), size), np.nan)
         state[:, active] = _begin(*_some(active, law, start))
-        plain = law.root > 1 and not differentiate
+        plain = law.root > 1 and not (differentiate or integrate)
         count = _FINER if differentiate else _NODES
         state[4] *= count
         for _ in range(panels if active.size else 0):
@@ -515,6 +535,8 @@ def march(
                 state[:4, here] = panel.root[-1], panel.rate[-1], panel.time[-1], panel.final
                 state[-1, here[panel.turned]] *= -1
                 done[here] = panel.last
+                if integrate:
+                    integrals[here] += _integrals(laws, own, panel)
                 if differentiate and here.size:
                     by[here], more = _derivatives(laws, own, panel, by[here])
                     strain[here] += more
@@ -526,11 +548,12 @@ def march(
             if not active.size:
                 break
     root, rate, time = (np.where(done, x, np.nan) for x in state[:3])
+    integrals[~done] = np.nan
     # The iterates for a steady contact may be above the table.
     depth = root if law.root == 1 and until is not None else np.maximum(root, 0.0) ** law.root
     if until is None and law.release is Release.DISPLACEMENT:
         depth *= 0
-    return Contacts(time, depth, rate, jacobian, contraction)
+    return Contacts(time, depth, rate, jacobian, contraction, integrals)
 
 
 def states(law: ContactLaw, start: Start, end, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -592,6 +615,35 @@ def contacts(
     start = Start(0 * v, np.where(v > 0, v, np.nan), *others)
     found = march(laws, start, differentiate=True)
     return Contacts(*(x.reshape((*shape, *x.shape[1:])) for x in found))
+
+
+def integrals(
+    law: ContactLaw,
+    duration: ArrayLike,
+    depth: ArrayLike,
+    rate: ArrayLike,
+    phase: ArrayLike,
+    amplitude: ArrayLike,
+) -> np.ndarray:
+    """∫ p dt and ∫ p′ w dt over contacts that start with p and p′ and last D, with w = Λ sin τ.
+
+    The shape is (2, ...); a contact without a duration has the integrals 0.
+
+    Examples
+    --------
+    A fast ball hardly feels gravity, so that p = 1000 sin πt, whose integral is 2000/π:
+
+    >>> from bouncing_ball.contacts.spring_damper import SpringDamper
+    >>> law = SpringDamper(np.pi, 0.0)
+    >>> sunk, moved = integrals(law, 1.0, 0.0, 1000.0 * np.pi, 0.0, 0.0)
+    >>> round(float(sunk) / 1000, 3), float(moved)
+    (0.637, 0.0)
+    """
+    columns = duration, depth, rate, phase, amplitude
+    laws, (lasts, p, u, angle, lam), shape = _row(law, *columns)
+    start = Start(p, np.where(lasts > 0, u, np.nan), angle, lam, np.ones_like(p))
+    found = march(laws, start, MOST_PANELS, integrate=True).integrals.T
+    return np.where(lasts > 0, found, 0.0).reshape(2, *shape)
 
 
 def path(

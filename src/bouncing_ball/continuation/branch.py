@@ -165,14 +165,13 @@ def continue_branch(
     --------
     The circle x² + p² = 1 turns in p at (0, 1):
 
-    >>> from bouncing_ball.continuation.events import fold
     >>> class Circle:
     ...     def residual(self, y):
     ...         return np.sum(y * y, axis=-1, keepdims=True) - 1
     ...
     ...     def jacobian(self, y):
     ...         return 2 * y[..., np.newaxis, :]
-    >>> start, turn = np.array([1.0, 0.0]), fold(Circle())
+    >>> start, turn = np.array([1.0, 0.0]), Event("turn", lambda y: y[..., 0])
     >>> found = continue_branch(Circle(), start, increasing=True, events=[turn], max_points=30)
     >>> [np.abs(special.point.round(12)).tolist() for special in found.special]
     [[0.0, 1.0]]

@@ -53,12 +53,6 @@ class SpecialPoint(NamedTuple):
     residual: float
 
 
-def fold(problem: Problem, name: str = "fold") -> Event:
-    """The event at which ∂F/∂x is singular, where the branch turns in the parameter."""
-
-    return Event(name, lambda y: np.linalg.det(problem.jacobian(y)[..., :-1]))
-
-
 def parameter_bound(bound: float, upper: bool, reason: str) -> Event:
     """Terminal event at which the parameter, the last entry of y, reaches a bound.
 

@@ -29,15 +29,15 @@ def number(value: float) -> str:
     return f"{value:g}"
 
 
-def parameters(data: xr.Dataset, *names: str, of: str = "") -> str:
-    """Parameters of a dataset as text for a title; ``of`` is a prefix of the attributes' names.
+def parameters(data: xr.Dataset, *names: str) -> str:
+    """Parameters of a dataset as text for a title.
 
     Examples
     --------
     >>> parameters(xr.Dataset(attrs={"n": 1, "restitution": 0.85}), "n", "restitution")
     '$n=1$, $r=0.85$'
     """
-    return ", ".join(f"${_SYMBOLS[name]}={number(data.attrs[of + name])}$" for name in names)
+    return ", ".join(f"${_SYMBOLS[name]}={number(data.attrs[name])}$" for name in names)
 
 
 def symbol(name: str) -> str:

@@ -21,8 +21,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.collocation import integrals
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.angles import table
+from bouncing_ball.motion.linear_contact import has_closed_form
 
 
 def change(values: np.ndarray) -> np.ndarray:
@@ -73,13 +75,12 @@ def over_steps(
     gap: np.ndarray,
     rate: np.ndarray,
     flown: Any,
-    inside: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """The integral ∫ z dτ and the work of the table, over contacts and the flights after them.
 
     Parameters
     ----------
-    law : SpringDamper or None
+    law : ContactLaw or None
         None if impacts are instantaneous; a contact with a duration is then a rest on the table.
     amplitude, duration : array_like
         Λ and the duration D of the contacts.
@@ -87,8 +88,6 @@ def over_steps(
         φ, δ and δ′ at the start and at the end of the contacts.
     flown : array_like
         The duration of the flights.
-    inside : tuple of array, optional
-        ∫ z dτ and ∫ z′ w dτ over the contacts, for a law other than a spring-damper.
 
     Examples
     --------
@@ -99,12 +98,14 @@ def over_steps(
     [18.0, 0.0]
     """
     w_rate, w = table(phase, amplitude)
-    if inside is not None:
-        held, moved = inside
-    elif law is None:
-        held, moved = -change(w_rate), change(w * w) / 2
-    else:
+    if isinstance(law, SpringDamper) and has_closed_form(law):
         held, moved = over_contact(law, amplitude, duration, (w_rate, w), gap, rate)
+    else:
+        held, moved = -change(w_rate), change(w * w) / 2
+        if law is not None:
+            held, moved = (held, moved) - integrals(
+                law, duration, -gap[0], -rate[0], phase[0], amplitude
+            )
     low, velocity = (gap + w)[1], rate + w_rate
     height = held + (low + (velocity[1] / 2 - flown / 6) * flown) * flown
     return height, change(velocity * w_rate + w) + moved

@@ -82,7 +82,7 @@ class Grid(Sharded):
 class Locking(Grid):
     """A grid over (Λ, r) with one ball for each node, all of which start alike.
 
-    Maps are of the first ϖ, and the shares of agreement of all.
+    The maps show the first ϖ; the shares of agreement are computed at every ϖ.
     """
 
     phase: Annotated[float, number("phase φ of the first impact", "rad", ge=-10, le=10)]

@@ -14,7 +14,7 @@ from bouncing_ball.parameters import LossyRestitution, Many, Parameters, Span, n
 
 
 class Flights(Parameters):
-    """Contacts of several r along ϖ, and the number of openings of their orbits."""
+    """Contacts of several r on a grid of ϖ, and the number of openings that are followed."""
 
     restitution: Many[LossyRestitution]
     frequency_ratio: Span

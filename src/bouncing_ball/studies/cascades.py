@@ -28,7 +28,7 @@ class Measured(Parameters):
 
 
 class Cascades(Parameters):
-    """Cascades of the n-T orbits for several r, along ϖ."""
+    """Cascades of period doublings of the n-T orbits, for several r and a grid of ϖ."""
 
     n: Family
     restitution: Many[LossyRestitution]

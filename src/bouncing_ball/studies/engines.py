@@ -32,8 +32,8 @@ Steps = Annotated[int, number("time steps in a contact, at least 8 to resolve it
 
 
 class EngineOrbit(Parameters):
-    """One of the orbits that the engines ran, and the simulations of it in few and many time
-    steps.
+    """One of the orbits that were run in the engines, and how it is simulated here in few and in
+    many time steps.
     """
 
     n: Family

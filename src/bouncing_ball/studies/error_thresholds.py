@@ -31,13 +31,13 @@ class ErrorsAlongRatio(OrbitsAlongRatio):
 
 
 class ErrorThresholds(ErrorsAlongRatio):
-    """One orbit, the quantities compared on it and the relative errors tolerated."""
+    """One orbit, the quantities compared on it and the tolerated relative errors."""
 
     tolerances: Many[Tolerance]
 
 
 class PermanentContactError(PermanentContact):
-    """The relative error tolerated of the threshold of permanent contact."""
+    """The threshold of permanent contact along ϖ, and its tolerated relative error."""
 
     tolerance: Tolerance
 

@@ -34,7 +34,7 @@ def _has_orbit(case: Case, info: ValidationInfo) -> Case:
 
 
 class Cases(Parameters):
-    """Orbits along ϖ of several cases."""
+    """Several pairs of r and Λ, whose n-T orbits are followed along ϖ."""
 
     n: Family
     cases: Many[Annotated[Case, AfterValidator(_has_orbit)]]
@@ -42,7 +42,7 @@ class Cases(Parameters):
 
 
 class Sweep(Parameters):
-    """Orbits along ϖ of one restitution coefficient and several amplitudes."""
+    """One r and several Λ, whose n-T orbits are followed along ϖ."""
 
     n: Family
     restitution: Restitution

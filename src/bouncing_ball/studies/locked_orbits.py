@@ -23,7 +23,7 @@ PREDICTORS = ("S/w", "periods")
 
 
 class LockedOrbits(Grid):
-    """Random places in the range of (Λ, r)."""
+    """Random places in a range of (Λ, r), and places at which transients are followed."""
 
     nodes: Annotated[int, number("random places", ge=10, le=100000)]
     shifts: Many[Annotated[float, number("changes of Λ", gt=0, le=1)]]

@@ -43,7 +43,7 @@ class Continuation(Parameters):
 
 
 class Branches(Parameters):
-    """One family, followed along Λ."""
+    """One family of orbits, which is followed along Λ."""
 
     n: Family
     restitution: LossyRestitution

@@ -66,7 +66,7 @@ OrbitAmplitude = Annotated[Amplitude, _has_orbits(min)]
 
 
 class OrbitParameters(Parameters):
-    """One orbit that the restitution model has as well."""
+    """One orbit by its family, r and Λ, at which the restitution model has an orbit too."""
 
     n: Family
     restitution: Restitution
@@ -85,7 +85,7 @@ class OrbitsAlongRatio(OrbitParameters):
 
 
 class OrbitErrors(OrbitsAlongRatio):
-    """One orbit along ϖ, and the relative error tolerated of a simple model."""
+    """One orbit along ϖ, and the tolerated relative error of a simple model."""
 
     tolerance: Tolerance
 

@@ -31,7 +31,7 @@ _ENDS = ("periods", "impacts", "end_impact", "end_phase", "end_speed", "end_time
 
 
 class References(Parameters):
-    """Contacts for each of which an orbit is drawn at random."""
+    """Frequency ratios, for each of which one contact and one orbit are drawn at random."""
 
     frequency_ratio: Span
     seed: Seed

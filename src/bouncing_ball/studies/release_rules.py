@@ -22,7 +22,7 @@ from bouncing_ball.studies.error_thresholds import ErrorsAlongRatio, thresholds_
 
 
 class RuleThresholds(ErrorsAlongRatio):
-    """One orbit, the quantities compared on it, and the error tolerated."""
+    """One orbit, the quantities compared on it, and the tolerated relative error."""
 
     tolerance: Tolerance
 

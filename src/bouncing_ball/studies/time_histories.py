@@ -15,14 +15,14 @@ _STATE = ("phase", "contact_duration", "impact_velocity", "bounce_velocity")
 
 
 class ContactHistory(OrbitParameters):
-    """One cycle of one orbit."""
+    """One cycle of one orbit on one contact."""
 
     frequency_ratio: FrequencyRatio
     samples: Samples
 
 
 class Histories(OrbitParameters):
-    """One cycle on several contacts."""
+    """One cycle of one orbit on several contacts."""
 
     frequency_ratio: Many[FrequencyRatio]
     samples: Samples

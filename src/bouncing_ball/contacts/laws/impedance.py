@@ -130,11 +130,9 @@ class Impedance(OscillatorLaw):
         y = end * (end / side) ** (self.power - 1)
         return self.at_surface + (self.share - self.at_surface) * np.where(low, y, 1 - y)
 
-    def _part(self, impedance: np.ndarray) -> np.ndarray:
+    def _part(self, impedance: np.ndarray) -> Any:
         """The ratio s = d/d_max for impedances d; 1 if d is constant, even where it is 0."""
-        if not self.has_kink:
-            return np.ones_like(impedance)
-        return np.where(self._varies, impedance / self.share, 1.0)
+        return np.where(self._varies, impedance / self.share, 1.0) if self.has_kink else 1.0
 
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """s (ϖ² s p + 2ζϖ p′), the force over the weight without the part d a due to the load."""

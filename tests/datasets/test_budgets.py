@@ -90,7 +90,9 @@ def results(stages, coarse, recorded):
         reads = "data" in inspect.signature(load(study)).parameters and artifact != "ext_locked"
         if reads or artifact in ("ext_means", "ext_lives"):
             continue
+        # The last doublings move most.
         fewer = {key: number for (name, key), number in coarse.items() if name == artifact}
+        fewer.pop("doublings", None)
         given = mapped(
             arguments(study, artifact, RUN), lambda key, x, fewer=fewer: fewer.get(key, x)
         )

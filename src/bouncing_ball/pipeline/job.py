@@ -114,6 +114,8 @@ def make_dataset(snakemake: Any) -> None:
         if shards := snakemake.input.get("shards"):
             others["found"] = joined([read_input(path) for path in shards])
         dataset = typed(load(job.study))(**given, **others)
+        if bare := [name for name, x in dataset.variables.items() if "units" not in x.attrs]:
+            raise ModelError(f"{bare[0]} has no unit: the study ends with describe(dataset)")
         named = given.pop("parameters", {}) | given
         parameters = dataset.attrs or parameter_attributes(named)
         publish(snakemake, dataset, parameters)

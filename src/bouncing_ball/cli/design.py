@@ -102,7 +102,7 @@ def _engine_lines(engine: EngineSettings) -> list[str]:
     ]
     return [
         "",
-        f"For {engine.name}, whose contacts end by {engine.release} "
+        f"For {engine.name}, with the {engine.release} release "
         f"(r = {engine.restitution:.4g}, within {engine.error:g} in {engine.steps} steps of "
         f"{engine.scheme} in a contact):",
         "",
@@ -146,8 +146,13 @@ def _law_lines(found: Design) -> list[str]:
     law, values = found.case.law, dict(found.law or {})
     name = values.pop("name", "")
     units = {} if law is None else law.units
+    # With units, ϖ is the natural frequency ϖΩ.
+    words = {"frequency_ratio": "natural frequency"}
     return [
-        _line(f"{name}, {key.replace('_', ' ')}", shown(x, units[key].name if key in units else ""))
+        _line(
+            f"{name}, {words.get(key, key.replace('_', ' '))}",
+            shown(x, units[key].name if key in units else ""),
+        )
         for key, x in values.items()
     ]
 

@@ -16,8 +16,10 @@ All quantities are in SI units.
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from bouncing_ball.calculator.case import Case, Table
 from bouncing_ball.contacts.contact_law import ContactLaw
@@ -25,7 +27,7 @@ from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.law_choice import law_of_impact
 from bouncing_ball.contacts.laws.tsuji import Tsuji, tsuji_damping
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.contacts.signature import free_impact
+from bouncing_ball.contacts.signature import Signature, free_impact
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.orbits.restitution_model import RestitutionModel
@@ -183,7 +185,7 @@ def table_of(given: Given) -> Table:
     return Table(omega, moved, given.get("gravity", STANDARD_GRAVITY))
 
 
-def meant(asked: Sequence[int], restitution: float, amplitude: float) -> int:
+def meant(asked: Sequence[int], restitution: ArrayLike, amplitude: float) -> int:
     """The first of the families whose orbit is stable in the restitution model.
 
     If none of these orbits is stable, it is the first family.
@@ -197,6 +199,29 @@ def meant(asked: Sequence[int], restitution: float, amplitude: float) -> int:
     """
     orbits = RestitutionModel(restitution).orbit(np.array(asked), amplitude)
     return asked[int(np.argmax(orbits.exists & orbits.is_stable()))]
+
+
+def linear_contact(
+    law: ContactLaw, asked: Sequence[int], amplitude: float, release: Release
+) -> SpringDamper:
+    """The linear contact with the r and the duration of a law at the impact speed of an orbit.
+
+    The speed v = 2πn/(1 + r(v)) is that of the first stable family of the restitution model.
+
+    Examples
+    --------
+    >>> law = Tsuji(50.0, tsuji_damping(0.8))
+    >>> round(float(linear_contact(law, [1], 1.0, Release.FORCE).restitution), 12)
+    0.8
+    """
+    signature, r = Signature(law), np.ones(len(asked))
+    # A contraction: where r falls like 1/v at most, each step at least halves the error.
+    for _ in range(np.finfo(float).nmant):
+        r = signature(rigid_speed(asked, r)).restitution
+    index = meant(asked, r, amplitude)
+    impact = free_impact(law, float(rigid_speed(index, r[asked.index(index)])))
+    unit = SpringDamper.from_restitution(float(impact.restitution), 1.0, release, measured=True)
+    return replace(unit, frequency_ratio=float(unit.free_duration / impact.duration))
 
 
 def case_of(

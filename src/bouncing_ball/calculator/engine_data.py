@@ -1,30 +1,50 @@
 """Contacts that are given by the parameters of a physics engine."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
-from bouncing_ball.calculator.case import Table
-from bouncing_ball.calculator.contact_data import LOSSY, STIFF
+from bouncing_ball.calculator.case import Case
+from bouncing_ball.calculator.contact_data import LOSSY, STIFF, linear_contact
 from bouncing_ball.calculator.units import Unit, number
-from bouncing_ball.contacts.contact_law import ContactLaw
+from bouncing_ball.contacts.release import Release
 from bouncing_ball.engines import engine_named
-from bouncing_ball.engines.engine import Engine
+from bouncing_ball.engines.engine import Engine, Physical
 from bouncing_ball.errors import ParameterError
 
 
 class Source(NamedTuple):
-    """An engine and the given parameters of its contact."""
+    """An engine, the given parameters of its contact, and the spring and damper of these."""
 
     engine: Engine
     parameters: dict[str, Any]
+    contact: Physical
 
-    def law(self, table: Table) -> ContactLaw | None:
-        """The law of this contact, dimensionless on a table; None if it is a spring and damper."""
-        return self.engine.law(self.parameters, table.time, table.length)
+    @property
+    def question(self) -> dict[str, Any]:
+        """The arguments of :func:`~.design.design` that give this contact, but for the mass."""
+        given = {"from_engine": self.engine.name, "parameters": self.parameters}
+        return given | {"stiffness": None, "damping": None}
 
-    def remarks(self) -> tuple[str, ...]:
-        """Sentences on how the contact differs from a spring and a damper."""
-        return self.engine.remarks(self.parameters)
+    def case(self, case: Case, asked: Sequence[int], written: bool) -> Case:
+        """The case with the law of this contact, or with its linear contact if this is written."""
+        table, release = case.table, case.contact.release
+        law = self.engine.law(self.parameters, case.mass, table.time, table.length)
+        if law is not None and self.engine.needs_speed:
+            linear = linear_contact(law, asked, table.amplitude, release)
+            case = replace(case, contact=linear)
+        return case if written else replace(case, law=law)
+
+    def remarks(self, written: str | None, release: Release) -> tuple[str, ...]:
+        """Sentences on how the contact differs from a spring and a damper, and on how r changes if
+        it is written for the engine with this name and release.
+        """
+        found, ends = self.engine.remarks(self.parameters), (self.engine.release(), release)
+        if written is None or ends[0] is ends[1] or not 0 < self.contact.damping_ratio < 1:
+            return found
+        before, after = (f"{self.contact.restitution(rule):.4f}" for rule in ends)
+        why = f"contacts end by {ends[0]} in {self.engine.name}, and by {release} in {written}"
+        return (*found, f"r changes from {before} to {after}, because {why}")
 
 
 def read_engine(said: Mapping[str, Any]) -> tuple[Source | None, dict[str, Any]]:
@@ -41,13 +61,13 @@ def read_engine(said: Mapping[str, Any]) -> tuple[Source | None, dict[str, Any]]
             what = f"{{{first}}}" if first in names else f"{{parameters}} {first}"
             raise ParameterError(f"{what} needs {{from_engine}}, the name of the engine")
         return None, dict(said)
-    source = Source(engine_named(name), values)
+    engine = engine_named(name).reader(values)
     for other in (*STIFF, *LOSSY, "law"):
         if said.get(other) is not None:
             raise ParameterError(f"{{{other}}} is not allowed with {{from_engine}}")
     mass, rule = said.get("mass"), said.get("release")
     mass = None if mass is None else number("mass", mass, Unit("kg", "20 g"))
-    contact = source.engine.contact(values, mass)
+    source = Source(engine, values, engine.contact(values, mass))
     # If the contact is written for another engine, that engine determines the release.
-    rule = rule if said.get("engine") else str(source.engine.release(rule))
-    return source, {**said, **contact._asdict(), "mass": mass, "release": rule}
+    rule = rule if said.get("engine") else str(engine.release(rule))
+    return source, {**said, **source.contact._asdict(), "mass": mass, "release": rule}

@@ -216,22 +216,23 @@ class Contact(_ForEngines):
     """A contact without a table, in SI units.
 
     ``natural_frequency`` is ω = √(k/m) in rad/s: on a table that moves with Ω it gives ϖ = ω/Ω.
-    ``question`` holds the arguments of the call.
+    ``question`` holds the arguments of the call. What depends on the impact speed is None.
     """
 
     mass: Annotated[float, Row("mass in kg")]
     stiffness: Annotated[float, Row("stiffness", "N/m")]
-    damping: Annotated[float, Row("damping", "N s/m")]
-    damping_ratio: Annotated[float, Row("damping ratio ζ")]
+    damping: Annotated[float | None, Row("damping", "N s/m")]
+    damping_ratio: Annotated[float | None, Row("damping ratio ζ")]
     natural_frequency: Annotated[float, Row("natural frequency ω = ϖΩ", "rad/s")]
-    contact_time: Annotated[float, Row("contact time", "s")]
+    contact_time: Annotated[float | None, Row("contact time", "s")]
     release: str
-    measured_restitution: Annotated[float, Row("restitution of a free impact")]
+    measured_restitution: Annotated[float | None, Row("restitution of a free impact")]
     notes: tuple[str, ...]
     question: dict[str, Any]
 
     def engine_settings(self) -> EngineSettings:
-        contact = Physical(self.mass, self.stiffness, self.damping)
+        # A contact whose damping depends on the speed has no settings.
+        contact = Physical(self.mass, self.stiffness, self.damping or 0.0)
         return self._settings(contact, self.release)
 
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.signature import free_impact as law_impact
 from bouncing_ball.engines.compensation import compensated, represented
 from bouncing_ball.engines.scheme import Scheme, free_impact, steps_for
 from bouncing_ball.errors import ModelError, require
@@ -112,6 +113,12 @@ def filled(text: str, numbers: Mapping[str, str]) -> str:
     return _PLACE.sub(lambda place: numbers[place[1]], "\n".join(lines))
 
 
+def at_speeds(law: ContactLaw, speeds: np.ndarray) -> str:
+    """The restitution of a law's free impacts at these speeds in m/s, in words."""
+    found = zip(law_impact(law, speeds).restitution, speeds, strict=True)
+    return "r = " + ", ".join(f"{r:.4f} at {v:.3g} m/s" for r, v in found)
+
+
 class Engine(ABC):
     """A physics engine and its linear contact between a ball and a wall, at rest or moving.
 
@@ -126,6 +133,8 @@ class Engine(ABC):
     scheme: ClassVar[Scheme]
     laws: ClassVar[dict[str, str]] = {}
     """The names of the engine's other contact laws, by the names that users may give."""
+    needs_speed: ClassVar[bool] = False
+    """Whether the damping depends on the impact speed, so that :meth:`read` returns c = 0."""
 
     @abstractmethod
     def parameters(self, contact: Physical) -> Parameters:
@@ -194,11 +203,21 @@ class Engine(ABC):
             If a parameter or the mass is missing, unknown, or outside its range.
         """
 
+    def reader(self, parameters: Mapping[str, Any]) -> "Engine":
+        """The engine that reads these parameters, for an engine with several kinds of contacts.
+
+        Raises
+        ------
+        ModelError
+            If the parameters belong to different contacts.
+        """
+        return self
+
     def law(
-        self, parameters: Mapping[str, Any], time: float = 1.0, length: float = 1.0
+        self, parameters: Mapping[str, Any], mass: float = 1, time: float = 1, length: float = 1
     ) -> ContactLaw | None:
-        """The contact law with these parameters, dimensionless with units of time in s and length
-        in m.
+        """The contact law with these parameters for a mass in kg, dimensionless with units of time
+        in s and length in m.
 
         None if the contact is the spring and damper of :meth:`read`.
         """

@@ -126,6 +126,9 @@ def test_the_command_line_says_the_same(capsys, tmp_path):
     answer = json.loads(capsys.readouterr().out)
     parameters = {"stiffness": 900.0, "damping": 0.4}
     assert answer["kind"] == bb.motion_of(1.0, law="tsuji", parameters=parameters).kind
+    # Without losses neither motion repeats within so few impacts, nor is it known to be chaotic.
+    main("diagram --restitution 1 --amplitude 1 1.2 --points 2 --impacts 60".split())
+    assert "undecided (100%, because it has neither repeated nor" in capsys.readouterr().out
     with pytest.raises(SystemExit):
         main("diagram --restitution 0.5 --amplitude 2 1".split())
     assert capsys.readouterr().err.count("\n") == 1

@@ -90,7 +90,7 @@ def test_limits(ask, refused):
                 "is_admissible": bool(orbit.is_admissible()),
             }
     status, line = refused("limits", "--frequency-ratio", "0.7071", "--damping-ratio", "0.2155")
-    assert status == 1 and "no saddle node was found on the branch of 1-T orbits" in line
+    assert status == 1 and "no saddle-node was found on the branch of 1-T orbits" in line
 
 
 def test_permanent_contact(ask):

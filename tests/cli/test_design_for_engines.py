@@ -114,7 +114,7 @@ def test_with_a_table_it_is_a_design(ask):
         ),
         (
             (*BALL, "--from", "mujoco", "--solref", "0.02 1", *SHAKEN),
-            "ζ = 1.0 is not below 1: without a",
+            "ζ = 1.0 is not below 1: on a",
         ),
         ((*FROM, "--mass", "1", "--solimp", "a b"), "solimp = 'a b' is not 0 to 5 numbers"),
         ((*FROM, "--mass", "1", "--law", "tsuji"), "--law is not allowed with --from"),

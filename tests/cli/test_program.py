@@ -119,3 +119,17 @@ def test_every_command_is_explained_and_its_symbols_are(said):
         shown = said(command, "--help")
         assert "examples:" in shown
         assert "Eq. 16" not in shown or "exp(-πζ/√(1 - ζ²))" in " ".join(shown.split())
+
+
+@pytest.mark.parametrize(
+    ("call", "computes"),
+    [
+        ("diagram --restitution 0.5 --amplitude 1 2 --plot", "calls.long_run.orbit_diagram"),
+        ("design --plot", "calculator.design.design"),
+        ("diff figures results --html", "cli.diff.compare_folders"),
+    ],
+)
+def test_a_file_is_refused_before_its_contents_are_computed(refused, monkeypatch, call, computes):
+    monkeypatch.setattr(f"bouncing_ball.{computes}", None)
+    status, line = refused(*call.split(), "/dev/null/a.svg")
+    assert status == 2 and "/dev/null/a.svg cannot be written: /dev/null is no folder" in line

@@ -9,6 +9,7 @@ import xarray as xr
 from bouncing_ball.compare.budgets import ARTIFACTS, budget_of
 from bouncing_ball.datasets import variables
 from bouncing_ball.datasets.variables import VARIABLES, describe
+from bouncing_ball.errors import ModelError
 
 
 def test_every_entry_is_complete():
@@ -51,7 +52,7 @@ def test_describe():
 
 
 def test_unknown_names_are_refused():
-    with pytest.raises(KeyError, match="velocity_of_light"):
+    with pytest.raises(ModelError, match="velocity_of_light"):
         describe(xr.Dataset({"velocity_of_light": 1.0}))
-    with pytest.raises(KeyError, match="elsewhere"):
+    with pytest.raises(ModelError, match="elsewhere"):
         describe(xr.Dataset({"phase": 1.0}, coords={"elsewhere": 2.0}))

@@ -7,7 +7,7 @@ import xarray as xr
 
 from bouncing_ball.datasets.netcdf import write_dataset
 from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline.job import logged, read_input
+from bouncing_ball.pipeline.job import logged, make_dataset, read_input
 
 
 @pytest.fixture
@@ -30,6 +30,17 @@ def test_a_failure_is_one_line(tmp_path, interruptible, one_line, error, said):
         raise error
     one_line(exit_, f"{said}{log})")
     assert "Traceback" in log.read_text(encoding="utf-8")
+
+
+def test_a_study_gives_every_variable_its_unit(tmp_path, interruptible, one_line, monkeypatch):
+    bare = xr.Dataset({"phase": 0.0})
+    monkeypatch.setattr("bouncing_ball.pipeline.job.load", lambda study: lambda: bare)
+    parts = SimpleNamespace(study="", arguments={}), SimpleNamespace(data=[], get={}.get)
+    names = {"rule": "stage", "wildcards": [], "log": [str(tmp_path / "log")]}
+    job = SimpleNamespace(params=parts[0], input=parts[1], **names)
+    with pytest.raises(SystemExit) as exit_:
+        make_dataset(job)
+    one_line(exit_, "stage: phase has no unit: the study ends with describe(dataset) (details")
 
 
 def test_an_input_is_whole_or_its_command_is_named(tmp_path, refusal):

@@ -48,6 +48,7 @@ from collections.abc import Mapping
 
 import xarray as xr
 
+from bouncing_ball.datasets.variables import described
 from bouncing_ball.parameters import Family, Parameters
 
 
@@ -60,7 +61,7 @@ class Lowest(Parameters):
 def lowest(data: Mapping[str, xr.Dataset], parameters: Lowest) -> xr.Dataset:
     """The lowest of the first ``n`` thresholds."""
     curve = data["fig11"].threshold_amplitude[: parameters.n]
-    return xr.Dataset({"threshold_amplitude": curve.min()})
+    return described({"threshold_amplitude": curve.min()})
 '''
 
 

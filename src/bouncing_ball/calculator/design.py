@@ -348,7 +348,7 @@ def _design(
     laid on the table.
     """
     contact, table = case.contact, case.table
-    only = "below 1: without a table r is computed, with one only underdamped contacts are"
+    only = "below 1: on a vibrating table only underdamped contacts are computed"
     require(contact.damping_ratio < 1, contact.damping_ratio, "damping ratio ζ", only)
     ratio, found = float(contact.frequency_ratio), families(case, asked, bool(no_orbit))
     require(1 / _LARGEST < ratio < _LARGEST, ratio, "ϖ", f"between {1 / _LARGEST:g} and 1e8")
@@ -391,7 +391,7 @@ def _design(
         motion=motion,
         headline=headline(motion, one),
         **verdict._asdict(),
-        notes=remarks + notes(case, one),
+        notes=remarks + notes(case, one, motion),
         case=case,
         n=one.n,
         question=question,

@@ -12,6 +12,7 @@ from bouncing_ball.calculator.case import Case
 from bouncing_ball.calculator.units import shown
 from bouncing_ball.engines import engine_named
 from bouncing_ball.engines.engine import EngineSettings, Physical
+from bouncing_ball.orbits.stability import Bifurcation
 
 Errors = dict[str, float | None]
 """Relative errors by quantity; None where one of the values does not exist, or the simple one is
@@ -22,8 +23,8 @@ QUANTITIES = {
     Quantity.BOUNCE_VELOCITY: "bouncing-off velocity",
     Quantity.PHASE: "phase of impact",
     Quantity.APPARENT_RESTITUTION: "apparent restitution",
-    Quantity.SADDLE_NODE: "saddle-node",
-    Quantity.PERIOD_DOUBLING: "period doubling",
+    Quantity.SADDLE_NODE: str(Bifurcation.SADDLE_NODE),
+    Quantity.PERIOD_DOUBLING: str(Bifurcation.PERIOD_DOUBLING),
     Quantity.PERMANENT_CONTACT: "threshold of permanent contact",
 }
 """The names of the quantities in sentences."""
@@ -67,9 +68,9 @@ class Standing:
     exists: Annotated[bool, Row("exists")]
     is_stable: Annotated[bool, Row("stable")]
     is_admissible: bool
-    saddle_node: Annotated[float | None, Row("saddle-node at Λ")]
+    saddle_node: Annotated[float | None, Row(f"{Bifurcation.SADDLE_NODE} at Λ")]
     saddle_node_margin: Annotated[float | None, Row("  Λ may fall by", "%")]
-    period_doubling: Annotated[float | None, Row("period doubling at Λ")]
+    period_doubling: Annotated[float | None, Row(f"{Bifurcation.PERIOD_DOUBLING} at Λ")]
     period_doubling_margin: Annotated[float | None, Row("  Λ may rise by", "%")]
 
 

@@ -84,14 +84,14 @@ def judged_by_motion(motion: Motion, tolerance: float, n: int) -> Verdict:
     if motion.greatest is not None:
         error = float(modulus(relative(*motion.greatest.values())))
         found = f"the greatest height of this motion is {shown(error, '%')} off"
-        return _within(error, 0.0, tolerance, found, about)
+        return _within(error, error, tolerance, found, about)
     if motion.mean_error is None:
         sentence = "Whether the restitution model is good enough for this motion is not known."
         return Verdict(False, sentence, f"{about}; nor are means, as some balls come to rest")
     errors = [(one.value, one.half_width, name) for name, one in motion.mean_error.items()]
     found = " and ".join(f"the mean {x} is {_between(e, h)} off" for e, h, x in errors)
-    worst = max(errors)
-    return _within(worst[0], worst[1], tolerance, found, f"{about}; means over time are compared")
+    least, most = (max(e + sign * h for e, h, _ in errors) for sign in (-1, 1))
+    return _within(least, most, tolerance, found, f"{about}; means over time are compared")
 
 
 def _named(kind: str | None) -> str:
@@ -103,12 +103,12 @@ def _between(e: float, h: float) -> str:
     return f"at most {shown(e + h, '%')}" if h > e else f"{shown(e, '%')} ± {shown(h, '%')}"
 
 
-def _within(error: float, margin: float, tolerance: float, found: str, why: str) -> Verdict:
-    """The verdict on an error that is known up to a margin, against a tolerance."""
+def _within(least: float, most: float, tolerance: float, found: str, why: str) -> Verdict:
+    """The verdict on a largest error between two bounds, against a tolerance."""
     asked = percent(tolerance)
-    if error + margin <= tolerance:
+    if most <= tolerance:
         return Verdict(True, f"The restitution model is good enough: {found}, within {asked}.", why)
-    if error - margin > tolerance:
+    if least > tolerance:
         sentence = f"The restitution model is not good enough: {found}, beyond {asked}."
         return Verdict(False, sentence, why)
     sentence = f"Whether the restitution model is good enough is not decided at {asked}: {found}."
@@ -168,10 +168,13 @@ def _cost_of(law: Impedance, case: Case, family: Family) -> str:
     )
 
 
-def notes(case: Case, family: Family) -> tuple[str, ...]:
+def notes(case: Case, family: Family, motion: Motion) -> tuple[str, ...]:
     """Sentences that a user should read in addition to the verdict."""
     found, contact, orbit = [], case.contact, f"{family.n}-T orbit"
-    if isinstance(case.law, Impedance):
+    # The contact of a solref has the ϖ of its impedance, unlike one that was found for an impact.
+    if isinstance(case.law, Impedance) and math.isclose(
+        case.law.frequency_ratio, contact.frequency_ratio
+    ):
         found.append(_cost_of(case.law, case, family))
     elif case.law is not None:
         hertz = isinstance(case.law, Tsuji)
@@ -191,13 +194,14 @@ def notes(case: Case, family: Family) -> tuple[str, ...]:
         )
     if not family.exists:
         found.append(f"at this Λ the contact has no {orbit}")
-    elif not (family.is_stable and family.is_admissible):
+    elif motion.restitution_kind is not None:
         what = "unstable" if family.is_admissible else "inadmissible (an earlier impact occurs)"
         found.append(f"the {orbit} is {what}, so that no ball stays on it")
     if contact.frequency_ratio < 1:
         found.append("the contact is slower than the table: the ball oscillates on a spring")
     if case.law is None and contact.release is Release.DISPLACEMENT and contact.damping_ratio > 0:
         found.append(
-            "the contact pulls before its release at δ = 0; if it cannot, its r is the other one"
+            "before its release at δ = 0 the contact pulls the ball; a contact that cannot pull "
+            "has the r of a release without force"
         )
     return tuple(found)

@@ -19,6 +19,7 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.motion.sequence import Status
 from bouncing_ball.orbits.continued import restitution_speed
 from bouncing_ball.orbits.orbit import OBSERVABLES, Orbit
+from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.signatures import takes
 
 Answer = dict[str, Any]
@@ -80,7 +81,7 @@ def limits(n=1, **impact: Any) -> Answer:
     for name in orbits.Limits._fields:
         orbit = getattr(of, name)(n)
         if not orbit.exists:
-            what, branch = name.replace("_", " "), f"the branch of {n}-T orbits for {of.label}"
+            what, branch = Bifurcation[name.upper()], f"the branch of {n}-T orbits for {of.label}"
             raise NoOrbitError(f"no {what} was found on {branch}")
         found[name] = {key: float(getattr(orbit, key)) for key in OBSERVABLES[:3]}
         found[name]["is_admissible"] = bool(orbit.is_admissible())

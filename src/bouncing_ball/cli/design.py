@@ -10,11 +10,11 @@ from bouncing_ball.calculator import design as calculator
 from bouncing_ball.calculator.results import QUANTITIES, Contact, Design, Family, rows
 from bouncing_ball.calculator.units import percent, shown
 from bouncing_ball.cli.options import option
+from bouncing_ball.datasets.files import PICTURES, require_writable
 from bouncing_ball.engines.engine import EngineSettings
-from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError, extra
+from bouncing_ball.errors import NoOrbitError, ParameterError, extra
 from bouncing_ball.signatures import takes
 
-_DRAWINGS = (".pdf", ".png", ".svg")
 _SIMPLE = "error law", "corrected"
 
 
@@ -41,8 +41,7 @@ def design(*, plot: Path | None = None, all_families: bool = False, **given: Any
     ModelError
         If the page has another name or cannot be written.
     """
-    if plot is not None and plot.suffix not in _DRAWINGS:
-        raise ModelError(f"'{plot}' does not end in {' or '.join(_DRAWINGS)}")
+    require_writable(plot, PICTURES)
     found = calculator.design(**given)
     if plot is not None:
         if isinstance(found, Contact):
@@ -103,7 +102,7 @@ def _engine_lines(engine: EngineSettings) -> list[str]:
     ]
     return [
         "",
-        f"For {engine.name}, whose contacts end by {engine.release} "
+        f"For {engine.name}, with the {engine.release} release "
         f"(r = {engine.restitution:.4g}, within {engine.error:g} in {engine.steps} steps of "
         f"{engine.scheme} in a contact):",
         "",
@@ -147,8 +146,13 @@ def _law_lines(found: Design) -> list[str]:
     law, values = found.case.law, dict(found.law or {})
     name = values.pop("name", "")
     units = {} if law is None else law.units
+    # With units, ϖ is the natural frequency ϖΩ.
+    words = {"frequency_ratio": "natural frequency"}
     return [
-        _line(f"{name}, {key.replace('_', ' ')}", shown(x, units[key].name if key in units else ""))
+        _line(
+            f"{name}, {words.get(key, key.replace('_', ' '))}",
+            shown(x, units[key].name if key in units else ""),
+        )
         for key, x in values.items()
     ]
 

@@ -8,7 +8,7 @@ from bouncing_ball.cli.output import fail, say
 from bouncing_ball.compare.folders import compare_folders
 from bouncing_ball.compare.page import to_html
 from bouncing_ball.compare.terminal import to_terminal
-from bouncing_ball.datasets.files import write_text
+from bouncing_ball.datasets.files import require_writable, write_text
 
 
 def diff(
@@ -31,6 +31,7 @@ def diff(
         File for a page that shows both versions of all pictures.
     """
     try:
+        require_writable(html)
         comparison = compare_folders(record, results, artifacts)
         if html:
             write_text(html, to_html(comparison))

@@ -10,6 +10,7 @@ import numpy as np
 from bouncing_ball.calls import long_run
 from bouncing_ball.calls.model import AnyAmplitude
 from bouncing_ball.cli.readable import lines as readable
+from bouncing_ball.datasets.files import PICTURES, require_writable
 from bouncing_ball.datasets.labelled import Labelled
 from bouncing_ball.errors import ParameterError
 from bouncing_ball.signatures import count, takes
@@ -47,9 +48,10 @@ def diagram(
 
     Raises
     ------
-    ParameterError
-        If the range is empty.
+    ModelError
+        If the range is empty, or the figure has another suffix or cannot be written.
     """
+    require_writable(plot, PICTURES)
     low, high = amplitudes
     if not low < high:
         raise ParameterError(f"{{amplitudes}} {low:g} {high:g}: the second must be larger")
@@ -61,17 +63,22 @@ def diagram(
 
 
 def _shares(at: Labelled) -> list[Answer]:
-    """The motions at one amplitude, the most frequent first."""
-    each = Counter(zip(*(at[name].values.tolist() for name in _MOTION), strict=True))
+    """The motions at one amplitude, the most frequent first, with the reason of each that is
+    undecided.
+    """
+    names = (*_MOTION, "reason")
+    each = Counter(zip(*(at[name].values.tolist() for name in names), strict=True))
     return [
-        dict(zip(_MOTION, motion, strict=True)) | {"share": number / each.total()}
+        {name: x for name, x in zip(names, motion, strict=True) if x != ""}
+        | {"share": number / each.total()}
         for motion, number in each.most_common()
     ]
 
 
 def _words(motion: Answer) -> str:
     period = f" {motion['periods']}/{motion['impacts']}" if motion["periods"] else ""
-    return f"{motion['kind']}{period} ({motion['share']:.0%})"
+    reason = f", because {motion['reason']}" if "reason" in motion else ""
+    return f"{motion['kind']}{period} ({motion['share']:.0%}{reason})"
 
 
 def lines(answer: Answer) -> list[str]:

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.laws import LAWS
 from bouncing_ball.contacts.signature import free_impact
+from bouncing_ball.continuation.roots import bracketed_roots
 from bouncing_ball.errors import ModelError, one_of, require
 
 Law = TypeVar("Law", bound=ContactLaw)
@@ -69,9 +70,7 @@ def reference(kind: type[ContactLaw], restitution: float) -> tuple[float, float]
 
 
 def _search(kind: type[ContactLaw], restitution: float) -> float:
-    from scipy.optimize import brentq
-
-    def surplus(group):
+    def surplus(group: float) -> float:
         return np.log(_free(kind, group)[0] / restitution)
 
     # A law that cannot be given by its impact raises its error here.
@@ -83,7 +82,8 @@ def _search(kind: type[ContactLaw], restitution: float) -> float:
             f"restitution coefficient r = {restitution:g} is too small: no {kind.name} contact "
             "with it was found; damped so strongly, the ball hardly leaves"
         ) from None
-    return brentq(surplus, 0.0, enough, xtol=_SETTLED, rtol=4 * np.finfo(float).eps)
+    each = np.vectorize(lambda group, _: surplus(group))
+    return float(bracketed_roots(each, np.zeros(1), np.full(1, enough), _SETTLED)[0])
 
 
 def law_of_impact(

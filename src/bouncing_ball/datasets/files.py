@@ -2,9 +2,14 @@
 
 import csv
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+
+from bouncing_ball.errors import ModelError
+
+PICTURES = (".pdf", ".png", ".svg")
+"""Suffixes of the figures that users request."""
 
 
 def rows_beside(module: str) -> list[dict[str, str]]:
@@ -18,6 +23,31 @@ def rows_beside(module: str) -> list[dict[str, str]]:
     """
     text = Path(module).with_suffix(".csv").read_text(encoding="utf-8")
     return list(csv.DictReader(text.splitlines()))
+
+
+def require_writable(path: Path | None, suffixes: Sequence[str] = ()) -> None:
+    """Refuse a file that cannot be written, before its contents are computed; None is no file.
+
+    Raises
+    ------
+    ModelError
+        If the path has none of the suffixes, or the lowest folder on it that exists is not
+        writable.
+
+    Examples
+    --------
+    >>> require_writable(Path("page.jpg"), PICTURES)
+    Traceback (most recent call last):
+    ...
+    bouncing_ball.errors.ModelError: 'page.jpg' does not end in .pdf or .png or .svg
+    """
+    if path is None:
+        return
+    if suffixes and path.suffix not in suffixes:
+        raise ModelError(f"'{path}' does not end in {' or '.join(suffixes)}")
+    folder = next(each for each in path.absolute().parents if os.path.exists(each))
+    if not folder.is_dir() or not os.access(folder, os.W_OK):
+        raise ModelError(f"{path} cannot be written: {folder} is no folder that can be written to")
 
 
 @contextmanager

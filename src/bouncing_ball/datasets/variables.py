@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.datasets.files import rows_beside
+from bouncing_ball.errors import ModelError
 
 _ROWS = rows_beside(__file__)
 VARIABLES: dict[str, dict[str, str]] = {
@@ -33,7 +34,7 @@ def describe(dataset: xr.Dataset) -> xr.Dataset:
 
     Raises
     ------
-    KeyError
+    ModelError
         If a name is not in :data:`VARIABLES`.
 
     Examples
@@ -43,6 +44,8 @@ def describe(dataset: xr.Dataset) -> xr.Dataset:
     """
     bare = [name for name in dataset.dims if name not in dataset.coords]
     whole = dataset.assign_coords({name: np.arange(dataset.sizes[name]) for name in bare})
+    if unknown := [name for name in whole.variables if name not in VARIABLES]:
+        raise ModelError(f"{unknown[0]} has no row in datasets/variables.csv")
     for name in whole.variables:
         whole[name].attrs = VARIABLES[str(name)]
     return whole
@@ -53,7 +56,7 @@ def described(variables: Mapping[str, Any], coords: Mapping[str, Any] | None = N
 
     Raises
     ------
-    KeyError
+    ModelError
         If a name is not in :data:`VARIABLES`.
 
     Examples

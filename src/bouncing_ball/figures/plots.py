@@ -6,6 +6,7 @@ from pathlib import Path
 import xarray as xr
 from matplotlib.figure import Figure
 
+from bouncing_ball.datasets.files import PICTURES, require_writable
 from bouncing_ball.errors import ModelError
 from bouncing_ball.figures.files import save
 from bouncing_ball.figures.style import style
@@ -21,8 +22,6 @@ PLOTS = {
     "basins": "diagram.basins",
 }
 """The function that draws each kind, as ``module.function`` of this package."""
-
-SUFFIXES = (".pdf", ".png", ".svg")
 
 
 def plot(data: xr.Dataset, path: str | Path | None = None) -> Figure:
@@ -41,7 +40,7 @@ def plot(data: xr.Dataset, path: str | Path | None = None) -> Figure:
         raise ModelError(f"a dataset of the kind {kind!r} has no figure: {', '.join(PLOTS)} have")
     module, name = PLOTS[kind].split(".")
     with style():
-        figure = getattr(import_module(f"{__package__}.{module}"), name)(data)
+        figure = getattr(import_module(f"bouncing_ball.figures.{module}"), name)(data)
         if path is not None:
             write(figure, Path(path), f"bouncing-ball {kind}")
     return figure
@@ -55,8 +54,7 @@ def write(figure: Figure, path: Path, title: str) -> None:
     ModelError
         If the suffix of the path is not that of a picture, or the file cannot be written.
     """
-    if path.suffix not in SUFFIXES:
-        raise ModelError(f"'{path}' does not end in {' or '.join(SUFFIXES)}")
+    require_writable(path, PICTURES)
     try:
         save(figure, path, {"Title": title})
     except OSError as error:

@@ -24,9 +24,6 @@ ARROW: Look = {"arrowstyle": "-|>", "color": "black", "linewidth": 0.9, "mutatio
 ARROW |= {"shrinkA": 0, "shrinkB": 0}
 GUIDE: Look = {"color": "#8c8c8c", "linewidth": 0.7, "linestyle": (0, (1, 1.5))}
 
-SADDLE_NODE, PERIOD_DOUBLING = "saddle-node", "period doubling"
-"""The names of the bifurcations in the datasets."""
-
 
 def _look(entry: Look) -> Look:
     return {key: (0, tuple(x)) if isinstance(x, list) else x for key, x in entry.items()}

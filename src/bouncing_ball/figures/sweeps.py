@@ -8,6 +8,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from bouncing_ball.datasets.bifurcations import PERIOD_DOUBLING, SADDLE_NODE
 from bouncing_ball.datasets.labelled import CASE
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.figures.branches import draw_curve
@@ -16,9 +17,7 @@ from bouncing_ball.figures.labels import in_a_row, note, number, parameters, sym
 from bouncing_ball.figures.style import (
     COLOURS,
     GUIDE,
-    PERIOD_DOUBLING,
     RESTITUTION,
-    SADDLE_NODE,
     Look,
 )
 

@@ -10,6 +10,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.datasets import bifurcations
 from bouncing_ball.errors import ModelError
 
 
@@ -50,8 +51,8 @@ class Side(StrEnum):
 class Bifurcation(StrEnum):
     """The two bifurcations at which an orbit loses its stability along the branch."""
 
-    SADDLE_NODE = "saddle-node"
-    PERIOD_DOUBLING = "period doubling"
+    SADDLE_NODE = bifurcations.SADDLE_NODE
+    PERIOD_DOUBLING = bifurcations.PERIOD_DOUBLING
 
     def test(self, trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:
         """``1 ∓ tr + det``: zero at the bifurcation, positive where the orbit is stable.

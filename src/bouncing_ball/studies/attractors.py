@@ -235,7 +235,7 @@ def phases_of_impacts(parameters: Diagram, release: Release, part: Part = np.asa
     """The variables of :func:`orbit_diagrams`, with Λ along the last axis."""
     lam, bins = parameters.amplitude.grid(), parameters.bins
     own = part(np.arange(lam.size))
-    # Balls start again from the ends of balls at neighbouring Λ, which have neighbours themselves.
+    # Balls start again from the ends of balls at neighbouring Λ.
     near = np.arange(max(own[0] - REACH, 0), min(own[-1] + REACH + 1, lam.size))
     edges = np.linspace(-np.pi, np.pi, bins + 1)
     columns = []

@@ -197,7 +197,8 @@ function notesOf(found, {n, amplitude}, one) {
         + `${admissible ? "unstable" : "inadmissible (an earlier impact occurs)"}, so that no ball stays on it`],
     ...omega < 1 ? ["the contact is slower than the table: the ball oscillates on a spring"] : [],
     ...!one.law && release === "displacement" && zeta > 0
-      ? ["the contact pulls before its release at δ = 0; if it cannot, its r is the other one"] : []];
+      ? ["before its release at δ = 0 the contact pulls the ball; a contact that cannot pull has the r of a release "
+        + "without force"] : []];
 }
 
 function lawNotes(found, n, amplitude, {law, length, contact}) {
@@ -225,7 +226,7 @@ function showEngine({engine, e}, one) {
   // Drake's law has its numbers in SI units.
   const law = one.law && Object.fromEntries(inSi(one).map(([, value,, key]) => [key.slice(4), value]));
   const found = settingsOf(ENGINES, engine, release, one, e, law);
-  $("paste-says").textContent = `For ${engine}, whose contacts end by ${release} `
+  $("paste-says").textContent = `For ${engine}, with the ${release} release `
     + `(r = ${shown(found.restitution, 4)}, within ${e} in ${found.steps} steps of ${found.scheme} `
     + "in a contact):";
   $("snippet").textContent = found.snippet;

@@ -19,7 +19,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from bouncing_ball.calculator.case import Case, Table
 from bouncing_ball.contacts.contact_law import ContactLaw
@@ -185,7 +184,7 @@ def table_of(given: Given) -> Table:
     return Table(omega, moved, given.get("gravity", STANDARD_GRAVITY))
 
 
-def meant(asked: Sequence[int], restitution: ArrayLike, amplitude: float) -> int:
+def meant(asked: Sequence[int], restitution: float | np.ndarray, amplitude: float) -> int:
     """The first of the families whose orbit is stable in the restitution model.
 
     If none of these orbits is stable, it is the first family.
@@ -201,27 +200,27 @@ def meant(asked: Sequence[int], restitution: ArrayLike, amplitude: float) -> int
     return asked[int(np.argmax(orbits.exists & orbits.is_stable()))]
 
 
-def linear_contact(
-    law: ContactLaw, asked: Sequence[int], amplitude: float, release: Release
-) -> SpringDamper:
-    """The linear contact with the r and the duration of a law at the impact speed of an orbit.
+def with_law(case: Case, law: ContactLaw, asked: Sequence[int]) -> Case:
+    """The case with a law, and with the linear contact of its r and duration at the impact speed.
 
-    The speed v = 2πn/(1 + r(v)) is that of the first stable family of the restitution model.
+    This speed v = 2πn/(1 + r(v)) is that of the first stable family of the restitution model.
 
     Examples
     --------
-    >>> law = Tsuji(50.0, tsuji_damping(0.8))
-    >>> round(float(linear_contact(law, [1], 1.0, Release.FORCE).restitution), 12)
+    >>> case = Case(1.0, Table(1.0, 1.0, 1.0), SpringDamper(1.0, 0.0))
+    >>> found = with_law(case, Tsuji(50.0, tsuji_damping(0.8)), [1])
+    >>> round(float(found.contact.restitution), 12)
     0.8
     """
     signature, r = Signature(law), np.ones(len(asked))
     # A contraction: where r falls like 1/v at most, each step at least halves the error.
     for _ in range(np.finfo(float).nmant):
         r = signature(rigid_speed(asked, r)).restitution
-    index = meant(asked, r, amplitude)
-    impact = free_impact(law, float(rigid_speed(index, r[asked.index(index)])))
-    unit = SpringDamper.from_restitution(float(impact.restitution), 1.0, release, measured=True)
-    return replace(unit, frequency_ratio=float(unit.free_duration / impact.duration))
+    n, rule = meant(asked, r, case.table.amplitude), case.contact.release
+    impact = free_impact(law, float(rigid_speed(n, r[asked.index(n)])))
+    unit = SpringDamper.from_restitution(float(impact.restitution), 1.0, rule, measured=True)
+    ratio = float(unit.free_duration / impact.duration)
+    return replace(case, contact=replace(unit, frequency_ratio=ratio), law=law)
 
 
 def case_of(

@@ -184,11 +184,10 @@ def design(
     >>> round(found.restitution, 6), found.release
     (0.75, 'force')
     """
-    source, said = read_engine(locals())
+    call = locals()
+    source, said = read_engine(call)
     given = _read(said)
-    question: dict[str, Any] = given | {"n": n, "release": release, "quantity": quantity}
-    question |= {"engine": engine} | (source.question if source else {})
-    question["law"], kind = law, _of_law(law, engine, said["release"], given)
+    question, kind = call | _read(call), _of_law(law, engine, said["release"], given)
     rule = _under(engine, said["release"], given)
     one_of("quantity", quantity, {str(each): each for each in QUANTITIES})
     if n is not None and (n != int(n) or n < 1):

@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from bouncing_ball.calculator.case import Case
-from bouncing_ball.calculator.contact_data import LOSSY, STIFF, linear_contact
+from bouncing_ball.calculator.contact_data import LOSSY, STIFF, with_law
 from bouncing_ball.calculator.units import Unit, number
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.engines import engine_named
@@ -20,20 +20,12 @@ class Source(NamedTuple):
     parameters: dict[str, Any]
     contact: Physical
 
-    @property
-    def question(self) -> dict[str, Any]:
-        """The arguments of :func:`~.design.design` that give this contact, but for the mass."""
-        given = {"from_engine": self.engine.name, "parameters": self.parameters}
-        return given | {"stiffness": None, "damping": None}
-
     def case(self, case: Case, asked: Sequence[int], written: bool) -> Case:
         """The case with the law of this contact, or with its linear contact if this is written."""
-        table, release = case.table, case.contact.release
-        law = self.engine.law(self.parameters, case.mass, table.time, table.length)
+        law = self.engine.law(self.parameters, case.mass, case.table.time, case.table.length)
         if law is not None and self.engine.needs_speed:
-            linear = linear_contact(law, asked, table.amplitude, release)
-            case = replace(case, contact=linear)
-        return case if written else replace(case, law=law)
+            case = with_law(case, law, asked)
+        return replace(case, law=None if written else law)
 
     def remarks(self, written: str | None, release: Release) -> tuple[str, ...]:
         """Sentences on how the contact differs from a spring and a damper, and on how r changes if

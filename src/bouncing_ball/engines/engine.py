@@ -204,13 +204,7 @@ class Engine(ABC):
         """
 
     def reader(self, parameters: Mapping[str, Any]) -> "Engine":
-        """The engine that reads these parameters, for an engine with several kinds of contacts.
-
-        Raises
-        ------
-        ModelError
-            If the parameters belong to different contacts.
-        """
+        """The engine, or the part of it to which these parameters belong."""
         return self
 
     def law(

@@ -60,6 +60,6 @@ def read_engine(said: Mapping[str, Any]) -> tuple[Source | None, dict[str, Any]]
     mass, rule = said.get("mass"), said.get("release")
     mass = None if mass is None else number("mass", mass, Unit("kg", "20 g"))
     source = Source(engine, values, engine.contact(values, mass))
-    # If the contact is written for another engine, that engine determines the release.
-    rule = rule if said.get("engine") else str(engine.release(rule))
+    # Written for another engine, the contact ends as there; otherwise as here, or as a law's.
+    rule = rule if said.get("engine") or engine.needs_speed else str(engine.release(rule))
     return source, {**said, **source.contact._asdict(), "mass": mass, "release": rule}

@@ -207,9 +207,11 @@ class _ForEngines(ABC):
     def engine_settings(self) -> EngineSettings:
         """The settings of the engine for which this design was made."""
 
-    def _settings(self, contact: Physical, release: str) -> EngineSettings:
+    def _settings(
+        self, contact: Physical, release: str, law: dict[str, Any] | None = None
+    ) -> EngineSettings:
         engine, error = engine_named(self.question["engine"]), self.question["restitution_error"]
-        return engine.settings(contact, release, error)
+        return (engine.with_law(law) if law else engine).settings(contact, release, error)
 
 
 @dataclass(frozen=True)
@@ -280,11 +282,8 @@ class Design(_ForEngines):
 
     def engine_settings(self) -> EngineSettings:
         contact, one = Physical(self.case.mass, self.stiffness, self.damping), self.judged
-        settings = self._settings(contact, self.case.contact.release)
-        if self.law is not None:
-            settings = engine_named(settings.name).of_law(settings, contact, self.law)
         return replace(
-            settings,
+            self._settings(contact, self.case.contact.release, self.law),
             max_height=one.max_height,
             contact_duration=one.contact_duration,
             penetration=one.greatest_compression,

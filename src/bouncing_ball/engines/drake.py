@@ -3,24 +3,14 @@ dissipation d of Hunt and Crossley, f = k p (1 + d p′) ≥ 0.
 """
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any, ClassVar
 
 import numpy as np
 
 from bouncing_ball.contacts.laws.hunt_crossley import LinearHuntCrossley
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.engines.engine import (
-    Engine,
-    EngineSettings,
-    Parameters,
-    Physical,
-    at_speeds,
-    filled,
-    text_of,
-    written,
-)
-from bouncing_ball.engines.scheme import Scheme, steps_for
+from bouncing_ball.engines.engine import Engine, Parameters, Physical, at_speeds, written
+from bouncing_ball.engines.scheme import Scheme
 
 
 class Drake(Engine):
@@ -56,29 +46,21 @@ class Drake(Engine):
     def reader(self, parameters: Mapping[str, Any]) -> Engine:
         return HuntCrossleyDrake() if HuntCrossleyDrake.names[1] in parameters else self
 
-    def of_law(
-        self, settings: EngineSettings, contact: Physical, law: Mapping[str, Any]
-    ) -> EngineSettings:
-        # This damper grows with the penetration, so that it cannot take back that of the step.
-        contact, rule = Physical(*map(written, contact)), self.releases[0]
-        steps = steps_for(Scheme.IMPLICIT, contact.damping_ratio, rule, settings.error)
-        step = written(contact.contact_time(rule) / steps)
-        both = (written(2 * law["stiffness"]), written(law["damping"]))
-        values = dict(zip(HuntCrossleyDrake.names, both, strict=True))
-        numbers = {"mass": contact.mass, "time_step": step, **values}
-        text = filled(text_of("drake-hunt-crossley"), {x: repr(y) for x, y in numbers.items()})
-        scheme = str(Scheme.IMPLICIT)
-        return replace(
-            settings, parameters=values, snippet=text, steps=steps, time_step=step, scheme=scheme
-        )
+    def with_law(self, law: Mapping[str, Any]) -> Engine:
+        return HuntCrossleyDrake(law)
 
 
 class HuntCrossleyDrake(Drake):
-    """The reader of the approximations with the damping of Hunt and Crossley.
+    """The approximations with the damping of Hunt and Crossley, f = k p (1 + d p′).
 
     If ball and table are alike, the contact has half of their stiffness, and d in s/m is the
-    ``hunt_crossley_dissipation`` of each. The time step damps as well, which is not taken back. In
-    slow impacts the damping vanishes: :meth:`read` returns c = 0.
+    ``hunt_crossley_dissipation`` of each. This damper grows with the penetration, so that it cannot
+    take back that of the time step. In slow impacts it vanishes: :meth:`read` returns c = 0.
+
+    Parameters
+    ----------
+    law : mapping, optional
+        The stiffness k in N/m and the damping d that :meth:`parameters` gives.
 
     Examples
     --------
@@ -88,10 +70,16 @@ class HuntCrossleyDrake(Drake):
     """
 
     names = ("point_contact_stiffness", "hunt_crossley_dissipation")
-    # Where p = 0 the force vanishes, too.
-    releases = (Release.DISPLACEMENT,)
     scheme = Scheme.IMPLICIT
     needs_speed = True
+    text = "drake-hunt-crossley"
+
+    def __init__(self, law: Mapping[str, Any] | None = None):
+        self._law = law or {}
+
+    def parameters(self, contact: Physical) -> Parameters:
+        values = (written(2 * self._law["stiffness"]), written(self._law["damping"]))
+        return dict(zip(self.names, values, strict=True))
 
     def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
         m, double, _ = self._two(parameters, mass)

@@ -124,7 +124,7 @@ class Engine(ABC):
 
     A subclass defines its ``name``, the ``names`` of its parameters, its ``releases`` with the
     default first, and the ``scheme`` by which it moves a ball in contact. Its text to paste is
-    ``snippets/NAME.txt``.
+    ``snippets/NAME.txt``, where NAME may be another ``text``.
     """
 
     name: ClassVar[str]
@@ -133,6 +133,7 @@ class Engine(ABC):
     scheme: ClassVar[Scheme]
     laws: ClassVar[dict[str, str]] = {}
     """The names of the engine's other contact laws, by the names that users may give."""
+    text: ClassVar[str] = ""
     needs_speed: ClassVar[bool] = False
     """Whether the damping depends on the impact speed, so that :meth:`read` returns c = 0."""
 
@@ -179,7 +180,7 @@ class Engine(ABC):
 
         A line of ``snippets/NAME.txt`` that is for one release only begins with the release's name.
         """
-        lines = (line.rpartition("|") for line in text_of(self.name).splitlines())
+        lines = (line.rpartition("|") for line in text_of(self.text or self.name).splitlines())
         return "\n".join(line for rule, _, line in lines if rule in ("", release))
 
     def snippet(self, contact: Physical, release: Release, time_step: float) -> str:
@@ -217,14 +218,10 @@ class Engine(ABC):
         """
         return None
 
-    def of_law(
-        self, settings: EngineSettings, contact: Physical, law: Mapping[str, Any]
-    ) -> EngineSettings:
-        """The settings for a contact law, made from those of the linear contact with the same
-        restitution and duration.
+    def with_law(self, law: Mapping[str, Any]) -> "Engine":
+        """The engine for a contact law, which has a ``name`` and its parameters in SI units.
 
-        ``law`` has the name of the law and its parameters in SI units, which replace those of the
-        linear contact. The time step is the one that the linear contact needs without compensation.
+        Its settings are made from the linear contact with the same restitution and duration.
 
         Raises
         ------

@@ -16,16 +16,16 @@ COMMON = ("errors", "parameters", "signatures")
 # For each layer, from the bottom: other layers of the package, and packages from outside.
 ALLOWED = {
     "datasets": (set(), {"numpy", "xarray"}),
-    "continuation": (set(), {"numpy"}),
-    "contacts": ({"continuation"}, {"numpy", "scipy"}),
+    "contacts": (set(), {"numpy", "scipy"}),
+    "continuation": (set(), {"numpy", "scipy"}),
     "motion": ({"contacts"}, {"numpy"}),
-    "orbits": ({"datasets", "contacts", "continuation", "motion"}, {"numpy", "xarray"}),
+    "orbits": ({"datasets", "contacts", "continuation", "motion"}, {"numpy", "scipy", "xarray"}),
     "attractors": (
         {"datasets", "contacts", "continuation", "motion", "orbits"},
         {"numpy", "scipy", "xarray"},
     ),
     "calls": ({"datasets", "contacts", "motion", "orbits", "attractors"}, {"numpy"}),
-    "accuracy": ({"contacts", "continuation", "motion", "orbits"}, {"numpy"}),
+    "accuracy": ({"contacts", "continuation", "motion", "orbits"}, {"numpy", "scipy"}),
     # No engine is imported.
     "engines": ({"contacts"}, {"numpy"}),
     "studies": (

@@ -31,8 +31,8 @@ The package consists of layers, each of which imports only from the layers above
 and from ``errors``, ``parameters`` and ``signatures``:
 
 ``datasets``      names, symbols, units and netCDF files
-``continuation``  pseudo-arclength continuation; knows nothing of balls
 ``contacts``      the impact: restitution map, spring-damper contact, permanent contact
+``continuation``  pseudo-arclength continuation; knows nothing of balls
 ``motion``        event-driven simulation, from any initial state
 ``orbits``        n-T orbits, their stability and bifurcations
 ``attractors``    the motions on which balls end: repeating, locked, chaotic

@@ -31,8 +31,8 @@ The package consists of layers, each of which imports only from the layers above
 and from ``errors``, ``parameters`` and ``signatures``:
 
 ``datasets``      names, symbols, units and netCDF files
-``continuation``  pseudo-arclength continuation; knows nothing of balls
 ``contacts``      the impact: restitution map, spring-damper contact, permanent contact
+``continuation``  pseudo-arclength continuation; knows nothing of balls
 ``motion``        event-driven simulation, from any initial state
 ``orbits``        n-T orbits, their stability and bifurcations
 ``attractors``    the motions on which balls end: repeating, locked, chaotic
@@ -49,6 +49,11 @@ and from ``errors``, ``parameters`` and ``signatures``:
 ``compare``       the comparison of datasets, texts and pictures of two runs
 ``pipeline``      the Python side of the Snakefile: source files of a stage, jobs, progress
 ``cli``           the command line, ``bouncing-ball``
+
+Two layers also use a lower layer, whose modules they import when a method is first called: models
+have the methods ``history``, ``branch`` and so on of ``calls``, and labelled datasets the method
+``plot`` of ``figures``. The results then offer what most people do next, and whoever only computes
+imports neither.
 """
 
 from importlib import import_module

@@ -62,7 +62,7 @@ def test_no_budget_hides_what_a_reader_sees():
     # A tenth of a pixel of a picture of a thousand, but where rounding decides a whole sample.
     # What engines gave is a measurement, and no picture of the run is made of a new one.
     # Where rounding decides about motions there are statistics, with their standard errors.
-    motions = {*PICTURES, "ext_basins"}
+    motions = {*PICTURES, "ext_basins", "ext_lives"}
     statistics = [budget for name in motions for budget in ARTIFACTS[name].values()]
     assert all(budget.share <= 0.3 and budget.size <= 7 for budget in statistics)
     computed = [own for name, own in ARTIFACTS.items() if name not in ("engines", *motions)]

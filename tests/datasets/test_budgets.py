@@ -24,10 +24,11 @@ ROOT = Path(__file__).resolve().parents[2]
 RUN = read_yaml(ROOT / "config" / "config.yaml")
 # Sizes that become 2N - 1, and parameters that are moved; the others are labels or sought.
 SIZES, MOVED = ("samples", "points"), ("restitution", "amplitude", "amplitude_max")
-# More random orbits and more nodes are another sample, and one motion is sampled at its events too.
+# More random orbits and more nodes are another sample; motions are sampled at their events and a
+# sweep at round ϖ, too; and openings are followed from ϖ to ϖ as far as Newton's method converges.
 NOT_NESTED = (
-    *("ext_orders", "explorer", "formulas", "fig07", "fig12", "ext_instant"),
-    *("ext_locking", "ext_diagram", "ext_means", "ext_locked"),
+    *("ext_orders", "explorer", "formulas", "fig07", "fig12", "fig13", "ext_instant"),
+    *("ext_flights", "ext_locking", "ext_diagram", "ext_means", "ext_locked"),
 )
 
 
@@ -89,7 +90,9 @@ def results(stages, coarse, recorded):
         reads = "data" in inspect.signature(load(study)).parameters and artifact != "ext_locked"
         if reads or artifact in ("ext_means", "ext_lives"):
             continue
+        # The last doublings move most.
         fewer = {key: number for (name, key), number in coarse.items() if name == artifact}
+        fewer.pop("doublings", None)
         given = mapped(
             arguments(study, artifact, RUN), lambda key, x, fewer=fewer: fewer.get(key, x)
         )

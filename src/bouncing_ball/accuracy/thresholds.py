@@ -10,12 +10,12 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.optimize.elementwise import find_root
 
 from bouncing_ball.accuracy.errors import SIMPLE, modulus, relative
 from bouncing_ball.accuracy.quantities import OF_IMPACTS, OF_ORBITS, values
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.continuation.roots import bracketed_roots
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
@@ -81,10 +81,18 @@ def last_crossing(function: Numbered, ratios: np.ndarray, scanned: np.ndarray) -
     last = turns.shape[1] - 1 - np.argmax(turns[which, ::-1], axis=1)
     found = np.full(len(scanned), np.nan)
     if which.size:
-        low, high = (np.log(ratios[last + k]) for k in range(2))
+        bracket = np.log(ratios[last]), np.log(ratios[last + 1])
+        with np.errstate(invalid="ignore"):  # from an interpolation that find_root rejects
+            root = find_root(
+                lambda x, k: function(np.exp(x), k.astype(int)),
+                bracket,
+                args=(which,),
+                tolerances={"xatol": _CLOSE},
+            )
         # If a sample lies at the root, rounding may change its sign; the root is then the sample.
-        root = bracketed_roots(lambda x, k: function(np.exp(x), which[k]), low, high, _CLOSE)
-        found[which] = np.exp(root)
+        values_at_ends = np.abs(root.f_bracket)
+        end = np.where(values_at_ends[0] < values_at_ends[1], *bracket)
+        found[which] = np.exp(np.where(root.success, root.x, end))
     return found
 
 

@@ -18,12 +18,12 @@ MOST_BALLS = 20_000_000
 
 # Balls start again from the ends of balls that are this many amplitudes away. The fractional parts
 # of multiples of the two numbers in _EVEN cover a square evenly.
-_FURTHER = (1, 3)
+_FURTHER = (1, 4)
 # Families of orbits beside which balls start, and the difference between their phases.
 _FAMILIES, _BESIDE = (1, 2, 3), 1e-3
 _EVEN = np.array([0.7548776662466927, 0.5698402909980532])
 _SEEN = ("impact_phase", "impact_speed")
-REACH = sum(_FURTHER)
+REACH = max(_FURTHER)
 """The motions at one Λ depend on at most this number of amplitudes on each side."""
 
 
@@ -91,17 +91,17 @@ def fastest(model: Any, amplitude: Any) -> np.ndarray:
 def diagram(model: Any, amplitude: np.ndarray, starts: int, samples: int, impacts: int) -> Labelled:
     """The attractors over Λ, from several starts and from the motions at neighbouring Λ.
 
-    After the starts, balls start again at each Λ from the ends of balls at a lower and at a higher
-    Λ, several times. An attractor is thus followed in both directions beyond the Λ at which a start
-    finds it. The motions are over (amplitude, start). ``impact_phase`` and ``impact_speed`` are
-    over (amplitude, start, impact), NaN beyond the impacts of one period.
+    After the starts, balls start again at each Λ from the ends of balls at lower and at higher Λ.
+    An attractor is thus followed in both directions beyond the Λ at which a start finds it. The
+    motions are over (amplitude, start). ``impact_phase`` and ``impact_speed`` are over (amplitude,
+    start, impact), NaN beyond the impacts of one period.
 
     Raises
     ------
     ModelError
         If there are too many balls.
     """
-    require_memory(amplitude.size * (starts + 2) * samples, "amplitudes, starts and samples")
+    require_memory(amplitude.size * (starts + 7) * samples, "amplitudes, starts and samples")
     lam = amplitude[:, np.newaxis]
     even = np.mod(0.5 + np.arange(1, starts + 1)[:, np.newaxis] * _EVEN, 1.0)
     # More balls start beside the orbits with one impact, which may attract few of the other balls.
@@ -109,14 +109,12 @@ def diagram(model: Any, amplitude: np.ndarray, starts: int, samples: int, impact
     phase = 2 * np.pi * even[:, 0] - np.pi + 0 * lam, orbit.phase + _BESIDE
     speed = even[:, 1] * fastest(model, lam), -orbit.relative_impact_velocity
     found = _ends(model, lam, np.concatenate(phase, 1), np.concatenate(speed, 1), impacts)
-    swept = found[:, [0, 0]]
-    for step in _FURTHER:
-        # The ends of a ball at a lower Λ and of a ball at a higher Λ.
-        place = np.arange(amplitude.size)[:, np.newaxis] + step * np.array([-1, 1])
-        place = np.clip(place, 0, amplitude.size - 1), [0, 1]
-        phase, velocity = swept.end_phase[place], swept.end_velocity[place]
-        speed = amplitude[place[0]] * np.cos(phase) - velocity
-        swept = _ends(model, lam, phase, speed, impacts)
+    # The ends of the first ball at two lower and at two higher Λ.
+    place = np.arange(amplitude.size)[:, np.newaxis] + np.multiply.outer([-1, 1], _FURTHER).ravel()
+    place = np.clip(place, 0, amplitude.size - 1)
+    phase, velocity = found.end_phase[place, 0], found.end_velocity[place, 0]
+    speed = amplitude[place] * np.cos(phase) - velocity
+    swept = _ends(model, lam, phase, speed, impacts)
     both = zip(vars(found).values(), vars(swept).values(), strict=True)
     found = Motions(*(np.concatenate(x, 1) for x in both))
     seen = _impacts(model, lam, found, samples)

@@ -167,6 +167,12 @@ def design(
         For the other engines: a parameter by its name, such as kn=1e5; for PyBullet and Drake also
         time_step, in s.
 
+    Returns
+    -------
+    Design or Contact
+        The assessed or chosen contact, its orbits and the motion of the ball on a table; without a
+        table, the contact alone. All numbers are in SI units.
+
     Raises
     ------
     ModelError

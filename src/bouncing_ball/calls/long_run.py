@@ -75,6 +75,11 @@ def lyapunov_exponent(amplitude: AnyAmplitude, **given: Any) -> Labelled:
         motion. For a periodic motion it follows from the larger multiplier, and is -∞ if the
         later motion does not depend on earlier impacts.
 
+    Raises
+    ------
+    ModelError
+        If a parameter is missing, out of range or contradicts another.
+
     Examples
     --------
     The multipliers of the 1-T orbit are complex, of modulus r:

@@ -81,6 +81,11 @@ def model(
         Speed of this free impact. The default is the impact speed of the orbit; for limits, the
         impact speed of the restitution model, 2πn/(1 + r); for a simulation, the first one.
 
+    Returns
+    -------
+    ImpactModel
+        Has the shape to which the arrays broadcast.
+
     Raises
     ------
     ModelError

@@ -68,11 +68,11 @@ def _shares(at: Labelled) -> list[Answer]:
     """
     names = (*_MOTION, "reason")
     each = Counter(zip(*(at[name].values.tolist() for name in names), strict=True))
-    found = []
-    for (*motion, reason), number in each.most_common():
-        found.append(dict(zip(_MOTION, motion, strict=True)) | {"share": number / each.total()})
-        found[-1] |= {"reason": reason} if reason else {}
-    return found
+    return [
+        {name: x for name, x in zip(names, motion, strict=True) if x != ""}
+        | {"share": number / each.total()}
+        for motion, number in each.most_common()
+    ]
 
 
 def _words(motion: Answer) -> str:

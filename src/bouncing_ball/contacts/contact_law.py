@@ -104,7 +104,10 @@ class ContactLaw(Batch, ABC):
     """
 
     def loaded_force(self, penetration: np.ndarray, rate: np.ndarray, load: Any) -> np.ndarray:
-        """The force under a load a, a linear function of a; by default f(p, p′)."""
+        """The force under a load a, a linear function of a; by default f(p, p′).
+
+        It has the shape to which p, p′ and a broadcast with the parameters.
+        """
         return self.force(penetration, rate)
 
     @property
@@ -113,11 +116,15 @@ class ContactLaw(Batch, ABC):
         return False
 
     def kink(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """A function that changes its sign where the continuous force has a kink."""
+        """A function of p and p′ that changes its sign where the continuous force has a kink, of
+        the shape to which the arguments broadcast.
+        """
         return np.ones_like(penetration)
 
     def grip(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """Grip function: positive in contact, zero at release."""
+        """Grip function: positive in contact, zero at release; of the shape to which p and p′
+        broadcast with the parameters.
+        """
         lag = self.lag
         return self.force(penetration, rate) if lag is None else penetration + lag * rate
 
@@ -164,7 +171,7 @@ class ContactLaw(Batch, ABC):
         return [field.name for field in fields(cls) if field.name != "release"]
 
     def parameters(self) -> dict[str, Any]:
-        """Names and values of the law's numerical parameters."""
+        """Names and values of the law's numerical parameters, as they were given."""
         return {name: getattr(self, name) for name in self.parameter_names()}
 
     def in_si(self, mass: float, length: float, time: float) -> dict[str, float]:

@@ -9,7 +9,6 @@ from typing import NamedTuple
 import numpy as np
 
 from bouncing_ball.contacts.contact_law import ContactLaw
-from bouncing_ball.continuation.roots import bracketed_roots
 from bouncing_ball.errors import ModelError
 
 # Limit and tolerance of Newton's method for ln p, which takes one step for a power law and a few
@@ -74,12 +73,13 @@ def rest(law: ContactLaw) -> float:
     deepest = float(depth(law, 0 * weight, 0.0, weight)[0])
     if not law.feels_load:
         return deepest
-
-    def surplus(p: np.ndarray, _: np.ndarray) -> np.ndarray:
-        return law.loaded_force(p, 0 * p, 1.0) - 1
-
     # The load adds to the force, so that the ball at rest lies less deep.
-    return float(bracketed_roots(surplus, 0 * weight, 2 * deepest * weight)[0])
+    from scipy.optimize import brentq
+
+    def surplus(p: float) -> float:
+        return law.loaded_force(p * weight, 0 * weight, 1.0)[0] - 1
+
+    return brentq(surplus, 0.0, 2 * deepest)
 
 
 def scales(law: ContactLaw, speed: np.ndarray, load: np.ndarray) -> Scales:

@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.laws import LAWS
 from bouncing_ball.contacts.signature import free_impact
-from bouncing_ball.continuation.roots import bracketed_roots
 from bouncing_ball.errors import ModelError, one_of, require
 
 Law = TypeVar("Law", bound=ContactLaw)
@@ -70,7 +69,9 @@ def reference(kind: type[ContactLaw], restitution: float) -> tuple[float, float]
 
 
 def _search(kind: type[ContactLaw], restitution: float) -> float:
-    def surplus(group: float) -> float:
+    from scipy.optimize import brentq
+
+    def surplus(group):
         return np.log(_free(kind, group)[0] / restitution)
 
     # A law that cannot be given by its impact raises its error here.
@@ -82,8 +83,7 @@ def _search(kind: type[ContactLaw], restitution: float) -> float:
             f"restitution coefficient r = {restitution:g} is too small: no {kind.name} contact "
             "with it was found; damped so strongly, the ball hardly leaves"
         ) from None
-    each = np.vectorize(lambda group, _: surplus(group))
-    return float(bracketed_roots(each, np.zeros(1), np.full(1, enough), _SETTLED)[0])
+    return brentq(surplus, 0.0, enough, xtol=_SETTLED, rtol=4 * np.finfo(float).eps)
 
 
 def law_of_impact(

@@ -90,7 +90,13 @@ class SpringDamper(OscillatorLaw):
 
     @classmethod
     def group_of(cls, restitution: float) -> float:
-        """ζ that gives r in (0, 1] with the displacement release (Eq. 16)."""
+        """ζ that gives r with the displacement release (Eq. 16).
+
+        Raises
+        ------
+        ModelError
+            If r is not in (0, 1].
+        """
         return float(damping_ratio(restitution))
 
     @classmethod

@@ -241,18 +241,6 @@ def continue_both_ways(problem: Problem, start: np.ndarray, **options) -> Branch
 _EQUALISING_ROUNDS = 8
 
 
-def _interpolated(branch: Branch, wanted: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Points and tangents at given arclengths, by cubic Hermite interpolation."""
-    arc, points, tangents = branch.arclength, branch.points, branch.tangents
-    k = np.clip(np.searchsorted(arc, wanted) - 1, 0, len(arc) - 2)
-    step = np.diff(arc)[k, np.newaxis]
-    t = (wanted - arc[k])[:, np.newaxis] / step
-    (p, v), (q, w) = ((points[j], step * tangents[j]) for j in (k, k + 1))
-    bend, twist = 3 * (q - p) - 2 * v - w, v + w - 2 * (q - p)
-    along = (v + t * (2 * bend + 3 * t * twist)) / step
-    return p + t * (v + t * (bend + t * twist)), along
-
-
 def resample(problem: Problem, branch: Branch, count: int) -> np.ndarray:
     """Solutions at equal distances along a branch, shape (count, N + 1).
 
@@ -267,13 +255,17 @@ def resample(problem: Problem, branch: Branch, count: int) -> np.ndarray:
         If the corrector fails, because the steps along the branch are too long, or if
         the branch has a single point.
     """
+    # Imported here, because not every run needs it.
+    from scipy.interpolate import CubicHermiteSpline
+
     arc = branch.arclength
     if len(arc) < 2:
         raise ContinuationError(f"a branch of one point has no length: {branch.end}")
+    spline = CubicHermiteSpline(arc, branch.points, branch.tangents)
     wanted = np.linspace(0.0, arc[-1], count)
     for _ in range(_EQUALISING_ROUNDS):
-        guess, along = _interpolated(branch, wanted)
-        found = newton(problem, guess, plane(along, guess))
+        guess = spline(wanted)
+        found = newton(problem, guess, plane(spline(wanted, 1), guess))
         if not np.all(found.converged):
             residual = found.residual.max()
             raise ContinuationError(

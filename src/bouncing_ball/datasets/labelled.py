@@ -19,7 +19,6 @@ from xarray.plot.accessor import DatasetPlotAccessor
 from bouncing_ball.datasets.variables import VARIABLES
 from bouncing_ball.errors import ParameterError, extra
 
-_FIGURES = "bouncing_ball.figures.plots"
 CASE = "case"
 """The single axis of results before :meth:`Grid.unfold` gives them the axes of the call."""
 
@@ -38,7 +37,7 @@ class Plot(DatasetPlotAccessor):
             If the suffix of the path is not that of a picture, or the file cannot be written.
         """
         with extra("plot"):
-            figures = import_module(_FIGURES)
+            figures = import_module("bouncing_ball.figures.plots")
         return figures.plot(self._ds, path)
 
 

@@ -40,7 +40,7 @@ def plot(data: xr.Dataset, path: str | Path | None = None) -> Figure:
         raise ModelError(f"a dataset of the kind {kind!r} has no figure: {', '.join(PLOTS)} have")
     module, name = PLOTS[kind].split(".")
     with style():
-        figure = getattr(import_module(f"{__package__}.{module}"), name)(data)
+        figure = getattr(import_module(f"bouncing_ball.figures.{module}"), name)(data)
         if path is not None:
             write(figure, Path(path), f"bouncing-ball {kind}")
     return figure

@@ -227,7 +227,10 @@ class ImpactModel(Batch, ABC):
         return law
 
     def orbit_of(self, n: ArrayLike, amplitude: ArrayLike, *numbers: ArrayLike) -> Any:
-        """Orbits from Λ, φ, D and z′_i, as datasets store them; see :meth:`Orbit.of`."""
+        """Orbits from Λ, φ, D and z′_i, as datasets store them; see :meth:`Orbit.of`.
+
+        They have the shape to which the arguments and the model broadcast.
+        """
         return self.orbit_type.of(n, self.impact_law, amplitude, *numbers)
 
     def require_admissible(self, n: int, amplitude: float, side: Side = Side.STABLE) -> Orbit:

@@ -98,7 +98,10 @@ class RestitutionModel(_Instants):
     def orbit(
         self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE
     ) -> RestitutionOrbit:
-        """The n-T orbits at Λ on one side of the saddle-node (Eq. 6); NaN below the saddle-node."""
+        """The n-T orbits at Λ on one side of the saddle-node (Eq. 6); NaN below the saddle-node.
+
+        Arguments, shape and errors are those of :meth:`.ImpactModel.orbit`.
+        """
         fold, lam = formulas.saddle_node(n, self.restitution), np.asarray(amplitude, dtype=float)
         there = lam >= fold
         phase = formulas.phase(
@@ -107,17 +110,20 @@ class RestitutionModel(_Instants):
         return self.orbit_of(n, lam, np.where(there, phase, np.nan))
 
     def saddle_node(self, n: ArrayLike) -> RestitutionOrbit:
-        """The orbits at the saddle-node (Eq. 7), where φ = 0."""
+        """The orbits at the saddle-node (Eq. 7), where φ = 0, with the shape of n and the model."""
         return self.orbit_of(n, formulas.saddle_node(n, self.restitution), 0.0)
 
     def period_doubling(self, n: ArrayLike) -> RestitutionOrbit:
-        """The orbits at the period doubling of the exact map; Eq. 8 is that of Holmes' map."""
+        """The orbits at the period doubling of the exact map; Eq. 8 is that of Holmes' map.
+
+        They have the shape of n and the model.
+        """
         lam = formulas.period_doubling(n, self.restitution)
         return self.orbit_of(n, lam, formulas.phase(n, self.restitution, lam))
 
     def nearest(self, orbit: RestitutionOrbit) -> RestitutionOrbit:
         """The points nearest to given orbits on the line Λ cos φ = Λ_SN, the closed form of the
-        branch.
+        branch, of the shape of these orbits.
         """
         fold = formulas.saddle_node(orbit.n, orbit.restitution)
         lift = orbit.amplitude * np.sin(orbit.phase)

@@ -3,7 +3,7 @@
 These are roots of functions of one variable along the branch of
 :mod:`bouncing_ball.orbits.spring_damper_branch`, computed for arrays of contacts at the same time.
 A scan brackets the first root next to the fold, and Chandrupatla's method
-(:func:`~bouncing_ball.continuation.roots.bracketed_roots`) reduces the bracket to the last digit.
+(:func:`scipy.optimize.elementwise.find_root`) reduces the bracket to the last digit.
 
 The branch comes from Λ → ∞ at short contacts. From there Λ falls as the contact
 duration grows, until the saddle-node: this is the side that is stable next to the
@@ -19,7 +19,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.continuation.roots import bracketed_roots
 from bouncing_ball.motion.ensembles import blocks
 from bouncing_ball.orbits.orbit import check_index
 from bouncing_ball.orbits.spring_damper_branch import BranchPoint, branch_point
@@ -88,14 +87,18 @@ class _Curves(NamedTuple):
 
         The root is NaN where ``found`` is False.
         """
-        result, there = np.full(at.shape, np.nan), np.flatnonzero(found)
+        # Imported here because it takes a third of a second, and not every run needs limits.
+        from scipy.optimize.elementwise import find_root
 
-        def function(excess: np.ndarray, k: np.ndarray) -> np.ndarray:
-            return of(self.take(there[k]).point(excess), *(x[there[k]] for x in more))
+        def function(excess, which, *more):
+            return of(self.take(which).point(excess), *more)
 
-        if there.size:
-            low, high = (grid[at[there] + k, there] for k in range(2))
-            result[there] = bracketed_roots(function, low, high)
+        result, which = np.full(at.shape, np.nan), np.flatnonzero(found)
+        if which.size:
+            bracket = grid[at[which], which], grid[at[which] + 1, which]
+            # The default tolerance is four units in the last place of the root.
+            args = (which, *(x[which] for x in more))
+            result[which] = find_root(function, bracket, args=args).x
         return result
 
     def zero(

@@ -59,7 +59,10 @@ class SpringDamperModel(ImpactModel):
     def orbit(
         self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE
     ) -> SpringDamperOrbit:
-        """The n-T orbits at Λ on one side of the saddle-node; NaN where there is no orbit."""
+        """The n-T orbits at Λ on one side of the saddle-node; NaN where there is no orbit.
+
+        Arguments, shape and errors are those of :meth:`.ImpactModel.orbit`.
+        """
         return limits.orbit_at(self.contact, n, amplitude, Side(side))
 
     def orbits(self, n: int, amplitude: float) -> SpringDamperOrbit:
@@ -72,6 +75,7 @@ class SpringDamperModel(ImpactModel):
     def saddle_node(self, n: ArrayLike) -> SpringDamperOrbit:
         """The orbits at the saddle-node; NaN where the branch has no saddle-node.
 
+        Arguments, shape and errors are those of :meth:`.ImpactModel.saddle_node`.
         Without dissipation the saddle-node is at Λ = 0. There Λ is the difference of terms as large
         as z′_i, and a Λ of the order of their rounding error is set to 0.
 
@@ -87,19 +91,24 @@ class SpringDamperModel(ImpactModel):
         return replace(found, amplitude=lam)
 
     def period_doubling(self, n: ArrayLike) -> SpringDamperOrbit:
-        """The orbits at the period doubling nearest to the saddle-node; NaN where there is none."""
+        """The orbits at the period doubling nearest to the saddle-node; NaN where there is none.
+
+        Arguments, shape and errors are those of :meth:`.ImpactModel.period_doubling`.
+        """
         excess = limits.period_doubling(self.contact, n)
         return SpringDamperOrbit.on_branch(excess, self.contact, n)
 
     def nearest(self, orbit: SpringDamperOrbit) -> SpringDamperOrbit:
-        """The points of the branch that are nearest to given orbits in (Λ cos φ, Λ sin φ, ε)."""
+        """The points of the branch that are nearest to given orbits in (Λ cos φ, Λ sin φ, ε), of
+        the shape of these orbits.
+        """
         contact, n = orbit.law, orbit.n
         duration = orbit.contact_duration * contact.damped_frequency - contact.free_angle
         x, y = orbit.amplitude * np.cos(orbit.phase), orbit.amplitude * np.sin(orbit.phase)
         return SpringDamperOrbit.on_branch(nearest_excess(contact, n, x, y, duration), contact, n)
 
     def permanent_contact_threshold(self) -> np.ndarray:
-        """Λ up to which the ball stays on the table.
+        """Λ up to which the ball stays on the table, of the model's shape.
 
         It is Λ_SD(ϖ) for the displacement release and Λ_F(ϖ) for the force release.
         """

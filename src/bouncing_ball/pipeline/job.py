@@ -46,8 +46,10 @@ def logged(snakemake: Any) -> Iterator[list[str]]:
     # closing the file would then wait forever. Because files are written completely or not at all,
     # no file is damaged.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    # Imported modules remain in use; excluding them from garbage collection saves time.
+    # Imported modules remain in use, and few objects of a job are in cycles: excluding the former
+    # from garbage collection, and collecting seldom, saves time.
     gc.freeze()
+    gc.set_threshold(100_000)
     # For every dataset xarray checks whether its values are quantities of pint. The values of a
     # job are plain numbers, and importing pint takes longer than reading them.
     without_pint = sys.modules.setdefault("pint", None) is None  # type: ignore[arg-type]

@@ -117,13 +117,27 @@ permanent contact."""
 
 
 def models(restitution: np.ndarray, ratio: float | np.ndarray, release: Release) -> tuple:
-    """Restitution, corrected and spring-damper model with the r of a free impact on the contact."""
+    """Restitution, corrected and spring-damper model with the r of a free impact on the contact.
+
+    Parameters
+    ----------
+    restitution, ratio : array_like
+        r by Eq. 16, which gives the contact its ζ, and ϖ. They broadcast.
+    release : Release
+        The rule that ends the contact.
+
+    Returns
+    -------
+    tuple of ImpactModel
+        In the order of :data:`MODELS`. The restitution model has the shape of r, the others that to
+        which r and ϖ broadcast.
+    """
     exact, *simple = of_contact(SpringDamper.from_restitution(restitution, ratio, release))
     return *simple, exact
 
 
 def group(found: Motions, name: str) -> np.ndarray:
-    """Whether the motions belong to a group of :data:`GROUPS`."""
+    """Whether the motions belong to a group of :data:`GROUPS`, an array of their shape."""
     kind, _, which = name.partition(", ")
     inside = found.kind == kind if kind != "all" else np.full(found.kind.shape, True)
     bound = {"1 to 4 T": found.periods <= 4, "above 10 T": found.periods > 10}
@@ -134,6 +148,24 @@ def share(chosen: np.ndarray, confidence: float) -> tuple[float, float, float, f
     """The number of truth values, the share of those that are true, and its Wilson limits.
 
     The limits hold for independent values. The share and its limits are NaN if there are no values.
+
+    Parameters
+    ----------
+    chosen : array of bool
+        Of any shape.
+    confidence : float
+        The probability with which the interval contains the share, in (0, 1).
+
+    Returns
+    -------
+    tuple of float
+        Number, share, lower limit and upper limit.
+
+    Examples
+    --------
+    >>> count, found, low, high = share(np.array([True, False, True, False]), 0.95)
+    >>> count, found, round(float(low + high), 12)
+    (4, 0.5, 1.0)
     """
     if not chosen.size:
         return 0, np.nan, np.nan, np.nan
@@ -146,6 +178,12 @@ def with_limits(estimates: dict[str, tuple]) -> dict[str, tuple]:
 
     The values of ``estimates`` are pairs of dimensions and arrays, whose last axis holds an
     estimate, its lower limit and its upper limit.
+
+    Examples
+    --------
+    >>> found = with_limits({"share": ("case", [[0.5, 0.4, 0.6]])})
+    >>> {name: values.tolist() for name, (dims, values) in found.items()}
+    {'share': [0.5], 'share_low': [0.4], 'share_high': [0.6]}
     """
     return {
         f"{name}{end}": (dims, np.array(values)[..., k])
@@ -171,7 +209,14 @@ def agreement(simple: Motions, contact: Motions, confidence: float) -> np.ndarra
 
 
 def motions_at_nodes(parameters: Locking, release: Release, part: Part = np.asarray) -> Arrays:
-    """The fields of :class:`~bouncing_ball.attractors.motions.Motions`, over (model, ϖ, node)."""
+    """The motions on which the balls of the nodes end, in each model at each ϖ.
+
+    Returns
+    -------
+    dict of array
+        The fields of :class:`~bouncing_ball.attractors.motions.Motions`, shape (model, ϖ, node).
+        The restitution model has the same values at every ϖ.
+    """
     ratios = np.array(parameters.frequency_ratio)
     r, lam = part(parameters.places())
     start = parameters.phase, lam * np.cos(parameters.phase) - parameters.impact_speed
@@ -232,10 +277,22 @@ def locking(parameters: Locking, release: Release, found: Found = None) -> xr.Da
 
 
 def phases_of_impacts(parameters: Diagram, release: Release, part: Part = np.asarray) -> Arrays:
-    """The variables of :func:`orbit_diagrams`, with Λ along the last axis."""
+    """The densities of the impacts' phases and the exponents, in each model along Λ.
+
+    Returns
+    -------
+    dict of array
+        The variables of :func:`orbit_diagrams`: ``phase_density``, shape (model, bin_phase,
+        amplitude), and ``lyapunov_exponent`` and ``lyapunov_error``, shape (model, amplitude).
+
+    Raises
+    ------
+    ModelError
+        If there are more balls than fit into memory.
+    """
     lam, bins = parameters.amplitude.grid(), parameters.bins
     own = part(np.arange(lam.size))
-    # Balls start again from the ends of balls at neighbouring Λ, which have neighbours themselves.
+    # Balls start again from the ends of balls at neighbouring Λ.
     near = np.arange(max(own[0] - REACH, 0), min(own[-1] + REACH + 1, lam.size))
     edges = np.linspace(-np.pi, np.pi, bins + 1)
     columns = []
@@ -260,7 +317,7 @@ def phases_of_impacts(parameters: Diagram, release: Release, part: Part = np.asa
 
 
 def orbit_diagrams(parameters: Diagram, release: Release, found: Found = None) -> xr.Dataset:
-    """The phases of the impacts on the attractors of each model, over Λ.
+    """The phases in rad of the impacts on the attractors of each model, over Λ.
 
     ``phase_density`` (model, amplitude, bin_phase) is the share of the impacts within a range of
     phases, whose middle is ``bin_phase``, averaged over the motions on which the balls of

@@ -54,8 +54,14 @@ def _destination(found: Motions) -> np.ndarray:
 
 
 def destinations(parameters: Basins, release: Release, part: Part = np.asarray) -> Arrays:
-    """Indices into :data:`MOTIONS`, over (case, model, start): for the starts of the picture, and
-    then for the random ones, first without a change of their phases.
+    """The motions on which balls end, for the starts of the picture and for the random ones.
+
+    Returns
+    -------
+    dict of array
+        ``destination``, indices into :data:`MOTIONS`, shape (case, model, start). The starts of the
+        picture, row by row of one speed, are followed by the random starts, first without a change
+        of their phases and then with each of the changes.
     """
     random = np.random.default_rng(parameters.seed)
     drawn = random.uniform(-np.pi, np.pi, parameters.random)

@@ -111,8 +111,19 @@ def model_errors(orbit: Orbit, impacts: int) -> np.ndarray:
 
 
 def steps_of(steps: np.ndarray, errors: np.ndarray, error: float) -> float:
-    """The number of steps with a given error, by a power law between neighbouring errors; NaN
-    outside the range of ``errors``.
+    """The number of steps with a given error, by a power law between neighbouring errors.
+
+    Parameters
+    ----------
+    steps, errors : array, shape (count,)
+        Rising numbers of steps in a contact, and the errors that they cause, which fall.
+    error : float
+        The error that is wanted, above zero.
+
+    Returns
+    -------
+    float
+        Not rounded; NaN outside the range of ``errors``.
 
     Examples
     --------

@@ -35,7 +35,20 @@ class LockedOrbits(Grid):
 
 
 def correlation(one: np.ndarray, other: np.ndarray, confidence: float) -> np.ndarray:
-    """Spearman's rank correlation with its limits (D. G. Bonett and T. A. Wright, 2000)."""
+    """Spearman's rank correlation with its limits (D. G. Bonett and T. A. Wright, 2000).
+
+    Parameters
+    ----------
+    one, other : array, shape (count,)
+        Pairs of values; only their ranks count, so that infinite values are allowed.
+    confidence : float
+        The probability with which the interval contains the correlation, in (0, 1).
+
+    Returns
+    -------
+    array, shape (3,)
+        The correlation, its lower limit and its upper limit.
+    """
     rho = spearmanr(one, other).statistic
     width = norm.ppf((1 + confidence) / 2) * np.sqrt((1 + rho**2 / 2) / (one.size - 3))
     return np.array([rho, *np.tanh(np.arctanh(rho) + width * np.array([-1, 1]))])
@@ -44,8 +57,14 @@ def correlation(one: np.ndarray, other: np.ndarray, confidence: float) -> np.nda
 def returns_at_places(
     parameters: LockedOrbits, release: Release, part: Part = np.asarray
 ) -> Arrays:
-    """The fields of :class:`~bouncing_ball.attractors.lift_off.Return`, first without a change of Λ
-    and then after each change; and whether the contact has the same period, over ϖ.
+    """The returns of the restitution model at each place, and whether the contact locks as it does.
+
+    Returns
+    -------
+    dict of array
+        The fields of :class:`~bouncing_ball.attractors.lift_off.Return`, shape (change, place),
+        first without a change of Λ and then with each change; and ``same``, shape (ϖ, place),
+        whether the contact has a locked orbit of the same period.
     """
     r, lam = part(parameters.places())
     ratios, shifts = (np.array([x]).T for x in (parameters.frequency_ratio, parameters.shifts))

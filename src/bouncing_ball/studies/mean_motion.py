@@ -78,8 +78,12 @@ def _errors(simple: np.ndarray, contact: np.ndarray, confidence: float) -> np.nd
 
 
 def errors_at_nodes(parameters: MeanMotions, release: Release, part: Part = np.asarray) -> Arrays:
-    """``mean_error`` and ``mean_margin`` of :func:`mean_motions`, over
-    (simple, mean, ϖ, node).
+    """The errors of the means of the simple models at each node.
+
+    Returns
+    -------
+    dict of array
+        ``mean_error`` and ``mean_margin`` of :func:`mean_motions`, shape (simple, mean, ϖ, node).
     """
     random, balls = np.random.default_rng(parameters.seed), parameters.starts
     phase, speed = random.uniform(-np.pi, np.pi, balls), random.uniform(0.0, _FASTEST, balls)

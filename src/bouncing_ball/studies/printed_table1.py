@@ -40,7 +40,7 @@ def printed_text(ratio: float, n: int, bound: str) -> str:
 
 
 def printed_table() -> xr.DataArray:
-    """The entries as numbers, with dimensions ``frequency_ratio``, ``n`` and ``bound``.
+    """The printed Λ as numbers, with dimensions ``frequency_ratio``, ``n`` and ``bound``.
 
     Examples
     --------

@@ -50,7 +50,7 @@ class Transients(Sharded):
 
 
 def columns(cases: Sequence[Place]) -> np.ndarray:
-    """The values of cases, shape (values, cases)."""
+    """The values of cases in the order of their fields, shape (values, cases)."""
     return np.array([[value for _, value in case] for case in cases]).T
 
 
@@ -58,6 +58,21 @@ def mean_life(time: np.ndarray, ends: np.ndarray, confidence: float) -> tuple[fl
     """Mean life at a constant rate, and its limits, from times until an end or until censoring.
 
     It is the sum of all times over the number of ends; its interval is that of a Poisson count.
+
+    Parameters
+    ----------
+    time : array, shape (count,)
+        Times until the end of each life, or until it is no longer observed.
+    ends : array of bool, shape (count,)
+        Whether the end was observed.
+    confidence : float
+        The probability with which the interval contains the mean life, in (0, 1).
+
+    Returns
+    -------
+    tuple of float
+        Mean, lower limit and upper limit, in the unit of the times; the mean and the upper limit
+        are infinite if no end was observed.
 
     Examples
     --------
@@ -72,8 +87,14 @@ def mean_life(time: np.ndarray, ends: np.ndarray, confidence: float) -> tuple[fl
 
 
 def lives(parameters: Transients, release: Release, part: Part = np.asarray) -> Arrays:
-    """Times in periods until balls reach the motion on which they end, or until the last impact,
-    and the kinds of these motions, over (case, life_ratio, ball).
+    """Times until balls reach the motion on which they end, and the kinds of these motions.
+
+    Returns
+    -------
+    dict of array
+        ``life`` in periods of the table, counted up to the last impact if the ball does not lock,
+        and ``life_kind``, shape (case, life_ratio, ball). The restitution model is the last along
+        ``life_ratio``.
     """
     random, balls = np.random.default_rng(parameters.seed), parameters.balls
     phase, speed = random.uniform(-np.pi, np.pi, balls), random.uniform(1.0, 9.0, balls)

@@ -12,9 +12,22 @@ _RESAMPLED, _SEED = 400, 1
 def exponent(changes: np.ndarray, size: np.ndarray, confidence: float) -> np.ndarray:
     """α with its lower and upper limit, from independent results that change or do not change.
 
-    ``changes`` has a row for each result and a column for each size ε of the change. α is the slope
-    of the least-squares line of the logarithm of the share over ln ε, and its interval is that of a
-    bootstrap. A share of 0 counts as half a change.
+    α is the slope of the least-squares line of the logarithm of the share over ln ε, and its
+    interval is that of a bootstrap. A share of 0 counts as half a change.
+
+    Parameters
+    ----------
+    changes : array of bool, shape (results, sizes)
+        Whether each result changes with each size ε of the change.
+    size : array, shape (sizes,)
+        At least two different ε > 0.
+    confidence : float
+        The probability with which the interval contains α, in (0, 1).
+
+    Returns
+    -------
+    array, shape (3,)
+        α, its lower limit and its upper limit.
 
     Examples
     --------

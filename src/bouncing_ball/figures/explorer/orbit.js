@@ -203,7 +203,8 @@ function notesOf(found, {n, amplitude}, one) {
 
 function lawNotes(found, n, amplitude, {law, length, contact}) {
   const [orbit] = found.orbits;
-  if (law.name !== "impedance") {
+  // The contact of a solref has the ϖ of its impedance, unlike one that was found for an impact.
+  if (law.name !== "impedance" || law.numbers["frequency ratio"] !== contact.omega) {
     const what = law.name === "tsuji" ? "Hertz contact with Tsuji's damping" : `${law.name} contact`;
     const speeds = [n, n + 1].map(k => 2 * Math.PI * k / (1 + found.own));
     return [`stiffness, damping, ϖ and ζ are those of a linear contact: it has the r of the ${what}, and its duration at the impact`,

@@ -115,14 +115,14 @@ def test_distances_are_those_of_the_differences(study):
     difference = (study.computed - study.printed) / 0.001
     np.testing.assert_allclose(study.difference, difference, atol=1e-9)
     soft = difference.sel(frequency_ratio=[10.0, 2.0])
-    for rows_name, part in (("all rows", difference), ("softer rows", soft)):
+    for rows_name, part in (("all rows", difference), ("compliant rows", soft)):
         flat = part.values.reshape(8, -1)
         at = study.sel(rows=rows_name)
         np.testing.assert_allclose(at.rms_difference, np.sqrt((flat**2).mean(1)))
         np.testing.assert_allclose(at.largest_difference, np.abs(flat).max(1))
         assert at.reproduced.values.tolist() == (np.abs(flat) <= 0.5).sum(1).tolist()
         assert at.entries.item() == flat.shape[1]
-    order = study.rms_difference.sel(rows="softer rows").values
+    order = study.rms_difference.sel(rows="compliant rows").values
     assert (np.diff(order) > 0).all() and study["rank"].values.tolist() == list(range(1, 9))
 
 

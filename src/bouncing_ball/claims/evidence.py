@@ -1,7 +1,6 @@
 """The numbers that decide the verbal statements of the paper, taken from the figures' datasets.
 
-This module simulates and solves nothing. A *softening* is the change from one row of Table 1 to the
-next row, whose contact is more compliant.
+This module simulates and solves nothing.
 """
 
 from collections.abc import Mapping
@@ -55,7 +54,7 @@ def rebound(data: Data) -> xr.DataArray:
 
 
 def dip(data: Data, amplitude: float) -> xr.DataArray:
-    """Greatest depth of the curve of Fig. 6 at an amplitude below r."""
+    """Greatest depth below r that the curve of Fig. 6 for an amplitude reaches."""
     curve = apparent(data).sel(orbit=f"fig06 r=0.65 Λ={amplitude:g}")
     return -curve.min("frequency_ratio")
 
@@ -144,7 +143,7 @@ def _rows(data: Data, source: str) -> xr.DataArray:
     return data["table1"][source].sortby("frequency_ratio", ascending=False)
 
 
-def softening(data: Data) -> xr.DataArray:
+def row_shift(data: Data) -> xr.DataArray:
     """Change of the computed ends of Table 1 from each row to the next more compliant row."""
     return _rows(data, "computed").diff("frequency_ratio")
 

@@ -164,7 +164,7 @@ def forensics() -> xr.Dataset:
     difference = (computed - printed) / LAST_DIGIT
     below = difference.sel(bound=Bifurcation.SADDLE_NODE, drop=True) > 0.5
     ratio = printed.frequency_ratio
-    groups = {"all rows": ratio > 0, "softer rows": ratio < ratio.max()}
+    groups = {"all rows": ratio > 0, "compliant rows": ratio < ratio.max()}
     groups |= {f"ϖ = {float(value):g}": ratio == value for value in ratio}
     rows = xr.Variable("rows", list(groups))
     over = list(printed.dims)
@@ -181,7 +181,7 @@ def forensics() -> xr.Dataset:
             "unreachable": below.sum(["frequency_ratio", "n"]),
         }
     )
-    distances = (data.rms_difference.sel(rows=name).values for name in ("all rows", "softer rows"))
+    distances = (data.rms_difference.sel(rows=name).values for name in list(groups)[:2])
     order = np.lexsort([levels(values) for values in distances])
     ranked = data.isel(reading=order).assign(rank=("reading", 1 + np.arange(len(found))))
     return describe(ranked).assign_attrs(

@@ -32,7 +32,7 @@ _FAINT = float(np.finfo(float).tiny)
 # An impact speed at which the weight, 1/(ϖv) of the impact force, is less than rounding.
 WEIGHTLESS = 1e16
 # A small ϖ, at which Λ_SD ϖ² differs from 1 by the order of ϖ².
-_SOFT = 1e-4
+_COMPLIANT = 1e-4
 # The r and ϖ for Eq. 16 on a table at rest; the impact velocity is that of the 1-T orbit.
 STATIC = {"restitution": [0.85, 0.65], "frequency_ratio": [10.0, 100.0]}
 
@@ -251,7 +251,7 @@ def permanent_contact(rng, samples) -> Checks:
     threshold = printed.permanent_contact_threshold(omega, zeta) * at_any - 1
     resonant = 2 * zeta * steady_amplitude(1.0, zeta) - 1
     # Λ_SD grows as 1/ϖ², with a next term of relative order ϖ².
-    soft = 1 / steady_amplitude(_SOFT, zeta) - 1
+    compliant = 1 / steady_amplitude(_COMPLIANT, zeta) - 1
 
     # Λ_SD² is quadratic in 1/ϖ², so that its only stationary point is the minimum.
     place = (1 - 2 * zeta**2) ** -0.5
@@ -272,7 +272,7 @@ def permanent_contact(rng, samples) -> Checks:
         "Eq. 31": check("simulated contact", steady(end) - later),
         "Eq. 33": check(amplitude, threshold),
         "Eq. 33, ϖ = 1": check(amplitude, resonant),
-        "Eq. 33, ϖ → 0": check(amplitude, soft, budget=2 * _SOFT**2),
+        "Eq. 33, ϖ → 0": check(amplitude, compliant, budget=2 * _COMPLIANT**2),
         "Eq. 34": inverse(1),
         "Eq. 35": inverse(-1),
         "Eq. 36": check("minimum of Λ_SD", minimum, flat),

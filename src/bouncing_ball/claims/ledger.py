@@ -103,9 +103,7 @@ def ledger(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
         evidence.permanent_contact_error,
     )
     numbers = {one.__name__: xr.DataArray(one(data)).reset_coords(drop=True) for one in printed}
-    # No claim of the paper is about an estimate.
-    verdicts = assess(CLAIMS, data).drop_vars(["low", "high"])
-    return xr.merge([verdicts, described(numbers)]).assign_attrs(
+    return xr.merge([assess(CLAIMS, data), described(numbers)]).assign_attrs(
         close_units=CLOSE_UNITS,
         tolerance=parameters.TOLERANCE,
         stiff_frequency_ratio=parameters.STIFF,

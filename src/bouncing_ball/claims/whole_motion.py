@@ -33,7 +33,7 @@ TABLE = [_of_table(**row) for row in rows_beside(__file__)]
 
 
 def _missed(data, model, order, coefficient):
-    """By which share a law of this order misses the errors of a model, at most, from ϖ = 100 on."""
+    """Largest relative difference of a model's errors from a law of this order, from ϖ = 100 on."""
     stiff = data["ext_cascades"].sel(model=model, frequency_ratio=slice(100, None))
     return abs(stiff.cascade_error * stiff.frequency_ratio**order / stiff[coefficient] - 1).max()
 
@@ -42,7 +42,7 @@ def _missed(data, model, order, coefficient):
 def end_of_the_first_order(data):
     """the first order K_k/ϖ gives the shift of every doubling from ϖ = 100 on
 
-    Condition: it misses no shift by more than a tenth of it
+    Condition: no shift differs from it by more than a tenth
     """
     return decided(_missed(data, "restitution", 1, "cascade_coefficient"), below=0.1)
 
@@ -51,7 +51,7 @@ def end_of_the_first_order(data):
 def corrected_cascades(data):
     """the error of the corrected model is of second order in 1/ϖ at every doubling
 
-    Condition: from ϖ = 100 on it is C/ϖ² but for a hundredth, with C from two stiffer contacts
+    Condition: from ϖ = 100 on it is C/ϖ² to within a hundredth, with C from two stiffer contacts
     """
     return decided(_missed(data, "corrected", 2, "cascade_second_order"), below=0.01)
 
@@ -78,7 +78,7 @@ def feigenbaum(data):
 
 @claim("cascades")
 def measured_doublings(data):
-    """the exact map with r = 0.5 doubles where a textbook's table did
+    """the exact map with r = 0.5 has its period doublings where a textbook's table had them
 
     Condition: both amplitudes are within a hundredth
 
@@ -92,7 +92,8 @@ def measured_doublings(data):
 def longer_transients(data):
     """a ball on a contact of ϖ = 10⁴ may take ten times as long to lock as in the restitution model
 
-    Condition: so do the mean lives at r = 0.6, Λ = 3, with the farthest limits of both
+    Condition: the mean lives at r = 0.6 and Λ = 3 differ by this factor, even between the limits of
+    their intervals that are closest to each other
     """
     lives = (
         limits(data["ext_lives"], "mean_life", {"case": 2, "life_ratio": x}) for x in (1e4, np.inf)

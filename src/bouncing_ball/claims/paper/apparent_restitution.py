@@ -45,8 +45,8 @@ def dip_at_12(data):
     return {reading: at_least(evidence.dip(data, 1.2), limit) for reading, limit in seen.items()}
 
 
-@claim("Fig. 6", printed="0.81", id="soft end of 1.2")
-def soft_end_of_12(data):
+@claim("Fig. 6", printed="0.81", id="compliant end of 1.2")
+def compliant_end_of_12(data):
     """at an amplitude of 1.2 the apparent restitution tends to this value at a frequency ratio of 1
 
     Remark: the value has the same digits at the other two amplitudes
@@ -58,7 +58,7 @@ def soft_end_of_12(data):
 def negligible_above_100(data):
     """the apparent restitution differs negligibly from r above a frequency ratio of 100
 
-    Condition: the difference is below a hundredth on every curve from there on
+    Condition: the difference is below a hundredth on every curve from that frequency ratio on
 
     Remark: the paper speaks of the difference; its share of r is part of the claim *safe above 100*
     """

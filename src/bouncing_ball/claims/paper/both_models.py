@@ -46,9 +46,9 @@ def height_threshold(data):
 def representative(data):
     """the restitution model makes a small error on the stability range at ϖ = 10
 
-    Condition: neither end of the range is off by more than what small means: the move of the ends
-    of Table 1 from the stiffest contact to ϖ = 10, which the paper calls slight, or its limit of
-    1 %, which it sets for other quantities
+    Condition: the error of neither end exceeds what can be called small: either the move of the
+    ends of Table 1 from the stiffest contact to ϖ = 10, which the paper calls slight, or the limit
+    of 1 %, which the paper sets for other quantities
 
     Remark: the paper does not say what it calls small
 
@@ -75,7 +75,7 @@ def safe_above_100(data):
     """considering all results, the restitution model is good above a frequency ratio of 100
 
     Condition: every orbit of Figs. 5, 6 and 10 is within 1 %, the limit that the paper sets, from
-    there on
+    that frequency ratio on
 
     Remark: the paper sets its limit for the greatest height (Eq. 37) and for permanent contact
     only, and every orbit stays within it there. The bouncing-off velocity and the apparent

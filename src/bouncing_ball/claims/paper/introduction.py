@@ -15,12 +15,13 @@ def stiff_limit(data):
 
 
 @claim("Abstract")
-def soft_divergence(data):
+def compliant_divergence(data):
     """the models diverge when the stiffness decreases
 
     Condition: no relative error is below 1 % at the most compliant contact scanned
 
-    Remark: at a frequency ratio of 1; the spring-damper model has no saddle-node there
+    Remark: this contact has a frequency ratio of 1, where the spring-damper model has no
+    saddle-node
     """
     return at_least(data["thresholds"].relative_error.isel(frequency_ratio=0), TOLERANCE)
 
@@ -32,8 +33,8 @@ def kinds_of_motion(data):
     Condition: among the motions of the restitution model on a grid over Λ and r all three kinds are
     found
 
-    Remark: chaotic means that the motion does not repeat, and has a Lyapunov exponent that is
-    positive by five standard errors, once in three million by chance
+    Remark: a chaotic motion does not repeat, and its Lyapunov exponent is positive by five standard
+    errors, which happens by chance once in three million cases
     """
     found = data["ext_locking"].kind.sel(model="restitution")
     return at_least(

@@ -22,13 +22,13 @@ def no_analytical_solution(data):
     """the n-T orbits of the spring-damper model need continuation, as they have no analytical
     solution
 
-    Condition: a solution takes more than evaluating a formula: for the branch, the formula misses
-    some published orbit by more than rounding; at an amplitude, branches fold, so that the
-    duration of contact is not a function of it
+    Condition: a solution takes more than the evaluation of a formula. For the whole branch, the
+    formula misses some published orbit by more than rounding. For a given amplitude, branches fold,
+    so that the duration of contact is not a function of the amplitude
 
     Remark: at a fixed duration of contact the equations of the orbit are linear, so that the whole
     branch has a formula, with the duration as its parameter. At a given amplitude the duration is
-    the root of a scalar equation, of which there are several; that it has no formula is not shown
+    a root of a scalar equation, which has several roots; that they have no formula is not shown
 
     Answer: the equations are transcendental in the unknowns that the paper chose
     """
@@ -42,7 +42,7 @@ def no_analytical_solution(data):
 def one_impact_per_period(data):
     """the orbits that are drawn have one impact per period
 
-    Condition: nothing else happens on any of them
+    Condition: all of them are admissible, so that no earlier impact or release occurs on them
     """
     return at_most(evidence.inadmissible_orbits(data), 0)
 
@@ -57,7 +57,7 @@ def superimposed_when_stiff(data):
 
 
 @claim(_FIGURES)
-def apart_when_soft(data):
+def apart_when_compliant(data):
     """the curves of both phases diverge as the frequency ratio decreases
 
     Condition: every contact of the most compliant branch is longer than a hundredth of a radian
@@ -73,7 +73,7 @@ def saddle_node_falls(data):
 
     Remark: the introduction says that the existence conditions of the orbits change
     """
-    return below(evidence.softening(data).sel(bound=Bifurcation.SADDLE_NODE), 0)
+    return below(evidence.row_shift(data).sel(bound=Bifurcation.SADDLE_NODE), 0)
 
 
 @claim("Figs. 8 and 9, Table 1", explanation=why.period_doubling_turns)
@@ -83,9 +83,9 @@ def period_doubling_rises_when_stiff(data):
 
     Condition: it rises from the first row of Table 1 to the second, for every n
 
-    Answer: against the restitution model of Eq. 8 it does rise
+    Answer: compared with the restitution model of Eq. 8 it does rise
     """
-    ends = evidence.softening(data).sel(bound=Bifurcation.PERIOD_DOUBLING)
+    ends = evidence.row_shift(data).sel(bound=Bifurcation.PERIOD_DOUBLING)
     return above(ends.sel(frequency_ratio=10), 0)
 
 
@@ -95,7 +95,7 @@ def period_doubling_rises_when_compliant(data):
 
     Condition: it rises from the second row of Table 1 to the third, for every n
     """
-    ends = evidence.softening(data).sel(bound=Bifurcation.PERIOD_DOUBLING)
+    ends = evidence.row_shift(data).sel(bound=Bifurcation.PERIOD_DOUBLING)
     return above(ends.sel(frequency_ratio=2), 0)
 
 
@@ -105,11 +105,11 @@ def range_widens(data):
 
     Condition: the width grows from every row of Table 1 to the next more compliant one, for every n
     """
-    return above(evidence.softening(data).diff("bound"), 0)
+    return above(evidence.row_shift(data).diff("bound"), 0)
 
 
 def _entry(ratio: float, n: int, bound: str) -> Claim:
-    """One printed number of Table 1; the stiffest row says Eqs. 7 and 8 again."""
+    """The claim of one printed number of Table 1; the stiffest row restates Eqs. 7 and 8."""
     said: dict[str, Any] = {
         "explanation": why.no_reading_fits,
         "answer": "the last digits are those to which points of a branch were computed or read off",
@@ -139,7 +139,7 @@ def stiff_row(data):
 
     Condition: the computed ends agree to half a unit of the printed digits
 
-    Remark: true of the computed ranges; the printed upper ends are those of Eq. 8
+    Remark: this holds for the computed ranges; the printed upper ends are those of Eq. 8
     """
     return at_most(evidence.stiff_difference(data, "computed", "exact"), 0.0005)
 
@@ -148,7 +148,8 @@ def stiff_row(data):
 def departure_from_nπ(data):
     """the bouncing-off velocity is no longer nπ: it starts to depart below a frequency ratio of 100
 
-    Condition: it is at least 0.2 % from nπ at every contact up to there, for every amplitude
+    Condition: it differs from nπ by at least 0.2 % at every contact up to that frequency ratio, for
+    every amplitude
 
     Remark: the paper does not say when a departure starts; we take 0.2 % for visible
     """
@@ -167,7 +168,7 @@ def amplitude_does_not_matter(data):
     Remark: the left end of the axis is unreadable; below the frequency ratio found the amplitude
     matters
 
-    Answer: the three curves coincide in the figure but at its very edge
+    Answer: the three curves coincide in the figure except at its very edge
     """
     meeting = evidence.amplitude_matters_below(data)
     return {f"on an axis from {left} on": at_most(meeting, left) for left in (2, 1)}

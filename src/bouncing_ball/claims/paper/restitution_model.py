@@ -9,7 +9,7 @@ saddle_node = formula("saddle-node", "Eq. 7", "the n-T orbits appear here, in a 
 
 
 def _of_both_maps(data):
-    """Eq. 8 against the map that it is the period doubling of, and against that of Eq. 5."""
+    """Eq. 8 compared with the map whose period doubling it is, and with the map of Eq. 5."""
     first = data["fig03"].period_doubling_amplitude.isel(n=0)
     error = abs(first.sel(impact_map="holmes") / first.sel(impact_map="exact") - 1)
     return {

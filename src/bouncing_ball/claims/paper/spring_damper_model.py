@@ -13,9 +13,10 @@ def frequency_ratio(data):
 
     Condition: with this ratio Eq. 10 becomes Eq. 11
 
-    Remark: Ω/ω is legible, but not which letter is the table's frequency and which the contact's.
-    Only the contact's frequency over the table's turns Eq. 10 into Eq. 11, and only so is a stiff
-    contact one of large ϖ; with the usual letters, Ω for the table, the printed ratio is inverted
+    Remark: Ω/ω can be read, but not which of the letters is the frequency of the table. Only the
+    contact's frequency divided by the table's turns Eq. 10 into Eq. 11 and makes ϖ large for a
+    stiff contact; with the usual letters, where Ω belongs to the table, the printed ratio would be
+    inverted
 
     Answer: the letters are those of the paper's list of symbols, which is unreadable in our text
     """
@@ -50,11 +51,11 @@ def static_table(data):
     Condition: the restitution of a ball that falls on a table at rest with the velocity of the
     1-T orbit is within 1 % of r
 
-    Remark: Eq. 16 neglects the weight of the ball during contact. Its effect fades as the contact
-    gets stiffer, or the impact faster: a table at rest has no frequency, and what matters is the
-    weight against the force of impact, g/(ωv), here 1/(πϖ)
+    Remark: Eq. 16 neglects the weight of the ball during contact. The effect of the weight fades as
+    the contact gets stiffer or the impact faster, because it depends on the ratio of the weight to
+    the force of the impact, g/(ωv), which is 1/(πϖ) here
 
-    Answer: the relation is that of its source, which is for impacts faster than these
+    Answer: the relation is taken from its source, which considers faster impacts than these
     """
     heavy = data["formulas"].static_error
     return {
@@ -68,8 +69,8 @@ def static_table(data):
 def moving_table(data):
     """Eq. 16 is not necessarily valid for a vibrating table
 
-    Condition: on some curve of Figs. 5 and 6 the apparent restitution is somewhere at least 1 %
-    from r
+    Condition: on some curve of Figs. 5 and 6 the apparent restitution differs from r by at least
+    1 % at some frequency ratio
     """
     sweep = evidence.curves(data, "fig05", "fig06")
     off = abs(sweep.apparent_restitution / sweep.restitution - 1)
@@ -86,6 +87,6 @@ def damping_of_085(data):
 def damping_of_065(data):
     """damping ratio of the restitution coefficient 0.65
 
-    Remark: 0.136 but for Fig. 16
+    Remark: printed as 0.136 except in Fig. 16
     """
     return data["fig11"].damping_ratio

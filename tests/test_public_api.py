@@ -106,7 +106,13 @@ def test_a_sequence_counts_the_impacts_that_it_has():
 
 @pytest.mark.parametrize(
     "given",
-    [CONTACT, {"restitution": 0.85}, {"restitution": 0.85, "law": "tsuji", "duration": 0.1}],
+    [
+        CONTACT,
+        {"restitution": 0.85},
+        pytest.param(
+            {"restitution": 0.85, "law": "tsuji", "duration": 0.1}, marks=pytest.mark.long
+        ),
+    ],
 )
 def test_arrays_give_labelled_orbits_and_limits(given):
     orbits = bouncing_ball.orbit([1, 2], [0.2, 1.0], **given)

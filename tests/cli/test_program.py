@@ -34,7 +34,7 @@ def test_the_help_says_what_the_docstrings_of_the_calls_say(said):
     assert said("--version") == f"bouncing-ball {bouncing_ball.__version__}\n"
 
 
-@pytest.mark.parametrize("encoding", ["ascii", "latin-1"])
+@pytest.mark.parametrize("encoding", ["ascii", pytest.param("latin-1", marks=pytest.mark.long)])
 @pytest.mark.parametrize(
     ("arguments", "status"), [(["orbit", "--help"], 0), ([*ORBIT[:-1], "0.1", "--json"], 1)]
 )

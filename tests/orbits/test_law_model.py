@@ -62,14 +62,6 @@ def test_the_linear_law_has_the_orbits_of_the_closed_form(omega, release):
         np.testing.assert_allclose(computed.multipliers(), expected.multipliers(), atol=1e-11)
 
 
-@pytest.mark.long
-def test_a_soft_contact_has_its_long_orbit_too():
-    contact = SpringDamper.from_restitution(0.85, 2.0)
-    found = LawModel(SpringDamper(2.0, float(contact.damping_ratio))).orbits(1, 0.9)
-    expected = SpringDamperModel(contact).orbits(1, 0.9)
-    np.testing.assert_allclose(found.contact_duration, expected.contact_duration, rtol=1e-11)
-
-
 # A law that feels its load, a Hertz contact and one with a kink; the others weekly.
 SELDOM = [pytest.param(x, marks=pytest.mark.long) for x in LAWS if x not in ("tsuji", "impedance")]
 

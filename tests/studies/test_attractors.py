@@ -20,15 +20,6 @@ def study(ratio, lam, r, **changed):
     return typed(locking)(given | {"frequency_ratio": [ratio]}, Release.DISPLACEMENT)
 
 
-def test_locked_periods_are_those_of_an_independent_simulation():
-    """A trial counted the time from one sticking to the next, at ϖ = 80."""
-    data = study(80.0, (2.5, 3.0, 2), (0.5, 0.6, 2), impacts=800)
-    one = data.sel(restitution=0.6, amplitude=3.0)
-    assert set(one.kind.values) == {"locked"} and one.periods.values.tolist() == [13, 8, 8]
-    simple, corrected, _ = data.periods.sel(restitution=0.5, amplitude=2.5).values
-    assert (simple, corrected) == (6, 15)
-
-
 def test_exponents_of_orbits_are_those_of_their_multipliers():
     data = study(100.0, (2.2, 2.4, 3), (0.2, 0.25, 2))
     for model, name in zip(models(data.restitution.values[:, None], 100.0, Release.DISPLACEMENT),

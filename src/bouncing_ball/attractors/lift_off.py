@@ -41,7 +41,8 @@ class Return(NamedTuple):
 
     ``periods`` and ``impacts`` are the numbers of periods of the table and of impacts until the
     ball sticks. ``sensitivity`` is S, that of the phase at which the chattering ends, and ``wait``
-    is the time w from this phase to the next lift-off. An S beyond the range of numbers is infinite.
+    is the time w from this phase to the next lift-off. An S that is too large for a number is
+    infinite.
     """
 
     periods: np.ndarray

@@ -55,7 +55,7 @@ def test_hunt_and_crossleys_contact_is_written_for_drake():
     # For another engine the linear contact of this speed is written.
     assert again.engine("lammps").restitution == pytest.approx(0.8, rel=1e-10)
     # Damped so strongly, r = 1/(dv) with v = 2πg/((1 + r)Ω), and Λ_SN = π(1 - r)/(1 + r).
-    strong = read["parameters"] | {"hunt_crossley_dissipation": 50.0}
+    strong = {"point_contact_stiffness": 2e5, "hunt_crossley_dissipation": 50.0}
     with pytest.raises(ModelError, match=r"the 1-T orbit needs 2\.885"):
         design(**TABLE, from_engine="drake", parameters=strong)
     with pytest.raises(ModelError, match="from_engine drake needs a table"):

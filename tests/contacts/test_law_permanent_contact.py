@@ -10,7 +10,7 @@ from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
 from bouncing_ball.contacts.laws.impedance import Impedance
 from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.contacts.laws.tsuji import Tsuji
-from bouncing_ball.contacts.permanent_contact import _by_panels, permanent_contact
+from bouncing_ball.contacts.permanent_contact import _by_panels, holds, permanent_contact
 from bouncing_ball.errors import ModelError
 
 
@@ -39,6 +39,8 @@ def test_a_contact_below_the_threshold_is_held_and_above_it_is_not(kind):
     below, next_to, above = lowest(0.999, 0.9999, 1.001)
     assert below > max(above, 0)
     assert abs(next_to) < 2e-3
+    # The two computations of the steady contact agree, where its threshold is known.
+    assert holds(law, 0.999 * threshold) and not holds(law, 1.001 * threshold)
 
 
 def test_a_contact_that_is_weakly_damped_is_refused():

@@ -119,11 +119,35 @@ def test_the_release_is_written_where_there_are_two():
         ("generic", {"stiffness": 1.0, "damping": -1.0}, 1.0, "damping = -1.0 is not a number of"),
         ("generic", {"stiffness": 1.0, "time_step": 1.0}, 1.0, "generic has no 'time_step'"),
         ("drake", {"time_step": 0.0}, 1.0, "time_step = 0.0 is not a positive number of s"),
+        ("drake", {"hunt_crossley_dissipation": 1.0}, 1.0, "point_contact_stiffness is missing"),
+        (
+            "drake",
+            {"hunt_crossley_dissipation": 1.0, "time_step": 1.0},
+            1.0,
+            "its parameters are point_contact_stiffness and hunt_crossley_dissipation",
+        ),
     ],
 )
 def test_parameters_that_cannot_be_read(name, parameters, mass, says, refusal):
     with refusal(ModelError, says):
-        ENGINES[name].contact(parameters, mass)
+        ENGINES[name].reader(parameters).contact(parameters, mass)
+
+
+def test_drakes_hunt_crossley_contact_loses_what_its_work_is():
+    # ∫ u du/(1 + Cu) over the impact is 0: (1 - rs) exp(s(1 + r)) = 1 + s with s = Cv.
+    given = {"point_contact_stiffness": 2e5, "hunt_crossley_dissipation": 0.5}
+    found = design(mass=0.5, from_engine="drake", parameters=given)
+    assert found.stiffness == 1e5 and found.damping is found.measured_restitution is None
+    pairs = re.findall(r"([\d.]+) at ([\d.]+) m/s", found.notes[0])
+    assert len(pairs) == 3
+    for r, s in np.array(pairs, dtype=float) * [1.0, 0.5]:
+        # The left side falls with r, which is shown in four digits.
+        less, more = r + np.array([-5e-5, 5e-5])
+        assert (
+            (1 - more * s) * np.exp(s * (1 + more))
+            < 1 + s
+            < (1 - less * s) * np.exp(s * (1 + less))
+        )
 
 
 @pytest.mark.parametrize(

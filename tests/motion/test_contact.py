@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.laws.impedance import Impedance
 from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.motion.angles import table
@@ -109,6 +110,14 @@ def test_what_comes_first_after_a_release_below_the_level():
     other, back = resumption(flight, law)
     assert np.mean(back != resumed) < 0.001
     assert np.abs(other - time)[back & resumed].max() < 1e-9
+
+
+def test_a_contact_that_ends_at_the_level_does_not_resume_within_a_rounding_error():
+    """Where an impedance lets the contact end at p = 0, the force that is left is positive."""
+    phase, fall = np.random.default_rng(0).uniform([[-3], [1.5]], [[3], [5]], (2, 500))
+    run = simulate(Impedance(30.0, 0.05, 0.95), 1.0, phase, -fall - 1, 40)
+    assert np.sum(run.release_displacement == 0) > 500
+    assert not np.any((run.displacement < 0) & (run.displacement > -1e-15))
 
 
 def test_an_elastic_ball_on_a_table_at_rest_keeps_its_energy():

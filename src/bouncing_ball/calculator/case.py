@@ -1,7 +1,5 @@
 """A ball, a vibrating table and a contact between them, in SI units."""
 
-import math
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -10,10 +8,9 @@ from bouncing_ball.accuracy.errors import models
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.contact_scales import rest
 from bouncing_ball.contacts.laws.tsuji import Tsuji
-from bouncing_ball.contacts.permanent_contact import permanent_contact
+from bouncing_ball.contacts.permanent_contact import known_threshold
 from bouncing_ball.contacts.signature import Instant, Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.errors import ModelError
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.law_model import LawModel
 from bouncing_ball.orbits.model import ImpactModel
@@ -144,6 +141,4 @@ class Case:
     @cached_property
     def permanent_contact(self) -> float:
         """Λ up to which the ball stays on the table; NaN if no such threshold was found."""
-        with suppress(ModelError):
-            return permanent_contact(self.contact if self.law is None else self.law)
-        return math.nan
+        return known_threshold(self.contact if self.law is None else self.law)

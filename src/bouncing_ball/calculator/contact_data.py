@@ -16,6 +16,7 @@ All quantities are in SI units.
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -25,7 +26,7 @@ from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.law_choice import law_of_impact
 from bouncing_ball.contacts.laws.tsuji import Tsuji, tsuji_damping
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.contacts.signature import free_impact
+from bouncing_ball.contacts.signature import Signature, free_impact
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.orbits.restitution_model import RestitutionModel
@@ -183,7 +184,7 @@ def table_of(given: Given) -> Table:
     return Table(omega, moved, given.get("gravity", STANDARD_GRAVITY))
 
 
-def meant(asked: Sequence[int], restitution: float, amplitude: float) -> int:
+def meant(asked: Sequence[int], restitution: float | np.ndarray, amplitude: float) -> int:
     """The first of the families whose orbit is stable in the restitution model.
 
     If none of these orbits is stable, it is the first family.
@@ -197,6 +198,29 @@ def meant(asked: Sequence[int], restitution: float, amplitude: float) -> int:
     """
     orbits = RestitutionModel(restitution).orbit(np.array(asked), amplitude)
     return asked[int(np.argmax(orbits.exists & orbits.is_stable()))]
+
+
+def with_law(case: Case, law: ContactLaw, asked: Sequence[int]) -> Case:
+    """The case with a law, and with the linear contact of its r and duration at the impact speed.
+
+    This speed v = 2πn/(1 + r(v)) is that of the first stable family of the restitution model.
+
+    Examples
+    --------
+    >>> case = Case(1.0, Table(1.0, 1.0, 1.0), SpringDamper(1.0, 0.0))
+    >>> found = with_law(case, Tsuji(50.0, tsuji_damping(0.8)), [1])
+    >>> round(float(found.contact.restitution), 12)
+    0.8
+    """
+    signature, r = Signature(law), np.ones(len(asked))
+    # A contraction: where r falls like 1/v at most, each step at least halves the error.
+    for _ in range(np.finfo(float).nmant):
+        r = signature(rigid_speed(asked, r)).restitution
+    n, rule = meant(asked, r, case.table.amplitude), case.contact.release
+    impact = free_impact(law, float(rigid_speed(n, r[asked.index(n)])))
+    unit = SpringDamper.from_restitution(float(impact.restitution), 1.0, rule, measured=True)
+    ratio = float(unit.free_duration / impact.duration)
+    return replace(case, contact=replace(unit, frequency_ratio=ratio), law=law)
 
 
 def case_of(

@@ -190,17 +190,18 @@ def design(
     >>> round(found.restitution, 6), found.release
     (0.75, 'force')
     """
-    source, said = read_engine(locals())
+    call = locals()
+    source, said = read_engine(call)
     given = _read(said)
-    question = given | {"n": n, "release": release, "quantity": quantity, "engine": engine}
-    question["law"], kind = law, _of_law(law, engine, said["release"], given)
+    question, kind = call | _read(call), _of_law(law, engine, said["release"], given)
     rule = _under(engine, said["release"], given)
     one_of("quantity", quantity, {str(each): each for each in QUANTITIES})
     if n is not None and (n != int(n) or n < 1):
         raise ModelError(f"index of the family n = {n} is not a positive integer")
-    known, remarks = given.keys(), source.remarks() if source else ()
+    known, remarks = given.keys(), source.remarks(engine, rule) if source else ()
     if n is None and not known & _TABLE and (engine or known & {"stiffness", "contact_time"}):
-        return _contact(given, rule, kind, question, remarks)
+        needs_speed = kind is not None or (source is not None and source.engine.needs_speed)
+        return _contact(given, rule, needs_speed, question, remarks)
     table = table_of(given)
     lam, asked = table.amplitude, _FAMILIES if n is None else [n]
     require(lam < _LARGEST, lam, "Λ", f"below {_LARGEST:g}")
@@ -209,9 +210,9 @@ def design(
         case = case_of(given, table, rule, asked, kind)
         if case is None:
             case, need = _chosen(given, table, rule, asked, question)
-        elif source and not engine:
+        elif source:
             # For another engine the spring and damper is written in place of the law.
-            case = replace(case, law=source.law(table))
+            case = source.case(case, asked, engine is not None)
         return _design(case, need, asked, question, remarks)
     except NoOrbitError as error:
         bare = str(acceleration).strip()
@@ -248,21 +249,25 @@ def _chosen(
 def _contact(
     given: dict[str, float],
     rule: Release,
-    kind: type[ContactLaw] | None,
+    needs_speed: bool,
     question: dict[str, Any],
     remarks: tuple[str, ...],
 ) -> Contact:
-    """The answer about a contact without a table."""
+    """The answer about a contact without a table, by which there is no impact speed."""
     # With a table of 1 rad/s the frequency ratio is the frequency of the contact.
     case = case_of(given, Table(1.0, 1.0, STANDARD_GRAVITY), rule, [1])
     if case is None:
         raise ParameterError("no stiffness: give {stiffness}, or {contact_time}")
-    if kind is not None:
+    if needs_speed and (question["law"] or question["engine"]):
+        what = "law" if question["law"] else "from_engine"
         needs = "a table, such as {frequency} and {acceleration}"
-        raise ParameterError(f"{{law}} {question['law']} needs {needs}: r depends on the speed")
+        raise ParameterError(f"{{{what}}} {question[what]} needs {needs}: r depends on the speed")
     zeta, omega = float(case.contact.damping_ratio), float(case.contact.frequency_ratio)
     stiffness = given.get("stiffness", case.mass * omega**2)
     damping = given.get("damping", 2 * zeta * case.mass * omega)
+    if needs_speed:
+        known = case.mass, stiffness, None, None, omega, None, str(rule), None
+        return Contact(*known, remarks, question)
     physical = Physical(case.mass, stiffness, damping)
     time, r = physical.contact_time(rule), physical.restitution(rule)
     return Contact(*physical, zeta, omega, time, str(rule), r, remarks, question)

@@ -1,30 +1,42 @@
 """Contacts that are given by the parameters of a physics engine."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
-from bouncing_ball.calculator.case import Table
-from bouncing_ball.calculator.contact_data import LOSSY, STIFF
+from bouncing_ball.calculator.case import Case
+from bouncing_ball.calculator.contact_data import LOSSY, STIFF, with_law
 from bouncing_ball.calculator.units import Unit, number
-from bouncing_ball.contacts.contact_law import ContactLaw
+from bouncing_ball.contacts.release import Release
 from bouncing_ball.engines import engine_named
-from bouncing_ball.engines.engine import Engine
+from bouncing_ball.engines.engine import Engine, Physical
 from bouncing_ball.errors import ParameterError
 
 
 class Source(NamedTuple):
-    """An engine and the given parameters of its contact."""
+    """An engine, the given parameters of its contact, and the spring and damper of these."""
 
     engine: Engine
     parameters: dict[str, Any]
+    contact: Physical
 
-    def law(self, table: Table) -> ContactLaw | None:
-        """The law of this contact, dimensionless on a table; None if it is a spring and damper."""
-        return self.engine.law(self.parameters, table.time, table.length)
+    def case(self, case: Case, asked: Sequence[int], written: bool) -> Case:
+        """The case with the law of this contact, or with its linear contact if this is written."""
+        law = self.engine.law(self.parameters, case.mass, case.table.time, case.table.length)
+        if law is not None and self.engine.needs_speed:
+            case = with_law(case, law, asked)
+        return replace(case, law=None if written else law)
 
-    def remarks(self) -> tuple[str, ...]:
-        """Sentences on how the contact differs from a spring and a damper."""
-        return self.engine.remarks(self.parameters)
+    def remarks(self, written: str | None, release: Release) -> tuple[str, ...]:
+        """Sentences on how the contact differs from a spring and a damper, and on how r changes if
+        it is written for the engine with this name and release.
+        """
+        found, ends = self.engine.remarks(self.parameters), (self.engine.release(), release)
+        if written is None or ends[0] is ends[1] or not 0 < self.contact.damping_ratio < 1:
+            return found
+        before, after = (f"{self.contact.restitution(rule):.4f}" for rule in ends)
+        why = f"contacts end by {ends[0]} in {self.engine.name}, and by {release} in {written}"
+        return (*found, f"r changes from {before} to {after}, because {why}")
 
 
 def read_engine(said: Mapping[str, Any]) -> tuple[Source | None, dict[str, Any]]:
@@ -41,13 +53,13 @@ def read_engine(said: Mapping[str, Any]) -> tuple[Source | None, dict[str, Any]]
             what = f"{{{first}}}" if first in names else f"{{parameters}} {first}"
             raise ParameterError(f"{what} needs {{from_engine}}, the name of the engine")
         return None, dict(said)
-    source = Source(engine_named(name), values)
+    engine = engine_named(name).reader(values)
     for other in (*STIFF, *LOSSY, "law"):
         if said.get(other) is not None:
             raise ParameterError(f"{{{other}}} is not allowed with {{from_engine}}")
     mass, rule = said.get("mass"), said.get("release")
     mass = None if mass is None else number("mass", mass, Unit("kg", "20 g"))
-    contact = source.engine.contact(values, mass)
-    # If the contact is written for another engine, that engine determines the release.
-    rule = rule if said.get("engine") else str(source.engine.release(rule))
-    return source, {**said, **contact._asdict(), "mass": mass, "release": rule}
+    source = Source(engine, values, engine.contact(values, mass))
+    # Written for another engine, the contact ends as there; otherwise as here, or as a law's.
+    rule = rule if said.get("engine") or engine.needs_speed else str(engine.release(rule))
+    return source, {**said, **source.contact._asdict(), "mass": mass, "release": rule}

@@ -207,9 +207,11 @@ class _ForEngines(ABC):
     def engine_settings(self) -> EngineSettings:
         """The settings of the engine for which this design was made."""
 
-    def _settings(self, contact: Physical, release: str) -> EngineSettings:
+    def _settings(
+        self, contact: Physical, release: str, law: dict[str, Any] | None = None
+    ) -> EngineSettings:
         engine, error = engine_named(self.question["engine"]), self.question["restitution_error"]
-        return engine.settings(contact, release, error)
+        return (engine.with_law(law) if law else engine).settings(contact, release, error)
 
 
 @dataclass(frozen=True)
@@ -217,22 +219,23 @@ class Contact(_ForEngines):
     """A contact without a table, in SI units.
 
     ``natural_frequency`` is ω = √(k/m) in rad/s: on a table that moves with Ω it gives ϖ = ω/Ω.
-    ``question`` holds the arguments of the call.
+    ``question`` holds the arguments of the call. What depends on the impact speed is None.
     """
 
     mass: Annotated[float, Row("mass in kg")]
     stiffness: Annotated[float, Row("stiffness", "N/m")]
-    damping: Annotated[float, Row("damping", "N s/m")]
-    damping_ratio: Annotated[float, Row("damping ratio ζ")]
+    damping: Annotated[float | None, Row("damping", "N s/m")]
+    damping_ratio: Annotated[float | None, Row("damping ratio ζ")]
     natural_frequency: Annotated[float, Row("natural frequency ω = ϖΩ", "rad/s")]
-    contact_time: Annotated[float, Row("contact time", "s")]
+    contact_time: Annotated[float | None, Row("contact time", "s")]
     release: str
-    measured_restitution: Annotated[float, Row("restitution of a free impact")]
+    measured_restitution: Annotated[float | None, Row("restitution of a free impact")]
     notes: tuple[str, ...]
     question: dict[str, Any]
 
     def engine_settings(self) -> EngineSettings:
-        contact = Physical(self.mass, self.stiffness, self.damping)
+        # A contact whose damping depends on the speed has no settings.
+        contact = Physical(self.mass, self.stiffness, self.damping or 0.0)
         return self._settings(contact, self.release)
 
 
@@ -279,11 +282,8 @@ class Design(_ForEngines):
 
     def engine_settings(self) -> EngineSettings:
         contact, one = Physical(self.case.mass, self.stiffness, self.damping), self.judged
-        settings = self._settings(contact, self.case.contact.release)
-        if self.law is not None:
-            settings = engine_named(settings.name).of_law(settings, contact, self.law)
         return replace(
-            settings,
+            self._settings(contact, self.case.contact.release, self.law),
             max_height=one.max_height,
             contact_duration=one.contact_duration,
             penetration=one.greatest_compression,

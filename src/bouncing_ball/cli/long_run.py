@@ -16,7 +16,7 @@ from bouncing_ball.errors import ParameterError
 from bouncing_ball.signatures import count, takes
 
 Answer = dict[str, Any]
-_MOTION = ("kind", "periods", "impacts")
+_MOTION = ("kind", "periods", "impacts", "reason")
 Interval = tuple[AnyAmplitude, AnyAmplitude]
 Points = Annotated[int, count(100_000, low=2)]
 
@@ -26,9 +26,8 @@ def motion(amplitude, **given: Any) -> Answer:
     """The motion on which the ball ends, with null for an exponent that is infinite or unknown."""
     found = long_run.motion_of(amplitude, **given)
     exponents = {name: float(found[name]) for name in ("lyapunov_exponent", "lyapunov_error")}
-    answer: Answer = {name: found[name].item() for name in _MOTION}
-    answer |= {name: x if math.isfinite(x) else None for name, x in exponents.items()}
-    return answer | ({"reason": found.reason.item()} if found.reason.item() else {})
+    answer: Answer = {name: x for name in _MOTION if (x := found[name].item()) != ""}
+    return answer | {name: x if math.isfinite(x) else None for name, x in exponents.items()}
 
 
 @takes(long_run.orbit_diagram)
@@ -66,10 +65,9 @@ def _shares(at: Labelled) -> list[Answer]:
     """The motions at one amplitude, the most frequent first, with the reason of each that is
     undecided.
     """
-    names = (*_MOTION, "reason")
-    each = Counter(zip(*(at[name].values.tolist() for name in names), strict=True))
+    each = Counter(zip(*(at[name].values.tolist() for name in _MOTION), strict=True))
     return [
-        {name: x for name, x in zip(names, motion, strict=True) if x != ""}
+        {name: x for name, x in zip(_MOTION, motion, strict=True) if x != ""}
         | {"share": number / each.total()}
         for motion, number in each.most_common()
     ]

@@ -346,6 +346,8 @@ def _panel(
     taken = np.where(turned, now.step, step)
     following = np.where(good, taken * factor, now.step * np.minimum(factor, _AGAIN))
     ends = last & ~turned, surfaced & ~turned, turned
+    # Just below p = 0, at a rounding error, the positive grip would take hold of the ball again.
+    q[-1, ends[0] & ends[1]] = 0.0
     return _Panel(q, new, t, push, final, step, following, good, *ends)
 
 

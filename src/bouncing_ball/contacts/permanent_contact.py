@@ -170,19 +170,22 @@ def _equations(s: Scheme, law: ContactLaw, z: np.ndarray):
     return residual, jacobian, depths, u
 
 
-def _solved(s: Scheme, law: ContactLaw, z: np.ndarray) -> np.ndarray | None:
-    """The unknowns if Newton's method converges from z to a contact without release, else None."""
-    n = len(s.node)
+def _solved(s: Scheme, law: ContactLaw, z: np.ndarray, free: int = 0) -> np.ndarray | None:
+    """The unknowns if Newton's method converges from z to a contact without release, else None.
+
+    With ``free`` only the first of the unknowns are solved for, by the first of the equations.
+    """
+    free = free or z.size
     for _ in range(_ITERATIONS):
         residual, jacobian, depths, u = _equations(s, law, z)
         if not (np.all(np.isfinite(residual)) and np.all(np.isfinite(jacobian))):
             return None
         try:
-            step = np.linalg.solve(jacobian, residual)
+            step = np.linalg.solve(jacobian[:free, :free], residual[:free])
         except np.linalg.LinAlgError:
             return None
-        size = np.max(np.abs(step[n + 2 :]))
-        z = z - min(1.0, _LONGEST / max(size, _TINY)) * step
+        size = np.max(np.abs(step[-2:]))
+        z = np.append(z[:free] - min(1.0, _LONGEST / max(size, _TINY)) * step, z[free:])
         if size <= _SETTLED:
             held = np.all(depths > 0) and np.all(law.grip(depths, u) > 0)
             return z if held else None
@@ -272,3 +275,27 @@ def known_threshold(law: ContactLaw) -> float:
         return permanent_contact(law)
     except ModelError:
         return np.nan
+
+
+@lru_cache(maxsize=4096)
+def holds(law: ContactLaw, amplitude: float) -> bool:
+    """Whether a steady contact of a single law at Λ was found that never releases the ball.
+
+    The contact at Λ itself is smooth, because it ends well before p = 0, and is found with few
+    nodes also where that at the threshold is not. Where it is not found, or if the law has a kink
+    or its threshold a closed form, Λ is compared with the threshold.
+
+    Examples
+    --------
+    >>> from bouncing_ball.contacts.laws.tsuji import Tsuji
+    >>> holds(Tsuji(1e9, 1e-3), 0.5), holds(Tsuji(1e9, 1e-3), 1.5)
+    (True, False)
+    """
+    if law.permanent_contact is None and not law.has_kink:
+        s, n = scheme(_LEVELS[1], max(1, law.root // 2)), _LEVELS[1]
+        z = _solved(s, law, np.array([0.0] * n + [rest(law), 0.0, np.pi / 2, amplitude]), n + 2)
+        # The nodes are closest at the ends of the period, where the load is least. B is the
+        # acceleration over that of gravity, times the period.
+        if z is not None and np.max(np.abs(s.spectrum[-_TAIL:] @ z[:n])) <= _SPECTRUM:
+            return True
+    return amplitude <= known_threshold(law)

@@ -1,20 +1,16 @@
-"""Drake: point contact with the relaxation time τ = c/k, f = k (p + τ p′) ≥ 0."""
+"""Drake: point contact with the relaxation time τ = c/k, f = k (p + τ p′) ≥ 0, or with the
+dissipation d of Hunt and Crossley, f = k p (1 + d p′) ≥ 0.
+"""
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any, ClassVar
 
+import numpy as np
+
+from bouncing_ball.contacts.laws.hunt_crossley import LinearHuntCrossley
 from bouncing_ball.contacts.release import Release
-from bouncing_ball.engines.engine import (
-    Engine,
-    EngineSettings,
-    Parameters,
-    Physical,
-    filled,
-    text_of,
-    written,
-)
-from bouncing_ball.engines.scheme import Scheme, steps_for
+from bouncing_ball.engines.engine import Engine, Parameters, Physical, at_speeds, written
+from bouncing_ball.engines.scheme import Scheme
 
 
 class Drake(Engine):
@@ -22,9 +18,7 @@ class Drake(Engine):
 
     Drake combines the parameters of two bodies: their springs are in series, and their relaxation
     times are added. If ball and table have the same parameters, these are 2k in N/m and
-    τ/2 = c/(2k) in s. The other approximations have the damping of Hunt and Crossley,
-    f = k p (1 + d p′), where d in s/m is the ``hunt_crossley_dissipation`` of both bodies if they
-    are alike.
+    τ/2 = c/(2k) in s. The other approximations are :class:`HuntCrossleyDrake`.
 
     Examples
     --------
@@ -49,20 +43,55 @@ class Drake(Engine):
         m, double, half_time = self._two(parameters, mass)
         return Physical(m, double / 2, double * half_time)
 
-    def of_law(
-        self, settings: EngineSettings, contact: Physical, law: Mapping[str, Any]
-    ) -> EngineSettings:
-        # This damper grows with the penetration, so that it cannot take back that of the step.
-        contact, rule = Physical(*map(written, contact)), self.releases[0]
-        steps = steps_for(Scheme.IMPLICIT, contact.damping_ratio, rule, settings.error)
-        step = written(contact.contact_time(rule) / steps)
-        both = (written(2 * law["stiffness"]), written(law["damping"]))
-        values = dict(
-            zip(("point_contact_stiffness", "hunt_crossley_dissipation"), both, strict=True)
-        )
-        numbers = {"mass": contact.mass, "time_step": step, **values}
-        text = filled(text_of("drake-hunt-crossley"), {x: repr(y) for x, y in numbers.items()})
-        scheme = str(Scheme.IMPLICIT)
-        return replace(
-            settings, parameters=values, snippet=text, steps=steps, time_step=step, scheme=scheme
-        )
+    def reader(self, parameters: Mapping[str, Any]) -> Engine:
+        return HuntCrossleyDrake() if HuntCrossleyDrake.names[1] in parameters else self
+
+    def with_law(self, law: Mapping[str, Any]) -> Engine:
+        return HuntCrossleyDrake(law)
+
+
+class HuntCrossleyDrake(Drake):
+    """The approximations with the damping of Hunt and Crossley, f = k p (1 + d p′).
+
+    If ball and table are alike, the contact has half of their stiffness, and d in s/m is the
+    ``hunt_crossley_dissipation`` of each. This damper grows with the penetration, so that it cannot
+    take back that of the time step. In slow impacts it vanishes: :meth:`read` returns c = 0.
+
+    Parameters
+    ----------
+    law : mapping, optional
+        The stiffness k in N/m and the damping d that :meth:`parameters` gives.
+
+    Examples
+    --------
+    >>> found = {"point_contact_stiffness": 400.0, "hunt_crossley_dissipation": 0.5}
+    >>> HuntCrossleyDrake().law(found, mass=2.0).parameters()
+    {'stiffness': 100.0, 'damping': 0.5}
+    """
+
+    names = ("point_contact_stiffness", "hunt_crossley_dissipation")
+    scheme = Scheme.IMPLICIT
+    needs_speed = True
+    text = "drake-hunt-crossley"
+
+    def __init__(self, law: Mapping[str, Any] | None = None):
+        self._law = law or {}
+
+    def parameters(self, contact: Physical) -> Parameters:
+        values = (written(2 * self._law["stiffness"]), written(self._law["damping"]))
+        return dict(zip(self.names, values, strict=True))
+
+    def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
+        m, double, _ = self._two(parameters, mass)
+        return Physical(m, double / 2, 0.0)
+
+    def law(
+        self, parameters: Mapping[str, Any], mass: float = 1, time: float = 1, length: float = 1
+    ) -> LinearHuntCrossley:
+        _, double, dissipation = self._two(parameters, mass)
+        return LinearHuntCrossley(double / 2 / mass * time**2, dissipation * length / time)
+
+    def remarks(self, parameters: Mapping[str, Any]) -> tuple[str, ...]:
+        law = self.law(parameters)
+        impacts = at_speeds(law, np.array([0.1, 1, 10]) / (law.damping or 1))
+        return (f"in the limit of small time steps a free impact has {impacts}",)

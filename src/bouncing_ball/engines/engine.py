@@ -13,6 +13,7 @@ import numpy as np
 
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.signature import free_impact as law_impact
 from bouncing_ball.engines.compensation import compensated, represented
 from bouncing_ball.engines.scheme import Scheme, free_impact, steps_for
 from bouncing_ball.errors import ModelError, require
@@ -112,12 +113,18 @@ def filled(text: str, numbers: Mapping[str, str]) -> str:
     return _PLACE.sub(lambda place: numbers[place[1]], "\n".join(lines))
 
 
+def at_speeds(law: ContactLaw, speeds: np.ndarray) -> str:
+    """The restitution of a law's free impacts at these speeds in m/s, in words."""
+    found = zip(law_impact(law, speeds).restitution, speeds, strict=True)
+    return "r = " + ", ".join(f"{r:.4f} at {v:.3g} m/s" for r, v in found)
+
+
 class Engine(ABC):
     """A physics engine and its linear contact between a ball and a wall, at rest or moving.
 
     A subclass defines its ``name``, the ``names`` of its parameters, its ``releases`` with the
     default first, and the ``scheme`` by which it moves a ball in contact. Its text to paste is
-    ``snippets/NAME.txt``.
+    ``snippets/NAME.txt``, where NAME may be another ``text``.
     """
 
     name: ClassVar[str]
@@ -126,6 +133,9 @@ class Engine(ABC):
     scheme: ClassVar[Scheme]
     laws: ClassVar[dict[str, str]] = {}
     """The names of the engine's other contact laws, by the names that users may give."""
+    text: ClassVar[str] = ""
+    needs_speed: ClassVar[bool] = False
+    """Whether the damping depends on the impact speed, so that :meth:`read` returns c = 0."""
 
     @abstractmethod
     def parameters(self, contact: Physical) -> Parameters:
@@ -170,7 +180,7 @@ class Engine(ABC):
 
         A line of ``snippets/NAME.txt`` that is for one release only begins with the release's name.
         """
-        lines = (line.rpartition("|") for line in text_of(self.name).splitlines())
+        lines = (line.rpartition("|") for line in text_of(self.text or self.name).splitlines())
         return "\n".join(line for rule, _, line in lines if rule in ("", release))
 
     def snippet(self, contact: Physical, release: Release, time_step: float) -> str:
@@ -194,24 +204,24 @@ class Engine(ABC):
             If a parameter or the mass is missing, unknown, or outside its range.
         """
 
+    def reader(self, parameters: Mapping[str, Any]) -> "Engine":
+        """The engine, or the part of it to which these parameters belong."""
+        return self
+
     def law(
-        self, parameters: Mapping[str, Any], time: float = 1.0, length: float = 1.0
+        self, parameters: Mapping[str, Any], mass: float = 1, time: float = 1, length: float = 1
     ) -> ContactLaw | None:
-        """The contact law with these parameters, dimensionless with units of time in s and length
-        in m.
+        """The contact law with these parameters for a mass in kg, dimensionless with units of time
+        in s and length in m.
 
         None if the contact is the spring and damper of :meth:`read`.
         """
         return None
 
-    def of_law(
-        self, settings: EngineSettings, contact: Physical, law: Mapping[str, Any]
-    ) -> EngineSettings:
-        """The settings for a contact law, made from those of the linear contact with the same
-        restitution and duration.
+    def with_law(self, law: Mapping[str, Any]) -> "Engine":
+        """The engine for a contact law, which has a ``name`` and its parameters in SI units.
 
-        ``law`` has the name of the law and its parameters in SI units, which replace those of the
-        linear contact. The time step is the one that the linear contact needs without compensation.
+        Its settings are made from the linear contact with the same restitution and duration.
 
         Raises
         ------

@@ -23,7 +23,7 @@ import numpy as np
 from bouncing_ball.contacts.laws.impedance import Impedance
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.signature import free_impact
-from bouncing_ball.engines.engine import Engine, Physical
+from bouncing_ball.engines.engine import Engine, Physical, at_speeds
 from bouncing_ball.engines.scheme import Scheme
 from bouncing_ball.errors import ModelError
 
@@ -123,7 +123,7 @@ class MuJoCo(Engine):
         )
 
     def law(
-        self, parameters: Mapping[str, Any], time: float = 1.0, length: float = 1.0
+        self, parameters: Mapping[str, Any], mass: float = 1, time: float = 1, length: float = 1
     ) -> Impedance | None:
         least, most, width, *shape = impedance(parameters.get("solimp", ()))
         contact = self.read(parameters, 1.0)
@@ -150,12 +150,10 @@ class MuJoCo(Engine):
         )
         if law.has_kink:
             share, speeds = least / most, law.width * law.frequency_ratio * np.array([0.1, 1, 10])
-            impacts = free_impact(law, speeds).restitution
-            each = (f"{r:.4f} at {v:.3g} m/s" for r, v in zip(impacts, speeds, strict=True))
             found += (
                 f"this is the contact below the depth of {law.width:g} m; at the surface the "
                 f"spring is {share**2:.2g} and the damper {share:.2g} of it",
-                f"a free impact has r = {', '.join(each)}, and {spring.restitution:.4f} "
+                f"a free impact has {at_speeds(law, speeds)}, and {spring.restitution:.4f} "
                 "where it is much deeper than that",
             )
         return found

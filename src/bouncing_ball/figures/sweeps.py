@@ -14,12 +14,7 @@ from bouncing_ball.datasets.selection import each
 from bouncing_ball.figures.branches import draw_curve
 from bouncing_ball.figures.canvas import WIDE, WIDTH, canvas, coloured, legend_below, logarithmic
 from bouncing_ball.figures.labels import in_a_row, note, number, parameters, symbol, title
-from bouncing_ball.figures.style import (
-    COLOURS,
-    GUIDE,
-    RESTITUTION,
-    Look,
-)
+from bouncing_ball.figures.style import COLOURS, GUIDE, RESTITUTION, Look
 
 _DASHES = ("-", (0, (5, 1.5)), (0, (1, 1)), (0, (5, 1.5, 1, 1.5)))
 # Above this frequency ratio the points are close to the point of the restitution model.

@@ -8,9 +8,9 @@ The motion in contact is computed by :func:`bouncing_ball.contacts.collocation.m
 underdamped spring-damper it has a closed form (:mod:`bouncing_ball.motion.linear_contact`),
 except at the undamped resonance. With the closed form the release is proved to be the first,
 and a contact that never ends is proved to be permanent. With any other law a contact without a
-release in hundreds of oscillations is permanent if Λ is below the law's threshold of permanent
-contact, which is no proof, and undecided above it. Landings are proved to be the first for every
-law.
+release in two periods of the table, or in hundreds of oscillations, is permanent if a steady
+contact at Λ does not release the ball, which is no proof, and undecided otherwise. Landings are
+proved to be the first for every law.
 """
 
 from dataclasses import dataclass
@@ -19,8 +19,9 @@ from typing import ClassVar
 import numpy as np
 
 from bouncing_ball.contacts.collocation import MOST_PANELS, Start, march
+from bouncing_ball.contacts.contact_scales import rest
 from bouncing_ball.contacts.elementary import exponential
-from bouncing_ball.contacts.permanent_contact import known_threshold
+from bouncing_ball.contacts.permanent_contact import holds
 from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.motion.angles import reduce_angle, sine_and_versine, table
 from bouncing_ball.motion.dynamics import Departure, Dynamics, Impact
@@ -32,6 +33,10 @@ from bouncing_ball.motion.resumption import resumption
 from bouncing_ball.motion.sequence import Status
 from bouncing_ball.motion.tangent import Deviation, Jacobian
 
+# Panels of two periods of the table on a contact with up to some twenty oscillations in one, and
+# the depth of the ball at rest, over g/Ω², from which on a contact has so few.
+_SOME_PANELS, _COMPLIANT = 400, 1 / 400
+
 
 @dataclass(frozen=True, repr=False)
 class ContactDynamics(Dynamics):
@@ -42,8 +47,8 @@ class ContactDynamics(Dynamics):
     block: ClassVar[int] = 1 << 16
 
     def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
-        """The end of each contact. Where no end was found, the contact is permanent if Λ is at most
-        the law's threshold of permanent contact, and the status is undecided above it.
+        """The end of each contact. Where no end was found, the contact is permanent if a steady
+        contact at Λ holds the ball, and the status is undecided otherwise.
 
         If the force depends on the load and the load pulls, a slow ball meets no force at p = 0.
         Its contact then has the duration 0, and the ball continues its flight below p = 0.
@@ -57,7 +62,13 @@ class ContactDynamics(Dynamics):
         # No contact is computed for these balls, because none of its panels would be accepted.
         rate = np.where(free, np.nan, -impact.velocity)
         start = Start(depth, rate, impact.phase, self.amplitude * one, one)
-        end = march(self.law, start, MOST_PANELS, differentiate=differentiate)
+        compliant = not self.law.shape and rest(self.law) > _COMPLIANT
+        for panels in (_SOME_PANELS, MOST_PANELS)[not compliant :]:
+            end = march(self.law, start, panels, differentiate=differentiate)
+            lost = np.flatnonzero(np.isnan(end.duration) & ~free)
+            held = [k for k in lost if holds(self.law.take(k), float(start.amplitude[k]))]
+            if len(held) == lost.size:
+                break
         # A ball that is released below the table's level may move down, if the load pulls it.
         rate = np.where(end.penetration > 0, -end.rate, np.maximum(-end.rate, 0.0))
         for column, value in zip(end[:3], (0 * depth, depth, -impact.velocity), strict=True):
@@ -66,9 +77,7 @@ class ContactDynamics(Dynamics):
         phase, lost = impact.phase + end.duration, np.isnan(end.duration)
         state = -end.penetration, rate, *table(phase, self.amplitude)
         status = np.where(lost, Status.UNDECIDED, Status.BOUNCING)
-        for k in np.flatnonzero(lost):
-            if start.amplitude[k] <= known_threshold(self.law.take(k)):
-                status[k] = Status.PERMANENT_CONTACT
+        status[held] = Status.PERMANENT_CONTACT
         duration = np.where(lost, np.inf, end.duration)
         flight = Flight(*state, self.amplitude)
         return Departure(phase, duration, flight, status, by=end.jacobian)

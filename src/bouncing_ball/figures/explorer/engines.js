@@ -180,7 +180,12 @@ function caseOf({given, engine, release, r, n, t, one, two, m, k, f}) {
     const remarks = imposed ? impedanceRemarks(imposed, omega, zeta) : STEPPED.includes(given)
       ? ["k, c and r are those in the limit of small time steps, which damp less; with the parameter time_step, in s, "
         + "they are those of this step"] : [];
-    const sine = release === "force" ? zeta : 0, contact = {omega: omega * time, zeta, release, sine};
+    const by = rule => ({omega: omega * time, zeta, release: rule, sine: rule === "force" ? zeta : 0});
+    const contact = by(release), [own] = releasesOf({tab: "design", engine: given, given});
+    if (engine !== "none" && own !== release && zeta > 0) {
+      const [before, after] = [own, release].map(rule => ownRestitution(by(rule)).toFixed(4));
+      remarks.push(`r changes from ${before} to ${after}, because contacts end by ${own} in ${given}, and by ${release} in ${engine}`);
+    }
     let law = null;
     if (imposed && engine === "none" && Math.max(...imposed.slice(0, 2)) > FELT) {
       const [least, most, width, midpoint, power] = imposed;

@@ -2,6 +2,7 @@
 
 import os
 import shutil
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -63,6 +64,15 @@ def test_a_falsified_word_or_number(pair, file, old, new):
     (row,) = part.parts
     assert row.outcome is Outcome.DRIFTED and pair.compare().outcome.status == 1
     assert old.strip("<!- $") in row.record and new.strip("<!- $") in row.new
+
+
+def test_a_page_is_compared_but_for_its_commit(pair):
+    for file, folder in product(("explorer.nc", "explorer.html"), (pair.record, pair.new)):
+        shutil.copyfile(ROOT / "figures" / file, folder / "figures" / file)
+    pair.rewrite("figures/explorer.html", '{"commit": "', '{"commit": "c0ffee')
+    assert pair.part("figures/explorer.html").outcome is Outcome.IDENTICAL
+    pair.rewrite("figures/explorer.html", '"spring-damper", 0.5, 80', '"spring-damper", 0.5, 81')
+    assert pair.part("figures/explorer.html").outcome is Outcome.DRIFTED
 
 
 def test_a_last_digit_moves_only_with_its_data(pair):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
+from bouncing_ball.attractors.lift_off import returns
 from bouncing_ball.attractors.motions import Kind
 from bouncing_ball.configuration.study import typed
 from bouncing_ball.contacts.release import Release
@@ -30,6 +31,11 @@ def test_limits_of_estimates():
     changes = random.uniform(size=(4000, 1)) < size**0.3
     slope, low, high = exponent(changes, size, 0.95)
     assert low < 0.3 < high and high - low < 0.05 and low < slope < high
+
+
+def test_a_delay_may_grow_beyond_all_numbers():
+    found = returns(0.6261181887487134, 4.957593975635355, 500)
+    assert found.periods > 0 and np.isinf(found.sensitivity) and found.wait > 0
 
 
 def test_a_contact_agrees_where_the_prediction_says():

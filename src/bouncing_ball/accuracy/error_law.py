@@ -68,6 +68,14 @@ REMAINDER = dict.fromkeys(OF_IMPACTS, 2.0) | {Quantity.PHASE: 4.0}
 """M of each quantity: the remainder is at most M S δ. M is fitted to a sample and not proved."""
 
 
+def _of_orbit(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> tuple[np.ndarray, ...]:
+    """t_c, r, σ and D of the signature, and nπ, ψ, Λ_SN and Λ sin ψ of the restitution orbit."""
+    r, lam = instant.restitution, np.asarray(amplitude, dtype=float)
+    psi, fold = restitution_orbit.phase(n, r, lam), restitution_orbit.saddle_node(n, r)
+    orbit = np.asarray(n) * np.pi, psi, fold, lam * np.sin(psi)
+    return *(np.asarray(x, dtype=float) for x in instant[:4]), *orbit
+
+
 def first_order(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> ByQuantity:
     """Relative first-order errors of the restitution model at its orbit on the stable side.
 
@@ -101,11 +109,7 @@ def first_order(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> ByQuant
     >>> abs(float(law["max_height"])), round(float(law["bounce_velocity"]) * np.pi, 15)
     (0.0, -0.1)
     """
-    delay, r, load, duration = (np.asarray(x, dtype=float) for x in instant[:4])
-    lam, half = np.asarray(amplitude, dtype=float), np.asarray(n) * np.pi
-    psi = restitution_orbit.phase(n, r, lam)
-    fold = restitution_orbit.saddle_node(n, r)
-    lift = lam * np.sin(psi)
+    delay, r, load, duration, half, psi, fold, lift = _of_orbit(n, instant, amplitude)
     with np.errstate(divide="ignore", invalid="ignore"):
         later = load * (1 - lift) / ((1 + r) * lift) - delay
         higher = fold * later - half * delay
@@ -139,10 +143,8 @@ def small_parameter(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> np.
     >>> bool(small_parameter(1, Instant(0.05, 1.0, 0.0, 0.1), 1.0) < 0.3)
     True
     """
-    _, r, load, duration = (np.asarray(x, dtype=float) for x in instant[:4])
-    lam, half = np.asarray(amplitude, dtype=float), np.asarray(n) * np.pi
-    lift = lam * np.sin(restitution_orbit.phase(n, r, lam))
-    pull = np.abs(1 - lift)
+    _, r, load, duration, half, _, _, lift = _of_orbit(n, instant, amplitude)
+    lam, pull = np.asarray(amplitude, dtype=float), np.abs(1 - lift)
     with np.errstate(divide="ignore", invalid="ignore"):
         fold = np.abs(load) * pull * lam / ((1 + r) * lift * lift)
     return fold + duration * (1 + pull) * (1 + r) / (2 * half * r) + duration * np.maximum(1, lam)
@@ -162,10 +164,7 @@ def scale(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> ByQuantity:
     >>> all(abs(k) <= size[q] * (1 + 1e-15) for q, k in first_order(1, instant, 1.3).items())
     True
     """
-    delay, r, load, duration = (np.asarray(x, dtype=float) for x in instant[:4])
-    lam, half = np.asarray(amplitude, dtype=float), np.asarray(n) * np.pi
-    psi = restitution_orbit.phase(n, r, lam)
-    fold, lift = restitution_orbit.saddle_node(n, r), lam * np.sin(psi)
+    delay, r, load, duration, half, psi, fold, lift = _of_orbit(n, instant, amplitude)
     with np.errstate(divide="ignore", invalid="ignore"):
         shift = np.abs(load * (1 - lift)) / ((1 + r) * lift)
         node = np.abs(load) / (half * (1 - r))

@@ -41,7 +41,8 @@ class Return(NamedTuple):
 
     ``periods`` and ``impacts`` are the numbers of periods of the table and of impacts until the
     ball sticks. ``sensitivity`` is S, that of the phase at which the chattering ends, and ``wait``
-    is the time w from this phase to the next lift-off.
+    is the time w from this phase to the next lift-off. An S that is too large for a number is
+    infinite.
     """
 
     periods: np.ndarray
@@ -76,7 +77,10 @@ def returns(restitution: ArrayLike, amplitude: ArrayLike, impacts: int) -> Retur
             held = (departure.duration - departure.settling)[sticks]
             turns = np.rint((time + departure.duration)[sticks] / (2 * np.pi))
             found[0][:, ball[sticks]] = turns, np.full(held.size, count)
-            found[1][:, ball[sticks]] = np.abs(late[0, sticks]), held
+            found[1][:, ball[sticks]] = (
+                np.nan_to_num(np.abs(late[0, sticks]), nan=np.inf, posinf=np.inf),
+                held,
+            )
             left = np.flatnonzero(~sticks)
             dynamics, other = dynamics.take(left), other.take(left)
             impact, departure, beside = (pick(x, left) for x in (impact, departure, beside))
@@ -90,7 +94,8 @@ def returns(restitution: ArrayLike, amplitude: ArrayLike, impacts: int) -> Retur
             gravity = 1 - table(impact.phase, dynamics.amplitude)[1]
             bounces = 2 * departure.flight.velocity / (1 - dynamics.law)
             shift[:, (0 < gravity) & (bounces < _CHATTER * gravity**2)] = 0
-            late = np.array(dynamics.jacobian(impact, departure, after, passed).apply(*late))
+            with np.errstate(over="ignore", invalid="ignore"):
+                late = np.array(dynamics.jacobian(impact, departure, after, passed).apply(*late))
         late += _STIFF * shift
         time += passed if count else passed - departure.duration
         impact, beside = after, other.at_section(after.phase, after.velocity)

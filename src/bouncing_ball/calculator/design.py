@@ -171,7 +171,7 @@ def design(
     -------
     Design or Contact
         The assessed or chosen contact, its orbits and the motion of the ball on a table; without a
-        table, the contact alone. All numbers are in SI units.
+        table, the contact alone. Numbers with a unit are in SI units.
 
     Raises
     ------

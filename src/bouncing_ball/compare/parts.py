@@ -99,7 +99,7 @@ def _rows(old: Path, now: Path, data: Outcome | None) -> list[Row]:
             budget = PICTURES.get(old.stem, PICTURE)
             return compare_pictures(read_picture(old), read_picture(now), budget)
         case _:
-            return compare_texts(words_of(old), words_of(now), data)
+            return compare_texts(words_of(old, data), words_of(now, data), data)
 
 
 def judge(file: str, folders: tuple[Path, Path], data: Outcome | None) -> Whole:

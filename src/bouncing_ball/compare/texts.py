@@ -90,13 +90,13 @@ def compare_texts(record: str, new: str, data: Outcome | None) -> list[Row]:
     return found
 
 
-def words_of(path: Path) -> str:
+def words_of(path: Path, data: Outcome | None = None) -> str:
     """The words and numbers of a file, as lines.
 
     For a vector graphic these are the labels, and the letters that draw them, because matplotlib
     draws a text as outlines, one for each letter, with the text in a comment. For an HTML page it
-    is all text except data in JSON, which are compared as a dataset. Any other text is returned
-    unchanged.
+    is all text except the commit, and except the reference numbers if their dataset, whose outcome
+    is ``data``, is not identical: they have all its digits. Any other text is returned unchanged.
 
     Raises
     ------
@@ -109,6 +109,7 @@ def words_of(path: Path) -> str:
             words = r'<!-- (.*?) -->|href="#([\w-]+-[0-9a-f]+)"|<text[^>]*>(.*?)</text>'
             return "\n".join("".join(parts) for parts in re.findall(words, text))
         case ".html":
-            return re.sub(r'(<script type="application/json"[^>]*>)[^<]*', r"\1", text)
+            moved = "" if data is Outcome.IDENTICAL else r'|(?<=id="references">)[^<]*'
+            return re.sub(rf'(?<="commit": ")\w+{moved}', "", text)
         case _:
             return text

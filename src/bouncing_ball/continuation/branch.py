@@ -60,10 +60,6 @@ class Branch:
         steps = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
         return np.concatenate([[0.0], np.cumsum(steps)])
 
-    def named(self, name: str) -> list[np.ndarray]:
-        """The points y of all located events with this name, in order along the branch."""
-        return [special.point for special in self.special if special.name == name]
-
 
 def solve_at(problem: Problem, guess: np.ndarray) -> np.ndarray:
     """The solution with the parameter of the guess, shape (N + 1,).

@@ -23,7 +23,7 @@ _OTHERS = {
     "subharmonic": "#d9d9d9",
     "permanent contact": "#8c8c8c",
     "chaotic": "#f3d3c1",
-    "undecided": "#ffffff",
+    "undecided": "#b5b5b5",
 }
 # Marks that also distinguish areas in greyscale: dots for motions that do not repeat, crosses for
 # unknown motions, and strokes for other areas whose grey level is that of a period.
@@ -33,6 +33,8 @@ _DOTS: dict[str, Look] = {
     "permanent contact": {"marker": "_", "markersize": 2.5, "markeredgewidth": 0.4},
     "subharmonic": {"marker": "|", "markersize": 2.5, "markeredgewidth": 0.4},
 }
+# Largest number of restitution coefficients at which nodes are marked.
+_MARKED = 43
 _UNKNOWN = {"not at any": "#000000", "undecided": "#ffffff", "no number": "#c8c8c8"}
 _MEANS = {name: (name, colour, marker) for name, colour, marker in zip(
     ("power", "height", "flights", "exponent"), COLOURS, "osv^", strict=False)}  # fmt: skip
@@ -102,7 +104,9 @@ def _draw_exponent(axes: Axes, one: xr.Dataset):
 
 
 def _dot(axes: Axes, one: xr.Dataset, chosen: xr.DataArray, look: Look) -> None:
-    r, lam = np.nonzero(chosen.values)
+    # On a finer grid only some nodes have marks, which would cover the colours.
+    skip = -(-chosen.restitution.size // _MARKED)
+    r, lam = skip * np.array(np.nonzero(chosen.values[::skip, ::skip]))
     place = one.amplitude.values[lam], one.restitution.values[r]
     drawn: Look = {"color": "#000000", "linestyle": "none", "rasterized": True, **look}
     axes.plot(*place, **drawn)
@@ -199,7 +203,7 @@ def orbit_diagrams(data: xr.Dataset) -> Figure:
     ratios = [1.0] * len(models) + [0.6]
     figure, panels = canvas(WIDE, 8.0, rows=len(ratios), sharex=True, height_ratios=ratios)
     lam, phase = data["amplitude"].values, data.bin_phase.values / np.pi
-    for axes, model in zip(panels, models, strict=False):
+    for axes, model, sign in zip(panels, models, "ox+", strict=False):
         one = data.sel(model=model)
         # The square root of the density shows an orbit and a chaotic motion in one picture.
         shade = np.sqrt(one.phase_density.values.T)
@@ -209,7 +213,13 @@ def orbit_diagrams(data: xr.Dataset) -> Figure:
         shown = ["restitution"] if model == "restitution" else ["restitution", "frequency_ratio"]
         axes.set_title(f"{model} model; {parameters(data, *shown)}")
         exponent = one.lyapunov_exponent.values.clip(_LOWEST, _HIGHEST)
-        panels[-1].plot(lam, exponent, label=f"{model} model", **MODELS[model])
+        # A line through the exponents of chaotic and locked motions in turn would hide them.
+        look: Look = MODELS[model] | {
+            "linestyle": "none",
+            "markersize": 2.5,
+            "markeredgewidth": 0.6,
+        }
+        panels[-1].plot(lam, exponent, sign, label=f"{model} model", **look)
     panels[-1].axhline(0, **GUIDE)
     panels[-1].set(xlabel=r"amplitude $\Lambda$", ylabel=r"largest $\lambda$ per $T$")
     legend_below(figure, panels[-1].get_legend_handles_labels()[0], ncols=3)

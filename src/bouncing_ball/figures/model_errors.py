@@ -115,8 +115,8 @@ def _draw_steps(axes: Axes, part: xr.Dataset, scheme: str) -> None:
     end, level = float(part.equal_steps), abs(float(part.model_error.sel(model="corrected")))
     axes.plot(end, level, marker="|", markersize=9, color="black")
     if scheme == "semi-implicit Euler":
-        name = f"${number(float(f'{end:.2g}'))}$× fewer"
-        axes.text(0.04, 0.12, f"corrected: {name}", transform=axes.transAxes, fontsize=8)
+        name = f"${number(float(f'{end:.2g}'))}$ times fewer steps"
+        axes.text(0.04, 0.06, f"corrected: {name}", transform=axes.transAxes, fontsize=8)
 
 
 def _by_quantity(data: xr.Dataset, height: float, xlabel: str) -> tuple[Figure, dict[str, Axes]]:

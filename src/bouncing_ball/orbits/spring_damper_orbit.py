@@ -64,8 +64,7 @@ class SpringDamperOrbit(Orbit):
 
     def contact_motion(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """δ and δ′ at times 0 ≤ τ ≤ τ_b in contact (Eqs. 12-13), of the shape of the times."""
-        flow = self.contact_flow(time)
-        return flow.displacement, flow.velocity
+        return self.contact_flow(time)[:2]
 
     def residual(self) -> np.ndarray:
         """Release, velocity and landing defects (Eqs. 23-25), shape (..., 3).

@@ -252,10 +252,8 @@ def locking(parameters: Locking, release: Release, found: Found = None) -> xr.Da
     r = parameters.restitution.grid()
     first = models(r, ratios[0], release)
     maps = {x: parameters.unfolded(y[:, 0]) for x, y in vars(motions).items()}
-    ends = {
-        "saddle_node_amplitude": [each.saddle_node(1) for each in first],
-        "period_doubling_amplitude": [each.period_doubling(1) for each in first],
-    }
+    bifurcations = ("saddle_node", "period_doubling")
+    ends = {f"{x}_amplitude": [getattr(y, x)(1) for y in first] for x in bifurcations}
     return described(
         {
             **{x: (dims, maps[x]) for x in ("kind", "periods", "impacts")},

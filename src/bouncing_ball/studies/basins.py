@@ -1,5 +1,6 @@
 """The motions on which balls with many starts end, in the three models (beyond the paper)."""
 
+from functools import partial
 from typing import Annotated
 
 import numpy as np
@@ -96,20 +97,13 @@ def basins(parameters: Basins, release: Release, found: Found = None) -> xr.Data
     image, sample = np.split(ends, [count * count], axis=-1)
     first, *others = np.moveaxis(sample.reshape(*shape, -1, parameters.random), 2, 0)
     changed = np.stack([x != first for x in others], axis=2)
-    kinds, dims = range(len(MOTIONS)), ("case", "model")
+    kinds, dims = np.arange(len(MOTIONS))[:, np.newaxis], ("case", "model")
+    shares = partial(np.apply_along_axis, lambda x: share(x, level)[1:], -1)
+    exponents = [[exponent(x.T, shifts, level) for x in case] for case in changed]
     estimates: dict[str, tuple] = {
-        "basin_share": (
-            (*dims, "motion"),
-            [[[share(x == k, level)[1:] for k in kinds] for x in case] for case in first],
-        ),
-        "uncertain_share": (
-            (*dims, "shift"),
-            [[[share(y, level)[1:] for y in x] for x in case] for case in changed],
-        ),
-        "uncertainty_exponent": (
-            dims,
-            [[exponent(x.T, shifts, level) for x in case] for case in changed],
-        ),
+        "basin_share": ((*dims, "motion"), shares(first[:, :, np.newaxis] == kinds)),
+        "uncertain_share": ((*dims, "shift"), shares(changed)),
+        "uncertainty_exponent": (dims, exponents),
     }
     image = image.reshape(*shape, count, count)
     return described(

@@ -76,10 +76,7 @@ def returns_at_places(
 
 
 def locked_orbits(
-    data: Mapping[str, xr.Dataset],
-    parameters: LockedOrbits,
-    release: Release,
-    found: Found = None,
+    data: Mapping[str, xr.Dataset], parameters: LockedOrbits, release: Release, found: Found = None
 ) -> xr.Dataset:
     """The places at which a contact has the locked orbit of the restitution model, and predictors.
 

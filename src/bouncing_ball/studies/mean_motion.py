@@ -127,8 +127,8 @@ def mean_motions(parameters: MeanMotions, release: Release, found: Found = None)
     right = np.stack([(known == 0) & (place <= k) for k in range(ratios.size)], axis=2)
     counted = known != DECISIONS.index("no number")
     shares = np.empty((*right.shape[:3], 4))
-    for s, q, k in np.ndindex(right.shape[:3]):
-        shares[s, q, k] = share(right[s, q, k][counted[s, q]], parameters.confidence)
+    for k in np.ndindex(right.shape[:3]):
+        shares[k] = share(right[k][counted[k[:2]]], parameters.confidence)
     dims, nodes = ("simple", "mean"), ("restitution", "amplitude")
     names = ("right_nodes", *(f"right{x}" for x in LIMITS))
     return described(

@@ -12,8 +12,9 @@ _RESAMPLED, _SEED = 400, 1
 def exponent(changes: np.ndarray, size: np.ndarray, confidence: float) -> np.ndarray:
     """α with its lower and upper limit, from independent results that change or do not change.
 
-    α is the slope of the least-squares line of the logarithm of the share over ln ε, and its
-    interval is that of a bootstrap. A share of 0 counts as half a change.
+    α is the slope of the least-squares line of the logarithm of the share over ln ε, weighted with
+    the number of changes, because the variance of the logarithm of a small count is about the
+    inverse of the count. Its interval is that of a bootstrap. A share of 0 counts as half a change.
 
     Parameters
     ----------
@@ -39,5 +40,5 @@ def exponent(changes: np.ndarray, size: np.ndarray, confidence: float) -> np.nda
     drawn = np.random.default_rng(_SEED).integers(count, size=(_RESAMPLED, count))
     drawn[0] = np.arange(count)
     share = np.maximum(changes[drawn].mean(axis=1), 0.5 / count)
-    slope = np.polyfit(np.log(size), np.log(share).T, 1)[0]
+    slope = np.polyfit(np.log(size), np.log(share).T, 1, w=np.sqrt(share[0]))[0]
     return np.array([slope[0], *np.quantile(slope, [(1 - confidence) / 2, (1 + confidence) / 2])])

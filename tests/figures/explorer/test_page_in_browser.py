@@ -72,6 +72,7 @@ def physical_states():
             one, two = (" ".join(map(str, np.ravel(found[x]))) for x in ENGINES[given].names)
             # MuJoCo's impedance is its default, which depends on the depth.
             said = {"one": one, "two": two if given != "mujoco" else ""}
+            said |= {"three": repr(0.01 / omega)} if given == "drake" else {}
         place = {"tab": "design", "m": 1000 * m, "f": 20, "acc": a, "n": 1, "given": given}
         yield "#" + urlencode(place | said | {"release": release, "engine": engine, "e": e})
 
@@ -84,6 +85,7 @@ FAULTY = {
     "given=mujoco": "--from mujoco",
     "given=mujoco&one=-1e5 -20&two=0.9 1.2": "--from mujoco --solref '-1e5 -20' --solimp '0.9 1.2'",
     "given=lammps&one=1e5": "--from lammps --set kn=1e5",
+    "given=drake&one=1e5&two=0&three=0": "--from drake --set time_step=0",
     "given=lammps&one=-1e5&two=20": "--from lammps --set kn=-1e5 --set gamma_n=20",
     "given=tsuji&engine=mujoco": "--law tsuji --engine mujoco --contact-time 1 --restitution 1",
 }  # fmt: skip

@@ -32,6 +32,14 @@ function compensated(k, c, step) {
   return [(real * real + imaginary * imaginary) / step ** 2, Math.max(0, 2 * real / step)];
 }
 
+// The way back, with real rates as well: k and c of the contact that implicit Euler computes.
+function represented(k, c, step) {
+  const square = k - c * c / 4, root = step * Math.sqrt(Math.abs(square)), middle = 1 + step * c / 2;
+  const [a, b] = square < 0 ? [middle - root, middle + root].map(Math.log)
+    : [Math.log(Math.hypot(middle, root)), Math.atan2(root, middle)];
+  return square < 0 ? [a * b / step ** 2, (a + b) / step] : [(a * a + b * b) / step ** 2, 2 * a / step];
+}
+
 // The largest error of r of a free impact in N steps, wherever within a step it begins.
 function errorInSteps(scheme, contact, steps) {
   const {zeta, release} = contact, r = ownRestitution(contact);
@@ -85,8 +93,8 @@ const dampingOf = (restitution, release, mass, stiffness) =>
 // ---- The way back: the contact of an engine's parameters.
 const ENGINE_NAMES = {
   generic: ["stiffness", "damping"], mujoco: ["solref", "solimp"], lammps: ["kn", "gamma_n"],
-  liggghts: ["kn", "gamman"], pybullet: ["contactStiffness", "contactDamping"],
-  drake: ["point_contact_stiffness", "relaxation_time"], mercurydpm: ["stiffness", "dissipation"],
+  liggghts: ["kn", "gamman"], pybullet: ["contactStiffness", "contactDamping", "time_step"],
+  drake: ["point_contact_stiffness", "relaxation_time", "time_step"], mercurydpm: ["stiffness", "dissipation"],
 };
 const ENGINE_READS = {
   generic: (m, a, b) => [a, b], lammps: (m, a, b) => [a, b / (1 / m)], liggghts: (m, a, b) => [a, b / (1 / m)],
@@ -112,9 +120,11 @@ function solimpOf(text) {
   return [...found[2] > 0 ? shares : shares.map(() => (shares[0] + shares[1]) / 2), ...found.slice(2)];
 }
 
-// k and c of the parameters of an engine, which are two texts.
-function readEngine(engine, mass, [one, two]) {
-  const names = ENGINE_NAMES[engine];
+// k and c of the parameters of an engine, which are two texts, and perhaps a time step.
+function readEngine(engine, mass, [one, two, three]) {
+  const names = ENGINE_NAMES[engine].slice(0, 2), stepped = STEPPED.includes(engine) && three.trim();
+  const [step] = stepped ? numbersOf("time_step", three, 1, 1) : [1];
+  refuseIf(!(step > 0), `time_step = ${repr(step)} is not a positive number of s`);
   if (engine === "mujoco") {
     solimpOf(two);
     refuseIf(!one.trim(), "solref is missing: give it, such as '-10000 -20'");
@@ -130,7 +140,8 @@ function readEngine(engine, mass, [one, two]) {
     return value;
   });
   refuseIf(values[0] === 0, `${names[0]} = 0.0 is not positive`);
-  return ENGINE_READS[engine](mass, ...values);
+  const [k, c] = ENGINE_READS[engine](mass, ...values);
+  return stepped ? represented(k / mass, c / mass, step).map(x => x * mass) : [k, c];
 }
 
 // How MuJoCo's contact differs from a spring and a damper, in units of s and m: MuJoCo.remarks.
@@ -168,16 +179,16 @@ const STEPPED = ["pybullet", "drake"];
 const ENGINE_LAWS = {drake: {"hunt-crossley": "hunt-crossley-linear", "hunt-crossley-linear": "hunt-crossley-linear"}};
 
 // The contact in SI units, its dimensionless groups, its law if it is not linear, and remarks.
-function caseOf({given, engine, release, r, n, t, one, two, m, k, f}) {
+function caseOf({given, engine, release, r, n, t, one, two, three, m, k, f}) {
   const mass = m / 1000, time = 1 / (2 * Math.PI * f), length = GRAVITY * time ** 2;
   if (given in ENGINE_NAMES) {
-    const [stiffness, damping] = readEngine(given, mass, [one, two]);
+    const [stiffness, damping] = readEngine(given, mass, [one, two, three]);
     const omega = Math.sqrt(stiffness / mass), zeta = damping / (2 * mass * omega);
     const imposed = given === "mujoco" ? solimpOf(two) : null;
     const root = Math.sqrt(zeta * zeta - 1), r = Math.exp(-2 * zeta * (root > 0 ? Math.asinh(root) / root : 1));
     refuseIf(!(zeta < 1), `damping ratio ζ = ${repr(zeta)} is not below 1: a free impact `
       + `${release === "force" ? `has r = ${r.toFixed(4)}` : "does not end"}, and orbits are computed for less damping only`);
-    const remarks = imposed ? impedanceRemarks(imposed, omega, zeta) : STEPPED.includes(given)
+    const remarks = imposed ? impedanceRemarks(imposed, omega, zeta) : STEPPED.includes(given) && !three.trim()
       ? ["k, c and r are those in the limit of small time steps, which damp less; with the parameter time_step, in s, "
         + "they are those of this step"] : [];
     const by = rule => ({omega: omega * time, zeta, release: rule, sine: rule === "force" ? zeta : 0});

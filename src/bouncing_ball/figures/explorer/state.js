@@ -8,7 +8,7 @@ const $ = id => document.getElementById(id);
 const DEFAULTS = {
   tab: "orbit", r: 0.85, w: 10, a: 0.8, n: 1, release: "displacement", side: "stable",
   m: 20, f: 50, acc: 0.8, k: 1e7, engine: "none", e: 0.001, given: "stiffness", t: 0.1,
-  one: "", two: "",
+  one: "", two: "", three: "",
   model: "both", phi: 0, v: -3, balls: 1, dv: 0, dphi: 0, from: 0, pace: "1", view: "height",
 };
 const RANGES = {
@@ -18,7 +18,7 @@ const RANGES = {
   phi: [-10, 10], v: [-1000, 1000], balls: [1, 9], dv: [-10, 10], dphi: [-10, 10], from: [0, 1000],
 };
 // The parameters of an engine, as they are written in it.
-const TEXTS = ["one", "two"];
+const TEXTS = ["one", "two", "three"];
 const WHOLE = ["n", "balls", "from"];
 // On the stage the table may be at rest.
 const rangeOf = (name, tab) => name === "a" && tab === "stage" ? [0, 100] : RANGES[name];
@@ -100,7 +100,7 @@ function impossible(state) {
 }
 
 // The numbers, or the texts, by which the contact of the physical tab is given.
-const givenBy = given => given in ENGINES ? TEXTS : given in LAWS ? ["t", "r"] : ["k", "r"];
+const givenBy = given => given in ENGINES ? TEXTS.slice(0, ENGINE_NAMES[given].length) : given in LAWS ? ["t", "r"] : ["k", "r"];
 const TABS = {
   orbit: () => ["r", "w", "a", "n", "release", "side"],
   design: ({engine, given}) => ["tab", "m", "f", "acc", ...givenBy(given), "n", "release",
@@ -129,7 +129,7 @@ function commandOf(state) {
   if (state.tab === "orbit")
     return `bouncing-ball orbit --restitution ${r} --frequency-ratio ${state.w} `
       + `--amplitude ${state.a} --n ${state.n} --release ${release} --side ${state.side}`;
-  const texts = TEXTS.map((key, k) => [ENGINE_NAMES[given]?.[k], state[key].trim()]).filter(([, text]) => text);
+  const texts = givenBy(given).filter(key => TEXTS.includes(key)).map((key, k) => [ENGINE_NAMES[given]?.[k], state[key].trim()]).filter(([, text]) => text);
   const contact = given in LAWS ? [`--law ${given} --contact-time "${state.t} ms" --restitution ${r}`]
     : given === "stiffness" ? [`--stiffness "${state.k} N/m" --restitution ${r}`]
       : [`--from ${given}`, ...texts.map(([name, text]) =>

@@ -156,7 +156,6 @@ def coarse():
         ("ext_cascades", "doublings"): 4,
         ("ext_diagram", "samples"): 12,
         ("ext_locked", "nodes"): 30,
-        ("ext_means", "starts"): 3,
         ("ext_locking", "samples"): 6,
     }
 

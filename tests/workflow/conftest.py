@@ -244,6 +244,8 @@ def pristine(shared, cloned) -> Tree:
 
     def make(folder: Path) -> None:
         tree = copy_tree(cloned, folder)
+        # Git reads the copied files once, and not for every job.
+        tree.git("status")
         # Of quick figures, at the first: what was begun then is done twice.
         quick = ("--cores", "2", "fig11", "fig12")
         tree.interrupt(signal.SIGKILL, *quick, after=1, of="figures/[!.]*.nc")

@@ -125,7 +125,8 @@ def families(case: Case, asked: Sequence[int], or_first: bool = False) -> tuple[
     there = np.any([orbit.exists for orbit in orbits], axis=0)
     there[0] |= or_first and not there.any()
     if not there.any():
-        lowest = values[0, len(OF_ORBITS), 0]
+        # The restitution model's where that of a strongly damped law was not found.
+        lowest = next(node for node in values[:, len(OF_ORBITS), 0] if node == node)
         which = f"{asked[0]}-T orbit" if len(asked) == 1 else "n-T orbit"
         laid = lam <= case.permanent_contact
         rests = ", and a ball laid on the table stays at rest" if laid else ""

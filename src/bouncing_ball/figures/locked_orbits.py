@@ -36,6 +36,7 @@ def locked_orbits(data: xr.Dataset) -> Figure:
     logarithmic(jumps, xlabel=r"change of $\Lambda$", yscale="log")
     jumps.set_ylabel("share with another\nlocked period")
     jumps.xaxis.set_major_formatter(lambda value, _: f"$10^{{{np.log10(value):.0f}}}$")
+    jumps.yaxis.set_minor_formatter("{x:g}")
     jumps.set_title("next to a discontinuity")
     for one, colour in coloured(data, "case"):
         r, lam = (number(float(one[f"case_{x}"])) for x in ("restitution", "amplitude"))

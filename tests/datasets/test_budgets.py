@@ -90,9 +90,9 @@ def results(stages, coarse, recorded):
         reads = "data" in inspect.signature(load(study)).parameters and artifact != "ext_locked"
         if reads or artifact in ("ext_means", "ext_lives"):
             continue
-        # The last doublings move most.
+        # The last doublings move most, and a share of 36 exponents decides nothing.
         fewer = {key: number for (name, key), number in coarse.items() if name == artifact}
-        fewer.pop("doublings", None)
+        fewer = {} if artifact in ("ext_cascades", "ext_diagram") else fewer
         given = mapped(
             arguments(study, artifact, RUN), lambda key, x, fewer=fewer: fewer.get(key, x)
         )

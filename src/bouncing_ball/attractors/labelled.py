@@ -101,7 +101,8 @@ def diagram(model: Any, amplitude: np.ndarray, starts: int, samples: int, impact
     ModelError
         If there are too many balls.
     """
-    require_memory(amplitude.size * (starts + 7) * samples, "amplitudes, starts and samples")
+    balls = starts + len(_FAMILIES) + 2 * len(_FURTHER)
+    require_memory(amplitude.size * balls * samples, "amplitudes, starts and samples")
     lam = amplitude[:, np.newaxis]
     even = np.mod(0.5 + np.arange(1, starts + 1)[:, np.newaxis] * _EVEN, 1.0)
     # More balls start beside the orbits with one impact, which may attract few of the other balls.

@@ -10,7 +10,7 @@ class PyBullet(Proportional):
 
     If ball and table have the same parameters, these are 2k in N/m and c/2 in N s/m. By default,
     Bullet also has contacts of bodies that do not touch yet, at distances that depend on their
-    sizes: the damper then acts from the surface on, so that r is ``exp(-ζh)`` times the value
+    sizes: the damper then acts from the surface on, so that r is ``exp(-ζωh)`` times the value
     without such contacts. The text to paste allows none, and no slop.
 
     Examples

@@ -40,6 +40,18 @@ TABLE = read_yaml(Path(ROOT, "workflow/artifacts.yaml"))
 ACCEPTED = {name: entry["accepted"] for name, entry in TABLE.items() if "accepted" in entry}
 
 
+# The functions of the artifacts, as the rules of the stages list them.
+STUDIES, DRAWINGS = {}, {}
+
+
+# The artifacts of a stage, each with "study -> drawing", or its study alone if it has no figure.
+def stage(**artifacts):
+    for name, functions in artifacts.items():
+        STUDIES[name], *drawing = functions.split(" -> ")
+        DRAWINGS.update((name, draw) for draw in drawing)
+    return "|".join(artifacts)
+
+
 # The dataset from which figures, claims and the article are made.
 def dataset(name):
     return ACCEPTED.get(name, f"results/figures/{name}.nc")

@@ -2,16 +2,6 @@
 # that computes the dataset and the function that draws the figure. All values are dimensionless:
 # times Ωt, lengths Ω²y/g, velocities Ωẏ/g, with phases in radians.
 
-STUDIES, DRAWINGS = {}, {}
-
-
-# The artifacts of a stage, each with "study -> drawing", or its study alone if it has no figure.
-def stage(**artifacts):
-    for name, functions in artifacts.items():
-        STUDIES[name], *drawing = functions.split(" -> ")
-        DRAWINGS.update((name, draw) for draw in drawing)
-    return "|".join(artifacts)
-
 
 rule shard:
     """Some of the places of a study that has `shards` in its parameters."""

@@ -7,6 +7,7 @@ Python does, in its own folder and environment. Nothing of this package is impor
 each program has that of its own tree.
 """
 
+import atexit
 import ctypes
 import gc
 import importlib
@@ -16,6 +17,7 @@ import runpy
 import signal
 import socket
 import sys
+import threading
 from contextlib import suppress
 from pathlib import Path
 
@@ -77,16 +79,37 @@ def main(folder: Path) -> None:
     os.environ.clear()
     os.environ.update(environment)
     sys.executable = str(program)
-    become(*arguments)
+    leave(become(*arguments))
 
 
-def become(first: str, *rest: str) -> None:
-    """Run a module, after ``-m``, or a script, as Python does."""
+def become(first: str, *rest: str) -> int:
+    """Run a module, after ``-m``, or a script, as Python does; the exit status."""
     name, *arguments = rest if first == "-m" else (first, *rest)
     here = os.getcwd() if first == "-m" else str(Path(name).parent)
     sys.path[:1] = [here, *os.environ.get("PYTHONPATH", "").split(os.pathsep)]
     sys.argv = [name, *arguments]
-    (runpy.run_module if first == "-m" else runpy.run_path)(name, run_name="__main__")
+    try:
+        (runpy.run_module if first == "-m" else runpy.run_path)(name, run_name="__main__")
+    except SystemExit as end:
+        if isinstance(end.code, str):
+            print(end.code, file=sys.stderr)
+        return end.code if isinstance(end.code, int) else int(end.code is not None)
+    except BaseException:
+        sys.excepthook(*sys.exc_info())
+        return 1
+    return 0
+
+
+def leave(status: int) -> None:
+    """End as Python does, but without taking apart what the server has imported.
+
+    That copies all of its memory, and takes longer than most jobs.
+    """
+    threading._shutdown()
+    atexit._run_exitfuncs()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(status)
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@ import atexit
 import ctypes
 import gc
 import importlib
+import io
 import json
 import os
 import runpy
@@ -47,6 +48,12 @@ def main(folder: Path) -> None:
     ctypes.CDLL(None).prctl(1, signal.SIGTERM)
     for name in IMPORTED:
         importlib.import_module(name)
+    # What the first text costs, the parser of its symbols and the fonts.
+    plt = sys.modules["matplotlib.pyplot"]
+    plt.figtext(0, 0, r"a $\frac{x^2}{\Lambda}$")
+    for kind in ("png", "svg"):
+        plt.savefig(io.BytesIO(), format=kind)
+    plt.close()
     gc.freeze()
     program, address = folder / "python", str(folder / "socket")
     program.write_text(PYTHON.format(python=sys.executable, address=address))
@@ -91,9 +98,10 @@ def become(first: str, *rest: str) -> int:
     try:
         (runpy.run_module if first == "-m" else runpy.run_path)(name, run_name="__main__")
     except SystemExit as end:
-        if isinstance(end.code, str):
-            print(end.code, file=sys.stderr)
-        return end.code if isinstance(end.code, int) else int(end.code is not None)
+        if isinstance(end.code, int | None):
+            return end.code or 0
+        print(end.code, file=sys.stderr)
+        return 1
     except BaseException:
         sys.excepthook(*sys.exc_info())
         return 1

@@ -154,10 +154,11 @@ def coarse():
     """
     return {
         ("ext_basins", "starts"): 20,
+        ("ext_basins", "random"): 100,
         ("ext_cascades", "samples"): 5,
         ("ext_cascades", "doublings"): 4,
-        ("ext_diagram", "samples"): 12,
-        ("ext_locked", "nodes"): 30,
+        ("ext_diagram", "samples"): 10,
+        ("ext_locked", "nodes"): 15,
         ("ext_locking", "samples"): 6,
     }
 

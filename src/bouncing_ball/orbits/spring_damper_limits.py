@@ -48,8 +48,8 @@ def _doubling(point: BranchPoint) -> np.ndarray:
     return Bifurcation.PERIOD_DOUBLING.test(point.trace, point.determinant)
 
 
-def _surplus(point: BranchPoint, amplitude: np.ndarray) -> np.ndarray:
-    return point.amplitude - amplitude
+def _deficit(point: BranchPoint, amplitude: np.ndarray) -> np.ndarray:
+    return amplitude - point.amplitude
 
 
 class _Curves(NamedTuple):
@@ -124,14 +124,22 @@ class _Curves(NamedTuple):
     def stable_side(self, of: Callable, *more: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The grid of the scan up to the fold, and the values of a function on it.
 
-        Grid points beyond the fold are replaced by the fold. Without a fold Λ falls along the whole
-        branch, and the whole branch is the stable side.
+        The function is negative at the shortest contacts. If it is positive again at the last
+        grid point before the fold, no zero of it is between that point and the fold, and the fold
+        itself is not computed. Grid points beyond the end are replaced by the end. Without a fold
+        Λ falls along the whole branch, and the whole branch is the stable side.
         """
-        grid = self.scan()
+        grid, row = self.scan(), np.arange(self.n.size)
         points = self.point(grid)
-        fold = self.zero(_saddle, grid, _saddle(points))
-        end = np.where(np.isnan(fold), grid[-1], fold)
-        values = np.where(grid < end, of(points, *more), of(self.point(end), *more))
+        values, saddle = of(points, *more), _saddle(points)
+        at, found = _bracket(saddle)
+        # Λ has a minimum in the interval, and not a pole.
+        least = (points.fold[at, row] < 0) & (points.fold[at + 1, row] >= 0)
+        end = np.where(found, grid[at, row], grid[-1])
+        near = np.flatnonzero(found & ~(least & (values[at, row] >= 0)))
+        fold = self.take(near).zero(_saddle, grid[:, near], saddle[:, near])
+        end[near] = np.where(np.isnan(fold), grid[-1, near], fold)
+        values = np.where(grid < end, values, of(self.point(end), *more))
         return np.minimum(grid, end), values
 
 
@@ -216,8 +224,8 @@ def period_doubling(contact: SpringDamper, n: ArrayLike) -> np.ndarray:
 
 def _stable_side(curves: _Curves, lam: np.ndarray) -> np.ndarray:
     """ε of the orbit at Λ between short contacts and the saddle-node, where Λ falls with ε."""
-    grid, surplus = curves.stable_side(_surplus, lam)
-    return curves.root(_surplus, grid, *_bracket(-surplus), lam)
+    grid, deficit = curves.stable_side(_deficit, lam)
+    return curves.root(_deficit, grid, *_bracket(deficit), lam)
 
 
 def _unstable_side(curves: _Curves, lam: np.ndarray) -> np.ndarray:
@@ -232,7 +240,7 @@ def _unstable_side(curves: _Curves, lam: np.ndarray) -> np.ndarray:
     turn, turns = _bracket(curves.point(grid[1:]).fold)
     summit = curves.root(_fold, grid[1:], turn, turns)
     grid = np.sort(np.concatenate([grid, np.where(turns, summit, high)[np.newaxis]]), axis=0)
-    return curves.root(_surplus, grid, *_bracket(_surplus(curves.point(grid), lam)), lam)
+    return curves.root(_deficit, grid, *_bracket(-_deficit(curves.point(grid), lam)), lam)
 
 
 def orbit_at(
@@ -307,7 +315,7 @@ def orbits_at(contact: SpringDamper, n: int, amplitude: float) -> SpringDamperOr
         return one.take(first).root(of, np.stack([grid[at], grid[at + 1]]), first, at >= 0, *rest)
 
     grid = np.sort(np.concatenate([grid, roots(_fold, grid)]))
-    found = SpringDamperOrbit.on_branch(roots(_surplus, grid, amplitude), contact, n)
+    found = SpringDamperOrbit.on_branch(roots(_deficit, grid, amplitude), contact, n)
     # A sign change at a pole of the branch is not a root.
     real = np.abs(found.amplitude - amplitude) <= 1e-6 * amplitude
     return found[real & (found.relative_impact_velocity < 0) & (found.relative_bounce_velocity > 0)]

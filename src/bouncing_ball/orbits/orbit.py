@@ -10,6 +10,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Self
 
 import numpy as np
@@ -322,7 +323,11 @@ class Orbit(Batch, ABC):
 
     def trace_and_determinant(self) -> tuple[np.ndarray, np.ndarray]:
         """Trace and determinant of the monodromy, each with the shape of the orbits."""
-        return np.trace(self.monodromy(), axis1=-2, axis2=-1), self.determinant()
+        return self._trace, self.determinant()
+
+    @cached_property
+    def _trace(self) -> np.ndarray:
+        return np.trace(self.monodromy(), axis1=-2, axis2=-1)
 
     def multipliers(self) -> np.ndarray:
         """Floquet multipliers, complex, shape (..., 2); that of larger modulus comes first."""

@@ -1,5 +1,6 @@
 """n-T orbits of the spring-damper model: their contacts, equations and stability."""
 
+from functools import cached_property
 from typing import Any, Self
 
 import numpy as np
@@ -62,6 +63,11 @@ class SpringDamperOrbit(Orbit):
         u = self.relative_impact_velocity
         return self.law.flow(time, 0.0, u, self.phase, self.amplitude)
 
+    @cached_property
+    def _end(self) -> Any:
+        """The flow at the end of the contact, which the equations and their Jacobian share."""
+        return self.contact_flow(self.contact_duration)
+
     def contact_motion(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """δ and δ′ at times 0 ≤ τ ≤ τ_b in contact (Eqs. 12-13), of the shape of the times."""
         return self.contact_flow(time)[:2]
@@ -72,7 +78,7 @@ class SpringDamperOrbit(Orbit):
         The release defect is ϖ (δ_b + κ δ′_b). Like the second defect, it is of the order of a
         velocity.
         """
-        flow, contact = self.contact_flow(self.contact_duration), self.law
+        flow, contact = self._end, self.law
         release = contact.frequency_ratio * flow.displacement
         release = release + 2 * contact.release_sine * flow.velocity
         return np.stack([release, *self.flight_defects(flow.displacement, flow.velocity)], axis=-1)
@@ -83,7 +89,7 @@ class SpringDamperOrbit(Orbit):
         The duration is differentiated through the release condition δ_b + κ δ′_b = 0.
         """
         # Rows δ, δ′; columns (τ, δ′, Λ) of the start. The last array is the derivative in time.
-        jacobian = self.contact_flow(self.contact_duration).jacobian
+        jacobian = self._end.jacobian
         state, by_time = jacobian[..., [3, 2, 4]], jacobian[..., 0]
         lag = np.asarray(self.law.lag)
         released = state[..., 0, :] + lag[..., np.newaxis] * state[..., 1, :]
@@ -94,7 +100,7 @@ class SpringDamperOrbit(Orbit):
 
     def system_jacobian(self) -> np.ndarray:
         """Exact derivatives of the three residuals by (φ, z′_i, ϖ τ_b, Λ), shape (..., 3, 4)."""
-        omega, flow = self.law.frequency_ratio, self.contact_flow(self.contact_duration)
+        omega, flow = self.law.frequency_ratio, self._end
         # Derivatives of (τ, δ, δ′, φ, Λ) of the flow with respect to these.
         inner = np.zeros((*self.shape, 5, 4))
         inner[..., 0, 2] = 1 / omega

@@ -241,9 +241,9 @@ def resample(problem: Problem, branch: Branch, count: int) -> np.ndarray:
     """Solutions at equal distances along a branch, shape (count, N + 1).
 
     Linear interpolation between the points of the branch and between their tangents is the
-    predictor, and Newton's method in the plane normal to the tangent the corrector; the first and last points are those of the branch. The chords between
-    neighbours are made equal, so that the result depends on the branch and on ``count``, but not
-    on the step control.
+    predictor, and Newton's method in the plane normal to the tangent is the corrector; the first
+    and last points are those of the branch. The chords between neighbours are made equal, so that
+    the result depends on the branch and on ``count``, but not on the step control.
 
     Raises
     ------

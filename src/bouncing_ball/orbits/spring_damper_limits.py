@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.optimize.elementwise import find_root
 
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.ensembles import blocks
@@ -87,8 +88,6 @@ class _Curves(NamedTuple):
 
         The root is NaN where ``found`` is False.
         """
-        # Imported here because it takes a third of a second, and not every run needs limits.
-        from scipy.optimize.elementwise import find_root
 
         def function(excess, which, *more):
             return of(self.take(which).point(excess), *more)

@@ -101,11 +101,9 @@ def solve(
         going &= np.isfinite(residual) & np.all(np.isfinite(matrix), axis=(-2, -1))
         change = _solve(np.where(going[..., np.newaxis, np.newaxis], matrix, np.nan), right)
         length = np.linalg.norm(change, axis=-1)
-        change = (
-            change * np.minimum(1.0, settings.longest / np.maximum(length, _TINY))[..., np.newaxis]
-        )
+        part = np.minimum(1.0, settings.longest / np.maximum(length, _TINY))
         going &= np.isfinite(length)
-        y = np.where(going[..., np.newaxis], y - change, y)
+        y = np.where(going[..., np.newaxis], y - part[..., np.newaxis] * change, y)
         size = np.where(going, length / (1 + np.linalg.norm(y, axis=-1)), size)
         converged |= going & (size <= settings.tolerance)
         going &= ~converged

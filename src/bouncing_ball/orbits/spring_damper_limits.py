@@ -100,17 +100,15 @@ class _Curves(NamedTuple):
             result[which] = find_root(function, bracket, args=args).x
         return result
 
-    def zero(
-        self, test: Callable, grid: np.ndarray, values: np.ndarray, *, last: bool = False
-    ) -> np.ndarray:
-        """First, or last, zero of a test function with known values along a grid, or NaN.
+    def zero(self, test: Callable, grid: np.ndarray, values: np.ndarray) -> np.ndarray:
+        """First zero of a test function with known values along a grid, or NaN.
 
         A test function also changes sign at a pole. As the bracket shrinks onto a pole, the value
         in it grows beyond the values at both ends, whereas it becomes smaller at a zero. The two
         are therefore distinguished without a tolerance.
         """
         row = np.arange(self.n.size)
-        at, found = _bracket(values, last=last)
+        at, found = _bracket(values)
         root = self.root(test, grid, at, found)
         smallest = np.minimum(np.abs(values[at, row]), np.abs(values[at + 1, row]))
         return np.where(np.abs(test(self.point(root))) <= smallest, root, np.nan)
@@ -142,16 +140,14 @@ class _Curves(NamedTuple):
         return np.minimum(grid, end), values
 
 
-def _bracket(values, *, last=False):
-    """Index of the first, or last, sign change along the first axis, and whether there is one.
+def _bracket(values):
+    """Index of the first sign change along the first axis, and whether there is one.
 
     A change next to NaN does not count.
     """
     left, right = values[:-1], values[1:]
     change = ((left < 0) & (right >= 0)) | ((left >= 0) & (right < 0))
-    found = np.any(change, axis=0)
-    at = np.argmax(change[::-1] if last else change, axis=0)
-    return (len(change) - 1 - at if last else at), found
+    return np.argmax(change, axis=0), np.any(change, axis=0)
 
 
 def _searched(search: Callable, contact: SpringDamper, n: ArrayLike, *more: ArrayLike):
@@ -216,7 +212,8 @@ def period_doubling(contact: SpringDamper, n: ArrayLike) -> np.ndarray:
     """
 
     def search(curves: _Curves) -> np.ndarray:
-        return curves.zero(_doubling, *curves.stable_side(_doubling), last=True)
+        grid, values = curves.stable_side(_doubling)
+        return curves.zero(_doubling, grid[::-1], values[::-1])
 
     return _searched(search, contact, n)
 

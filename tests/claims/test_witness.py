@@ -152,6 +152,7 @@ def test_the_comparison_with_the_simulation_can_fail(recorded, monkeypatch):
         ("fig15", "contact_duration"),
         ("fig15", "restitution_phase"),
         ("fig03", "amplitude"),
+        ("fig03", "saddle_node_amplitude"),
         ("table1", "special_phase"),
     ],
 )

@@ -153,9 +153,8 @@ def _bracket(values):
 def _searched(search: Callable, contact: SpringDamper, n: ArrayLike, *more: ArrayLike):
     """The results of a search for many contacts, in blocks, because each scan has 121 points."""
     check_index(n)
-    arrays = (contact.frequency_ratio, contact.damping_ratio, n, *more)
-    columns = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in arrays))
-    omega, zeta, n, *rest = (np.ravel(column) for column in columns)
+    columns = np.broadcast_arrays(contact.frequency_ratio, contact.damping_ratio, n, *more)
+    omega, zeta, n, *rest = (np.ravel(column).astype(float) for column in columns)
     curves, found = _Curves(SpringDamper(omega, zeta, contact.release), n), np.empty(omega.size)
     for part in blocks(found.size, _BLOCK):
         found[part] = search(curves.take(part), *(column[part] for column in rest))

@@ -129,7 +129,7 @@ class Batch:
         values = (f"{f.name}={in_words(getattr(self, f.name))}" for f in fields(self))
         return f"{type(self).__name__}({', '.join(values)})"
 
-    @functools.cached_property
+    @property
     def shape(self) -> tuple[int, ...]:
         """The shape to which the fields broadcast."""
         shapes = {_shape(getattr(self, f.name)) for f in fields(self)} - {()}

@@ -6,9 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane, tangent
+from bouncing_ball.continuation.corrector import NewtonSettings, Problem, newton, plane, tangent
 from bouncing_ball.continuation.events import Event, SpecialPoint, locate
-from bouncing_ball.continuation.problem import Problem
 from bouncing_ball.continuation.step_control import StepControl
 
 

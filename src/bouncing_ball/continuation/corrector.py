@@ -1,13 +1,25 @@
 """Newton's method for square systems and for a problem with one added condition; tangents."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from bouncing_ball.continuation.problem import Problem
-
 _TINY = np.finfo(float).tiny
+
+
+class Problem(Protocol):
+    """N equations F(y) = 0 for N unknowns x and one parameter p, with y = (x, p).
+
+    Both methods broadcast over leading axes. The unknowns should be scaled to
+    order one, because the arclength is the Euclidean norm of y.
+    """
+
+    def residual(self, y: np.ndarray) -> np.ndarray:
+        """F(y), shape (..., N) for y of shape (..., N + 1)."""
+
+    def jacobian(self, y: np.ndarray) -> np.ndarray:
+        """∂F/∂y, shape (..., N, N + 1)."""
 
 
 class Correction(NamedTuple):

@@ -21,7 +21,7 @@ contacts to that of the first flight.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -179,6 +179,7 @@ def _landings(excess: float, zeta: float, most: int) -> list[tuple[float, tuple[
     return found
 
 
+@lru_cache
 def _stiff_openings(zeta: float, most: int) -> list[np.ndarray]:
     """The unknowns of :class:`OpeningContacts` at the openings of the stiff limit, in its units and
     with E in place of Λ.

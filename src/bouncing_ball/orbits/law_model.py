@@ -119,7 +119,6 @@ class LawModel(ImpactModel):
         ModelError
             If the law does not release the ball.
         """
-        # The impacts are stored because every search for orbits or bifurcations starts from them.
         return free_impact(self.law, speed)
 
     def orbits(self, n: int, amplitude: float) -> LawOrbit:

@@ -5,8 +5,7 @@ import pytest
 
 from bouncing_ball.configuration.study import typed
 from bouncing_ball.contacts.damping import damping_ratio
-from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
-from bouncing_ball.contacts.spring_damper import Release, SpringDamper
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper, permanent_contact_threshold
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_limits import period_doubling, saddle_node

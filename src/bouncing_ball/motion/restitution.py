@@ -16,8 +16,8 @@ from typing import ClassVar
 
 import numpy as np
 
+from bouncing_ball.contacts.elementary import table
 from bouncing_ball.contacts.restitution_law import RestitutionLaw, rebound
-from bouncing_ball.motion.angles import table
 from bouncing_ball.motion.dynamics import Departure, Dynamics, Impact
 from bouncing_ball.motion.landing import Flight
 from bouncing_ball.motion.rest import lifted, pressed, stay

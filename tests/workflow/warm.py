@@ -12,7 +12,7 @@ import ctypes
 import gc
 import importlib
 import io
-import json
+import marshal
 import os
 import runpy
 import signal
@@ -31,13 +31,14 @@ IMPORTED = (
     *("PIL.Image", "PIL.PngImagePlugin", "scipy.stats", "pint"),
 )
 PYTHON = """#!{python} -IS
-import json, os, socket, sys
-server = socket.socket(socket.AF_UNIX)
+# Quicker to import than what they are part of.
+import _socket, array, marshal, os, sys
+server = _socket.socket(_socket.AF_UNIX)
 server.connect({address!r})
-socket.send_fds(server, [b"3"], [0, 1, 2])
-said = [sys.argv[1:], os.getcwd(), dict(os.environ), os.getpgrp()]
-server.sendall(json.dumps(said).encode())
-server.shutdown(socket.SHUT_WR)
+streams = array.array("i", [0, 1, 2])
+server.sendmsg([b"3"], [(_socket.SOL_SOCKET, _socket.SCM_RIGHTS, streams)])
+server.sendall(marshal.dumps([sys.argv[1:], os.getcwd(), dict(os.environ), os.getpgrp()]))
+server.shutdown(_socket.SHUT_WR)
 sys.exit(int(server.recv(4) or 1))
 """
 
@@ -70,7 +71,7 @@ def main(folder: Path) -> None:
             while os.waitpid(-1, os.WNOHANG)[0]:
                 pass
     _, streams, *_ = socket.recv_fds(asking, 1, 3)
-    arguments, where, environment, group = json.load(asking.makefile())
+    arguments, where, environment, group = marshal.load(asking.makefile("rb"))
     if child := os.fork():
         _, status = os.waitpid(child, 0)
         # Who asked may have been killed as well.

@@ -7,21 +7,25 @@ from bouncing_ball.claims import whole_motion
 from bouncing_ball.claims.claim import defined_in
 from bouncing_ball.claims.ledger import statements
 from bouncing_ball.claims.verdict import decided
-from bouncing_ball.datasets.files import rows_beside
 
-# A false value of what decides a statement that is no row of the table.
+# A false value of the variable that decides a statement; of an interval it is the bound itself.
 FALSE = {
+    "short periods agree": ("ext_locking", "agreement", 0.9),
+    "long periods differ": ("ext_locking", "agreement", 0.25),
+    "prediction ranks": ("ext_locked", "rank_correlation", 0.9),
+    "dense discontinuities": ("ext_locked", "uncertainty_exponent", 0.1),
+    "power needs more": ("ext_means", "right", 0.5),
+    "compliant contacts throw": ("ext_basins", "basin_share", 0.02),
+    "fractal boundaries": ("ext_basins", "uncertainty_exponent", 1.0),
+    "smooth when stiffer": ("ext_basins", "uncertainty_exponent", 0.8),
+    "lasting chaos": ("ext_lives", "mean_life", 1e6),
+    "chaos beside locking": ("ext_lives", "chaotic_share", 0.01),
     "cascade moves as a whole": ("ext_cascades", "cascade_coefficient", [1, 2] * 3),
     "end of the first order": ("ext_cascades", "cascade_error", 0.1),
     "corrected cascades": ("ext_cascades", "cascade_second_order", 1.0),
     "feigenbaum": ("ext_cascades", "contact_cascade_ratio", 4.5),
     "measured doublings": ("ext_cascades", "restitution_cascade", 1.5),
     "longer transients": ("ext_lives", "mean_life", 50.0),
-}
-# The bound itself is false for every statement of the table.
-FALSE |= {
-    row["id"]: (row["dataset"], row["variable"], float(row["bound"]))
-    for row in rows_beside(whole_motion.__file__)
 }
 CLAIMS = {one.id: one for one in defined_in(whole_motion)}
 

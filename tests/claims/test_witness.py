@@ -1,4 +1,4 @@
-"""The cross-check: the accepted datasets agree, and a wrong orbit is detected."""
+"""The cross-check: all routes to the accepted orbits agree, and a wrong orbit is detected."""
 
 from dataclasses import replace
 
@@ -6,20 +6,20 @@ import numpy as np
 import pytest
 
 from bouncing_ball.claims.witness import (
-    BUDGETS,
     CLOSES,
     FORMULA,
-    HOLDS,
-    LEAVES,
     SHOWN,
+    contact_orbits,
     formula_and_equations,
     located,
+    restitution_orbits,
     witness,
 )
 from bouncing_ball.continuation.corrector import newton
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import ModelError
 from bouncing_ball.figures.tables.rows import witness as rows
+from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.studies.orbit_branches import Domains, orbit_branches
@@ -27,71 +27,79 @@ from bouncing_ball.studies.orbit_branches import Domains, orbit_branches
 
 @pytest.fixture(scope="module")
 def result(recorded, described, table):
-    assert table["witness"]["reads"] == list(SHOWN)
-    return described(witness({name: recorded[name] for name in SHOWN}))
+    names = table["witness"]["reads"]
+    assert set(names) == set(" ".join(SHOWN.values()).split())
+    return described(witness({name: recorded[name] for name in names}))
+
+
+def off(name, data):
+    """The kinds of comparison in which an orbit of a dataset exceeds the budget."""
+    found = witness({name: data}).squeeze("artifact")
+    return set(found.comparison.values[found.disagreement > found.budget])
 
 
 def test_all_routes_agree_on_all_that_is_shown(result, recorded):
-    assert result.artifact.values.tolist() == list(SHOWN)
     compared = result.orbits > 0
     assert (np.isnan(result.disagreement) == ~compared).all()
     assert (result.disagreement <= result.budget).where(compared, True).all()
-    # Nothing that an earlier run compared is left out.
-    accepted = recorded["witness"].orbits
-    assert (result.orbits >= accepted.sel(artifact=result.artifact)).all()
     assert (result.orbits.sel(comparison=FORMULA) > 0).all()
+    # Nothing that an earlier run compared is left out.
+    assert (result.orbits >= recorded["witness"].orbits.sel(comparison=result.comparison)).all()
     # All points of three branches, and their bifurcations.
     assert result.orbits.sel(artifact="fig08", comparison=FORMULA).item() == 1803 + 9
 
 
 @pytest.mark.parametrize(
-    ("name", "variable"),
-    [
-        ("fig02", "phase"),
-        ("fig03", "phase"),
-        ("fig03", "saddle_node_amplitude"),
-        ("fig03", "period_doubling_phase"),
-        ("fig05", "phase"),
-        ("fig05", "contact_duration"),
-        ("fig06", "impact_velocity"),
-        ("fig08", "amplitude"),
-        ("fig09", "special_amplitude"),
-        ("fig09", "special_phase"),
-        ("fig15", "restitution_phase"),
-        ("fig15", "restitution_amplitude"),
-        ("fig15", "phase"),
-        ("table1", "computed"),
-        ("table1", "special_contact_duration"),
-    ],
+    ("find", "name"),
+    [(find, x) for find in (contact_orbits, restitution_orbits) for x in SHOWN[find].split()],
 )
-def test_a_number_that_is_off_is_seen(recorded, name, variable, refusal):
-    data = recorded[name].copy(deep=True)
-    values = data[variable].values
-    values *= 1 + 1e-9
-    with refusal(ModelError, f"{name}: ", " disagree by "):
-        witness({name: data})
+def test_the_multipliers_are_those_of_the_simulated_map(recorded, find, name):
+    shown = next(find(recorded[name]))
+    orbit = shown.orbit[shown.admissible.astype(bool)]
+    phase, speed = orbit.phase, orbit.relative_impact_velocity
+    step, matrix = 1e-6 * np.abs(speed), orbit.monodromy()
+    # Central differences: the rounding of a cycle's time over the step, which is small near
+    # permanent contact, is above the truncation, 1e-12 times a third derivative.
+    rounding = 100 * np.finfo(float).eps * 2 * np.pi * orbit.n / step
+    for k, (later, faster) in enumerate([(step, 0.0), (0.0, step)]):
+        ahead, behind = (orbit.cycle(phase + x * later, speed + x * faster) for x in (1, -1))
+        turned = reduce_angle(ahead.phase - behind.phase)
+        column = np.array([turned, ahead.relative_velocity - behind.relative_velocity])
+        off = np.abs(column / (2 * step) - matrix[..., k].T)
+        assert orbit.size and np.all(off <= rounding * np.abs(matrix).max((-2, -1)))
 
 
 @pytest.mark.parametrize(
-    ("name", "change"),
+    ("name", "variables"),
     [
-        ("fig08", {"restitution": 0.8501}),
-        ("fig08", {"release": "force"}),
-        ("fig08", {"n": 2}),
-        ("fig02", {"restitution": 0.8501}),
-        ("table1", {"restitution": 0.8501}),
+        ("fig02", "phase"),
+        ("fig03", "phase saddle_node_amplitude period_doubling_phase"),
+        ("fig05", "phase contact_duration"),
+        ("fig06", "impact_velocity"),
+        ("fig08", "amplitude"),
+        ("fig09", "special_amplitude special_phase"),
+        ("fig15", "restitution_phase restitution_amplitude phase"),
+        ("table1", "computed special_contact_duration"),
     ],
 )
-def test_other_parameters_than_those_of_the_orbits_are_seen(recorded, name, change):
-    with pytest.raises(ModelError, match=f"{name}: {FORMULA} disagree"):
-        witness({name: recorded[name].assign_attrs(change)})
+def test_a_number_that_is_off_is_seen(recorded, name, variables):
+    for variable in variables.split():
+        data = recorded[name].copy(deep=True)
+        data[variable].values[...] *= 1 + 1e-9
+        assert off(name, data), variable
+
+
+def test_other_parameters_than_those_of_the_orbits_are_seen(recorded):
+    for name in ("fig02", "fig08", "table1"):
+        assert FORMULA in off(name, recorded[name].assign_attrs(restitution=0.8501))
+    for other in ({"release": "force"}, {"n": 2}):
+        assert FORMULA in off("fig08", recorded["fig08"].assign_attrs(other))
 
 
 def test_one_orbit_that_is_not_a_number_is_seen(recorded):
     data = recorded["fig05"].copy(deep=True)
     data.phase.values[2, 7] = np.nan
-    with pytest.raises(ModelError, match="disagree by inf"):
-        witness({"fig05": data})
+    assert np.isposinf(witness({"fig05": data}).disagreement).any()
 
 
 @pytest.mark.parametrize("blind", ["nearest", "system"])
@@ -103,8 +111,7 @@ def test_formula_and_equations_each_see_what_is_off(recorded, monkeypatch, blind
             patch.setattr(SpringDamperModel, "nearest", lambda self, orbit: orbit)
         else:
             patch.setattr("bouncing_ball.claims.witness._by_equations", lambda _, near: near)
-        with pytest.raises(ModelError, match=FORMULA):
-            witness({"fig05": data})
+        assert FORMULA in off("fig05", data)
 
 
 def test_the_phase_of_a_bifurcation_is_compared_itself(recorded, monkeypatch):
@@ -112,9 +119,9 @@ def test_the_phase_of_a_bifurcation_is_compared_itself(recorded, monkeypatch):
     shown = next(located(recorded["table1"]))
     near = shown.model.nearest(shown.orbit)
     monkeypatch.setattr(SpringDamperModel, "nearest", lambda self, orbit: near)
-    off = replace(shown.orbit, phase=shown.orbit.phase + 1e-9)
-    expected = 1e-9 / np.maximum(off.n, off.amplitude)
-    assert formula_and_equations(shown._replace(orbit=off)) == pytest.approx(expected, rel=0.01)
+    moved = replace(shown.orbit, phase=shown.orbit.phase + 1e-9)
+    expected = 1e-9 / np.maximum(moved.n, moved.amplitude)
+    assert formula_and_equations(shown._replace(orbit=moved)) == pytest.approx(expected, rel=0.01)
 
 
 def test_what_newtons_method_has_not_found_is_no_orbit(recorded, monkeypatch):
@@ -123,23 +130,19 @@ def test_what_newtons_method_has_not_found_is_no_orbit(recorded, monkeypatch):
         return found._replace(converged=found.converged & False, residual=found.residual + 2e-11)
 
     monkeypatch.setattr("bouncing_ball.claims.witness.newton", stuck)
-    with pytest.raises(ModelError, match="disagree by inf"):
-        witness({"fig05": recorded["fig05"]})
+    found = witness({"fig05": recorded["fig05"]})
+    assert np.isposinf(found.disagreement.sel(comparison=FORMULA)).all()
 
 
-@pytest.mark.parametrize(
-    ("part", "change", "kind"),
-    [
-        ("monodromy", lambda m: m * (1 + 1e-3), LEAVES),
-        ("cycle", lambda c: c._replace(time=c.time + 1e-7), CLOSES),
-        ("cycle", lambda c: c._replace(relative_velocity=c.relative_velocity * (1 + 2e-11)), HOLDS),
-    ],
-)
-def test_each_comparison_with_the_simulation_can_fail(recorded, monkeypatch, part, change, kind):
-    original = getattr(SpringDamperOrbit, part)
-    monkeypatch.setattr(SpringDamperOrbit, part, lambda self, *x: change(original(self, *x)))
-    with pytest.raises(ModelError, match=kind):
-        witness({"fig08": recorded["fig08"]})
+def test_the_comparison_with_the_simulation_can_fail(recorded, monkeypatch):
+    original = SpringDamperOrbit.cycle
+
+    def late(self, *start):
+        cycle = original(self, *start)
+        return cycle._replace(time=cycle.time + 1e-7)
+
+    monkeypatch.setattr(SpringDamperOrbit, "cycle", late)
+    assert off("fig08", recorded["fig08"]) == {CLOSES}
 
 
 @pytest.mark.parametrize(
@@ -149,6 +152,7 @@ def test_each_comparison_with_the_simulation_can_fail(recorded, monkeypatch, par
         ("fig15", "contact_duration"),
         ("fig15", "restitution_phase"),
         ("fig03", "amplitude"),
+        ("fig03", "saddle_node_amplitude"),
         ("table1", "special_phase"),
     ],
 )
@@ -160,7 +164,7 @@ def test_a_renamed_variable_is_no_reason_to_compare_nothing(recorded, name, vari
 def test_an_empty_comparison_fails(recorded, refusal):
     data = recorded["fig05"]
     empty = data.assign(contact_duration=data.contact_duration * np.nan)
-    with refusal(ModelError, "fig05: contact_orbits compares nothing"):
+    with refusal(ModelError, "fig05: no orbit to compare"):
         witness({"fig05": empty})
 
 
@@ -183,9 +187,9 @@ def test_both_rules_of_release(release, continuation_settings):
 
 def test_the_table_says_the_bounds_and_the_counts(result):
     header, body = rows(result)
-    assert header == ["artifact", *BUDGETS]
-    assert body[0][1:] == ["1e-11", "1e-10", "1e-09", "1e-05"]
+    assert header == ["artifact", FORMULA, CLOSES]
+    assert body[0][1:] == ["1e-11", "1e-10"]
     (line,) = [line for line in body if line[0] == "fig08"]
-    assert line[1:] == ["≤ 1e-11 (1812)", "≤ 1e-10 (1803)", "≤ 1e-09 (764)", "≤ 1e-05 (1013)"]
+    assert line[1:] == ["≤ 1e-11 (1812)", "≤ 1e-10 (1803)"]
     (line,) = [line for line in body if line[0] == "table1"]
-    assert line[1:] == ["≤ 1e-11 (18)", "–", "–", "–"]
+    assert line[1:] == ["≤ 1e-11 (18)", "–"]

@@ -7,15 +7,18 @@ Python does, in its own folder and environment. Nothing of this package is impor
 each program has that of its own tree.
 """
 
+import atexit
 import ctypes
 import gc
 import importlib
+import io
 import json
 import os
 import runpy
 import signal
 import socket
 import sys
+import threading
 from contextlib import suppress
 from pathlib import Path
 
@@ -45,6 +48,12 @@ def main(folder: Path) -> None:
     ctypes.CDLL(None).prctl(1, signal.SIGTERM)
     for name in IMPORTED:
         importlib.import_module(name)
+    # What the first text costs, the parser of its symbols and the fonts.
+    plt = sys.modules["matplotlib.pyplot"]
+    plt.figtext(0, 0, r"a $\frac{x^2}{\Lambda}$")
+    for kind in ("png", "svg"):
+        plt.savefig(io.BytesIO(), format=kind)
+    plt.close()
     gc.freeze()
     program, address = folder / "python", str(folder / "socket")
     program.write_text(PYTHON.format(python=sys.executable, address=address))
@@ -77,16 +86,38 @@ def main(folder: Path) -> None:
     os.environ.clear()
     os.environ.update(environment)
     sys.executable = str(program)
-    become(*arguments)
+    leave(become(*arguments))
 
 
-def become(first: str, *rest: str) -> None:
-    """Run a module, after ``-m``, or a script, as Python does."""
+def become(first: str, *rest: str) -> int:
+    """Run a module, after ``-m``, or a script, as Python does; the exit status."""
     name, *arguments = rest if first == "-m" else (first, *rest)
     here = os.getcwd() if first == "-m" else str(Path(name).parent)
     sys.path[:1] = [here, *os.environ.get("PYTHONPATH", "").split(os.pathsep)]
     sys.argv = [name, *arguments]
-    (runpy.run_module if first == "-m" else runpy.run_path)(name, run_name="__main__")
+    try:
+        (runpy.run_module if first == "-m" else runpy.run_path)(name, run_name="__main__")
+    except SystemExit as end:
+        if isinstance(end.code, int | None):
+            return end.code or 0
+        print(end.code, file=sys.stderr)
+        return 1
+    except BaseException:
+        sys.excepthook(*sys.exc_info())
+        return 1
+    return 0
+
+
+def leave(status: int) -> None:
+    """End as Python does, but without taking apart what the server has imported.
+
+    That copies all of its memory, and takes longer than most jobs.
+    """
+    threading._shutdown()
+    atexit._run_exitfuncs()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(status)
 
 
 if __name__ == "__main__":

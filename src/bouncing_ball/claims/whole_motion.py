@@ -1,35 +1,123 @@
 """Our statements about the whole motion, beyond the paper: each with the interval of its number.
 
-Most are about a variable of a dataset at one place, and rows of ``whole_motion.csv``. No statement
-is about more than its sample: balls, places and contacts are those of its dataset.
+No statement is about more than its sample: balls, places and contacts are those of its dataset.
 """
-
-import json
 
 import numpy as np
 
 from bouncing_ball.attractors.period_doublings import FEIGENBAUM
-from bouncing_ball.claims.claim import Claim, claim
+from bouncing_ball.claims.claim import claim
 from bouncing_ball.claims.verdict import decided
-from bouncing_ball.datasets.files import rows_beside
 
 
-def limits(data, name, place):
+def limits(data, name, **place):
     """An estimate and its lower and upper limit at a place of a dataset, shape (3,)."""
     return np.array([data[f"{name}{end}"].sel(place).item() for end in ("", "_low", "_high")])
 
 
-def _of_table(dataset, variable, place, side, bound, **given):
-    """The statement that the interval of a variable is above, or below, a bound."""
-
-    def decide(data):
-        found = limits(data[dataset], variable, json.loads(place))
-        return decided(found, **{side: float(bound)})
-
-    return Claim(kind="statement", decide=decide, **given)
+def same_period(data, group, ratio):
+    """Share of the nodes locked in the restitution model that have this period at this ϖ, (3,)."""
+    agreement = data["ext_locking"].sel(simple="restitution", motion_group=group)
+    return limits(agreement, "agreement", frequency_ratio=ratio)
 
 
-TABLE = [_of_table(**row) for row in rows_beside(__file__)]
+@claim("locking")
+def short_periods_agree(data):
+    """where the restitution model locks with 1 to 4 T, a contact of ϖ = 100 has the same period
+
+    Condition: at more than nine of ten nodes in Λ and r
+    """
+    return decided(same_period(data, "locked, 1 to 4 T", 100), above=0.9)
+
+
+@claim("locking")
+def long_periods_differ(data):
+    """where it locks with more than 10 T, not even a contact of ϖ = 10⁴ has the same period
+
+    Condition: the period is the same at less than a quarter of the nodes
+    """
+    return decided(same_period(data, "locked, above 10 T", 1e4), below=0.25)
+
+
+@claim("locking")
+def prediction_ranks(data):
+    """S/W ranks random places by the ϖ from which on the contact has their locked orbit
+
+    Condition: the rank correlation is above 0.9
+    """
+    return decided(limits(data["ext_locked"], "rank_correlation", predictor="S/w"), above=0.9)
+
+
+@claim("locking")
+def dense_discontinuities(data):
+    """the share of places whose locked period changes with Λ hardly falls with the change
+
+    Condition: its exponent is below 0.1; next to a smooth boundary it is 1
+    """
+    return decided(limits(data["ext_locked"], "uncertainty_exponent"), below=0.1)
+
+
+@claim("means")
+def power_needs_more(data):
+    """no stiffness up to ϖ = 10⁴ is known to make the power of the restitution model right to 1 %
+    at most places
+
+    Condition: the share of the nodes in Λ and r known to be right at ϖ = 10⁴ is below a half
+    """
+    right = data["ext_means"].sel(simple="restitution", mean="power")
+    return decided(limits(right, "right", frequency_ratio=1e4), below=0.5)
+
+
+@claim("basins")
+def compliant_contacts_throw(data):
+    """at ϖ = 2, r = 0.85 and Λ = 0.9 no ball comes to rest on the contact, as many do in the
+    restitution model
+
+    Condition: the basin of permanent contact has less than a fiftieth of the starts on the contact
+    """
+    on_contact = data["ext_basins"].sel(case=0, model="spring-damper")
+    return decided(limits(on_contact, "basin_share", motion="permanent contact"), below=0.02)
+
+
+@claim("basins")
+def fractal_boundaries(data):
+    """at the same place the boundaries of the basins on the contact are fractal
+
+    Condition: their exponent of uncertainty is below 1
+    """
+    on_contact = data["ext_basins"].sel(case=0, model="spring-damper")
+    return decided(limits(on_contact, "uncertainty_exponent"), below=1)
+
+
+@claim("basins")
+def smooth_when_stiffer(data):
+    """at ϖ = 30, r = 0.5 and Λ = 1.45 the boundary of the basins is smooth on the scales of its
+    dataset
+
+    Condition: its exponent of uncertainty is above 0.8; that of a smooth curve is 1
+    """
+    on_contact = data["ext_basins"].sel(case=1, model="spring-damper")
+    return decided(limits(on_contact, "uncertainty_exponent"), above=0.8)
+
+
+@claim("transients")
+def lasting_chaos(data):
+    """at r = 0.6 and Λ = 3 chaos on a contact of ϖ = 10⁴ lasts for a million periods and more
+
+    Condition: its mean life is above a million periods; whether it lasts for ever no sample decides
+    """
+    return decided(limits(data["ext_lives"], "mean_life", case=2, life_ratio=1e4), above=1e6)
+
+
+@claim("transients")
+def chaos_beside_locking(data):
+    """at r = 0.5 and Λ = 2.5 a ball of the restitution model may stay chaotic instead of locking
+
+    Condition: more than one of a hundred random starts is chaotic to the last of the impacts of its
+    dataset
+    """
+    shares = data["ext_lives"].sel(case=1, life_ratio=np.inf)
+    return decided(limits(shares, "chaotic_share"), above=0.01)
 
 
 def _missed(data, model, order, coefficient):
@@ -95,8 +183,6 @@ def longer_transients(data):
     Condition: the mean lives at r = 0.6 and Λ = 3 differ by this factor, even between the limits of
     their intervals that are closest to each other
     """
-    lives = (
-        limits(data["ext_lives"], "mean_life", {"case": 2, "life_ratio": x}) for x in (1e4, np.inf)
-    )
-    contact, simple = lives
+    lives = data["ext_lives"].sel(case=2)
+    contact, simple = (limits(lives, "mean_life", life_ratio=x) for x in (1e4, np.inf))
     return decided(contact / simple[[0, 2, 1]], above=10)

@@ -8,8 +8,9 @@ import xarray as xr
 from bouncing_ball.configuration.study import load, typed
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
-from bouncing_ball.datasets.shards import joined, part_of, shard_names
+from bouncing_ball.datasets.shards import part_of, shard_names
 from bouncing_ball.errors import ParameterError
+from bouncing_ball.pipeline.job import joined
 
 GIVEN = read_yaml(Path(__file__).parents[2] / "config/config.yaml")["extensions"]
 LOW = {"restitution": {"min": 0.1, "max": 0.2, "samples": 2}}
@@ -27,8 +28,8 @@ PLACES = {
 
 
 @pytest.mark.parametrize("name", PLACES)
-def test_shards_give_the_dataset_of_one_job(name, table, recorded, tmp_path, refusal):
-    places, study = (typed(load(table[name][x])) for x in ("places", "study"))
+def test_shards_give_the_dataset_of_one_job(name, table, stages, recorded, tmp_path, refusal):
+    places, study = map(typed, map(load, (table[name]["places"], stages[name])))
     given, parts = {"parameters": GIVEN[name] | PLACES[name], "release": "displacement"}, []
     read = {"data": recorded} if "reads" in table[name] else {}
     for shard in shard_names(3):

@@ -212,27 +212,15 @@ def _grip(law: ContactLaw, m: int, root, rate, load):
     return grip if law.lag is None else np.where(law.lag == 0, root, grip)
 
 
-def _grip_slopes(law: ContactLaw, m: int, root, rate):
-    """The derivatives of the function of :func:`_grip` with respect to q and p′."""
-    one = np.ones_like(root)
-    if law.release is Release.DISPLACEMENT:
-        return one, 0 * one
-    by = slopes_of(law.grip, root**m, rate)
-    by_root = by.by_penetration * _lever(m, root)
-    return by_root if law.lag is None else np.where(law.lag == 0, one, by_root), by.by_rate
-
-
-def _loading(law: ContactLaw, root):
-    """The derivative of the grip with respect to the load."""
-    return law.loaded_grip(root, 0 * root, 1.0) - law.grip(root, 0 * root)
-
-
-def _left(law: ContactLaw, m: int, start: Start, now: _Motion, until, root, rate, time):
-    """Functions that are positive up to the end of a panel, one in each row.
+def _left(law: ContactLaw, m: int, start: Start, now: _Motion, until, root, rate, time, final):
+    """Functions that are positive up to the end of a panel, one in each row, and their derivatives
+    along the motion with respect to s.
 
     The rows are the grip, or the time that is left; q if the force depends on the load, because
     such a contact may also end at p = 0; and the law's kink function, with its sign at the start.
     """
+    time = time + _STEP * _lever(m, root)
+    root, rate = root + _STEP * rate, rate + _STEP * final
     if until is None:
         rows = [_grip(law, m, root, rate, _load(start, time) if law.feels_load else None)]
     else:
@@ -240,13 +228,8 @@ def _left(law: ContactLaw, m: int, start: Start, now: _Motion, until, root, rate
     rows += [root] * (law.feels_load and until is None)
     if law.has_kink:
         rows.append(now.side * law.kink(root**m, rate))
-    return np.array(rows)
-
-
-def _falls(law: ContactLaw, m: int, start: Start, now: _Motion, until, root, rate, time, final):
-    """The derivatives of the functions of :func:`_left` along the motion, with respect to s."""
-    moved = root + _STEP * rate, rate + _STEP * final, time + _STEP * _lever(m, root)
-    return np.imag(_left(law, m, start, now, until, *moved)) / _STEP.imag
+    found = np.array(rows)
+    return found.real, found.imag / _STEP.imag
 
 
 def _summed(begin, step, values, out):
@@ -266,6 +249,7 @@ def _panel(
     the independent variable is plain time; by default m is that of the law.
     """
     (node, _, tail, end), m = _rule(count), m or law.root
+    law = law.continued(now.root**m, now.side) if law.has_kink else law
     force = law.force if m == 1 else law.root_force
     # These arrays are overwritten in each sweep, because allocating them again would take as long
     # as the computation.
@@ -298,10 +282,9 @@ def _panel(
         if sweep < _LOOK:
             continue
         state = q[-1], new[-1], t[-1]
-        left = _left(law, m, start, now, until, *state)
+        left, falls = _left(law, m, start, now, until, *state, end @ push)
         last |= (left <= 0).any(axis=0)
         if last.any():
-            falls = _falls(law, m, start, now, until, *state, end @ push)
             near = np.where(falls < 0, -left / falls, np.where(left > 0, np.inf, -step))
             first = near.argmin(axis=0)
             more, falls = (x[first, np.arange(first.size)] for x in (near, falls))
@@ -318,7 +301,9 @@ def _panel(
         if np.count_nonzero(reached & (change <= _SETTLED)) >= _MOST * change.size:
             break
     rate = new[:-1]
-    # The remainder is corrected to first order.
+    # The remainder is corrected to first order. At the end of a short panel, rounding of the load
+    # may keep it above its bound.
+    reached |= np.abs(more) <= _REACHED * now.length ** (1 / m) / now.speed
     q[-1] += new[-1] * more
     t[-1] += _lever(m, q[-1]) * more
     final = end @ push
@@ -433,13 +418,17 @@ def _at_release(law: ContactLaw, start: Start, panel: _Panel, by: np.ndarray, st
     """The derivatives of (D, p_e, p′_e) and the contraction, for panels that end at the release."""
     root, rate, final = panel.root[-1], panel.rate[-1], panel.final
     lever, angle = _lever(law.root, root), start.phase + panel.time[-1]
-    by_root, by_rate = _grip_slopes(law, law.root, root, rate)
+    state = root, rate, _load(start, panel.time[-1])
+    by_root, by_rate, by_load = (
+        np.imag(_grip(law, law.root, *(x + _STEP * (x is y) for x in state))) / _STEP.imag
+        for y in state
+    )
     by_root, by_rate = np.where(panel.surfaced, 1.0, by_root), np.where(panel.surfaced, 0, by_rate)
-    by_load = np.where(panel.surfaced, 0.0, _loading(law, root))
+    by_load = np.where(panel.surfaced, 0.0, by_load)
     turning = -start.amplitude * np.cos(angle)
     falls = by_root * rate + by_rate * final + by_load * turning * lever
     # If the force has a step at the release, the rate of change of the grip has a step too.
-    force = law.loaded_force(root**law.root, rate, _load(start, panel.time[-1]))
+    force = law.loaded_force(root**law.root, *state[1:])
     step = np.where(by_rate == 0, 0.0, by_rate * lever * force)
     load = turning[:, np.newaxis] * by[:, 2]
     load += np.stack([turning, 0 * angle, -np.sin(angle), np.ones_like(angle)], axis=1)

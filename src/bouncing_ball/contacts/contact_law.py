@@ -121,6 +121,13 @@ class ContactLaw(Batch, ABC):
         """
         return np.ones_like(penetration)
 
+    def continued(self, penetration: np.ndarray, side: np.ndarray) -> Self:
+        """The law in a row of states, continued smoothly beyond the next kink where it can be.
+
+        ``side`` is the sign of :meth:`kink`, which rounding makes uncertain at a kink itself.
+        """
+        return self
+
     def grip(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """Grip function: positive in contact, zero at release; of the shape to which p and p′
         broadcast with the parameters.

@@ -33,9 +33,10 @@ where r and D have other formulas and that of σ_d holds. Physical parameters: `
 Source: MuJoCo's documentation, *Solver parameters*, read with the engine itself.
 """
 
+from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -100,11 +101,7 @@ class Impedance(OscillatorLaw):
         require((c > 0) & (c < 1), c, "midpoint", "in (0, 1)")
         require(power >= 1, power, "power", "at least 1")
 
-    # Cached, because each evaluation of the force needs them.
-    @cached_property
-    def _spring(self) -> SpringDamper:
-        return SpringDamper(self.frequency_ratio, self.damping_ratio, Release.FORCE)
-
+    # Cached, because each evaluation of the force needs it.
     @cached_property
     def _varies(self) -> np.ndarray:
         return np.not_equal(self.share, self.at_surface)
@@ -119,20 +116,35 @@ class Impedance(OscillatorLaw):
         ends = (penetration - self.midpoint * self.width) * (penetration - self.width)
         return np.where(self._varies, ends, 1.0)
 
+    # The numbers of :meth:`_side` that hold at all depths, if they do.
+    _piece: ClassVar[Any] = None
+
+    def _side(self, low: np.ndarray) -> list[np.ndarray]:
+        """A, B, C and E of ``s = A + B max(C + E p, 0)^ν`` on the two sides of the midpoint."""
+        c, upper = self.midpoint, 1 - np.asarray(self.midpoint)
+        least = np.where(self._varies, self.at_surface / np.asarray(self.share), 1.0)
+        lower = least, (1 - least) * c, 0.0, 1 / (c * self.width)
+        higher = 1.0, (least - 1) * upper, 1 / upper, -1 / (upper * self.width)
+        return [np.where(low, *pair) for pair in zip(lower, higher, strict=True)]
+
+    def continued(self, penetration: np.ndarray, side: np.ndarray) -> Self:
+        """The law whose s has the formula of one side of the midpoint at all depths of a ball."""
+        law = copy(self)
+        low = (side > 0) & (penetration < (1 + self.midpoint) / 2 * self.width)
+        vars(law).update(_piece=self._side(low))
+        return law
+
+    def _ratio(self, penetration: np.ndarray) -> Any:
+        """The ratio s = d/d_max; 1 if d is constant, even where it is 0."""
+        if not self.has_kink:
+            return 1.0
+        piece = self._piece or self._side(np.real(penetration) < self.midpoint * self.width)
+        level, growth, start, slope = piece
+        return level + growth * np.maximum(start + slope * penetration, 0.0) ** self.power
+
     def impedance(self, penetration: np.ndarray) -> np.ndarray:
         """The impedance d(p), of the shape of p."""
-        if not self.has_kink:
-            return self.share + 0 * penetration
-        x = np.minimum(np.maximum(penetration / self.width, 0.0), 1.0)
-        # One formula serves both sides of the midpoint, with x counted from the end of each side.
-        low = np.real(x) < self.midpoint
-        end, side = np.where(low, x, 1 - x), np.where(low, self.midpoint, 1 - self.midpoint)
-        y = end * (end / side) ** (self.power - 1)
-        return self.at_surface + (self.share - self.at_surface) * np.where(low, y, 1 - y)
-
-    def _part(self, impedance: np.ndarray) -> Any:
-        """The ratio s = d/d_max for impedances d; 1 if d is constant, even where it is 0."""
-        return np.where(self._varies, impedance / self.share, 1.0) if self.has_kink else 1.0
+        return self.share * self._ratio(penetration) + 0 * penetration
 
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """s (ϖ² s p + 2ζϖ p′), the force over the weight without the part d a due to the load."""
@@ -140,17 +152,18 @@ class Impedance(OscillatorLaw):
 
     def loaded_force(self, penetration: np.ndarray, rate: np.ndarray, load: Any) -> np.ndarray:
         """f + d a, the whole force on the ball with a load a."""
-        d = self.impedance(penetration)
-        s = self._part(d)
-        return s * self._spring.force(s * penetration, rate) + d * load
+        s, omega = self._ratio(penetration), self.frequency_ratio
+        spring = omega * (omega * (s * penetration) + 2 * self.damping_ratio * rate)
+        return s * (spring + self.share * load)
 
     def grip(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """s p + κ p′, the grip without load."""
-        return self._part(self.impedance(penetration)) * penetration + self._spring.lag * rate
+        lag = 2 * np.asarray(self.damping_ratio) / self.frequency_ratio
+        return self._ratio(penetration) * penetration + lag * rate
 
     def loaded_grip(self, penetration: np.ndarray, rate: np.ndarray, load: Any) -> np.ndarray:
         """s p + κ p′ + d_max a/ϖ², the grip with a load a."""
-        held = self.share * load / np.asarray(self.frequency_ratio) ** 2
+        held = self.share / np.asarray(self.frequency_ratio) ** 2 * load
         return self.grip(penetration, rate) + held
 
     @property
@@ -158,7 +171,8 @@ class Impedance(OscillatorLaw):
         """The signature of the spring-damper with σ_d in place of σ; None if d varies or ζ ≥ 1."""
         if self.has_kink or np.any(np.asarray(self.damping_ratio) >= 1):
             return None
-        free, spring = self._spring.signature, self._spring
+        spring = SpringDamper(self.frequency_ratio, self.damping_ratio, Release.FORCE)
+        free = spring.signature
         return free._replace(load=free.load + self.share * spring.lag * free.restitution)
 
     @property

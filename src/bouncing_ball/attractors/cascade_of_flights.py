@@ -28,8 +28,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
-from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
-from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.contacts.spring_damper import SpringDamper, permanent_contact_threshold
 from bouncing_ball.continuation.corrector import NewtonSettings, solve
 from bouncing_ball.errors import require
 from bouncing_ball.motion.angles import table

@@ -18,7 +18,6 @@ import numpy as np
 from bouncing_ball.continuation.corrector import NewtonSettings, solve
 from bouncing_ball.errors import require
 from bouncing_ball.motion.angles import reduce_angle
-from bouncing_ball.motion.dynamics import Dynamics, Impact
 from bouncing_ball.motion.simulation import Law, in_a_row
 from bouncing_ball.motion.tangent import Jacobian
 from bouncing_ball.orbits.orbit import Orbit
@@ -75,28 +74,21 @@ class Turns:
     n: Any
     impacts: int
 
-    def _first(self, y: np.ndarray) -> tuple[Dynamics, Impact, tuple[int, ...]]:
-        """The dynamics and the impacts of the states y, flattened, and their shape."""
+    def after(
+        self, y: np.ndarray, differentiate: bool = True
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, Jacobian]:
+        """φ, δ′ and the time after m impacts, and M, which is only computed with ``differentiate``;
+        each has the leading shape of y.
+        """
         phase, velocity, amplitude = np.moveaxis(y, -1, 0)
-        dynamics, state, shape = in_a_row(self.law, amplitude, phase, velocity)
-        return dynamics, dynamics.at_section(*state), shape
-
-    def settled(self, y: np.ndarray) -> np.ndarray:
-        """The points y after many turns, near an orbit that attracts them."""
-        dynamics, impact, shape = self._first(y)
-        for _ in range(max(_TURNS * self.impacts, _IMPACTS)):
-            impact, _ = dynamics.fly(dynamics.depart(impact))
-        state = (x.reshape(shape) for x in dynamics.section(impact))
-        return np.stack([*state, y[..., 2]], axis=-1)
-
-    def after(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, Jacobian]:
-        """φ, δ′ and the time after m impacts, and M; each has the leading shape of y."""
-        dynamics, impact, shape = self._first(y)
-        change, time = Jacobian.identity(impact.phase.size), np.zeros(impact.phase.size)
+        dynamics, (phase, velocity), shape = in_a_row(self.law, amplitude, phase, velocity)
+        impact = dynamics.at_section(phase, velocity)
+        change, time = Jacobian.identity(phase.size), np.zeros(phase.size)
         for _ in range(self.impacts):
-            departure = dynamics.depart(impact, differentiate=True)
+            departure = dynamics.depart(impact, differentiate=differentiate)
             after, passed = dynamics.fly(departure)
-            change = dynamics.jacobian(impact, departure, after, passed).after(change)
+            if differentiate:
+                change = dynamics.jacobian(impact, departure, after, passed).after(change)
             # The time between two instants differs from the time between two contacts.
             (start, _), (end, velocity) = dynamics.section(impact), dynamics.section(after)
             time += passed + reduce_angle(end - start - passed)
@@ -177,6 +169,8 @@ def _doubled(old: Turns, turns: Turns, y: np.ndarray, above: np.ndarray) -> np.n
     # The eigenvector of an eigenvalue μ is (μ - d, c), here with μ = -1.
     along = np.stack([-1 - change.d, change.c], axis=-1)
     aside = _ASIDE * np.sqrt(above) / np.hypot(*np.moveaxis(along, -1, 0))
-    return turns.settled(
-        y + np.concatenate([along * aside[:, np.newaxis], above[:, np.newaxis]], axis=-1)
-    )
+    y = y + np.concatenate([along * aside[:, np.newaxis], above[:, np.newaxis]], axis=-1)
+    for _ in range(max(_TURNS, _IMPACTS // turns.impacts)):
+        phase, velocity, _, _ = turns.after(y, differentiate=False)
+        y[:, 0], y[:, 1] = reduce_angle(phase), velocity
+    return y

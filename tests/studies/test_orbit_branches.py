@@ -5,22 +5,19 @@ import pytest
 
 from bouncing_ball.configuration.study import typed
 from bouncing_ball.contacts.damping import damping_ratio
-from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
-from bouncing_ball.contacts.spring_damper import Release, SpringDamper
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper, permanent_contact_threshold
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_limits import period_doubling, saddle_node
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
-from bouncing_ball.studies.orbit_branches import (
+from bouncing_ball.studies.both_models import (
     PERIOD_DOUBLING,
     SADDLE_NODE,
-    Branches,
     both_domains,
     first_limits,
-    followed,
-    orbit_branches,
     stability_ranges,
 )
+from bouncing_ball.studies.orbit_branches import Branches, followed, orbit_branches
 
 # As the configuration gives them.
 both_domains, orbit_branches, stability_ranges = map(

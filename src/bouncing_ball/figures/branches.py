@@ -12,8 +12,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bouncing_ball.datasets.bifurcations import SADDLE_NODE
-from bouncing_ball.datasets.labelled import CASE
+from bouncing_ball.datasets import CASE, SADDLE_NODE
 from bouncing_ball.figures.canvas import WIDE, canvas, coloured, legend_below
 from bouncing_ball.figures.labels import in_a_row, number, parameters, title
 from bouncing_ball.figures.style import COLOURS, LINES, MARKS

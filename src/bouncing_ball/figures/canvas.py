@@ -8,7 +8,6 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bouncing_ball.datasets.selection import each
 from bouncing_ball.figures.style import COLOURS
 
 WIDTH = 3.4
@@ -54,4 +53,5 @@ def logarithmic(axes: Axes, ratio: xr.DataArray | None = None, **settings: Any) 
 
 def coloured(data: xr.Dataset, dim: str) -> Iterator[tuple[xr.Dataset, str]]:
     """The dataset at each place along a dimension, with the next colour for each place."""
-    return zip(each(data, dim), cycle(COLOURS))
+    places = (data.isel({dim: k}) for k in range(data.sizes[dim]))
+    return zip(places, cycle(COLOURS))

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from bouncing_ball.datasets.labelled import CASE
+from bouncing_ball.datasets import CASE
 from bouncing_ball.figures.canvas import WIDE, WIDTH, canvas, legend_below
 from bouncing_ball.figures.labels import in_a_row, symbol, title
 from bouncing_ball.figures.style import COLOURS, Look

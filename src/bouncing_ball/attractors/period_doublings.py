@@ -74,9 +74,7 @@ class Turns:
     n: Any
     impacts: int
 
-    def after(
-        self, y: np.ndarray, differentiate: bool = True
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, Jacobian]:
+    def after(self, y: np.ndarray, differentiate: bool = True) -> tuple[Any, Any, Any, Jacobian]:
         """φ, δ′ and the time after m impacts, and M, which is only computed with ``differentiate``;
         each has the leading shape of y.
         """

@@ -37,8 +37,7 @@ _REACH = np.array(4.0)
 # the shortest time scale of the function, so that these are hundreds of oscillations.
 _MAX_STEPS = 3000
 # Constants as arrays without an axis, as in :mod:`bouncing_ball.contacts.elementary`.
-_ZERO, _QUARTER, _THIRD, _HALF, _TINY = map(np.array, (0.0, 0.25, 1 / 3, 0.5, 1e-300))
-_MINUS_TWO, _MINUS_THREE = map(np.array, (-2.0, -3.0))
+_ZERO, _QUARTER, _THIRD, _TINY, _MINUS_TWO = map(np.array, (0.0, 0.25, 1 / 3, 1e-300, -2.0))
 
 
 class State(NamedTuple):
@@ -116,7 +115,7 @@ def safe_step(state: State) -> tuple[np.ndarray, np.ndarray]:
     first = _root(state.second_bound, *start)
     step = _prolonged(first, start, state)
     # From y = y′ = 0 with y″ < 0 on, y ≤ y″ h²/2 + J h³/6.
-    sinking = _MINUS_THREE * state.second / (state.third_bound + _TINY)
+    sinking = -3 * state.second / (state.third_bound + _TINY)
     step = np.maximum(step, np.where(rising, _ZERO, sinking))
     bend = (np.abs(state.third) + state.fourth_bound * first) * (first * first)
     simple = state.second_bound * twice <= _SIMPLE * square
@@ -152,7 +151,7 @@ def first_zero(motion: Motion, start: np.ndarray) -> Zero:
     ``start`` and rises, ``start`` is the result. The arrays are one-dimensional.
     """
     time = np.array(start, dtype=float)
-    ended = np.zeros(time.shape, dtype=bool)
+    ended, undecided = np.zeros((2, *time.shape), dtype=bool)
     active, part, now = slice(None), motion, time
     for steps in range(_MAX_STEPS):
         state = part(now)
@@ -177,7 +176,6 @@ def first_zero(motion: Motion, start: np.ndarray) -> Zero:
             active = left if isinstance(active, slice) else active[left]
             part, later = part.take(left), later[left]
         now = later
-    undecided = np.zeros(time.shape, dtype=bool)
     undecided[active] = left.size > 0
     time, rate = _to_the_last_digit(motion, time)
     return Zero(np.maximum(time, start), rate, ended, undecided)
@@ -187,11 +185,10 @@ def _to_the_last_digit(motion, time):
     """The times, improved by one step to the zero of the function's parabola, and y′ there."""
     state = motion(time)
     v, acceleration = state.rate, state.second
-    twice = _MINUS_TWO * state.value
-    square = v * v
+    twice, square = _MINUS_TWO * state.value, v * v
     root = np.sqrt(np.maximum(square + acceleration * twice, _ZERO))
     # If the zero may be multiple, because y touches zero, the time is not changed.
     simple = (v > _ZERO) & (state.second_bound * np.abs(twice) <= square)
     step = np.where(simple, twice / (v + root + _TINY), _ZERO)
-    rate = v + step * (acceleration + _HALF * step * state.third)
+    rate = v + step * (acceleration + 0.5 * step * state.third)
     return time + step, rate

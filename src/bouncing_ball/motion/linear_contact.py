@@ -15,8 +15,8 @@ the table over the weight. In both cases ::
 
 Next to the undamped resonance the steady part is lost in rounding, and the contact's flow gives the
 motion instead. Let e² = y′² + ϖ² (y + 1/ϖ²)². Damping only decreases it, and the forcing, at most
-``F = Λ √(1 + κ²)``, increases e by at most F in a time 1. Within this time |y′| ≤ e + F, and bounds
-of the higher derivatives follow from the equation of motion.
+``F = Λ √(1 + κ²)``, increases e by at most F in a time 1. Within this time \|y′\| ≤ e + F, and
+bounds of the higher derivatives follow from the equation of motion.
 """
 
 from dataclasses import dataclass
@@ -197,19 +197,24 @@ class ResonantMotion(ContactMotion):
     def __call__(self, time: np.ndarray) -> State:
         start = self.start, self.start_rate, self.phase, self.forcing
         value, rate, second, _ = SpringDamper(self.omega, self.zeta).flow(time, *start)
-        loss, stiffness, forcing, bend = 2 * self.decay, self.stiffness, self.forcing, abs(second)
+        loss, stiffness, forcing, bend = (
+            2 * self.decay,
+            self.stiffness,
+            self.forcing,
+            np.abs(second),
+        )
         third = table(self.phase + time, forcing)[0] - loss * second - stiffness * rate
         moved = np.sqrt(rate * rate + (self.omega * value + 1 / self.omega) ** 2)
         fast = moved + forcing
         by_second = forcing + (loss + self.omega) * fast
         by_third = forcing + loss * by_second + stiffness * fast
         by_fourth = forcing + loss * by_third + stiffness * by_second
-        by_second = np.maximum(by_second, -2 * (value + rate))
-        by_fourth = np.maximum(by_fourth, 12 * (by_second + bend))
+        steep = np.maximum(by_second, -2 * (value + rate))
+        bounds = steep, np.maximum(by_third, 3 * bend), np.maximum(by_fourth, 12 * (steep + bend))
         # Without forcing, a free oscillation of at most this size never ends the contact.
-        ended = (forcing == 0) & (moved * self.omega <= 1)
-        bounds = by_second, np.maximum(by_third, 3 * bend), by_fourth
-        return State(value, rate, second, third, *bounds, ended)
+        return State(
+            value, rate, second, third, *bounds, (forcing == 0) & (moved * self.omega <= 1)
+        )
 
     def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
         return time

@@ -11,7 +11,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,7 +19,6 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.batch import Batch, blocks, in_words
 from bouncing_ball.contacts.elementary import reduce_angle
 from bouncing_ball.errors import require
-from bouncing_ball.motion.dynamics import Dynamics
 from bouncing_ball.motion.sequence import Cycle
 from bouncing_ball.orbits import stability
 
@@ -112,10 +111,8 @@ class Orbit(Batch, ABC):
 
     # A model's orbits define the following.
 
-    @staticmethod
-    @abstractmethod
-    def dynamics(law: Any, amplitude: ArrayLike) -> Dynamics:
-        """The contacts and flights of balls with a law of the impact at Λ."""
+    dynamics: ClassVar[Any]
+    """The :class:`~bouncing_ball.motion.dynamics.Dynamics` of a law of the impact at Λ."""
 
     @property
     def unknowns(self) -> tuple[np.ndarray, ...]:

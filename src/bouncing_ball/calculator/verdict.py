@@ -8,8 +8,10 @@ import numpy as np
 
 from bouncing_ball.accuracy.errors import modulus, relative
 from bouncing_ball.accuracy.quantities import Quantity
+from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.attractors.motions import Kind
 from bouncing_ball.calculator.case import Case
+from bouncing_ball.calculator.needed import NO_ORBIT
 from bouncing_ball.calculator.results import QUANTITIES, Family, Motion, Needed
 from bouncing_ball.calculator.units import percent, shown
 from bouncing_ball.contacts.laws.impedance import Impedance
@@ -24,6 +26,13 @@ class Verdict(NamedTuple):
     is_good_enough: bool
     verdict: str
     reason: str
+
+
+_NO_CROSSING = {
+    ThresholdStatus.ALWAYS_WITHIN: "the error is within the tolerance at every ϖ scanned",
+    ThresholdStatus.NEVER_WITHIN: "the error is outside the tolerance at the largest ϖ scanned",
+    NO_ORBIT: "the restitution model has no such orbit",
+}
 
 
 def _subject(quantity: str, n: int) -> str:
@@ -127,7 +136,7 @@ def _instead(family: Family, needed: Needed) -> str:
 def _reason(needed: Needed, frequency_ratio: float, good: bool, tolerance: str) -> str:
     """A clause that compares the ϖ of the contact with the ϖ that the tolerance needs."""
     if needed.frequency_ratio is None:
-        return f"the error is {needed.status}"
+        return _NO_CROSSING[needed.status]
     place = "above" if frequency_ratio >= needed.frequency_ratio else "below"
     text = (
         f"the contact's frequency ratio ϖ = {frequency_ratio:.4g} is {place} the "
@@ -148,7 +157,7 @@ def chosen(si: Mapping[str, float], needed: Needed, n: int) -> Verdict:
         f"then within {tolerance} of the restitution model's."
     )
     if needed.frequency_ratio is None:
-        return Verdict(True, sentence, f"the error is {needed.status}")
+        return Verdict(True, sentence, _NO_CROSSING[needed.status])
     where = f"at the frequency ratio ϖ = {needed.frequency_ratio:.4g}"
     return Verdict(True, sentence, f"the error crosses {tolerance} for the last time {where}")
 

@@ -129,7 +129,8 @@ def _instead(family: Family, needed: Needed) -> str:
     error, corrected = family.corrected_errors[needed.quantity], family.standing["corrected"]
     same = (family.exists, family.is_stable) == (corrected.exists, corrected.is_stable)
     if same and error is not None and error <= needed.tolerance:
-        return f"; the corrected restitution model is, with {shown(error, '%', needed.tolerance)}"
+        size = shown(error, "%", needed.tolerance)
+        return f"; the corrected restitution model is good enough: its error is {size}"
     return "; nor is the corrected one: simulate the contact"
 
 
@@ -192,7 +193,7 @@ def notes(case: Case, family: Family, motion: Motion) -> tuple[str, ...]:
             "stiffness, damping, ϖ and ζ, and the ϖ that is needed, are those of a linear contact: "
             f"it has the r of the {name}, and its duration at the impact"
         )
-        if not all(case.has_its_restitution(n) for n in (family.n, family.n + 1)):
+        if not np.all(case.has_its_restitution([family.n, family.n + 1])):
             found.append(
                 "the restitution of this law depends on the speed: it is r at the speed of the "
                 "restitution model's lowest stable orbit"

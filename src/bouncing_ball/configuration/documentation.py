@@ -34,13 +34,16 @@ def _allowed(schema: Mapping[str, Any], root: Mapping[str, Any]) -> str:
 def _rows(schema, root, default, path) -> Iterator[str]:
     schema = resolved(schema, root)
     if schema.get("type") == "object":
-        for key, part in default.items():
-            yield from _rows(schema["properties"][key], root, part, [*path, key])
+        known = schema["properties"]
+        for key in dict.fromkeys([*default, *known]):
+            given = default.get(key, known[key].get("default"))
+            yield from _rows(known[key], root, given, [*path, key])
         return
     items = resolved(schema.get("items", {}), root)
     meaning = schema.get("description", items.get("description", ""))
     shown = json.dumps(default, ensure_ascii=False)
-    shown = f"`{shown}`" if len(shown) <= 48 else "see `config.yaml`"
+    elsewhere = "all" if default == items.get("enum") else "see `config.yaml`"
+    shown = f"`{shown}`" if len(shown) <= 48 else elsewhere
     yield f"| `{'.'.join(path)}` | {_allowed(schema, root)} | {meaning} | {shown} |\n"
 
 

@@ -28,7 +28,7 @@ rule all:
     message:
         "All figures, tables and the paper are up to date"
     input:
-        artifacts=map(files, sorted(TABLE)),
+        artifacts=[files(name) for name in sorted({*STUDIES, *DRAWINGS})],
         paper=rules.paper.output,
     log:
         "results/logs/all.log",

@@ -1,13 +1,13 @@
 """The figures are drawn from their datasets, and from all that they should show."""
 
 import operator
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from bouncing_ball.configuration.study import load
-from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.figures.branches import up_to_second_saddle_node
 from bouncing_ball.figures.files import save
 from bouncing_ball.figures.style import COLOURS, LINES, style
@@ -15,10 +15,11 @@ from bouncing_ball.provenance.origin import read_attributes
 
 pytestmark = pytest.mark.slow
 
-SCHEMATICS = ("fig01", "fig04")
+SCHEMATICS = {"fig01": "restitution_model", "fig04": "spring_damper_model"}
 ROOT = Path(__file__).resolve().parents[2]
-TABLE = read_yaml(ROOT / "workflow" / "artifacts.yaml")
-DRAWINGS = {name: entry["drawing"] for name, entry in TABLE.items() if "drawing" in entry}
+RULES = (ROOT / "workflow" / "rules" / "study.smk").read_text(encoding="utf-8")
+DRAWINGS = dict(re.findall(r'(\w+)="[.\w]+ -> ([.\w]+)"', RULES))
+DRAWINGS |= {name: f"schematics.{drawing}" for name, drawing in SCHEMATICS.items()}
 # A new one is drawn here as soon as its dataset is accepted.
 WITH_DATA = [name for name in DRAWINGS if (ROOT / "figures" / f"{name}.nc").exists()]
 

@@ -27,8 +27,8 @@ PLACES = {
 
 
 @pytest.mark.parametrize("name", PLACES)
-def test_shards_give_the_dataset_of_one_job(name, table, recorded, tmp_path, refusal):
-    places, study = (typed(load(table[name][x])) for x in ("places", "study"))
+def test_shards_give_the_dataset_of_one_job(name, table, stages, recorded, tmp_path, refusal):
+    places, study = map(typed, map(load, (table[name]["places"], stages[name])))
     given, parts = {"parameters": GIVEN[name] | PLACES[name], "release": "displacement"}, []
     read = {"data": recorded} if "reads" in table[name] else {}
     for shard in shard_names(3):

@@ -2,7 +2,8 @@
 
 from bouncing_ball.provenance.origin import read_provenance
 
-ARTIFACTS = "workflow/artifacts.yaml"
+STAGES = "workflow/rules/study.smk"
+READS = "workflow/artifacts.yaml"
 CONFIG = "config/config.yaml"
 FIGURE = "src/bouncing_ball/figures/heights.py"
 STAGE = "src/bouncing_ball/studies/lowest.py"
@@ -13,11 +14,8 @@ def changed(tree):
     return {line.split()[-1] for line in tree.git("status", "--porcelain").splitlines()}
 
 
-ENTRY = """ext_heights:
-  study: studies.frequency_sweeps.frequency_sweep
-  drawing: heights.heights
-ext_release:
-"""
+FIRST = '            ext_release="'
+ENTRY = '            ext_heights="studies.frequency_sweeps.frequency_sweep -> heights.heights",\n'
 PARAMETERS = """  ext_heights:
     n: 1
     restitution: 0.85
@@ -66,19 +64,19 @@ def lowest(data: Mapping[str, xr.Dataset], parameters: Lowest) -> xr.Dataset:
 
 
 def test_a_figure_with_its_own_parameters_and_a_stage_on_the_dataset_of_another(fresh):
-    fresh.rewrite(ARTIFACTS, "ext_release:\n", ENTRY)
+    fresh.rewrite(STAGES, FIRST, ENTRY + FIRST)
     assert fresh.refusal().startswith(
         "configuration: ext_heights has no parameters: add a key ext_heights"
     )
     fresh.rewrite(CONFIG, "studies:\n  formulas:", PARAMETERS)
     (fresh.path / FIGURE).write_text(DRAWING, encoding="utf-8")
-    assert changed(fresh) == {ARTIFACTS, CONFIG, FIGURE}
+    assert changed(fresh) == {STAGES, CONFIG, FIGURE}
     (fresh.path / STAGE).write_text(STUDY, encoding="utf-8")
-    entry = "ext_lowest: { study: studies.lowest.lowest, reads: [fig11] }\next_release:\n"
-    fresh.rewrite(ARTIFACTS, "ext_release:\n", entry)
+    fresh.rewrite(STAGES, FIRST, '            ext_lowest="studies.lowest.lowest",\n' + FIRST)
+    fresh.rewrite(READS, "ext_release:\n", "ext_lowest: { reads: [fig11] }\next_release:\n")
     lowest = "studies:\n  ext_lowest: { n: 110 }\n  formulas:"
     fresh.rewrite(CONFIG, "studies:\n  formulas:", lowest)
-    assert changed(fresh) == {ARTIFACTS, CONFIG, FIGURE, STAGE}
+    assert changed(fresh) == {STAGES, READS, CONFIG, FIGURE, STAGE}
     assert fresh.refusal().startswith(
         "configuration: studies.ext_lowest.n = 110 must be at most 20"
     )

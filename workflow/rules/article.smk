@@ -25,8 +25,6 @@ rule paper:
         tally="results/tally.txt",
     log:
         "results/logs/paper.log",
-    benchmark:
-        "results/benchmarks/paper.tsv"
     script:
         "../scripts/paper.py"
 

@@ -3,14 +3,13 @@
 
 
 def files(name):
-    kinds = ["nc"] * (name in STUDIES and name not in ACCEPTED) + ["png", "svg"] * (
-        name in DRAWINGS
-    )
-    kinds += ["csv", "md"] * (name in TABLES) + ["html"] * (name == "explorer")
+    kinds = ["nc"] * (name in STUDIES and name not in ACCEPTED)
+    kinds += ["png", "svg"] * (name in DRAWINGS) + ["csv", "md"] * (name in TABLES)
+    kinds += ["html"] * (name == "explorer")
     return [f"results/figures/{name}.{kind}" for kind in kinds]
 
 
-for name in TABLE:
+for name in {**STUDIES, **DRAWINGS}:
 
     rule:
         name:

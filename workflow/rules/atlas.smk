@@ -25,8 +25,6 @@ rule atlas_shard:
         mem_mb=1000,
     log:
         "results/logs/atlas/shards/{shard}.log",
-    benchmark:
-        "results/benchmarks/atlas/shards/{shard}.tsv"
     script:
         "../scripts/atlas_shard.py"
 
@@ -46,8 +44,6 @@ rule atlas_merge:
         parameters=ATLAS,
     log:
         "results/logs/atlas/atlas.log",
-    benchmark:
-        "results/benchmarks/atlas/atlas.tsv"
     script:
         "../scripts/atlas_merge.py"
 
@@ -66,7 +62,5 @@ rule atlas:
         parameters=ATLAS,
     log:
         "results/logs/atlas/charts.log",
-    benchmark:
-        "results/benchmarks/atlas/charts.tsv"
     script:
         "../scripts/atlas.py"

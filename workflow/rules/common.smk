@@ -34,15 +34,22 @@ from bouncing_ball.pipeline.sources import sources
 # Snakemake writes these two lines before every job, and they do not name it.
 logger.addFilter(lambda record: not str(record.msg).startswith(("Select jobs", "Execute ")))
 
-# Every artifact with its study, drawing and table.
+# What the rules of the stages do not say about an artifact.
 TABLE = read_yaml(Path(ROOT, "workflow/artifacts.yaml"))
-STUDIES, DRAWINGS, TABLES = (
-    {name: entry[key] for name, entry in TABLE.items() if key in entry}
-    for key in ("study", "drawing", "table")
-)
 # Datasets that are accepted by hand; a run reads them and does not make them.
-ACCEPTED = {"engines": "config/engines.nc", "ext_atlas": "config/atlas.nc"}
-ACCEPTED |= {name: f"config/{name}.nc" for name, entry in TABLE.items() if "accepted" in entry}
+ACCEPTED = {name: entry["accepted"] for name, entry in TABLE.items() if "accepted" in entry}
+
+
+# The functions of the artifacts, as the rules of the stages list them.
+STUDIES, DRAWINGS = {}, {}
+
+
+# The artifacts of a stage, each with "study -> drawing", or its study alone if it has no figure.
+def stage(**artifacts):
+    for name, functions in artifacts.items():
+        STUDIES[name], *drawing = functions.split(" -> ")
+        DRAWINGS.update((name, draw) for draw in drawing)
+    return "|".join(artifacts)
 
 
 # The dataset from which figures, claims and the article are made.

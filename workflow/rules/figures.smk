@@ -1,5 +1,8 @@
-# From datasets to figures: each figure is made from the dataset with its name. The schematics,
-# Figures 1 and 4, have no dataset.
+# From datasets to figures: each figure is made from the dataset with its name. The schematics have
+# no dataset, and that of the atlas is accepted by hand.
+
+DRAWINGS |= {"fig01": "schematics.restitution_model", "fig04": "schematics.spring_damper_model"}
+DRAWINGS["ext_atlas"] = "atlas.charts.over_range"
 
 CAPTIONS = [path.stem for path in Path(ROOT, "workflow/report").glob("*.rst")]
 
@@ -26,8 +29,6 @@ for name, drawing in DRAWINGS.items():
             svg=f"results/figures/{name}.svg",
         log:
             f"results/logs/figures/{name}.log",
-        benchmark:
-            f"results/benchmarks/figures/{name}.tsv"
         script:
             "../scripts/figure.py"
 
@@ -47,7 +48,5 @@ rule draw_explorer:
         html="results/figures/explorer.html",
     log:
         "results/logs/explorer.log",
-    benchmark:
-        "results/benchmarks/explorer.tsv"
     script:
         "../scripts/explorer.py"

@@ -1,6 +1,6 @@
-# The stages of the paper, each with the figures and tables whose datasets it makes: parameters in, a
-# dataset out. workflow/artifacts.yaml says by which study. All values are dimensionless: times Ωt,
-# lengths Ω²y/g, velocities Ωẏ/g, with phases in radians. Figures 1 and 4 are drawn without data.
+# The stages of the paper. Each lists the figures and tables whose datasets it makes, with the study
+# that computes the dataset and the function that draws the figure. All values are dimensionless:
+# times Ωt, lengths Ω²y/g, velocities Ωẏ/g, with phases in radians.
 
 
 rule shard:
@@ -17,8 +17,6 @@ rule shard:
         arguments=lambda w: arguments(STUDIES[w.artifact], w.artifact, config),
     log:
         "results/logs/shards/{artifact}/{shard}.log",
-    benchmark:
-        "results/benchmarks/shards/{artifact}/{shard}.tsv"
     script:
         "../scripts/shard.py"
 
@@ -28,7 +26,7 @@ rule study:
     message:
         "{wildcards.artifact}: {params.title}"
     input:
-        data=lambda w: map(dataset, TABLE[w.artifact].get("reads", [])),
+        data=lambda w: map(dataset, TABLE.get(w.artifact, {}).get("reads", [])),
         shards=shards_of,
         source=lambda w: modules(STUDIES[w.artifact].rpartition(".")[0]),
     output:
@@ -38,12 +36,10 @@ rule study:
         artifact="(?!)",
     params:
         study=lambda w: STUDIES[w.artifact],
-        title=lambda w: TABLE[w.artifact].get("title", w.artifact),
+        title=lambda w: TABLE.get(w.artifact, {}).get("title", w.artifact),
         arguments=lambda w: arguments(STUDIES[w.artifact], w.artifact, config),
     log:
         "results/logs/stages/{artifact}.log",
-    benchmark:
-        "results/benchmarks/stages/{artifact}.tsv"
     script:
         "../scripts/study.py"
 
@@ -51,19 +47,30 @@ rule study:
 use rule study as restitution_model with:
     """The restitution model: one orbit over time, and all orbits in closed form."""
     wildcard_constraints:
-        artifact="fig02|fig03",
+        artifact=stage(
+            fig02="studies.restitution_families.restitution_history -> histories.restitution_history",
+            fig03="studies.restitution_families.restitution_orbits -> branches.restitution_families",
+        ),
 
 
 use rule study as apparent_restitution with:
     """Apparent restitution, velocity and Poincaré map of orbits along the frequency ratio."""
     wildcard_constraints:
-        artifact="fig05|fig06|fig10|fig13",
+        artifact=stage(
+            fig05="studies.frequency_sweeps.apparent_restitution -> sweeps.apparent_restitution",
+            fig06="studies.frequency_sweeps.apparent_restitution -> sweeps.apparent_restitution",
+            fig10="studies.frequency_sweeps.frequency_sweep -> sweeps.bounce_velocity",
+            fig13="studies.frequency_sweeps.poincare_map -> sweeps.poincare_map",
+        ),
 
 
 use rule study as time_histories with:
     """Time histories of orbits of the spring-damper model."""
     wildcard_constraints:
-        artifact="fig07|fig12",
+        artifact=stage(
+            fig07="studies.time_histories.contact_history -> histories.contact_history",
+            fig12="studies.time_histories.both_histories -> histories.both_histories",
+        ),
 
 
 # From the restitution orbit along the frequency ratio to the contact in question, then along the
@@ -71,19 +78,30 @@ use rule study as time_histories with:
 use rule study as continuation_of_orbits with:
     """Existence and stability of n-T orbits by continuation, and their ranges in Table 1."""
     wildcard_constraints:
-        artifact="fig08|fig09|fig15|table1",
+        artifact=stage(
+            fig08="studies.orbit_branches.orbit_branches -> branches.domains",
+            fig09="studies.orbit_branches.orbit_branches -> branches.domains",
+            fig15="studies.orbit_branches.both_domains -> branches.both_domains",
+            table1="studies.orbit_branches.stability_ranges",
+        ),
 
 
 use rule study as permanent_contact with:
     """Permanent contact: the amplitude from which on the table throws the ball off."""
     wildcard_constraints:
-        artifact="fig11|fig16",
+        artifact=stage(
+            fig11="studies.permanent_contact_curve.permanent_contact -> thresholds.permanent_contact",
+            fig16="studies.error_thresholds.permanent_contact_error -> thresholds.permanent_contact_error",
+        ),
 
 
 use rule study as error_thresholds with:
     """Error thresholds: the frequency ratio from which on the restitution model is accurate."""
     wildcard_constraints:
-        artifact="fig14|thresholds",
+        artifact=stage(
+            fig14="studies.error_thresholds.height_error -> thresholds.height_error",
+            thresholds="studies.error_thresholds.error_thresholds",
+        ),
 
 
 # The release rule, the orbits of permanent contact, the corrected restitution model with its error
@@ -91,10 +109,32 @@ use rule study as error_thresholds with:
 use rule study as beyond_the_paper with:
     """Beyond the paper: what the release, the law and the steps of a contact change, and chaos."""
     wildcard_constraints:
-        artifact="ext_[a-z]+|explorer",
+        artifact=stage(
+            ext_release="studies.release_rules.release_rules",
+            ext_flights="studies.cascade_of_flights.cascade_of_flights -> cascade_of_flights.cascade_of_flights",
+            ext_basins="studies.basins.basins -> basins.basins",
+            ext_impact="studies.free_impacts.free_impacts -> free_impacts.free_impacts",
+            ext_instant="studies.time_histories.meeting_flights -> histories.meeting_flights",
+            ext_orders="studies.model_errors.orders -> model_errors.orders",
+            ext_laws="studies.contact_laws.law_errors -> model_errors.contact_laws",
+            ext_cascades="studies.cascades.cascades -> cascades.cascades",
+            ext_diagram="studies.attractors.orbit_diagrams -> attractors.orbit_diagrams",
+            ext_locking="studies.attractors.locking -> attractors.locking",
+            ext_means="studies.mean_motion.mean_motions -> attractors.mean_motions",
+            ext_lives="studies.transients.transients",
+            ext_locked="studies.locked_orbits.locked_orbits -> locked_orbits.locked_orbits",
+            ext_engines="studies.engines.conformance -> model_errors.engines",
+            explorer="studies.reference_orbits.reference_orbits",
+        ),
 
 
 use rule study as audit with:
     """The paper under audit: its formulas, Table 1, every orbit by three routes, its claims."""
     wildcard_constraints:
-        artifact="formulas|forensics|witness|claims|statements",
+        artifact=stage(
+            formulas="claims.formulas.formulas",
+            forensics="claims.forensics.forensics",
+            witness="claims.witness.witness",
+            claims="claims.ledger.ledger",
+            statements="claims.ledger.statements",
+        ),

@@ -1,5 +1,8 @@
 # From datasets to tables as CSV and Markdown: each table is made from the dataset with its name.
 
+TABLES = ["table1", "thresholds", "ext_orders", "ext_laws", "ext_engines"]
+TABLES += ["formulas", "forensics", "witness", "claims"]
+
 
 rule set_table:
     message:
@@ -15,7 +18,5 @@ rule set_table:
         table="|".join(TABLES),
     log:
         "results/logs/tables/{table}.log",
-    benchmark:
-        "results/benchmarks/tables/{table}.tsv"
     script:
         "../scripts/table.py"

@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane
+from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane, tangent
 from bouncing_ball.continuation.events import vanishing
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.errors import ModelError
@@ -74,14 +74,18 @@ def contact_orbits(data: xr.Dataset) -> Iterator[Shown]:
 
 
 def restitution_orbits(data: xr.Dataset) -> Iterator[Shown]:
-    """The orbits of the restitution model, and both bifurcations of each family."""
+    """The orbits of the restitution model along Λ."""
     beside = "restitution_" if "restitution_amplitude" in data else ""
     names = (beside + x for x in ("phase", "amplitude", "admissible"))
     phase, lam, admissible, r, n = _row(data, *names, "restitution", "n")
     model = RestitutionModel(r)
     yield Shown(model, model.orbit_of(n, lam, phase), None, admissible)
+
+
+def restitution_bifurcations(data: xr.Dataset) -> Iterator[Shown]:
+    """Both bifurcations of each family of the restitution model."""
     exact = data.sel(impact_map="exact") if "impact_map" in data.dims else data
-    for kind in Bifurcation if "saddle_node_amplitude" in data else ():
+    for kind in Bifurcation:
         ends = (f"{kind.name.lower()}_{part}" for part in ("phase", "amplitude"))
         phase, lam, r, n = _row(exact, *ends, "restitution", "n")
         model = RestitutionModel(r)
@@ -103,6 +107,7 @@ def located(data: xr.Dataset) -> Iterator[Shown]:
 SHOWN: dict[Callable[[xr.Dataset], Iterator[Shown]], str] = {
     contact_orbits: "fig05 fig06 fig07 fig08 fig09 fig10 fig12 fig13 fig14 fig15",
     restitution_orbits: "fig02 fig03 fig15",
+    restitution_bifurcations: "fig03 fig15",
     located: "fig08 fig09 fig15 table1",
 }
 """The datasets that show each kind of orbits."""
@@ -123,9 +128,8 @@ def _by_equations(shown: Shown, near: Orbit) -> Orbit:
     if kind:
         condition = vanishing(next(one.function for one in system.events() if one.name == kind))
     else:
-        # The null vector of the Jacobian is the tangent of the branch.
         jacobian = np.nan_to_num(system.jacobian(y), posinf=0.0, neginf=0.0)
-        condition = plane(np.linalg.svd(jacobian)[2][..., -1, :], y)
+        condition = plane(tangent(jacobian, y), y)
     with np.errstate(all="ignore"):
         found = newton(system, y, condition, _NEWTON)
     # Because of rounding, the last Newton step may remain longer than the tolerance.

@@ -120,7 +120,7 @@ def _reading(annotation: Any) -> dict[str, Any]:
         case typing.Annotated if isinstance(kinds[1], Range):
             return {"type": _within(kinds[1]), "metavar": "N" if kinds[1].whole else "X"}
         case typing.Annotated if inspect.isclass(kinds[1]):
-            return {"choices": [*map(str, kinds[1])]}
+            return {"choices": [str(each) for each in kinds[1]]}
         case typing.Literal:
             return {"choices": kinds}
         case builtins.tuple if kinds[-1] is not ...:

@@ -3,6 +3,7 @@
 import argparse
 import builtins
 import collections.abc
+import enum
 import inspect
 import math
 import pathlib
@@ -119,7 +120,7 @@ def _reading(annotation: Any) -> dict[str, Any]:
     match typing.get_origin(annotation) or annotation:
         case typing.Annotated if isinstance(kinds[1], Range):
             return {"type": _within(kinds[1]), "metavar": "N" if kinds[1].whole else "X"}
-        case typing.Annotated if inspect.isclass(kinds[1]):
+        case typing.Annotated if isinstance(kinds[1], enum.EnumType):
             return {"choices": [str(each) for each in kinds[1]]}
         case typing.Literal:
             return {"choices": kinds}

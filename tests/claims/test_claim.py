@@ -194,4 +194,4 @@ def test_the_tally(data):
     data["fig"]["rise"] = ("n", [0.5, 0.25, -1.0])
     assert tally(assess(some, data)).endswith(", 1 without explanation")
     data["fig"].attrs["n"] = 2
-    assert ", 1 not asked" in tally(assess(some, data))
+    assert ", 2 not asked" in tally(assess(some, data))

@@ -121,7 +121,7 @@ def _reading(annotation: Any) -> dict[str, Any]:
         case typing.Annotated if isinstance(kinds[1], Range):
             return {"type": _within(kinds[1]), "metavar": "N" if kinds[1].whole else "X"}
         case typing.Annotated if isinstance(kinds[1], enum.EnumType):
-            return {"choices": [str(each) for each in kinds[1]]}
+            return {"choices": list(map(str, kinds[1].__members__.values()))}
         case typing.Literal:
             return {"choices": kinds}
         case builtins.tuple if kinds[-1] is not ...:

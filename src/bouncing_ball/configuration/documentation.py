@@ -35,15 +35,14 @@ def _rows(schema, root, default, path) -> Iterator[str]:
     schema = resolved(schema, root)
     if schema.get("type") == "object":
         known = schema["properties"]
-        for key in dict.fromkeys([*default, *known]):
-            given = default.get(key, known[key].get("default"))
-            yield from _rows(known[key], root, given, [*path, key])
+        values = default | {k: default.get(k, x.get("default")) for k, x in known.items()}
+        for key, value in values.items():
+            yield from _rows(known[key], root, value, [*path, key])
         return
     items = resolved(schema.get("items", {}), root)
     meaning = schema.get("description", items.get("description", ""))
     shown = json.dumps(default, ensure_ascii=False)
-    elsewhere = "all" if default == items.get("enum") else "see `config.yaml`"
-    shown = f"`{shown}`" if len(shown) <= 48 else elsewhere
+    shown = f"`{shown}`" if len(shown) <= 48 else "see `config.yaml`"
     yield f"| `{'.'.join(path)}` | {_allowed(schema, root)} | {meaning} | {shown} |\n"
 
 

@@ -27,7 +27,7 @@ from bouncing_ball.studies.permanent_contact_curve import PermanentContact, perm
 class ErrorsAlongRatio(OrbitsAlongRatio):
     """One orbit along ϖ, and the quantities compared on it."""
 
-    quantities: Many[Annotated[Quantity, Strict(False)]] = tuple(Quantity)
+    quantities: Many[Annotated[Quantity, Strict(False)]]
 
 
 class ErrorThresholds(ErrorsAlongRatio):

@@ -132,7 +132,7 @@ setup-newest:
 newest: setup-newest clean
 	$(MAKE) --keep-going all diff test VENV=$(NEWEST) SETUP=
 
-config-docs: setup
+config-docs: $(SETUP)
 	$(BIN)/snakemake --cores 1 config_docs $(QUIETLY)
 
 # Renew the lock files, for maintainers; this needs uv.

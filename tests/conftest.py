@@ -148,7 +148,7 @@ def stages():
 
 @pytest.fixture(scope="session")
 def coarse():
-    """Fewer samples or starts of the maps of balls, which take as long as everything else.
+    """Fewer samples or starts of the studies that take as long as all others.
 
     At their whole size they are compared with the record by `make diff`, and weekly.
     """
@@ -158,6 +158,7 @@ def coarse():
         ("ext_cascades", "samples"): 5,
         ("ext_cascades", "doublings"): 4,
         ("ext_diagram", "samples"): 10,
+        ("ext_laws", "samples"): 4,
         ("ext_locked", "nodes"): 15,
         ("ext_locking", "samples"): 6,
     }

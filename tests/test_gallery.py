@@ -13,8 +13,8 @@ import bouncing_ball
 
 GALLERY = Path(__file__).parents[1] / "docs" / "gallery"
 SCRIPTS = sorted(GALLERY.glob("*.py"))
-# One with orbits and one with simulations; all others are tried weekly.
-OFTEN = {"branch_for_three_stiffnesses", "basin"}
+# All others are tried weekly.
+OFTEN = {"basin"}
 
 
 def test_there_are_twelve_and_the_page_shows_all():

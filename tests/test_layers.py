@@ -60,7 +60,7 @@ ALLOWED = {
     ),
     "pipeline": (
         {"datasets", "atlas", "configuration", "figures", "provenance"},
-        {"xarray", "yaml"},
+        {"numpy", "xarray", "yaml"},
     ),
     "cli": (
         {

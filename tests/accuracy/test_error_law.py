@@ -14,9 +14,8 @@ from bouncing_ball.accuracy.error_law import (
 from bouncing_ball.accuracy.errors import errors
 from bouncing_ball.accuracy.quantities import OF_IMPACTS, Quantity
 from bouncing_ball.contacts.damping import damping_ratio, restitution_coefficient
-from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.signature import Instant, Signature
-from bouncing_ball.contacts.spring_damper import Release, SpringDamper
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper, permanent_contact_threshold
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits import restitution_orbit
 from bouncing_ball.studies.random_orbits import random_orbits

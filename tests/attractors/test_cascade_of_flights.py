@@ -8,8 +8,7 @@ from scipy.optimize import brentq
 from bouncing_ball.attractors.cascade_of_flights import OpeningContacts, openings, stiff_openings
 from bouncing_ball.attractors.mapper import label
 from bouncing_ball.contacts.damping import damping_ratio
-from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
-from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.contacts.spring_damper import SpringDamper, permanent_contact_threshold
 from bouncing_ball.errors import ModelError
 from bouncing_ball.motion.simulation import simulate
 

@@ -32,7 +32,7 @@ def test_the_end_of_a_motion_is_on_it(given):
             assert time == pytest.approx(int(each.periods), abs=1e-5)
 
 
-@pytest.mark.parametrize("given", MODELS)
+@pytest.mark.parametrize("given", MODELS[:2])
 def test_the_diagram_has_the_orbits_and_their_period_doubling(given):
     limits = bb.limits(1, **given)
     ends = [float(x.amplitude) for x in limits]

@@ -89,8 +89,8 @@ def test_an_answer_does_not_depend_on_the_other_balls():
     amplitude, phase = rng.uniform(0.5, 4, 60), rng.uniform(-3, 3, 60)
     law = contact(rng.uniform(0.2, 0.9, 60), 100.0)
     start = amplitude, phase, -amplitude - 3
-    whole, order = label(law, *start, impacts=300), rng.permutation(60)
-    again = label(law[order], *(x[order] for x in start), impacts=300)
+    whole, order = label(law, *start, impacts=150), rng.permutation(60)
+    again = label(law[order], *(x[order] for x in start), impacts=150)
     for name, values in vars(whole).items():
         np.testing.assert_array_equal(getattr(again, name), values[order], err_msg=name)
 
@@ -125,7 +125,14 @@ def test_laps_that_rounding_alone_makes_alike_are_no_sample():
     assert np.isnan(found.exponent_error).all()
 
 
-@pytest.mark.parametrize("law", [0.85, contact(0.85, 80.0), Signature(contact(0.85, 80.0))])
+@pytest.mark.parametrize(
+    "law",
+    [
+        0.85,
+        contact(0.85, 80.0),
+        pytest.param(Signature(contact(0.85, 80.0)), marks=pytest.mark.long),
+    ],
+)
 def test_chaos_has_the_exponent_of_the_paths_side_by_side(law):
     """Two balls, the distance set back after every impact, by the Poincaré map alone."""
     lam, tiny, balls = 2.0, 1e-7, 400

@@ -8,7 +8,7 @@ from bouncing_ball.compare import accept as module
 from bouncing_ball.compare.accept import accept
 from bouncing_ball.datasets.netcdf import write_dataset
 from bouncing_ball.errors import ModelError
-from bouncing_ball.provenance.revision import UNKNOWN, Revision
+from bouncing_ball.provenance.origin import UNKNOWN, Revision
 
 
 @pytest.fixture

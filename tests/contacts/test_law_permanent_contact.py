@@ -57,9 +57,7 @@ def test_fewer_nodes_change_nothing(law, monkeypatch):
     assert found == pytest.approx(permanent_contact(law), rel=1e-10)
 
 
-@pytest.mark.parametrize(
-    "law", [ElastoBacklash(10.0, 0.136), ElastoBacklash(3.0, 0.5), Impedance(5.0, 0.2, 0.3)]
-)
+@pytest.mark.parametrize("law", [ElastoBacklash(3.0, 0.5), Impedance(5.0, 0.2, 0.3)])
 def test_steady_contacts_have_the_thresholds_of_the_closed_forms(law):
     assert _steady(law, law.feels_load) == pytest.approx(permanent_contact(law), rel=1e-10)
 
@@ -77,7 +75,7 @@ def test_an_impedance_by_depth_touches_the_surface_at_its_threshold():
         load = 1 - lam * np.sin(t)
         return np.concatenate([u, load - law.loaded_force(p, u, load)])
 
-    end = 8 * 2 * np.pi
+    end = 5 * 2 * np.pi
     time = np.linspace(end - 2 * np.pi, end, 2001)
     run = solve_ivp(rates, (0, end), [0.01] * 2 + [0.0] * 2, "LSODA", time, rtol=1e-9, atol=1e-12)
     depth, rate = run.y.reshape(2, 2, -1)

@@ -19,7 +19,6 @@ from bouncing_ball.orbits.continued import orbits_at as by_branch
 from bouncing_ball.orbits.continued import restitution_speed
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 from bouncing_ball.orbits.law_model import LawModel, law_at_orbit
-from bouncing_ball.orbits.orbit import OBSERVABLES
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
 from bouncing_ball.orbits.spring_damper_limits import orbits_at as by_formula
@@ -39,27 +38,6 @@ def test_the_speed_of_the_restitution_models_orbits(law):
     # The last step of Newton's method is below 1e-3, and leaves its square.
     period = (1 + model.signature(speed).restitution) * speed
     np.testing.assert_allclose(period, 2 * np.pi * n, rtol=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("omega", "release"), [(2.0, "force"), (10.0, "displacement"), (200.0, "force")]
-)
-def test_the_linear_law_has_the_orbits_of_the_closed_form(omega, release):
-    contact = SpringDamper.from_restitution(0.85, omega, release)
-    exact, law = (
-        SpringDamperModel(contact),
-        SpringDamper(omega, float(contact.damping_ratio), release),
-    )
-    model, n = LawModel(law), np.array([1, 2])
-    for kind in ("saddle_node", "period_doubling"):
-        computed, expected = getattr(model, kind)(n), getattr(exact, kind)(n)
-        np.testing.assert_allclose(computed.amplitude, expected.amplitude, rtol=1e-12)
-    lam = exact.saddle_node(n).amplitude + 0.3
-    for side in Side:
-        computed, expected = model.orbit(n, lam, side), exact.orbit(n, lam, side)
-        for name in OBSERVABLES:
-            np.testing.assert_allclose(getattr(computed, name), getattr(expected, name), rtol=1e-12)
-        np.testing.assert_allclose(computed.multipliers(), expected.multipliers(), atol=1e-11)
 
 
 # A law that feels its load, a Hertz contact and one with a kink; the others weekly.

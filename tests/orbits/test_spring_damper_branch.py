@@ -6,8 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bouncing_ball.contacts.oscillator import responses
-from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
-from bouncing_ball.contacts.spring_damper import Release, SpringDamper
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper, permanent_contact_threshold
 from bouncing_ball.errors import ModelError
 from bouncing_ball.orbits.spring_damper_branch import branch_point, nearest_excess
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel

@@ -6,8 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bouncing_ball.contacts.damping import damping_ratio
-from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
-from bouncing_ball.contacts.spring_damper import Release, SpringDamper
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper, permanent_contact_threshold
 from bouncing_ball.continuation.branch import continue_branch
 from bouncing_ball.continuation.events import parameter_bound
 from bouncing_ball.continuation.step_control import StepControl

@@ -11,8 +11,7 @@ from matplotlib.figure import Figure
 from bouncing_ball.datasets.netcdf import write_dataset
 from bouncing_ball.figures.files import save
 from bouncing_ball.provenance import explain as module
-from bouncing_ball.provenance.origin import PREFIX, gather, read_provenance, versions
-from bouncing_ball.provenance.revision import Revision
+from bouncing_ball.provenance.origin import PREFIX, Revision, gather, read_provenance, versions
 
 COMMIT, OTHER = "a" * 40, "b" * 40
 MADE = {

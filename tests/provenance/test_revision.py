@@ -5,7 +5,7 @@ import subprocess
 
 import pytest
 
-from bouncing_ball.provenance.revision import UNKNOWN, checkout, revision
+from bouncing_ball.provenance.origin import UNKNOWN, checkout, revision
 
 
 @pytest.fixture

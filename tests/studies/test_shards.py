@@ -8,8 +8,9 @@ import xarray as xr
 from bouncing_ball.configuration.study import load, typed
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
-from bouncing_ball.datasets.shards import joined, part_of, shard_names
+from bouncing_ball.datasets.shards import part_of, shard_names
 from bouncing_ball.errors import ParameterError
+from bouncing_ball.pipeline.job import joined
 
 GIVEN = read_yaml(Path(__file__).parents[2] / "config/config.yaml")["extensions"]
 LOW = {"restitution": {"min": 0.1, "max": 0.2, "samples": 2}}

@@ -20,8 +20,8 @@ from bouncing_ball.datasets.netcdf import read_dataset
 SMALL = {
     "n": [1, 2],
     "restitution": {"min": 0.05, "max": 1.0, "tiles": 2, "samples": 8},
-    "position": {"tiles": 2, "samples": 50},
-    "frequency_ratio": {"min": 3.0, "max": 1.0e5, "samples": 61},
+    "position": {"tiles": 2, "samples": 25},
+    "frequency_ratio": {"min": 3.0, "max": 1.0e5, "samples": 41},
     "shards": 2,
 }
 ATLAS = ("--configfile", "small.yaml", "--", "results/atlas/atlas.nc")

@@ -7,18 +7,17 @@ Python does, in its own folder and environment. Nothing of this package is impor
 each program has that of its own tree.
 """
 
-import atexit
 import ctypes
 import gc
 import importlib
 import io
-import json
+import marshal
+import multiprocessing
 import os
 import runpy
 import signal
 import socket
 import sys
-import threading
 from contextlib import suppress
 from pathlib import Path
 
@@ -31,13 +30,14 @@ IMPORTED = (
     *("PIL.Image", "PIL.PngImagePlugin", "scipy.stats", "pint"),
 )
 PYTHON = """#!{python} -IS
-import json, os, socket, sys
-server = socket.socket(socket.AF_UNIX)
+# Quicker to import than what they are part of.
+import _socket, array, marshal, os, sys
+server = _socket.socket(_socket.AF_UNIX)
 server.connect({address!r})
-socket.send_fds(server, [b"3"], [0, 1, 2])
-said = [sys.argv[1:], os.getcwd(), dict(os.environ), os.getpgrp()]
-server.sendall(json.dumps(said).encode())
-server.shutdown(socket.SHUT_WR)
+streams = array.array("i", [0, 1, 2])
+server.sendmsg([b"3"], [(_socket.SOL_SOCKET, _socket.SCM_RIGHTS, streams)])
+server.sendall(marshal.dumps([sys.argv[1:], os.getcwd(), dict(os.environ), os.getpgrp()]))
+server.shutdown(_socket.SHUT_WR)
 sys.exit(int(server.recv(4) or 1))
 """
 
@@ -70,13 +70,21 @@ def main(folder: Path) -> None:
             while os.waitpid(-1, os.WNOHANG)[0]:
                 pass
     _, streams, *_ = socket.recv_fds(asking, 1, 3)
-    arguments, where, environment, group = json.load(asking.makefile())
-    if child := os.fork():
-        _, status = os.waitpid(child, 0)
-        # Who asked may have been killed as well.
-        with suppress(BrokenPipeError):
-            asking.sendall(str(os.waitstatus_to_exitcode(status) & 0xFF).encode())
-        os._exit(0)
+    arguments, where, environment, group = marshal.load(asking.makefile("rb"))
+    # It ends without taking apart what is imported here, which would copy all of the memory.
+    job = multiprocessing.get_context("fork").Process(
+        target=become, args=(program, streams, where, environment, group, *arguments)
+    )
+    job.start()
+    job.join()
+    # Who asked may have been killed as well.
+    with suppress(BrokenPipeError):
+        asking.sendall(str(job.exitcode & 0xFF).encode())
+    os._exit(0)
+
+
+def become(program, streams, where, environment, group, first: str, *rest: str) -> None:
+    """Run a module, after ``-m``, or a script, as Python does, in place of who asked."""
     # What stops the group of who asked stops this as well.
     os.setpgid(0, group)
     for number, stream in enumerate(streams):
@@ -86,38 +94,11 @@ def main(folder: Path) -> None:
     os.environ.clear()
     os.environ.update(environment)
     sys.executable = str(program)
-    leave(become(*arguments))
-
-
-def become(first: str, *rest: str) -> int:
-    """Run a module, after ``-m``, or a script, as Python does; the exit status."""
     name, *arguments = rest if first == "-m" else (first, *rest)
     here = os.getcwd() if first == "-m" else str(Path(name).parent)
     sys.path[:1] = [here, *os.environ.get("PYTHONPATH", "").split(os.pathsep)]
     sys.argv = [name, *arguments]
-    try:
-        (runpy.run_module if first == "-m" else runpy.run_path)(name, run_name="__main__")
-    except SystemExit as end:
-        if isinstance(end.code, int | None):
-            return end.code or 0
-        print(end.code, file=sys.stderr)
-        return 1
-    except BaseException:
-        sys.excepthook(*sys.exc_info())
-        return 1
-    return 0
-
-
-def leave(status: int) -> None:
-    """End as Python does, but without taking apart what the server has imported.
-
-    That copies all of its memory, and takes longer than most jobs.
-    """
-    threading._shutdown()
-    atexit._run_exitfuncs()
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(status)
+    (runpy.run_module if first == "-m" else runpy.run_path)(name, run_name="__main__")
 
 
 if __name__ == "__main__":

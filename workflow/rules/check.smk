@@ -1,5 +1,8 @@
 # The configuration is checked before anything runs, against the studies of all stages.
 
+if unknown := TABLE.keys() - {*STUDIES, *ACCEPTED}:
+    sys.exit(f"workflow/artifacts.yaml: {min(unknown)} is in no stage of workflow/rules/study.smk")
+
 # Jobs do not check the configuration again.
 if workflow.is_main_process:
     from bouncing_ball.configuration.check import check_configuration

@@ -81,8 +81,8 @@ use rule study as continuation_of_orbits with:
         artifact=stage(
             fig08="studies.orbit_branches.orbit_branches -> branches.domains",
             fig09="studies.orbit_branches.orbit_branches -> branches.domains",
-            fig15="studies.orbit_branches.both_domains -> branches.both_domains",
-            table1="studies.orbit_branches.stability_ranges",
+            fig15="studies.both_models.both_domains -> branches.both_domains",
+            table1="studies.both_models.stability_ranges",
         ),
 
 

@@ -21,15 +21,14 @@ contacts to that of the first flight.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
-from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
-from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.contacts.spring_damper import SpringDamper, permanent_contact_threshold
 from bouncing_ball.continuation.corrector import NewtonSettings, solve
 from bouncing_ball.errors import require
 from bouncing_ball.motion.angles import table
@@ -179,6 +178,7 @@ def _landings(excess: float, zeta: float, most: int) -> list[tuple[float, tuple[
     return found
 
 
+@lru_cache
 def _stiff_openings(zeta: float, most: int) -> list[np.ndarray]:
     """The unknowns of :class:`OpeningContacts` at the openings of the stiff limit, in its units and
     with E in place of Λ.

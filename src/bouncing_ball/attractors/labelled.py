@@ -9,7 +9,8 @@ import numpy as np
 
 from bouncing_ball.attractors.mapper import label
 from bouncing_ball.attractors.motions import Kind, Motions
-from bouncing_ball.datasets.labelled import CASE, Grid, Labelled
+from bouncing_ball.datasets import CASE
+from bouncing_ball.datasets.labelled import Grid, Labelled
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import ParameterError
 

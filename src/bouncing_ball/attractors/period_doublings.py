@@ -74,16 +74,19 @@ class Turns:
     n: Any
     impacts: int
 
-    def after(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, Jacobian]:
-        """φ, δ′ and the time after m impacts, and M; each has the leading shape of y."""
+    def after(self, y: np.ndarray, differentiate: bool = True) -> tuple[Any, Any, Any, Jacobian]:
+        """φ, δ′ and the time after m impacts, and M, which is only computed with ``differentiate``;
+        each has the leading shape of y.
+        """
         phase, velocity, amplitude = np.moveaxis(y, -1, 0)
         dynamics, (phase, velocity), shape = in_a_row(self.law, amplitude, phase, velocity)
         impact = dynamics.at_section(phase, velocity)
         change, time = Jacobian.identity(phase.size), np.zeros(phase.size)
         for _ in range(self.impacts):
-            departure = dynamics.depart(impact, differentiate=True)
+            departure = dynamics.depart(impact, differentiate=differentiate)
             after, passed = dynamics.fly(departure)
-            change = dynamics.jacobian(impact, departure, after, passed).after(change)
+            if differentiate:
+                change = dynamics.jacobian(impact, departure, after, passed).after(change)
             # The time between two instants differs from the time between two contacts.
             (start, _), (end, velocity) = dynamics.section(impact), dynamics.section(after)
             time += passed + reduce_angle(end - start - passed)
@@ -166,6 +169,6 @@ def _doubled(old: Turns, turns: Turns, y: np.ndarray, above: np.ndarray) -> np.n
     aside = _ASIDE * np.sqrt(above) / np.hypot(*np.moveaxis(along, -1, 0))
     y = y + np.concatenate([along * aside[:, np.newaxis], above[:, np.newaxis]], axis=-1)
     for _ in range(max(_TURNS, _IMPACTS // turns.impacts)):
-        phase, velocity, _, _ = turns.after(y)
+        phase, velocity, _, _ = turns.after(y, differentiate=False)
         y[:, 0], y[:, 1] = reduce_angle(phase), velocity
     return y

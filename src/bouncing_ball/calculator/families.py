@@ -11,8 +11,8 @@ from bouncing_ball.accuracy.errors import relative
 from bouncing_ball.accuracy.quantities import OF_IMPACTS, OF_ORBITS, Quantity
 from bouncing_ball.calculator.case import Case
 from bouncing_ball.calculator.results import Errors, Family, Standing
-from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.orbits.model import RESTITUTION_THRESHOLD
 from bouncing_ball.orbits.orbit import Orbit
 
 # Samples of a contact, and further samples for each radian of the table's motion, because a long

@@ -23,9 +23,9 @@ from bouncing_ball.attractors.mapper import label
 from bouncing_ball.attractors.motions import Kind
 from bouncing_ball.calculator.case import Case
 from bouncing_ball.calculator.results import Family, Mean, Motion
-from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.motion.sequence import ImpactSequence, Status
 from bouncing_ball.motion.work import over_steps
+from bouncing_ball.orbits.model import RESTITUTION_THRESHOLD
 
 # Relative change of an orbit's impact velocity for a start beside the orbit.
 _BESIDE = 1e-3

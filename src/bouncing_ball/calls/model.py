@@ -18,7 +18,6 @@ from bouncing_ball.orbits.law_model import LawModel
 from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
-from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 
 # Range of the frequency ratio and of the amplitude, beyond which their squares leave no digits.
 FrequencyRatio = Annotated[Any, Range(1e-8, 1e8, "[]")]
@@ -156,7 +155,12 @@ def impact_model(given: Mapping[str, Any], law_at: LawAt | None) -> ImpactModel:
     else:
         measured = "measured_restitution" in given
         contact = SpringDamper.from_restitution(given[losses[0]], ratio, rule, measured=measured)
-    return CorrectedModel.of_contact(contact) if kind == "corrected" else SpringDamperModel(contact)
+    if kind == "corrected":
+        return CorrectedModel.of_contact(contact)
+    # Imported here, because its limits need scipy.optimize, which the other models do not need.
+    from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+
+    return SpringDamperModel(contact)
 
 
 def _law(given: Mapping[str, Any], law_at: LawAt | None) -> ContactLaw:

@@ -11,6 +11,7 @@ from typing import Self
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
+from scipy.optimize.elementwise import find_minimum, find_root
 
 from bouncing_ball.claims import as_printed
 from bouncing_ball.contacts.damping import damping_ratio
@@ -27,7 +28,7 @@ PRINTED_DAMPING = 0.052
 """ζ in the paper's rounding, an alternative to ζ by Eq. 16."""
 
 # Number of samples of a branch along ε, and the largest |ε| in units of 1/ϖ, the scale of the fold.
-_SAMPLES, _REACH = 2001, 12.0
+_SAMPLES, _REACH = 401, 12.0
 
 
 class WeightlessOrbit(SpringDamperOrbit):
@@ -74,9 +75,9 @@ def high_bounce_monodromy(orbit: SpringDamperOrbit) -> np.ndarray:
 
 @np.errstate(divide="ignore", invalid="ignore")  # where the ball grazes
 def altered_ends(
-    contact: SpringDamper, n: int, orbit_at: Callable, monodromy: Callable
-) -> list[float]:
-    """Λ at the saddle-node and the period doubling of a branch with altered equations.
+    contact: SpringDamper, n: np.ndarray, orbit_at: Callable, monodromy: Callable
+) -> np.ndarray:
+    """Λ at the saddle-node and the period doubling of altered branches, shape (m, 2).
 
     The saddle-node is the minimum of Λ along the branch for any linearisation, because no orbit has
     a smaller Λ. The period doubling is the root of 1 + tr + det nearest to the saddle-node on the
@@ -85,32 +86,31 @@ def altered_ends(
     Parameters
     ----------
     contact : SpringDamper
-        A single contact.
-    n : int
+        With ϖ of shape (m,).
+    n : ndarray, shape (m,)
     orbit_at : callable
         The orbits as a function of ε, the contact and n; their contacts last (θ₀ + ε)/ϖ_d.
     monodromy : callable
         The monodromy of these orbits, shape (..., 2, 2).
     """
-    from scipy.optimize import brentq, minimize_scalar
 
-    omega = float(contact.frequency_ratio)
+    def amplitude(excess, which):
+        return orbit_at(excess, contact[which], n[which]).amplitude
 
-    def amplitude(excess):
-        return orbit_at(np.asarray(excess), contact, np.array(n)).amplitude
-
-    def doubling(excess):
-        matrix = monodromy(orbit_at(np.asarray(excess), contact, np.array(n)))
+    def doubling(excess, which):
+        matrix = monodromy(orbit_at(excess, contact[which], n[which]))
         trace = np.trace(matrix, axis1=-2, axis2=-1)
         return Bifurcation.PERIOD_DOUBLING.test(trace, np.linalg.det(matrix))
 
-    grid = np.linspace(-1, 1, _SAMPLES) * np.minimum(_REACH / omega, 0.9 * contact.free_angle)
-    lowest = int(np.nanargmin(amplitude(grid)))
-    bracket, side = grid[lowest - 1 : lowest + 2], grid[:lowest]
-    node = minimize_scalar(amplitude, bracket=bracket, options={"xtol": 1e-12})
-    unstable = np.flatnonzero(doubling(side) < 0)
-    root = brentq(doubling, side[unstable[-1]], node.x, xtol=1e-15 / omega)
-    return [float(node.fun), float(amplitude(root))]
+    every, sample = np.arange(n.size), np.arange(_SAMPLES)[:, np.newaxis]
+    reach = np.minimum(_REACH / contact.frequency_ratio, 0.9 * contact.free_angle)
+    grid = np.linspace(-reach, reach, _SAMPLES)
+    lowest = np.nanargmin(amplitude(grid, every), axis=0)
+    node = find_minimum(amplitude, [grid[lowest + k, every] for k in (-1, 0, 1)], args=(every,))
+    unstable = (doubling(grid, every) < 0) & (sample < lowest)
+    left = grid[np.max(sample * unstable, axis=0), every]
+    root = find_root(doubling, (left, node.x), args=(every,))
+    return np.stack([node.f_x, amplitude(root.x, every)], axis=-1)
 
 
 def readings() -> dict[str, np.ndarray]:
@@ -129,9 +129,8 @@ def readings() -> dict[str, np.ndarray]:
         return np.stack([x(n).amplitude for x in (model.saddle_node, model.period_doubling)], -1)
 
     def altered(orbit_at: Callable, monodromy: Callable) -> np.ndarray:
-        places = zip(omega.ravel(), n.ravel(), strict=True)
-        ends = [altered_ends(SpringDamper(x, zeta), k, orbit_at, monodromy) for x, k in places]
-        return np.reshape(ends, (*n.shape, 2))
+        contact = SpringDamper(omega.ravel(), zeta)
+        return altered_ends(contact, n.ravel(), orbit_at, monodromy).reshape(*n.shape, 2)
 
     plain = of_model()
     ends = [end(n, RESTITUTION) for end in (as_printed.saddle_node, as_printed.period_doubling)]

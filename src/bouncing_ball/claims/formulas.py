@@ -13,8 +13,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.claims import as_printed as printed
-from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
-from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.contacts.spring_damper import SpringDamper, permanent_contact_threshold
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.motion.rest import lift_off_phase

@@ -17,8 +17,7 @@ from bouncing_ball.compare.terminal import to_terminal
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.datasets.files import replacing
 from bouncing_ball.errors import ModelError
-from bouncing_ball.provenance.origin import CONFIGURATION, changes
-from bouncing_ball.provenance.revision import revision
+from bouncing_ball.provenance.origin import CONFIGURATION, changes, revision
 
 
 def jobs_left(repository: Path, files: Collection[str]) -> int:

@@ -14,10 +14,6 @@ from typing import Any, Self
 import numpy as np
 
 
-def _shape(value: Any) -> tuple[int, ...]:
-    return value.shape if isinstance(value, Batch) else np.shape(value)
-
-
 def _entry(value: Any, shape: tuple[int, ...], index: Any) -> Any:
     """The elements of a field at an index; a scalar, which applies to all, is unchanged."""
     if isinstance(value, Batch):
@@ -132,7 +128,7 @@ class Batch:
     @property
     def shape(self) -> tuple[int, ...]:
         """The shape to which the fields broadcast."""
-        shapes = {_shape(getattr(self, f.name)) for f in fields(self)} - {()}
+        shapes = {np.shape(getattr(self, f.name)) for f in fields(self)} - {()}
         return shapes.pop() if len(shapes) == 1 else np.broadcast_shapes(*shapes)
 
     @property

@@ -31,9 +31,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.contact_law import ContactLaw, check_damping, check_positive
+from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.contact_scales import depth, rest
 from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.spring_damper import permanent_contact_threshold
 from bouncing_ball.errors import ModelError, require
 
 _PERIOD = 2 * np.pi
@@ -46,38 +47,12 @@ _FEW, _COARSE = 20_000, 1e-6
 _SLACK = 1e-7
 _TINY = 1e-300
 
-RESTITUTION_THRESHOLD = 1.0
-"""Λ_CR, at which the greatest acceleration of the table equals that of gravity (Eq. 9)."""
-
 
 class Minimum(NamedTuple):
     """Lowest threshold over all frequency ratios, and the ϖ at which it is reached."""
 
     threshold: np.ndarray
     frequency_ratio: np.ndarray
-
-
-def permanent_contact_threshold(
-    frequency_ratio: ArrayLike, damping_ratio: ArrayLike, release: Release = Release.DISPLACEMENT
-) -> np.ndarray:
-    """Largest Λ of permanent contact: Λ_SD(ϖ) (Eq. 33) or, with the force release, Λ_F(ϖ).
-
-    Raises
-    ------
-    ModelError
-        If ϖ ≤ 0 or ζ < 0, or the release is unknown.
-
-    Examples
-    --------
-    >>> float(permanent_contact_threshold(1.0, 0.25))
-    0.5
-    """
-    check_positive(frequency_ratio, "frequency ratio ϖ")
-    check_damping(damping_ratio, "damping ratio ζ")
-    omega = np.asarray(frequency_ratio, dtype=float)
-    loss = 2 * np.asarray(damping_ratio) / omega
-    lag = 2 * Release.of(release).sine(damping_ratio) / omega
-    return np.hypot((1 - 1 / omega) * (1 + 1 / omega), loss) / np.hypot(1, lag)
 
 
 def permanent_contact_minimum(

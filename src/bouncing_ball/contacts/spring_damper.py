@@ -25,7 +25,7 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.contact_law import OscillatorLaw
+from bouncing_ball.contacts.contact_law import OscillatorLaw, check_damping, check_positive
 from bouncing_ball.contacts.damping import damping_ratio, restitution_coefficient
 from bouncing_ball.contacts.instant import Instant
 from bouncing_ball.contacts.oscillator import responses
@@ -254,3 +254,26 @@ class SpringDamper(OscillatorLaw):
         free_columns = (v, free, g.value), (acc, -stiffness * g.value, g.rate)
         jacobian = [(*one, *by) for one, by in zip(free_columns, table, strict=True)]
         return ContactFlow(d, v, acc, np.moveaxis(np.array(jacobian), (0, 1), (-2, -1)))
+
+
+def permanent_contact_threshold(
+    frequency_ratio: ArrayLike, damping_ratio: ArrayLike, release: Release = Release.DISPLACEMENT
+) -> np.ndarray:
+    """Largest Λ of permanent contact: Λ_SD(ϖ) (Eq. 33) or, with the force release, Λ_F(ϖ).
+
+    Raises
+    ------
+    ModelError
+        If ϖ ≤ 0 or ζ < 0, or the release is unknown.
+
+    Examples
+    --------
+    >>> float(permanent_contact_threshold(1.0, 0.25))
+    0.5
+    """
+    check_positive(frequency_ratio, "frequency ratio ϖ")
+    check_damping(damping_ratio, "damping ratio ζ")
+    omega = np.asarray(frequency_ratio, dtype=float)
+    loss = 2 * np.asarray(damping_ratio) / omega
+    lag = 2 * Release.of(release).sine(damping_ratio) / omega
+    return np.hypot((1 - 1 / omega) * (1 + 1 / omega), loss) / np.hypot(1, lag)

@@ -6,9 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane, tangent
+from bouncing_ball.continuation.corrector import NewtonSettings, Problem, newton, plane, tangent
 from bouncing_ball.continuation.events import Event, SpecialPoint, locate
-from bouncing_ball.continuation.problem import Problem
 from bouncing_ball.continuation.step_control import StepControl
 
 
@@ -240,10 +239,10 @@ _EQUALISING_ROUNDS = 8
 def resample(problem: Problem, branch: Branch, count: int) -> np.ndarray:
     """Solutions at equal distances along a branch, shape (count, N + 1).
 
-    Cubic Hermite interpolation between the points of the branch is the predictor and Newton's
-    method the corrector; the first and last points are those of the branch. The chords between
-    neighbours are made equal, so that the result depends on the branch and on ``count``, but not
-    on the step control.
+    Linear interpolation between the points of the branch and between their tangents is the
+    predictor, and Newton's method in the plane normal to the tangent is the corrector; the first
+    and last points are those of the branch. The chords between neighbours are made equal, so that
+    the result depends on the branch and on ``count``, but not on the step control.
 
     Raises
     ------
@@ -251,17 +250,16 @@ def resample(problem: Problem, branch: Branch, count: int) -> np.ndarray:
         If the corrector fails, because the steps along the branch are too long, or if
         the branch has a single point.
     """
-    # Imported here, because not every run needs it.
-    from scipy.interpolate import CubicHermiteSpline
-
     arc = branch.arclength
     if len(arc) < 2:
         raise ContinuationError(f"a branch of one point has no length: {branch.end}")
-    spline = CubicHermiteSpline(arc, branch.points, branch.tangents)
+    known = np.concatenate([branch.points, branch.tangents], axis=-1)
     wanted = np.linspace(0.0, arc[-1], count)
     for _ in range(_EQUALISING_ROUNDS):
-        guess = spline(wanted)
-        found = newton(problem, guess, plane(spline(wanted, 1), guess))
+        guess, along = np.split(
+            np.stack([np.interp(wanted, arc, x) for x in known.T], axis=-1), 2, axis=-1
+        )
+        found = newton(problem, guess, plane(along, guess))
         if not np.all(found.converged):
             residual = found.residual.max()
             raise ContinuationError(

@@ -1,13 +1,25 @@
 """Newton's method for square systems and for a problem with one added condition; tangents."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from bouncing_ball.continuation.problem import Problem
-
 _TINY = np.finfo(float).tiny
+
+
+class Problem(Protocol):
+    """N equations F(y) = 0 for N unknowns x and one parameter p, with y = (x, p).
+
+    Both methods broadcast over leading axes. The unknowns should be scaled to
+    order one, because the arclength is the Euclidean norm of y.
+    """
+
+    def residual(self, y: np.ndarray) -> np.ndarray:
+        """F(y), shape (..., N) for y of shape (..., N + 1)."""
+
+    def jacobian(self, y: np.ndarray) -> np.ndarray:
+        """∂F/∂y, shape (..., N, N + 1)."""
 
 
 class Correction(NamedTuple):
@@ -101,11 +113,9 @@ def solve(
         going &= np.isfinite(residual) & np.all(np.isfinite(matrix), axis=(-2, -1))
         change = _solve(np.where(going[..., np.newaxis, np.newaxis], matrix, np.nan), right)
         length = np.linalg.norm(change, axis=-1)
-        change = (
-            change * np.minimum(1.0, settings.longest / np.maximum(length, _TINY))[..., np.newaxis]
-        )
+        part = np.minimum(1.0, settings.longest / np.maximum(length, _TINY))
         going &= np.isfinite(length)
-        y = np.where(going[..., np.newaxis], y - change, y)
+        y = np.where(going[..., np.newaxis], y - part[..., np.newaxis] * change, y)
         size = np.where(going, length / (1 + np.linalg.norm(y, axis=-1)), size)
         converged |= going & (size <= settings.tolerance)
         going &= ~converged

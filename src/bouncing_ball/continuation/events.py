@@ -11,8 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.continuation.corrector import Condition, NewtonSettings, newton
-from bouncing_ball.continuation.problem import Problem
+from bouncing_ball.continuation.corrector import Condition, NewtonSettings, Problem, newton
 
 # Step of the central differences for ∇g, near the optimum ε^(1/3). It affects the speed of
 # convergence but not the limit, which depends on g alone.

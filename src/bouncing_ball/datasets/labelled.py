@@ -16,11 +16,9 @@ import numpy as np
 import xarray as xr
 from xarray.plot.accessor import DatasetPlotAccessor
 
+from bouncing_ball.datasets import CASE
 from bouncing_ball.datasets.variables import VARIABLES
 from bouncing_ball.errors import ParameterError, extra
-
-CASE = "case"
-"""The single axis of results before :meth:`Grid.unfold` gives them the axes of the call."""
 
 
 class Plot(DatasetPlotAccessor):

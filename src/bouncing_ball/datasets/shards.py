@@ -1,4 +1,4 @@
-"""Dividing the places of a study among jobs, and joining the results of these jobs.
+"""Dividing the places of a study among jobs.
 
 A study with shards consists of two functions. The first, ``places`` in ``workflow/artifacts.yaml``,
 computes arrays by name, with the places of the study along their last axes, either for all places
@@ -7,10 +7,9 @@ as the argument ``found``, and calls the first function if they are not given. T
 independent, so that the dataset does not depend on the division.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 import numpy as np
-import xarray as xr
 
 from bouncing_ball.errors import ParameterError
 
@@ -47,16 +46,3 @@ def part_of(shard: str) -> Part:
         return np.array_split(places, count, axis=-1)[number]
 
     return part
-
-
-def joined(shards: Sequence[xr.Dataset]) -> Arrays:
-    """The arrays of all places, from the datasets of all shards in their order.
-
-    Examples
-    --------
-    >>> joined([xr.Dataset({"twice": ("place", [k, k])}) for k in range(2)])
-    {'twice': array([0, 0, 1, 1])}
-    """
-    whole = {str(x): np.concatenate([s[x].values for s in shards], axis=-1) for x in shards[0]}
-    # Texts read from a file have the type object.
-    return {x: y.astype(str) if y.dtype == object else y for x, y in whole.items()}

@@ -6,7 +6,7 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from bouncing_ball.figures.canvas import WIDE, canvas, legend_below
+from bouncing_ball.figures.canvas import WIDE, canvas, image, legend_below
 from bouncing_ball.figures.labels import number
 from bouncing_ball.figures.style import Look
 
@@ -22,16 +22,14 @@ def basins(data: xr.Dataset) -> Figure:
     cases, models = data.sizes["case"], data["model"].values
     size: Look = {"rows": cases, "columns": len(models), "sharex": True, "sharey": True}
     figure, rows = canvas(WIDE, 0.6 + 2.5 * cases, **size, squeeze=False)
-    image: Look = {"origin": "lower", "aspect": "auto", "interpolation": "none"}
-    image |= {"extent": (-1.0, 1.0, 0.0, data.attrs["velocity_max"])}
-    image |= {"cmap": ListedColormap(_FILLS), "vmin": -0.5, "vmax": len(_FILLS) - 0.5}
+    extent = -1.0, 1.0, 0.0, data.attrs["velocity_max"]
+    look: Look = {"cmap": ListedColormap(_FILLS), "vmin": -0.5, "vmax": len(_FILLS) - 0.5}
     for case, model in np.ndindex(rows.shape):
         axes, one = rows[case, model], data.isel(case=case, model=model)
-        axes.imshow(one.destination, **image)
+        image(axes, one.destination, extent, **look)
         ends = (float(one[f"uncertainty_exponent{x}"]) for x in ("", "_low", "_high"))
         alpha, low, high = map("{:.2f}".format, ends)
         axes.set_title(rf"{models[model]}; $\alpha={alpha}$ ({low} to {high})", fontsize=8)
-        axes.spines[["top", "right"]].set_visible(True)
     for row, case in zip(rows, data.case.values, strict=True):
         place = data.sel(case=case)
         of = (place[f"case_{x}"] for x in ("restitution", "ratio", "amplitude"))
@@ -40,7 +38,7 @@ def basins(data: xr.Dataset) -> Figure:
         row[0].set_ylabel(f"{name}\nspeed of impact $-\\delta′$")
     for axes in rows[-1]:
         axes.set_xlabel(r"phase of impact $\varphi/\pi$")
-    look: Look = {"edgecolor": "#000000", "linewidth": 0.5}
+    look = {"edgecolor": "#000000", "linewidth": 0.5}
     entries = zip(_FILLS, data.motion.values, strict=True)
     handles = [Patch(facecolor=fill, label=str(motion), **look) for fill, motion in entries]
     legend_below(figure, handles, ncols=len(handles), fontsize=7)

@@ -12,10 +12,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bouncing_ball.datasets.bifurcations import SADDLE_NODE
-from bouncing_ball.datasets.labelled import CASE
+from bouncing_ball.datasets import CASE, SADDLE_NODE
 from bouncing_ball.figures.canvas import WIDE, canvas, coloured, legend_below
-from bouncing_ball.figures.labels import in_a_row, number, parameters, title
+from bouncing_ball.figures.labels import in_a_row, parameters, title
 from bouncing_ball.figures.style import COLOURS, LINES, MARKS
 
 
@@ -36,13 +35,9 @@ def restitution_families(data: xr.Dataset) -> Figure:
 
 def domains(data: xr.Dataset) -> Figure:
     """Figs. 8 and 9: the spring-damper model's branch for each ϖ, in one panel."""
-    figure, axes = canvas(WIDE, 4.2)
-    _name_curves(axes, [rf"$\varpi={number(ratio)}$" for ratio in data.frequency_ratio.values])
-    for curve, colour in coloured(data, "frequency_ratio"):
-        _draw_spring_damper(axes, up_to_second_saddle_node(curve), colour, colour)
-    ylabel = r"phase of the table over $\pi$: $\varphi$, and above it $\varphi+\tau_b$"
-    _name_axes(axes, data, ylabel, parameters(data, "n", "restitution"))
-    legend_below(figure, ncols=7)
+    figure = over_amplitude(data.drop_attrs())
+    title = parameters(data, "n", "restitution")
+    figure.axes[0].set(title=title, xlim=(0.0, data.attrs["amplitude_max"]))
     return figure
 
 
@@ -55,9 +50,8 @@ def over_amplitude(data: xr.Dataset) -> Figure:
         _draw_spring_damper(axes, up_to_second_saddle_node(curve), colour, colour)
     touching = bool((rows.contact_duration > 0).any())
     above = r", and above it $\varphi+\tau_b$" if touching else ""
-    axes.set(xlabel=r"amplitude $\Lambda$", title=title(data))
+    axes.set(xlabel=r"amplitude $\Lambda$", title=title(data), xlim=(0.0, data.amplitude.max()))
     axes.set(ylabel=rf"phase of the table over $\pi$: $\varphi${above}")
-    axes.set_xlim(0.0, float(data.amplitude.max()))
     legend_below(figure, ncols=7)
     return figure
 

@@ -6,9 +6,10 @@ from typing import Any
 
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
+from matplotlib.layout_engine import LayoutEngine
+from matplotlib.ticker import NullLocator
 
-from bouncing_ball.datasets.selection import each
 from bouncing_ball.figures.style import COLOURS
 
 WIDTH = 3.4
@@ -28,7 +29,49 @@ def canvas(
     return figure, figure.subplots(rows, columns, **options)
 
 
-def legend_below(figure: Figure, handles: Any = None, **options: Any) -> None:
+def stacked(height: float, heights: tuple[float, ...]) -> tuple[Figure, Any]:
+    """A two-column figure of a height in inches, and its parts with the given relative heights."""
+    figure = Figure(figsize=(WIDE, height), layout="constrained")
+    return figure, figure.subfigures(len(heights), height_ratios=heights)
+
+
+def lay_out(figure: Figure, engine: LayoutEngine) -> None:
+    """Place the panels of a figure, and draw all minor ticks of an axis as one line of marks.
+
+    A tick consists of five artists, and a logarithmic axis has dozens of ticks. Ticks with labels
+    remain.
+    """
+    minor = [
+        (axis, axis.get_minor_locator())
+        for axes in figure.axes
+        for axis in (axes.xaxis, axes.yaxis)
+        if axes.axison
+        and not any(axis.get_minor_formatter().format_ticks([*axis.get_minorticklocs()]))
+    ]
+    for axis, _ in minor:
+        axis.set_minor_locator(NullLocator())
+    engine.execute(figure)
+    figure.set_layout_engine("none")
+    # The number of ticks depends on the size of the panels.
+    for axis, locator in minor:
+        axis.set_minor_locator(locator)
+        low, high = sorted(axis.get_view_interval())
+        places = [x for x in axis.get_minorticklocs() if low <= x <= high]
+        axis.set_minor_locator(NullLocator())
+        ends = places, [0.0] * len(places)
+        marks = axis.get_minor_ticks(1)[0].tick1line
+        marks.set(data=ends if axis is axis.axes.xaxis else ends[::-1], clip_on=False)
+        axis.axes.add_artist(marks)
+
+
+def image(axes: Axes, values: Any, extent: tuple[float, float, float, float], **look: Any) -> Any:
+    """Values over an even grid, shape (y, x), as an image with a pixel around each node."""
+    axes.spines[["top", "right"]].set_visible(True)
+    look |= {"origin": "lower", "aspect": "auto", "interpolation": "none"}
+    return axes.imshow(values, extent=extent, **look)
+
+
+def legend_below(figure: Figure | SubFigure, handles: Any = None, **options: Any) -> None:
     """A legend below all panels.
 
     Without given handles the legend has those of the first panel, each name once.
@@ -54,4 +97,5 @@ def logarithmic(axes: Axes, ratio: xr.DataArray | None = None, **settings: Any) 
 
 def coloured(data: xr.Dataset, dim: str) -> Iterator[tuple[xr.Dataset, str]]:
     """The dataset at each place along a dimension, with the next colour for each place."""
-    return zip(each(data, dim), cycle(COLOURS))
+    places = (data.isel({dim: k}) for k in range(data.sizes[dim]))
+    return zip(places, cycle(COLOURS))

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from bouncing_ball.datasets.labelled import CASE
+from bouncing_ball.datasets import CASE
 from bouncing_ball.figures.canvas import WIDE, WIDTH, canvas, legend_below
 from bouncing_ball.figures.labels import in_a_row, symbol, title
 from bouncing_ball.figures.style import COLOURS, Look
@@ -55,15 +55,6 @@ def orbit_diagram(data: xr.Dataset) -> Figure:
     return figure
 
 
-def _rows(data: xr.Dataset) -> tuple[xr.Dataset, np.ndarray, str]:
-    """The results along one axis, the values over which they are drawn, and the name of these."""
-    rows, _ = in_a_row(data)
-    if len(data.dims) == 1:
-        (name,) = data.dims
-        return rows, data[name].values, symbol(str(name))
-    return rows, np.arange(rows.sizes[CASE]), "number of the start"
-
-
 def motions(data: xr.Dataset) -> Figure:
     """Periods of the motions, in the colour of their kind; 0 for a motion that does not repeat."""
     return _over_argument(data, "periods", "periods until it repeats")
@@ -77,7 +68,11 @@ def exponent(data: xr.Dataset) -> Figure:
 
 def _over_argument(data: xr.Dataset, name: str, label: str, error: str | None = None) -> Figure:
     figure, axes = canvas(WIDTH, 2.6)
-    rows, place, argument = _rows(data)
+    rows, _ = in_a_row(data)
+    place, argument = np.arange(rows.sizes[CASE]), "number of the start"
+    if len(data.dims) == 1:
+        (along,) = data.dims
+        place, argument = data[along].values, symbol(str(along))
     for kind in KINDS:
         here = (rows.kind == kind).values & np.isfinite(rows[name].values)
         if here.any():

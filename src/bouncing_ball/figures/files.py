@@ -11,6 +11,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from bouncing_ball.datasets.files import replacing
+from bouncing_ball.figures.canvas import lay_out
 from bouncing_ball.figures.style import style
 
 
@@ -38,8 +39,7 @@ def save(figure: Figure, path: str | Path, metadata: Mapping[str, str]) -> None:
         if engine := figure.get_layout_engine():
             # Laid out once for all formats. The canvas of a PNG keeps the extents of the texts.
             FigureCanvasAgg(figure)
-            engine.execute(figure)
-            figure.set_layout_engine("none")
+            lay_out(figure, engine)
         canvas = get_registered_canvas_class(kind)
         # savefig would draw each figure once more to find its extent.
         draw = figure.canvas if isinstance(figure.canvas, canvas) else canvas(figure)

@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bouncing_ball.datasets.labelled import CASE
+from bouncing_ball.datasets import CASE
 from bouncing_ball.figures.canvas import WIDE, canvas, coloured, legend_below
 from bouncing_ball.figures.labels import in_a_row, note, number, parameters, title
 from bouncing_ball.figures.style import ARROW, COLOURS, CONTACT, GUIDE, TABLE, Look

@@ -5,8 +5,8 @@ from typing import Any
 import xarray as xr
 from matplotlib.axes import Axes
 
+from bouncing_ball.datasets import CASE
 from bouncing_ball.datasets.files import rows_beside
-from bouncing_ball.datasets.labelled import CASE
 
 _ROWS = rows_beside(__file__)
 QUANTITIES = {row["name"]: row["title"] for row in _ROWS if row["title"]}

@@ -28,16 +28,15 @@ def locked_orbits(data: xr.Dataset) -> Figure:
     share = np.arange(1, wanted.size + 1) / wanted.size
     by_ratio.plot(wanted, share, color=COLOURS[3], label=r"predicted: $\varpi\geq S/W$")
     bars(by_ratio, data.frequency_ratio.values, data, "same", label="contact", **look, ls="none")
-    logarithmic(by_ratio, xlabel=r"frequency ratio $\varpi$", ylim=(0, 1.03), xlim=(1, _BEYOND))
-    by_ratio.xaxis.set_major_formatter(lambda value, _: f"$10^{{{np.log10(value):.0f}}}$")
+    by_ratio.set(
+        xlabel=r"frequency ratio $\varpi$", ylim=(0, 1.03), xlim=(1, _BEYOND), xscale="log"
+    )
     by_ratio.set_title("by frequency ratio")
     by_ratio.legend(loc="lower right")
     bars(jumps, data["shift"].values, data, "jump_share", **look)
-    logarithmic(jumps, xlabel=r"change of $\Lambda$", yscale="log")
-    jumps.set_ylabel("share with another\nlocked period")
-    jumps.xaxis.set_major_formatter(lambda value, _: f"$10^{{{np.log10(value):.0f}}}$")
+    jumps.set(xlabel=r"change of $\Lambda$", xscale="log", yscale="log")
     jumps.yaxis.set_minor_formatter("{x:g}")
-    jumps.set_title("next to a discontinuity")
+    jumps.set(title="next to a discontinuity", ylabel="share with another\nlocked period")
     for one, colour in coloured(data, "case"):
         r, lam = (number(float(one[f"case_{x}"])) for x in ("restitution", "amplitude"))
         lives.plot([], [], color=colour, label=rf"$r={r}$, $\Lambda={lam}$")

@@ -7,7 +7,6 @@ together with those of physics engines (ext_engines).
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogFormatterSciNotation
 
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.figures.canvas import WIDE, canvas, legend_below, logarithmic
@@ -99,8 +98,7 @@ def engines(data: xr.Dataset) -> Figure:
             look = {"va": "bottom", "fontsize": 8, "transform": axes.get_yaxis_transform()}
             axes.text(0.02, level, f"{100 * level:.2g} %", **look)
         title = rf"$\varpi={part.frequency_ratio.item():g}$"
-        logarithmic(axes, yscale="log", xlabel="time steps in a period", title=title)
-        axes.xaxis.set_major_formatter(LogFormatterSciNotation())
+        axes.set(xscale="log", yscale="log", xlabel="time steps in a period", title=title)
     slots[0].set(
         ylabel="error of the height of a bounce", ylim=(0.25 * slots[0].get_ylim()[0], None)
     )

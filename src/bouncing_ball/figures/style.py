@@ -7,7 +7,9 @@ from typing import Any
 
 import matplotlib
 
-SETTINGS = Path(__file__).with_name("matplotlibrc")
+# Read once, because a context that is given the file reads it again and imports matplotlib.style.
+_FILE = Path(__file__).with_name("matplotlibrc")
+_SETTINGS = matplotlib.rc_params_from_file(_FILE, use_default_template=False)
 
 # The hues of Okabe and Ito, which colour-blind readers can distinguish, darkened to a
 # contrast of at least 3:1 with white, in an order in which neighbours differ in
@@ -39,4 +41,4 @@ LINES, MARKS, MODELS, LAWS = (
 
 def style() -> AbstractContextManager[None]:
     """The settings of ``matplotlibrc`` beside this module, to draw and save a figure."""
-    return matplotlib.rc_context(fname=SETTINGS)
+    return matplotlib.rc_context(_SETTINGS)

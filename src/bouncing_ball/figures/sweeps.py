@@ -8,8 +8,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bouncing_ball.datasets.bifurcations import PERIOD_DOUBLING, SADDLE_NODE
-from bouncing_ball.datasets.labelled import CASE
+from bouncing_ball.datasets import CASE, PERIOD_DOUBLING, SADDLE_NODE
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.figures.branches import draw_curve
 from bouncing_ball.figures.canvas import WIDE, WIDTH, canvas, coloured, legend_below, logarithmic

@@ -30,8 +30,7 @@ def height_error(data: xr.Dataset) -> Figure:
     limit = float(data.restitution_max_height)
     axes.axhline(limit, label="restitution", **_RIGID)
     title = parameters(data, "n", "restitution", "amplitude")
-    logarithmic(axes, ylabel=r"greatest height $\max\,z$", title=title)
-    axes.set_ylim(top=1.09 * limit)
+    logarithmic(axes, ylabel=r"greatest height $\max\,z$", title=title, ylim=(None, 1.09 * limit))
     axes.legend(loc="lower right")
     _draw_error(below, data, "h", digits=1)
     return figure

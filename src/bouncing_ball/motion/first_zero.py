@@ -30,15 +30,14 @@ import numpy as np
 from bouncing_ball.motion.ensembles import Row, pick
 
 # θ and κ above.
-_SIMPLE = 0.25
-_CLOSE = 3e-4
+_SIMPLE, _CLOSE = np.array(0.25), np.array(3e-4)
 # Ratio of successive H.
-_REACH = 4.0
+_REACH = np.array(4.0)
 # Number of steps after which the search ends as undecided. Each step is a considerable part of
 # the shortest time scale of the function, so that these are hundreds of oscillations.
 _MAX_STEPS = 3000
 # Constants as arrays without an axis, as in :mod:`bouncing_ball.contacts.elementary`.
-_ZERO, _THIRD, _TINY = map(np.array, (0.0, 1 / 3, 1e-300))
+_ZERO, _QUARTER, _THIRD, _TINY, _MINUS_TWO = map(np.array, (0.0, 0.25, 1 / 3, 1e-300, -2.0))
 
 
 class State(NamedTuple):
@@ -109,15 +108,15 @@ def safe_step(state: State) -> tuple[np.ndarray, np.ndarray]:
     >>> step.tolist()
     [1.0]
     """
-    v, rising, square = state.rate, state.rate > 0, state.rate * state.rate
+    v, rising, square = state.rate, state.rate > _ZERO, state.rate * state.rate
     # If y touches zero from below, rounding may give a positive value.
-    twice = -2 * np.minimum(state.value, _ZERO)
+    twice = _MINUS_TWO * np.minimum(state.value, _ZERO)
     start = v, rising, square, twice
     first = _root(state.second_bound, *start)
     step = _prolonged(first, start, state)
     # From y = y′ = 0 with y″ < 0 on, y ≤ y″ h²/2 + J h³/6.
     sinking = -3 * state.second / (state.third_bound + _TINY)
-    step = np.maximum(step, np.where(rising, 0.0, sinking))
+    step = np.maximum(step, np.where(rising, _ZERO, sinking))
     bend = (np.abs(state.third) + state.fourth_bound * first) * (first * first)
     simple = state.second_bound * twice <= _SIMPLE * square
     return step, (bend <= _CLOSE * v) & simple & rising
@@ -131,7 +130,7 @@ def _prolonged(first, start, state: State):
     while True:
         *start, second, third, second_bound, fourth_bound = own
         reach = _REACH * now
-        growth = np.maximum(third, _ZERO) + 0.25 * fourth_bound * reach
+        growth = np.maximum(third, _ZERO) + _QUARTER * fourth_bound * reach
         bound = np.minimum(second + reach * growth * _THIRD, second_bound)
         longer = np.minimum(_root(bound, *start), reach)
         # If the reach limited the step, a longer reach is tried.
@@ -152,7 +151,7 @@ def first_zero(motion: Motion, start: np.ndarray) -> Zero:
     ``start`` and rises, ``start`` is the result. The arrays are one-dimensional.
     """
     time = np.array(start, dtype=float)
-    ended = np.zeros(time.shape, dtype=bool)
+    ended, undecided = np.zeros((2, *time.shape), dtype=bool)
     active, part, now = slice(None), motion, time
     for steps in range(_MAX_STEPS):
         state = part(now)
@@ -160,7 +159,9 @@ def first_zero(motion: Motion, start: np.ndarray) -> Zero:
         later = part.skip(now + step, steps)
         # The current time is a zero at the start, or if y touches zero up to rounding.
         rate = state.rate
-        here = (state.value >= 0) & ((rate > 0) | ((rate == 0) & (state.second >= 0)))
+        here = state.value >= _ZERO
+        if here.any():
+            here &= (rate > 0) | ((rate == 0) & (state.second >= 0))
         if state.ended is not None:
             stop = state.ended & ~(done | here)
             ended[active] = stop
@@ -175,7 +176,6 @@ def first_zero(motion: Motion, start: np.ndarray) -> Zero:
             active = left if isinstance(active, slice) else active[left]
             part, later = part.take(left), later[left]
         now = later
-    undecided = np.zeros(time.shape, dtype=bool)
     undecided[active] = left.size > 0
     time, rate = _to_the_last_digit(motion, time)
     return Zero(np.maximum(time, start), rate, ended, undecided)
@@ -185,11 +185,10 @@ def _to_the_last_digit(motion, time):
     """The times, improved by one step to the zero of the function's parabola, and y′ there."""
     state = motion(time)
     v, acceleration = state.rate, state.second
-    twice = -2 * state.value
-    square = v * v
-    root = np.sqrt(np.maximum(square + acceleration * twice, 0.0))
+    twice, square = _MINUS_TWO * state.value, v * v
+    root = np.sqrt(np.maximum(square + acceleration * twice, _ZERO))
     # If the zero may be multiple, because y touches zero, the time is not changed.
-    simple = (v > 0) & (state.second_bound * np.abs(twice) <= square)
-    step = np.where(simple, twice / (v + root + _TINY), 0.0)
+    simple = (v > _ZERO) & (state.second_bound * np.abs(twice) <= square)
+    step = np.where(simple, twice / (v + root + _TINY), _ZERO)
     rate = v + step * (acceleration + 0.5 * step * state.third)
     return time + step, rate

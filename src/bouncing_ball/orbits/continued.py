@@ -9,17 +9,18 @@ followed instead, for one model at a time.
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.signature import Instant
+from bouncing_ball.contacts.instant import Instant
 from bouncing_ball.continuation.branch import ContinuationError, continue_branch
 from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane, tangent
 from bouncing_ball.continuation.events import Event, SpecialPoint, parameter_bound, vanishing
 from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.orbits import corrected_branch as corrected
+from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.orbit import check_index
 from bouncing_ball.orbits.stability import Bifurcation, Side
 
@@ -283,20 +284,7 @@ def orbits_at(model: Any, n: int, amplitude: float) -> Any:
         if points:
             found = model.system(n).orbit(np.array(points))
             return found[np.argsort(found.contact_duration)]
-    return both_sides(model, n, amplitude)
-
-
-def both_sides(model: Any, n: int, amplitude: float) -> Any:
-    """The orbits on both sides of the fold at one Λ, in order of contact duration.
-
-    The shape is (count,): two orbits above the fold, one orbit at the fold itself, or none.
-    """
-    system = model.system(n)
-    y = np.array([system.point(model.orbit(n, amplitude, side)) for side in Side])
-    # The orbit with the larger phase, which is on the stable side, comes first.
-    y = np.unique(y[np.all(np.isfinite(y), axis=-1)], axis=0)[::-1]
-    found = system.orbit(y)
-    return found[np.argsort(found.contact_duration, kind="stable")]
+    return ImpactModel.orbits(model, n, amplitude)
 
 
 def bifurcation(model: Any, n: ArrayLike, kind: Bifurcation) -> Any:
@@ -336,3 +324,30 @@ def bifurcation(model: Any, n: ArrayLike, kind: Bifurcation) -> Any:
         if points:
             y[k] = points[0 if kind is Bifurcation.SADDLE_NODE else -1]
     return _shaped(model, n, y, shape)
+
+
+class ContinuedModel(ImpactModel):
+    """A model whose orbits at Λ and bifurcations are found by continuation from its signature."""
+
+    has_closed_form: ClassVar[bool] = False
+
+    def orbit(self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> Any:
+        """The n-T orbits at Λ on one side of the saddle-node; NaN where no orbit is found.
+
+        Arguments, shape and errors are those of :meth:`.ImpactModel.orbit`.
+        """
+        return orbit_at(self, n, amplitude, Side(side))
+
+    def saddle_node(self, n: ArrayLike) -> Any:
+        """The orbits at the saddle-node; NaN where none is found.
+
+        Arguments, shape and errors are those of :meth:`.ImpactModel.saddle_node`.
+        """
+        return bifurcation(self, n, Bifurcation.SADDLE_NODE)
+
+    def period_doubling(self, n: ArrayLike) -> Any:
+        """The orbits at the period doubling nearest to the saddle-node; NaN where none is found.
+
+        Arguments, shape and errors are those of :meth:`.ImpactModel.period_doubling`.
+        """
+        return bifurcation(self, n, Bifurcation.PERIOD_DOUBLING)

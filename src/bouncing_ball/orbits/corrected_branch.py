@@ -39,7 +39,7 @@ All quantities are dimensionless; all functions broadcast.
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.signature import Instant
+from bouncing_ball.contacts.instant import Instant
 
 
 def _level(n: ArrayLike, instant: Instant) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -12,14 +12,14 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.signature import Instant, Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.orbits import corrected_branch as formulas
+from bouncing_ball.orbits.continued import ContinuedModel
 from bouncing_ball.orbits.corrected_orbit import CorrectedOrbit
-from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.orbit import Orbit, check_index
 from bouncing_ball.orbits.stability import Side
 
 
 @dataclass(frozen=True, repr=False)
-class CorrectedModel(ImpactModel):
+class CorrectedModel(ContinuedModel):
     """A ball whose impacts are instants at the centroid of the contact force.
 
     Parameters

@@ -9,8 +9,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from bouncing_ball.continuation.corrector import newton, plane
-from bouncing_ball.continuation.problem import Problem
+from bouncing_ball.continuation.corrector import Problem, newton, plane
 
 _BISECTIONS = 60
 _TINY, _ROUNDING = np.finfo(float).tiny, 4e-16

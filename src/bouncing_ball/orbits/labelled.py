@@ -13,7 +13,8 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.continuation.branch import ContinuationError
-from bouncing_ball.datasets.labelled import CASE, Grid, Labelled
+from bouncing_ball.datasets import CASE
+from bouncing_ball.datasets.labelled import Grid, Labelled
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import ModelError, NoOrbitError, require
 from bouncing_ball.motion.angles import table

@@ -18,8 +18,7 @@ from bouncing_ball.contacts.law_choice import law_of_impact
 from bouncing_ball.contacts.permanent_contact import permanent_contact
 from bouncing_ball.contacts.signature import Instant, free_impact
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.orbits.continued import orbit_at, orbits_at
-from bouncing_ball.orbits.model import ImpactModel
+from bouncing_ball.orbits.continued import ContinuedModel, orbit_at, orbits_at
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
 from bouncing_ball.orbits.stability import Side
@@ -89,7 +88,7 @@ class LawOrbit(Orbit):
 
 
 @dataclass(frozen=True, repr=False)
-class LawModel(ImpactModel):
+class LawModel(ContinuedModel):
     """A ball on a contact of any law.
 
     Parameters
@@ -119,7 +118,6 @@ class LawModel(ImpactModel):
         ModelError
             If the law does not release the ball.
         """
-        # The impacts are stored because every search for orbits or bifurcations starts from them.
         return free_impact(self.law, speed)
 
     def orbits(self, n: int, amplitude: float) -> LawOrbit:

@@ -9,7 +9,8 @@ Code that uses a model calls only the methods of this interface and never asks f
     model.simulate(0.9, phase=0.0, velocity=-3.0, impacts=100).phase
 
 A new model is a subclass of :class:`ImpactModel`, and its orbits are a subclass of
-:class:`Orbit`. Both inherit everything that follows from the flight alone or by continuation.
+:class:`Orbit`. Both inherit everything that follows from the flight alone. A model whose orbits
+have no closed form is a subclass of :class:`~bouncing_ball.orbits.continued.ContinuedModel`.
 Models and orbits are arrays: their fields broadcast, and they can be indexed, ``orbit[3]``.
 """
 
@@ -25,15 +26,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.batch import Batch, plainly
-from bouncing_ball.contacts.permanent_contact import RESTITUTION_THRESHOLD
-from bouncing_ball.contacts.signature import Instant
+from bouncing_ball.contacts.instant import Instant
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence
 from bouncing_ball.motion.simulation import next_impact, simulate
-from bouncing_ball.orbits import continued
 from bouncing_ball.orbits.orbit import Orbit
-from bouncing_ball.orbits.stability import Bifurcation, Side
+from bouncing_ball.orbits.stability import Side
 from bouncing_ball.orbits.system import OrbitSystem
+
+RESTITUTION_THRESHOLD = 1.0
+"""Λ_CR, at which the greatest acceleration of the table equals that of gravity (Eq. 9)."""
 
 
 def labelled() -> Any:
@@ -85,12 +87,11 @@ class ImpactModel(Batch, ABC):
     A subclass is a frozen dataclass with one field, which holds the law. ``name`` is the name of
     the model in messages, ``has_closed_form`` says whether its branch is known as a formula, and
     ``orbit_type`` is the class of its orbits, with the constructor ``at``. A subclass defines
-    :meth:`signature`. Orbits at Λ, the reasons for their absence and their bifurcations then follow
-    by continuation; a model with a closed form overrides these methods.
+    :meth:`signature`, the orbits at Λ and the bifurcations.
     """
 
     name: ClassVar[str]
-    has_closed_form: ClassVar[bool] = False
+    has_closed_form: ClassVar[bool] = True
     orbit_type: ClassVar[type[Orbit]]
 
     def __init_subclass__(cls) -> None:
@@ -116,13 +117,12 @@ class ImpactModel(Batch, ABC):
         """
         return np.full(self.shape, RESTITUTION_THRESHOLD)
 
-    # Everything below has a default, mostly by continuation.
-
     def system(self, n: int | np.ndarray) -> OrbitSystem:
         """The equations of the orbits as a continuation problem in Λ."""
         orbits: Any = self.orbit_type
         return OrbitSystem(n, self.impact_law, orbits.at)
 
+    @abstractmethod
     def orbit(self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> Any:
         """The n-T orbits at given Λ, on one side of the saddle-node.
 
@@ -146,20 +146,24 @@ class ImpactModel(Batch, ABC):
         ModelError
             If n is not a positive integer, or the side is unknown.
         """
-        return continued.orbit_at(self, n, amplitude, Side(side))
 
     def orbits(self, n: int, amplitude: float) -> Any:
         """All n-T orbits of a single model at one Λ, in order of contact duration, shape (count,).
 
-        By default these are the orbits on both sides of the saddle-node, because there are no other
-        orbits if the impact has no duration. At the saddle-node itself both are the same orbit.
+        By default these are the two orbits on both sides of the saddle-node, because there are no
+        other orbits if the impact has no duration. At the saddle-node itself both are the same.
 
         Raises
         ------
         ModelError
             If n is not a positive integer.
         """
-        return continued.both_sides(self, n, amplitude)
+        system = self.system(n)
+        y = np.array([system.point(self.orbit(n, amplitude, side)) for side in Side])
+        # The orbit with the larger phase, which is on the stable side, comes first.
+        y = np.unique(y[np.all(np.isfinite(y), axis=-1)], axis=0)[::-1]
+        found = system.orbit(y)
+        return found[np.argsort(found.contact_duration, kind="stable")]
 
     def absence(self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> np.ndarray:
         """Why :meth:`orbit` finds no orbit: the text of an :class:`Absence` for each entry.
@@ -175,6 +179,7 @@ class ImpactModel(Batch, ABC):
         why = np.where(np.asarray(amplitude) < fold, Absence.BELOW_SADDLE_NODE, other)
         return np.where(missing, why, Absence.NONE)
 
+    @abstractmethod
     def saddle_node(self, n: ArrayLike) -> Any:
         """The orbits at the saddle-node, with the shape of n and the model; NaN where none exists.
 
@@ -183,8 +188,8 @@ class ImpactModel(Batch, ABC):
         ModelError
             If n is not a positive integer.
         """
-        return continued.bifurcation(self, n, Bifurcation.SADDLE_NODE)
 
+    @abstractmethod
     def period_doubling(self, n: ArrayLike) -> Any:
         """The orbits at the period doubling that is nearest to the saddle-node on the stable side.
 
@@ -195,7 +200,6 @@ class ImpactModel(Batch, ABC):
         ModelError
             If n is not a positive integer.
         """
-        return continued.bifurcation(self, n, Bifurcation.PERIOD_DOUBLING)
 
     def simulate(
         self, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int

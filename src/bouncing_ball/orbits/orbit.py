@@ -10,6 +10,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Self
 
 import numpy as np
@@ -56,7 +57,7 @@ def check_index(n: ArrayLike) -> None:
     require(whole, np.asarray(n), "index of the family n", "a positive integer")
 
 
-def _columns(*arrays: ArrayLike) -> Iterator[np.ndarray]:
+def as_columns(*arrays: ArrayLike) -> Iterator[np.ndarray]:
     """The arrays with a last axis of length one, for derivatives along it."""
     return (np.asarray(x)[..., np.newaxis] for x in arrays)
 
@@ -279,8 +280,8 @@ class Orbit(Batch, ABC):
         of (τ_b, δ_b, δ′_b) at its end.
         """
         (d_phase, d_impact, d_lam), (d_duration, d_displacement, d_velocity) = start, contact
-        lam, phase, end = _columns(self.amplitude, self.phase, self.release_phase)
-        bounce, flight = _columns(self.bounce_velocity, self.flight_time)
+        lam, phase, end = as_columns(self.amplitude, self.phase, self.release_phase)
+        bounce, flight = as_columns(self.bounce_velocity, self.flight_time)
         d_end, d_bounce = d_phase + d_duration, d_impact - d_duration
         velocity = d_velocity + np.cos(end) * d_lam - lam * np.sin(end) * d_end - d_bounce
         rise = (np.sin(end) - np.sin(phase)) * d_lam
@@ -312,7 +313,7 @@ class Orbit(Batch, ABC):
         relative impact velocity. The next start is therefore moved by (dφ + s, dz′_i + dV - s).
         """
         d_velocity, d_height = np.moveaxis(self.jacobian()[..., :2], -2, 0)
-        flight, speed = _columns(self.flight_time, self.relative_impact_velocity)
+        flight, speed = as_columns(self.flight_time, self.relative_impact_velocity)
         later = -(d_height + flight * d_velocity) / speed
         moved = np.eye(2) + np.stack([later, d_velocity - later], axis=-2)
         # From (φ, z′_i) to (φ, δ′): δ′ = z′_i - Λ cos φ.
@@ -322,7 +323,11 @@ class Orbit(Batch, ABC):
 
     def trace_and_determinant(self) -> tuple[np.ndarray, np.ndarray]:
         """Trace and determinant of the monodromy, each with the shape of the orbits."""
-        return np.trace(self.monodromy(), axis1=-2, axis2=-1), self.determinant()
+        return self._trace, self.determinant()
+
+    @cached_property
+    def _trace(self) -> np.ndarray:
+        return np.trace(self.monodromy(), axis1=-2, axis2=-1)
 
     def multipliers(self) -> np.ndarray:
         """Floquet multipliers, complex, shape (..., 2); that of larger modulus comes first."""

@@ -8,9 +8,10 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.instant import Instant
 from bouncing_ball.contacts.restitution_law import RestitutionLaw, rebound
-from bouncing_ball.contacts.signature import Instant
 from bouncing_ball.orbits import restitution_orbit as formulas
+from bouncing_ball.orbits.continued import ContinuedModel
 from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_orbit import RestitutionOrbit
@@ -31,7 +32,7 @@ class _Instants(ImpactModel):
 
 
 @dataclass(frozen=True, repr=False)
-class RestitutionLawModel(_Instants):
+class RestitutionLawModel(ContinuedModel, _Instants):
     """A ball whose impacts are instants with a restitution coefficient r(v).
 
     Parameters
@@ -86,7 +87,6 @@ class RestitutionModel(_Instants):
     restitution: float | np.ndarray
 
     name: ClassVar[str] = "restitution"
-    has_closed_form: ClassVar[bool] = True
 
     def __post_init__(self):
         formulas.check_family(1, self.restitution)

@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.optimize.elementwise import find_root
 
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.ensembles import blocks
@@ -48,8 +49,8 @@ def _doubling(point: BranchPoint) -> np.ndarray:
     return Bifurcation.PERIOD_DOUBLING.test(point.trace, point.determinant)
 
 
-def _surplus(point: BranchPoint, amplitude: np.ndarray) -> np.ndarray:
-    return point.amplitude - amplitude
+def _deficit(point: BranchPoint, amplitude: np.ndarray) -> np.ndarray:
+    return amplitude - point.amplitude
 
 
 class _Curves(NamedTuple):
@@ -87,8 +88,6 @@ class _Curves(NamedTuple):
 
         The root is NaN where ``found`` is False.
         """
-        # Imported here because it takes a third of a second, and not every run needs limits.
-        from scipy.optimize.elementwise import find_root
 
         def function(excess, which, *more):
             return of(self.take(which).point(excess), *more)
@@ -101,17 +100,15 @@ class _Curves(NamedTuple):
             result[which] = find_root(function, bracket, args=args).x
         return result
 
-    def zero(
-        self, test: Callable, grid: np.ndarray, values: np.ndarray, *, last: bool = False
-    ) -> np.ndarray:
-        """First, or last, zero of a test function with known values along a grid, or NaN.
+    def zero(self, test: Callable, grid: np.ndarray, values: np.ndarray) -> np.ndarray:
+        """First zero of a test function with known values along a grid, or NaN.
 
         A test function also changes sign at a pole. As the bracket shrinks onto a pole, the value
         in it grows beyond the values at both ends, whereas it becomes smaller at a zero. The two
         are therefore distinguished without a tolerance.
         """
         row = np.arange(self.n.size)
-        at, found = _bracket(values, last=last)
+        at, found = _bracket(values)
         root = self.root(test, grid, at, found)
         smallest = np.minimum(np.abs(values[at, row]), np.abs(values[at + 1, row]))
         return np.where(np.abs(test(self.point(root))) <= smallest, root, np.nan)
@@ -124,35 +121,40 @@ class _Curves(NamedTuple):
     def stable_side(self, of: Callable, *more: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The grid of the scan up to the fold, and the values of a function on it.
 
-        Grid points beyond the fold are replaced by the fold. Without a fold Λ falls along the whole
-        branch, and the whole branch is the stable side.
+        The function is negative at the shortest contacts. If it is positive again at the last
+        grid point before the fold, no zero of it is between that point and the fold, and the fold
+        itself is not computed. Grid points beyond the end are replaced by the end. Without a fold
+        Λ falls along the whole branch, and the whole branch is the stable side.
         """
-        grid = self.scan()
+        grid, row = self.scan(), np.arange(self.n.size)
         points = self.point(grid)
-        fold = self.zero(_saddle, grid, _saddle(points))
-        end = np.where(np.isnan(fold), grid[-1], fold)
-        values = np.where(grid < end, of(points, *more), of(self.point(end), *more))
+        values, saddle = of(points, *more), _saddle(points)
+        at, found = _bracket(saddle)
+        # Λ has a minimum in the interval, and not a pole.
+        least = (points.fold[at, row] < 0) & (points.fold[at + 1, row] >= 0)
+        end = np.where(found, grid[at, row], grid[-1])
+        near = np.flatnonzero(found & ~(least & (values[at, row] >= 0)))
+        fold = self.take(near).zero(_saddle, grid[:, near], saddle[:, near])
+        end[near] = np.where(np.isnan(fold), grid[-1, near], fold)
+        values = np.where(grid < end, values, of(self.point(end), *more))
         return np.minimum(grid, end), values
 
 
-def _bracket(values, *, last=False):
-    """Index of the first, or last, sign change along the first axis, and whether there is one.
+def _bracket(values):
+    """Index of the first sign change along the first axis, and whether there is one.
 
     A change next to NaN does not count.
     """
     left, right = values[:-1], values[1:]
     change = ((left < 0) & (right >= 0)) | ((left >= 0) & (right < 0))
-    found = np.any(change, axis=0)
-    at = np.argmax(change[::-1] if last else change, axis=0)
-    return (len(change) - 1 - at if last else at), found
+    return np.argmax(change, axis=0), np.any(change, axis=0)
 
 
 def _searched(search: Callable, contact: SpringDamper, n: ArrayLike, *more: ArrayLike):
     """The results of a search for many contacts, in blocks, because each scan has 121 points."""
     check_index(n)
-    arrays = (contact.frequency_ratio, contact.damping_ratio, n, *more)
-    columns = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in arrays))
-    omega, zeta, n, *rest = (np.ravel(column) for column in columns)
+    columns = np.broadcast_arrays(contact.frequency_ratio, contact.damping_ratio, n, *more)
+    omega, zeta, n, *rest = (np.ravel(column).astype(float) for column in columns)
     curves, found = _Curves(SpringDamper(omega, zeta, contact.release), n), np.empty(omega.size)
     for part in blocks(found.size, _BLOCK):
         found[part] = search(curves.take(part), *(column[part] for column in rest))
@@ -209,15 +211,16 @@ def period_doubling(contact: SpringDamper, n: ArrayLike) -> np.ndarray:
     """
 
     def search(curves: _Curves) -> np.ndarray:
-        return curves.zero(_doubling, *curves.stable_side(_doubling), last=True)
+        grid, values = curves.stable_side(_doubling)
+        return curves.zero(_doubling, grid[::-1], values[::-1])
 
     return _searched(search, contact, n)
 
 
 def _stable_side(curves: _Curves, lam: np.ndarray) -> np.ndarray:
     """ε of the orbit at Λ between short contacts and the saddle-node, where Λ falls with ε."""
-    grid, surplus = curves.stable_side(_surplus, lam)
-    return curves.root(_surplus, grid, *_bracket(-surplus), lam)
+    grid, deficit = curves.stable_side(_deficit, lam)
+    return curves.root(_deficit, grid, *_bracket(deficit), lam)
 
 
 def _unstable_side(curves: _Curves, lam: np.ndarray) -> np.ndarray:
@@ -232,7 +235,7 @@ def _unstable_side(curves: _Curves, lam: np.ndarray) -> np.ndarray:
     turn, turns = _bracket(curves.point(grid[1:]).fold)
     summit = curves.root(_fold, grid[1:], turn, turns)
     grid = np.sort(np.concatenate([grid, np.where(turns, summit, high)[np.newaxis]]), axis=0)
-    return curves.root(_surplus, grid, *_bracket(_surplus(curves.point(grid), lam)), lam)
+    return curves.root(_deficit, grid, *_bracket(-_deficit(curves.point(grid), lam)), lam)
 
 
 def orbit_at(
@@ -307,7 +310,7 @@ def orbits_at(contact: SpringDamper, n: int, amplitude: float) -> SpringDamperOr
         return one.take(first).root(of, np.stack([grid[at], grid[at + 1]]), first, at >= 0, *rest)
 
     grid = np.sort(np.concatenate([grid, roots(_fold, grid)]))
-    found = SpringDamperOrbit.on_branch(roots(_surplus, grid, amplitude), contact, n)
+    found = SpringDamperOrbit.on_branch(roots(_deficit, grid, amplitude), contact, n)
     # A sign change at a pole of the branch is not a root.
     real = np.abs(found.amplitude - amplitude) <= 1e-6 * amplitude
     return found[real & (found.relative_impact_velocity < 0) & (found.relative_bounce_velocity > 0)]

@@ -1,12 +1,13 @@
 """n-T orbits of the spring-damper model: their contacts, equations and stability."""
 
+from functools import cached_property
 from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.orbits.orbit import Orbit
+from bouncing_ball.orbits.orbit import Orbit, as_columns
 from bouncing_ball.orbits.spring_damper_branch import BranchPoint, branch_point
 
 
@@ -62,6 +63,11 @@ class SpringDamperOrbit(Orbit):
         u = self.relative_impact_velocity
         return self.law.flow(time, 0.0, u, self.phase, self.amplitude)
 
+    @cached_property
+    def _end(self) -> Any:
+        """The flow at the end of the contact, which the equations and their Jacobian share."""
+        return self.contact_flow(self.contact_duration)
+
     def contact_motion(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """δ and δ′ at times 0 ≤ τ ≤ τ_b in contact (Eqs. 12-13), of the shape of the times."""
         return self.contact_flow(time)[:2]
@@ -72,7 +78,7 @@ class SpringDamperOrbit(Orbit):
         The release defect is ϖ (δ_b + κ δ′_b). Like the second defect, it is of the order of a
         velocity.
         """
-        flow, contact = self.contact_flow(self.contact_duration), self.law
+        flow, contact = self._end, self.law
         release = contact.frequency_ratio * flow.displacement
         release = release + 2 * contact.release_sine * flow.velocity
         return np.stack([release, *self.flight_defects(flow.displacement, flow.velocity)], axis=-1)
@@ -83,7 +89,7 @@ class SpringDamperOrbit(Orbit):
         The duration is differentiated through the release condition δ_b + κ δ′_b = 0.
         """
         # Rows δ, δ′; columns (τ, δ′, Λ) of the start. The last array is the derivative in time.
-        jacobian = self.contact_flow(self.contact_duration).jacobian
+        jacobian = self._end.jacobian
         state, by_time = jacobian[..., [3, 2, 4]], jacobian[..., 0]
         lag = np.asarray(self.law.lag)
         released = state[..., 0, :] + lag[..., np.newaxis] * state[..., 1, :]
@@ -94,19 +100,15 @@ class SpringDamperOrbit(Orbit):
 
     def system_jacobian(self) -> np.ndarray:
         """Exact derivatives of the three residuals by (φ, z′_i, ϖ τ_b, Λ), shape (..., 3, 4)."""
-        omega, flow = self.law.frequency_ratio, self.contact_flow(self.contact_duration)
-        # Derivatives of (τ, δ, δ′, φ, Λ) of the flow with respect to these.
-        inner = np.zeros((*self.shape, 5, 4))
-        inner[..., 0, 2] = 1 / omega
-        inner[..., 2, 0], inner[..., 2, 1] = self.amplitude * np.sin(self.phase), 1
-        inner[..., 2, 3] = -np.cos(self.phase)
-        inner[..., 3, 0] = inner[..., 4, 3] = 1
-        d_duration, _, _, d_phase, d_lam = np.moveaxis(inner, -2, 0)
-        ends = np.moveaxis(flow.jacobian @ inner, -2, 0)
-        scale, sine = (np.asarray(x)[..., np.newaxis] for x in (omega, self.law.release_sine))
-        release = scale * ends[0] + 2 * sine * ends[1]
-        start = d_phase, np.eye(4)[1], d_lam
-        return np.stack([release, *self.flight_jacobian(start, [d_duration, *ends])], axis=-2)
+        by_time, _, by_rate, by_phase, by_lam = np.moveaxis(self._end.jacobian, -1, 0)
+        given = self.law.frequency_ratio, self.law.release_sine, np.cos(self.phase)
+        omega, sine, cosine, fall = as_columns(*given, self.amplitude * np.sin(self.phase))
+        # The flow depends on z′_i, φ and Λ through δ′ = z′_i - Λ cos φ, too.
+        by = by_phase + fall * by_rate, by_rate, by_time / omega, by_lam - cosine * by_rate
+        ends, (phase, impact, angle, lam) = np.moveaxis(np.stack(by, axis=-1), -2, 0), np.eye(4)
+        release = omega * ends[0] + 2 * sine * ends[1]
+        contact = angle / omega, *ends
+        return np.stack([release, *self.flight_jacobian((phase, impact, lam), contact)], axis=-2)
 
     def determinant(self) -> np.ndarray:
         """exp(-2ζϖ τ_b), exactly, because areas contract only in contact, at the rate 2ζϖ."""

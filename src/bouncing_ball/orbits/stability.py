@@ -10,7 +10,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.datasets import bifurcations
+from bouncing_ball import datasets
 from bouncing_ball.errors import ModelError
 
 
@@ -51,8 +51,8 @@ class Side(StrEnum):
 class Bifurcation(StrEnum):
     """The two bifurcations at which an orbit loses its stability along the branch."""
 
-    SADDLE_NODE = bifurcations.SADDLE_NODE
-    PERIOD_DOUBLING = bifurcations.PERIOD_DOUBLING
+    SADDLE_NODE = datasets.SADDLE_NODE
+    PERIOD_DOUBLING = datasets.PERIOD_DOUBLING
 
     def test(self, trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:
         """``1 ∓ tr + det``: zero at the bifurcation, positive where the orbit is stable.

@@ -39,7 +39,7 @@ _ENDS: tuple[tuple[str, str, Callable[[Any], np.ndarray]], ...] = (
 
 @dataclass(frozen=True)
 class OrbitSystem:
-    """A model's equations as a :class:`~bouncing_ball.continuation.problem.Problem`.
+    """A model's equations as a :class:`~bouncing_ball.continuation.corrector.Problem`.
 
     The last axis of y holds the N unknowns and, as its last entry, the continuation parameter Λ.
 

@@ -8,11 +8,12 @@ import gc
 import signal
 import sys
 import traceback
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from bouncing_ball.configuration.study import load, typed
@@ -23,7 +24,6 @@ from bouncing_ball.datasets.netcdf import (
     read_dataset,
     write_dataset,
 )
-from bouncing_ball.datasets.shards import joined
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.progress import advance
 from bouncing_ball.provenance.origin import gather
@@ -87,6 +87,19 @@ def read_input(path: str) -> xr.Dataset:
     except ModelError as error:
         again = f"make it again, snakemake --cores 2 --force {path}"
         raise ModelError(f"{error}: {again}") from error
+
+
+def joined(shards: Sequence[xr.Dataset]) -> dict[str, np.ndarray]:
+    """The arrays of all places, from the datasets of all shards in their order.
+
+    Examples
+    --------
+    >>> joined([xr.Dataset({"twice": ("place", [k, k])}) for k in range(2)])
+    {'twice': array([0, 0, 1, 1])}
+    """
+    whole = {str(x): np.concatenate([s[x].values for s in shards], axis=-1) for x in shards[0]}
+    # Texts read from a file have the type object.
+    return {x: y.astype(str) if y.dtype == object else y for x, y in whole.items()}
 
 
 def provenance(snakemake: Any) -> dict[str, str]:

@@ -40,11 +40,6 @@ def imports(path: Path) -> frozenset[str]:
     return frozenset(found)
 
 
-def _with_parents(module: str) -> list[str]:
-    parts = module.split(".")
-    return [".".join(parts[: k + 1]) for k in range(len(parts))]
-
-
 def sources(*modules: str) -> list[str]:
     """The files that run when the modules are imported, with their tables and texts, sorted.
 
@@ -63,8 +58,10 @@ def sources(*modules: str) -> list[str]:
             raise ModuleNotFoundError(f"no module {module}")
     pending, seen = list(modules), set()
     while pending:
-        for name in _with_parents(pending.pop()):
-            path = module_file(name)
+        # A module's packages are imported with it.
+        parts = pending.pop().split(".")
+        for k in range(len(parts)):
+            path = module_file(".".join(parts[: k + 1]))
             if path is not None and path not in seen:
                 seen.add(path)
                 pending.extend(imports(path))

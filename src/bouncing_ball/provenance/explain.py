@@ -15,11 +15,14 @@ from bouncing_ball.errors import ModelError, printable
 from bouncing_ball.provenance.origin import (
     CARRIERS,
     PREFIX,
+    RECORD,
+    UNKNOWN,
+    checkout,
     read_attributes,
     read_provenance,
+    revision,
     versions,
 )
-from bouncing_ball.provenance.revision import RECORD, UNKNOWN, checkout, revision
 
 # Git ignores this file, so that it does not mark the next run as dirty.
 _CHANGED = "results/configuration.json"

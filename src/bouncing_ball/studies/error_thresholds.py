@@ -16,9 +16,10 @@ from pydantic import Strict
 from bouncing_ball.accuracy.errors import modulus, relative_errors
 from bouncing_ball.accuracy.quantities import Quantity
 from bouncing_ball.accuracy.thresholds import by_quantity, thresholds
-from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.parameters import Many, Tolerance
 from bouncing_ball.studies.parameters import OrbitErrors, OrbitsAlongRatio
 from bouncing_ball.studies.permanent_contact_curve import PermanentContact, permanent_contact
@@ -69,7 +70,7 @@ def thresholds_along(
     simple, ratios = RestitutionModel(restitution or one.restitution), one.frequency_ratio.grid()
 
     def along(ratio: np.ndarray, _: Any, asked: Sequence[str]) -> np.ndarray:
-        exact = one.exact(ratio, release)
+        exact = SpringDamperModel(SpringDamper.from_restitution(one.restitution, ratio, release))
         return relative_errors(exact, [simple], one.n, one.amplitude, asked)[0]
 
     scanned = along(ratios, None, quantities)
@@ -109,7 +110,8 @@ def height_error(parameters: OrbitErrors, release: Release) -> xr.Dataset:
     """
     n, lam, ratios = parameters.n, parameters.amplitude, parameters.frequency_ratio.grid()
     dataset = thresholds_along(parameters, release, [Quantity.MAX_HEIGHT], [parameters.tolerance])
-    orbit = parameters.exact(ratios, release).orbit(n, lam)
+    contact = SpringDamper.from_restitution(parameters.restitution, ratios, release)
+    orbit = SpringDamperModel(contact).orbit(n, lam)
     for name in ("max_height", "phase", "contact_duration", "impact_velocity"):
         dataset[name] = ("frequency_ratio", getattr(orbit, name))
     dataset["admissible"] = ("frequency_ratio", orbit.is_admissible())

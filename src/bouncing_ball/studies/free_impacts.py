@@ -35,13 +35,11 @@ def free_impacts(parameters: FreeImpacts) -> xr.Dataset:
     along, ones = ([SpringDamper(1.0, z, rule) for rule in Release] for z in (zeta, shown))
     time = np.linspace(0.0, float(ones[0].free_duration), parameters.samples)
     penetration, rate = responses(time, 1.0, shown).impulse
+    dims = ("release", "damping_ratio")
     return described(
         {
-            "restitution": (("release", "damping_ratio"), [one.restitution for one in along]),
-            "contact_duration": (
-                ("release", "damping_ratio"),
-                [one.free_duration for one in along],
-            ),
+            "restitution": (dims, [one.restitution for one in along]),
+            "contact_duration": (dims, [one.free_duration for one in along]),
             "free_force": ("time", ones[0].force(penetration, rate)),
             "contact_end": ("release", [float(one.free_duration) for one in ones]),
             "end_restitution": ("release", [float(one.restitution) for one in ones]),

@@ -7,12 +7,9 @@ from collections.abc import Callable
 from typing import Annotated
 
 import numpy as np
-from numpy.typing import ArrayLike
 from pydantic import AfterValidator, ValidationInfo
 
-from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.orbits.restitution_orbit import saddle_node
-from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.parameters import (
     Amplitude,
     AmplitudeMax,
@@ -71,11 +68,6 @@ class OrbitParameters(Parameters):
     n: Family
     restitution: Restitution
     amplitude: OrbitAmplitude
-
-    def exact(self, frequency_ratio: ArrayLike, release: Release) -> SpringDamperModel:
-        """The spring-damper models at given ϖ, with the damping of Eq. 16."""
-        contact = SpringDamper.from_restitution(self.restitution, frequency_ratio, release)
-        return SpringDamperModel(contact)
 
 
 class OrbitsAlongRatio(OrbitParameters):

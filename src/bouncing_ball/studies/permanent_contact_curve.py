@@ -3,13 +3,11 @@
 import xarray as xr
 
 from bouncing_ball.contacts.damping import damping_ratio
-from bouncing_ball.contacts.permanent_contact import (
-    RESTITUTION_THRESHOLD,
-    permanent_contact_minimum,
-    permanent_contact_threshold,
-)
+from bouncing_ball.contacts.permanent_contact import permanent_contact_minimum
 from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.spring_damper import permanent_contact_threshold
 from bouncing_ball.datasets.variables import described
+from bouncing_ball.orbits.model import RESTITUTION_THRESHOLD
 from bouncing_ball.parameters import Parameters, Restitution, Span
 
 

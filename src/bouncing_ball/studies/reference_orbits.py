@@ -13,16 +13,13 @@ from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.motion.simulation import simulate
+from bouncing_ball.orbits.orbit import OBSERVABLES
 from bouncing_ball.parameters import Parameters, Seed, Span
 from bouncing_ball.studies.random_orbits import random_orbits
 
 # Part of the restitution model's stable range, from near its saddle-node (0) to beyond its
 # period doubling (1).
 _PLACES = (0.02, 1.2)
-_SHOWN = (
-    *("phase", "contact_duration", "impact_velocity", "bounce_velocity"),
-    *("apparent_restitution", "max_height"),
-)
 # Balls that end at rest, on an orbit, on a period-doubled orbit, and on a locked orbit. None is
 # near chaos, where the results of two computers differ.
 _GIVEN = ("ball_restitution", "ball_frequency_ratio", "ball_amplitude", "start_phase", "velocity")
@@ -84,7 +81,7 @@ def _under(rule: Release, omega: np.ndarray, seed: int) -> xr.Dataset:
         "restitution": r,
         "frequency_ratio": omega,
         "amplitude": lam,
-        **{name: getattr(orbit, name) for name in _SHOWN},
+        **{name: getattr(orbit, name) for name in OBSERVABLES[1:]},
         "trace": trace,
         "determinant": determinant,
         "saddle_node_amplitude": exact.saddle_node(n).amplitude,

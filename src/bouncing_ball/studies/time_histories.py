@@ -3,10 +3,11 @@
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.signature import Signature
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.datasets.variables import describe, described
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.parameters import FrequencyRatio, Many, Samples
 from bouncing_ball.studies.parameters import OrbitParameters
 
@@ -35,7 +36,8 @@ def _cycle(parameters: ContactHistory | Histories, ratio: float, release: Releas
     contact may last a hundredth of the cycle and must still be resolved.
     """
     n, lam, half = parameters.n, parameters.amplitude, parameters.samples // 2
-    orbit = parameters.exact(ratio, release).require_admissible(n, lam)
+    contact = SpringDamper.from_restitution(parameters.restitution, ratio, release)
+    orbit = SpringDamperModel(contact).require_admissible(n, lam)
     during = np.linspace(0.0, orbit.contact_duration, half)
     after = np.linspace(orbit.contact_duration, 2 * np.pi * n, parameters.samples - half)
     ball, velocity = np.hstack([orbit.contact_path(during), orbit.flight_path(after)])
@@ -110,13 +112,14 @@ def meeting_flights(parameters: ContactHistory, release: Release) -> xr.Dataset:
     NoOrbitError
         If the orbit does not exist.
     """
-    exact = parameters.exact(parameters.frequency_ratio, release)
-    orbit = exact.require_orbit(parameters.n, parameters.amplitude)
+    r, ratio = parameters.restitution, parameters.frequency_ratio
+    contact = SpringDamper.from_restitution(r, ratio, release)
+    orbit = SpringDamperModel(contact).require_orbit(parameters.n, parameters.amplitude)
     end = float(orbit.contact_duration)
     time = np.linspace(-0.6 * end, 1.6 * end, parameters.samples)
     start, velocity = orbit.contact_path(np.zeros(()))
     before, (after, _) = start + (velocity - time / 2) * time, orbit.flight_path(time)
-    force = exact.contact.force(*-np.array(orbit.contact_motion(np.clip(time, 0, end))))
+    force = contact.force(*-np.array(orbit.contact_motion(np.clip(time, 0, end))))
     # The meeting point of the two parabolas, exactly; the signature's is the delay.
     jump = float(orbit.bounce_velocity + end - orbit.impact_velocity)
     apart = float(orbit.bounce_height - (start + (velocity - end / 2) * end))
@@ -131,7 +134,7 @@ def meeting_flights(parameters: ContactHistory, release: Release) -> xr.Dataset:
             "contact_duration": ((), end),
             "meeting_time": ((), meeting),
             "meeting_height": ((), float(start + (velocity - meeting / 2) * meeting)),
-            "delay": ((), float(Signature(exact.contact)().delay)),
+            "delay": ((), float(Signature(contact)().delay)),
         },
         coords={"time": time},
     )

@@ -23,8 +23,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from bouncing_ball.contacts.contact_law import OscillatorLaw
-from bouncing_ball.contacts.permanent_contact import permanent_contact_threshold
 from bouncing_ball.contacts.release import Release
+from bouncing_ball.contacts.spring_damper import permanent_contact_threshold
 
 
 @dataclass(frozen=True, repr=False)

@@ -1,3 +1,0 @@
-"""The names of the bifurcations in datasets, figures and texts."""
-
-SADDLE_NODE, PERIOD_DOUBLING = "saddle-node", "period doubling"

@@ -3,7 +3,7 @@
 from bouncing_ball.claims.claim import Claim, claim, formula, formulas, of_formula
 from bouncing_ball.claims.evidence import GRID
 from bouncing_ball.claims.verdict import at_most
-from bouncing_ball.datasets.bifurcations import PERIOD_DOUBLING, SADDLE_NODE
+from bouncing_ball.datasets import PERIOD_DOUBLING, SADDLE_NODE
 
 MOTION = formulas("motion")
 saddle_node = formula(SADDLE_NODE, "Eq. 7", "the n-T orbits appear here, in a saddle-node")

@@ -197,24 +197,19 @@ class ResonantMotion(ContactMotion):
     def __call__(self, time: np.ndarray) -> State:
         start = self.start, self.start_rate, self.phase, self.forcing
         value, rate, second, _ = SpringDamper(self.omega, self.zeta).flow(time, *start)
-        loss, stiffness, forcing, bend = (
-            2 * self.decay,
-            self.stiffness,
-            self.forcing,
-            np.abs(second),
-        )
+        loss, stiffness, forcing = 2 * self.decay, self.stiffness, self.forcing
         third = table(self.phase + time, forcing)[0] - loss * second - stiffness * rate
         moved = np.sqrt(rate * rate + (self.omega * value + 1 / self.omega) ** 2)
         fast = moved + forcing
         by_second = forcing + (loss + self.omega) * fast
         by_third = forcing + loss * by_second + stiffness * fast
         by_fourth = forcing + loss * by_third + stiffness * by_second
-        steep = np.maximum(by_second, -2 * (value + rate))
-        bounds = steep, np.maximum(by_third, 3 * bend), np.maximum(by_fourth, 12 * (steep + bend))
+        by_second = np.maximum(by_second, -2 * (value + rate))
+        by_third = np.maximum(by_third, 3 * np.abs(second))
+        by_fourth = np.maximum(by_fourth, 12 * (by_second + np.abs(second)))
         # Without forcing, a free oscillation of at most this size never ends the contact.
-        return State(
-            value, rate, second, third, *bounds, (forcing == 0) & (moved * self.omega <= 1)
-        )
+        ended = (forcing == 0) & (moved * self.omega <= 1)
+        return State(value, rate, second, third, by_second, by_third, by_fourth, ended)
 
     def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
         return time

@@ -7,7 +7,6 @@ from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.restitution_law import RestitutionLaw
 from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.errors import require
 from bouncing_ball.motion.contact import ContactDynamics
 from bouncing_ball.motion.corrected import CorrectedDynamics
 from bouncing_ball.motion.dynamics import Dynamics
@@ -33,9 +32,6 @@ def dynamics_of(law: Law, amplitude: ArrayLike) -> Dynamics:
         return ContactDynamics.of(law, amplitude)
     if isinstance(law, Signature):
         return CorrectedDynamics.of(law, amplitude)
-    if not isinstance(law, RestitutionLaw):
-        law = np.asarray(law, dtype=float)
-        require((law > 0) & (law <= 1), law, "restitution coefficient r", "in (0, 1]")
     return RestitutionDynamics.of(law, amplitude)
 
 

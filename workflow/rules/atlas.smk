@@ -8,6 +8,7 @@ CHARTS = ["max_height", "bounce_velocity", "phase", "apparent_restitution", "pag
 
 
 rule atlas_shard:
+    """Some rows of tiles of the atlas, or the limits of all tiles."""
     message:
         "Atlas: shard {wildcards.shard}"
     input:

@@ -4,7 +4,7 @@
 from bouncing_ball.pipeline.atlas import minutes, names
 
 ATLAS = config["atlas"]
-CHARTS = ["max_height", "bounce_velocity", "phase", "apparent_restitution", "page"]
+CHARTS = ["bounce_velocity", "phase", "apparent_restitution", "page"]
 
 
 rule atlas_shard:

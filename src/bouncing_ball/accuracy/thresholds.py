@@ -12,13 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize.elementwise import find_root
 
-from bouncing_ball.accuracy.errors import SIMPLE, modulus, relative
-from bouncing_ball.accuracy.quantities import OF_IMPACTS, OF_ORBITS, values
+from bouncing_ball.accuracy.errors import SIMPLE, errors, modulus
+from bouncing_ball.accuracy.quantities import OF_IMPACTS, OF_ORBITS
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.orbits.corrected_model import CorrectedModel
-from bouncing_ball.orbits.restitution_model import RestitutionModel
-from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 
 Numbered = Callable[[np.ndarray, np.ndarray], np.ndarray]
 """Values, at ratios ϖ, of the functions with given numbers; all three arrays have one shape."""
@@ -32,11 +29,13 @@ _CLOSE = 1e-13
 
 
 class ThresholdStatus(StrEnum):
-    """Outcome of the search for a threshold."""
+    """Outcome of the search for a threshold: found, within the tolerance at every ϖ scanned, or
+    outside it at the largest.
+    """
 
     FOUND = "found"
-    ALWAYS_WITHIN = "within the tolerance at every frequency ratio scanned"
-    NEVER_WITHIN = "outside the tolerance at the largest frequency ratio scanned"
+    ALWAYS_WITHIN = "within"
+    NEVER_WITHIN = "outside"
 
 
 class Thresholds(NamedTuple):
@@ -211,26 +210,16 @@ def search(
     damping, index, lam = (np.atleast_1d(x) for x in np.broadcast_arrays(zeta, n, amplitude))
     size = len(quantities), len(SIMPLE), lam.size
 
-    rigid = RestitutionModel(SpringDamper(1.0, damping, rule).restitution)
-    known = dict(zip(quantities, values(rigid, index, lam, quantities), strict=True))
-
-    def errors(ratio: np.ndarray, orbit: np.ndarray, asked: Sequence[str]) -> np.ndarray:
-        """Shape (model, quantity, m); the restitution model is the same at every ϖ."""
-        contact = SpringDamper(ratio, damping[orbit], rule)
-        exact, corrected = (
-            values(model, index[orbit], lam[orbit], asked)
-            for model in (SpringDamperModel(contact), CorrectedModel.of_contact(contact))
-        )
-        simple = [known[q][orbit] if known[q].ndim else known[q] for q in asked]
-        of_models = np.stack([np.broadcast_to(x, exact.shape) for x in (simple, corrected)])
-        return relative(exact, of_models)
+    def at(ratio: np.ndarray, orbit: np.ndarray, asked: Sequence[str]) -> np.ndarray:
+        """Shape (model, quantity, m)."""
+        return errors(SpringDamper(ratio, damping[orbit], rule), index[orbit], lam[orbit], asked)
 
     def along(ratio: np.ndarray, row: np.ndarray, asked: Sequence[str]) -> np.ndarray:
         model, orbit = np.divmod(row, lam.size)
-        return errors(ratio, orbit, asked)[model, :, np.arange(row.size)].T
+        return at(ratio, orbit, asked)[model, :, np.arange(row.size)].T
 
     orbit, ratio = np.divmod(np.arange(lam.size * ratios.size), ratios.size)
-    scanned = errors(ratios[ratio], orbit, quantities).swapaxes(0, 1)
+    scanned = at(ratios[ratio], orbit, quantities).swapaxes(0, 1)
     every = scanned.reshape(-1, ratios.size)
     found = thresholds(by_quantity(along, quantities, size[1] * size[2]), ratios, every, tolerance)
     # The restitution model is the first model.

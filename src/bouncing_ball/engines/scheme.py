@@ -132,16 +132,18 @@ def restitution_in_steps(
         raise ModelError(f"{steps} steps in a contact are too few: use at least {_FEWEST}")
     zeta = float(damping_ratio)
     h = free_impact(zeta, release)[0] / steps
-    power, lag = _step(scheme, 2 * zeta, h)
+    step, lag = _step(scheme, 2 * zeta, h)
     start = np.asarray(fraction, dtype=float).ravel()
-    # The states of all impacts; the number of steps doubles with each power of the matrix.
-    states = np.stack([-h * start, -np.ones_like(start)])[:, None]
-    while states.shape[1] < 2 * steps:
-        states = np.concatenate([states, np.tensordot(power, states, 1)], axis=1)
-        power = power @ power
-    x, v = states
-    ended = x + (lag if release is Release.FORCE else 0.0) * v >= 0
-    return v[np.argmax(ended, axis=0), np.arange(len(start))].reshape(np.shape(fraction))
+    grip = np.array([1.0, lag if release is Release.FORCE else 0.0])
+    state, further = np.stack([-h * start, -np.ones_like(start)]), 2 * steps
+    # A contact ends once within so many further steps, or the ball stays and r is -1. The number
+    # is halved by a power of the matrix.
+    while further > 1:
+        half = further // 2
+        later = np.linalg.matrix_power(step, half) @ state
+        state, further = np.where(grip @ later < 0, later, state), further - half
+    state = step @ state
+    return np.where(grip @ state < 0, -1.0, state[1]).reshape(np.shape(fraction))
 
 
 def error_in_steps(scheme: Scheme, damping_ratio: float, release: Release, steps: int) -> float:

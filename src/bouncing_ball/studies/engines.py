@@ -70,8 +70,7 @@ def greatest_heights(orbit: Orbit, restitution: np.ndarray) -> np.ndarray:
     """
     contact, lam, tops = orbit.law, orbit.amplitude, []
     phase, speed = orbit.phase, orbit.relative_impact_velocity
-    for r in restitution:
-        zeta = damping_ratio(r, contact.release)
+    for zeta in damping_ratio(restitution, contact.release):
         law = SpringDamper(contact.frequency_ratio, zeta, contact.release)
         phase, speed, *_ = next_impact(law, lam, phase, speed)
         velocity = lam * np.cos(phase) + speed

@@ -11,7 +11,7 @@ import bouncing_ball
 ROOT = Path(bouncing_ball.__file__).parent
 PACKAGE = "bouncing_ball"
 # Modules that any layer may import.
-COMMON = ("errors", "parameters", "signatures")
+COMMON = ("errors", "parameters", "call_signatures")
 
 # For each layer, from the bottom: other layers of the package, and packages from outside.
 ALLOWED = {

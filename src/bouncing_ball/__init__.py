@@ -28,7 +28,7 @@ one to which the arguments broadcast, the docstring gives it. NaN stands for a n
 exist, such as the phase of an orbit below its saddle-node.
 
 The package consists of layers, each of which imports only from the layers above it in this list,
-and from ``errors``, ``parameters`` and ``signatures``:
+and from ``errors``, ``parameters`` and ``call_signatures``:
 
 ``datasets``      names, symbols, units and netCDF files
 ``contacts``      the impact: restitution map, spring-damper contact, permanent contact

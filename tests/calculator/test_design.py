@@ -352,7 +352,7 @@ def test_a_tolerance_in_percent_and_one_with_many_digits():
 
 def test_a_tolerance_that_every_contact_meets_needs_no_frequency_ratio():
     found = design(**STEEL, restitution=0.85, quantity="permanent_contact", tolerance=0.99)
-    assert found.reason == "the error is within the tolerance at every frequency ratio scanned"
+    assert found.reason == "the error is within the tolerance at every ϖ scanned"
 
 
 @pytest.mark.parametrize(

@@ -8,8 +8,10 @@ import pytest
 from PIL import Image
 
 from bouncing_ball import design
+from bouncing_ball.accuracy.quantities import Quantity
 from bouncing_ball.calculator.page_data import page
 from bouncing_ball.figures.design_page import draw
+from bouncing_ball.figures.labels import QUANTITIES
 
 CASE = ("design", "--mass", "20 g", "--frequency", "50 Hz", "--acceleration", "0.8 g",
         "--restitution", "0.85")  # fmt: skip
@@ -123,6 +125,8 @@ def test_the_page_shows_the_case(found, data):
     figure = draw(asdict(found), data, [("stiffness", "36 N/m")])
     star = next(line for line in figure.axes[0].lines if line.get_label() == "this contact")
     assert star.get_xydata().tolist() == [[0.65, found.frequency_ratio]]
+    labels = [label.get_text() for label in figure.axes[1].get_yticklabels()]
+    assert labels == [QUANTITIES[quantity] for quantity in Quantity]
     texts = " ".join(text.get_text().replace("\n", " ") for text in figure.texts)
     assert found.verdict in texts and found.reason in texts
 

@@ -10,7 +10,7 @@ from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
 from bouncing_ball.contacts.laws.impedance import Impedance
 from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.contacts.laws.tsuji import Tsuji
-from bouncing_ball.contacts.permanent_contact import _by_panels, holds, permanent_contact
+from bouncing_ball.contacts.permanent_contact import _steady, holds, permanent_contact
 from bouncing_ball.errors import ModelError
 
 
@@ -39,8 +39,9 @@ def test_a_contact_below_the_threshold_is_held_and_above_it_is_not(kind):
     below, next_to, above = lowest(0.999, 0.9999, 1.001)
     assert below > max(above, 0)
     assert abs(next_to) < 2e-3
-    # The two computations of the steady contact agree, where its threshold is known.
-    assert holds(law, 0.999 * threshold) and not holds(law, 1.001 * threshold)
+    # The steady contacts at these Λ agree with the threshold.
+    held = [np.isfinite(_steady(law, amplitude=share * threshold)) for share in (0.999, 1.001)]
+    assert held == [True, False] == [holds(law, share * threshold) for share in (0.999, 1.001)]
 
 
 def test_a_contact_that_is_weakly_damped_is_refused():
@@ -49,17 +50,16 @@ def test_a_contact_that_is_weakly_damped_is_refused():
 
 
 @pytest.mark.parametrize("law", [Tsuji(10.0, 0.3), Tsuji(100.0, 0.03), KuwabaraKono(1e3, 0.03)])
-def test_more_nodes_change_nothing(law, monkeypatch):
+def test_fewer_nodes_change_nothing(law, monkeypatch):
     found = permanent_contact(law)
-    monkeypatch.setattr("bouncing_ball.contacts.permanent_contact._LEVELS", (192,))
-    # The square of what is left of the path, 1e-5, would be 1e-10.
-    assert found == pytest.approx(permanent_contact(law), rel=5e-12)
+    monkeypatch.setattr("bouncing_ball.contacts.permanent_contact._TOLERANCE", 1e-8)
+    # The method is of the fourth order, so that the grid has nearly twice the spacing.
+    assert found == pytest.approx(permanent_contact(law), rel=1e-10)
 
 
 @pytest.mark.parametrize("law", [ElastoBacklash(3.0, 0.5), Impedance(5.0, 0.2, 0.3)])
-def test_contacts_by_panels_have_the_thresholds_of_the_closed_forms(law):
-    found = [_by_panels(law, at_surface) for at_surface in (False, law.feels_load)]
-    assert np.nanmin(found) == pytest.approx(permanent_contact(law), rel=1e-10)
+def test_steady_contacts_have_the_thresholds_of_the_closed_forms(law):
+    assert _steady(law, law.feels_load) == pytest.approx(permanent_contact(law), rel=1e-10)
 
 
 def test_an_impedance_by_depth_touches_the_surface_at_its_threshold():

@@ -20,7 +20,6 @@ from bouncing_ball.contacts.laws.impedance import Impedance
 from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.contacts.laws.tsuji import Tsuji
 from bouncing_ball.contacts.permanent_contact import (
-    known_threshold,
     permanent_contact,
     permanent_contact_threshold,
 )
@@ -248,7 +247,8 @@ def test_the_defaults_are_the_closed_forms(release):
             np.testing.assert_allclose(getattr(computed, name), 0.0, atol=1e-11)
     for case in ((0.5, 0.02), (1.0, 0.136), (2.0, 0.136), (10.0, 0.136)):
         found = permanent_contact(Spring(*case, release))
-        assert found == pytest.approx(float(permanent_contact_threshold(*case, release)), rel=1e-12)
+        # A tenth of the bound of the residual, which changes its sign within every interval.
+        assert found == pytest.approx(float(permanent_contact_threshold(*case, release)), rel=1e-10)
     # Grazing and long contacts, and contacts that resume below the level, included.
     rng = np.random.default_rng(0)
     phase, velocity = rng.uniform(-3, 3, 400), -rng.uniform(2, 6, 400)
@@ -309,8 +309,6 @@ hertz = pytest.mark.parametrize("law", HERTZ, ids=[law.name for law in HERTZ])
 @hertz
 def test_a_ball_on_a_table_at_rest_comes_to_rest(law, few_panels):
     sequence = simulate(law, 0.0, 0.0, -2.0, 200)
-    # The threshold of the first law is not known, because it is too weakly damped.
-    assert np.isnan(known_threshold(law)) == (law is HERTZ[0])
     assert sequence.status == Status.PERMANENT_CONTACT
     speed = -sequence.relative_velocity[np.isfinite(sequence.time)]
     assert np.all(np.diff(speed) < 0)

@@ -17,8 +17,6 @@ rule paper:
             *("figures.article.render", "figures.atlas.tables", "figures.tables.rows"),
             "claims.tally",
         ),
-    params:
-        figures=sum(name.startswith("fig") for name in DRAWINGS),
     output:
         paper="results/paper.md",
         supplement="results/supplement.md",

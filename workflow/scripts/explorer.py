@@ -1,10 +1,12 @@
 """The explorer's page from its reference orbits and the settings of engines."""
 
+from bouncing_ball.calculator.results import QUANTITIES
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.engines.reference import as_json
 from bouncing_ball.figures.explorer.document import to_html
 from bouncing_ball.pipeline.job import logged, read_input
 
 with logged(snakemake) as lines:
-    write_text(snakemake.output.html, to_html(read_input(snakemake.input.data), as_json()))
+    page = to_html(read_input(snakemake.input.data), as_json(), QUANTITIES)
+    write_text(snakemake.output.html, page)
     lines += snakemake.output

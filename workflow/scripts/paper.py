@@ -26,6 +26,6 @@ with logged(snakemake) as lines:
     for template, path in (("article", "paper"), ("supplement", "supplement")):
         file = Path(snakemake.input.templates[0]).with_name(f"{template}.md.j2")
         write_text(snakemake.output[path], render_article(file, data, tables))
-    last = tally(data["claims"], snakemake.params.figures)
+    last = tally(data["claims"])
     write_text(snakemake.output.tally, last + "\n")
     lines.append(last)

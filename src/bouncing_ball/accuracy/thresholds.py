@@ -29,11 +29,13 @@ _CLOSE = 1e-13
 
 
 class ThresholdStatus(StrEnum):
-    """Outcome of the search for a threshold."""
+    """Outcome of the search for a threshold: found, within the tolerance at every ϖ scanned, or
+    outside it at the largest.
+    """
 
     FOUND = "found"
-    ALWAYS_WITHIN = "within the tolerance at every frequency ratio scanned"
-    NEVER_WITHIN = "outside the tolerance at the largest frequency ratio scanned"
+    ALWAYS_WITHIN = "within"
+    NEVER_WITHIN = "outside"
 
 
 class Thresholds(NamedTuple):

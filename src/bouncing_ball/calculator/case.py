@@ -4,6 +4,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from bouncing_ball.accuracy.errors import models
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.contact_scales import rest
@@ -101,17 +104,17 @@ class Case:
             "corrected": CorrectedModel(Signature(self.law)),
         }
 
-    def instant(self, n: int) -> Instant:
-        """Signature of the contact at the impact speed of the restitution model's n-T orbit."""
+    def instant(self, n: ArrayLike) -> Instant:
+        """Signature of the contact at the impact speeds of the restitution model's n-T orbits."""
         r = self.contact.restitution
         # The r of a contact law is interpolated, and may exceed 1 by rounding.
         return self.models["corrected"].signature(rigid_speed(n, r))._replace(restitution=r)
 
-    def has_its_restitution(self, n: int) -> bool:
-        """Whether the contact law has the r of ``contact`` at the impact speed of the n-T orbit."""
+    def has_its_restitution(self, n: ArrayLike) -> np.ndarray:
+        """Whether the contact law has the r of ``contact`` at the impact speed of n-T orbits."""
         r = float(self.contact.restitution)
         own = self.models["corrected"].signature(rigid_speed(n, r)).restitution
-        return abs(float(own) - r) < _SAME
+        return np.abs(own - r) < _SAME
 
     def in_si(self) -> dict[str, float]:
         """Stiffness k = mω² in N/m, damping c = 2ζmω in N s/m, where ω = ϖΩ, contact time in s,

@@ -22,6 +22,7 @@ from bouncing_ball.calculator.results import (
 )
 from bouncing_ball.calculator.units import Unit, number, percent
 from bouncing_ball.calculator.verdict import assessed, chosen, judged_by_motion, notes
+from bouncing_ball.call_signatures import Range
 from bouncing_ball.calls.model import Index, Rule
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.law_choice import law_named
@@ -31,7 +32,6 @@ from bouncing_ball.engines import engine_named
 from bouncing_ball.engines.engine import ERROR, Physical
 from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError, one_of, require
 from bouncing_ball.orbits.restitution_model import RestitutionModel
-from bouncing_ball.signatures import Range
 
 STEPS = 50
 """Time steps in one contact, for the rule of the largest time step."""
@@ -74,7 +74,7 @@ def design(
     n: Index | None = None,
     release: Rule | None = None,
     law: str | None = None,
-    quantity: str = "max_height",
+    quantity: Annotated[str, Quantity] = "max_height",
     tolerance: Annotated[Any, Unit("", "1 %", Range(0, 1))] = 0.01,
     engine: str | None = None,
     restitution_error: Annotated[Any, Unit("", "0.001", Range(0, 1))] = ERROR,
@@ -148,8 +148,7 @@ def design(
         Name of a contact law, such as hunt-crossley, in place of the linear one. It has the given
         restitution coefficient and contact time at the impact speed of the orbit.
     quantity
-        The quantity that must be accurate: max_height, bounce_velocity, phase,
-        apparent_restitution, saddle_node, period_doubling or permanent_contact.
+        Name of the quantity that must be accurate.
     tolerance
         Largest relative error of the quantity, such as "5 %" or 0.05.
     engine

@@ -8,7 +8,7 @@ import numpy as np
 
 from bouncing_ball.accuracy import error_law
 from bouncing_ball.accuracy.errors import relative
-from bouncing_ball.accuracy.quantities import OF_ORBITS, Quantity
+from bouncing_ball.accuracy.quantities import OF_IMPACTS, OF_ORBITS, Quantity
 from bouncing_ball.calculator.case import Case
 from bouncing_ball.calculator.results import Errors, Family, Standing
 from bouncing_ball.errors import NoOrbitError
@@ -50,32 +50,33 @@ def _loads(orbit: Any) -> tuple[float, float]:
     return float(np.max(depth)), float(np.max(force))
 
 
-def by_error_law(case: Case, n: int) -> tuple[Errors, bool]:
-    """Moduli of the restitution model's errors by the error law, and whether the law holds here.
+def by_error_law(case: Case, n: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The restitution model's errors that the error law predicts, shape (quantity, n), and whether
+    it holds, shape (n,).
 
-    The error of the permanent contact, |K₂|/ϖ², is known for the linear contact only.
+    The error of the permanent contact, K₂/ϖ², is known for the linear contact only.
 
     Examples
     --------
     >>> from bouncing_ball.calculator.case import Table
     >>> from bouncing_ball.contacts.spring_damper import SpringDamper
     >>> case = Case(1.0, Table(1.0, 1.0, 1.0), SpringDamper(10.0, 0.0))
-    >>> by_error_law(case, 1)[0]["permanent_contact"]
-    0.01
+    >>> by_error_law(case, np.array([1]))[0][-1].tolist()
+    [-0.01]
     """
-    instant, lam, contact = case.instant(n), case.table.amplitude, case.contact
-    law, holds = np.full(len(Quantity), np.nan), False
-    if case.models["restitution"].orbit(n, lam).exists:
-        first = error_law.first_order(n, instant, lam)
-        law[: len(first)] = [*first.values()]
-        holds = bool(error_law.small_parameter(n, instant, lam) < error_law.STATED)
-        # If the r of a contact law depends on the speed, it equals the r of the restitution model
-        # at one speed only.
-        holds = holds and case.has_its_restitution(n)
+    lam, contact = case.table.amplitude, case.contact
+    predicted, holds = np.full((len(Quantity), n.size), np.nan), np.zeros(n.size, dtype=bool)
+    there = case.models["restitution"].orbit(n, lam).exists
+    orbits = n[there], case.instant(n[there]), lam
+    predicted[: len(OF_IMPACTS), there] = [*error_law.first_order(*orbits).values()]
+    # If the r of a contact law depends on the speed, it equals the r of the restitution model at
+    # one speed only.
+    holds[there] = case.has_its_restitution(n[there])
+    holds[there] &= error_law.small_parameter(*orbits) < error_law.STATED
     if case.law is None:
         second = error_law.permanent_contact_coefficient(contact.damping_ratio, contact.release)
-        law[-1] = second / contact.frequency_ratio**2
-    return _moduli(law), holds
+        predicted[-1] = second / contact.frequency_ratio**2
+    return predicted, holds
 
 
 def _standing(orbit: Orbit, values: np.ndarray, amplitude: float) -> Standing:
@@ -134,20 +135,22 @@ def families(case: Case, asked: Sequence[int], or_first: bool = False) -> tuple[
             f"no {which} in any model{rests}: the table's acceleration is Λ = {lam:.4g} times "
             f"gravity, and the {asked[0]}-T orbit needs {lowest:.4g}"
         )
+    by_law, holds = by_error_law(case, n)
     return tuple(
-        _family(case, asked[k], [orbit[k] for orbit in orbits], values[:, :, k])
+        _family(case, asked[k], [x[k] for x in orbits], values[:, :, k], by_law[:, k], holds[k])
         for k in np.flatnonzero(there).tolist()
     )
 
 
-def _family(case: Case, n: int, orbits: Sequence[Any], values: np.ndarray) -> Family:
-    """A family from its orbits in all models and the ``values`` of the quantities, shape
-    (model, quantity).
+def _family(
+    case: Case, n: int, orbits: Sequence[Any], values: np.ndarray, by_law: np.ndarray, holds: bool
+) -> Family:
+    """A family from its orbits in all models, the ``values`` of the quantities, shape
+    (model, quantity), and the result of the error law.
     """
     unit, orbit = case.table, orbits[0]
     standing = [_standing(*each, unit.amplitude) for each in zip(orbits, values, strict=True)]
     depth, force = _loads(orbit)
-    law_errors, holds = by_error_law(case, n)
     restitution, corrected = map(_moduli, relative(values[0], values[1:]))
     return Family(
         n=n,
@@ -163,6 +166,6 @@ def _family(case: Case, n: int, orbits: Sequence[Any], values: np.ndarray) -> Fa
         peak_force_over_weight=finite(force),
         errors=restitution,
         corrected_errors=corrected,
-        law_errors=law_errors,
-        law_holds=holds,
+        law_errors=_moduli(by_law),
+        law_holds=bool(holds),
     )

@@ -14,7 +14,7 @@ from bouncing_ball.errors import NoOrbitError
 # of any simulation. The grid is fine, so that two crossings hardly fall between neighbours.
 RATIOS = np.geomspace(1.0, 1e6, 97)
 
-NO_ORBIT = "the restitution model has no such orbit"
+NO_ORBIT = "no orbit"
 """A status in addition to :class:`~bouncing_ball.accuracy.thresholds.ThresholdStatus`."""
 
 

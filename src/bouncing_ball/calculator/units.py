@@ -17,8 +17,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from bouncing_ball.call_signatures import Range
 from bouncing_ball.errors import ParameterError
-from bouncing_ball.signatures import Range
 
 # A number, and the rest of the text.
 _TEXT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)

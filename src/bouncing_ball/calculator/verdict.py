@@ -8,8 +8,10 @@ import numpy as np
 
 from bouncing_ball.accuracy.errors import modulus, relative
 from bouncing_ball.accuracy.quantities import Quantity
+from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.attractors.motions import Kind
 from bouncing_ball.calculator.case import Case
+from bouncing_ball.calculator.needed import NO_ORBIT
 from bouncing_ball.calculator.results import QUANTITIES, Family, Motion, Needed
 from bouncing_ball.calculator.units import percent, shown
 from bouncing_ball.contacts.laws.impedance import Impedance
@@ -24,6 +26,13 @@ class Verdict(NamedTuple):
     is_good_enough: bool
     verdict: str
     reason: str
+
+
+_NO_CROSSING = {
+    ThresholdStatus.ALWAYS_WITHIN: "the error is within the tolerance at every ϖ scanned",
+    ThresholdStatus.NEVER_WITHIN: "the error is outside the tolerance at the largest ϖ scanned",
+    NO_ORBIT: "the restitution model has no such orbit",
+}
 
 
 def _subject(quantity: str, n: int) -> str:
@@ -120,14 +129,15 @@ def _instead(family: Family, needed: Needed) -> str:
     error, corrected = family.corrected_errors[needed.quantity], family.standing["corrected"]
     same = (family.exists, family.is_stable) == (corrected.exists, corrected.is_stable)
     if same and error is not None and error <= needed.tolerance:
-        return f"; the corrected restitution model is, with {shown(error, '%', needed.tolerance)}"
+        size = shown(error, "%", needed.tolerance)
+        return f"; the corrected restitution model is good enough: its error is {size}"
     return "; nor is the corrected one: simulate the contact"
 
 
 def _reason(needed: Needed, frequency_ratio: float, good: bool, tolerance: str) -> str:
     """A clause that compares the ϖ of the contact with the ϖ that the tolerance needs."""
     if needed.frequency_ratio is None:
-        return f"the error is {needed.status}"
+        return _NO_CROSSING[needed.status]
     place = "above" if frequency_ratio >= needed.frequency_ratio else "below"
     text = (
         f"the contact's frequency ratio ϖ = {frequency_ratio:.4g} is {place} the "
@@ -148,7 +158,7 @@ def chosen(si: Mapping[str, float], needed: Needed, n: int) -> Verdict:
         f"then within {tolerance} of the restitution model's."
     )
     if needed.frequency_ratio is None:
-        return Verdict(True, sentence, f"the error is {needed.status}")
+        return Verdict(True, sentence, _NO_CROSSING[needed.status])
     where = f"at the frequency ratio ϖ = {needed.frequency_ratio:.4g}"
     return Verdict(True, sentence, f"the error crosses {tolerance} for the last time {where}")
 
@@ -183,7 +193,7 @@ def notes(case: Case, family: Family, motion: Motion) -> tuple[str, ...]:
             "stiffness, damping, ϖ and ζ, and the ϖ that is needed, are those of a linear contact: "
             f"it has the r of the {name}, and its duration at the impact"
         )
-        if not all(case.has_its_restitution(n) for n in (family.n, family.n + 1)):
+        if not np.all(case.has_its_restitution([family.n, family.n + 1])):
             found.append(
                 "the restitution of this law depends on the speed: it is r at the speed of the "
                 "restitution model's lowest stable orbit"

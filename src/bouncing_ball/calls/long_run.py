@@ -7,12 +7,12 @@ from typing import Annotated, Any
 import numpy as np
 
 from bouncing_ball.attractors import labelled
+from bouncing_ball.call_signatures import check, count, takes
 from bouncing_ball.calls.model import Positive, impact_model, model_of_impact
 from bouncing_ball.calls.motion import AnyAmplitude, simulate
 from bouncing_ball.datasets.labelled import Grid, Labelled
 from bouncing_ball.errors import ParameterError
 from bouncing_ball.orbits.model import ImpactModel
-from bouncing_ball.signatures import check, count, takes
 
 # Number of impacts of one ball, and numbers of starts or samples.
 Followed = Annotated[int, count(10_000_000, low=10)]

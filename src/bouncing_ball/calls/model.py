@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 
+from bouncing_ball.call_signatures import Range, check, count
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.law_choice import law_named, law_of_impact
 from bouncing_ball.contacts.release import Release
@@ -17,7 +18,6 @@ from bouncing_ball.orbits.law_model import LawModel
 from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
-from bouncing_ball.signatures import Range, check, count
 
 # Range of the frequency ratio and of the amplitude, beyond which their squares leave no digits.
 FrequencyRatio = Annotated[Any, Range(1e-8, 1e8, "[]")]

@@ -3,9 +3,9 @@
 import math
 from typing import Annotated, Any
 
+from bouncing_ball.call_signatures import Range, check, count, takes
 from bouncing_ball.calls.model import AnyAmplitude, Positive, model, model_of_impact
 from bouncing_ball.orbits.model import labelled
-from bouncing_ball.signatures import Range, check, count, takes
 
 Finite = Annotated[Any, Range()]
 # One impact takes a third of a millisecond, so that the largest number takes half a minute.

@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 
+from bouncing_ball.call_signatures import Range, check, count, takes
 from bouncing_ball.calls.model import Index, Positive, impact_model, model, model_of_limits
 from bouncing_ball.contacts.batch import plain
 from bouncing_ball.errors import NoOrbitError, ParameterError
@@ -12,7 +13,6 @@ from bouncing_ball.orbits.law_model import law_at_orbit
 from bouncing_ball.orbits.model import ImpactModel, labelled
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.stability import Side
-from bouncing_ball.signatures import Range, check, count, takes
 
 Amplitude = Annotated[Any, Range(0, 1e8, "(]")]
 Points = Annotated[int, count(10_000, low=10)]

@@ -96,9 +96,9 @@ def located(data: xr.Dataset) -> Iterator[Shown]:
     """Bifurcations that a continuation located: along branches, or in Table 1."""
     for kind in Bifurcation:
         if "special_kind" in data:
-            part = data.assign(place=data.special_amplitude.where(data.special_kind == kind))
+            part = data.assign(place=data["special_amplitude"].where(data.special_kind == kind))
         else:
-            part = data.sel(bound=kind).rename(computed="place")
+            part = data.assign(place=data["computed"]).sel(bound=kind)
         names = ("place", "special_phase", "special_contact_duration")
         model, n, *limit = _contacts(part, *names)
         yield Shown(model, model.orbit_of(n, *limit), kind)
@@ -173,7 +173,10 @@ def disagreements(name: str, data: xr.Dataset) -> dict[str, np.ndarray]:
 
     Only orbits that are admissible according to the dataset are simulated, and no bifurcations.
     """
-    found = [list(find(data)) for find, names in SHOWN.items() if name in names.split()]
+    try:
+        found = [list(find(data)) for find, names in SHOWN.items() if name in names.split()]
+    except KeyError as error:
+        raise ModelError(f"{name} lacks a variable: {error.args[0]}") from error
     if not all(sum(part.orbit.size for part in parts) for parts in found or [[]]):
         raise ModelError(f"{name}: no orbit to compare")
     every = {kind: [np.empty(0)] for kind in BUDGETS}
@@ -202,7 +205,7 @@ def witness(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
     Raises
     ------
     ModelError
-        If a dataset has no orbits of a kind that it should show.
+        If a dataset lacks a variable, or orbits of a kind that it should show.
     """
     found = [list(disagreements(*item).values()) for item in data.items()]
     worst = [[max(values, default=np.nan) for values in kinds] for kinds in found]

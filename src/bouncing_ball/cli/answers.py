@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball.accuracy import error_law as error_laws
+from bouncing_ball.call_signatures import takes
 from bouncing_ball.calls import model as models
 from bouncing_ball.calls import motion, orbits
 from bouncing_ball.cli.readable import lines as lines
@@ -20,7 +21,6 @@ from bouncing_ball.motion.sequence import Status
 from bouncing_ball.orbits.continued import restitution_speed
 from bouncing_ball.orbits.orbit import OBSERVABLES, Orbit
 from bouncing_ball.orbits.stability import Bifurcation
-from bouncing_ball.signatures import takes
 
 Answer = dict[str, Any]
 

@@ -9,11 +9,11 @@ from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.calculator import design as calculator
 from bouncing_ball.calculator.results import QUANTITIES, Contact, Design, Family, rows
 from bouncing_ball.calculator.units import percent, shown
+from bouncing_ball.call_signatures import takes
 from bouncing_ball.cli.options import option
 from bouncing_ball.datasets.files import PICTURES, require_writable
 from bouncing_ball.engines.engine import EngineSettings
 from bouncing_ball.errors import NoOrbitError, ParameterError, extra
-from bouncing_ball.signatures import takes
 
 _SIMPLE = "error law", "corrected"
 

@@ -3,6 +3,7 @@
 import argparse
 import builtins
 import collections.abc
+import enum
 import inspect
 import math
 import pathlib
@@ -12,9 +13,9 @@ import typing
 from collections.abc import Callable
 from typing import Any, NoReturn
 
+from bouncing_ball.call_signatures import Range
 from bouncing_ball.cli.output import say
 from bouncing_ball.errors import escaped
-from bouncing_ball.signatures import Range
 
 _OTHER_NAMES = {"parameters": "set", "from_engine": "from", "all_families": "all"}
 _OTHER_NAMES |= {"amplitudes": "amplitude"}
@@ -119,6 +120,8 @@ def _reading(annotation: Any) -> dict[str, Any]:
     match typing.get_origin(annotation) or annotation:
         case typing.Annotated if isinstance(kinds[1], Range):
             return {"type": _within(kinds[1]), "metavar": "N" if kinds[1].whole else "X"}
+        case typing.Annotated if isinstance(kinds[1], enum.EnumType):
+            return {"choices": list(map(str, kinds[1].__members__.values()))}
         case typing.Literal:
             return {"choices": kinds}
         case builtins.tuple if kinds[-1] is not ...:

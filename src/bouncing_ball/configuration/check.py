@@ -34,16 +34,20 @@ def configuration_model(studies: Mapping[str, str], config: Mapping[str, Any]) -
     Raises
     ------
     ConfigurationError
-        If a study, or the parameters of an artifact, are missing.
+        If a study, or the parameters of an artifact, are missing, or if a key of the configuration
+        that is no section is wrong.
     """
-    places: dict[str, dict[str, Any]] = {name: {} for name in SECTIONS}
+    arguments = {artifact: taken(study) for artifact, study in sorted(studies.items())}
     keys: dict[str, Any] = {"atlas": (Plan, ...)}
-    for artifact, study in sorted(studies.items()):
-        for name, kind in taken(study).items():
-            if name == "parameters":
-                places[section(artifact, config)][artifact] = (kind, ...)
-            else:
-                keys[name] = (kind, ...)
+    for each in arguments.values():
+        keys |= {name: (kind, ...) for name, kind in each.items() if name != "parameters"}
+    keys |= dict.fromkeys(SECTIONS, (dict, ...))
+    # The section of an artifact is known only if all sections are there.
+    check(create_model("Configuration", __base__=_Sections, **keys), config)
+    places: dict[str, dict[str, Any]] = {name: {} for name in SECTIONS}
+    for artifact, each in arguments.items():
+        if "parameters" in each:
+            places[section(artifact, config)][artifact] = (each["parameters"], ...)
     for name, fields in places.items():
         keys[name] = (create_model(name, __base__=Parameters, **fields), ...)
     return create_model("Configuration", __base__=_Sections, **keys)
@@ -131,6 +135,7 @@ _WORDS = {
     "greater than or equal to": "at least",
     "less than or equal to": "at most",
     "a valid tuple": "a list",
+    "a valid dictionary": "a mapping",
     "a valid integer": "a whole number",
     "a valid number": "a number (powers of ten are written 1.0e+4, with point and sign)",
 }
@@ -143,7 +148,8 @@ def _sentence(model: type[BaseModel], error: Any) -> str:
     for part in error["loc"]:
         parent, inner = schema, schema.get("items" if isinstance(part, int) else "properties", {})
         schema = resolved(inner if isinstance(part, int) else inner.get(part, {}), root)
-    kind, name, description = error["type"], place(error["loc"]), schema.get("description")
+    kind, name = error["type"], place(error["loc"])
+    description = " ".join(schema.get("description", "").split())
     given = f"{name} = {printable(repr(error['input']), 60)}"
     if kind == "extra_forbidden":
         known = list(parent["properties"])

@@ -34,8 +34,10 @@ def _allowed(schema: Mapping[str, Any], root: Mapping[str, Any]) -> str:
 def _rows(schema, root, default, path) -> Iterator[str]:
     schema = resolved(schema, root)
     if schema.get("type") == "object":
-        for key, part in default.items():
-            yield from _rows(schema["properties"][key], root, part, [*path, key])
+        known = schema["properties"]
+        values = default | {k: default.get(k, x.get("default")) for k, x in known.items()}
+        for key, value in values.items():
+            yield from _rows(known[key], root, value, [*path, key])
         return
     items = resolved(schema.get("items", {}), root)
     meaning = schema.get("description", items.get("description", ""))

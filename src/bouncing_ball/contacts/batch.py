@@ -8,7 +8,7 @@ import functools
 import inspect
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from typing import Any, Self
 
 import numpy as np
@@ -142,8 +142,11 @@ class Batch:
         return self.shape[0]
 
     def _entries(self, shape: tuple[int, ...], index: Any) -> Self:
+        # The values have been checked, so that __init__ need not be called.
+        part = object.__new__(type(self))
         values = {f.name: getattr(self, f.name) for f in fields(self)}
-        return replace(self, **{k: _entry(v, shape, index) for k, v in values.items()})
+        part.__dict__.update({k: _entry(v, shape, index) for k, v in values.items()})
+        return part
 
     def __getitem__(self, index: Any) -> Self:
         if not self.shape and index != ():

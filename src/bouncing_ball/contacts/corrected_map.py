@@ -64,10 +64,10 @@ def impact(signature: Signature, amplitude: ArrayLike, phase: ArrayLike, arrival
     sine, cosine = sine_and_cosine(psi)
     x, y = lam * cosine, lam * sine
     speed = x - p
-    law = signature(speed)
-    depth = speed * law.delay
-    after = x + law.restitution * speed + law.load * (1 - y)
-    return Hit(psi, p, speed, depth, y - depth, after, law)
+    instant = signature(speed)
+    depth = speed * instant.delay
+    after = x + instant.restitution * speed + instant.load * (1 - y)
+    return Hit(psi, p, speed, depth, y - depth, after, instant)
 
 
 def meeting(

@@ -13,22 +13,14 @@ transmissibility (1 + 2iζ√x)/(1 - x + 2iζ√x), so that ::
     Λ ≤ Λ_F(ϖ) = √[((1 - x)² + 4ζ² x)/(1 + 4ζ² x)]
 
 Most other laws have no closed form. At the threshold the grip g vanishes exactly once per period
-and does not change its sign. The steady motion is then a contact of duration 2π that starts and
-ends in the same state (p₀, p′₀), where g and its rate of change are zero::
+and does not change its sign. The steady motion is then a solution of the boundary value problem ::
 
-    B = 2π [1 - Λ sin(φ + 2π S) - f],   gain B = 0,   p′₀ + lift B = 0
-    g(p₀, p′₀) = 0,   ∂g/∂p p′₀ + ∂g/∂p′ (1 - Λ sin φ - f) = 0
+    p″ = a - f(p, p′),   a = 1 - Λ sin(φ + t),   0 ≤ t ≤ 2π
+    p(0) = p(2π),   p′(0) = p′(2π),   g = 0 and dg/dt = 0 at t = 0
 
-where φ and Λ are unknown too; for a release at p = 0 the last two equations are p₀ = p′₀ = 0. The
-nodes are those of :mod:`bouncing_ball.contacts.quadrature`. Near this state p is proportional to
-t², so that m/2 in place of m makes the motion smooth. Newton's method starts from a depth
-proportional to 1 - cos t, as the load is for Λ = 1 and φ = π/2. The number of nodes is increased
-until the last Legendre coefficients are small.
-
-The motion under a law with a kink is not smooth at the kink. It is computed by the panels of
-:mod:`bouncing_ball.contacts.collocation`, which end at kinks, over one period that starts and ends
-half a period from the touch. If the force depends on the load, the ball may also touch the surface,
-p = p′ = 0, before the grip vanishes; the lower of the two thresholds is the result.
+where φ and Λ are unknown too; for a release at p = 0 the last two equations are p = p′ = 0. It is
+solved by scipy's collocation, whose adaptive grid also resolves the kinks of a law. If the force
+depends on the load, the ball may also touch the surface, p = p′ = 0, before the grip vanishes.
 
 All quantities are dimensionless.
 """
@@ -39,21 +31,20 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.collocation import MOST_PANELS, Start, march
-from bouncing_ball.contacts.contact_law import ContactLaw, slopes_of
+from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.contact_scales import depth, rest
-from bouncing_ball.contacts.quadrature import Scheme, scheme
 from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import permanent_contact_threshold
 from bouncing_ball.errors import ModelError, require
 
-_LEVELS = (48, 96, 128, 192, 256, 384)
 _PERIOD = 2 * np.pi
-_ITERATIONS = 25
-# Step of φ and Λ at which the iteration ends, their longest step, and the largest ratio of the
-# last Legendre coefficients to the largest one; the error of Λ is of the order of its square.
-_SETTLED, _LONGEST, _SPECTRUM = 1e-11, 0.3, 1e-5
-_TAIL = 3
+# The first grid, its largest size, and the tolerance of the relative residual. The error of Λ is
+# below 10⁻¹¹ then, because the residual changes its sign within every interval. At a given Λ less
+# is enough.
+_GRID, _MOST, _TOLERANCE = 60, 100_000, 1e-9
+_FEW, _COARSE = 20_000, 1e-6
+# Rounding of the grip over its value at rest.
+_SLACK = 1e-7
 _TINY = 1e-300
 
 
@@ -93,110 +84,56 @@ def permanent_contact_minimum(
     return Minimum(permanent_contact_threshold(omega, zeta, release), omega)
 
 
-def _start(s: Scheme, law: ContactLaw) -> np.ndarray:
-    """Unknowns (B, p₀, p′₀, φ, Λ) of a contact whose depth follows 1 - cos t."""
-    one = np.ones(1)
-    mean = depth(law, 0 * one, 0.0, one)[0]
-    push = _PERIOD * mean * np.cos(_PERIOD * s.share)
-    return np.concatenate([push, [0.0, 0.0, np.pi / 2, 1.0]])
+def _steady(law: ContactLaw, at_surface: bool = False, amplitude: float = np.nan) -> float:
+    """Λ of the steady contact that just reaches its release, or that touches the surface.
 
-
-def _touch(law: ContactLaw, unknowns: np.ndarray):
-    """Residuals of the two conditions on the state in which the contact begins and ends.
-
-    The second result are their rows of the Jacobian, with respect to (p₀, p′₀, φ, Λ).
+    With an ``amplitude`` it is this Λ if its steady contact never releases the ball. The result is
+    NaN if no such contact was found.
     """
-    p, u, phase, lam = unknowns
-    if law.release is Release.DISPLACEMENT:
-        return np.array([p, u]), np.eye(2, 4)
-    inside = np.maximum(p, _TINY)
-    by, force = slopes_of(law.grip, inside, u), slopes_of(law.force, inside, u)
-    push = 1 - lam * np.sin(phase) - law.force(inside, u)
-    value = np.array([law.grip(p, u), by.by_penetration * u + by.by_rate * push])
-    # The second derivatives of the grip are neglected.
-    pushed = force.by_penetration, force.by_rate, lam * np.cos(phase), np.sin(phase)
-    turning = np.array([0.0, by.by_penetration, 0.0, 0.0]) - by.by_rate * np.array(pushed)
-    return value, np.array([[by.by_penetration, by.by_rate, 0.0, 0.0], turning])
+    # Imported here because it takes a third of a second, and most laws have a closed form.
+    from scipy.integrate import solve_bvp
 
+    unit, given = rest(law), np.isfinite(amplitude)
+    known = np.array([np.pi / 2, amplitude])
 
-def _equations(s: Scheme, law: ContactLaw, z: np.ndarray):
-    """Residual and Jacobian of all equations, and p and p′ at the nodes."""
-    n = len(s.node)
-    push, (p0, u0, phase, lam) = z[:n], z[n:]
-    side = np.where(s.early, s.share, -s.rest)
-    u = u0 + s.rate @ push
-    depths = p0 + _PERIOD * (u0 * side + s.path @ push)
-    p = np.maximum(depths, _TINY)
-    by, angle = slopes_of(law.force, p, u), phase + _PERIOD * s.share
-    residual, jacobian = np.empty(n + 4), np.zeros((n + 4, n + 4))
-    residual[:n] = push - _PERIOD * (1 - lam * np.sin(angle) - law.force(p, u))
-    deep = _PERIOD * by.by_penetration
-    jacobian[:n, :n] = np.eye(n) + _PERIOD * (
-        deep[:, np.newaxis] * s.path + by.by_rate[:, np.newaxis] * s.rate
-    )
-    jacobian[:n, n] = deep
-    jacobian[:n, n + 1] = _PERIOD * (deep * side + by.by_rate)
-    jacobian[:n, n + 2] = _PERIOD * lam * np.cos(angle)
-    jacobian[:n, n + 3] = _PERIOD * np.sin(angle)
-    residual[n], jacobian[n, :n] = s.gain @ push, s.gain
-    residual[n + 1], jacobian[n + 1, :n] = u0 + s.lift @ push, s.lift
-    jacobian[n + 1, n + 1] = 1
-    residual[n + 2 :], jacobian[n + 2 :, n:] = _touch(law, z[n:])
-    return residual, jacobian, depths, u
+    def state(time: ArrayLike, y: np.ndarray, z: np.ndarray):
+        """p, p′ and the load."""
+        # Roots exist for p ≥ 0 only.
+        p = np.maximum(unit * y[0], _TINY) if law.root > 1 else unit * y[0]
+        return p, unit * y[1], 1 - z[1] * np.sin(z[0] + time)
 
+    def rates(time: np.ndarray, y: np.ndarray, z: np.ndarray = known) -> np.ndarray:
+        p, u, load = state(time, y, z)
+        return np.array([u, load - law.loaded_force(p, u, load)]) / unit
 
-def _solved(s: Scheme, law: ContactLaw, z: np.ndarray, free: int = 0) -> np.ndarray | None:
-    """The unknowns if Newton's method converges from z to a contact without release, else None.
+    def ends(first: np.ndarray, last: np.ndarray, z: np.ndarray = known) -> np.ndarray:
+        if given:
+            return last - first
+        if at_surface or law.release is Release.DISPLACEMENT:
+            return np.array([*first, *(last - first)])
+        here, step = state(0.0, first, z), 1e-20j
+        along = unit * first[1], unit * rates(np.zeros(1), first[:, np.newaxis], z)[1, 0]
+        moved = zip(here, (*along, -z[1] * np.cos(z[0])), strict=True)
+        falls = np.imag(law.loaded_grip(*(x + step * rate for x, rate in moved))) / step.imag
+        return np.array([law.loaded_grip(*here) / full, falls / full, *(last - first)])
 
-    With ``free`` only the first of the unknowns are solved for, by the first of the equations.
-    """
-    free = free or z.size
-    for _ in range(_ITERATIONS):
-        residual, jacobian, depths, u = _equations(s, law, z)
-        if not (np.all(np.isfinite(residual)) and np.all(np.isfinite(jacobian))):
-            return None
-        try:
-            step = np.linalg.solve(jacobian[:free, :free], residual[:free])
-        except np.linalg.LinAlgError:
-            return None
-        size = np.max(np.abs(step[-2:]))
-        z = np.append(z[:free] - min(1.0, _LONGEST / max(size, _TINY)) * step, z[free:])
-        if size <= _SETTLED:
-            held = np.all(depths > 0) and np.all(law.grip(depths, u) > 0)
-            return z if held else None
-    return None
-
-
-def _by_panels(law: ContactLaw, at_surface: bool) -> float:
-    """Λ of the steady contact that touches the surface or just reaches its release, else NaN."""
-    from scipy.optimize import root
-
-    unit = rest(law)
-
-    def motion(z: np.ndarray, times: ArrayLike):
-        """p and p′ at times counted from half a period before the touch."""
-        end = np.atleast_1d(times).astype(float)
-        state = unit * z[0], unit * z[1], z[2] - _PERIOD / 2, z[3], 1.0
-        found = march(law, Start(*(x + 0 * end for x in state)), MOST_PANELS, end)
-        return found.penetration, found.rate
-
-    def defects(z: np.ndarray) -> np.ndarray:
-        (p, last), (u, last_rate) = motion(z, [_PERIOD / 2, _PERIOD])
-        phase, lam = z[2:]
-        load, small = 1 - lam * np.sin(phase), 1e-20j
-        push = load - law.loaded_force(p, u, load)
-        moved = p + small * u, u + small * push, load - small * lam * np.cos(phase)
-        falls = np.imag(law.loaded_grip(*moved)) / small.imag
-        touch = (p, u) if at_surface else (law.loaded_grip(p, u, load), falls)
-        return np.array([*touch, last - unit * z[0], last_rate - unit * z[1]]) / unit
-
-    found = root(defects, [2.0, 0.0, np.pi / 2, 1.0], tol=_SETTLED)
-    times = np.linspace(0.0, _PERIOD, _LEVELS[0])
-    p, u = motion(found.x, times)
-    load = 1 - found.x[3] * np.sin(found.x[2] - _PERIOD / 2 + times)
-    held = np.minimum(p, law.loaded_grip(p, u, load)) if law.feels_load else law.grip(p, u)
-    solved = np.max(np.abs(found.fun)) < _SPECTRUM**2 and found.x[3] > 0
-    return float(found.x[3]) if solved and np.min(held) > -_SPECTRUM * unit else np.nan
+    full = law.loaded_grip(np.array(unit), np.array(0.0), 1.0)
+    time = np.linspace(0.0, _PERIOD, _GRID)
+    if given:
+        # The table moves slowly against a stiff contact.
+        load = np.maximum(state(time, np.ones((2, 1)), known)[2], _SLACK)
+        guess = [depth(law, 0 * time, 0.0, load) / unit, 0 * time]
+        found = solve_bvp(rates, ends, time, guess, tol=_COARSE, max_nodes=_FEW)
+    else:
+        guess, z = [1 - np.cos(time), np.sin(time)], np.array([np.pi / 2, 1.0])
+        found = solve_bvp(rates, ends, time, guess, z, tol=_TOLERANCE, max_nodes=_MOST)
+    z = known if given else found.p
+    p, u, load = state(found.x, found.y, z)
+    held = law.loaded_grip(p, u, load) / full
+    if law.root > 1 or law.feels_load:
+        held = np.minimum(held, found.y[0])
+    # The same motion, shifted by half a period, is the solution with -Λ.
+    return abs(float(z[1])) if found.success and np.min(held) > -_SLACK else np.nan
 
 
 def permanent_contact(law: ContactLaw) -> float:
@@ -212,24 +149,17 @@ def permanent_contact(law: ContactLaw) -> float:
     Λ_SD = √13/4 for ϖ = 2 and ζ = 1/2:
 
     >>> from bouncing_ball.contacts.spring_damper import SpringDamper
-    >>> round(permanent_contact(SpringDamper(2.0, 0.5)) / 13**0.5, 12)
+    >>> round(permanent_contact(SpringDamper(2.0, 0.5)) / 13**0.5, 9)
     0.25
     """
     if law.permanent_contact is not None:
         return float(law.permanent_contact)
-    with np.errstate(all="ignore"):
-        if law.has_kink:
-            touches = [_by_panels(law, at_surface) for at_surface in (False, law.feels_load)]
-            if np.isfinite(touches).any():
-                return float(np.nanmin(touches))
-        for count in () if law.has_kink else _LEVELS:
-            s = scheme(count, max(1, law.root // 2))
-            z = _solved(s, law, _start(s, law))
-            if z is not None:
-                legendre = np.abs(s.spectrum @ z[:count])
-                if np.max(legendre[-_TAIL:]) <= _SPECTRUM * np.max(legendre):
-                    # The same motion, shifted by half a period, is the solution with -Λ.
-                    return abs(float(z[-1]))
+    # If the contact that touches the surface is held throughout, the grip vanishes later.
+    for at_surface in (True, False) if law.feels_load else (False,):
+        with np.errstate(all="ignore"):
+            found = _steady(law, at_surface)
+        if np.isfinite(found):
+            return found
     raise ModelError(
         f"no threshold of permanent contact was found for {law.label}, because it is too weakly "
         "damped"
@@ -256,9 +186,8 @@ def known_threshold(law: ContactLaw) -> float:
 def holds(law: ContactLaw, amplitude: float) -> bool:
     """Whether a steady contact of a single law at Λ was found that never releases the ball.
 
-    The contact at Λ itself is smooth, because it ends well before p = 0, and is found with few
-    nodes also where that at the threshold is not. Where it is not found, or if the law has a kink
-    or its threshold a closed form, Λ is compared with the threshold.
+    Λ is compared with the threshold. If that was not found, the steady contact at Λ itself is
+    sought, which is smooth because its force does not vanish.
 
     Examples
     --------
@@ -266,11 +195,8 @@ def holds(law: ContactLaw, amplitude: float) -> bool:
     >>> holds(Tsuji(1e9, 1e-3), 0.5), holds(Tsuji(1e9, 1e-3), 1.5)
     (True, False)
     """
-    if law.permanent_contact is None and not law.has_kink:
-        s, n = scheme(_LEVELS[1], max(1, law.root // 2)), _LEVELS[1]
-        z = _solved(s, law, np.array([0.0] * n + [rest(law), 0.0, np.pi / 2, amplitude]), n + 2)
-        # The nodes are closest at the ends of the period, where the load is least. B is the
-        # acceleration over that of gravity, times the period.
-        if z is not None and np.max(np.abs(s.spectrum[-_TAIL:] @ z[:n])) <= _SPECTRUM:
-            return True
-    return amplitude <= known_threshold(law)
+    threshold = known_threshold(law)
+    if np.isfinite(threshold):
+        return amplitude <= threshold
+    with np.errstate(all="ignore"):
+        return bool(np.isfinite(_steady(law, amplitude=amplitude)))

@@ -33,7 +33,7 @@ def draw(design: Mapping[str, Any], data: xr.Dataset, values: Sequence[tuple[str
     # Room for the titles of the panels.
     top = min(0.86, _title(figure, design) - 0.045)
     grid = figure.add_gridspec(
-        3, 2, left=0.12, right=0.95, top=top, bottom=0.06, hspace=0.34, wspace=0.42,
+        3, 2, left=0.12, right=0.95, top=top, bottom=0.06, hspace=0.34, wspace=0.52,
         height_ratios=(1.0, 1.05, 1.05),
     )  # fmt: skip
     _chart(figure.add_subplot(grid[0, 0]), design, data)
@@ -81,7 +81,7 @@ def _chart(axes: Axes, design: Mapping[str, Any], data: xr.Dataset) -> None:
 def _errors(axes: Axes, design: Mapping[str, Any]) -> None:
     """The errors of the case, quantity by quantity."""
     one = next(each for each in design["orbits"] if each["n"] == design["n"])
-    names = [each.replace("_", " ") for each in one["errors"]]
+    names = [QUANTITIES[each] for each in one["errors"]]
     for key, name, marker, colour, size in (
         ("errors", "restitution", "o", RESTITUTION, 5),
         ("corrected_errors", "corrected", "D", CORRECTED, 5),

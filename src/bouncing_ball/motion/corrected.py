@@ -66,7 +66,8 @@ class CorrectedDynamics(Dynamics):
         start, leaves = emerge(flight)
         aloft = np.where(leaves, start, 0.0)
         departure = Departure(end, hit.instant.duration + none, flight, none, aloft=aloft)
-        return stay(departure, ~leaves, amplitude)
+        departure = stay(departure, ~leaves, amplitude)
+        return lifted(departure, amplitude) if differentiate else departure
 
     def fly(self, departure: Departure) -> tuple[Impact, np.ndarray]:
         """The start of the next contact, and the time from the last start to it."""
@@ -109,7 +110,7 @@ class CorrectedDynamics(Dynamics):
         """
         hit, then = impact.known, after.known
         (x, y), none = table(hit.phase, self.amplitude), np.zeros_like(passed)
-        free = np.where(self.sticks(impact, departure), 0.0, 1.0)
+        free = np.where(departure.sticks, 0.0, 1.0)
         here, depth = hit.instant.tangent(hit.speed, 1 - y)[0], then.instant.tangent(then.speed, 0)
         between = passed + then.instant.delay - hit.instant.delay
         end, lag = table(then.phase, self.amplitude), -depth[0].delay
@@ -119,10 +120,6 @@ class CorrectedDynamics(Dynamics):
         )
         columns = (each.flown((x, y), end, between, -then.speed, lag) for each in released)
         return Jacobian.of_columns(*columns)
-
-    def sticks(self, impact: Impact, departure: Departure) -> np.ndarray:
-        """Whether the ball leaves by lift-off after a rest on the table."""
-        return lifted(departure, self.amplitude)
 
     def section(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
         """The phase of the instant and the relative velocity before it."""

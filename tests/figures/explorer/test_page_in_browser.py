@@ -9,6 +9,7 @@ import json
 import math
 import re
 import shlex
+from functools import partial
 from pathlib import Path
 from urllib.parse import urlencode
 
@@ -16,6 +17,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.attractors.motions import Kind
+from bouncing_ball.calculator.results import QUANTITIES
 from bouncing_ball.configuration.study import typed
 from bouncing_ball.contacts.laws import LAWS
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
@@ -96,14 +98,15 @@ def seen(browse, tmp_path_factory):
     """All that is asked of the browser, in one run."""
     folder = tmp_path_factory.mktemp("explorer")
     data = typed(reference_orbits)(REFERENCES).assign_attrs(provenance_commit="c0ffee" * 6 + "c0ff")
-    right = to_html(data, as_json())
+    made = partial(to_html, quantities=QUANTITIES)
+    right = made(data, as_json())
     pages = {
         "right": right,
         # Reference orbits that are not the model's.
-        "wrong": to_html(data.assign(max_height=data.max_height * 1.00000001), as_json()),
-        "lost": to_html(data.assign(end_phase=data.end_phase + 1e-10), as_json()),
+        "wrong": made(data.assign(max_height=data.max_height * 1.00000001), as_json()),
+        "lost": made(data.assign(end_phase=data.end_phase + 1e-10), as_json()),
         # A text of an engine that is not the package's.
-        "pasted": to_html(data, as_json().replace("hooke 100000.0", "hooke 100000.1", 1)),
+        "pasted": made(data, as_json().replace("hooke 100000.0", "hooke 100000.1", 1)),
         # A script that was changed in the file, without its checksum.
         "tampered": right.replace("const GRAVITY = 9.80665", "const GRAVITY = 9.81"),
     }

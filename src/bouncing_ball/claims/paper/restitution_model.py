@@ -3,9 +3,10 @@
 from bouncing_ball.claims.claim import Claim, claim, formula, formulas, of_formula
 from bouncing_ball.claims.evidence import GRID
 from bouncing_ball.claims.verdict import at_most
+from bouncing_ball.datasets import PERIOD_DOUBLING, SADDLE_NODE
 
 MOTION = formulas("motion")
-saddle_node = formula("saddle-node", "Eq. 7", "the n-T orbits appear here, in a saddle-node")
+saddle_node = formula(SADDLE_NODE, "Eq. 7", "the n-T orbits appear here, in a saddle-node")
 
 
 def _of_both_maps(data):
@@ -21,7 +22,7 @@ def _of_both_maps(data):
 
 
 period_doubling = Claim(
-    "period doubling",
+    PERIOD_DOUBLING,
     "restored formula",
     "Eq. 8",
     "the n-T orbits lose stability in a period doubling at this amplitude",

@@ -7,6 +7,7 @@ alone, by their checksums, so that the page can neither run another script nor l
 import base64
 import hashlib
 import json
+from collections.abc import Mapping
 from importlib.resources import files
 from typing import Any
 
@@ -34,7 +35,7 @@ def _allowed(text: str) -> str:
     return f"'sha256-{digest}'"
 
 
-def to_html(data: xr.Dataset, engines: str) -> str:
+def to_html(data: xr.Dataset, engines: str, quantities: Mapping[str, str]) -> str:
     """The page, including the reference values with which it checks its results.
 
     Parameters
@@ -44,6 +45,8 @@ def to_html(data: xr.Dataset, engines: str) -> str:
     engines : str
         The physics engines with reference settings, as JSON
         (:mod:`bouncing_ball.engines.reference`).
+    quantities : mapping
+        The names of the quantities in sentences.
     """
     *scripts, look, scenes = (
         files(__package__).joinpath(name).read_text(encoding="utf-8")
@@ -63,6 +66,7 @@ def to_html(data: xr.Dataset, engines: str) -> str:
         style=style,
         references=references(data),
         engines=engines,
+        quantities=quantities,
         scenes=json.loads(scenes),
         bound=repr(BOUND),
     )

@@ -422,13 +422,6 @@ function sampledAdmissible(orbit, samples = 600) {
   return true;
 }
 
-const QUANTITIES = {
-  max_height: "greatest height", bounce_velocity: "bouncing-off velocity",
-  phase: "phase of impact", apparent_restitution: "apparent restitution",
-  saddle_node: "saddle-node", period_doubling: "period doubling",
-  permanent_contact: "threshold of permanent contact",
-};
-
 // All that the page shows of one state: of a contact, or of r and ϖ, and of a law in its place.
 function answer({r, omega, amplitude, n, release, side = "stable", contact = contactOf(r, omega, release), law}) {
   const own = ownRestitution(contact), top = 1.3 * Math.max(amplitude, 1.2);

@@ -35,7 +35,7 @@ function verdictOf(found, {n}) {
   return [false, `The restitution model is not good enough: `
     + `${wrong || `${subject} is ${percent(error)} off, beyond ${percent(TOLERANCE)}`}`
     + (same && found.corrected.max_height <= TOLERANCE
-      ? `; the corrected restitution model is, with ${percent(found.corrected.max_height)}.`
+      ? `; the corrected restitution model is good enough: its error is ${percent(found.corrected.max_height)}.`
       : "; nor is the corrected one: simulate the contact.")];
 }
 

@@ -22,9 +22,9 @@ const TEXTS = ["one", "two", "three"];
 const WHOLE = ["n", "balls", "from"];
 // On the stage the table may be at rest.
 const rangeOf = (name, tab) => name === "a" && tab === "stage" ? [0, 100] : RANGES[name];
-const REFERENCES = Object.fromEntries(["references", "engines", "scenes"].map(
+const REFERENCES = Object.fromEntries(["references", "engines", "quantities", "scenes"].map(
   name => [name, JSON.parse($(name).textContent)]));
-const {engines: {engines: ENGINES}, scenes: SCENES} = REFERENCES;
+const {engines: {engines: ENGINES}, quantities: QUANTITIES, scenes: SCENES} = REFERENCES;
 const CHOICES = {
   tab: ["orbit", "design", "stage"], release: ["displacement", "force"], side: ["stable", "unstable"],
   engine: ["none", ...Object.keys(ENGINES)], given: ["stiffness", ...Object.keys(LAWS), ...Object.keys(ENGINES)],

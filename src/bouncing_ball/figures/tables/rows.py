@@ -49,7 +49,7 @@ def _threshold(form: str, within: str, never: str):
     """A column of thresholds, with the given texts for thresholds outside the range scanned."""
 
     def column(part: xr.Dataset) -> str:
-        outside = within if part.threshold_status.item().startswith("within") else never
+        outside = within if part.threshold_status.item() == "within" else never
         return number(part.error_threshold, form, outside)
 
     return column

@@ -89,13 +89,14 @@ class CorrectedDynamics(Dynamics):
         """
         x, y = table(phase, self.amplitude)
         fall = Flight(np.zeros_like(velocity), velocity, x, y, self.amplitude)
-        delay = self.law(-velocity).delay
-        pull = (1 - y) * delay
+        here = self.law(-velocity)
+        delay, pull = here.delay, (1 - y) * here.delay
         both = -velocity - pull + np.sqrt(velocity * velocity + pull * pull)
         time = np.where(both > 0, -2 * delay * velocity / np.where(both > 0, both, 1.0), 2 * delay)
         for _ in range(_DESCENT):
             displacement, rate, acceleration, _ = fall.gap(time)
-            here = self.law(-rate)
+            if not self.law.is_constant:
+                here = self.law(-rate)
             by_time = rate - (here.delay - here.d_delay * rate) * acceleration
             missing = displacement - rate * here.delay
             time = time - np.where(by_time < 0, missing / np.where(by_time < 0, by_time, -1.0), 0.0)

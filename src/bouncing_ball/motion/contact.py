@@ -80,7 +80,13 @@ class ContactDynamics(Dynamics):
         status[held] = Status.PERMANENT_CONTACT
         duration = np.where(lost, np.inf, end.duration)
         flight = Flight(*state, self.amplitude)
-        return Departure(phase, duration, flight, status, by=end.jacobian)
+        departure = Departure(phase, duration, flight, status, by=end.jacobian)
+        if not differentiate:
+            return departure
+        # An undamped linear contact that starts at zero speed under a constant load lasts exactly
+        # twice as long as a free impact. A longer contact therefore ends because the load changes.
+        free = Signature(self.law)(np.maximum(-impact.velocity, np.finfo(float).tiny)).duration
+        return departure._replace(sticks=duration > 2 * free)
 
     def fly(self, departure: Departure) -> tuple[Impact, np.ndarray]:
         """The landing or an earlier resumption, and the time from the last impact to it."""
@@ -108,15 +114,6 @@ class ContactDynamics(Dynamics):
         )
         return self.landed(released, departure, after, passed)
 
-    def sticks(self, impact: Impact, departure: Departure) -> np.ndarray:
-        """Whether the contact lasts more than twice as long as a free impact of this speed.
-
-        An undamped linear contact that starts at zero speed under a constant load lasts exactly
-        twice as long. A longer contact therefore ends because the load changes.
-        """
-        free = Signature(self.law)(np.maximum(-impact.velocity, np.finfo(float).tiny)).duration
-        return departure.duration > 2 * free
-
 
 @dataclass(frozen=True, repr=False)
 class LinearContactDynamics(ContactDynamics):
@@ -143,7 +140,10 @@ class LinearContactDynamics(ContactDynamics):
         displacement[forever] = velocity[forever] = np.nan
         end.time[forever] = np.inf
         flight = Flight(displacement, velocity, x, y, self.amplitude)
-        return Departure(phase, end.time, flight, status)
+        # An undamped contact that starts at zero speed under a constant load lasts exactly one
+        # oscillation. A longer contact therefore ends because the load changes.
+        sticks = end.time * self.law.damped_frequency > 2 * np.pi
+        return Departure(phase, end.time, flight, status, sticks=sticks)
 
     def jacobian(
         self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
@@ -171,11 +171,3 @@ class LinearContactDynamics(ContactDynamics):
         moved = Deviation(one, fall, pull), Deviation(0 * one, *by_rate)
         released = (x.to_event(speed, last, lag) for x in moved)
         return self.landed(released, departure, after, passed, held)
-
-    def sticks(self, impact: Impact, departure: Departure) -> np.ndarray:
-        """Whether the contact lasts longer than one damped oscillation.
-
-        An undamped contact that starts at zero speed under a constant load lasts exactly one
-        oscillation. A longer contact therefore ends because the load changes.
-        """
-        return departure.duration * self.law.damped_frequency > 2 * np.pi

@@ -72,7 +72,7 @@ def returns(restitution: ArrayLike, amplitude: ArrayLike, impacts: int) -> Retur
     ball, time, late = np.arange(r.size), np.zeros(r.size), np.zeros((2, r.size))
     for count in range(impacts):
         departure = dynamics.depart(impact, differentiate=True)
-        sticks = dynamics.sticks(impact, departure) if count else np.zeros(ball.size, dtype=bool)
+        sticks = departure.sticks if count else np.zeros(ball.size, dtype=bool)
         if sticks.any():
             held = (departure.duration - departure.settling)[sticks]
             turns = np.rint((time + departure.duration)[sticks] / (2 * np.pi))

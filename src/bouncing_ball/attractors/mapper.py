@@ -184,12 +184,11 @@ def _follow(
             thrown = impact.velocity + table(impact.phase, ball.amplitude)[0]
             path.reshape(3, impacts, -1)[:, ball.seen, ball.lane] = ball.time, impact.phase, thrown
         departure = now.depart(impact, differentiate=True)
-        going = _resting(now, impact, departure, ball, found)
+        going = _resting(now, departure, ball, found)
         now, impact, departure, ball = _kept(going, found, now, impact, departure, ball)
         if going.size:
-            sticks = now.sticks(impact, departure)
             after, passed = now.fly(departure)
-            _move(ball, now.jacobian(impact, departure, after, passed), passed, sticks)
+            _move(ball, now.jacobian(impact, departure, after, passed), passed, departure.sticks)
             going = _returning(ball, now.section(after), impacts, found)
             now, impact, ball = _kept(going, found, now, after, ball)
         alive = going.size
@@ -230,9 +229,7 @@ def _repeats(
     _write(found, ball, which, kind, exponent_error=0.0, **known)
 
 
-def _resting(
-    dynamics: Dynamics, impact: Impact, departure: Departure, ball: _Ball, found: Motions
-) -> np.ndarray:
+def _resting(dynamics: Dynamics, departure: Departure, ball: _Ball, found: Motions) -> np.ndarray:
     """Store which balls stay on the table, are not released, or lock because they stick again;
     return the indices of the others.
     """
@@ -242,7 +239,7 @@ def _resting(
         _write(found, ball, stays, Kind.PERMANENT_CONTACT, periods=1, exponent_error=0.0)
         _write(found, ball, done & ~stays, Kind.UNDECIDED, reason=Reason.NO_RELEASE)
     if dynamics.forgets:
-        sticks = ~done & dynamics.sticks(impact, departure)
+        sticks = ~done & departure.sticks
         if sticks.any():
             time = ball.time + departure.duration
             again, lost = sticks & (ball.lift >= 0), ball.stretch.lost()

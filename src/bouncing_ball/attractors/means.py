@@ -86,7 +86,7 @@ def _step(
     start, end = impact[:3], (departure.phase, flight.displacement, flight.velocity)
     duration = departure.duration
     if hit is not None:
-        (x, y), sticks = table(hit.phase, lam), dynamics.sticks(impact, departure)
+        (x, y), sticks = table(hit.phase, lam), departure.sticks
         start, thrown = ((hit.phase, hit.height - y, v - x) for v in (hit.arrival, hit.velocity))
         end = tuple(np.where(sticks, *pair) for pair in zip(end, thrown, strict=True))
         begin, late = hit.instant.delay, after.known.instant.delay

@@ -187,7 +187,8 @@ class Signature(Batch):
         """
         v = np.asarray(speed, dtype=float)
         if self.is_constant:
-            return Instant(*(x + 0 * v for x in self._known))
+            none = 0 * v
+            return Instant(*(x + none for x in self._known))
         v, width = np.clip(v, _SLOWEST, _FASTEST), _width(self.law)
         log = np.log(v) / width
         number = np.floor(np.where(np.isnan(log), 0.0, log)).astype(int)

@@ -74,7 +74,13 @@ class ContactDynamics(ResumingDynamics):
         status[held] = Status.PERMANENT_CONTACT
         duration = np.where(lost, np.inf, end.duration)
         flight = Flight(*state, self.amplitude)
-        return Departure(phase, duration, flight, status, by=end.jacobian)
+        departure = Departure(phase, duration, flight, status, by=end.jacobian)
+        if not differentiate:
+            return departure
+        # An undamped linear contact that starts at zero speed under a constant load lasts exactly
+        # twice as long as a free impact. A longer contact therefore ends because the load changes.
+        free = Signature(self.law)(np.maximum(-impact.velocity, np.finfo(float).tiny)).duration
+        return departure._replace(sticks=duration > 2 * free)
 
     def jacobian(
         self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
@@ -89,12 +95,3 @@ class ContactDynamics(ResumingDynamics):
             for c, k, sign in ((0, 1, 1), (1, 0, -1))
         )
         return self.landed(released, departure, after, passed)
-
-    def sticks(self, impact: Impact, departure: Departure) -> np.ndarray:
-        """Whether the contact lasts more than twice as long as a free impact of this speed.
-
-        An undamped linear contact that starts at zero speed under a constant load lasts exactly
-        twice as long. A longer contact therefore ends because the load changes.
-        """
-        free = Signature(self.law)(np.maximum(-impact.velocity, np.finfo(float).tiny)).duration
-        return departure.duration > 2 * free

@@ -66,7 +66,8 @@ class CorrectedDynamics(Dynamics):
         start, leaves = emerge(flight)
         aloft = np.where(leaves, start, 0.0)
         departure = Departure(end, hit.instant.duration + none, flight, none, aloft=aloft)
-        return stay(departure, ~leaves, amplitude)
+        departure = stay(departure, ~leaves, amplitude)
+        return lifted(departure, amplitude) if differentiate else departure
 
     def fly(self, departure: Departure) -> tuple[Impact, np.ndarray]:
         """The start of the next contact, and the time from the last start to it."""
@@ -88,13 +89,14 @@ class CorrectedDynamics(Dynamics):
         """
         x, y = table(phase, self.amplitude)
         fall = Flight(np.zeros_like(velocity), velocity, x, y, self.amplitude)
-        delay = self.law(-velocity).delay
-        pull = (1 - y) * delay
+        here = self.law(-velocity)
+        delay, pull = here.delay, (1 - y) * here.delay
         both = -velocity - pull + np.sqrt(velocity * velocity + pull * pull)
         time = np.where(both > 0, -2 * delay * velocity / np.where(both > 0, both, 1.0), 2 * delay)
         for _ in range(_DESCENT):
             displacement, rate, acceleration, _ = fall.gap(time)
-            here = self.law(-rate)
+            if not self.law.is_constant:
+                here = self.law(-rate)
             by_time = rate - (here.delay - here.d_delay * rate) * acceleration
             missing = displacement - rate * here.delay
             time = time - np.where(by_time < 0, missing / np.where(by_time < 0, by_time, -1.0), 0.0)
@@ -109,7 +111,7 @@ class CorrectedDynamics(Dynamics):
         """
         hit, then = impact.known, after.known
         (x, y), none = table(hit.phase, self.amplitude), np.zeros_like(passed)
-        free = np.where(self.sticks(impact, departure), 0.0, 1.0)
+        free = np.where(departure.sticks, 0.0, 1.0)
         here, depth = hit.instant.tangent(hit.speed, 1 - y)[0], then.instant.tangent(then.speed, 0)
         between = passed + then.instant.delay - hit.instant.delay
         end, lag = table(then.phase, self.amplitude), -depth[0].delay
@@ -119,10 +121,6 @@ class CorrectedDynamics(Dynamics):
         )
         columns = (each.flown((x, y), end, between, -then.speed, lag) for each in released)
         return Jacobian.of_columns(*columns)
-
-    def sticks(self, impact: Impact, departure: Departure) -> np.ndarray:
-        """Whether the ball leaves by lift-off after a rest on the table."""
-        return lifted(departure, self.amplitude)
 
     def section(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
         """The phase of the instant and the relative velocity before it."""

@@ -44,7 +44,8 @@ class Departure(NamedTuple):
     ``settling`` is the part of the duration in which the ball still bounces. ``aloft`` is a time
     of flight before which the ball has not landed; it is used if it exceeds
     :meth:`Flight.sure <bouncing_ball.motion.landing.Flight.sure>`. ``by`` has the derivatives of
-    the contact's end, if they are computed together with it.
+    the contact's end, if they are computed together with it. ``sticks`` marks the balls that stay
+    until the table's downward acceleration exceeds gravity, and is None without derivatives.
     """
 
     phase: np.ndarray
@@ -54,6 +55,7 @@ class Departure(NamedTuple):
     settling: np.ndarray | float = 0.0
     aloft: np.ndarray | float = 0.0
     by: Any = None
+    sticks: Any = None
 
 
 @dataclass(frozen=True, repr=False)
@@ -95,8 +97,8 @@ class Dynamics(Batch, ABC):
 
     @abstractmethod
     def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
-        """The ends of the contacts that start with these impacts; with ``differentiate`` also what
-        :meth:`jacobian` needs.
+        """The ends of the contacts that start with these impacts; with ``differentiate`` also which
+        balls stick, and what :meth:`jacobian` needs.
         """
 
     def fly(self, departure: Departure) -> tuple[Impact, np.ndarray]:
@@ -119,10 +121,6 @@ class Dynamics(Batch, ABC):
 
         ``passed`` is the time between the two impacts.
         """
-
-    @abstractmethod
-    def sticks(self, impact: Impact, departure: Departure) -> np.ndarray:
-        """Whether the ball stays until the table's downward acceleration exceeds gravity."""
 
     def section(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
         """The state of an impact on the Poincaré section: a phase and a relative velocity."""

@@ -239,7 +239,10 @@ class LinearContactDynamics(ResumingDynamics):
         displacement[forever] = velocity[forever] = np.nan
         end.time[forever] = np.inf
         flight = Flight(displacement, velocity, x, y, self.amplitude)
-        return Departure(phase, end.time, flight, status)
+        # An undamped contact that starts at zero speed under a constant load lasts exactly one
+        # oscillation. A longer contact therefore ends because the load changes.
+        sticks = end.time * self.law.damped_frequency > 2 * np.pi
+        return Departure(phase, end.time, flight, status, sticks=sticks)
 
     def jacobian(
         self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
@@ -267,11 +270,3 @@ class LinearContactDynamics(ResumingDynamics):
         moved = Deviation(one, fall, pull), Deviation(0 * one, *by_rate)
         released = (x.to_event(speed, last, lag) for x in moved)
         return self.landed(released, departure, after, passed, held)
-
-    def sticks(self, impact: Impact, departure: Departure) -> np.ndarray:
-        """Whether the contact lasts longer than one damped oscillation.
-
-        An undamped contact that starts at zero speed under a constant load lasts exactly one
-        oscillation. A longer contact therefore ends because the load changes.
-        """
-        return departure.duration * self.law.damped_frequency > 2 * np.pi

@@ -69,9 +69,11 @@ def stay(departure: Departure, rests: np.ndarray, amplitude: np.ndarray) -> Depa
     )
 
 
-def lifted(departure: Departure, amplitude: np.ndarray) -> np.ndarray:
-    """Whether balls leave by lift-off, a state that does not depend on their earlier motion."""
+def lifted(departure: Departure, amplitude: np.ndarray) -> Departure:
+    """The departures with those marked as sticking that leave by lift-off, a state that does not
+    depend on their earlier motion.
+    """
     rests = (departure.flight.velocity == 0) & (departure.flight.displacement == 0)
     which = rests.nonzero()[0]
     rests[which] = departure.phase[which] == lift_off_phase(pick(amplitude, which))
-    return rests
+    return departure._replace(sticks=rests)

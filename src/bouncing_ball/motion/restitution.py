@@ -69,11 +69,13 @@ class RestitutionDynamics(Dynamics):
         none = np.zeros_like(x)
         flight = Flight(none, velocity, x, y, amplitude)
         if not sticks.any():
-            return Departure(impact.phase, none, flight, none)
+            departure = Departure(impact.phase, none, flight, none)
+            return lifted(departure, amplitude) if differentiate else departure
         correction = np.where(short, x * total, 0.0) / np.where(short, 3 * gravity, 1.0)
         settling = np.where(sticks, total * (1 + correction), 0.0)
         settled = Departure(impact.phase + settling, settling, flight, none, settling)
-        return stay(settled, sticks, amplitude)
+        departure = stay(settled, sticks, amplitude)
+        return lifted(departure, amplitude) if differentiate else departure
 
     def jacobian(
         self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
@@ -83,10 +85,6 @@ class RestitutionDynamics(Dynamics):
         It is zero if the ball sticks, because its later motion does not depend on the impact.
         """
         slope = rebound(self.law, np.maximum(-impact.velocity, np.finfo(float).tiny))[1]
-        none, free = np.zeros_like(passed), np.where(self.sticks(impact, departure), 0.0, 1.0)
+        none, free = np.zeros_like(passed), np.where(departure.sticks, 0.0, 1.0)
         released = Deviation(free, none, none), Deviation(none, none, -slope * free)
         return self.landed(released, departure, after, passed)
-
-    def sticks(self, impact: Impact, departure: Departure) -> np.ndarray:
-        """Whether the ball leaves by lift-off after a rest on the table."""
-        return lifted(departure, self.amplitude)

@@ -1,6 +1,7 @@
 """The quantities of orbits, and of a branch with its ends, that datasets and answers contain."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -57,7 +58,7 @@ def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:
 
 
 def whole_branch(
-    model: ImpactModel, n: int, amplitude_max: float | None, largest_step: float
+    model: ImpactModel, n: int, amplitude_max: float | None, largest_step: float, ends: Any = ()
 ) -> Branch:
     """The branch of n-T orbits of a single model, from one end to the other, up to some Λ.
 
@@ -73,6 +74,8 @@ def whole_branch(
         Λ at which the branch ends; by default 1.4 times that of the period doubling.
     largest_step : float
         Largest step in arclength.
+    ends : collection of Bifurcation, optional
+        The bifurcations at which the branch is not followed any further.
 
     Raises
     ------
@@ -95,12 +98,15 @@ def whole_branch(
     if not np.any(orbits.exists):
         raise NoOrbitError(f"{none} was found to start from")
     start = system.point(orbits[int(np.argmax(orbits.exists))])
-    bounds = [
+    events = [
+        replace(each, terminal=each.terminal or each.name in ends) for each in system.events()
+    ]
+    events += [
         parameter_bound(x, upper, f"left the window at amplitude {x:g}")
         for x, upper in ((_LOWEST, False), (top, True))
     ]
     control = StepControl(largest=largest_step)
-    found = continue_both_ways(system, start, events=(*system.events(), *bounds), control=control)
+    found = continue_both_ways(system, start, events=events, control=control)
     for end in (found.start, found.end):
         if not end.finished:
             raise ContinuationError(f"the branch is not followed to its end: {end}")

@@ -3,13 +3,14 @@
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.contacts.spring_damper import Release
+from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.continuation.branch import Branch, ContinuationError
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits import restitution_orbit as restitution_orbits
-from bouncing_ball.orbits.columns import PLACE, columns
+from bouncing_ball.orbits.columns import PLACE, columns, whole_branch
 from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.parameters import FrequencyRatio
 from bouncing_ball.studies.orbit_branches import (
@@ -17,7 +18,6 @@ from bouncing_ball.studies.orbit_branches import (
     Continuation,
     Domains,
     Ranges,
-    followed,
     orbit_branches,
 )
 from bouncing_ball.studies.printed_table1 import printed_table
@@ -101,8 +101,10 @@ def stability_ranges(
     for at in np.ndindex(shape):
         n, ratio = families[at[1]], ratios[at[0]]
         try:
-            system, branch = followed(n, ratio, parameters, release, continuation)
-            limits = system.orbit(first_limits(branch))
+            contact = SpringDamper.from_restitution(parameters.restitution, ratio, release)
+            model, step = SpringDamperModel(contact), continuation.largest_step
+            branch = whole_branch(model, n, parameters.amplitude_max, step, Bifurcation)
+            limits = model.system(n).orbit(first_limits(branch))
             found[at] = np.stack([getattr(limits, name) for name in PLACE], axis=-1)
         except (NoOrbitError, ContinuationError) as error:
             absence[at] = str(error)

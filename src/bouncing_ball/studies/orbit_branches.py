@@ -53,7 +53,7 @@ class Ranges(Parameters):
 
 
 def followed(
-    n: int, ratio: float, given: Branches | Ranges, release: Release, continuation: Continuation
+    n: int, ratio: float, given: Branches, release: Release, continuation: Continuation
 ) -> tuple[OrbitSystem, Branch]:
     """The equations of one contact, and their solutions from the unstable to the stable side.
 

@@ -40,3 +40,8 @@ rule all:
 include: "workflow/rules/record.smk"
 # The atlas: how stiff is stiff enough, for more orbits than a run can include.
 include: "workflow/rules/atlas.smk"
+
+
+# `snakemake --list` shows the message of a rule without a docstring.
+for each in workflow.rules:
+    each.docstring = each.docstring or each.message

@@ -52,8 +52,8 @@ and from ``errors``, ``parameters`` and ``call_signatures``:
 
 Two layers also use a lower layer, whose modules they import when a method is first called: models
 have the methods ``history``, ``branch`` and so on of ``calls``, and labelled datasets the method
-``plot`` of ``figures``. The results then offer what most people do next, and whoever only computes
-imports neither.
+``plot`` of ``figures``. Results can therefore be plotted, and models simulated, without another
+import, and code that only computes imports neither package.
 """
 
 from importlib import import_module

@@ -73,7 +73,8 @@ def test_what_is_named_is_copied_and_nothing_else(pair, run, refusal):
         (UNKNOWN, 0, "force", "some changes are not committed"),
         (Revision("1f0e", "yes"), 0, "force", "some changes are not committed"),
         (Revision("1f0e", "no"), 0, "displacement", "config.yaml: {'release': 'displacement'}"),
-        (Revision("1f0e", "no"), 3, "force", "Snakemake would still run 3 jobs"),
+        (Revision("1f0e", "no"), 3, "force", "Snakemake would still run 3 jobs: run"),
+        (Revision("1f0e", "no"), 1, "force", "Snakemake would still run 1 job: run"),
         (Revision("1f0e", "no"), 0, "force", "fig17.png is not made by this workflow: remove it"),
     ],
 )

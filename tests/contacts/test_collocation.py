@@ -103,6 +103,14 @@ def test_the_end_of_a_panel_is_sought_with_the_derivatives_of_what_vanishes_ther
     np.testing.assert_allclose(found, (ahead - back) / 2e-6, rtol=1e-8)
 
 
+def test_contacts_of_a_ball_coming_to_rest_end_despite_rounding():
+    # Rounding of the load, 10⁻¹⁶/ϖ², moves the end of so slow a contact by more than the part of
+    # its last panel to which the others are computed.
+    zero, one = np.zeros(200), np.ones(200)
+    start = Start(zero, np.geomspace(1e-6, 1e-4, 200), zero + 1.456, one, one)
+    assert np.isfinite(march(Impedance(31.4, 0.1335, 0.95), start, 40).duration).all()
+
+
 def test_an_impedance_varies_whatever_its_neighbours():
     # At x = 1/4 of the width d is x²/c = 1/8 of the way up, with c = 1/2, if it varies.
     law = Impedance(2.0, 0.5, 0.75, np.array([0.25, 0.75]), width=4.0)

@@ -16,6 +16,8 @@ import numpy as np
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.law_choice import law_of_impact
 from bouncing_ball.contacts.laws import LAWS
+from bouncing_ball.contacts.laws.impedance import Impedance
+from bouncing_ball.contacts.release import Release
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.motion.simulation import simulate
 from bouncing_ball.orbits.law_model import LawModel
@@ -52,8 +54,14 @@ def simulations(repetitions: int) -> None:
         linear = SpringDamper(np.pi / duration / np.sqrt(1 - zeta**2), zeta)
         start = lam, phase, -fall - lam, IMPACTS
         said = []
-        for name in HERTZ:
-            law = law_of_impact(LAWS[name], r, duration, rigid_speed(1, r))
+        speed = float(rigid_speed(1, r))
+        for name in (*HERTZ, "by depth"):
+            if name in LAWS:
+                law = law_of_impact(LAWS[name], r, duration, speed)
+            else:
+                # MuJoCo's default impedance, which varies over half the depth of an impact.
+                ratio, damping = np.pi / duration, float(damping_ratio(r, Release.FORCE))
+                law = Impedance(ratio, damping, 0.95, 0.9, speed * duration / 2 / np.pi)
             runs = partial(simulate, linear, *start), partial(simulate, law, *start)
             pairs = [tuple(map(per_impact, runs)) for _ in range(repetitions)]
             said.append(f"{name} {median(b / a for a, b in pairs):.1f}")

@@ -25,6 +25,8 @@ import pytest
 import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
+# No run takes as many seconds, unless it hangs.
+HANGING = 3600
 # A fresh clone: neither results nor the state of earlier runs.
 IGNORED = shutil.ignore_patterns(
     ".git", ".venv*", "results", ".snakemake", "tests", "*.egg-info", "__pycache__", ".*_cache"
@@ -48,6 +50,7 @@ class Tree:
             stdin=subprocess.DEVNULL,
             capture_output=True,
             text=True,
+            timeout=HANGING,
         )
         if check and done.returncode != 0:
             pytest.fail(f"snakemake {' '.join(arguments)} failed:\n{done.stdout}{done.stderr}")
@@ -152,11 +155,12 @@ class Tree:
             stderr=subprocess.DEVNULL,
             process_group=0,
         )
-        while len(list(self.path.glob(f"results/{of}"))) < after:
+        end = time.monotonic() + HANGING
+        while len(list(self.path.glob(f"results/{of}"))) < after and time.monotonic() < end:
             assert running.poll() is None, "the run ended before it could be interrupted"
             time.sleep(0.02)
         os.killpg(running.pid, sign)
-        running.wait()
+        running.wait(HANGING)
         if sign == signal.SIGKILL:
             # Snakemake could not remove its lock: as `snakemake --unlock` does it.
             shutil.rmtree(self.path / ".snakemake" / "locks")
@@ -193,8 +197,10 @@ def warm() -> Iterator[str]:
         command = [sys.executable, Path(__file__).with_name("warm.py"), folder]
         with subprocess.Popen(command) as server:
             try:
+                end = time.monotonic() + HANGING
                 while not Path(folder, "ready").exists():
                     assert server.poll() is None, "the warm Python did not start"
+                    assert time.monotonic() < end, "the warm Python hangs"
                     time.sleep(0.02)
                 yield f"{folder}/python"
             finally:

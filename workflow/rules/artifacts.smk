@@ -19,3 +19,7 @@ for name in {**STUDIES, **DRAWINGS}:
             f"{name} is up to date"
         input:
             files(name),
+
+    workflow.get_rule(name).docstring = TABLE.get(name, {}).get(
+        "title", "A schematic, or a chart of the accepted atlas"
+    )

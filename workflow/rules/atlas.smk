@@ -4,10 +4,11 @@
 from bouncing_ball.pipeline.atlas import minutes, names
 
 ATLAS = config["atlas"]
-CHARTS = ["max_height", "bounce_velocity", "phase", "apparent_restitution", "page"]
+CHARTS = ["bounce_velocity", "phase", "apparent_restitution", "page"]
 
 
 rule atlas_shard:
+    """Some rows of tiles of the atlas, or the limits of all tiles."""
     message:
         "Atlas: shard {wildcards.shard}"
     input:

@@ -104,25 +104,38 @@ use rule study as error_thresholds with:
         ),
 
 
-# The release rule, the orbits of permanent contact, the corrected restitution model with its error
-# law, contacts of other laws, the whole motion, physics engines, and the explorer.
-use rule study as beyond_the_paper with:
-    """Beyond the paper: what the release, the law and the steps of a contact change, and chaos."""
+# Beyond the paper.
+use rule study as corrected_model with:
+    """The corrected restitution model, and contacts with another release rule or another law."""
     wildcard_constraints:
         artifact=stage(
-            ext_release="studies.release_rules.release_rules",
-            ext_flights="studies.cascade_of_flights.cascade_of_flights -> cascade_of_flights.cascade_of_flights",
-            ext_basins="studies.basins.basins -> basins.basins",
-            ext_impact="studies.free_impacts.free_impacts -> free_impacts.free_impacts",
             ext_instant="studies.time_histories.meeting_flights -> histories.meeting_flights",
             ext_orders="studies.model_errors.orders -> model_errors.orders",
+            ext_release="studies.release_rules.release_rules",
+            ext_impact="studies.free_impacts.free_impacts -> free_impacts.free_impacts",
             ext_laws="studies.contact_laws.law_errors -> model_errors.contact_laws",
+        ),
+
+
+use rule study as whole_motion with:
+    """The motions on which balls end: flights, cascades, basins, locking, chaos, and their means."""
+    wildcard_constraints:
+        artifact=stage(
+            ext_flights="studies.cascade_of_flights.cascade_of_flights -> cascade_of_flights.cascade_of_flights",
             ext_cascades="studies.cascades.cascades -> cascades.cascades",
             ext_diagram="studies.attractors.orbit_diagrams -> attractors.orbit_diagrams",
+            ext_basins="studies.basins.basins -> basins.basins",
             ext_locking="studies.attractors.locking -> attractors.locking",
-            ext_means="studies.mean_motion.mean_motions -> attractors.mean_motions",
             ext_lives="studies.transients.transients",
             ext_locked="studies.locked_orbits.locked_orbits -> locked_orbits.locked_orbits",
+            ext_means="studies.mean_motion.mean_motions -> attractors.mean_motions",
+        ),
+
+
+use rule study as engines_and_explorer with:
+    """Time steps of physics engines, and the reference orbits of the explorer."""
+    wildcard_constraints:
+        artifact=stage(
             ext_engines="studies.engines.conformance -> model_errors.engines",
             explorer="studies.reference_orbits.reference_orbits",
         ),

@@ -5,6 +5,7 @@ TABLES += ["formulas", "forensics", "witness", "claims"]
 
 
 rule set_table:
+    """A table as CSV and in Markdown."""
     message:
         "Setting {wildcards.table}"
     input:

@@ -4,7 +4,7 @@ Each row of the dataset gives the largest disagreement over a sample of paramete
 disagreement that rounding explains. The formulas are those of
 :mod:`bouncing_ball.claims.as_printed`. They are compared with simulated cycles, with the
 multipliers of orbits, and with the equations of motion, differentiated by complex steps. These
-computations use the formulas only where the text of the comparison tells so.
+computations use the formulas only where the comparison says so.
 """
 
 from typing import Annotated
@@ -288,8 +288,10 @@ class Formulas(Parameters):
 def formulas(parameters: Formulas) -> xr.Dataset:
     """Disagreement of every printed formula with a second computation.
 
-    The dataset has ``disagreement``, ``budget`` and the text ``compared_with`` over ``formula``,
-    and ``static_error`` over (restitution, frequency_ratio).
+    The dataset has ``disagreement`` (formula,), the largest difference in the sample, NaN if a
+    comparison found no value; ``budget`` (formula,), the difference that rounding explains; the
+    text ``compared_with`` (formula,); and ``static_error`` (restitution, frequency_ratio), the
+    relative error of r on a table at rest. All are dimensionless.
     """
     rng = np.random.default_rng(parameters.seed)
     checks: Checks = {}

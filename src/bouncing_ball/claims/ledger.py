@@ -112,5 +112,9 @@ def ledger(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
 
 
 def statements(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
-    """The verdict on each of our statements about the whole motion: see :func:`assess`."""
+    """The verdict on each of our statements about the whole motion.
+
+    The arguments, the dataset and the errors are those of :func:`assess`. Each number has the unit
+    of the variable from which its statement takes it.
+    """
     return assess([*defined_in(whole_motion)], data)

@@ -92,7 +92,8 @@ def accept(
     if changed := changes(config, read_yaml(record / CONFIGURATION)):
         raise ModelError(f"the values of this run differ from {CONFIGURATION}: {changed}")
     if left := jobs_left(record, files):
-        raise ModelError(f"Snakemake would still run {left} jobs: run make all diff first")
+        jobs = "1 job" if left == 1 else f"{left} jobs"
+        raise ModelError(f"Snakemake would still run {jobs}: run make all diff first")
     if foreign := sorted({*map(str, results.glob("figures/[!.]*"))} - {*files}):
         raise ModelError(f"{foreign[0]} is not made by this workflow: remove it")
     comparison = compare_folders(record, results, only)

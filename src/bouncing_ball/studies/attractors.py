@@ -36,9 +36,9 @@ Impacts = Annotated[int, listed("Impacts")]
 
 
 class Even(Interval):
-    """Equally spaced values."""
+    """Equally spaced values of a parameter, both ends included."""
 
-    samples: Annotated[int, number("values, both ends included", ge=2, le=2001)]
+    samples: Annotated[int, number("number of values, both ends included", ge=2, le=2001)]
 
     def grid(self) -> np.ndarray:
         """The values, shape (samples,)."""
@@ -46,14 +46,14 @@ class Even(Interval):
 
 
 class Amplitudes(Even):
-    """Equally spaced amplitudes."""
+    """Equally spaced amplitudes Λ > 0 of the table's acceleration, at most 100 g."""
 
     min: Annotated[Amplitude, Field(description="smallest Λ")]
     max: Annotated[AmplitudeMax, Field(description="largest Λ, above min")]
 
 
 class Restitutions(Even):
-    """Equally spaced restitution coefficients."""
+    """Equally spaced restitution coefficients r, of which none is elastic."""
 
     min: Annotated[LossyRestitution, Field(description="smallest r")]
     max: Annotated[LossyRestitution, Field(description="largest r, above min")]

@@ -26,9 +26,11 @@ _LINE: Look = {"color": "black", "linewidth": 0.8}
 
 
 def charts(data: xr.Dataset) -> Iterator[tuple[str, Figure]]:
-    """All charts with their names: the page, and a map for each quantity."""
+    """All charts with their names: the page, and a map for each quantity but the greatest height,
+    whose map is the figure ext_atlas.
+    """
     yield "page", page(data)
-    for quantity in data["quantity"].values:
+    for quantity in data["quantity"].drop_sel(quantity="max_height").values:
         yield str(quantity), over_range(data, str(quantity))
 
 

@@ -91,7 +91,7 @@ class Start(NamedTuple):
     weight: np.ndarray
 
 
-class Contacts(NamedTuple):
+class ContactEnds(NamedTuple):
     """The ends of contacts: D, p_e and p′_e, NaN where no end was found.
 
     ``jacobian`` has the derivatives of (D, p_e, p′_e) with respect to (φ, v, Λ, w), shape
@@ -468,7 +468,7 @@ def march(
     *,
     differentiate: bool = False,
     integrate: bool = False,
-) -> Contacts:
+) -> ContactEnds:
     """A row of contacts, from states with p ≥ 0 to the release.
 
     Parameters
@@ -544,7 +544,7 @@ def march(
     depth = root if law.root == 1 and until is not None else np.maximum(root, 0.0) ** law.root
     if until is None and law.release is Release.DISPLACEMENT:
         depth *= 0
-    return Contacts(time, depth, rate, jacobian, contraction, integrals)
+    return ContactEnds(time, depth, rate, jacobian, contraction, integrals)
 
 
 def states(law: ContactLaw, start: Start, end, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -575,7 +575,7 @@ def contacts(
     phase: ArrayLike = 0.0,
     amplitude: ArrayLike = 0.0,
     weight: ArrayLike = 1.0,
-) -> Contacts:
+) -> ContactEnds:
     """Contacts that start at p = 0 with speed v > 0 at a phase φ of the table.
 
     Parameters
@@ -589,7 +589,7 @@ def contacts(
 
     Returns
     -------
-    Contacts
+    ContactEnds
         Arrays of the shape to which the arguments broadcast. They are NaN where v ≤ 0, and where
         the ball is not released within a dozen oscillations.
 
@@ -605,7 +605,7 @@ def contacts(
     laws, (v, *others), shape = _row(law, speed, phase, amplitude, weight)
     start = Start(0 * v, np.where(v > 0, v, np.nan), *others)
     found = march(laws, start, differentiate=True)
-    return Contacts(*(x.reshape((*shape, *x.shape[1:])) for x in found))
+    return ContactEnds(*(x.reshape((*shape, *x.shape[1:])) for x in found))
 
 
 def integrals(
@@ -639,7 +639,7 @@ def integrals(
 
 def path(
     law: ContactLaw,
-    found: Contacts,
+    found: ContactEnds,
     time: ArrayLike,
     speed: ArrayLike,
     phase: ArrayLike = 0.0,
@@ -651,7 +651,7 @@ def path(
     Parameters
     ----------
     law : ContactLaw
-    found : Contacts
+    found : ContactEnds
         The result of :func:`contacts` for these starts.
     time : array_like
         The times; they may have additional leading axes.

@@ -210,7 +210,7 @@ def continue_branch(
             continue
         special.extend(where for _, where in passed)
         if passed and passed[-1][0].terminal:
-            last, (_, y, _) = passed[-1]
+            last, (_, y) = passed[-1]
             direction, end = tangent(problem.jacobian(y), direction), End(last.reason or last.name)
         points.append(y)
         tangents.append(direction)

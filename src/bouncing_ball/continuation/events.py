@@ -45,11 +45,10 @@ class Event:
 
 
 class SpecialPoint(NamedTuple):
-    """A located event: its name, its point y of shape (N + 1,), and the remaining residual."""
+    """A located event: its name, and its point y of shape (N + 1,)."""
 
     name: str
     point: np.ndarray
-    residual: float
 
 
 def parameter_bound(bound: float, upper: bool, reason: str) -> Event:
@@ -101,4 +100,4 @@ def locate(
     progress = (found.point - left) @ chord / (chord @ chord)
     if not (found.converged and -_SLACK <= progress <= 1 + _SLACK):
         return None
-    return SpecialPoint(event.name, found.point, float(found.residual))
+    return SpecialPoint(event.name, found.point)

@@ -93,9 +93,7 @@ def whole_branch(
     if not np.any(orbits.exists):
         raise NoOrbitError(f"{none} was found to start from")
     start = system.point(orbits[int(np.argmax(orbits.exists))])
-    events = [
-        replace(each, terminal=each.terminal or each.name in ends) for each in system.events()
-    ]
+    events = [replace(x, terminal=x.terminal or x.name in ends) for x in system.events()]
     events += [
         parameter_bound(x, upper, f"left the window at amplitude {x:g}")
         for x, upper in ((_LOWEST, False), (top, True))

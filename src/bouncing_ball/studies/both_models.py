@@ -56,8 +56,7 @@ def both_domains(
     return describe(
         contact.assign(
             {f"restitution_{name}": ("point", values) for name, values in along.items()}
-            | {f"{kind}_amplitude": orbit.amplitude for kind, orbit in limits.items()}
-            | {f"{kind}_phase": orbit.phase for kind, orbit in limits.items()}
+            | {f"{kind}_{x}": getattr(limits[kind], x) for kind in limits for x in PLACE[:2]}
         )
     )
 

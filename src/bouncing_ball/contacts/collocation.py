@@ -310,12 +310,8 @@ def _panel(
     new[-1] += final * more
     by_rate, by_time = (np.abs(tail @ x).max(axis=0) for x in (push, lever))
     error = np.maximum(by_rate / now.speed, by_time * now.speed / now.length) * step
-    held = np.ones_like(last)
-    # If times are given, a smooth force is continued beyond the release, because the iterates for a
-    # steady contact may leave the table.
-    if until is None or law.root > 1:
-        full = _load(start, t[:-1]) if law.feels_load else None
-        held = ((q[:-1] > 0) & (_grip(law, m, q[:-1], rate, full) > 0)).all(axis=0)
+    full = _load(start, t[:-1]) if law.feels_load else None
+    held = ((q[:-1] > 0) & (_grip(law, m, q[:-1], rate, full) > 0)).all(axis=0)
     if law.has_kink:
         # A sign that changes twice within a panel is not seen at its end. A panel up to a given
         # time may be so short that the sign is determined by rounding.
@@ -540,8 +536,7 @@ def march(
                 break
     root, rate, time = (np.where(done, x, np.nan) for x in state[:3])
     integrals[~done] = np.nan
-    # The iterates for a steady contact may be above the table.
-    depth = root if law.root == 1 and until is not None else np.maximum(root, 0.0) ** law.root
+    depth = np.maximum(root, 0.0) ** law.root
     if until is None and law.release is Release.DISPLACEMENT:
         depth *= 0
     return ContactEnds(time, depth, rate, jacobian, contraction, integrals)

@@ -15,11 +15,11 @@ from bouncing_ball.claims.witness import (
     restitution_orbits,
     witness,
 )
+from bouncing_ball.contacts.elementary import reduce_angle
 from bouncing_ball.continuation.corrector import newton
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import ModelError
 from bouncing_ball.figures.tables.rows import witness as rows
-from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.studies.orbit_branches import Domains, orbit_branches

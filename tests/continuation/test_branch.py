@@ -7,13 +7,13 @@ from bouncing_ball.continuation.branch import (
     STARTED,
     Branch,
     ContinuationError,
+    StepControl,
     continue_both_ways,
     continue_branch,
     resample,
     solve_at,
 )
 from bouncing_ball.continuation.events import Event, parameter_bound
-from bouncing_ball.continuation.step_control import StepControl
 
 # Newton's last step is below 1e-12 and converges quadratically, so points are
 # exact to a few roundings; the brief's 1e-12 has a wide margin.

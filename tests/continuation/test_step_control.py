@@ -2,7 +2,7 @@
 
 import pytest
 
-from bouncing_ball.continuation.step_control import StepControl
+from bouncing_ball.continuation.branch import StepControl
 
 CONTROL = StepControl(initial=0.02, smallest=1e-3, largest=1.0, target_iterations=4, max_angle=0.2)
 

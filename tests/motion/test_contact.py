@@ -6,9 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.elementary import table
 from bouncing_ball.contacts.laws.impedance import Impedance
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper, permanent_contact_threshold
-from bouncing_ball.motion.angles import table
 from bouncing_ball.motion.history import history
 from bouncing_ball.motion.landing import Flight, land
 from bouncing_ball.motion.resumption import resumption

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.contacts.elementary import table
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
-from bouncing_ball.motion.angles import table
 from bouncing_ball.motion.landing import Flight, land
 from bouncing_ball.motion.simulation import next_impact, simulate
 

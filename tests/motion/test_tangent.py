@@ -6,7 +6,7 @@ import pytest
 from bouncing_ball.contacts.laws.tsuji import Tsuji, tsuji_damping
 from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.motion.simulation import first_impacts
+from bouncing_ball.motion.simulation import dynamics_of
 from bouncing_ball.motion.tangent import Jacobian
 
 LAM, STEP = 1.8, 1e-6
@@ -24,7 +24,7 @@ LAWS = [
 
 def step(law, phase, velocity):
     """The two states of a step on the section, its Jacobian and the contact's duration."""
-    dynamics, *state, _ = first_impacts(law, LAM, phase, velocity + LAM * np.cos(phase))
+    dynamics, *state, _ = dynamics_of(law, LAM).first_impacts(phase, velocity + LAM * np.cos(phase))
     impact = dynamics.start(*state)
     departure = dynamics.depart(impact, differentiate=True)
     after, passed = dynamics.fly(departure)

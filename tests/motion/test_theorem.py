@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from bouncing_ball.contacts.damping import damping_ratio
+from bouncing_ball.contacts.elementary import reduce_angle
 from bouncing_ball.contacts.law_choice import law_of_impact
 from bouncing_ball.contacts.laws import LAWS
 from bouncing_ball.contacts.signature import Signature
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.motion.simulation import simulate
 from bouncing_ball.orbits.law_model import LawModel
 

@@ -5,9 +5,8 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
-from bouncing_ball.orbits.grazing import grazing_points
-from bouncing_ball.orbits.restitution_model import RestitutionModel
-from bouncing_ball.orbits.restitution_orbit import RestitutionOrbit
+from bouncing_ball.orbits.columns import grazing_points
+from bouncing_ball.orbits.restitution_model import RestitutionModel, RestitutionOrbit
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_limits import Side, orbit_at
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.continuation.branch import continue_branch
-from bouncing_ball.orbits.grazing import grazing_points
+from bouncing_ball.orbits.columns import grazing_points
 
 
 class Circle:

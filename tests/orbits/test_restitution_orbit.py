@@ -6,10 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.orbits.restitution_model import RestitutionModel
+from bouncing_ball.orbits.restitution_model import RestitutionModel, RestitutionOrbit
 from bouncing_ball.orbits.restitution_orbit import (
     ImpactMap,
-    RestitutionOrbit,
     branch,
     period_doubling,
     period_doubling_lift,

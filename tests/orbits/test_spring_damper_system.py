@@ -7,9 +7,8 @@ from hypothesis import strategies as st
 
 from bouncing_ball.contacts.damping import damping_ratio
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper, permanent_contact_threshold
-from bouncing_ball.continuation.branch import continue_branch
+from bouncing_ball.continuation.branch import StepControl, continue_branch
 from bouncing_ball.continuation.events import parameter_bound
-from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_limits import orbit_at
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel

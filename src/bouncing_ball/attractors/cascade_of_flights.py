@@ -28,10 +28,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
+from bouncing_ball.contacts.elementary import table
 from bouncing_ball.contacts.spring_damper import SpringDamper, permanent_contact_threshold
 from bouncing_ball.continuation.corrector import NewtonSettings, solve
 from bouncing_ball.errors import require
-from bouncing_ball.motion.angles import table
 from bouncing_ball.motion.landing import Flight
 from bouncing_ball.motion.simulation import simulate
 from bouncing_ball.motion.tangent import Deviation, Jacobian

@@ -22,10 +22,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.batch import pick
+from bouncing_ball.contacts.elementary import reduce_angle, table
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
-from bouncing_ball.motion.angles import reduce_angle, table
-from bouncing_ball.motion.ensembles import pick
-from bouncing_ball.motion.simulation import in_a_row
+from bouncing_ball.motion.simulation import dynamics_of
 from bouncing_ball.orbits.corrected_model import CorrectedModel
 
 # The ϖ of the corrected model from whose map the first order is computed. The relative error from
@@ -65,8 +65,8 @@ def returns(restitution: ArrayLike, amplitude: ArrayLike, impacts: int) -> Retur
     )
     # A ball at rest on the table, at a phase at which the table presses on it.
     rest = np.full(r.shape, -np.pi / 2), np.zeros(r.shape)
-    dynamics, state, shape = in_a_row(r, lam, *rest)
-    other = in_a_row(corrected.impact_law, lam.ravel(), *(x.ravel() for x in rest))[0]
+    dynamics, state, shape = dynamics_of(r, lam).in_a_row(*rest)
+    other = dynamics_of(corrected.impact_law, lam.ravel()).in_a_row(*(x.ravel() for x in rest))[0]
     impact, beside = dynamics.start(*state), other.start(*state)
     found = np.zeros((2, r.size), dtype=int), np.full((2, r.size), np.nan)
     ball, time, late = np.arange(r.size), np.zeros(r.size), np.zeros((2, r.size))

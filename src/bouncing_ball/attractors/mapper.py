@@ -31,11 +31,11 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.attractors.motions import Kind, Motions, Reason
 from bouncing_ball.attractors.stretching import DIGITS, FORGOTTEN, NEAR, Stretching
-from bouncing_ball.motion.angles import reduce_angle, table
+from bouncing_ball.contacts.batch import pick
+from bouncing_ball.contacts.elementary import reduce_angle, table
 from bouncing_ball.motion.dynamics import Departure, Dynamics, Impact
-from bouncing_ball.motion.ensembles import pick
 from bouncing_ball.motion.sequence import Status
-from bouncing_ball.motion.simulation import Law, first_impacts
+from bouncing_ball.motion.simulation import Law, dynamics_of
 from bouncing_ball.motion.tangent import Jacobian
 
 IMPACTS = 2000
@@ -154,7 +154,7 @@ def label(
     >>> found.followed.tolist(), apart[:2].max().tolist(), bool(apart[2].max() < 1e-15)
     ([20, 20], 0.0, True)
     """
-    dynamics, start, relative, shape = first_impacts(law, amplitude, phase, velocity)
+    dynamics, start, relative, shape = dynamics_of(law, amplitude).first_impacts(phase, velocity)
     # After memory of this size has been freed once, the process keeps it and need not request it
     # from the system at each step.
     np.empty(_KEPT, dtype=np.int8)

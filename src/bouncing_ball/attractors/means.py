@@ -4,12 +4,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.attractors.motions import Motions
-from bouncing_ball.motion.angles import table
-from bouncing_ball.motion.contact import LinearContactDynamics
+from bouncing_ball.contacts.batch import pick
+from bouncing_ball.contacts.elementary import table
 from bouncing_ball.motion.dynamics import Departure, Dynamics, Impact
-from bouncing_ball.motion.ensembles import pick
+from bouncing_ball.motion.linear_contact import LinearContactDynamics
 from bouncing_ball.motion.sequence import Status
-from bouncing_ball.motion.simulation import Law, first_impacts
+from bouncing_ball.motion.simulation import Law, dynamics_of
 from bouncing_ball.motion.work import over_steps
 
 
@@ -39,7 +39,7 @@ def means(law: Law, amplitude: ArrayLike, found: Motions, samples: int) -> np.nd
     falls = np.isfinite(phase)
     # A ball that stays on the table is not followed.
     state = np.where(falls, [phase, velocity], [0 * lam, lam])
-    dynamics, start, relative, shape = first_impacts(law, lam, *state)
+    dynamics, start, relative, shape = dynamics_of(law, lam).first_impacts(*state)
     left = np.where(found.impacts > 0, found.impacts, samples).ravel() * falls.ravel()
     total = np.full((5, left.size), np.nan)
     _add_up(dynamics, dynamics.start(start, relative), left, total)

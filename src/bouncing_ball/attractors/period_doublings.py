@@ -15,10 +15,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from bouncing_ball.contacts.elementary import reduce_angle
 from bouncing_ball.continuation.corrector import NewtonSettings, solve
 from bouncing_ball.errors import require
-from bouncing_ball.motion.angles import reduce_angle
-from bouncing_ball.motion.simulation import Law, in_a_row
+from bouncing_ball.motion.simulation import Law, dynamics_of
 from bouncing_ball.motion.tangent import Jacobian
 from bouncing_ball.orbits.orbit import Orbit
 
@@ -79,7 +79,8 @@ class Turns:
         each has the leading shape of y.
         """
         phase, velocity, amplitude = np.moveaxis(y, -1, 0)
-        dynamics, (phase, velocity), shape = in_a_row(self.law, amplitude, phase, velocity)
+        dynamics = dynamics_of(self.law, amplitude)
+        dynamics, (phase, velocity), shape = dynamics.in_a_row(phase, velocity)
         impact = dynamics.at_section(phase, velocity)
         change, time = Jacobian.identity(phase.size), np.zeros(phase.size)
         for _ in range(self.impacts):
@@ -145,7 +146,8 @@ def cascade(orbit: Orbit, doublings: int) -> Cascade:
 
 def _followed(row: Orbit, doublings: int) -> np.ndarray:
     """Points y at the doublings of a one-dimensional array of orbits, (doublings, orbits, 3)."""
-    dynamics, start, _ = in_a_row(row.law, row.amplitude, row.phase, row.relative_impact_velocity)
+    dynamics = dynamics_of(row.law, row.amplitude)
+    dynamics, start, _ = dynamics.in_a_row(row.phase, row.relative_impact_velocity)
     first = dynamics.section(dynamics.start(*start))
     y = np.stack(np.broadcast_arrays(*first, row.amplitude), axis=-1)
     found, gap, good = [y], np.full(len(y), _FIRST), np.full(len(y), True)

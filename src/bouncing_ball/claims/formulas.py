@@ -13,9 +13,9 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.claims import as_printed as printed
+from bouncing_ball.contacts.elementary import reduce_angle
 from bouncing_ball.contacts.spring_damper import SpringDamper, permanent_contact_threshold
 from bouncing_ball.datasets.variables import described
-from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.motion.rest import lift_off_phase
 from bouncing_ball.motion.simulation import next_impact
 from bouncing_ball.orbits.restitution_model import RestitutionModel

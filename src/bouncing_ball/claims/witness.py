@@ -14,12 +14,12 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.contacts.elementary import reduce_angle
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane, tangent
 from bouncing_ball.continuation.events import vanishing
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.errors import ModelError
-from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_model import RestitutionModel
 from bouncing_ball.orbits.spring_damper_model import SpringDamperModel

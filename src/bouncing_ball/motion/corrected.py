@@ -23,7 +23,7 @@ from typing import ClassVar
 import numpy as np
 
 from bouncing_ball.contacts import corrected_map
-from bouncing_ball.motion.angles import reduce_angle, table
+from bouncing_ball.contacts.elementary import reduce_angle, table
 from bouncing_ball.motion.dynamics import Departure, Dynamics, Impact
 from bouncing_ball.motion.landing import Flight, emerge, land
 from bouncing_ball.motion.rest import lifted, stay

@@ -1,19 +1,26 @@
-"""The interface between the models of the impact and the simulation: the contacts and flights of
-many balls.
+"""The simulation of balls from impact to impact, by the contacts and flights of any model.
+
+A subclass of :class:`Dynamics` computes the ends of contacts; everything else follows from them.
 """
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.batch import Batch
-from bouncing_ball.motion.angles import reduce_angle, table
-from bouncing_ball.motion.ensembles import BLOCK
+from bouncing_ball.contacts.batch import BLOCK, Batch, blocks, pick
+from bouncing_ball.contacts.contact_law import ContactLaw
+from bouncing_ball.contacts.elementary import reduce_angle, table
+from bouncing_ball.errors import ModelError, require
 from bouncing_ball.motion.landing import Flight, land
+from bouncing_ball.motion.sequence import RECORDED, Cycle, ImpactSequence, Status
 from bouncing_ball.motion.tangent import Deviation, Jacobian
+
+# Rounding may give a ball at rest on the table a small upward velocity.
+_ROUNDING = 8 * np.finfo(float).eps
 
 
 class Impact(NamedTuple):
@@ -66,6 +73,19 @@ class Dynamics(Batch, ABC):
     block: ClassVar[int] = BLOCK
     forgets: ClassVar[bool] = False
     """Whether the state in which a ball leaves after sticking is independent of earlier impacts."""
+
+    @classmethod
+    def of(cls, law: Any, amplitude: ArrayLike) -> Self:
+        """The dynamics of a law at Λ.
+
+        Raises
+        ------
+        ModelError
+            If Λ is not finite and ≥ 0.
+        """
+        lam = np.asarray(amplitude, dtype=float)
+        require((lam >= 0) & np.isfinite(lam), lam, "amplitude Λ", "finite and ≥ 0")
+        return cls(law, lam)
 
     def start(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
         """First impacts, which start at phases φ with δ′ at the table's level."""
@@ -122,3 +142,90 @@ class Dynamics(Batch, ABC):
         time = passed - departure.duration
         columns = (x.flown((flight.x, flight.y), end, time, after.velocity, lag) for x in released)
         return Jacobian.of_columns(*columns)
+
+    def in_a_row(self, *states: ArrayLike) -> tuple[Self, list[np.ndarray], tuple[int, ...]]:
+        """The dynamics and states of balls, flattened, and the shape to which they broadcast."""
+        arrays = [np.asarray(x, dtype=float) for x in states]
+        shape = np.broadcast_shapes(self.shape, *(x.shape for x in arrays))
+        return self.flat(shape), [np.broadcast_to(x, shape).reshape(-1) for x in arrays], shape
+
+    def first_impacts(
+        self, phase: ArrayLike, velocity: ArrayLike
+    ) -> tuple[Self, np.ndarray, np.ndarray, tuple[int, ...]]:
+        """The dynamics of balls, and φ and δ′ ≤ 0 of their first impacts, flattened; their shape.
+
+        Raises
+        ------
+        ModelError
+            If a state is not finite, or if a ball rises from the table.
+        """
+        flat, (start, before), shape = self.in_a_row(phase, velocity)
+        if not np.all(np.isfinite(start) & np.isfinite(before)):
+            raise ModelError("the phase and the velocity of the impact must be finite")
+        relative = before - table(start, flat.amplitude)[0]
+        if not np.all(relative <= _ROUNDING * (np.abs(before) + flat.amplitude)):
+            raise ModelError("a ball that rises from the table has no impact: z′ > w′")
+        return flat, start, np.minimum(relative, 0.0), shape
+
+    def simulate(self, phase: ArrayLike, velocity: ArrayLike, impacts: int) -> ImpactSequence:
+        """Follow balls through a number of impacts, see :func:`.simulation.simulate`."""
+        flat, start, relative, shape = self.first_impacts(phase, velocity)
+        rows = {name: np.full((impacts, start.size), np.nan) for name in RECORDED}
+        status = np.zeros(start.size, dtype=np.int8)
+        for part in blocks(start.size, self.block):
+            own = [values[:, part] for values in rows.values()]
+            here = flat.take(part)
+            here._run(here.start(start[part], relative[part]), own, status[part])
+        return ImpactSequence(
+            amplitude=np.broadcast_to(self.amplitude, shape),
+            contact=self.law if isinstance(self.law, ContactLaw) else None,
+            status=status.reshape(shape),
+            **{name: values.reshape(impacts, *shape) for name, values in rows.items()},
+        )
+
+    def _run(self, impact: Impact, rows: list[np.ndarray], status: np.ndarray) -> None:
+        """Fill the rows and the status of one block of balls, impact by impact."""
+        dynamics = self
+        time = np.zeros_like(impact.phase)
+        alive: Any = slice(None)
+        impacts = len(rows[0])
+        for row in range(impacts):
+            departure = dynamics.depart(impact)
+            flight = departure.flight
+            values = (time, *impact[:3], departure.duration, flight.displacement, flight.velocity)
+            for column, value in zip(rows, (*values, departure.settling), strict=True):
+                column[row, alive] = value
+            if np.any(departure.status):
+                status[alive] = departure.status
+                going = np.flatnonzero(departure.status == Status.BOUNCING)
+                alive = np.arange(len(status))[alive][going]
+                dynamics, departure, time = (
+                    dynamics.take(going),
+                    pick(departure, going),
+                    time[going],
+                )
+            if row == impacts - 1 or not len(time):
+                break
+            impact, passed = dynamics.fly(departure)
+            time = time + passed
+
+    def next_impact(self, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
+        """The Poincaré map from one impact (φ, δ′) to the next, for arguments that broadcast.
+
+        Raises
+        ------
+        ModelError
+            If a flight is too long for floating-point numbers.
+        """
+        flat, (start, velocity), shape = self.in_a_row(phase, relative_velocity)
+        out = np.full((len(Cycle._fields), start.size), np.nan)
+        out[-1] = np.inf
+        for part in blocks(start.size, self.block):
+            here = flat.take(part)
+            departure = here.depart(here.start(start[part], velocity[part]))
+            going = np.flatnonzero(departure.status == Status.BOUNCING)
+            if going.size:
+                landed, passed = here.take(going).fly(pick(departure, going))
+                values = landed.phase, landed.velocity, landed.displacement, passed
+                out[:, part.start + going] = values
+        return Cycle(*out.reshape(len(Cycle._fields), *shape))

@@ -27,7 +27,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.motion.ensembles import Row, pick
+from bouncing_ball.contacts.batch import Row, pick
 
 # θ and κ above.
 _SIMPLE, _CLOSE = np.array(0.25), np.array(3e-4)

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.collocation import Start, states
+from bouncing_ball.contacts.elementary import table
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.motion.angles import table
 from bouncing_ball.motion.landing import Flight
 from bouncing_ball.motion.sequence import ImpactSequence, Status
 

@@ -12,8 +12,8 @@ above the table's highest point, z > Λ, and the search skips this part.
 
 import numpy as np
 
+from bouncing_ball.contacts.elementary import sine_and_versine
 from bouncing_ball.errors import ModelError
-from bouncing_ball.motion.angles import sine_and_versine
 from bouncing_ball.motion.first_zero import Motion, State, Zero, first_zero
 
 

@@ -12,13 +12,31 @@ the table over the weight. In both cases ::
 ρ = √(C² + D²). The contact therefore never ends if at some time ::
 
     R e^{-as} + ρ ≤ 1/ϖ²
+
+Next to the undamped resonance the steady part is lost in rounding, and the contact's flow gives the
+motion instead. Let e² = y′² + ϖ² (y + 1/ϖ²)². Damping only decreases it, and the forcing, at most
+``F = Λ √(1 + κ²)``, increases e by at most F in a time 1. Within this time \|y′\| ≤ e + F, and
+bounds of the higher derivatives follow from the equation of motion.
 """
+
+from dataclasses import dataclass
 
 import numpy as np
 
-from bouncing_ball.contacts.elementary import arctangent, exponential, sine_and_cosine
+from bouncing_ball.contacts.elementary import (
+    arctangent,
+    exponential,
+    sine_and_cosine,
+    sine_and_versine,
+    table,
+)
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.motion.first_zero import Motion, State
+from bouncing_ball.motion.dynamics import Departure, Impact
+from bouncing_ball.motion.first_zero import Motion, State, first_zero
+from bouncing_ball.motion.landing import Flight
+from bouncing_ball.motion.resumption import ResumingDynamics
+from bouncing_ball.motion.sequence import Status
+from bouncing_ball.motion.tangent import Deviation, Jacobian
 
 # The closed form is used for √γ above this value: the relative error of the steady part is ε/√γ.
 _RESONANCE = 1e-4
@@ -47,12 +65,12 @@ def has_closed_form(contact: SpringDamper) -> bool:
 
 
 class ContactMotion(Motion):
-    """The motion y = δ + κ δ′ of balls in contact.
+    """The motion y = δ + κ δ′ of balls in contact, away from the resonance.
 
     Parameters
     ----------
     contact : SpringDamper
-        One contact, or one for each ball, for which :func:`has_closed_form` is true.
+        One underdamped contact, or one for each ball.
     amplitude : float or array
         Λ.
     displacement, velocity : array
@@ -65,16 +83,19 @@ class ContactMotion(Motion):
         omega, zeta, lag = contact.frequency_ratio, contact.damping_ratio, contact.lag
         self.omega, self.stiffness, self.decay, self.lag = omega, omega * omega, zeta * omega, lag
         self.damped = contact.damped_frequency
-        detuning, loss = _resistance(contact)
-        gamma = detuning * detuning + loss * loss
-        # Coefficients of Λ sin τ and Λ cos τ in the steady response to Λ sin τ + κ Λ cos τ.
-        in_phase, quadrature = (detuning + lag * loss) / gamma, (lag * detuning - loss) / gamma
-        self.steady = amplitude * np.sqrt(in_phase * in_phase + quadrature * quadrature)
         self.forcing = amplitude * np.sqrt(1 + lag * lag)
-        self.sine, self.cosine = in_phase * x - quadrature * y, in_phase * y + quadrature * x
         # The forcing Λ sin φ + κ Λ cos φ at the start.
         self.push = y + lag * x
         self.start, self.start_rate = self._observed(displacement, velocity, y)
+        self._split(contact, amplitude, x, y)
+
+    def _split(self, contact: SpringDamper, amplitude, x, y) -> None:
+        detuning, loss = _resistance(contact)
+        gamma, lag = detuning * detuning + loss * loss, self.lag
+        # Coefficients of Λ sin τ and Λ cos τ in the steady response to Λ sin τ + κ Λ cos τ.
+        in_phase, quadrature = (detuning + lag * loss) / gamma, (lag * detuning - loss) / gamma
+        self.steady = amplitude * np.sqrt(in_phase * in_phase + quadrature * quadrature)
+        self.sine, self.cosine = in_phase * x - quadrature * y, in_phase * y + quadrature * x
         self.a = self.start + (1 / self.stiffness - self.cosine)
         self.b = (self.start_rate - self.sine + self.decay * self.a) / self.damped
         self.envelope = np.sqrt(self.a * self.a + self.b * self.b)
@@ -161,3 +182,91 @@ class ContactMotion(Motion):
         angle = arctangent(-b * depth - a * rest, b * rest - a * depth)
         angle = np.where((depth < 1) & (angle > 0), angle, 0.0)
         return angle / self.damped
+
+
+class ResonantMotion(ContactMotion):
+    """The motion y of balls whose contact is at the undamped resonance, or near it.
+
+    y moves as δ does, with another forcing. The bounds hold for a time 1 and are raised such that
+    no step is longer.
+    """
+
+    def _split(self, contact: SpringDamper, amplitude, x, y) -> None:
+        self.zeta, self.phase = contact.damping_ratio, np.arctan2(self.push, x - self.lag * y)
+
+    def __call__(self, time: np.ndarray) -> State:
+        start = self.start, self.start_rate, self.phase, self.forcing
+        value, rate, second, _ = SpringDamper(self.omega, self.zeta).flow(time, *start)
+        loss, stiffness, forcing = 2 * self.decay, self.stiffness, self.forcing
+        third = table(self.phase + time, forcing)[0] - loss * second - stiffness * rate
+        moved = np.sqrt(rate * rate + (self.omega * value + 1 / self.omega) ** 2)
+        fast = moved + forcing
+        by_second = forcing + (loss + self.omega) * fast
+        by_third = forcing + loss * by_second + stiffness * fast
+        by_fourth = forcing + loss * by_third + stiffness * by_second
+        by_second = np.maximum(by_second, -2 * (value + rate))
+        by_third = np.maximum(by_third, 3 * np.abs(second))
+        by_fourth = np.maximum(by_fourth, 12 * (by_second + np.abs(second)))
+        # Without forcing, a free oscillation of at most this size never ends the contact.
+        ended = (forcing == 0) & (moved * self.omega <= 1)
+        return State(value, rate, second, third, by_second, by_third, by_fourth, ended)
+
+    def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
+        return time
+
+
+@dataclass(frozen=True, repr=False)
+class LinearContactDynamics(ResumingDynamics):
+    """The dynamics of an underdamped
+    :class:`~bouncing_ball.contacts.spring_damper.SpringDamper`.
+    """
+
+    def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
+        """The end of each contact, or permanent contact if it is proved never to end."""
+        x, y = table(impact.phase, self.amplitude)
+        state = impact.displacement, impact.velocity
+        kind = ContactMotion if has_closed_form(self.law) else ResonantMotion
+        motion = kind(self.law, self.amplitude, *state, x, y)
+        # Where the search ended without a release, the contact is permanent.
+        end = first_zero(motion, motion.sure())
+        phase = impact.phase + end.time
+        x, y = table(phase, self.amplitude)
+        # If the ball just reaches the table's level, rounding may give it a downward velocity.
+        displacement, velocity = motion.state(np.maximum(end.rate, 0.0), y)
+        status = np.where(end.ended, Status.PERMANENT_CONTACT, Status.BOUNCING)
+        status[end.undecided] = Status.UNDECIDED
+        forever = status != Status.BOUNCING
+        displacement[forever] = velocity[forever] = np.nan
+        end.time[forever] = np.inf
+        flight = Flight(displacement, velocity, x, y, self.amplitude)
+        # An undamped contact that starts at zero speed under a constant load lasts exactly one
+        # oscillation. A longer contact therefore ends because the load changes.
+        sticks = end.time * self.law.damped_frequency > 2 * np.pi
+        return Departure(phase, end.time, flight, status, sticks=sticks)
+
+    def jacobian(
+        self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
+    ) -> Jacobian:
+        """Derivative of the map over contact and flight, in closed form."""
+        contact, flight, duration = self.law, departure.flight, departure.duration
+        omega, damped, lag = contact.frequency_ratio, contact.damped_frequency, contact.lag
+        stiffness, loss = omega**2, 2 * contact.damping_ratio * omega
+        sine, versine = sine_and_versine(damped * duration)
+        decay = exponential(-loss / 2 * duration)
+        impulse = decay * sine / damped
+        impulse_rate = decay * (1 - versine) - loss / 2 * impulse
+        level = impulse_rate + loss * impulse
+        depth, rate = impact.displacement, impact.velocity
+        _, y = table(impact.phase, self.amplitude)
+        first = (y - 1) - loss * rate - stiffness * depth
+        left, speed = flight.displacement, flight.velocity
+        last = (flight.y - 1) - loss * speed - stiffness * left
+        # A deviation along the motion changes only the time.
+        fall = speed - level * rate - impulse * first
+        pull = last + stiffness * impulse * rate - impulse_rate * first
+        before, held = (np.where(x < 0, lag, 0.0) for x in (depth, after.displacement))
+        by_rate = impulse - before * level, impulse_rate + before * stiffness * impulse
+        one = np.ones_like(passed)
+        moved = Deviation(one, fall, pull), Deviation(0 * one, *by_rate)
+        released = (x.to_event(speed, last, lag) for x in moved)
+        return self.landed(released, departure, after, passed, held)

@@ -8,10 +8,9 @@ leaves at once. For Λ ≤ 1 it never leaves.
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.elementary import arctangent
-from bouncing_ball.motion.angles import reduce_angle, table
+from bouncing_ball.contacts.batch import pick
+from bouncing_ball.contacts.elementary import arctangent, reduce_angle, table
 from bouncing_ball.motion.dynamics import Departure
-from bouncing_ball.motion.ensembles import pick
 from bouncing_ball.motion.landing import Flight
 from bouncing_ball.motion.sequence import Status
 

@@ -12,12 +12,14 @@ when Λ sin τ rises through 1; for Λ ≤ 1 it never lifts off.
 """
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar, Self
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.elementary import table
 from bouncing_ball.contacts.restitution_law import RestitutionLaw, rebound
-from bouncing_ball.motion.angles import table
+from bouncing_ball.errors import require
 from bouncing_ball.motion.dynamics import Departure, Dynamics, Impact
 from bouncing_ball.motion.landing import Flight
 from bouncing_ball.motion.rest import lifted, pressed, stay
@@ -34,6 +36,20 @@ class RestitutionDynamics(Dynamics):
     """Impacts and flights of the restitution model; ``law`` is a number r or a law r(v)."""
 
     forgets: ClassVar[bool] = True
+
+    @classmethod
+    def of(cls, law: Any, amplitude: ArrayLike) -> Self:
+        """The dynamics of a law r(v) or numbers r at Λ.
+
+        Raises
+        ------
+        ModelError
+            If r or Λ is outside its range.
+        """
+        if not isinstance(law, RestitutionLaw):
+            law = np.asarray(law, dtype=float)
+            require((law > 0) & (law <= 1), law, "restitution coefficient r", "in (0, 1]")
+        return super().of(law, amplitude)
 
     def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
         """The flight after each impact, or the rest on the table after chattering."""

@@ -19,8 +19,10 @@ table; a return of the grip between two samples would be missed.
 import numpy as np
 
 from bouncing_ball.contacts.contact_law import ContactLaw, slopes_of
+from bouncing_ball.contacts.elementary import reduce_angle
+from bouncing_ball.motion.dynamics import Departure, Dynamics, Impact
 from bouncing_ball.motion.first_zero import Motion, State, first_zero
-from bouncing_ball.motion.landing import Flight, Rise
+from bouncing_ball.motion.landing import Flight, Rise, land
 
 # Number of samples of the grip of a slow ball, and of bisections for the time of its return.
 _SAMPLES = 65
@@ -104,3 +106,19 @@ def _sampled(flight: Flight, law: ContactLaw) -> tuple[np.ndarray, np.ndarray]:
     # For a ball that falls back before it reaches δ = 0 the grip returns at its top at the latest.
     back = found | rise.ended | (rise.rate <= 0)
     return np.where(back, right, rise.time), back
+
+
+class ResumingDynamics(Dynamics):
+    """The dynamics of contacts of finite duration, whose flights may end by a resumption."""
+
+    def fly(self, departure: Departure) -> tuple[Impact, np.ndarray]:
+        """The landing or an earlier resumption, and the time from the last impact to it."""
+        flight = departure.flight
+        start, resumed = resumption(flight, self.law)
+        landing = land(flight, start)
+        time, velocity, displacement = landing.time, -landing.rate, np.zeros_like(landing.time)
+        if resumed.any():
+            time[resumed] = start[resumed]
+            displacement[resumed], velocity[resumed], *_ = (x[resumed] for x in flight.gap(time))
+        impact = Impact(reduce_angle(departure.phase + time), displacement, velocity)
+        return impact, departure.duration + time

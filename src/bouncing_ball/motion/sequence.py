@@ -8,7 +8,7 @@ import numpy as np
 
 from bouncing_ball.contacts.batch import in_words
 from bouncing_ball.contacts.contact_law import ContactLaw
-from bouncing_ball.motion.angles import reduce_angle
+from bouncing_ball.contacts.elementary import reduce_angle
 
 RECORDED = (
     *("time", "phase", "displacement", "relative_velocity", "contact_duration"),

@@ -22,8 +22,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.collocation import integrals
+from bouncing_ball.contacts.elementary import table
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.motion.angles import table
 from bouncing_ball.motion.linear_contact import has_closed_form
 
 

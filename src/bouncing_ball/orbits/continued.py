@@ -15,10 +15,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.instant import Instant
-from bouncing_ball.continuation.branch import ContinuationError, continue_branch
+from bouncing_ball.continuation.branch import ContinuationError, StepControl, continue_branch
 from bouncing_ball.continuation.corrector import NewtonSettings, newton, plane, tangent
 from bouncing_ball.continuation.events import Event, SpecialPoint, parameter_bound, vanishing
-from bouncing_ball.continuation.step_control import StepControl
 from bouncing_ball.orbits import corrected_branch as corrected
 from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.orbit import check_index

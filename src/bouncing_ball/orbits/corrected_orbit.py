@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.corrected_map import Hit, impact, meeting
 from bouncing_ball.contacts.signature import Instant, Signature
+from bouncing_ball.motion.corrected import CorrectedDynamics
 from bouncing_ball.orbits import corrected_branch as formulas
 from bouncing_ball.orbits.orbit import Orbit
 
@@ -33,6 +34,8 @@ class CorrectedOrbit(Orbit):
     >>> float(orbit.bounce_velocity) == np.pi - 0.5, round(float(orbit.phase) - np.pi / 2, 12)
     (True, -0.5)
     """
+
+    dynamics = CorrectedDynamics.of
 
     @classmethod
     def at(cls, n: ArrayLike, law: Signature, amplitude: ArrayLike, phase: ArrayLike) -> Self:

@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.contacts.elementary import table
 from bouncing_ball.continuation.branch import ContinuationError
 from bouncing_ball.datasets import CASE
 from bouncing_ball.datasets.labelled import Grid, Labelled
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import ModelError, NoOrbitError, require
-from bouncing_ball.motion.angles import table
 from bouncing_ball.motion.history import history as of_one_ball
 from bouncing_ball.motion.landing import Flight, land
 from bouncing_ball.motion.sequence import Status

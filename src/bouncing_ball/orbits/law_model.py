@@ -18,6 +18,7 @@ from bouncing_ball.contacts.law_choice import law_of_impact
 from bouncing_ball.contacts.permanent_contact import permanent_contact
 from bouncing_ball.contacts.signature import Instant, free_impact
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.motion.simulation import dynamics_of
 from bouncing_ball.orbits.continued import ContinuedModel, orbit_at, orbits_at
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.restitution_orbit import rigid_speed
@@ -40,6 +41,8 @@ class LawOrbit(Orbit):
     >>> float(orbit.determinant())
     1.0
     """
+
+    dynamics = staticmethod(dynamics_of)
 
     @classmethod
     def at(cls, n: ArrayLike, law: ContactLaw, amplitude: ArrayLike, *start: ArrayLike) -> Self:

@@ -28,8 +28,8 @@ from numpy.typing import ArrayLike
 from bouncing_ball.contacts.batch import Batch, plainly
 from bouncing_ball.contacts.instant import Instant
 from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.motion.dynamics import Dynamics
 from bouncing_ball.motion.sequence import Cycle, ImpactSequence
-from bouncing_ball.motion.simulation import next_impact, simulate
 from bouncing_ball.orbits.orbit import Orbit
 from bouncing_ball.orbits.stability import Side
 from bouncing_ball.orbits.system import OrbitSystem
@@ -201,6 +201,10 @@ class ImpactModel(Batch, ABC):
             If n is not a positive integer.
         """
 
+    def dynamics(self, amplitude: ArrayLike) -> Dynamics:
+        """The contacts and flights of the model's balls on a table of amplitude Λ."""
+        return self.orbit_type.dynamics(self.impact_law, amplitude)
+
     def simulate(
         self, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int
     ) -> ImpactSequence:
@@ -208,7 +212,7 @@ class ImpactModel(Batch, ABC):
 
         The arguments are those of :func:`bouncing_ball.motion.simulation.simulate`.
         """
-        return simulate(self.impact_law, amplitude, phase, velocity, impacts)
+        return self.dynamics(amplitude).simulate(phase, velocity, impacts)
 
     history, drop = _call("motion.history"), _call("motion.drop")
     branch = _call("orbits.branch")
@@ -221,7 +225,7 @@ class ImpactModel(Batch, ABC):
 
         The arguments are those of :func:`bouncing_ball.motion.simulation.next_impact`.
         """
-        return next_impact(self.impact_law, amplitude, phase, relative_velocity)
+        return self.dynamics(amplitude).next_impact(phase, relative_velocity)
 
     @property
     def impact_law(self) -> Any:

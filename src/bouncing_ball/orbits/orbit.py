@@ -11,17 +11,15 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.batch import Batch, in_words
+from bouncing_ball.contacts.batch import Batch, blocks, in_words
+from bouncing_ball.contacts.elementary import reduce_angle
 from bouncing_ball.errors import require
-from bouncing_ball.motion.angles import reduce_angle
-from bouncing_ball.motion.ensembles import blocks
 from bouncing_ball.motion.sequence import Cycle
-from bouncing_ball.motion.simulation import next_impact
 from bouncing_ball.orbits import stability
 
 OBSERVABLES = (
@@ -113,6 +111,9 @@ class Orbit(Batch, ABC):
 
     # A model's orbits define the following.
 
+    dynamics: ClassVar[Any]
+    """The :class:`~bouncing_ball.motion.dynamics.Dynamics` of a law of the impact at Λ."""
+
     @property
     def unknowns(self) -> tuple[np.ndarray, ...]:
         """The unknowns that determine the contact: (φ, z′_i), unless a model has fewer unknowns."""
@@ -163,7 +164,8 @@ class Orbit(Batch, ABC):
         """The simulated map from impacts (φ, δ′) to the next impacts, at the parameters of these
         orbits.
         """
-        return next_impact(self.law, self.amplitude, phase, relative_velocity)
+        dynamics = self.dynamics(self.law, self.amplitude)
+        return dynamics.next_impact(phase, relative_velocity)
 
     def flight_defects(
         self, displacement: ArrayLike, velocity: ArrayLike

@@ -17,14 +17,12 @@ exact map.
 """
 
 from enum import StrEnum
-from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.restitution_law import rebound
 from bouncing_ball.errors import NoOrbitError, require
-from bouncing_ball.orbits.orbit import Orbit, check_index
+from bouncing_ball.orbits.orbit import check_index
 
 
 class ImpactMap(StrEnum):
@@ -177,54 +175,3 @@ def branch(
     lift = amplitude_max * np.sin(end)[..., np.newaxis] * np.linspace(-1.0, 1.0, points)
     level = saddle_node(n, restitution)[..., np.newaxis]
     return np.hypot(level, lift), np.arctan2(lift, level)
-
-
-class RestitutionOrbit(Orbit):
-    """n-T orbits with instantaneous impacts; ``law`` is r, or a :class:`RestitutionLaw`.
-
-    Examples
-    --------
-    >>> orbit = RestitutionOrbit.of(1, 0.5, 1.2, 0.5)
-    >>> float(orbit.bounce_velocity) == np.pi, float(orbit.determinant())
-    (True, 0.25)
-    """
-
-    @classmethod
-    def at(cls, n: ArrayLike, law: Any, amplitude: ArrayLike, *start: ArrayLike) -> Self:
-        """The orbits with impacts at (φ, z′_i)."""
-        phase, velocity = start
-        return cls.of(n, law, amplitude, phase, 0.0, velocity)
-
-    def _rebound(self) -> tuple[np.ndarray, np.ndarray]:
-        """r, and the slope d(r v)/dv, at the impact speed v."""
-        return rebound(self.law, -self.relative_impact_velocity)
-
-    @property
-    def restitution(self) -> np.ndarray:
-        """The restitution coefficient r at the impact speed."""
-        return self._rebound()[0]
-
-    def residual(self) -> np.ndarray:
-        """Velocity and landing defects of the exact map (Eq. 5), shape (..., 2)."""
-        after = -self.restitution * self.relative_impact_velocity
-        return np.stack(np.broadcast_arrays(*self.flight_defects(0.0, after)), axis=-1)
-
-    def contact_jacobian(self) -> np.ndarray:
-        """Jacobian of (τ_b, δ_b, δ′_b) in (τ, δ′, Λ), shape (..., 3, 3).
-
-        For an instant at the level of the table, only ∂δ′_b/∂δ′ = -d(r v)/dv is not zero.
-        """
-        jacobian = np.zeros((*self.shape, 3, 3))
-        jacobian[..., 2, 1] = -self._rebound()[1]
-        return jacobian
-
-    def determinant(self) -> np.ndarray:
-        """r d(r v)/dv, which is r² for a constant r."""
-        r, slope = self._rebound()
-        return r * slope + 0 * self.phase
-
-    def trace_and_determinant(self) -> tuple[np.ndarray, np.ndarray]:
-        """Trace 1 + r s - (1 + r)(1 + s) Λ sin φ and determinant r s, where s = d(r v)/dv."""
-        r, slope = self._rebound()
-        lift = self.amplitude * np.sin(self.phase)
-        return 1 + r * slope - (1 + r) * (1 + slope) * lift, self.determinant()

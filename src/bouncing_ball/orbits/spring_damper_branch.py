@@ -44,10 +44,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.batch import blocks, pick
 from bouncing_ball.contacts.oscillator import responses
 from bouncing_ball.contacts.spring_damper import SpringDamper
 from bouncing_ball.errors import require
-from bouncing_ball.motion.ensembles import blocks, pick
 
 # Number of points computed at the same time, so that the intermediate arrays stay in the cache.
 _BLOCK = 8192

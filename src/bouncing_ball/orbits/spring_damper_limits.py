@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize.elementwise import find_root
 
+from bouncing_ball.contacts.batch import blocks
 from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.motion.ensembles import blocks
 from bouncing_ball.orbits.orbit import check_index
 from bouncing_ball.orbits.spring_damper_branch import BranchPoint, branch_point
 from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.motion.linear_contact import LinearContactDynamics
 from bouncing_ball.orbits.orbit import Orbit, as_columns
 from bouncing_ball.orbits.spring_damper_branch import BranchPoint, branch_point
 
@@ -21,6 +22,8 @@ class SpringDamperOrbit(Orbit):
     >>> float(orbit.determinant())
     1.0
     """
+
+    dynamics = LinearContactDynamics.of
 
     @classmethod
     def from_branch(cls, point: BranchPoint, contact: SpringDamper, n: ArrayLike) -> Self:

@@ -55,7 +55,7 @@ class OrbitSystem:
 
     Examples
     --------
-    >>> from bouncing_ball.orbits.restitution_orbit import RestitutionOrbit
+    >>> from bouncing_ball.orbits.restitution_model import RestitutionOrbit
     >>> system = OrbitSystem(1, 1.0, RestitutionOrbit.at)
     >>> defects = system.residual(np.array([np.pi / 2, -np.pi, 1.0]))
     >>> [abs(round(float(x), 12)) for x in defects]

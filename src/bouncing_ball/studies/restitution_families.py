@@ -7,9 +7,9 @@ import xarray as xr
 
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.orbits import restitution_orbit as orbits
-from bouncing_ball.orbits.grazing import grazing_points
-from bouncing_ball.orbits.restitution_model import RestitutionModel
-from bouncing_ball.orbits.restitution_orbit import ImpactMap, RestitutionOrbit
+from bouncing_ball.orbits.columns import grazing_points
+from bouncing_ball.orbits.restitution_model import RestitutionModel, RestitutionOrbit
+from bouncing_ball.orbits.restitution_orbit import ImpactMap
 from bouncing_ball.parameters import Samples, number
 from bouncing_ball.studies.parameters import FamilyBranches, OrbitParameters
 

@@ -9,10 +9,10 @@ from scipy.stats import CensoredData, chi2, ecdf
 
 from bouncing_ball.attractors.mapper import label
 from bouncing_ball.attractors.motions import Kind
+from bouncing_ball.contacts.elementary import reduce_angle
 from bouncing_ball.contacts.spring_damper import Release
 from bouncing_ball.datasets.shards import Arrays, Found, Part
 from bouncing_ball.datasets.variables import described
-from bouncing_ball.motion.angles import reduce_angle
 from bouncing_ball.parameters import (
     Amplitude,
     FrequencyRatio,

@@ -91,7 +91,7 @@ class Start(NamedTuple):
     weight: np.ndarray
 
 
-class Contacts(NamedTuple):
+class ContactEnds(NamedTuple):
     """The ends of contacts: D, p_e and p′_e, NaN where no end was found.
 
     ``jacobian`` has the derivatives of (D, p_e, p′_e) with respect to (φ, v, Λ, w), shape
@@ -310,12 +310,8 @@ def _panel(
     new[-1] += final * more
     by_rate, by_time = (np.abs(tail @ x).max(axis=0) for x in (push, lever))
     error = np.maximum(by_rate / now.speed, by_time * now.speed / now.length) * step
-    held = np.ones_like(last)
-    # If times are given, a smooth force is continued beyond the release, because the iterates for a
-    # steady contact may leave the table.
-    if until is None or law.root > 1:
-        full = _load(start, t[:-1]) if law.feels_load else None
-        held = ((q[:-1] > 0) & (_grip(law, m, q[:-1], rate, full) > 0)).all(axis=0)
+    full = _load(start, t[:-1]) if law.feels_load else None
+    held = ((q[:-1] > 0) & (_grip(law, m, q[:-1], rate, full) > 0)).all(axis=0)
     if law.has_kink:
         # A sign that changes twice within a panel is not seen at its end. A panel up to a given
         # time may be so short that the sign is determined by rounding.
@@ -468,7 +464,7 @@ def march(
     *,
     differentiate: bool = False,
     integrate: bool = False,
-) -> Contacts:
+) -> ContactEnds:
     """A row of contacts, from states with p ≥ 0 to the release.
 
     Parameters
@@ -540,11 +536,10 @@ def march(
                 break
     root, rate, time = (np.where(done, x, np.nan) for x in state[:3])
     integrals[~done] = np.nan
-    # The iterates for a steady contact may be above the table.
-    depth = root if law.root == 1 and until is not None else np.maximum(root, 0.0) ** law.root
+    depth = np.maximum(root, 0.0) ** law.root
     if until is None and law.release is Release.DISPLACEMENT:
         depth *= 0
-    return Contacts(time, depth, rate, jacobian, contraction, integrals)
+    return ContactEnds(time, depth, rate, jacobian, contraction, integrals)
 
 
 def states(law: ContactLaw, start: Start, end, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -575,7 +570,7 @@ def contacts(
     phase: ArrayLike = 0.0,
     amplitude: ArrayLike = 0.0,
     weight: ArrayLike = 1.0,
-) -> Contacts:
+) -> ContactEnds:
     """Contacts that start at p = 0 with speed v > 0 at a phase φ of the table.
 
     Parameters
@@ -589,7 +584,7 @@ def contacts(
 
     Returns
     -------
-    Contacts
+    ContactEnds
         Arrays of the shape to which the arguments broadcast. They are NaN where v ≤ 0, and where
         the ball is not released within a dozen oscillations.
 
@@ -605,7 +600,7 @@ def contacts(
     laws, (v, *others), shape = _row(law, speed, phase, amplitude, weight)
     start = Start(0 * v, np.where(v > 0, v, np.nan), *others)
     found = march(laws, start, differentiate=True)
-    return Contacts(*(x.reshape((*shape, *x.shape[1:])) for x in found))
+    return ContactEnds(*(x.reshape((*shape, *x.shape[1:])) for x in found))
 
 
 def integrals(
@@ -639,7 +634,7 @@ def integrals(
 
 def path(
     law: ContactLaw,
-    found: Contacts,
+    found: ContactEnds,
     time: ArrayLike,
     speed: ArrayLike,
     phase: ArrayLike = 0.0,
@@ -651,7 +646,7 @@ def path(
     Parameters
     ----------
     law : ContactLaw
-    found : Contacts
+    found : ContactEnds
         The result of :func:`contacts` for these starts.
     time : array_like
         The times; they may have additional leading axes.

@@ -12,7 +12,7 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.collocation import Contacts, contacts, path
+from bouncing_ball.contacts.collocation import ContactEnds, contacts, path
 from bouncing_ball.contacts.contact_law import ContactLaw
 from bouncing_ball.contacts.law_choice import law_of_impact
 from bouncing_ball.contacts.permanent_contact import permanent_contact
@@ -56,7 +56,7 @@ class LawOrbit(Orbit):
         return orbit
 
     @cached_property
-    def contact(self) -> Contacts:
+    def contact(self) -> ContactEnds:
         """The contact that starts at the orbit's impact: its end, its derivatives and its path."""
         return contacts(self.law, -self.relative_impact_velocity, self.phase, self.amplitude)
 

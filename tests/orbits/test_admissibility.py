@@ -94,7 +94,7 @@ def test_restitution_orbits_graze():
 
 
 def test_at_the_undamped_resonance_an_earlier_release_is_seen_too():
-    # There the motion has no steady part, and the contact is followed as that of any law. One
+    # There the motion has no steady part, and the flow gives it, with certified steps. One
     # longer than the period of the contact's own oscillation opens on the way.
     duration = np.array([[3.5, 6.0, 9.0, 11.0]])
     orbit = SpringDamperOrbit.on_branch(duration - np.pi, SpringDamper(1.0, 0.0), 2)

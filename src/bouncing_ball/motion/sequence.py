@@ -24,7 +24,7 @@ class Status(IntEnum):
     """More impacts follow."""
     PERMANENT_CONTACT = 1
     """The last contact never ends. This is proved for the linear contact only, see
-    :mod:`bouncing_ball.motion.contact`."""
+    :mod:`bouncing_ball.motion.linear_contact`."""
     UNDECIDED = 2
     """The last contact lasts for hundreds of oscillations at a Λ at which none is permanent."""
 

@@ -43,7 +43,7 @@ rule draw_explorer:
     input:
         data="results/figures/explorer.nc",
         texts=sorted(map(str, Path(EXPLORER).glob("*.[chj]*"))),
-        source=modules("calculator.results", "figures.explorer.document", "engines.reference"),
+        source=modules("accuracy.quantities", "figures.explorer.document", "engines.reference"),
     output:
         html="results/figures/explorer.html",
     log:

@@ -1,6 +1,6 @@
 """The explorer's page from its reference orbits and the settings of engines."""
 
-from bouncing_ball.calculator.results import QUANTITIES
+from bouncing_ball.accuracy.quantities import QUANTITIES
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.engines.reference import as_json
 from bouncing_ball.figures.explorer.document import to_html

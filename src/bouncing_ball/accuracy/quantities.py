@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.orbits.model import ImpactModel
+from bouncing_ball.orbits.stability import Bifurcation
 
 
 class Quantity(StrEnum):
@@ -28,6 +29,16 @@ OF_LIMITS = tuple(Quantity)[4:]
 """Values of Λ: functions of the contact and of n; the permanent contact does not depend on n."""
 OF_IMPACTS = tuple(Quantity)[:6]
 """Quantities that depend on an impact: all except the permanent contact, which has no impact."""
+QUANTITIES = {
+    Quantity.MAX_HEIGHT: "greatest height",
+    Quantity.BOUNCE_VELOCITY: "bouncing-off velocity",
+    Quantity.PHASE: "phase of impact",
+    Quantity.APPARENT_RESTITUTION: "apparent restitution",
+    Quantity.SADDLE_NODE: str(Bifurcation.SADDLE_NODE),
+    Quantity.PERIOD_DOUBLING: str(Bifurcation.PERIOD_DOUBLING),
+    Quantity.PERMANENT_CONTACT: "threshold of permanent contact",
+}
+"""The names of the quantities in sentences."""
 
 
 def values(

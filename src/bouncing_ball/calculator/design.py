@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Annotated, Any, get_args
 
-from bouncing_ball.accuracy.quantities import OF_ORBITS, Quantity
+from bouncing_ball.accuracy.quantities import OF_ORBITS, QUANTITIES, Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.calculator.case import Case, Table
 from bouncing_ball.calculator.contact_data import STANDARD_GRAVITY, case_of, loss, meant, table_of
@@ -13,7 +13,6 @@ from bouncing_ball.calculator.families import families, finite
 from bouncing_ball.calculator.motion import aside, headline, of_family
 from bouncing_ball.calculator.needed import RATIOS, needed
 from bouncing_ball.calculator.results import (
-    QUANTITIES,
     Contact,
     Corrected,
     Design,

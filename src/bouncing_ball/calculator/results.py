@@ -7,7 +7,6 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass, is_dataclass, replace
 from typing import Annotated, Any, NamedTuple, get_type_hints
 
-from bouncing_ball.accuracy.quantities import Quantity
 from bouncing_ball.calculator.case import Case
 from bouncing_ball.calculator.units import shown
 from bouncing_ball.engines import engine_named
@@ -17,17 +16,6 @@ from bouncing_ball.orbits.stability import Bifurcation
 Errors = dict[str, float | None]
 """Relative errors by quantity; None where one of the values does not exist, or the simple one is
 zero."""
-
-QUANTITIES = {
-    Quantity.MAX_HEIGHT: "greatest height",
-    Quantity.BOUNCE_VELOCITY: "bouncing-off velocity",
-    Quantity.PHASE: "phase of impact",
-    Quantity.APPARENT_RESTITUTION: "apparent restitution",
-    Quantity.SADDLE_NODE: str(Bifurcation.SADDLE_NODE),
-    Quantity.PERIOD_DOUBLING: str(Bifurcation.PERIOD_DOUBLING),
-    Quantity.PERMANENT_CONTACT: "threshold of permanent contact",
-}
-"""The names of the quantities in sentences."""
 
 
 class Row(NamedTuple):

@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 
 from bouncing_ball.accuracy.errors import modulus, relative
-from bouncing_ball.accuracy.quantities import Quantity
+from bouncing_ball.accuracy.quantities import QUANTITIES, Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.attractors.motions import Kind
 from bouncing_ball.calculator.case import Case
 from bouncing_ball.calculator.needed import NO_ORBIT
-from bouncing_ball.calculator.results import QUANTITIES, Family, Motion, Needed
+from bouncing_ball.calculator.results import Family, Motion, Needed
 from bouncing_ball.calculator.units import percent, shown
 from bouncing_ball.contacts.laws.impedance import Impedance
 from bouncing_ball.contacts.laws.tsuji import Tsuji

@@ -4,10 +4,10 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from bouncing_ball.accuracy.quantities import OF_IMPACTS, Quantity
+from bouncing_ball.accuracy.quantities import OF_IMPACTS, QUANTITIES, Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.calculator import design as calculator
-from bouncing_ball.calculator.results import QUANTITIES, Contact, Design, Family, rows
+from bouncing_ball.calculator.results import Contact, Design, Family, rows
 from bouncing_ball.calculator.units import percent, shown
 from bouncing_ball.call_signatures import takes
 from bouncing_ball.cli.options import option

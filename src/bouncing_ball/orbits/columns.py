@@ -20,7 +20,7 @@ from bouncing_ball.continuation.events import parameter_bound
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits.model import ImpactModel
 from bouncing_ball.orbits.orbit import Orbit
-from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.orbits.stability import Bifurcation
 from bouncing_ball.orbits.system import OrbitSystem
 
@@ -193,7 +193,8 @@ def orbits_in_columns(
 
 def no_branch(count: int, error: Exception) -> xr.Dataset:
     """A dataset like that of :func:`branch_columns`, of NaN, with the error as its end reasons."""
-    none = SpringDamperModel(SpringDamper(1.0, 0.0)).system(1).orbit(np.full((count, 4), np.nan))
+    system = OrbitSystem(1, SpringDamper(1.0, 0.0), SpringDamperOrbit.at)
+    none = system.orbit(np.full((count, 4), np.nan))
     return orbits_in_columns(none, none[:0], [], [str(error)] * 2)
 
 

@@ -16,8 +16,8 @@ from urllib.parse import urlencode
 import numpy as np
 import pytest
 
+from bouncing_ball.accuracy.quantities import QUANTITIES
 from bouncing_ball.attractors.motions import Kind
-from bouncing_ball.calculator.results import QUANTITIES
 from bouncing_ball.configuration.study import typed
 from bouncing_ball.contacts.laws import LAWS
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper

@@ -35,8 +35,7 @@ GRAZING = "grazing"
 # second number belongs to an elastic contact. The third is the number of orbits that are tried as
 # starting points of a branch.
 _BEYOND, _LOWEST, _STARTS = 1.4, 1e-4, 16
-
-
+# Number of bisections of a chord, whose ends no longer move once they agree to rounding.
 _BISECTIONS = 60
 _TINY, _ROUNDING = np.finfo(float).tiny, 4e-16
 

@@ -22,11 +22,17 @@ where φ and Λ are unknown too; for a release at p = 0 the last two equations a
 solved by scipy's collocation, whose adaptive grid also resolves the kinks of a law. If the force
 depends on the load, the ball may also touch the surface, p = p′ = 0, before the grip vanishes.
 
+The iteration starts from a motion that is integrated over one period from p = p′ = 0. A ball on a
+Hertzian contact of the depth p₁ at rest has p = p₁ (t²/2)^{2/3} there, next to the least load
+a = t²/2, except within a time of about p₁^{3/8}, in which its inertia counts; the start is later
+than the least load by this time. A weakly damped contact near a resonance has several steady
+motions at the same Λ. A solution counts only if the same motion at a slightly smaller Λ is held.
+
 All quantities are dimensionless.
 """
 
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -38,14 +44,18 @@ from bouncing_ball.contacts.spring_damper import permanent_contact_threshold
 from bouncing_ball.errors import ModelError, require
 
 _PERIOD = 2 * np.pi
-# The first grid, its largest size, and the tolerance of the relative residual. The error of Λ is
-# below 10⁻¹¹ then, because the residual changes its sign within every interval. At a given Λ less
-# is enough.
-_GRID, _MOST, _TOLERANCE = 60, 100_000, 1e-9
-_FEW, _COARSE = 20_000, 1e-6
+# The largest size of the grid and the tolerance of the relative residual. The error of Λ is below
+# 10⁻¹⁰ then, because the residual changes its sign within every interval. At a given Λ less is
+# enough, also for the first grid and for the motion from which the iteration starts.
+_MOST, _TOLERANCE = 200_000, 1e-8
+_GRID, _FEW, _COARSE, _FIRST = 60, 50_000, 1e-6, 1e-5
+# The share of Λ at which the same motion must be held, and the nodes of it that are skipped.
+_BELOW, _EVERY = 0.999, 8
 # Rounding of the grip over its value at rest.
 _SLACK = 1e-7
 _TINY = 1e-300
+# An imaginary step in time.
+_STEP = 1e-20j
 
 
 class Minimum(NamedTuple):
@@ -84,56 +94,82 @@ def permanent_contact_minimum(
     return Minimum(permanent_contact_threshold(omega, zeta, release), omega)
 
 
-def _steady(law: ContactLaw, at_surface: bool = False, amplitude: float = np.nan) -> float:
-    """Λ of the steady contact that just reaches its release, or that touches the surface.
+class _Steady(NamedTuple):
+    """The equations of a steady contact of one law, with its depth at rest as the unit of p."""
 
-    With an ``amplitude`` it is this Λ if its steady contact never releases the ball. The result is
-    NaN if no such contact was found.
+    law: ContactLaw
+    unit: float
+
+    def grip(self, p: np.ndarray, u: np.ndarray, load: Any) -> np.ndarray:
+        """The grip over that at rest."""
+        full = self.law.loaded_grip(np.array(self.unit), np.array(0.0), 1.0)
+        return self.law.loaded_grip(p, u, load) / full
+
+    def state(self, time: ArrayLike, y: np.ndarray, z: np.ndarray):
+        """p, p′ and the load; z has φ and Λ."""
+        # Roots exist for p ≥ 0 only.
+        p = np.maximum(self.unit * y[0], _TINY) if self.law.root > 1 else self.unit * y[0]
+        return p, self.unit * y[1], 1 - z[1] * np.sin(z[0] + time)
+
+    def rates(self, time: ArrayLike, y: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """The rates of change of y."""
+        p, u, load = self.state(time, y, z)
+        return np.array([u, load - self.law.loaded_force(p, u, load)]) / self.unit
+
+    def release(self, first: np.ndarray, z: np.ndarray) -> tuple[float, float]:
+        """The grip at the start and its rate of change."""
+        along = *(self.unit * self.rates(0.0, first, z)), -z[1] * np.cos(z[0])
+        here = self.state(0.0, first, z)
+        moved = self.grip(*(x + _STEP * rate for x, rate in zip(here, along, strict=True)))
+        return moved.real, moved.imag / _STEP.imag
+
+    def is_held(self, found: Any, z: np.ndarray) -> bool:
+        """Whether a solution was found that never releases the ball."""
+        held = self.grip(*self.state(found.x, found.y, z))
+        if self.law.root > 1 or self.law.feels_load:
+            held = np.minimum(held, found.y[0])
+        return found.success and np.min(held) > -_SLACK
+
+
+def _touching(law: ContactLaw, at_surface: bool) -> float:
+    """Λ of the steady contact that just reaches its release, or that touches the surface, if the
+    same motion at a slightly smaller Λ never releases the ball; otherwise NaN.
     """
     # Imported here because it takes a third of a second, and most laws have a closed form.
+    from scipy.integrate import solve_bvp, solve_ivp
+
+    steady = _Steady(law, rest(law))
+    at_surface |= law.release is Release.DISPLACEMENT
+
+    def ends(first: np.ndarray, last: np.ndarray, z: np.ndarray) -> np.ndarray:
+        touch = first if at_surface else steady.release(first, z)
+        return np.array([*touch, *(last - first)])
+
+    late = steady.unit**0.375
+    z = np.array([np.pi / 2 + late, 1 - late * late / 2])
+    run = solve_ivp(steady.rates, (0, _PERIOD), np.zeros(2), args=(z,), rtol=_FIRST, atol=_FIRST)
+    found = solve_bvp(steady.rates, ends, run.t, run.y, z, tol=_TOLERANCE, max_nodes=_MOST)
+    if not steady.is_held(found, found.p):
+        return np.nan
+    some = np.unique([*range(0, found.x.size, _EVERY), found.x.size - 1])
+    if not _held(steady, found.p * [1, _BELOW], found.x[some], found.y[:, some]):
+        return np.nan
+    # The same motion, shifted by half a period, is the solution with -Λ.
+    return abs(float(found.p[1]))
+
+
+def _held(steady: _Steady, z: np.ndarray, time: np.ndarray, y: np.ndarray) -> bool:
+    """Whether a steady contact at φ and Λ, next to the motion y, never releases the ball."""
     from scipy.integrate import solve_bvp
 
-    unit, given = rest(law), np.isfinite(amplitude)
-    known = np.array([np.pi / 2, amplitude])
+    def ends(first: np.ndarray, last: np.ndarray) -> np.ndarray:
+        return last - first
 
-    def state(time: ArrayLike, y: np.ndarray, z: np.ndarray):
-        """p, p′ and the load."""
-        # Roots exist for p ≥ 0 only.
-        p = np.maximum(unit * y[0], _TINY) if law.root > 1 else unit * y[0]
-        return p, unit * y[1], 1 - z[1] * np.sin(z[0] + time)
+    def rates(time: np.ndarray, y: np.ndarray) -> np.ndarray:
+        return steady.rates(time, y, z)
 
-    def rates(time: np.ndarray, y: np.ndarray, z: np.ndarray = known) -> np.ndarray:
-        p, u, load = state(time, y, z)
-        return np.array([u, load - law.loaded_force(p, u, load)]) / unit
-
-    def ends(first: np.ndarray, last: np.ndarray, z: np.ndarray = known) -> np.ndarray:
-        if given:
-            return last - first
-        if at_surface or law.release is Release.DISPLACEMENT:
-            return np.array([*first, *(last - first)])
-        here, step = state(0.0, first, z), 1e-20j
-        along = unit * first[1], unit * rates(np.zeros(1), first[:, np.newaxis], z)[1, 0]
-        moved = zip(here, (*along, -z[1] * np.cos(z[0])), strict=True)
-        falls = np.imag(law.loaded_grip(*(x + step * rate for x, rate in moved))) / step.imag
-        return np.array([law.loaded_grip(*here) / full, falls / full, *(last - first)])
-
-    full = law.loaded_grip(np.array(unit), np.array(0.0), 1.0)
-    time = np.linspace(0.0, _PERIOD, _GRID)
-    if given:
-        # The table moves slowly against a stiff contact.
-        load = np.maximum(state(time, np.ones((2, 1)), known)[2], _SLACK)
-        guess = [depth(law, 0 * time, 0.0, load) / unit, 0 * time]
-        found = solve_bvp(rates, ends, time, guess, tol=_COARSE, max_nodes=_FEW)
-    else:
-        guess, z = [1 - np.cos(time), np.sin(time)], np.array([np.pi / 2, 1.0])
-        found = solve_bvp(rates, ends, time, guess, z, tol=_TOLERANCE, max_nodes=_MOST)
-    z = known if given else found.p
-    p, u, load = state(found.x, found.y, z)
-    held = law.loaded_grip(p, u, load) / full
-    if law.root > 1 or law.feels_load:
-        held = np.minimum(held, found.y[0])
-    # The same motion, shifted by half a period, is the solution with -Λ.
-    return abs(float(z[1])) if found.success and np.min(held) > -_SLACK else np.nan
+    found = solve_bvp(rates, ends, time, y, tol=_COARSE, max_nodes=_FEW)
+    return steady.is_held(found, z)
 
 
 def permanent_contact(law: ContactLaw) -> float:
@@ -157,12 +193,12 @@ def permanent_contact(law: ContactLaw) -> float:
     # If the contact that touches the surface is held throughout, the grip vanishes later.
     for at_surface in (True, False) if law.feels_load else (False,):
         with np.errstate(all="ignore"):
-            found = _steady(law, at_surface)
+            found = _touching(law, at_surface)
         if np.isfinite(found):
             return found
     raise ModelError(
-        f"no threshold of permanent contact was found for {law.label}, because it is too weakly "
-        "damped"
+        f"no threshold of permanent contact was found for {law.label}, because it is too stiff or "
+        "too weakly damped"
     )
 
 
@@ -198,5 +234,9 @@ def holds(law: ContactLaw, amplitude: float) -> bool:
     threshold = known_threshold(law)
     if np.isfinite(threshold):
         return amplitude <= threshold
+    steady, time = _Steady(law, rest(law)), np.linspace(0.0, _PERIOD, _GRID)
+    # The table moves slowly against a stiff contact.
+    load = np.maximum(1 - amplitude * np.cos(time), _SLACK)
+    motion = np.array([depth(law, 0 * time, 0.0, load) / steady.unit, 0 * time])
     with np.errstate(all="ignore"):
-        return bool(np.isfinite(_steady(law, amplitude=amplitude)))
+        return bool(_held(steady, np.array([np.pi / 2, amplitude]), time, motion))

@@ -10,7 +10,7 @@ from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
 from bouncing_ball.contacts.laws.impedance import Impedance
 from bouncing_ball.contacts.laws.kuwabara_kono import KuwabaraKono
 from bouncing_ball.contacts.laws.tsuji import Tsuji
-from bouncing_ball.contacts.permanent_contact import _steady, holds, permanent_contact
+from bouncing_ball.contacts.permanent_contact import _holds, _touching, holds, permanent_contact
 from bouncing_ball.errors import ModelError
 
 
@@ -40,13 +40,21 @@ def test_a_contact_below_the_threshold_is_held_and_above_it_is_not(kind):
     assert below > max(above, 0)
     assert abs(next_to) < 2e-3
     # The steady contacts at these Λ agree with the threshold.
-    held = [np.isfinite(_steady(law, amplitude=share * threshold)) for share in (0.999, 1.001)]
+    held = [_holds(law, share * threshold) for share in (0.999, 1.001)]
     assert held == [True, False] == [holds(law, share * threshold) for share in (0.999, 1.001)]
 
 
-def test_a_contact_that_is_weakly_damped_is_refused():
-    with pytest.raises(ModelError, match="too weakly damped"):
-        permanent_contact(Tsuji(1e9, 1e-3))
+def test_contacts_that_are_weakly_damped_are_refused():
+    # The second one touches the surface at Λ = 0.629, but only on the resonant branch.
+    for law in (Tsuji(1e9, 1e-3), law_of_impact(HuntCrossley, 0.95, 0.6, 3.0)):
+        with pytest.raises(ModelError, match="too weakly damped"):
+            permanent_contact(law)
+
+
+def test_a_stiff_contact_has_a_threshold_next_to_that_of_a_rigid_table():
+    # Shooting over one period with an integrator of high order found the same digits.
+    law = law_of_impact(HuntCrossley, 0.85, 0.03, 3.0)
+    assert permanent_contact(law) == pytest.approx(0.996856366359, rel=1e-10)
 
 
 @pytest.mark.parametrize(
@@ -61,7 +69,7 @@ def test_fewer_nodes_change_nothing(law, monkeypatch):
 
 @pytest.mark.parametrize("law", [ElastoBacklash(3.0, 0.5), Impedance(5.0, 0.2, 0.3)])
 def test_steady_contacts_have_the_thresholds_of_the_closed_forms(law):
-    assert _steady(law, law.feels_load) == pytest.approx(permanent_contact(law), rel=1e-10)
+    assert _touching(law, law.feels_load) == pytest.approx(permanent_contact(law), rel=1e-10)
 
 
 def test_an_impedance_by_depth_touches_the_surface_at_its_threshold():

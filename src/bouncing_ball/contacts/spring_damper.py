@@ -88,6 +88,11 @@ class SpringDamper(OscillatorLaw):
         omega = self.frequency_ratio
         return omega * (omega * penetration + 2 * self.damping_ratio * rate)
 
+    @property
+    def permanent_contact(self) -> np.ndarray:
+        """Λ_SD or Λ_F, depending on the release (Eq. 33)."""
+        return permanent_contact_threshold(self.frequency_ratio, self.damping_ratio, self.release)
+
     @classmethod
     def group_of(cls, restitution: float) -> float:
         """ζ that gives r with the displacement release (Eq. 16).

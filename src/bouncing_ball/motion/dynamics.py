@@ -224,8 +224,7 @@ class Dynamics(Batch, ABC):
             here = flat.take(part)
             departure = here.depart(here.start(start[part], velocity[part]))
             going = np.flatnonzero(departure.status == Status.BOUNCING)
-            if going.size:
-                landed, passed = here.take(going).fly(pick(departure, going))
-                values = landed.phase, landed.velocity, landed.displacement, passed
-                out[:, part.start + going] = values
+            landed, passed = here.take(going).fly(pick(departure, going))
+            values = landed.phase, landed.velocity, landed.displacement, passed
+            out[:, part.start + going] = values
         return Cycle(*out.reshape(len(Cycle._fields), *shape))

@@ -9,6 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
+import xarray as xr
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
@@ -304,6 +305,12 @@ def test_hunt_and_crossleys_restitution_is_that_of_any_spring(law):
 
 HERTZ = [HuntCrossley(4e3, 0.08), Tsuji(4e3, 0.3), KuwabaraKono(4e3, 0.005)]
 hertz = pytest.mark.parametrize("law", HERTZ, ids=[law.name for law in HERTZ])
+
+
+def test_a_parameter_may_be_an_array_without_an_axis():
+    """As numpy and xarray return numbers."""
+    law = HuntCrossley(np.array(100.0), xr.DataArray(0.5))
+    assert simulate(law, 0.5, 0.0, -0.3, 10).status == Status.PERMANENT_CONTACT
 
 
 @hertz

@@ -47,3 +47,12 @@ def test_a_contact_keeps_the_ratio_of_the_doublings(study):
     shift = data.contact_cascade_ratio / data.cascade_ratio - 1
     assert np.all(shift != 0) and np.max(np.abs(shift)) < 1e-2
     assert np.allclose(shift.isel(frequency_ratio=0) / shift.isel(frequency_ratio=1), 2, atol=0.05)
+
+
+def test_a_doubling_that_is_not_found_does_not_affect_the_others():
+    """At ϖ = 0.8 the first doubling lies at Λ < 1, where a ball that leaves the orbit rests."""
+    span = {"min": 0.8, "max": 8.0, "samples": 2}
+    changed = {"restitution": [0.05, 0.94], "frequency_ratio": span, "doublings": 5}
+    data = typed(cascades)(CONFIG | changed, Release.DISPLACEMENT)
+    found = np.isfinite(data.cascade_error).sum("doubling")
+    assert np.all(found == [1, 5])

@@ -22,7 +22,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.batch import pick
 from bouncing_ball.contacts.elementary import reduce_angle, table
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
 from bouncing_ball.motion.simulation import dynamics_of
@@ -82,9 +81,9 @@ def returns(restitution: ArrayLike, amplitude: ArrayLike, impacts: int) -> Retur
                 held,
             )
             left = np.flatnonzero(~sticks)
-            dynamics, other = dynamics.take(left), other.take(left)
-            impact, departure, beside = (pick(x, left) for x in (impact, departure, beside))
-            ball, time, late = ball[left], time[left], late[:, left]
+            rows = impact, departure, beside, ball, time
+            dynamics, impact, departure, beside, ball, time = dynamics.kept(left, *rows)
+            other, late = other.take(left), late[:, left]
         if not ball.size:
             break
         after, passed = dynamics.fly(departure)

@@ -204,7 +204,7 @@ def _kept(going: np.ndarray, found: Motions, now: Dynamics, impact: Impact, *row
         phase[found.kind[index] == Kind.PERMANENT_CONTACT] = np.nan
         thrown = impact.velocity[last] + table(phase, ball.amplitude[last])[0]
         found.fill(index, end_phase=phase, end_velocity=thrown)
-        now, impact, *rows = now.take(going), *(pick(x, going) for x in (impact, *rows))
+        now, impact, *rows = now.kept(going, impact, *rows)
     return now, impact, *rows
 
 

@@ -4,7 +4,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.attractors.motions import Motions
-from bouncing_ball.contacts.batch import pick
 from bouncing_ball.contacts.elementary import table
 from bouncing_ball.motion.dynamics import Departure, Dynamics, Impact
 from bouncing_ball.motion.linear_contact import LinearContactDynamics
@@ -58,9 +57,8 @@ def _add_up(dynamics: Dynamics, impact: Impact, left: np.ndarray, total: np.ndar
         total[:, ball[departure.status != Status.BOUNCING]] = np.nan
         going = np.flatnonzero((left[ball] > done) & (departure.status == Status.BOUNCING))
         if going.size < ball.size:
-            rows = (dynamics.take(going), *(pick(x, going) for x in (impact, departure)))
-            dynamics, impact, departure = rows
-            ball, along, across = (x[going] for x in (ball, along, across))
+            rows = impact, departure, ball, along, across
+            dynamics, impact, departure, ball, along, across = dynamics.kept(going, *rows)
         if not ball.size:
             return
         after, passed = dynamics.fly(departure)

@@ -18,6 +18,7 @@ import numpy as np
 from bouncing_ball.contacts.elementary import reduce_angle
 from bouncing_ball.continuation.corrector import NewtonSettings, solve
 from bouncing_ball.errors import require
+from bouncing_ball.motion.sequence import Status
 from bouncing_ball.motion.simulation import Law, dynamics_of
 from bouncing_ball.motion.tangent import Jacobian
 from bouncing_ball.orbits.orbit import Orbit
@@ -30,10 +31,12 @@ FEIGENBAUM = 4.669201609102990
 _DIFFERENCE = 1e-6
 _SETTINGS = NewtonSettings(max_iterations=25, longest=0.3)
 # The doubled orbit is computed at _SHARE of the estimated distance in Λ to its next doubling. The
-# first estimate is _FIRST; the later estimates follow from Feigenbaum's number. The map starts
-# beside the old orbit, at _ASIDE times the square root of the distance in Λ, and is iterated over
-# _IMPACTS impacts, and at least _TURNS turns.
-_SHARE, _FIRST, _ASIDE, _IMPACTS, _TURNS = 0.7, 0.12, 0.1, 48, 10
+# first estimate is _FIRST; the later estimates follow from Feigenbaum's number. Nearly elastic
+# impacts nearly preserve areas; the ratio then tends to 8.72 first (J. M. Greene et al., 1981), so
+# that the share must be below 4.67/8.72 = 0.54. The map starts beside the old orbit, at _ASIDE
+# times the square root of the distance in Λ, and is iterated over _IMPACTS impacts, and at least
+# _TURNS turns.
+_SHARE, _FIRST, _ASIDE, _IMPACTS, _TURNS = 0.4, 0.12, 0.2, 48, 20
 MOST = 8
 """Largest number of doublings that double precision resolves."""
 
@@ -76,15 +79,21 @@ class Turns:
 
     def after(self, y: np.ndarray, differentiate: bool = True) -> tuple[Any, Any, Any, Jacobian]:
         """φ, δ′ and the time after m impacts, and M, which is only computed with ``differentiate``;
-        each has the leading shape of y.
+        each has the leading shape of y, and is NaN where the ball is not released before.
         """
         phase, velocity, amplitude = np.moveaxis(y, -1, 0)
-        dynamics = dynamics_of(self.law, amplitude)
+        # Newton's steps may lead to Λ < 0, where no doubling is accepted.
+        dynamics = dynamics_of(self.law, np.abs(amplitude))
         dynamics, (phase, velocity), shape = dynamics.in_a_row(phase, velocity)
         impact = dynamics.at_section(phase, velocity)
         change, time = Jacobian.identity(phase.size), np.zeros(phase.size)
+        moving, found = np.arange(phase.size), np.full((7, phase.size), np.nan)
         for _ in range(self.impacts):
             departure = dynamics.depart(impact, differentiate=differentiate)
+            going = np.flatnonzero(departure.status == Status.BOUNCING)
+            if going.size < moving.size:
+                rows = impact, departure, change, time, moving
+                dynamics, impact, departure, change, time, moving = dynamics.kept(going, *rows)
             after, passed = dynamics.fly(departure)
             if differentiate:
                 change = dynamics.jacobian(impact, departure, after, passed).after(change)
@@ -92,7 +101,8 @@ class Turns:
             (start, _), (end, velocity) = dynamics.section(impact), dynamics.section(after)
             time += passed + reduce_angle(end - start - passed)
             impact = after
-        end, velocity, time, *entries = (x.reshape(shape) for x in (end, velocity, time, *change))
+        found[:, moving] = end, velocity, time, *change
+        end, velocity, time, *entries = found.reshape(7, *shape)
         return end, velocity, time, Jacobian(*entries)
 
     def system(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -150,17 +160,17 @@ def _followed(row: Orbit, doublings: int) -> np.ndarray:
     dynamics, start, _ = dynamics.in_a_row(row.phase, row.relative_impact_velocity)
     first = dynamics.section(dynamics.start(*start))
     y = np.stack(np.broadcast_arrays(*first, row.amplitude), axis=-1)
-    found, gap, good = [y], np.full(len(y), _FIRST), np.full(len(y), True)
+    found = np.full((doublings, *y.shape), np.nan)
+    found[0], gap, which = y, np.full(len(y), _FIRST), np.arange(len(y))
     for k in range(1, doublings):
         old, turns = (Turns(row.law, row.n, 2**m) for m in (k - 1, k))
-        near = _doubled(old, turns, y, _SHARE * gap)
-        solved = solve(turns.system, near, _SETTINGS)
+        solved = solve(turns.system, _doubled(old, turns, y, _SHARE * gap), _SETTINGS)
+        step = solved.point[:, -1] - y[:, -1]
         # Λ rises along a cascade; a doubling at or below the previous Λ is that of the old orbit.
-        good &= solved.converged & (solved.point[:, -1] > y[:, -1])
-        gap = np.where(good, (solved.point[:, -1] - y[:, -1]) / FEIGENBAUM, gap)
-        y = np.where(good[:, np.newaxis], solved.point, y)
-        found.append(np.where(good[:, np.newaxis], y, np.nan))
-    return np.stack(found)
+        good = np.flatnonzero(solved.converged & (step > 0))
+        row, which, y = row.take(good), which[good], solved.point[good]
+        found[k, which], gap = y, step[good] / FEIGENBAUM
+    return found
 
 
 def _doubled(old: Turns, turns: Turns, y: np.ndarray, above: np.ndarray) -> np.ndarray:
@@ -172,5 +182,6 @@ def _doubled(old: Turns, turns: Turns, y: np.ndarray, above: np.ndarray) -> np.n
     y = y + np.concatenate([along * aside[:, np.newaxis], above[:, np.newaxis]], axis=-1)
     for _ in range(max(_TURNS, _IMPACTS // turns.impacts)):
         phase, velocity, _, _ = turns.after(y, differentiate=False)
-        y[:, 0], y[:, 1] = reduce_angle(phase), velocity
+        moved = np.stack([reduce_angle(phase), velocity], axis=-1)
+        y[:, :2] = np.where(np.isnan(moved), y[:, :2], moved)
     return y

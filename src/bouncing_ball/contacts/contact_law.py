@@ -66,7 +66,8 @@ class ContactLaw(Batch, ABC):
 
     A subclass defines ``name``, ``formula`` and :meth:`force`; the other members have defaults.
     ``root`` is m, and ``release`` the rule that ends the contact. A subclass checks its parameters
-    in ``__post_init__`` and raises :class:`~bouncing_ball.errors.ModelError`.
+    in ``__post_init__``, after that of this class, and raises
+    :class:`~bouncing_ball.errors.ModelError`.
     """
 
     name: ClassVar[str]
@@ -76,6 +77,12 @@ class ContactLaw(Batch, ABC):
     """The units of the parameters; a parameter that is not listed is a pure number."""
     root: ClassVar[int] = 2
     release = Release.DISPLACEMENT
+
+    def __post_init__(self):
+        # Laws are keys of caches, so that a parameter must be a number or an array with an axis.
+        for name, value in self.parameters().items():
+            x = np.asarray(value)
+            object.__setattr__(self, name, x if x.ndim else x.item())
 
     @abstractmethod
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
@@ -242,6 +249,7 @@ class OscillatorLaw(ContactLaw):
     units: ClassVar[dict[str, Unit]] = {"frequency_ratio": Unit("rad/s", 0, 0, -1)}
 
     def __post_init__(self):
+        super().__post_init__()
         check_positive(self.frequency_ratio, "frequency ratio ϖ")
         check_damping(self.damping_ratio, "damping ratio ζ")
 

@@ -51,7 +51,7 @@ of r.
 All quantities are dimensionless; all functions broadcast.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -120,9 +120,9 @@ def _width(law: ContactLaw) -> float:
 
 
 @lru_cache(maxsize=4096)
-def _panel(law_type: type[ContactLaw], values: tuple, number: int) -> np.ndarray:
+def _panel(law: ContactLaw, number: int) -> np.ndarray:
     """Chebyshev coefficients of t_c, r, σ and D over a panel, shape (nodes, 4)."""
-    x, law = chebyshev.chebpts1(_NODES), law_type(*values)
+    x = chebyshev.chebpts1(_NODES)
     instant = free_impact(law, np.exp((number + (x + 1) / 2) * _width(law)))
     return chebyshev.chebfit(x, np.stack(instant[:4], axis=1), _NODES - 1)
 
@@ -193,10 +193,8 @@ class Signature(Batch):
         log = np.log(v) / width
         number = np.floor(np.where(np.isnan(log), 0.0, log)).astype(int)
         values = np.full((2, 4, *v.shape), np.nan)
-        numbers = (getattr(self.law, field.name) for field in fields(self.law))
-        key = tuple(x if isinstance(x, str) else float(x) for x in numbers)
         for panel in np.unique(number):
-            coefficients = _panel(type(self.law), key, int(panel))
+            coefficients = _panel(self.law, int(panel))
             slopes = chebyshev.chebder(coefficients) * (2 / width)
             here = number == panel
             x = 2 * (log[here] - panel) - 1

@@ -111,7 +111,9 @@ def solve(
         right, matrix = equations(y)
         residual = np.where(going, np.max(np.abs(right), axis=-1), residual)
         going &= np.isfinite(residual) & np.all(np.isfinite(matrix), axis=(-2, -1))
-        change = _solve(np.where(going[..., np.newaxis, np.newaxis], matrix, np.nan), right)
+        # A matrix of NaN would cause a warning beside one that is singular.
+        known = np.where(going[..., np.newaxis, np.newaxis], matrix, np.eye(y.shape[-1]))
+        change = _solve(known, right)
         length = np.linalg.norm(change, axis=-1)
         part = np.minimum(1.0, settings.longest / np.maximum(length, _TINY))
         going &= np.isfinite(length)

@@ -149,6 +149,10 @@ class Dynamics(Batch, ABC):
         shape = np.broadcast_shapes(self.shape, *(x.shape for x in arrays))
         return self.flat(shape), [np.broadcast_to(x, shape).reshape(-1) for x in arrays], shape
 
+    def kept(self, which: np.ndarray, *rows: Any) -> tuple:
+        """The dynamics and the rows of the balls with these indices."""
+        return self.take(which), *(pick(x, which) for x in rows)
+
     def first_impacts(
         self, phase: ArrayLike, velocity: ArrayLike
     ) -> tuple[Self, np.ndarray, np.ndarray, tuple[int, ...]]:
@@ -199,11 +203,7 @@ class Dynamics(Batch, ABC):
                 status[alive] = departure.status
                 going = np.flatnonzero(departure.status == Status.BOUNCING)
                 alive = np.arange(len(status))[alive][going]
-                dynamics, departure, time = (
-                    dynamics.take(going),
-                    pick(departure, going),
-                    time[going],
-                )
+                dynamics, departure, time = dynamics.kept(going, departure, time)
             if row == impacts - 1 or not len(time):
                 break
             impact, passed = dynamics.fly(departure)
@@ -224,8 +224,7 @@ class Dynamics(Batch, ABC):
             here = flat.take(part)
             departure = here.depart(here.start(start[part], velocity[part]))
             going = np.flatnonzero(departure.status == Status.BOUNCING)
-            if going.size:
-                landed, passed = here.take(going).fly(pick(departure, going))
-                values = landed.phase, landed.velocity, landed.displacement, passed
-                out[:, part.start + going] = values
+            landed, passed = here.take(going).fly(pick(departure, going))
+            values = landed.phase, landed.velocity, landed.displacement, passed
+            out[:, part.start + going] = values
         return Cycle(*out.reshape(len(Cycle._fields), *shape))

@@ -32,6 +32,7 @@ class Hertz(ContactLaw):
     units: ClassVar[dict[str, Unit]] = {"stiffness": Unit("N/m^1.5", 1, -0.5, -2)}
 
     def __post_init__(self):
+        super().__post_init__()
         check_positive(self.stiffness, "stiffness K")
         check_damping(self.damping, "damping C")
 

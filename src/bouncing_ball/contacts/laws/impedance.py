@@ -94,12 +94,11 @@ class Impedance(OscillatorLaw):
         super().__post_init__()
         if self.at_surface is None:
             object.__setattr__(self, "at_surface", self.share)
-        for d in map(np.asarray, (self.share, self.at_surface)):
+        for d in (self.share, self.at_surface):
             require((d >= 0) & (d < 1), d, "impedance d", "in [0, 1)")
         check_positive(self.width, "width W")
-        c, power = np.asarray(self.midpoint), np.asarray(self.power)
-        require((c > 0) & (c < 1), c, "midpoint", "in (0, 1)")
-        require(power >= 1, power, "power", "at least 1")
+        require((self.midpoint > 0) & (self.midpoint < 1), self.midpoint, "midpoint", "in (0, 1)")
+        require(self.power >= 1, self.power, "power", "at least 1")
 
     # Cached, because each evaluation of the force needs it.
     @cached_property

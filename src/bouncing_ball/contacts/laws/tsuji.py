@@ -67,7 +67,7 @@ class Tsuji(Hertz):
 
     def __post_init__(self):
         super().__post_init__()
-        c = np.asarray(self.damping, dtype=float)
+        c = self.damping
         require(c < np.sqrt(5), c, "damping C", "below √5: with more the ball does not leave")
 
     def root_force(self, root: np.ndarray, rate: np.ndarray) -> np.ndarray:

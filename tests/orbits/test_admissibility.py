@@ -5,7 +5,6 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from bouncing_ball.contacts.spring_damper import Release, SpringDamper
-from bouncing_ball.orbits.columns import grazing_points
 from bouncing_ball.orbits.restitution_model import RestitutionModel, RestitutionOrbit
 from bouncing_ball.orbits.spring_damper_branch import branch_point
 from bouncing_ball.orbits.spring_damper_limits import Side, orbit_at
@@ -65,7 +64,7 @@ def test_grazing_is_located(omega, r_zeta, release):
     lam = np.linspace(1.9, 2.4, 6)
     orbit = orbit_at(SpringDamper(omega, r_zeta, release), 1, lam, Side.UNSTABLE)
     y = np.stack([orbit.phase, orbit.impact_velocity, omega * orbit.contact_duration, lam], axis=-1)
-    found = grazing_points(system, lambda y: system.orbit(y).is_admissible(), y)
+    found = system.grazing(y)
     assert len(found) == 1
     at = system.orbit(found[0])
     start = float(at.contact_duration)

@@ -1,8 +1,9 @@
-"""Special points on a branch: test functions, and the exact location of their zeros.
+"""Special points on a branch: zeros of test functions, and limits of a domain.
 
 An event is a zero of a test function g(y). It is detected by a sign change between two points of
 the branch, and then located as a solution of the extended system ``F(y) = 0, g(y) = 0``, to the
-tolerance of Newton's method whatever the length of the step.
+tolerance of Newton's method whatever the length of the step. A domain is given by a truth value
+alone, so that its limits on the branch are located by bisection.
 """
 
 from collections.abc import Callable
@@ -11,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.continuation.corrector import Condition, NewtonSettings, Problem, newton
+from bouncing_ball.continuation.corrector import Condition, NewtonSettings, Problem, newton, plane
 
 # Step of the central differences for ∇g, near the optimum ε^(1/3). It affects the speed of
 # convergence but not the limit, which depends on g alone.
@@ -20,6 +21,9 @@ _DIFFERENCE = 6e-6
 _PATIENT = NewtonSettings(max_iterations=20)
 # Rounding may move a zero at an end of the bracket outside, by at most this part of the bracket.
 _SLACK = 1e-6
+# Number of bisections of a chord, whose ends no longer move once they agree to rounding.
+_BISECTIONS = 60
+_TINY, _ROUNDING = np.finfo(float).tiny, 4e-16
 
 
 @dataclass(frozen=True)
@@ -101,3 +105,40 @@ def locate(
     if not (found.converged and -_SLACK <= progress <= 1 + _SLACK):
         return None
     return SpecialPoint(event.name, found.point)
+
+
+def domain_limits(
+    problem: Problem, inside_at: Callable[[np.ndarray], np.ndarray], points: np.ndarray
+) -> np.ndarray:
+    """The last points of a branch inside a domain, one for each of the limits that it crosses.
+
+    A limit lies between a point inside and a point outside. It is found by bisection of the chord
+    between the two points, where each midpoint is corrected onto the branch, until the two points
+    agree to rounding.
+
+    Parameters
+    ----------
+    problem : Problem
+        Its solutions are the branch.
+    inside_at : callable
+        Tells for solutions of shape (..., N + 1) whether they are inside.
+    points : ndarray, shape (m, N + 1)
+        Solutions in order along the branch.
+
+    Returns
+    -------
+    ndarray, shape (k, N + 1)
+        One point for each of the k limits, in order along the branch.
+    """
+    known = inside_at(points)
+    at = np.flatnonzero(known[:-1] != known[1:])
+    inside, outside = points[at + ~known[at]], points[at + known[at]]
+    for _ in range(_BISECTIONS if at.size else 0):
+        middle, normal = (inside + outside) / 2, outside - inside
+        length = np.linalg.norm(normal, axis=-1, keepdims=True)
+        found = newton(problem, middle, plane(normal / np.maximum(length, _TINY), middle))
+        good = inside_at(found.point)
+        closer = found.converged & (length[:, 0] > _ROUNDING * np.linalg.norm(inside, axis=-1))
+        inside[closer & good] = found.point[closer & good]
+        outside[closer & ~good] = found.point[closer & ~good]
+    return inside

@@ -1,6 +1,5 @@
 """The quantities of orbits, and of a branch with its ends, that datasets and answers contain."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -15,7 +14,6 @@ from bouncing_ball.continuation.branch import (
     continue_both_ways,
     resample,
 )
-from bouncing_ball.continuation.corrector import Problem, newton, plane
 from bouncing_ball.continuation.events import parameter_bound
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.orbits.model import ImpactModel
@@ -35,9 +33,6 @@ GRAZING = "grazing"
 # second number belongs to an elastic contact. The third is the number of orbits that are tried as
 # starting points of a branch.
 _BEYOND, _LOWEST, _STARTS = 1.4, 1e-4, 16
-# Number of bisections of a chord, whose ends no longer move once they agree to rounding.
-_BISECTIONS = 60
-_TINY, _ROUNDING = np.finfo(float).tiny, 4e-16
 
 
 def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:
@@ -123,48 +118,11 @@ def branch_columns(system: OrbitSystem, branch: Branch, count: int) -> xr.Datase
     """
     y = resample(system, branch, count)
     chosen = [s for s in branch.special if s.name in list(Bifurcation)]
-    grazing = grazing_points(system, lambda z: system.orbit(z).is_admissible(), y)
+    grazing = system.grazing(y)
     points = np.array([*(s.point for s in chosen), *grazing]).reshape(-1, y.shape[-1])
     kinds = [*(str(s.name) for s in chosen), *[GRAZING] * len(grazing)]
     ends = [str(branch.start), str(branch.end)]
     return orbits_in_columns(system.orbit(y), system.orbit(points), kinds, ends)
-
-
-def grazing_points(
-    problem: Problem, admissible_at: Callable[[np.ndarray], np.ndarray], points: np.ndarray
-) -> np.ndarray:
-    """The last admissible points of a branch, one for each change of admissibility along it.
-
-    A grazing orbit lies between an admissible and an inadmissible point of a branch. It is found by
-    bisection of the chord between the two points, where each midpoint is corrected onto the branch,
-    until the two points agree to rounding.
-
-    Parameters
-    ----------
-    problem : Problem
-        Its solutions are the branch.
-    admissible_at : callable
-        Tells for solutions of shape (..., N + 1) whether they are admissible.
-    points : ndarray, shape (m, N + 1)
-        Solutions in order along the branch.
-
-    Returns
-    -------
-    ndarray, shape (k, N + 1)
-        One point for each of the k changes, in order along the branch.
-    """
-    admissible = admissible_at(points)
-    at = np.flatnonzero(admissible[:-1] != admissible[1:])
-    inside, outside = points[at + ~admissible[at]], points[at + admissible[at]]
-    for _ in range(_BISECTIONS if at.size else 0):
-        middle, normal = (inside + outside) / 2, outside - inside
-        length = np.linalg.norm(normal, axis=-1, keepdims=True)
-        found = newton(problem, middle, plane(normal / np.maximum(length, _TINY), middle))
-        good = admissible_at(found.point)
-        closer = found.converged & (length[:, 0] > _ROUNDING * np.linalg.norm(inside, axis=-1))
-        inside[closer & good] = found.point[closer & good]
-        outside[closer & ~good] = found.point[closer & ~good]
-    return inside
 
 
 def orbits_in_columns(

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.continuation.events import Event
+from bouncing_ball.continuation.events import Event, domain_limits
 from bouncing_ball.orbits.stability import Bifurcation
 
 # The relative impact velocity and the flight time vanish together where an orbit merges with
@@ -111,3 +111,11 @@ class OrbitSystem:
             return Event(name, lambda y: left(self.orbit(y)), terminal=True, reason=reason)
 
         return (*map(bifurcation, Bifurcation), *(end(*each) for each in _ENDS))
+
+    def grazing(self, y: np.ndarray) -> np.ndarray:
+        """The last admissible points along a branch, one for each change of admissibility.
+
+        ``y`` holds points in order along the branch, shape (m, N + 1). The orbits at the k results,
+        shape (k, N + 1), graze the table.
+        """
+        return domain_limits(self, lambda z: self.orbit(z).is_admissible(), y)

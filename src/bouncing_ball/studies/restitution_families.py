@@ -7,7 +7,6 @@ import xarray as xr
 
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.orbits import restitution_orbit as orbits
-from bouncing_ball.orbits.columns import grazing_points
 from bouncing_ball.orbits.restitution_model import RestitutionModel, RestitutionOrbit
 from bouncing_ball.orbits.restitution_orbit import ImpactMap
 from bouncing_ball.parameters import Samples, number
@@ -24,8 +23,7 @@ class RestitutionHistory(OrbitParameters):
 def _grazing(orbits: RestitutionOrbit) -> np.ndarray:
     """φ and Λ at which the unstable orbits of one family graze the table; NaN if they do not."""
     system = RestitutionModel(orbits.law).system(int(orbits.n[0]))
-    at = system.point(orbits)
-    found = grazing_points(system, lambda y: system.orbit(y).is_admissible(), at)
+    found = system.grazing(system.point(orbits))
     return found[0, [0, -1]] if len(found) else np.full(2, np.nan)
 
 

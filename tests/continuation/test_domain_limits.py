@@ -1,10 +1,10 @@
-"""Limits of admissibility along a branch of a problem whose solution is known."""
+"""Limits of a domain along a branch of a problem whose solution is known."""
 
 import numpy as np
 import pytest
 
 from bouncing_ball.continuation.branch import continue_branch
-from bouncing_ball.orbits.columns import grazing_points
+from bouncing_ball.continuation.events import domain_limits
 
 
 class Circle:
@@ -24,7 +24,7 @@ def test_changes_are_found_to_the_last_digit():
     def admissible(y):
         return (y[..., 0] > 0.3) | (y[..., 1] < -0.9)
 
-    found = np.array(grazing_points(Circle(), admissible, branch.points))
+    found = np.array(domain_limits(Circle(), admissible, branch.points))
     low = np.sqrt(1 - 0.81)
     expected = [[0.3, np.sqrt(0.91)], [-low, -0.9]]
     assert found[:2] == pytest.approx(np.array(expected), abs=4e-16)

@@ -127,8 +127,18 @@ def test_the_page_shows_the_case(found, data):
     assert star.get_xydata().tolist() == [[0.65, found.frequency_ratio]]
     labels = [label.get_text() for label in figure.axes[1].get_yticklabels()]
     assert labels == [QUANTITIES[quantity] for quantity in Quantity]
-    texts = " ".join(text.get_text().replace("\n", " ") for text in figure.texts)
+    texts = " ".join(" ".join(text.get_text().split()) for text in figure.texts)
     assert found.verdict in texts and found.reason in texts
+
+
+def test_a_page_without_errors_and_with_a_long_reason(found, data):
+    """Every quantity has its row, and a line does not begin with a percent sign."""
+    asked = asdict(found)
+    for errors in (asked["orbits"][0][f"{x}errors"] for x in ("", "law_", "corrected_")):
+        errors.update(dict.fromkeys(tuple(errors)[:3]))
+    figure = draw(asked | {"reason": 33 * "so " + "long: 0.1 %"}, data, [])
+    assert figure.axes[1].get_ylim() == (6.5, -0.5)
+    assert figure.texts[2].get_text().endswith("\n0.1\u00a0%.")
 
 
 def test_a_page_for_an_orbit_that_one_model_lacks(monkeypatch):

@@ -54,5 +54,4 @@ def test_a_doubling_that_is_not_found_does_not_affect_the_others():
     span = {"min": 0.8, "max": 8.0, "samples": 2}
     changed = {"restitution": [0.05, 0.94], "frequency_ratio": span, "doublings": 5}
     data = typed(cascades)(CONFIG | changed, Release.DISPLACEMENT)
-    found = np.isfinite(data.cascade_error).sum("doubling")
-    assert np.all(found == [1, 5])
+    assert np.all(np.isfinite(data.cascade_error).sum("doubling") == [1, 5])

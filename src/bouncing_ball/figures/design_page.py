@@ -52,11 +52,12 @@ def _title(figure: Figure, design: Mapping[str, Any]) -> float:
     """Write the motion, the verdict and the reason; the result is the height below these texts."""
     top = 0.972
     for text, width, size, weight, step in (
-        (design["headline"], 112, 9.5, "normal", 0.0165),
-        (design["verdict"], 88, 12, "bold", 0.0205),
-        (f"Reason: {design['reason']}.", 112, 9.5, "normal", 0.0165),
+        (design["headline"], 112, 9.5, "normal", 0.0175),
+        (design["verdict"], 88, 12, "bold", 0.0215),
+        (f"Reason: {design['reason']}.", 112, 9.5, "normal", 0.0175),
     ):
-        lines = textwrap.wrap(text, width)
+        # A number and its percent sign stay in one line.
+        lines = textwrap.wrap(text.replace(" %", "\u00a0%"), width)
         figure.text(0.06, top, "\n".join(lines), fontsize=size, weight=weight, va="top")
         top -= step * len(lines) + 0.006
     return top
@@ -83,14 +84,16 @@ def _errors(axes: Axes, design: Mapping[str, Any]) -> None:
     one = next(each for each in design["orbits"] if each["n"] == design["n"])
     names = [QUANTITIES[each] for each in one["errors"]]
     for key, name, marker, colour, size in (
-        ("errors", "restitution", "o", RESTITUTION, 5),
-        ("corrected_errors", "corrected", "D", CORRECTED, 5),
+        ("errors", "restitution", "o", RESTITUTION, 6),
+        # Small, because both models have the same error in the permanent contact.
+        ("corrected_errors", "corrected", "D", CORRECTED, 3.5),
         ("law_errors", "error law", "|", COLOURS[2], 13),
     ):
         values = [error or np.nan for error in one[key].values()]
         axes.plot(values, names, marker, color=colour, label=name, markersize=size)
     axes.axvline(design["needed"]["tolerance"], color=TABLE, linewidth=0.8, linestyle="--")
-    axes.invert_yaxis()
+    # The first quantity is at the top, and those without an error have their rows, too.
+    axes.set_ylim(len(names) - 0.5, -0.5)
     axes.set(xscale="log", title=f"relative error, {design['n']}-T orbit (dashed: tolerance)")
     axes.grid(visible=True, axis="x", linewidth=0.3)
     axes.legend(loc="upper center", bbox_to_anchor=(0.35, -0.1), ncols=3, columnspacing=1.0)
@@ -112,5 +115,5 @@ def _numbers(axes: Axes, values: Sequence[tuple[str, str]]) -> None:
     axes.axis("off")
     for row, (name, value) in enumerate(values):
         height = 1.0 - row / len(values)
-        axes.text(-0.1, height, name, fontsize=8, va="top", transform=axes.transAxes)
-        axes.text(1.02, height, value, fontsize=8, va="top", ha="right", transform=axes.transAxes)
+        for x, text, side in ((-0.1, name.replace("t_c", "$t_c$"), "left"), (1.02, value, "right")):
+            axes.text(x, height, text, fontsize=8, va="top", ha=side, transform=axes.transAxes)

@@ -196,14 +196,13 @@ class ContactLaw(Batch, ABC):
         found = {}
         for name, value in self.parameters().items():
             unit = self.units.get(name, Unit(""))
-            found[name] = float(value) * mass**unit.mass * length**unit.length * time**unit.time
+            found[name] = value * mass**unit.mass * length**unit.length * time**unit.time
         return found
 
     @property
     def label(self) -> str:
         """The name and the parameters of a single law as text."""
-        numbers = (f"{name.replace('_', ' ')} {float(x):.6g}" for name, x in
-                   self.parameters().items())  # fmt: skip
+        numbers = (f"{name.replace('_', ' ')} {x:.6g}" for name, x in self.parameters().items())
         return f"{self.name} with {', '.join(numbers)}"
 
 

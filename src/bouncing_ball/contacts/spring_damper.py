@@ -182,8 +182,7 @@ class SpringDamper(OscillatorLaw):
             If ζ ≥ 1.
         """
         self._require_underdamped()
-        zeta = np.asarray(self.damping_ratio)
-        return self.frequency_ratio * np.sqrt((1 - zeta) * (1 + zeta))
+        return self.frequency_ratio * np.sqrt((1 - self.damping_ratio) * (1 + self.damping_ratio))
 
     @property
     def free_duration(self) -> np.ndarray:

@@ -225,6 +225,5 @@ class Dynamics(Batch, ABC):
             departure = here.depart(here.start(start[part], velocity[part]))
             going = np.flatnonzero(departure.status == Status.BOUNCING)
             landed, passed = here.take(going).fly(pick(departure, going))
-            values = landed.phase, landed.velocity, landed.displacement, passed
-            out[:, part.start + going] = values
+            out[:, part.start + going] = landed.phase, landed.velocity, landed.displacement, passed
         return Cycle(*out.reshape(len(Cycle._fields), *shape))

@@ -71,5 +71,4 @@ class ElastoBacklash(OscillatorLaw):
     @property
     def permanent_contact(self) -> np.ndarray:
         """Λ_F(ϖ), the threshold of the spring-damper with the force release."""
-        ratio, zeta = self.frequency_ratio, self.damping_ratio
-        return permanent_contact_threshold(ratio, zeta, Release.FORCE)
+        return permanent_contact_threshold(self.frequency_ratio, self.damping_ratio, Release.FORCE)

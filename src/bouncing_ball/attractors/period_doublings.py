@@ -31,12 +31,13 @@ FEIGENBAUM = 4.669201609102990
 _DIFFERENCE = 1e-6
 _SETTINGS = NewtonSettings(max_iterations=25, longest=0.3)
 # The doubled orbit is computed at _SHARE of the estimated distance in Λ to its next doubling. The
-# first estimate is _FIRST; the later estimates follow from Feigenbaum's number. Nearly elastic
-# impacts nearly preserve areas; the ratio then tends to 8.72 first (J. M. Greene et al., 1981), so
-# that the share must be below 4.67/8.72 = 0.54. The map starts beside the old orbit, at _ASIDE
-# times the square root of the distance in Λ, and is iterated over _IMPACTS impacts, and at least
-# _TURNS turns.
-_SHARE, _FIRST, _ASIDE, _IMPACTS, _TURNS = 0.4, 0.12, 0.2, 48, 20
+# first estimate is _FIRST sin φ, because Λ cos φ is constant along a family (Eq. 6) and doublings
+# occur at nearly the same Λ sin φ for all n, so that dΛ = sin φ d(Λ sin φ); the later estimates
+# follow from Feigenbaum's number. Nearly elastic impacts nearly preserve areas; the ratio then
+# tends to 8.72 first (J. M. Greene et al., 1981), so that the share must be below 4.67/8.72 = 0.54.
+# The map starts beside the old orbit, at _ASIDE times the square root of the distance in Λ, and is
+# iterated over _IMPACTS impacts, and at least _TURNS turns.
+_SHARE, _FIRST, _ASIDE, _IMPACTS, _TURNS = 0.4, 0.15, 0.2, 48, 20
 MOST = 8
 """Largest number of doublings that double precision resolves."""
 
@@ -161,7 +162,7 @@ def _followed(row: Orbit, doublings: int) -> np.ndarray:
     first = dynamics.section(dynamics.start(*start))
     y = np.stack(np.broadcast_arrays(*first, row.amplitude), axis=-1)
     found = np.full((doublings, *y.shape), np.nan)
-    found[0], gap, which = y, np.full(len(y), _FIRST), np.arange(len(y))
+    found[0], gap, which = y, _FIRST * np.abs(np.sin(y[:, 0])), np.arange(len(y))
     for k in range(1, doublings):
         old, turns = (Turns(row.law, row.n, 2**m) for m in (k - 1, k))
         solved = solve(turns.system, _doubled(old, turns, y, _SHARE * gap), _SETTINGS)

@@ -111,10 +111,21 @@ def test_contacts_of_a_ball_coming_to_rest_end_despite_rounding():
     assert np.isfinite(march(Impedance(31.4, 0.1335, 0.95), start, 40).duration).all()
 
 
+def test_a_long_contact_ends_in_company_of_many_that_go_on():
+    # Panels that end a contact take twice as many sweeps as the others, which are 99 in 100 here.
+    zero, one, law = np.zeros(300), np.ones(300), SpringDamper(20.0, 1.3)
+    start = Start(zero, one, zero, np.where(np.arange(300) < 3, 1.36, 0.3), one)
+    together = march(law, start, 60).duration
+    alone = march(law, Start(*(x[:3] for x in start)), 60).duration
+    np.testing.assert_allclose(together, np.append(alone, np.full(297, np.nan)), rtol=1e-14)
+
+
 def test_an_impedance_varies_whatever_its_neighbours():
     # At x = 1/4 of the width d is x²/c = 1/8 of the way up, with c = 1/2, if it varies.
     law = Impedance(2.0, 0.5, 0.75, np.array([0.25, 0.75]), width=4.0)
     assert law.has_kink and law.impedance(np.ones(2)).tolist() == [0.3125, 0.75]
+    # Below both kinks, at p = 5, a ball that was above the midpoint has passed a kink.
+    assert law.continued(np.zeros(2), np.ones(2)).kink(np.full(2, 5.0), 0.0).tolist() == [-3.0, 1.0]
 
 
 def test_what_does_not_end_is_no_contact():

@@ -10,6 +10,12 @@ p′ at 12 Gauss nodes (16 if derivatives are computed) are found by Picard's it
 contacts at the same time; a sweep consists of three products with one small matrix. The length of
 the panel that reaches the release is found in the same sweeps, by Newton's method.
 
+Picard's iteration converges in panels of about a radian of the contact's oscillation. For laws with
+m = 1, which are nearly linear, the sweeps are therefore those of Newton's method with the slopes
+of the force at the start of the panel, unless derivatives are computed. In the eigenvectors of the
+integration over the nodes the linearised equations are one division for each. These panels may be
+as long as the nodes resolve.
+
 A panel is accepted if the sweeps have converged, if the last Legendre coefficients of the
 integrands are small, and if the grip is positive at all nodes; otherwise a shorter panel is tried.
 The error at the end of a panel is of the order of the square of these coefficients (Gauss), so
@@ -27,7 +33,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.contacts.contact_law import ContactLaw, slopes_of
+from bouncing_ball.contacts.contact_law import ContactLaw, Slopes, slopes_of
 from bouncing_ball.contacts.contact_scales import scales
 from bouncing_ball.contacts.release import Release
 
@@ -37,24 +43,29 @@ _NODES, _FINER = 12, 16
 # The largest number of sweeps; the change of p′ over V at which they stop; and the change at
 # which a panel is still accepted, because the next change would be a hundredth of it. The sweeps
 # stop when the share _MOST of the panels has converged: the few others are tried again, because
-# they would delay all panels.
+# they would delay all panels. Newton's sweeps in which a panel's end is found are about twice as
+# many as those of the other panels, and are waited for. Of a pair of numbers, the first is for
+# Picard's sweeps and the second for Newton's.
 _SWEEPS, _SETTLED, _ENOUGH = 22, 3e-13, 1e-12
-_MOST = 0.95
+_MOST, _PATIENT = 0.95, (0, 8)
 # The remainder of the grip, or of the time, relative to its change over the panel, up to which a
 # first-order correction suffices; and the first sweep that computes the end of the panel.
-_REACHED, _LOOK = 1e-12, 2
+_REACHED, _LOOK = 1e-12, (2, 1)
 # Bound of the last Legendre coefficients of the integrands over V or P/V, and the number of these
-# coefficients. An early sweep, and the change of p′ over V that is wanted there: the actual change
-# determines the length of the next panel.
-_SPECTRUM, _TAIL = 1e-6, 2
-_EARLY, _CHANGE = 5, 1e-3
-# Length of the first panel per node, in units of P^{1/m}/V.
-_FIRST = 0.05
-# Duration of a panel over P/V that is allowed for a descending ball even after a shorter panel.
-_DOWN = 0.7
+# coefficients. The panels of Newton's sweeps are limited by this bound, those of Picard's by the
+# convergence; with 1e-6 for both, Newton's would miss more short losses of the grip.
+_SPECTRUM, _TAIL = (1e-6, 1e-9), 2
+# An early sweep, and the change of p′ over V that is wanted there: the actual change determines
+# the length of the next panel.
+_EARLY, _CHANGE = (5, 2), 1e-3
+# Length of the first panel per node, in units of P^{1/m}/V; twice that with Newton's sweeps. The
+# duration of a panel over P/V that is allowed for a descending ball even after a shorter panel. The
+# longest panel of Newton's sweeps, in radians of the linearised oscillation without damping:
+# neighbouring nodes are then at most a fifth of an oscillation apart.
+_FIRST, _DOWN, _LONGEST = 0.05, 0.7, 3 * np.pi
 # Bounds and safety factor of the ratio of successive lengths; the greatest ratio after a rejected
 # panel.
-_SHORTER, _LONGER, _SAFETY, _AGAIN = 0.3, 1.3, 0.9, 0.6
+_SHORTER, _LONGER, _SAFETY, _AGAIN = 0.3, (1.3, 2.0), 0.9, 0.6
 # Number of contacts computed at the same time, chosen such that their nodes fit into the cache.
 _BLOCK = 1024
 # Number of bytes that are allocated and freed once. From then on glibc keeps freed memory;
@@ -131,6 +142,30 @@ def _rule(count: int) -> _Rule:
     return _Rule(
         (1 + x[:, np.newaxis]) / 2, sums / 2 @ spectrum, spectrum[-_TAIL:], spectrum.sum(0)
     )
+
+
+@lru_cache(maxsize=1)
+def _modes() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The eigenvalues of the integration from node to node, one of each pair, and two matrices:
+    from values at the nodes to coordinates in the eigenvectors, and back to nodes and end.
+    """
+    rule = _rule(_NODES)
+    value, vector = np.linalg.eig(rule.integral[:-1])
+    one = value.imag > 0
+    back = np.vstack([vector, rule.end @ vector])[:, one]
+    return value[one, np.newaxis], np.linalg.inv(vector)[one], 2 * back
+
+
+def _excess(slopes: Slopes, step, change):
+    """The part of the change of p′ in Picard's sweep that Newton's method does not make.
+
+    The linearised equations with constant slopes turn a change c of p′ at the nodes into
+    ``(1 + h f_u Q + h² f_p Q²)⁻¹ c``, where hQ is the integration from node to node. The result
+    is the difference, at the nodes and at the end.
+    """
+    value, into, back = _modes()
+    ratio = value * (step * slopes.by_rate + value * (step * step * slopes.by_penetration))
+    return (back @ (ratio / (1 + ratio) * (into @ change))).real
 
 
 class _Motion(NamedTuple):
@@ -212,15 +247,12 @@ def _grip(law: ContactLaw, m: int, root, rate, load):
     return grip if law.lag is None else np.where(law.lag == 0, root, grip)
 
 
-def _left(law: ContactLaw, m: int, start: Start, now: _Motion, until, root, rate, time, final):
-    """Functions that are positive up to the end of a panel, one in each row, and their derivatives
-    along the motion with respect to s.
+def _ahead(law: ContactLaw, m: int, start: Start, now: _Motion, until, root, rate, time):
+    """Functions that are positive up to the end of a panel, one in each row.
 
     The rows are the grip, or the time that is left; q if the force depends on the load, because
     such a contact may also end at p = 0; and the law's kink function, with its sign at the start.
     """
-    time = time + _STEP * _lever(m, root)
-    root, rate = root + _STEP * rate, rate + _STEP * final
     if until is None:
         rows = [_grip(law, m, root, rate, _load(start, time) if law.feels_load else None)]
     else:
@@ -228,7 +260,15 @@ def _left(law: ContactLaw, m: int, start: Start, now: _Motion, until, root, rate
     rows += [root] * (law.feels_load and until is None)
     if law.has_kink:
         rows.append(now.side * law.kink(root**m, rate))
-    found = np.array(rows)
+    return np.array(rows)
+
+
+def _left(law: ContactLaw, m: int, start: Start, now: _Motion, until, root, rate, time, final):
+    """These functions at the end of a panel, and their derivatives along the motion with respect
+    to s.
+    """
+    state = root + _STEP * rate, rate + _STEP * final, time + _STEP * _lever(m, root)
+    found = _ahead(law, m, start, now, until, *state)
     return found.real, found.imag / _STEP.imag
 
 
@@ -248,7 +288,7 @@ def _panel(
     If times ``until`` are given, the panels end there, and releases are not looked for. With m = 1
     the independent variable is plain time; by default m is that of the law.
     """
-    (node, _, tail, end), m = _rule(count), m or law.root
+    (node, integral, tail, end), m = _rule(count), m or law.root
     law = law.continued(now.root**m, now.side) if law.has_kink else law
     force = law.force if m == 1 else law.root_force
     # These arrays are overwritten in each sweep, because allocating them again would take as long
@@ -260,6 +300,11 @@ def _panel(
     last, more = np.zeros(now.step.size, dtype=bool), np.zeros(now.step.size)
     step = longer = now.step
     reached, first = ~last, np.zeros(last.size, dtype=int)
+    # Derivatives need short panels, for which Picard's sweeps suffice.
+    newton, row = law.root == 1 and count == _NODES, (law, m, start, now, until)
+    if newton:
+        # Under any load, because the slopes need not be exact.
+        slopes = slopes_of(lambda p, u: law.loaded_force(p, u, start.weight), now.root, now.rate)
     for sweep in range(_SWEEPS):
         old, new = new, old
         rate = old[:-1]
@@ -279,10 +324,19 @@ def _panel(
         if m > 1:
             push *= lever
         _summed(now.rate, step, push, new)
-        if sweep < _LOOK:
+        if newton:
+            new -= _excess(slopes, step, new[:-1] - rate)
+            q[-1] = now.root + step * (integral[-1] @ new[:-1])
+        if sweep < _LOOK[newton]:
             continue
-        state = q[-1], new[-1], t[-1]
-        left, falls = _left(law, m, start, now, until, *state, end @ push)
+        if newton and sweep == _LOOK[newton]:
+            # Newton's method for the end starts from the first node beyond it; otherwise several
+            # sweeps would be spent on halving a long panel.
+            ahead = (_ahead(*row, inside, rate, t[:-1]) > 0).all(axis=0)
+            longer = step * np.where(ahead, 1.0, node).min(axis=0)
+            last = longer < step
+            continue
+        left, falls = _left(*row, q[-1], new[-1], t[-1], end @ push)
         last |= (left <= 0).any(axis=0)
         if last.any():
             near = np.where(falls < 0, -left / falls, np.where(left > 0, np.inf, -step))
@@ -292,13 +346,14 @@ def _panel(
             reached = ~last | (np.abs(more * falls) <= _REACHED * unit)
             more = np.where(last, np.maximum(np.minimum(more, step / 2), -step / 2), 0.0)
             longer = step + more
-        if sweep < _EARLY:
+        if sweep < _EARLY[newton]:
             continue
         rate -= new[:-1]
         change = np.abs(rate, out=rate).max(axis=0) / now.speed
-        if sweep == _EARLY:
+        if sweep == _EARLY[newton]:
             early = change
-        if np.count_nonzero(reached & (change <= _SETTLED)) >= _MOST * change.size:
+        most = _MOST if sweep > _PATIENT[newton] else 1.0
+        if np.count_nonzero(reached & (change <= _SETTLED)) >= most * change.size:
             break
     rate = new[:-1]
     # The remainder is corrected to first order. At the end of a short panel, rounding of the load
@@ -319,10 +374,12 @@ def _panel(
         held &= smooth if until is None else smooth | last
     turned = last & (first == len(left) - 1) if law.has_kink else np.zeros_like(last)
     surfaced = first == 1 if law.feels_load and until is None else np.zeros_like(last)
-    good = reached & held & (change <= _ENOUGH) & (error <= _SPECTRUM)
-    slow = (early / _CHANGE) ** (-1 / (2 * _EARLY))
-    slower = np.minimum((error / _SPECTRUM) ** (-1 / count), slow)
-    factor = np.where(np.isnan(slower), _SHORTER, np.clip(_SAFETY * slower, _SHORTER, _LONGER))
+    good = reached & held & (change <= _ENOUGH) & (error <= _SPECTRUM[newton])
+    slow = (early / _CHANGE) ** (-1 / (2 * _EARLY[newton]))
+    slower = np.nan_to_num(np.minimum((error / _SPECTRUM[newton]) ** (-1 / count), slow))
+    factor = np.clip(_SAFETY * slower, _SHORTER, _LONGER[newton])
+    longest = _LONGEST / np.sqrt(np.abs(slopes.by_penetration)) if newton else np.inf
+    factor = np.where(turned & newton, 1.0, np.fmin(factor, longest / step))
     # The length of a panel that ends at a kink is unrelated to that of the next panel.
     taken = np.where(turned, now.step, step)
     following = np.where(good, taken * factor, now.step * np.minimum(factor, _AGAIN))
@@ -361,7 +418,7 @@ def _next(law: ContactLaw, start: Start, now: _Motion, until: _Until) -> _Panel:
 def _longest(m: int, now: _Motion, panel: _Panel) -> np.ndarray:
     """The greatest length of the next panels; time runs faster the deeper a ball is."""
     root, rate = panel.root[-1], panel.rate[-1]
-    time = np.maximum(_LONGER * (panel.time[-1] - now.time), _DOWN * now.length / now.speed)
+    time = np.maximum(_LONGER[0] * (panel.time[-1] - now.time), _DOWN * now.length / now.speed)
     deeper = (root**m + rate * time) ** (1 / m)
     return np.where(rate > 0, (deeper - root) / rate, np.inf)
 
@@ -506,7 +563,7 @@ def march(
         state[:, active] = _begin(*_some(active, law, start))
         plain = law.root > 1 and not (differentiate or integrate)
         count = _FINER if differentiate else _NODES
-        state[4] *= count
+        state[4] *= count * (1 + (law.root == 1 and not differentiate))
         for _ in range(panels if active.size else 0):
             for here in np.array_split(active, -(-active.size // _BLOCK)):
                 limit = None if until is None else until[here]

@@ -111,11 +111,17 @@ class Impedance(OscillatorLaw):
         return bool(np.any(self._varies))
 
     def kink(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """(p - cW)(p - W), which changes its sign at both depths."""
-        ends = (penetration - self.midpoint * self.width) * (penetration - self.width)
-        return np.where(self._varies, ends, 1.0)
+        """(p - cW)(p - W), which changes its sign at both depths.
 
-    # The numbers of :meth:`_side` that hold at all depths, if they do.
+        For the continued law it changes its sign only at the ends of the piece, because a ball may
+        pass both depths within a panel.
+        """
+        *_, low, deep = self._piece or (False, False)
+        first = np.where(deep, 1.0, penetration - self.midpoint * self.width)
+        return np.where(self._varies, first * np.where(low, -1.0, penetration - self.width), 1.0)
+
+    # The numbers of :meth:`_side` that hold at all depths, if they do, and whether they belong to
+    # the depths up to cW, or to those from W on.
     _piece: ClassVar[Any] = None
 
     def _side(self, low: np.ndarray) -> list[np.ndarray]:
@@ -130,7 +136,7 @@ class Impedance(OscillatorLaw):
         """The law whose s has the formula of one side of the midpoint at all depths of a ball."""
         law = copy(self)
         low = (side > 0) & (penetration < (1 + self.midpoint) / 2 * self.width)
-        vars(law).update(_piece=self._side(low))
+        vars(law).update(_piece=(*self._side(low), low, (side > 0) & ~low))
         return law
 
     def _ratio(self, penetration: np.ndarray) -> Any:
@@ -138,7 +144,7 @@ class Impedance(OscillatorLaw):
         if not self.has_kink:
             return 1.0
         piece = self._piece or self._side(np.real(penetration) < self.midpoint * self.width)
-        level, growth, start, slope = piece
+        level, growth, start, slope, *_ = piece
         return level + growth * np.maximum(start + slope * penetration, 0.0) ** self.power
 
     def impedance(self, penetration: np.ndarray) -> np.ndarray:

@@ -6,7 +6,6 @@ import pytest
 
 from bouncing_ball.compare import accept as module
 from bouncing_ball.compare.accept import accept
-from bouncing_ball.datasets.netcdf import write_dataset
 from bouncing_ball.errors import ModelError
 from bouncing_ball.provenance.origin import UNKNOWN, Revision
 
@@ -14,7 +13,7 @@ from bouncing_ball.provenance.origin import UNKNOWN, Revision
 @pytest.fixture
 def run(pair, monkeypatch):
     """``run(*names)``: accept in a committed checkout, for which Snakemake has nothing to do."""
-    monkeypatch.setattr(module, "revision", lambda _: Revision("1f0e", "no"))
+    monkeypatch.setattr(module.origin, "revision", lambda _: Revision("1f0e", "no"))
     monkeypatch.setattr(module, "jobs_left", lambda *_: 0)
     (pair.record / "config").mkdir()
     (pair.record / "config" / "config.yaml").write_text("release: force\n", encoding="utf-8")
@@ -38,8 +37,7 @@ def drift(pair, by=1e-3):
 
 def test_what_has_moved_is_copied_and_the_rest_is_not(pair, run):
     drift(pair)
-    data = pair.dataset("fig08")
-    write_dataset(data.assign_attrs(provenance_commit="2a2a"), pair.new / "figures/fig08.nc")
+    pair.write("fig08", pair.dataset("fig08").assign_attrs(provenance_commit="2a2a"))
     (pair.new / "figures" / "fig09.svg").unlink()
     before = contents(pair)
     assert run() == [
@@ -57,11 +55,13 @@ def test_what_has_moved_is_copied_and_the_rest_is_not(pair, run):
 def test_what_is_named_is_copied_and_nothing_else(pair, run, refusal):
     drift(pair)
     pair.rewrite("paper.md", "reproduced", "contradicted")
-    data = pair.dataset("fig08")
-    write_dataset(data.assign_attrs(provenance_commit="2a2a"), pair.new / "figures/fig08.nc")
+    pair.write("fig08", pair.dataset("fig08").assign_attrs(provenance_commit="2a2a"))
     assert {*run("fig08", "paper")[:-1]} == {"copied figures/fig08.nc", "copied paper.md"}
     assert not pair.artifact("fig05").outcome.agrees
+    pair.write("fig05", pair.dataset("fig05").assign_attrs(provenance_dirty="yes"))
     before = contents(pair)
+    with refusal(ModelError, "uncommitted changes, remove and run again: ", "figures/fig05.nc"):
+        run("fig05")
     with refusal(ModelError, "unknown artifact fig99"):
         run("fig05", "fig99")
     assert contents(pair) == before
@@ -80,7 +80,7 @@ def test_what_is_named_is_copied_and_nothing_else(pair, run, refusal):
 )
 def test_a_refusal_changes_nothing(pair, run, monkeypatch, refusal, state, left, config, said):
     drift(pair)
-    monkeypatch.setattr(module, "revision", lambda _: state)
+    monkeypatch.setattr(module.origin, "revision", lambda _: state)
     monkeypatch.setattr(module, "jobs_left", lambda *_: left)
     (pair.new / "figures" / "fig17.png").touch()
     before = contents(pair)

@@ -17,7 +17,7 @@ from bouncing_ball.compare.terminal import to_terminal
 from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.datasets.files import replacing
 from bouncing_ball.errors import ModelError
-from bouncing_ball.provenance.origin import CONFIGURATION, changes, revision
+from bouncing_ball.provenance import origin
 
 
 def jobs_left(repository: Path, files: Collection[str]) -> int:
@@ -84,13 +84,14 @@ def accept(
     ------
     ModelError
         If there are uncommitted changes, if the configuration differs from the committed one, if
-        Snakemake would still run a job, if no rule makes one of the results, or if there is no
-        artifact with one of the names. The record is then unchanged.
+        Snakemake would still run a job, if no rule makes one of the results, if there is no
+        artifact with one of the names, or if one to copy was made with uncommitted changes. The
+        record is then unchanged.
     """
-    if revision(record).dirty != "no":
+    if origin.revision(record).dirty != "no":
         raise ModelError("some changes are not committed: commit them, run again, then accept")
-    if changed := changes(config, read_yaml(record / CONFIGURATION)):
-        raise ModelError(f"the values of this run differ from {CONFIGURATION}: {changed}")
+    if changed := origin.changes(config, read_yaml(record / origin.CONFIGURATION)):
+        raise ModelError(f"the values of this run differ from {origin.CONFIGURATION}: {changed}")
     if left := jobs_left(record, files):
         jobs = "1 job" if left == 1 else f"{left} jobs"
         raise ModelError(f"Snakemake would still run {jobs}: run make all diff first")
@@ -99,6 +100,11 @@ def accept(
     comparison = compare_folders(record, results, only)
     print(to_terminal(comparison), end="", flush=True)
     taken = [each for each in comparison.parts if only or not each.outcome.agrees]
+    # A commit alone makes Snakemake run nothing again.
+    new = [results / file.name for artifact in taken for file in artifact.parts]
+    made = [file for file in new if file.suffix in origin.CARRIERS and file.exists()]
+    if early := [str(file) for file in made if origin.read_provenance(file)["dirty"] != "no"]:
+        raise ModelError(f"made with uncommitted changes, remove and run again: {' '.join(early)}")
     said = [line for artifact in taken for line in _copied(artifact, record, results)]
     if not said:
         return ["Nothing to accept: the results agree with the record."]

@@ -253,9 +253,9 @@ def test_the_path_is_continuous_and_closed(some):
 
 def test_nothing_happens_between_the_events(some):
     # First events: the ball is held in contact, and above the table in flight.
-    name, _, _, orbit = some
+    _, _, _, orbit = some
     share = np.linspace(0, 1, 2001)[1:-1]
-    if orbit.contact_duration > 0 and not name.startswith("corrected"):
+    if orbit.contact_duration > 0 and hasattr(orbit.law, "loaded_grip"):
         depth, rate = (-x for x in orbit.contact_motion(share * orbit.contact_duration))
         angle = orbit.phase + share * orbit.contact_duration
         assert np.all(orbit.law.loaded_grip(depth, rate, 1 - orbit.amplitude * np.sin(angle)) > 0)

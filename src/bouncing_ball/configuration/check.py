@@ -41,8 +41,10 @@ def configuration_model(studies: Mapping[str, str], config: Mapping[str, Any]) -
     keys: dict[str, Any] = {"atlas": (Plan, ...)}
     for each in arguments.values():
         keys |= {name: (kind, ...) for name, kind in each.items() if name != "parameters"}
-    keys |= dict.fromkeys(SECTIONS, (dict, ...))
-    # The section of an artifact is known only if all sections are there.
+    known: dict[str, Any] = dict.fromkeys(arguments, (Any, None))
+    keys |= {name: (create_model(name, __base__=Parameters, **known), ...) for name in SECTIONS}
+    # The section of an artifact is known only if all sections are there. A mistyped artifact is
+    # named here, before another one is found to be missing.
     check(create_model("Configuration", __base__=_Sections, **keys), config)
     places: dict[str, dict[str, Any]] = {name: {} for name in SECTIONS}
     for artifact, each in arguments.items():

@@ -64,15 +64,13 @@ def slopes_of(function: Callable, penetration: ArrayLike, rate: ArrayLike) -> Sl
 class ContactLaw(Batch, ABC):
     """A contact law: a frozen dataclass of its dimensionless parameters.
 
-    A subclass defines ``name``, ``formula`` and :meth:`force`; the other members have defaults.
+    A subclass defines ``name`` and :meth:`force`; the other members have defaults.
     ``root`` is m, and ``release`` the rule that ends the contact. A subclass checks its parameters
     in ``__post_init__``, after that of this class, and raises
     :class:`~bouncing_ball.errors.ModelError`.
     """
 
     name: ClassVar[str]
-    formula: ClassVar[str]
-    """The force, as the help of the command line shows it."""
     units: ClassVar[dict[str, Unit]] = {}
     """The units of the parameters; a parameter that is not listed is a pure number."""
     root: ClassVar[int] = 2

@@ -77,7 +77,6 @@ class SpringDamper(OscillatorLaw):
     release: Release = Release.DISPLACEMENT
 
     name: ClassVar[str] = "linear"
-    formula: ClassVar[str] = "W² p + 2 Z W p′"
 
     def __post_init__(self):
         super().__post_init__()

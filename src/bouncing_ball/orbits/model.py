@@ -103,8 +103,8 @@ class ImpactModel(Batch, ABC):
 
     @property
     def label(self) -> str:
-        """The parameters of a single model as text."""
-        return self.impact_law.label
+        """The parameters of a single model as text: the label of the law if it has one."""
+        return getattr(self.impact_law, "label", repr(self.impact_law))
 
     @abstractmethod
     def signature(self, speed: ArrayLike) -> Instant:

@@ -111,10 +111,6 @@ class RestitutionLawModel(ContinuedModel, _Instants):
 
     name: ClassVar[str] = "restitution-law"
 
-    @property
-    def label(self) -> str:
-        return repr(self.law)
-
 
 @dataclass(frozen=True, repr=False)
 class RestitutionModel(_Instants):

@@ -49,7 +49,6 @@ class ElastoBacklash(OscillatorLaw):
     """
 
     name: ClassVar[str] = "elasto-backlash"
-    formula: ClassVar[str] = "ϖ² p + min(2ζϖ p′, ϖ² p)"
     release = Release.FORCE
     has_kink: ClassVar[Any] = True
 

@@ -39,7 +39,6 @@ class HuntCrossley(Hertz):
     """
 
     name: ClassVar[str] = "hunt-crossley"
-    formula: ClassVar[str] = "K p^1.5 (1 + C p′)"
 
     units: ClassVar[dict[str, Unit]] = Hertz.units | {"damping": Unit("s/m", 0, -1, 1)}
 
@@ -71,7 +70,6 @@ class LinearHuntCrossley(HuntCrossley):
     """
 
     name: ClassVar[str] = "hunt-crossley-linear"
-    formula: ClassVar[str] = "K p (1 + C p′)"
     root: ClassVar[int] = 1
     power: ClassVar[float] = 1.0
     units: ClassVar[dict[str, Unit]] = HuntCrossley.units | {"stiffness": Unit("N/m", 1, 0, -2)}

@@ -84,7 +84,6 @@ class Impedance(OscillatorLaw):
     power: float | np.ndarray = 2.0
 
     name: ClassVar[str] = "impedance"
-    formula: ClassVar[str] = "ϖ² p + 2ζϖ p′ and d of the load"
     units: ClassVar[dict[str, Unit]] = OscillatorLaw.units | {"width": Unit("m", 0, 1, 0)}
     release = Release.FORCE
     lag: ClassVar[None] = None

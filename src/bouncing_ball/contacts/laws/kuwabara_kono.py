@@ -43,7 +43,6 @@ class KuwabaraKono(Hertz):
     """
 
     name: ClassVar[str] = "kuwabara-kono"
-    formula: ClassVar[str] = "K (p^1.5 + C √p p′)"
     release = Release.FORCE
 
     units: ClassVar[dict[str, Unit]] = Hertz.units | {"damping": Unit("s", 0, 0, 1)}

@@ -62,7 +62,6 @@ class Tsuji(Hertz):
     """
 
     name: ClassVar[str] = "tsuji"
-    formula: ClassVar[str] = "K p^1.5 + C √K p^0.25 p′"
     root: ClassVar[int] = 4
 
     def __post_init__(self):

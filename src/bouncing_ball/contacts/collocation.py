@@ -356,9 +356,10 @@ def _panel(
         if np.count_nonzero(reached & (change <= _SETTLED)) >= most * change.size:
             break
     rate = new[:-1]
-    # The remainder is corrected to first order. At the end of a short panel, rounding of the load
-    # may keep it above its bound.
-    reached |= np.abs(more) <= _REACHED * now.length ** (1 / m) / now.speed
+    # The remainder is corrected to first order. At the end of a short panel, or where the grip
+    # vanishes slowly, rounding of the load may keep it above its bound.
+    time = now.length ** (1 / m) / now.speed
+    reached |= np.abs(more) <= _REACHED * (np.maximum(time, t[-1]) if m == 1 else time)
     q[-1] += new[-1] * more
     t[-1] += _lever(m, q[-1]) * more
     final = end @ push

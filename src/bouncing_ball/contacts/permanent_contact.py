@@ -162,16 +162,11 @@ def _holds(law: ContactLaw, amplitude: float) -> bool:
 
     steady, z = _Steady(law, rest(law)), np.array([np.pi / 2, amplitude])
 
-    def rates(time: np.ndarray, y: np.ndarray) -> np.ndarray:
-        return steady.rates(time, y, z)
-
-    def ends(first: np.ndarray, last: np.ndarray) -> np.ndarray:
-        return last - first
-
     time = np.linspace(0.0, _PERIOD, _GRID)
     load = np.maximum(1 - amplitude * np.cos(time), _SLACK)
     slow = np.array([depth(law, 0 * time, 0.0, load) / steady.unit, 0 * time])
-    found = solve_bvp(rates, ends, time, slow, tol=_COARSE, max_nodes=_FEW)
+    equations = (lambda t, y: steady.rates(t, y, z)), (lambda first, last: last - first)
+    found = solve_bvp(*equations, time, slow, tol=_COARSE, max_nodes=_FEW)
     return steady.is_held(found, z)
 
 

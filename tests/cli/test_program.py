@@ -15,6 +15,7 @@ import bouncing_ball
 from bouncing_ball.calls.orbits import orbit
 from bouncing_ball.cli.explained import COMMANDS
 from bouncing_ball.cli.options import meanings
+from bouncing_ball.contacts.laws import LAWS
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = Path(sys.executable).with_name("bouncing-ball")
@@ -30,6 +31,7 @@ def test_the_help_says_what_the_docstrings_of_the_calls_say(said):
     texts = meanings(orbit)
     for name in inspect.signature(orbit).parameters:
         assert "".join(texts[name].split()).replace("-", "") in shown
+    assert f"Laws: {', '.join(LAWS)}." in " ".join(said("design", "--help").split())
     assert "(default: -3.142)" in said("simulate", "--help")
     assert said("--version") == f"bouncing-ball {bouncing_ball.__version__}\n"
 

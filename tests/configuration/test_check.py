@@ -69,11 +69,7 @@ SPAN = (*FIG05, "frequency_ratio")
         ((*FIG08, "restitution"), 0.04, "figures.fig08.restitution = 0.04 must be at least 0.05"),
         ((*FIG08, "frequency_ratio", 1), 0.09, "frequency_ratio[1] = 0.09 must be at least 0.1"),
         ((*FIG08, "frequency_ratio", 0), "1e4", "'1e4' must be a number (powers of ten are"),
-        (
-            (*FIG08, "frequency_ratio"),
-            [],
-            "figures.fig08.frequency_ratio = [] must have at least 1",
-        ),
+        ((*FIG08, "frequency_ratio"), [], "fig08.frequency_ratio = [] must have at least 1"),
         ((*FIG08, "frequency_ratio"), [2, 2], "fig08.frequency_ratio = [2, 2] must not repeat"),
         ((*FIG08, "frequency_ratio"), 2.0, "fig08.frequency_ratio = 2.0 must be a list"),
         ((*FIG08, "points"), 10, "figures.fig08.points = 10 must be at least 11"),

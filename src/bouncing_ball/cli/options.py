@@ -157,5 +157,10 @@ def add_options(parser: argparse.ArgumentParser, call: Callable) -> None:
         if not required and default not in (None, False):
             shown = f"{default:.4g}" if isinstance(default, float) else default
             text += f" (default: {shown})"
+        if name == "law":
+            # Imported here, because the import needs numpy, which the general help does not need.
+            from bouncing_ball.contacts.laws import LAWS
+
+            text += f" Laws: {', '.join(LAWS)}."
         reading |= {"default": None if required else default, "help": text.replace("%", "%%")}
         parser.add_argument(option(name), dest=name, required=required, **reading)

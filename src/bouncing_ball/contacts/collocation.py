@@ -67,7 +67,7 @@ _FIRST, _DOWN, _LONGEST = 0.05, 0.7, 3 * np.pi
 # panel.
 _SHORTER, _LONGER, _SAFETY, _AGAIN = 0.3, (1.3, 2.0), 0.9, 0.6
 # Number of contacts computed at the same time, chosen such that their nodes fit into the cache.
-_BLOCK = 1024
+_BLOCK = 2048
 # Number of bytes that are allocated and freed once. From then on glibc keeps freed memory;
 # otherwise it returns the temporary arrays of each sweep to the system, and a third of the time is
 # spent on allocating them again.

@@ -37,9 +37,8 @@ class Hertz(ContactLaw):
         check_damping(self.damping, "damping C")
 
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """f(p, p′), by :meth:`root_force`, which is a polynomial in the root q = p^{1/m}."""
-        root = np.sqrt(penetration)
-        return self.root_force(np.sqrt(root) if self.root == 4 else root, rate)
+        """f(p, p′), by :meth:`root_force`, which is a polynomial in the root q = √p."""
+        return self.root_force(np.sqrt(penetration), rate)
 
     @abstractmethod
     def root_force(self, root: np.ndarray, rate: np.ndarray) -> np.ndarray:

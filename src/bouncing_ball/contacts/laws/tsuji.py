@@ -69,6 +69,12 @@ class Tsuji(Hertz):
         c = self.damping
         require(c < np.sqrt(5), c, "damping C", "below √5: with more the ball does not leave")
 
+    def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """K p^{3/2} + C √K p^{1/4} p′."""
+        root = np.sqrt(penetration)
+        loss = self.damping * np.sqrt(self.stiffness) * rate
+        return self.stiffness * penetration * root + loss * np.sqrt(root)
+
     def root_force(self, root: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """K q⁶ + C √K q p′."""
         square = root * root

@@ -52,9 +52,10 @@ def test_contacts_that_are_weakly_damped_are_refused():
 
 
 def test_a_stiff_contact_has_a_threshold_next_to_that_of_a_rigid_table():
-    # Shooting over one period with an integrator of high order found the same digits.
-    law = law_of_impact(HuntCrossley, 0.85, 0.03, 3.0)
-    assert permanent_contact(law) == pytest.approx(0.996856366359, rel=1e-10)
+    # Shooting over one period with an integrator of high order found the same digits. From a start
+    # without the delay, or with twice as long a one, the iteration ends elsewhere.
+    law = law_of_impact(HuntCrossley, 0.65, 0.03, 3.0)
+    assert permanent_contact(law) == pytest.approx(0.999515842332, rel=1e-10)
 
 
 @pytest.mark.parametrize("law", [Tsuji(10, 0.3), HuntCrossley(4e3, 0.08), KuwabaraKono(99, 0.1)])

@@ -50,7 +50,7 @@ _PERIOD = 2 * np.pi
 _MOST, _TOLERANCE = 200_000, 1e-8
 _GRID, _FEW, _COARSE, _FIRST = 60, 5_000, 1e-6, 1e-5
 # The ratio of the larger Λ to the threshold. It skips the fold of a resonance, next to which the
-# threshold may be, and is close to what is asked of the models.
+# threshold may be; a steady contact beyond it makes an answer wrong by more than 1 %.
 _ABOVE = 1.01
 # Rounding of the grip over its value at rest.
 _SLACK = 1e-7

@@ -5,6 +5,7 @@ solution of the contact, Brent's method, and free flight.
 """
 
 import contextlib
+import importlib
 import io
 import json
 import math
@@ -21,13 +22,16 @@ from hypothesis import HealthCheck, settings
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
+import bouncing_ball
 from bouncing_ball.cli.main import main
-from bouncing_ball.configuration.yaml_file import read_yaml
-from bouncing_ball.datasets.netcdf import read_dataset
-from bouncing_ball.datasets.variables import VARIABLES
-from bouncing_ball.studies.orbit_branches import Continuation
+from bouncing_ball.datasets.files import read_dataset
+from bouncing_ball.datasets.variables import SHARED
+from bouncing_ball.paper.exhibits.continuation_of_orbits import Continuation
+from bouncing_ball.pipeline.configuration import read_yaml
 
 ROOT = Path(__file__).resolve().parents[1]
+# Fixtures that tests of several folders use: a reference integration, and all texts.
+pytest_plugins = ["taylor_ball", "article_texts"]
 # Programs that the tests start keep what they have compiled, whatever the shell says: else
 # each start takes twice as long.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
@@ -134,6 +138,20 @@ def recorded():
 
 
 @pytest.fixture(scope="session")
+def declared():
+    """The variables of all datasets: those that stages share, and those of each stage."""
+    found = dict(SHARED)
+    for path in sorted(Path(bouncing_ball.__file__).parent.rglob("*.py")):
+        if "\nVARIABLES = {" in path.read_text(encoding="utf-8"):
+            name = ".".join(path.relative_to(ROOT / "src").with_suffix("").parts)
+            own = importlib.import_module(name).VARIABLES
+            # A name has one meaning, whatever the dataset.
+            assert not found.keys() & own.keys(), (name, found.keys() & own.keys())
+            found |= own
+    return found
+
+
+@pytest.fixture(scope="session")
 def table():
     """What the rules do not say about an artifact."""
     return read_yaml(ROOT / "workflow" / "artifacts.yaml")
@@ -143,7 +161,7 @@ def table():
 def stages():
     """The study of each artifact, as the rules of the stages list them."""
     rules = (ROOT / "workflow" / "rules" / "study.smk").read_text(encoding="utf-8")
-    return dict(re.findall(r'(\w+)="((?:studies|claims)[.\w]+)', rules))
+    return dict(re.findall(r'(\w+)="((?:paper|beyond)[.\w]+)', rules))
 
 
 @pytest.fixture(scope="session")
@@ -246,7 +264,7 @@ def refused(outcome):
 
 
 @pytest.fixture(scope="session")
-def described():
+def described(declared):
     """Asserts that every variable and dimension of a dataset has a name and a description."""
 
     def check(dataset):
@@ -257,7 +275,7 @@ def described():
                 assert attributes.get("units") in ("1", "rad"), name
             else:
                 assert dataset[name].dtype.kind in "bU", name
-        assert set(dataset.dims) <= set(VARIABLES)
+        assert set(dataset.dims) <= set(declared)
         return dataset
 
     return check
@@ -272,9 +290,9 @@ def continuation_settings():
 @pytest.fixture
 def short_runs(monkeypatch):
     """The calculator follows few impacts: long runs are those of calculator/test_motion.py."""
-    monkeypatch.setattr("bouncing_ball.calculator.motion._IMPACTS", 20)
+    monkeypatch.setattr("bouncing_ball.beyond.calculator.motion._IMPACTS", 20)
     for samples in ("_SAMPLES", "_SAMPLES_OF_LAW"):
-        monkeypatch.setattr(f"bouncing_ball.calculator.motion.{samples}", (4, 1, 12, 4))
+        monkeypatch.setattr(f"bouncing_ball.beyond.calculator.motion.{samples}", (4, 1, 12, 4))
 
 
 CHROMIUM = next(

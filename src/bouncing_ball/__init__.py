@@ -64,14 +64,14 @@ __version__ = "0.1.0"
 # The modules of the names that users import from here. Each module is imported on first use,
 # because --help of the command line needs no numpy.
 _MODULES = {
-    "calls.model": ("model",),
-    "calls.orbits": ("orbit", "limits", "branch"),
-    "calls.motion": ("simulate", "history", "drop"),
+    "calls.balls": ("model",),
+    "calls.periodic": ("orbit", "limits", "branch"),
+    "calls.over_time": ("simulate", "history", "drop"),
     "calls.long_run": ("motion_of", "lyapunov_exponent", "orbit_diagram", "basins"),
-    "calculator.design": ("design",),
-    "contacts.spring_damper": ("SpringDamper",),
-    "orbits.spring_damper_model": ("SpringDamperModel",),
-    "orbits.restitution_model": ("RestitutionModel",),
+    "beyond.calculator.design": ("design",),
+    "paper.contact.spring_damper": ("SpringDamper",),
+    "paper.orbits.spring_damper_model": ("SpringDamperModel",),
+    "paper.orbits.restitution_model": ("RestitutionModel",),
     "errors": ("ModelError", "NoOrbitError"),
 }
 _PUBLIC = {name: module for module, names in _MODULES.items() for name in names}

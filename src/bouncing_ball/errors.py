@@ -3,15 +3,14 @@
 All of them derive from :class:`ValueError`, so that callers can catch them without a distinction.
 """
 
+import math
 import re
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
-
-
 _Known = TypeVar("_Known")
 
 
@@ -144,3 +143,39 @@ def printable(text: object, width: int | None = 300) -> str:
     """
     text = str(text)
     return escaped(text if width is None or len(text) <= width else text[: width - 1] + "…")
+
+
+class Range(NamedTuple):
+    """The range of the numbers allowed, as an annotation; ``ends`` are the interval's brackets.
+
+    Examples
+    --------
+    >>> print(Range(0, 1, "(]"), 0 in Range(0, 1, "(]"), 1 in Range(0, 1, "(]"))
+    a number in (0, 1] False True
+    >>> print(Range(0), "|", count(3), 2.5 in count(3))
+    a finite number > 0 | a whole number from 1 to 3 False
+    """
+
+    low: float = -math.inf
+    high: float = math.inf
+    ends: str = "()"
+    whole: bool = False
+
+    def __contains__(self, value: Any) -> bool:
+        if not isinstance(value, int | float) or not math.isfinite(value):
+            return False
+        above = value > self.low if self.ends[0] == "(" else value >= self.low
+        below = value < self.high if self.ends[1] == ")" else value <= self.high
+        return above and below and (not self.whole or value == int(value))
+
+    def __str__(self) -> str:
+        if self.whole:
+            return f"a whole number from {self.low:g} to {self.high:.0f}"
+        if math.isinf(self.high):
+            return "a finite number" + ("" if math.isinf(self.low) else f" > {self.low:g}")
+        return f"a number in {self.ends[0]}{self.low:g}, {self.high:g}{self.ends[1]}"
+
+
+def count(high: int, low: int = 1) -> Range:
+    """The range of the whole numbers from ``low`` to ``high``."""
+    return Range(low, high, "[]", whole=True)

@@ -9,15 +9,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import bouncing_ball
-from bouncing_ball.contacts.contact_law import ContactLaw
-from bouncing_ball.contacts.damping import damping_ratio
-from bouncing_ball.contacts.laws import LAWS
-from bouncing_ball.contacts.laws.hunt_crossley import HuntCrossley
-from bouncing_ball.contacts.laws.tsuji import tsuji_damping
-from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.orbits.law_model import LawModel
-from bouncing_ball.orbits.orbit import OBSERVABLES
-from bouncing_ball.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.beyond.laws.hertzian import HuntCrossley, tsuji_damping
+from bouncing_ball.beyond.laws.orbits import LawModel
+from bouncing_ball.beyond.laws.registry import LAWS
+from bouncing_ball.paper.contact.damping import damping_ratio
+from bouncing_ball.paper.contact.law import ContactLaw
+from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.orbits.orbit import OBSERVABLES
+from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 
 ORBIT = ("orbit", "--n", "1", "--restitution", "0.85", "--amplitude", "1.0")
 FORCE = ("--frequency-ratio", "10", "--release", "force")

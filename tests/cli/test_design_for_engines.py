@@ -7,7 +7,7 @@ from dataclasses import asdict
 import pytest
 
 from bouncing_ball import design
-from bouncing_ball.engines import ENGINES
+from bouncing_ball.beyond.engines.choice import ENGINES
 
 pytestmark = pytest.mark.usefixtures("short_runs")
 

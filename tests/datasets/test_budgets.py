@@ -14,11 +14,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bouncing_ball.compare.budgets import ARTIFACTS, IGNORED
-from bouncing_ball.compare.data import compare_datasets
-from bouncing_ball.configuration.study import arguments, load, typed
-from bouncing_ball.configuration.yaml_file import read_yaml
-from bouncing_ball.datasets.variables import BUDGETS
+from bouncing_ball.pipeline.configuration import arguments, load, read_yaml, typed
+from bouncing_ball.pipeline.diff.datasets import ARTIFACTS, IGNORED, compare_datasets
 
 ROOT = Path(__file__).resolve().parents[2]
 RUN = read_yaml(ROOT / "config" / "config.yaml")
@@ -109,7 +106,8 @@ def results(stages, coarse, recorded):
 
 
 @pytest.mark.long
-def test_budgets_are_kept_and_no_wider_than_what_was_measured_asks_for(results):
+def test_budgets_are_kept_and_no_wider_than_what_was_measured_asks_for(results, declared):
+    budgets = {name: one.budget for name, one in declared.items() if one.budget is not None}
     beyond = [
         f"{artifact}: {each}"
         for (artifact, _), found in results.items()
@@ -119,14 +117,12 @@ def test_budgets_are_kept_and_no_wider_than_what_was_measured_asks_for(results):
     assert len(results) > 100 and not beyond
     largest = {}
     for (artifact, name), found in results.items():
-        if name in BUDGETS and name not in ARTIFACTS.get(artifact, {}):
+        if name in budgets and name not in ARTIFACTS.get(artifact, {}):
             share = max(each.share for each in found)
             largest[name] = max(share, largest.get(name, 0.0))
     # Ten times the change, and up to ten times more to the next power of ten; another
     # processor's rounding may be ten times smaller.
     wide = {
-        name: share
-        for name, share in largest.items()
-        if BUDGETS[name][0] != IGNORED and share < 1e-3
+        name: share for name, share in largest.items() if budgets[name] != IGNORED and share < 1e-3
     }
     assert wide.keys() <= OTHER_SOURCES

@@ -4,11 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from bouncing_ball.datasets.netcdf import (
-    parameter_attributes,
-    read_dataset,
-    write_dataset,
-)
+from bouncing_ball.datasets.files import parameter_attributes, read_dataset, write_dataset
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import ModelError
 

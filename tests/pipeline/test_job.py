@@ -5,9 +5,9 @@ from types import SimpleNamespace
 import pytest
 import xarray as xr
 
-from bouncing_ball.datasets.netcdf import write_dataset
+from bouncing_ball.datasets.files import write_dataset
 from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline.job import logged, make_dataset, read_input
+from bouncing_ball.pipeline.jobs import logged, make_dataset, read_input
 
 
 @pytest.fixture
@@ -34,7 +34,7 @@ def test_a_failure_is_one_line(tmp_path, interruptible, one_line, error, said):
 
 def test_a_study_gives_every_variable_its_unit(tmp_path, interruptible, one_line, monkeypatch):
     bare = xr.Dataset({"phase": 0.0})
-    monkeypatch.setattr("bouncing_ball.pipeline.job.load", lambda study: lambda: bare)
+    monkeypatch.setattr("bouncing_ball.pipeline.jobs.load", lambda study: lambda: bare)
     parts = SimpleNamespace(study="", arguments={}), SimpleNamespace(data=[], get={}.get)
     names = {"rule": "stage", "wildcards": [], "log": [str(tmp_path / "log")]}
     job = SimpleNamespace(params=parts[0], input=parts[1], **names)

@@ -1,6 +1,6 @@
 """The share of a run that is done."""
 
-from bouncing_ball.pipeline.progress import advance, begin
+from bouncing_ball.pipeline.jobs import advance, begin
 
 
 def test_each_job_that_ends_is_counted(tmp_path, monkeypatch):

@@ -11,8 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from bouncing_ball.configuration.study import arguments
-from bouncing_ball.configuration.yaml_file import read_yaml
+from bouncing_ball.pipeline.configuration import arguments, read_yaml
 from bouncing_ball.pipeline.sources import imports, sources
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -44,11 +43,11 @@ def test_a_changed_parameter(stages, keys, value, expected):
 @pytest.mark.parametrize(
     ("file", "expected"),
     [
-        ("studies/restitution_families.py", {"fig02", "fig03"}),
-        ("claims/verdict.py", {"claims", "statements"}),
-        ("claims/tally.py", set()),
-        ("figures/style.py", set()),
-        ("configuration/check.py", set()),
+        ("paper/exhibits/restitution_model.py", {"fig02", "fig03"}),
+        ("paper/claims/verdict.py", {"claims", "statements"}),
+        ("paper/claims/witness.py", {"witness"}),
+        ("drawing/style.py", set()),
+        ("pipeline/configuration_docs.py", set()),
     ],
 )
 def test_a_changed_module(stages, file, expected):
@@ -64,17 +63,14 @@ def test_a_changed_module(stages, file, expected):
 def test_the_modules_of_a_stage_are_those_it_imports():
     """The modules found in the sources are those that Python really imports."""
     code = (
-        "import sys, bouncing_ball.studies.orbit_branches\n"
+        "import sys, bouncing_ball.paper.exhibits.continuation_of_orbits\n"
         "print(*sorted(m.__file__ for n, m in sys.modules.items()"
         " if n.split('.')[0] == 'bouncing_ball'), sep='\\n')"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    found = sources("bouncing_ball.studies.orbit_branches")
+    found = sources("bouncing_ball.paper.exhibits.continuation_of_orbits")
     assert [path for path in found if path.endswith(".py")] == done.stdout.splitlines()
-    assert [Path(path).name for path in found if path.endswith(".csv")] == [
-        "variables.csv",
-        "parameters.csv",
-    ]
+    assert [Path(path).name for path in found if path.endswith(".csv")] == ["parameters.csv"]
 
 
 def test_no_import_statement_is_missed():

@@ -15,8 +15,8 @@ import sys
 import time
 from statistics import median
 
-from bouncing_ball.atlas.plan import Plan
-from bouncing_ball.atlas.shards import shard
+from bouncing_ball.beyond.atlas.plan import Plan
+from bouncing_ball.beyond.atlas.shards import shard
 
 SMALLEST = 1e5
 SECONDS = 3.0

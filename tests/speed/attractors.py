@@ -11,9 +11,9 @@ import time
 
 import numpy as np
 
-from bouncing_ball.attractors.mapper import label
-from bouncing_ball.contacts.signature import Signature
-from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.long_run.destination import label
+from bouncing_ball.paper.contact.spring_damper import SpringDamper
 
 
 def main(balls: int, impacts: int) -> None:

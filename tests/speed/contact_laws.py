@@ -13,15 +13,14 @@ from statistics import median
 
 import numpy as np
 
-from bouncing_ball.contacts.damping import damping_ratio
-from bouncing_ball.contacts.law_choice import law_of_impact
-from bouncing_ball.contacts.laws import LAWS
-from bouncing_ball.contacts.laws.impedance import Impedance
-from bouncing_ball.contacts.release import Release
-from bouncing_ball.contacts.spring_damper import SpringDamper
-from bouncing_ball.motion.simulation import simulate
-from bouncing_ball.orbits.law_model import LawModel
-from bouncing_ball.orbits.restitution_orbit import rigid_speed
+from bouncing_ball.beyond.laws.impedance import Impedance
+from bouncing_ball.beyond.laws.law_of_impact import law_of_impact
+from bouncing_ball.beyond.laws.orbits import LawModel
+from bouncing_ball.beyond.laws.registry import LAWS
+from bouncing_ball.beyond.simulation import simulate
+from bouncing_ball.paper.contact.damping import Release, damping_ratio
+from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.orbits.restitution_branch import rigid_speed
 
 HERTZ = ("hunt-crossley", "tsuji", "kuwabara-kono")
 # r, Λ and D; at Λ = 1 many balls are next to permanent contact.

@@ -37,7 +37,9 @@ def reduce_to_imports(script: Path) -> None:
     imports = [node for node in tree.body if isinstance(node, ast.Import | ast.ImportFrom)]
     text = "".join(ast.unparse(node) + "\n" for node in imports) + LATE_DATA
     if script.stem == "study":
-        text += "from bouncing_ball.configuration.study import load\nload(snakemake.params.study)\n"
+        text += (
+            "from bouncing_ball.pipeline.configuration import load\nload(snakemake.params.study)\n"
+        )
     if script.stem == "figure":
         text += "load(snakemake.params.drawing)\n" + LATE_FIGURE
     script.write_text(text + FINISH, encoding="utf-8")

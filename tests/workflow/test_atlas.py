@@ -12,10 +12,10 @@ from pathlib import Path
 import pytest
 import yaml
 
-from bouncing_ball.atlas.plan import Plan
-from bouncing_ball.atlas.shards import shard
-from bouncing_ball.configuration.yaml_file import read_yaml
-from bouncing_ball.datasets.netcdf import read_dataset
+from bouncing_ball.beyond.atlas.plan import Plan
+from bouncing_ball.beyond.atlas.shards import shard
+from bouncing_ball.datasets.files import read_dataset
+from bouncing_ball.pipeline.configuration import read_yaml
 
 SMALL = {
     "n": [1, 2],

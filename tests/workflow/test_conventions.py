@@ -6,7 +6,7 @@ from pathlib import Path
 import netCDF4
 import pytest
 
-from bouncing_ball.datasets.netcdf import CONVENTIONS
+from bouncing_ball.datasets.files import CONVENTIONS
 
 RECORD = Path(__file__).resolve().parents[2] / "figures"
 # CF, section 2.3: "should begin with a letter and be composed of letters, digits, and underscores".

@@ -10,9 +10,8 @@ import shutil
 
 import pytest
 
-from bouncing_ball.compare.budgets import budget_of
-from bouncing_ball.compare.drift import span
-from bouncing_ball.datasets.netcdf import read_dataset, write_dataset
+from bouncing_ball.datasets.files import read_dataset, write_dataset
+from bouncing_ball.pipeline.diff.datasets import budget_of, span
 
 
 @pytest.fixture

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bouncing_ball.claims.verdict import Verdict
-from bouncing_ball.datasets.netcdf import read_dataset
+from bouncing_ball.datasets.files import read_dataset
+from bouncing_ball.paper.claims.verdict import Verdict
 
 
 @pytest.fixture(scope="module")

@@ -4,8 +4,7 @@ import os
 import subprocess
 from pathlib import Path
 
-from bouncing_ball.provenance.explain import explain
-from bouncing_ball.provenance.origin import CARRIERS, LIBRARIES, read_provenance
+from bouncing_ball.pipeline.provenance import CARRIERS, LIBRARIES, explain, read_provenance
 
 
 def test_every_artifact_carries_its_provenance(pristine):

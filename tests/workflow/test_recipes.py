@@ -1,12 +1,12 @@
 """The recipes of CONTRIBUTING, each tried on a fresh clone with exactly the files that it names."""
 
-from bouncing_ball.provenance.origin import read_provenance
+from bouncing_ball.pipeline.provenance import read_provenance
 
 STAGES = "workflow/rules/study.smk"
 READS = "workflow/artifacts.yaml"
 CONFIG = "config/config.yaml"
 FIGURE = "src/bouncing_ball/figures/heights.py"
-STAGE = "src/bouncing_ball/studies/lowest.py"
+STAGE = "src/bouncing_ball/paper/exhibits/lowest.py"
 
 
 def changed(tree):
@@ -15,7 +15,7 @@ def changed(tree):
 
 
 FIRST = '            ext_release="'
-ENTRY = '            ext_heights="studies.frequency_sweeps.frequency_sweep -> heights.heights",\n'
+ENTRY = '            ext_heights="paper.exhibits.apparent_restitution.frequency_sweep -> heights.heights",\n'
 PARAMETERS = """  ext_heights:
     n: 1
     restitution: 0.85
@@ -47,7 +47,7 @@ from collections.abc import Mapping
 import xarray as xr
 
 from bouncing_ball.datasets.variables import described
-from bouncing_ball.parameters import Family, Parameters
+from bouncing_ball.datasets.parameters import Family, Parameters
 
 
 class Lowest(Parameters):
@@ -72,7 +72,7 @@ def test_a_figure_with_its_own_parameters_and_a_stage_on_the_dataset_of_another(
     (fresh.path / FIGURE).write_text(DRAWING, encoding="utf-8")
     assert changed(fresh) == {STAGES, CONFIG, FIGURE}
     (fresh.path / STAGE).write_text(STUDY, encoding="utf-8")
-    fresh.rewrite(STAGES, FIRST, '            ext_lowest="studies.lowest.lowest",\n' + FIRST)
+    fresh.rewrite(STAGES, FIRST, '            ext_lowest="paper.exhibits.lowest.lowest",\n' + FIRST)
     fresh.rewrite(READS, "ext_release:\n", "ext_lowest: { reads: [fig11] }\next_release:\n")
     lowest = "studies:\n  ext_lowest: { n: 110 }\n  formulas:"
     fresh.rewrite(CONFIG, "studies:\n  formulas:", lowest)
@@ -91,12 +91,12 @@ def test_a_figure_with_its_own_parameters_and_a_stage_on_the_dataset_of_another(
 
 def test_a_parameter(fresh):
     fresh.rewrite(
-        "src/bouncing_ball/studies/permanent_contact_curve.py",
+        "src/bouncing_ball/paper/exhibits/permanent_contact.py",
         "    frequency_ratio: Span\n",
         "    frequency_ratio: Span\n    load: Tolerance\n",
     )
     fresh.rewrite(
-        "src/bouncing_ball/studies/permanent_contact_curve.py",
+        "src/bouncing_ball/paper/exhibits/permanent_contact.py",
         "import Parameters, Restitution, Span",
         "import Parameters, Restitution, Span, Tolerance",
     )

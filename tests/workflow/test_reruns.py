@@ -12,10 +12,10 @@ def test_a_commit_runs_nothing_again_and_a_change_what_it_decides(complete):
     (complete.path / "README.md").write_text("Not committed.\n", encoding="utf-8")
     complete.configure("figures", "fig12", "amplitude", value=1.1)
     # What checks the configuration only, and what only shows, run no science again.
-    complete.edit("configuration/check.py")
-    complete.edit("figures/cascade_of_flights.py")
-    complete.edit("claims/forensics.py")
-    printed = "src/bouncing_ball/studies/printed_table1.py"
+    complete.edit("pipeline/configuration_docs.py")
+    complete.edit("beyond/exhibits/cascades_figures.py")
+    complete.edit("paper/claims/forensics.py")
+    printed = "src/bouncing_ball/paper/exhibits/printed_table1.py"
     complete.rewrite(printed, '"1.032"', '"1.033"')
     (complete.path / "results/figures/formulas.nc").unlink()
     assert complete.planned() == {

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from bouncing_ball.compare.data import compare_datasets
-from bouncing_ball.datasets.netcdf import read_dataset
+from bouncing_ball.datasets.files import read_dataset
+from bouncing_ball.pipeline.diff.datasets import compare_datasets
 
 ROOT = Path(__file__).resolve().parents[2]
 

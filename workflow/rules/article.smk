@@ -14,8 +14,8 @@ rule paper:
         data=map(dataset, STUDIES),
         tables=expand("results/figures/{table}.md", table=TABLES),
         source=modules(
-            *("figures.article.render", "figures.atlas.tables", "figures.tables.rows"),
-            "claims.tally",
+            *("pipeline.article", "beyond.atlas.figures", "paper.claims.tables"),
+            "paper.claims.ledger",
         ),
     output:
         paper="results/paper.md",
@@ -37,7 +37,7 @@ rule paper_pdf:
         texts=[rules.paper.output.paper, rules.paper.output.supplement],
         template=f"{ARTICLE}/article.typ",
         figures=expand("results/figures/{figure}.svg", figure=DRAWINGS),
-        source=modules("figures.article.pdf", "datasets.files"),
+        source=modules("pipeline.article", "datasets.files"),
     output:
         "results/paper.pdf",
         "results/supplement.pdf",

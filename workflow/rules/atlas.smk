@@ -1,7 +1,7 @@
 # The atlas: how stiff is stiff enough for all orbits. It is not part of a run. Its summary is
 # accepted by hand, see docs/atlas.md, and the article takes its numbers from this summary.
 
-from bouncing_ball.pipeline.atlas import minutes, names
+from bouncing_ball.beyond.atlas.jobs import minutes, names
 
 ATLAS = config["atlas"]
 CHARTS = ["bounce_velocity", "phase", "apparent_restitution", "page"]
@@ -12,7 +12,7 @@ rule atlas_shard:
     message:
         "Atlas: shard {wildcards.shard}"
     input:
-        source=modules("atlas.shards", "pipeline.atlas"),
+        source=modules("beyond.atlas.shards", "beyond.atlas.jobs"),
     output:
         data="results/atlas/shards/{shard}.nc",
     wildcard_constraints:
@@ -37,7 +37,7 @@ rule atlas_merge:
         parts=lambda wildcards: expand(
             rules.atlas_shard.output.data, shard=[*names(ATLAS), "limits"]
         ),
-        source=modules("atlas.shards", "pipeline.atlas"),
+        source=modules("beyond.atlas.shards", "beyond.atlas.jobs"),
     output:
         data="results/atlas/atlas.nc",
     params:
@@ -54,7 +54,7 @@ rule atlas:
         "Atlas: its summary, with charts"
     input:
         parts=[rules.atlas_merge.output.data],
-        source=modules("atlas.summary", "figures.atlas.charts"),
+        source=modules("beyond.atlas.summary", "beyond.atlas.figures"),
     output:
         data="results/atlas/summary.nc",
         charts=expand("results/atlas/{chart}.png", chart=CHARTS),

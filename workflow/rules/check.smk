@@ -5,7 +5,7 @@ if unknown := TABLE.keys() - {*STUDIES, *ACCEPTED}:
 
 # Jobs do not check the configuration again.
 if workflow.is_main_process:
-    from bouncing_ball.configuration.check import check_configuration
+    from bouncing_ball.pipeline.configuration import check_configuration
 
     try:
         check_configuration(map(os.path.relpath, workflow.configfiles), config, STUDIES)

@@ -27,8 +27,8 @@ if found.resolve() != HERE.resolve():
         f"bouncing_ball is imported from {found}, not from {HERE}: use this checkout's .venv (make setup)"
     )
 
-from bouncing_ball.configuration.study import arguments
-from bouncing_ball.configuration.yaml_file import ConfigurationError, read_yaml
+from bouncing_ball.pipeline.configuration import arguments
+from bouncing_ball.pipeline.configuration import ConfigurationError, read_yaml
 from bouncing_ball.pipeline.sources import sources
 
 # Snakemake writes these two lines before every job, and they do not name it.
@@ -60,14 +60,14 @@ def dataset(name):
 # Source files that a job uses: the named modules and all modules that they import. The paths are
 # relative, so that a folder may be moved without running all jobs again.
 def modules(*names):
-    files = sources("bouncing_ball.pipeline.job", *(f"bouncing_ball.{name}" for name in names))
+    files = sources("bouncing_ball.pipeline.jobs", *(f"bouncing_ball.{name}" for name in names))
     return [os.path.relpath(file) for file in files]
 
 
 # Inputs of the text before a table: its templates, and the modules that render them.
 def words_before(wildcards):
     templates = (f"{ARTICLE}/{wildcards.table}_{part}.md.j2" for part in ("head", "columns"))
-    needed = [*templates, *modules("figures.article.render")]
+    needed = [*templates, *modules("pipeline.article")]
     return needed if wildcards.table == "claims" else []
 
 

@@ -1,8 +1,8 @@
 # From datasets to figures: each figure is made from the dataset with its name. The schematics have
 # no dataset, and that of the atlas is accepted by hand.
 
-DRAWINGS |= {"fig01": "schematics.restitution_model", "fig04": "schematics.spring_damper_model"}
-DRAWINGS["ext_atlas"] = "atlas.charts.over_range"
+DRAWINGS |= {"fig01": "paper.exhibits.schematics_figures.restitution_model", "fig04": "paper.exhibits.schematics_figures.spring_damper_model"}
+DRAWINGS["ext_atlas"] = "beyond.atlas.figures.over_range"
 
 CAPTIONS = [path.stem for path in Path(ROOT, "workflow/report").glob("*.rst")]
 
@@ -15,10 +15,10 @@ for name, drawing in DRAWINGS.items():
             f"Drawing {name}"
         input:
             data=[dataset(name)] if name in {*STUDIES, *ACCEPTED} else [],
-            source=modules(f"figures.{drawing}".rpartition(".")[0], "figures.files"),
-            settings=os.path.relpath(Path(ROOT, "src/bouncing_ball/figures/matplotlibrc")),
+            source=modules(drawing.rpartition(".")[0], "drawing.files"),
+            settings=os.path.relpath(Path(ROOT, "src/bouncing_ball/drawing/matplotlibrc")),
         params:
-            drawing=f"figures.{drawing}",
+            drawing=drawing,
         output:
             png=report(
                 f"results/figures/{name}.png",
@@ -33,7 +33,7 @@ for name, drawing in DRAWINGS.items():
             "../scripts/figure.py"
 
 
-EXPLORER = os.path.relpath(HERE / "figures/explorer")
+EXPLORER = os.path.relpath(HERE / "explorer")
 
 
 # The page to explore the models, with reference orbits for the check of its results.
@@ -43,7 +43,7 @@ rule draw_explorer:
     input:
         data="results/figures/explorer.nc",
         texts=sorted(map(str, Path(EXPLORER).glob("*.[chj]*"))),
-        source=modules("accuracy.quantities", "figures.explorer.document", "engines.reference"),
+        source=modules("paper.comparison.errors", "explorer.document", "explorer.engine_cases"),
     output:
         html="results/figures/explorer.html",
     log:

@@ -2,7 +2,7 @@
 # `git log figures/`.
 # Both rules have no outputs, so that Snakemake runs them at each call.
 
-from bouncing_ball.pipeline.progress import begin, concluded
+from bouncing_ball.pipeline.jobs import begin, concluded
 
 
 # ONLY='fig08 table1' snakemake --cores 1 accept; without ONLY, all artifacts that have moved.

@@ -48,8 +48,8 @@ use rule study as restitution_model with:
     """The restitution model: one orbit over time, and all orbits in closed form."""
     wildcard_constraints:
         artifact=stage(
-            fig02="studies.restitution_families.restitution_history -> histories.restitution_history",
-            fig03="studies.restitution_families.restitution_orbits -> branches.restitution_families",
+            fig02="paper.exhibits.restitution_model.restitution_history -> paper.exhibits.restitution_model_figures.restitution_history",
+            fig03="paper.exhibits.restitution_model.restitution_orbits -> paper.exhibits.restitution_model_figures.restitution_families",
         ),
 
 
@@ -57,10 +57,10 @@ use rule study as apparent_restitution with:
     """Apparent restitution, velocity and Poincaré map of orbits along the frequency ratio."""
     wildcard_constraints:
         artifact=stage(
-            fig05="studies.frequency_sweeps.apparent_restitution -> sweeps.apparent_restitution",
-            fig06="studies.frequency_sweeps.apparent_restitution -> sweeps.apparent_restitution",
-            fig10="studies.frequency_sweeps.frequency_sweep -> sweeps.bounce_velocity",
-            fig13="studies.frequency_sweeps.poincare_map -> sweeps.poincare_map",
+            fig05="paper.exhibits.apparent_restitution.apparent_restitution -> paper.exhibits.apparent_restitution_figures.apparent_restitution",
+            fig06="paper.exhibits.apparent_restitution.apparent_restitution -> paper.exhibits.apparent_restitution_figures.apparent_restitution",
+            fig10="paper.exhibits.apparent_restitution.frequency_sweep -> paper.exhibits.apparent_restitution_figures.bounce_velocity",
+            fig13="paper.exhibits.apparent_restitution.poincare_map -> paper.exhibits.apparent_restitution_figures.poincare_map",
         ),
 
 
@@ -68,8 +68,8 @@ use rule study as time_histories with:
     """Time histories of orbits of the spring-damper model."""
     wildcard_constraints:
         artifact=stage(
-            fig07="studies.time_histories.contact_history -> histories.contact_history",
-            fig12="studies.time_histories.both_histories -> histories.both_histories",
+            fig07="paper.exhibits.time_histories.contact_history -> paper.exhibits.time_histories_figures.contact_history",
+            fig12="paper.exhibits.time_histories.both_histories -> paper.exhibits.time_histories_figures.both_histories",
         ),
 
 
@@ -79,10 +79,10 @@ use rule study as continuation_of_orbits with:
     """Existence and stability of n-T orbits by continuation, and their ranges in Table 1."""
     wildcard_constraints:
         artifact=stage(
-            fig08="studies.orbit_branches.orbit_branches -> branches.domains",
-            fig09="studies.orbit_branches.orbit_branches -> branches.domains",
-            fig15="studies.both_models.both_domains -> branches.both_domains",
-            table1="studies.both_models.stability_ranges",
+            fig08="paper.exhibits.continuation_of_orbits.orbit_branches -> paper.exhibits.continuation_of_orbits_figures.domains",
+            fig09="paper.exhibits.continuation_of_orbits.orbit_branches -> paper.exhibits.continuation_of_orbits_figures.domains",
+            fig15="paper.exhibits.continuation_of_orbits.both_domains -> paper.exhibits.continuation_of_orbits_figures.both_domains",
+            table1="paper.exhibits.continuation_of_orbits.stability_ranges",
         ),
 
 
@@ -90,8 +90,8 @@ use rule study as permanent_contact with:
     """Permanent contact: the amplitude from which on the table throws the ball off."""
     wildcard_constraints:
         artifact=stage(
-            fig11="studies.permanent_contact_curve.permanent_contact -> thresholds.permanent_contact",
-            fig16="studies.error_thresholds.permanent_contact_error -> thresholds.permanent_contact_error",
+            fig11="paper.exhibits.permanent_contact.permanent_contact -> paper.exhibits.permanent_contact_figures.permanent_contact",
+            fig16="paper.exhibits.permanent_contact.permanent_contact_error -> paper.exhibits.permanent_contact_figures.permanent_contact_error",
         ),
 
 
@@ -99,8 +99,8 @@ use rule study as error_thresholds with:
     """Error thresholds: the frequency ratio from which on the restitution model is accurate."""
     wildcard_constraints:
         artifact=stage(
-            fig14="studies.error_thresholds.height_error -> thresholds.height_error",
-            thresholds="studies.error_thresholds.error_thresholds",
+            fig14="paper.exhibits.error_thresholds.height_error -> paper.exhibits.error_thresholds_figures.height_error",
+            thresholds="paper.exhibits.error_thresholds.error_thresholds",
         ),
 
 
@@ -109,11 +109,11 @@ use rule study as corrected_model with:
     """The corrected restitution model, and contacts with another release rule or another law."""
     wildcard_constraints:
         artifact=stage(
-            ext_instant="studies.time_histories.meeting_flights -> histories.meeting_flights",
-            ext_orders="studies.model_errors.orders -> model_errors.orders",
-            ext_release="studies.release_rules.release_rules",
-            ext_impact="studies.free_impacts.free_impacts -> free_impacts.free_impacts",
-            ext_laws="studies.contact_laws.law_errors -> model_errors.contact_laws",
+            ext_instant="beyond.exhibits.corrected_model.meeting_flights -> beyond.exhibits.corrected_model_figures.meeting_flights",
+            ext_orders="beyond.exhibits.corrected_model.orders -> beyond.exhibits.corrected_model_figures.orders",
+            ext_release="beyond.exhibits.release_rules.release_rules",
+            ext_impact="beyond.exhibits.release_rules.free_impacts -> beyond.exhibits.release_rules_figures.free_impacts",
+            ext_laws="beyond.exhibits.contact_laws.law_errors -> beyond.exhibits.contact_laws_figures.contact_laws",
         ),
 
 
@@ -121,14 +121,14 @@ use rule study as whole_motion with:
     """The motions on which balls end: flights, cascades, basins, locking, chaos, and their means."""
     wildcard_constraints:
         artifact=stage(
-            ext_flights="studies.cascade_of_flights.cascade_of_flights -> cascade_of_flights.cascade_of_flights",
-            ext_cascades="studies.cascades.cascades -> cascades.cascades",
-            ext_diagram="studies.attractors.orbit_diagrams -> attractors.orbit_diagrams",
-            ext_basins="studies.basins.basins -> basins.basins",
-            ext_locking="studies.attractors.locking -> attractors.locking",
-            ext_lives="studies.transients.transients",
-            ext_locked="studies.locked_orbits.locked_orbits -> locked_orbits.locked_orbits",
-            ext_means="studies.mean_motion.mean_motions -> attractors.mean_motions",
+            ext_flights="beyond.exhibits.cascades.cascade_of_flights -> beyond.exhibits.cascades_figures.cascade_of_flights",
+            ext_cascades="beyond.exhibits.cascades.cascades -> beyond.exhibits.cascades_figures.cascades",
+            ext_diagram="beyond.exhibits.orbit_diagram.orbit_diagrams -> beyond.exhibits.orbit_diagram_figures.orbit_diagrams",
+            ext_basins="beyond.exhibits.basins.basins -> beyond.exhibits.basins_figures.basins",
+            ext_locking="beyond.exhibits.locking.locking -> beyond.exhibits.locking_figures.locking",
+            ext_lives="beyond.exhibits.locked_orbits.transients",
+            ext_locked="beyond.exhibits.locked_orbits.locked_orbits -> beyond.exhibits.locked_orbits_figures.locked_orbits",
+            ext_means="beyond.exhibits.means.mean_motions -> beyond.exhibits.means_figures.mean_motions",
         ),
 
 
@@ -136,8 +136,8 @@ use rule study as engines_and_explorer with:
     """Time steps of physics engines, and the reference orbits of the explorer."""
     wildcard_constraints:
         artifact=stage(
-            ext_engines="studies.engines.conformance -> model_errors.engines",
-            explorer="studies.reference_orbits.reference_orbits",
+            ext_engines="beyond.exhibits.engine_steps.conformance -> beyond.exhibits.engine_steps_figures.engines",
+            explorer="beyond.exhibits.explorer_orbits.reference_orbits",
         ),
 
 
@@ -145,9 +145,9 @@ use rule study as audit with:
     """The paper under audit: its formulas, Table 1, every orbit by three routes, its claims."""
     wildcard_constraints:
         artifact=stage(
-            formulas="claims.formulas.formulas",
-            forensics="claims.forensics.forensics",
-            witness="claims.witness.witness",
-            claims="claims.ledger.ledger",
-            statements="claims.ledger.statements",
+            formulas="paper.claims.formulas.formulas",
+            forensics="paper.claims.forensics.forensics",
+            witness="paper.claims.witness.witness",
+            claims="paper.claims.ledger.ledger",
+            statements="beyond.exhibits.statements.statements",
         ),

@@ -3,10 +3,9 @@
 import os
 from pathlib import Path
 
-from bouncing_ball.compare.accept import accept
 from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline.job import logged
-from bouncing_ball.pipeline.progress import conclude
+from bouncing_ball.pipeline.diff.accept import accept
+from bouncing_ball.pipeline.jobs import conclude, logged
 
 with logged(snakemake) as lines:
     given = snakemake.params

@@ -2,13 +2,13 @@
 
 from pathlib import Path
 
-from bouncing_ball.atlas.plan import Plan
-from bouncing_ball.atlas.summary import summary
-from bouncing_ball.datasets.netcdf import parameter_attributes
-from bouncing_ball.figures.atlas.charts import charts
-from bouncing_ball.figures.files import save
-from bouncing_ball.figures.style import style
-from bouncing_ball.pipeline.job import logged, provenance, publish, read_input
+from bouncing_ball.beyond.atlas.figures import charts
+from bouncing_ball.beyond.atlas.plan import Plan
+from bouncing_ball.beyond.atlas.summary import summary
+from bouncing_ball.datasets.files import parameter_attributes
+from bouncing_ball.drawing.files import save
+from bouncing_ball.drawing.style import style
+from bouncing_ball.pipeline.jobs import logged, provenance, publish, read_input
 
 with logged(snakemake), style():
     parameters = snakemake.params.parameters

@@ -1,9 +1,9 @@
 """The atlas from its shards."""
 
-from bouncing_ball.atlas.plan import Plan
-from bouncing_ball.atlas.shards import merge
-from bouncing_ball.datasets.netcdf import parameter_attributes
-from bouncing_ball.pipeline.job import logged, publish, read_input
+from bouncing_ball.beyond.atlas.plan import Plan
+from bouncing_ball.beyond.atlas.shards import merge
+from bouncing_ball.datasets.files import parameter_attributes
+from bouncing_ball.pipeline.jobs import logged, publish, read_input
 
 with logged(snakemake):
     parameters = snakemake.params.parameters

@@ -1,9 +1,9 @@
 """One shard of the atlas, or the limits of all its families."""
 
-from bouncing_ball.atlas.plan import Plan
-from bouncing_ball.atlas.shards import limit_shard, shard
-from bouncing_ball.datasets.netcdf import parameter_attributes
-from bouncing_ball.pipeline.job import logged, publish
+from bouncing_ball.beyond.atlas.plan import Plan
+from bouncing_ball.beyond.atlas.shards import limit_shard, shard
+from bouncing_ball.datasets.files import parameter_attributes
+from bouncing_ball.pipeline.jobs import logged, publish
 
 with logged(snakemake):
     parameters, name = snakemake.params.parameters, snakemake.wildcards.shard

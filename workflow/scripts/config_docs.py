@@ -2,11 +2,10 @@
 
 from pathlib import Path
 
-from bouncing_ball.configuration.check import configuration_model
-from bouncing_ball.configuration.documentation import configuration_page, configuration_schema
-from bouncing_ball.configuration.yaml_file import read_yaml
 from bouncing_ball.datasets.files import write_text
-from bouncing_ball.pipeline.job import logged
+from bouncing_ball.pipeline.configuration import configuration_model, read_yaml
+from bouncing_ball.pipeline.configuration_docs import configuration_page, configuration_schema
+from bouncing_ball.pipeline.jobs import logged
 
 with logged(snakemake):
     folder = Path(snakemake.scriptdir).resolve().parents[1] / "config"

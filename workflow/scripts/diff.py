@@ -2,12 +2,10 @@
 
 from pathlib import Path
 
-from bouncing_ball.compare.folders import compare_folders
-from bouncing_ball.compare.page import to_html
-from bouncing_ball.compare.terminal import to_terminal
 from bouncing_ball.datasets.files import write_text
-from bouncing_ball.pipeline.job import logged
-from bouncing_ball.pipeline.progress import conclude
+from bouncing_ball.pipeline.diff.folders import compare_folders
+from bouncing_ball.pipeline.diff.page import to_html, to_terminal
+from bouncing_ball.pipeline.jobs import conclude, logged
 
 table_file, page = Path("results/diff/diff.txt"), Path("results/diff/index.html")
 with logged(snakemake) as lines:

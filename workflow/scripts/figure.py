@@ -1,9 +1,9 @@
 """One figure from its dataset."""
 
-from bouncing_ball.configuration.study import load
-from bouncing_ball.figures.files import save
-from bouncing_ball.figures.style import style
-from bouncing_ball.pipeline.job import logged, provenance, read_input
+from bouncing_ball.drawing.files import save
+from bouncing_ball.drawing.style import style
+from bouncing_ball.pipeline.configuration import load
+from bouncing_ball.pipeline.jobs import logged, provenance, read_input
 
 with logged(snakemake) as lines, style():
     draw = load(snakemake.params.drawing)

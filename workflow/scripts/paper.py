@@ -2,14 +2,13 @@
 
 from pathlib import Path
 
-from bouncing_ball.claims.tally import tally
-from bouncing_ball.datasets.files import write_text
-from bouncing_ball.datasets.netcdf import read_dataset
-from bouncing_ball.figures.article.render import render_article
-from bouncing_ball.figures.atlas.tables import shares
-from bouncing_ball.figures.tables import rows
-from bouncing_ball.figures.tables.formats import to_markdown
-from bouncing_ball.pipeline.job import logged, read_input
+from bouncing_ball.beyond.atlas.figures import shares
+from bouncing_ball.datasets.files import read_dataset, write_text
+from bouncing_ball.drawing.tables import to_markdown
+from bouncing_ball.paper.claims import tables as rows
+from bouncing_ball.paper.claims.ledger import tally
+from bouncing_ball.pipeline.article import render_article
+from bouncing_ball.pipeline.jobs import logged, read_input
 
 
 def text_of(path):
@@ -25,7 +24,7 @@ with logged(snakemake) as lines:
     tables["atlas"] = to_markdown(*shares(data["atlas"]))
     for template, path in (("article", "paper"), ("supplement", "supplement")):
         file = Path(snakemake.input.templates[0]).with_name(f"{template}.md.j2")
-        write_text(snakemake.output[path], render_article(file, data, tables))
+        write_text(snakemake.output[path], render_article(file, data, tables, rows.Claims(data["claims"])))
     last = tally(data["claims"])
     write_text(snakemake.output.tally, last + "\n")
     lines.append(last)

@@ -2,10 +2,10 @@
 
 import xarray as xr
 
-from bouncing_ball.configuration.study import load, typed
-from bouncing_ball.datasets.netcdf import parameter_attributes
+from bouncing_ball.datasets.files import parameter_attributes
 from bouncing_ball.datasets.shards import part_of
-from bouncing_ball.pipeline.job import logged, publish
+from bouncing_ball.pipeline.configuration import load, typed
+from bouncing_ball.pipeline.jobs import logged, publish
 
 with logged(snakemake):
     job, part = snakemake.params, part_of(snakemake.wildcards.shard)

@@ -2,7 +2,7 @@
 
 With r alone the model is the restitution model. With r and ϖ it is a spring-damper contact whose
 damping follows from r by Eq. 16, and with a law it is a contact of that law
-(:func:`bouncing_ball.calls.model.model`).
+(:func:`bouncing_ball.calls.balls.model`).
 The options of the command line come from the signatures of these calls.
 
 A list or an array in place of a number becomes an axis of the result, named after its parameter, so

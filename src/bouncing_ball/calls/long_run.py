@@ -6,13 +6,13 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from bouncing_ball.attractors import labelled
-from bouncing_ball.call_signatures import check, count, takes
-from bouncing_ball.calls.model import Positive, impact_model, model_of_impact
-from bouncing_ball.calls.motion import AnyAmplitude, simulate
+from bouncing_ball.beyond.long_run import grids as labelled
+from bouncing_ball.calls.balls import AnyAmplitude, Positive, impact_model, model_of_impact
+from bouncing_ball.calls.over_time import simulate
+from bouncing_ball.calls.signatures import check, takes
 from bouncing_ball.datasets.labelled import Grid, Labelled
-from bouncing_ball.errors import ParameterError
-from bouncing_ball.orbits.model import ImpactModel
+from bouncing_ball.errors import ParameterError, count
+from bouncing_ball.paper.orbits.model import ImpactModel
 
 # Number of impacts of one ball, and numbers of starts or samples.
 Followed = Annotated[int, count(10_000_000, low=10)]
@@ -35,7 +35,7 @@ def motion_of(
     -------
     Labelled
         ``kind``, one of "orbit", "subharmonic", "locked", "permanent contact", "chaotic" and
-        "undecided" (:class:`bouncing_ball.attractors.motions.Kind`), the ``periods`` of the table
+        "undecided" (:class:`bouncing_ball.beyond.long_run.motions.Kind`), the ``periods`` of the table
         and the ``impacts`` until the motion repeats, its ``lyapunov_exponent`` per period of the
         table with ``lyapunov_error``, the ``reason`` if it is undecided, and one of its impacts.
 

@@ -1,1 +1,1 @@
-"""The command line, ``bouncing-ball``: orbits, limits, simulations and designs, and artifacts."""
+"""The command line, ``bouncing-ball``."""

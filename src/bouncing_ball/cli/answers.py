@@ -8,19 +8,20 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.accuracy import error_law as error_laws
-from bouncing_ball.call_signatures import takes
-from bouncing_ball.calls import model as models
-from bouncing_ball.calls import motion, orbits
-from bouncing_ball.cli.readable import lines as lines
-from bouncing_ball.contacts.contact_law import ContactLaw
-from bouncing_ball.contacts.signature import Signature, free_impact
-from bouncing_ball.contacts.spring_damper import SpringDamper
+from bouncing_ball.beyond import error_law as error_laws
+from bouncing_ball.beyond.continued_orbits import restitution_speed
+from bouncing_ball.beyond.corrected.signature import Signature, free_impact
+from bouncing_ball.calls import balls as models
+from bouncing_ball.calls import over_time as motion
+from bouncing_ball.calls import periodic as orbits
+from bouncing_ball.calls.signatures import takes
+from bouncing_ball.cli.output import lines as lines
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.motion.sequence import Status
-from bouncing_ball.orbits.continued import restitution_speed
-from bouncing_ball.orbits.orbit import OBSERVABLES, Orbit
-from bouncing_ball.orbits.stability import Bifurcation
+from bouncing_ball.paper.contact.law import ContactLaw
+from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.motion.sequence import Status
+from bouncing_ball.paper.orbits.orbit import OBSERVABLES, Orbit
+from bouncing_ball.paper.orbits.stability import Bifurcation
 
 Answer = dict[str, Any]
 

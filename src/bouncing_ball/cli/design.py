@@ -4,16 +4,16 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from bouncing_ball.accuracy.quantities import OF_IMPACTS, QUANTITIES, Quantity
-from bouncing_ball.accuracy.thresholds import ThresholdStatus
-from bouncing_ball.calculator import design as calculator
-from bouncing_ball.calculator.results import Contact, Design, Family, rows
-from bouncing_ball.calculator.units import percent, shown
-from bouncing_ball.call_signatures import takes
+from bouncing_ball.beyond.calculator import design as calculator
+from bouncing_ball.beyond.calculator.results import Contact, Design, Family, rows
+from bouncing_ball.beyond.calculator.units import percent, shown
+from bouncing_ball.beyond.engines.engine import EngineSettings
+from bouncing_ball.calls.signatures import takes
 from bouncing_ball.cli.options import option
 from bouncing_ball.datasets.files import PICTURES, require_writable
-from bouncing_ball.engines.engine import EngineSettings
 from bouncing_ball.errors import NoOrbitError, ParameterError, extra
+from bouncing_ball.paper.comparison.errors import OF_IMPACTS, QUANTITIES, Quantity
+from bouncing_ball.paper.comparison.thresholds import ThresholdStatus
 
 _SIMPLE = "error law", "corrected"
 
@@ -54,12 +54,12 @@ def design(*, plot: Path | None = None, all_families: bool = False, **given: Any
 def _draw(found: Design, path: Path) -> None:
     if not any(each.exists for each in found.judged.standing.values()):
         raise NoOrbitError(f"without an orbit there is no page to print: {found.reason}")
-    from bouncing_ball.calculator.page_data import page
+    from bouncing_ball.beyond.calculator.page_data import page
 
     with extra("plot"):
-        from bouncing_ball.figures.design_page import draw
-        from bouncing_ball.figures.plots import write
-        from bouncing_ball.figures.style import style
+        from bouncing_ball.beyond.calculator.page_figures import draw
+        from bouncing_ball.drawing.files import write
+        from bouncing_ball.drawing.style import style
     with style():
         figure = draw(asdict(found), page(found), rows(found) + rows(found.judged))
         write(figure, path, "bouncing-ball design")

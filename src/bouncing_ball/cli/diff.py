@@ -5,10 +5,9 @@ from pathlib import Path
 from typing import NoReturn
 
 from bouncing_ball.cli.output import fail, say
-from bouncing_ball.compare.folders import compare_folders
-from bouncing_ball.compare.page import to_html
-from bouncing_ball.compare.terminal import to_terminal
 from bouncing_ball.datasets.files import require_writable, write_text
+from bouncing_ball.pipeline.diff.folders import compare_folders
+from bouncing_ball.pipeline.diff.page import to_html, to_terminal
 
 
 def diff(

@@ -7,13 +7,13 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from bouncing_ball.call_signatures import count, takes
 from bouncing_ball.calls import long_run
-from bouncing_ball.calls.model import AnyAmplitude
-from bouncing_ball.cli.readable import lines as readable
+from bouncing_ball.calls.balls import AnyAmplitude
+from bouncing_ball.calls.signatures import takes
+from bouncing_ball.cli.output import lines as readable
 from bouncing_ball.datasets.files import PICTURES, require_writable
 from bouncing_ball.datasets.labelled import Labelled
-from bouncing_ball.errors import ParameterError
+from bouncing_ball.errors import ParameterError, count
 
 Answer = dict[str, Any]
 _MOTION = ("kind", "periods", "impacts", "reason")

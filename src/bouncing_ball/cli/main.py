@@ -7,7 +7,7 @@ from importlib import import_module
 from typing import Any
 
 from bouncing_ball import __version__
-from bouncing_ball.cli.explained import COMMANDS, explained
+from bouncing_ball.cli.help_texts import COMMANDS, explained
 from bouncing_ball.cli.options import Parser, add_options, option, positional
 from bouncing_ball.cli.output import fail, say
 from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError, extra

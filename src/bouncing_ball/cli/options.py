@@ -13,9 +13,8 @@ import typing
 from collections.abc import Callable
 from typing import Any, NoReturn
 
-from bouncing_ball.call_signatures import Range
 from bouncing_ball.cli.output import say
-from bouncing_ball.errors import escaped
+from bouncing_ball.errors import Range, escaped
 
 _OTHER_NAMES = {"parameters": "set", "from_engine": "from", "all_families": "all"}
 _OTHER_NAMES |= {"amplitudes": "amplitude"}
@@ -159,7 +158,7 @@ def add_options(parser: argparse.ArgumentParser, call: Callable) -> None:
             text += f" (default: {shown})"
         if name == "law":
             # Imported here, because the import needs numpy, which the general help does not need.
-            from bouncing_ball.contacts.laws import LAWS
+            from bouncing_ball.beyond.laws.registry import LAWS
 
             text += f" Laws: {', '.join(LAWS)}."
         reading |= {"default": None if required else default, "help": text.replace("%", "%%")}

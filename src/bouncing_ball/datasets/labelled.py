@@ -17,7 +17,7 @@ import xarray as xr
 from xarray.plot.accessor import DatasetPlotAccessor
 
 from bouncing_ball.datasets import CASE
-from bouncing_ball.datasets.variables import VARIABLES
+from bouncing_ball.datasets.variables import SHARED
 from bouncing_ball.errors import ParameterError, extra
 
 
@@ -35,7 +35,7 @@ class Plot(DatasetPlotAccessor):
             If the suffix of the path is not that of a picture, or the file cannot be written.
         """
         with extra("plot"):
-            figures = import_module("bouncing_ball.figures.plots")
+            figures = import_module("bouncing_ball.calls.plots")
         return figures.plot(self._ds, path)
 
 
@@ -77,7 +77,7 @@ class Grid:
                     f"{{{name}}} must be single numbers, because an array needs a named axis"
                 )
         self.coords = {
-            name: _axis(name, value).assign_attrs(VARIABLES.get(name, {}))
+            name: _axis(name, value).assign_attrs(_attributes(name))
             for name, value in given.items()
             if np.ndim(value)
         }
@@ -116,6 +116,10 @@ class Grid:
         own.pop(CASE, None)
         coords = {name: own.pop(name) for name in rows.coords if name in own}
         return Labelled(own, coords | self.coords, rows.attrs | self.attrs)
+
+
+def _attributes(name: str) -> dict[str, Any]:
+    return SHARED[name].attributes() if name in SHARED else {}
 
 
 def _axis(name: str, value: Any) -> xr.DataArray:

@@ -6,7 +6,6 @@ from numpy.typing import ArrayLike
 # The rounding error of a finite difference, √ε. The digits of a number up to this size may come
 # from the processor and not from the model.
 ROUNDING_SIZE = float(np.sqrt(np.finfo(float).eps))
-
 # Values that differ by less count as equal. They are in units of a last printed digit, computed to
 # 1e-8 and printed to 1e-2.
 _SAME = 1e-6

@@ -1,1 +1,3 @@
-"""The Python side of the Snakefile, without science: source files of a stage, jobs, progress."""
+"""What the Snakefile needs beside the science: the configuration and its check, jobs, provenance,
+the article, and the comparison of two runs. This package knows no balls.
+"""

@@ -50,8 +50,8 @@ def sources(*modules: str) -> list[str]:
 
     Examples
     --------
-    >>> [Path(file).name for file in sources("bouncing_ball.contacts.damping")]
-    ['__init__.py', '__init__.py', 'damping.py', 'elementary.py', 'release.py', 'errors.py']
+    >>> [Path(file).name for file in sources("bouncing_ball.paper.contact.damping")]
+    ['__init__.py', 'errors.py', '__init__.py', 'elementary.py', '__init__.py', '__init__.py', 'damping.py']
     """
     for module in modules:
         if module_file(module) is None:

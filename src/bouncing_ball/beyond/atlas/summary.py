@@ -1,0 +1,176 @@
+"""Suprema of the errors over all orbits in the range of the atlas, including those between nodes.
+
+The modulus of an error is maximised over r and over the whole stable range, on a grid that is
+refined around its largest value. Next to the saddle-node, p = 0, where most errors are largest,
+they vary with √p; the grid is therefore even in √p.
+
+The summary of the atlas, which is small enough for the accepted record.
+
+It contains the frequency ratio needed for one tolerance over r, Λ and n; the shares of the nodes
+for which a rule of thumb holds; the suprema of the errors; and the accuracy of the error law.
+"""
+
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.beyond.atlas.plan import Plan
+from bouncing_ball.beyond.atlas.variables import VARIABLES
+from bouncing_ball.beyond.corrected.errors import SIMPLE, errors
+from bouncing_ball.beyond.error_law import coefficients
+from bouncing_ball.datasets.variables import described
+from bouncing_ball.paper.comparison.errors import OF_LIMITS, OF_ORBITS, Quantity, modulus
+from bouncing_ball.paper.comparison.thresholds import thresholds
+
+# Number of points along r and √p, and of grids. Each grid divides the distance of the points by
+# four, so that the place of a maximum is known to 1/2000 of the range. The maximum itself is known
+# to the square of this, unless it lies at an end of the range, which is a point of every grid.
+_POINTS, _ROUNDS = 9, 5
+# Smallest √p, next to the saddle-node. The phase of the restitution model is 0 at the saddle-node,
+# so that its relative error grows as 1/√p; no other error of an existing orbit exceeds this bound.
+_NEAREST, _UNBOUNDED = 1e-6, 1e3
+# Factor that keeps r below 1: at r = 1 the saddle-node is at Λ = 0, and its relative error is 0/0.
+_BELOW = 1 - 1e-9
+# Number of ϖ that are scanned for a crossing.
+_SCANNED = 12
+
+
+def largest(
+    plan: Plan, row: int, kind: tuple[str, Quantity], ratio: float, low: float, high: float = 0.0
+) -> float:
+    """The largest error at ϖ over p and a range of r, or at one r, for the rule and n of a row.
+
+    ``kind`` is the model and the quantity. The result is infinite if the error is unbounded, or if
+    a model lacks an orbit.
+    """
+    model, quantity = kind
+    # The bifurcations and the permanent contact do not depend on p.
+    first = 1.0 if quantity in OF_LIMITS else _NEAREST
+    start, end = np.array([(low, high or low), (first, 1.0)]).T
+    for _ in range(_ROUNDS):
+        grid = (np.unique(part) for part in np.linspace(start, end, _POINTS).T)
+        r, root = (x.ravel() for x in np.meshgrid(*grid))
+        nodes = plan.placed(row, r, root**2)
+        every = errors(nodes.contact(ratio), nodes.n, nodes.amplitude, [quantity])
+        size = modulus(every[SIMPLE.index(model), 0])
+        best = int(size.argmax())
+        place, step = np.array([r[best], root[best]]), (end - start) / (_POINTS - 1)
+        start, end = np.maximum(start, place - step), np.minimum(end, place + step)
+    return float(size[best]) if size[best] < _UNBOUNDED else np.inf
+
+
+def tolerated(error: Callable[[float], float], grid: np.ndarray, tolerance: float) -> float:
+    """The point of ``grid``'s range above which an error is within the tolerance, by
+    :func:`~bouncing_ball.paper.comparison.thresholds.thresholds`; NaN if the error is within the tolerance
+    at all points of the grid, or exceeds it at the last point.
+
+    Examples
+    --------
+    >>> [round(tolerated(lambda x: 1 / x, np.array([1.0, 3.0]), y), 9) for y in (0.5, 2.0, 0.1)]
+    [2.0, nan, nan]
+    """
+
+    def each(places: np.ndarray, _: object) -> np.ndarray:
+        return np.array([error(place) for place in places])
+
+    return thresholds(each, grid, each(grid, None)[np.newaxis], tolerance).ratio.item()
+
+
+def suprema(plan: Plan, rule: float, tolerance: float) -> dict[str, tuple]:
+    """The suprema at one ϖ, and the ϖ and r above which they are within the tolerance.
+
+    Over (release, n, model, supremum_quantity) the variables are ``supremum``, at the ϖ of the
+    rule, and ``supremum_needed``, the ϖ above which all orbits are within the tolerance. Over
+    (release, n) the variable is ``failing_restitution``: at the ϖ of the rule, the error of the
+    greatest height of the restitution model exceeds the tolerance below this r. The last two
+    variables are computed by :func:`tolerated`.
+    """
+    shape = *plan.shape[:2], len(SIMPLE), len(Quantity)
+    found, failing = np.empty((2, *shape)), np.empty(shape[:2])
+    scanned = np.geomspace(plan.ratios[0], plan.ratios[-1], _SCANNED)
+    for place in np.ndindex(shape):
+        tiles = np.ravel_multi_index((*place[:2], np.arange(plan.shape[2])), plan.shape)
+        edges = _BELOW * plan.edges[np.append(np.isin(tiles, plan.rows), True)]
+        error = partial(largest, plan, tiles[0], (SIMPLE[place[2]], tuple(Quantity)[place[3]]))
+        along_ratio = partial(error, low=edges[0], high=edges[-1])
+        found[0][place] = along_ratio(rule)
+        found[1][place] = tolerated(along_ratio, scanned, tolerance)
+        if place[2:] == (0, 0):
+            failing[place[:2]] = tolerated(partial(error, rule), edges, tolerance)
+    dims = "release", "n", "model", "supremum_quantity"
+    every = {"supremum": (dims, found[0]), "supremum_needed": (dims, found[1])}
+    return {**every, "failing_restitution": (dims[:2], failing)}
+
+
+TOLERANCE = 0.01
+"""The tolerance of charts and tables."""
+
+RULE_OF_THUMB = 100.0
+"""The ϖ above which the paper regards the restitution model as accurate."""
+
+QUANTILES = (0.5, 0.9, 0.99)
+_TILES = ("restitution", "position")
+
+
+def summary(plan: Plan, atlas: xr.Dataset) -> xr.Dataset:
+    """The summary for one tolerance and for the rule that a ϖ above a given value is enough.
+
+    The tolerance and the ϖ of the rule are those of the atlas that are nearest to
+    :data:`TOLERANCE` and :data:`RULE_OF_THUMB`.
+    """
+    near = atlas.sel({"tolerance": TOLERANCE, "frequency_ratio": RULE_OF_THUMB}, method="nearest")
+    tolerance, rule = float(near.tolerance), float(near.frequency_ratio)
+    data = {
+        "needed": atlas.largest_threshold.sel({"tolerance": tolerance}, drop=True).astype("f4"),
+        "limit_needed": atlas.limit_needed,
+        "holding_share": _share(atlas, "holding"),
+        "exceeding_share": _share(atlas, "exceeding"),
+        "needed_quantile": _quantiles(atlas),
+        "unstable_share": _share(atlas, "unstable"),
+        "law_stated": atlas.law_stated.sum(("n", *_TILES)),
+        "law_exceeding": atlas.law_exceeding.sum(("n", *_TILES)),
+        "law_coefficient": _law(plan),
+        "orbits": plan.orbits,
+        "sought_orbits": int(atlas.sought.sum()),
+        "resolution": plan.resolution,
+        "summary_tolerance": tolerance,
+        "rule_of_thumb": rule,
+        **suprema(plan, rule, tolerance),
+    }
+    edges = {"restitution_edge": plan.edges, "position_edge": plan.positions}
+    return described(
+        data, edges | {"supremum_quantity": list(map(str, Quantity))}, variables=VARIABLES
+    )
+
+
+def _share(atlas: xr.Dataset, name: str) -> xr.DataArray:
+    """Share of the nodes of each rule and n that are counted by a variable of the atlas."""
+    nodes = atlas.threshold_counts.isel(model=0, quantity=0, tolerance=0, drop=True)
+    return atlas[name].sum(_TILES) / nodes.sum(("threshold_bin", *_TILES))
+
+
+def _quantiles(atlas: xr.Dataset) -> xr.DataArray:
+    """ϖ above which each share of :data:`QUANTILES` of the nodes is accurate: the upper end of a
+    bin, or the largest threshold if that is smaller.
+    """
+    counts = atlas.threshold_counts.sum(_TILES)
+    share = counts.cumsum("threshold_bin") / counts.sum("threshold_bin")
+    ends = xr.DataArray(np.append(atlas.threshold_bin[1:], np.inf), dims="threshold_bin")
+    largest = atlas.largest_threshold.max(_TILES)
+    places = [(share >= q).argmax("threshold_bin") for q in QUANTILES]
+    found = [np.minimum(ends.isel(threshold_bin=place), largest) for place in places]
+    return xr.concat(found, xr.Variable("share", list(QUANTILES))).transpose(..., "share")
+
+
+def _law(plan: Plan) -> xr.Variable:
+    """The modulus of K of the error law at the centres of the tiles, for the charts."""
+    middle_r, middle_p = ((edges[1:] + edges[:-1]) / 2 for edges in (plan.edges, plan.positions))
+    law = np.full((*plan.shape, len(middle_p), len(OF_ORBITS)), np.nan, "f4")
+    for row in plan.rows:
+        place = np.unravel_index(row, plan.shape)
+        nodes = plan.placed(row, np.full_like(middle_p, middle_r[place[-1]]), middle_p)
+        k = coefficients(nodes.n, nodes.damping_ratio, nodes.amplitude, nodes.release)
+        law[place] = np.abs([k[q] for q in OF_ORBITS]).T
+    return xr.Variable(("release", "n", *_TILES, "quantity"), law)

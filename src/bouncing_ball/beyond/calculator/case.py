@@ -1,0 +1,148 @@
+"""A ball, a vibrating table and a contact between them, in SI units."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.beyond.corrected.errors import models
+from bouncing_ball.beyond.corrected.instant import Instant, instant_of
+from bouncing_ball.beyond.corrected.orbits import CorrectedModel
+from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.laws.hertzian import Tsuji
+from bouncing_ball.beyond.laws.orbits import LawModel
+from bouncing_ball.beyond.laws.permanent_contact import known_threshold
+from bouncing_ball.beyond.laws.scales import rest
+from bouncing_ball.paper.contact.law import ContactLaw
+from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.orbits.model import ImpactModel
+from bouncing_ball.paper.orbits.restitution_branch import rigid_speed
+from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
+
+# Restitution coefficients that differ by less are taken for equal, because a contact law is fitted
+# to a free impact, and its signature interpolated, to 1e-12.
+_SAME = 1e-9
+
+
+@dataclass(frozen=True)
+class Table:
+    """The table with its motion A sin Ωt, and the acceleration of gravity.
+
+    Parameters
+    ----------
+    angular_frequency, table_amplitude : float
+        Ω in rad/s and the amplitude A of the table in m.
+    gravity : float
+        g in m/s²; for a gear pair, the deceleration that the drag torque causes.
+
+    Examples
+    --------
+    >>> Table(angular_frequency=2.0, table_amplitude=2.0, gravity=8.0).amplitude
+    1.0
+    """
+
+    angular_frequency: float
+    table_amplitude: float
+    gravity: float
+
+    @property
+    def amplitude(self) -> float:
+        """Excitation amplitude Λ = AΩ²/g, the greatest acceleration of the table over gravity."""
+        return self.table_amplitude * self.angular_frequency**2 / self.gravity
+
+    @property
+    def time(self) -> float:
+        """Unit of time, 1/Ω, in s."""
+        return 1 / self.angular_frequency
+
+    @property
+    def length(self) -> float:
+        """Unit of length, g/Ω², in m."""
+        return self.gravity / self.angular_frequency**2
+
+
+@dataclass(frozen=True)
+class Case:
+    """A ball on a vibrating table with a contact between them, and the models of this contact.
+
+    The models are built on first use.
+
+    Parameters
+    ----------
+    mass : float
+        m in kg.
+    table : Table
+    contact : SpringDamper
+        ϖ, ζ and the release rule.
+    law : ContactLaw, optional
+        A nonlinear contact law. ``contact`` is then the linear contact with the same restitution
+        coefficient and duration as this law has at the impact speed of the orbit.
+
+    Examples
+    --------
+    >>> case = Case(1.0, Table(1.0, 1.0, 1.0), SpringDamper(10.0, 0.1))
+    >>> case.in_si()["stiffness"], case.in_si()["damping"]
+    (100.0, 2.0)
+    """
+
+    mass: float
+    table: Table
+    contact: SpringDamper
+    law: ContactLaw | None = None
+
+    @cached_property
+    def models(self) -> dict[str, ImpactModel]:
+        """The models by name: first the exact model, then the two simple models, in which r is
+        that of a free impact.
+        """
+        if self.law is None:
+            return {model.name: model for model in models(self.contact)}
+        return {
+            "hertz" if isinstance(self.law, Tsuji) else self.law.name: LawModel(self.law),
+            "restitution": RestitutionModel(self.contact.restitution),
+            "corrected": CorrectedModel(Signature(self.law)),
+        }
+
+    def instant(self, n: ArrayLike) -> Instant:
+        """Signature of the contact at the impact speeds of the restitution model's n-T orbits."""
+        r = self.contact.restitution
+        # The r of a contact law is interpolated, and may exceed 1 by rounding.
+        return instant_of(self.models["corrected"], rigid_speed(n, r))._replace(restitution=r)
+
+    def has_its_restitution(self, n: ArrayLike) -> np.ndarray:
+        """Whether the contact law has the r of ``contact`` at the impact speed of n-T orbits."""
+        r = float(self.contact.restitution)
+        own = instant_of(self.models["corrected"], rigid_speed(n, r)).restitution
+        return np.abs(own - r) < _SAME
+
+    def in_si(self) -> dict[str, float]:
+        """Stiffness k = mω² in N/m, damping c = 2ζmω in N s/m, where ω = ϖΩ, contact time in s,
+        and static deflection mg/k in m.
+
+        For a contact law the deflection is the one at which its force at rest is the weight.
+        """
+        omega = float(self.contact.frequency_ratio) * self.table.angular_frequency
+        deflection = self.table.gravity / omega**2
+        if self.law is not None:
+            deflection = rest(self.law) * self.table.length
+        return {
+            "stiffness": self.mass * omega**2,
+            "damping": 2 * float(self.contact.damping_ratio) * self.mass * omega,
+            "contact_time": float(self.contact.free_duration) * self.table.time,
+            "static_deflection": deflection,
+        }
+
+    @property
+    def law_in_si(self) -> dict[str, Any] | None:
+        """The name of a contact law and its parameters in SI units; None for a linear contact."""
+        if self.law is None:
+            return None
+        numbers = self.law.in_si(self.mass, self.table.length, self.table.time)
+        return {"name": self.law.name, **numbers}
+
+    @cached_property
+    def permanent_contact(self) -> float:
+        """Λ up to which the ball stays on the table; NaN if no such threshold was found."""
+        return known_threshold(self.contact if self.law is None else self.law)

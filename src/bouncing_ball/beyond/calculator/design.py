@@ -1,0 +1,404 @@
+"""The calculator: :func:`design`, parameters with units in, a :class:`Design` out."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Annotated, Any, get_args
+
+from bouncing_ball.beyond.calculator.case import Case, Table
+from bouncing_ball.beyond.calculator.contact_data import (
+    STANDARD_GRAVITY,
+    case_of,
+    loss,
+    meant,
+    read_engine,
+    table_of,
+)
+from bouncing_ball.beyond.calculator.families import RATIOS, families, finite, needed
+from bouncing_ball.beyond.calculator.motion import aside, headline, of_family
+from bouncing_ball.beyond.calculator.results import Contact, Corrected, Design, Needed, TimeStep
+from bouncing_ball.beyond.calculator.units import Index, Rule, Unit, number, percent
+from bouncing_ball.beyond.calculator.verdict import assessed, chosen, judged_by_motion, notes
+from bouncing_ball.beyond.engines.choice import engine_named
+from bouncing_ball.beyond.engines.engine import ERROR, Physical
+from bouncing_ball.beyond.laws.registry import law_named
+from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError, Range, one_of, require
+from bouncing_ball.paper.comparison.errors import OF_ORBITS, QUANTITIES, Quantity
+from bouncing_ball.paper.comparison.thresholds import ThresholdStatus
+from bouncing_ball.paper.contact.damping import Release
+from bouncing_ball.paper.contact.law import ContactLaw
+from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
+
+STEPS = 50
+"""Time steps in one contact, for the rule of the largest time step."""
+
+STEP_RULE = f"a contact takes {STEPS} steps, the default of MFiX-Exa (mfix.tcoll_ratio)"
+# The default families: those that the paper shows, and some more.
+_FAMILIES = range(1, 9)
+# Beyond this limit the squares of ϖ and Λ leave no digits. The other calls have the same limit.
+_LARGEST = 1e8
+# Parameters of which each implies that there is a table.
+_TABLE = {"frequency", "angular_frequency", "period", "table_amplitude", "acceleration"}
+_LOSS = Unit("", "0.85", Range(0, 1, "(]"))
+_POISSON = Unit("", "0.3", Range(-1, 0.5, "(]"))
+_NONE_TOO = Range(0, 1e40, "[]")
+
+
+def design(
+    *,
+    mass: Annotated[Any, Unit("kg", "20 g")] = None,
+    frequency: Annotated[Any, Unit("Hz", "50 Hz")] = None,
+    angular_frequency: Annotated[Any, Unit("rad/s", "314 rad/s")] = None,
+    period: Annotated[Any, Unit("s", "20 ms")] = None,
+    table_amplitude: Annotated[Any, Unit("m", "0.1 mm")] = None,
+    acceleration: Annotated[Any, Unit("m/s^2", "2 g")] = None,
+    gravity: Annotated[Any, Unit("m/s^2", "9.81 m/s^2")] = None,
+    stiffness: Annotated[Any, Unit("N/m", "1e6 N/m")] = None,
+    contact_time: Annotated[Any, Unit("s", "50 us")] = None,
+    reduced_modulus: Annotated[Any, Unit("Pa", "115 GPa")] = None,
+    youngs_modulus: Annotated[Any, Unit("Pa", "210 GPa")] = None,
+    poissons_ratio: Annotated[Any, _POISSON] = None,
+    table_youngs_modulus: Annotated[Any, Unit("Pa", "210 GPa")] = None,
+    table_poissons_ratio: Annotated[Any, _POISSON] = None,
+    radius: Annotated[Any, Unit("m", "5 mm")] = None,
+    damping: Annotated[Any, Unit("N*s/m", "10 N s/m", _NONE_TOO)] = None,
+    damping_ratio: Annotated[Any, Unit("", "0.05", _NONE_TOO)] = None,
+    restitution: Annotated[Any, _LOSS] = None,
+    measured_restitution: Annotated[Any, _LOSS] = None,
+    drop_height: Annotated[Any, Unit("m", "1 m")] = None,
+    rebound_height: Annotated[Any, Unit("m", "70 cm")] = None,
+    n: Index | None = None,
+    release: Rule | None = None,
+    law: str | None = None,
+    quantity: Annotated[str, Quantity] = "max_height",
+    tolerance: Annotated[Any, Unit("", "1 %", Range(0, 1))] = 0.01,
+    engine: str | None = None,
+    restitution_error: Annotated[Any, Unit("", "0.001", Range(0, 1))] = ERROR,
+    from_engine: str | None = None,
+    solref: str | Sequence[float] | None = None,
+    solimp: str | Sequence[float] | None = None,
+    parameters: Mapping[str, float] | None = None,
+) -> Design | Contact:
+    """Assess a contact or choose one; without a table, describe the contact.
+
+    Parameters are plain numbers in SI units, texts such as ``"50 Hz"``, or pint
+    quantities. With a stiffness (or a contact time, or E* and R of a Hertz contact)
+    the answer says whether the restitution model is good enough for this contact;
+    without one, it gives the contact that a simulation needs for the tolerance. A contact without
+    a table has no orbit, but can be written for an engine.
+
+    Parameters
+    ----------
+    mass
+        Mass m of the ball.
+    frequency
+        Frequency of the table in Hz; or give the angular frequency or the period.
+    angular_frequency
+        Angular frequency Ω of the table in rad/s, in place of the frequency.
+    period
+        Period of the table, in place of the frequency.
+    table_amplitude
+        Amplitude A of the table's motion, in m; or give the acceleration.
+    acceleration
+        Greatest acceleration AΩ² of the table, in m/s²; "2 g" is twice standard gravity.
+    gravity
+        Acceleration of gravity, by default 9.80665 m/s². For a gear pair, the deceleration that the
+        drag torque causes.
+    stiffness
+        Stiffness k of the contact. If no parameter gives a stiffness, a contact is chosen.
+    contact_time
+        Duration of a free impact, in place of the stiffness.
+    reduced_modulus
+        Reduced modulus E* of a Hertz contact with the damping of Tsuji; needs the radius.
+    youngs_modulus
+        Young's modulus E of the ball, in place of E*, where 1/E* is the sum of (1 - ν²)/E of the
+        ball and of the table.
+    poissons_ratio
+        Poisson's ratio ν of the ball.
+    table_youngs_modulus
+        Young's modulus of the table.
+    table_poissons_ratio
+        Poisson's ratio of the table.
+    radius
+        Radius of curvature R of a Hertz contact; for a ball on a plane, the radius of the ball.
+    damping
+        Damping c of the contact; needs the stiffness.
+    damping_ratio
+        Damping ratio ζ = c/(2√(km)) of the contact.
+    restitution
+        Restitution coefficient of a free impact that ends at the table's level,
+        r = exp(-πζ/√(1 - ζ²)), Eq. 16 of the paper. With an engine or a law, r under its release.
+    measured_restitution
+        Restitution coefficient of a free impact under the given release, as a drop test measures
+        it.
+    drop_height
+        Height of the drop in a drop test; needs the height of the rebound.
+    rebound_height
+        Height of the rebound in a drop test.
+    n
+        Index n of the family. By default n = 1 to 8, with a verdict on the first stable orbit.
+    release
+        Where a contact ends: "displacement" at the table's level, the default without an engine,
+        or "force" where the contact force vanishes.
+    law
+        Name of a contact law, such as hunt-crossley, in place of the linear one. It has the given
+        restitution coefficient and contact time at the impact speed of the orbit.
+    quantity
+        Name of the quantity that must be accurate.
+    tolerance
+        Largest relative error of the quantity, such as "5 %" or 0.05.
+    engine
+        Physics engine for which the contact is written: generic, mujoco, lammps, liggghts,
+        pybullet, drake or mercurydpm. The contact then ends as in this engine.
+    restitution_error
+        Largest error of the restitution coefficient that the engine's time step may cause.
+    from_engine
+        Physics engine whose parameters are given, in place of stiffness and loss.
+    solref
+        For MuJoCo: "-K -B" per unit of mass, or "TIMECONST DAMPRATIO".
+    solimp
+        For MuJoCo: "DMIN DMAX WIDTH MIDPOINT POWER", or the first of these numbers.
+    parameters
+        For the other engines: a parameter by its name, such as kn=1e5; for PyBullet and Drake also
+        time_step, in s.
+
+    Returns
+    -------
+    Design or Contact
+        The assessed or chosen contact, its orbits and the motion of the ball on a table; without a
+        table, the contact alone. Numbers with a unit are in SI units.
+
+    Raises
+    ------
+    ModelError
+        If a parameter is missing, out of range or contradicts another.
+    NoOrbitError
+        If no model has the orbit.
+
+    Examples
+    --------
+    >>> found = design(mass="20 g", frequency="50 Hz", acceleration="0.8 g",
+    ...                stiffness="1e7 N/m", restitution=0.85)
+    >>> round(found.frequency_ratio, 3), found.orbits[0].is_stable, found.is_good_enough
+    (71.176, True, False)
+    >>> found = design(mass=0.5, stiffness="50 kN/m", restitution=0.75).engine("mujoco")
+    >>> round(found.restitution, 6), found.release
+    (0.75, 'force')
+    """
+    call = locals()
+    source, said = read_engine(call)
+    given = _read(said)
+    question, kind = call | _read(call), _of_law(law, engine, said["release"], given)
+    rule = _under(engine, said["release"], given)
+    one_of("quantity", quantity, {str(each): each for each in QUANTITIES})
+    if n is not None and (n != int(n) or n < 1):
+        raise ModelError(f"index of the family n = {n} is not a positive integer")
+    known, remarks = given.keys(), source.remarks(engine, rule) if source else ()
+    if n is None and not known & _TABLE and (engine or known & {"stiffness", "contact_time"}):
+        needs_speed = kind is not None or (source is not None and source.engine.needs_speed)
+        return _contact(given, rule, needs_speed, question, remarks)
+    table = table_of(given)
+    lam, asked = table.amplitude, _FAMILIES if n is None else [n]
+    require(lam < _LARGEST, lam, "Λ", f"below {_LARGEST:g}")
+    case = need = None
+    try:
+        case = case_of(given, table, rule, asked, kind)
+        if case is None:
+            case, need = _chosen(given, table, rule, asked, question)
+        elif source:
+            # For another engine the spring and damper is written in place of the law.
+            case = source.case(case, asked, engine is not None)
+        return _design(case, need, asked, question, remarks)
+    except NoOrbitError as error:
+        bare = str(acceleration).strip()
+        if bare.replace(".", "", 1).isdigit():
+            raise NoOrbitError(f"{error}; did you mean {bare} g?") from None
+        if n is not None or case is None:
+            raise
+        return _design(case, None, asked, question, remarks, str(error))
+
+
+def _chosen(
+    given: dict[str, float],
+    table: Table,
+    rule: Release,
+    asked: Sequence[int],
+    question: Mapping[str, Any],
+) -> tuple[Case, Needed]:
+    """The case with the most compliant contact within the tolerance, and the ϖ needed for it."""
+    contact, quantity = SpringDamper(1.0, loss(given, rule), rule), question["quantity"]
+    r = float(contact.restitution)
+    index = meant(asked, r, table.amplitude)
+    if quantity in OF_ORBITS:
+        RestitutionModel(r).require_orbit(index, table.amplitude)
+    need = needed(quantity, question["tolerance"], contact, index, table.amplitude)
+    if need.status == ThresholdStatus.NEVER_WITHIN:
+        raise NoOrbitError(
+            f"no contact up to ϖ = {RATIOS[-1]:g} has its {QUANTITIES[Quantity(quantity)]} within "
+            f"{percent(need.tolerance)} of the restitution model with r = {r:.4g}"
+        )
+    stiff = replace(contact, frequency_ratio=need.frequency_ratio or float(RATIOS[0]))
+    return Case(given["mass"], table, stiff), need
+
+
+def _contact(
+    given: dict[str, float],
+    rule: Release,
+    needs_speed: bool,
+    question: dict[str, Any],
+    remarks: tuple[str, ...],
+) -> Contact:
+    """The answer about a contact without a table, by which there is no impact speed."""
+    # With a table of 1 rad/s the frequency ratio is the frequency of the contact.
+    case = case_of(given, Table(1.0, 1.0, STANDARD_GRAVITY), rule, [1])
+    if case is None:
+        raise ParameterError("no stiffness: give {stiffness}, or {contact_time}")
+    if needs_speed and (question["law"] or question["engine"]):
+        what = "law" if question["law"] else "from_engine"
+        needs = "a table, such as {frequency} and {acceleration}"
+        raise ParameterError(f"{{{what}}} {question[what]} needs {needs}: r depends on the speed")
+    zeta, omega = float(case.contact.damping_ratio), float(case.contact.frequency_ratio)
+    stiffness = given.get("stiffness", case.mass * omega**2)
+    damping = given.get("damping", 2 * zeta * case.mass * omega)
+    if needs_speed:
+        known = case.mass, stiffness, None, None, omega, None, str(rule), None
+        return Contact(*known, remarks, question)
+    physical = Physical(case.mass, stiffness, damping)
+    time, r = physical.contact_time(rule), physical.restitution(rule)
+    return Contact(*physical, zeta, omega, time, str(rule), r, remarks, question)
+
+
+def _of_law(
+    name: str | None, engine: str | None, release: str | None, given: dict[str, float]
+) -> type[ContactLaw] | None:
+    """The type of the contact law that is named; None for the linear contact.
+
+    The parameters of the law follow from a free impact, so that r counts as measured.
+    """
+    if name is not None and engine is not None and name != SpringDamper.name:
+        laws = engine_named(engine).laws
+        if name not in {*laws, *laws.values()}:
+            raise ParameterError(f"{{law}} {name} is not written for {engine}: leave {{law}} out")
+        name = laws.get(name, name)
+    kind = None if name is None else law_named(name)
+    if kind is None or kind is SpringDamper:
+        return None
+    if release is not None:
+        raise ParameterError(f"{{release}} is not allowed with {{law}} {name}, which has its own")
+    for other in ("stiffness", "damping", "damping_ratio", "reduced_modulus", "youngs_modulus"):
+        if other in given:
+            instead = "give {contact_time} and {restitution}"
+            raise ParameterError(f"{{{other}}} is not allowed with {{law}} {name}: {instead}")
+    if "contact_time" not in given:
+        raise ParameterError(
+            f"{{law}} {name} needs {{contact_time}}, the duration of a free impact"
+        )
+    if "restitution" in given:
+        given["measured_restitution"] = given.pop("restitution")
+    return kind
+
+
+def _under(engine: str | None, release: str | None, given: dict[str, float]) -> Release:
+    """The release rule of a contact.
+
+    With an engine, a given restitution counts as measured under the release of this engine.
+    """
+    if engine is None:
+        return Release.of(release or Release.DISPLACEMENT)
+    rule = engine_named(engine).release(release)
+    if "reduced_modulus" in given or "youngs_modulus" in given:
+        raise ParameterError(f"a Hertz contact is not written for {engine}: give {{stiffness}}")
+    if "measured_restitution" not in given and "restitution" in given:
+        given["measured_restitution"] = given.pop("restitution")
+    return rule
+
+
+def quantities() -> dict[str, Unit]:
+    """The parameters of :func:`design` that have a unit, by name."""
+    hints = {name: get_args(hint)[1:] for name, hint in design.__annotations__.items()}
+    return {name: what[0] for name, what in hints.items() if what and isinstance(what[0], Unit)}
+
+
+def _read(parameters: Mapping[str, Any]) -> dict[str, float]:
+    """The quantities that are given, in SI units, after a check of their ranges."""
+    given = {}
+    for name, kind in quantities().items():
+        if parameters.get(name) is not None:
+            given[name] = value = number(name, parameters[name], kind)
+            if value not in kind.allowed:
+                said = f"{{{name}}} = {value:g} {kind.name}".rstrip()
+                # A share above 1 was probably meant in percent.
+                share = kind.allowed.high == 1 <= value < 100 and "%" not in str(parameters[name])
+                meant = f": did you mean {value:g} %?" if share else ""
+                raise ParameterError(f"{said} is not {kind.allowed}{meant}")
+    return given
+
+
+def _design(
+    case: Case,
+    need: Needed | None,
+    asked: Sequence[int],
+    question: dict[str, Any],
+    remarks: tuple[str, ...],
+    no_orbit: str = "",
+) -> Design:
+    """The answer about a contact that is given or, with ``need``, was chosen for a tolerance.
+
+    If no model has an orbit, ``no_orbit`` gives the reason, and the answer is about a ball that is
+    laid on the table.
+    """
+    contact, table = case.contact, case.table
+    only = "below 1: on a vibrating table only underdamped contacts are computed"
+    require(contact.damping_ratio < 1, contact.damping_ratio, "damping ratio ζ", only)
+    ratio, found = float(contact.frequency_ratio), families(case, asked, bool(no_orbit))
+    require(1 / _LARGEST < ratio < _LARGEST, ratio, "ϖ", f"between {1 / _LARGEST:g} and 1e8")
+    # The verdict is about the first family whose orbit is stable and admissible, or else exists.
+    one = max(found, key=lambda one: (one.exists, one.is_stable and one.is_admissible))
+    if need is None:
+        quantity, tolerance, before = question["quantity"], question["tolerance"], ""
+        need = needed(quantity, tolerance, contact, one.n, table.amplitude)
+        verdict = assessed(one, need, ratio)
+    else:
+        index = meant(asked, float(contact.restitution), table.amplitude)
+        one = next((each for each in found if each.n == index), one)
+        verdict = chosen(case.in_si(), need, index)
+        before = f"{verdict.verdict} "
+    motion = of_family(case, one, need.tolerance)
+    # A threshold, such as that of permanent contact, is not a property of one orbit.
+    if motion.restitution_kind is not None and need.quantity in OF_ORBITS:
+        end = judged_by_motion(motion, need.tolerance, one.n)
+        verdict = end._replace(verdict=before + end.verdict, reason=no_orbit or end.reason)
+    elif need.quantity in OF_ORBITS:
+        said = f"{verdict.verdict[:-1]}{aside(motion, table.amplitude)}."
+        verdict = verdict._replace(verdict=said)
+    si: dict[str, Any] = case.in_si()
+    delay, r, load = map(float, case.instant(one.n)[:3])
+    answer = Design(
+        frequency_ratio=ratio,
+        damping_ratio=float(contact.damping_ratio),
+        amplitude=table.amplitude,
+        **si,
+        time_step=TimeStep(si["contact_time"] / STEPS, STEP_RULE),
+        restitution={
+            str(rule): float(replace(contact, release=rule).restitution) for rule in Release
+        },
+        measured_restitution=float(contact.restitution),
+        permanent_contact=finite(case.permanent_contact),
+        law=case.law_in_si,
+        corrected=Corrected(delay * table.time, r, load * table.time),
+        orbits=found,
+        needed=need,
+        motion=motion,
+        headline=headline(motion, one),
+        **verdict._asdict(),
+        notes=remarks + notes(case, one, motion),
+        case=case,
+        n=one.n,
+        question=question,
+    )
+    if question["engine"]:
+        # The only time step given is that of the engine.
+        settings = answer.engine_settings()
+        why = f"r of a free impact in {settings.name} is within {settings.error:g}"
+        answer = replace(answer, time_step=TimeStep(settings.time_step, why))
+    return answer

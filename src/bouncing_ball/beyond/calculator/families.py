@@ -1,0 +1,220 @@
+"""The n-T families of a case: orbits, margins, loads and errors in every model.
+
+The stiffness that a tolerance needs, from a root of the exact error over ϖ.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from bouncing_ball.beyond import error_law
+from bouncing_ball.beyond.calculator.case import Case
+from bouncing_ball.beyond.calculator.results import Errors, Family, Needed, Standing
+from bouncing_ball.beyond.corrected.errors import search
+from bouncing_ball.beyond.error_law import law_thresholds
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.paper.comparison.errors import OF_IMPACTS, OF_ORBITS, Quantity, relative
+from bouncing_ball.paper.contact.permanent_contact import RESTITUTION_THRESHOLD
+from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.orbits.orbit import Orbit
+
+# Samples of a contact, and further samples for each radian of the table's motion, because a long
+# contact has several maxima. The two steps around the greatest sample are sampled again. A step is
+# then 2·10⁻⁶ of the contact, so that a parabola exceeds its samples by less than 10⁻¹¹ of its
+# height.
+_SAMPLES, _IN_A_RADIAN = 1001, 16
+
+
+def finite(value: float | np.ndarray) -> float | None:
+    """The value as a Python float; None if it is NaN or infinite."""
+    return float(value) if math.isfinite(value) else None
+
+
+def _moduli(values: np.ndarray) -> Errors:
+    return {str(q): finite(abs(x)) for q, x in zip(Quantity, values, strict=False)}
+
+
+def _loads(orbit: Any) -> tuple[float, float]:
+    """Greatest compression and greatest force over weight in one contact, dimensionless."""
+    if not orbit.exists:
+        return math.nan, math.nan
+
+    def loads(time: np.ndarray) -> np.ndarray:
+        displacement, velocity = orbit.contact_motion(time)
+        load = 1 - orbit.amplitude * np.sin(orbit.phase + time)
+        force = orbit.law.loaded_force(np.maximum(-displacement, 0.0), -velocity, load)
+        return np.array([-displacement, force])
+
+    duration = float(orbit.contact_duration)
+    times = np.linspace(0.0, duration, _SAMPLES + int(_IN_A_RADIAN * duration))
+    tops = loads(times).argmax(axis=1)
+    low, high = times[np.clip([tops - 1, tops + 1], 0, times.size - 1)]
+    (depth, _), (_, force) = map(loads, np.linspace(low, high, _SAMPLES, axis=1))
+    return float(np.max(depth)), float(np.max(force))
+
+
+def by_error_law(case: Case, n: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The restitution model's errors that the error law predicts, shape (quantity, n), and whether
+    it holds, shape (n,).
+
+    The error of the permanent contact, K₂/ϖ², is known for the linear contact only.
+
+    Examples
+    --------
+    >>> from bouncing_ball.beyond.calculator.case import Table
+    >>> from bouncing_ball.paper.contact.spring_damper import SpringDamper
+    >>> case = Case(1.0, Table(1.0, 1.0, 1.0), SpringDamper(10.0, 0.0))
+    >>> by_error_law(case, np.array([1]))[0][-1].tolist()
+    [-0.01]
+    """
+    lam, contact = case.table.amplitude, case.contact
+    predicted, holds = np.full((len(Quantity), n.size), np.nan), np.zeros(n.size, dtype=bool)
+    there = case.models["restitution"].orbit(n, lam).exists
+    orbits = n[there], case.instant(n[there]), lam
+    predicted[: len(OF_IMPACTS), there] = [*error_law.first_order(*orbits).values()]
+    # If the r of a contact law depends on the speed, it equals the r of the restitution model at
+    # one speed only.
+    holds[there] = case.has_its_restitution(n[there])
+    holds[there] &= error_law.small_parameter(*orbits) < error_law.STATED
+    if case.law is None:
+        second = error_law.permanent_contact_coefficient(contact.damping_ratio, contact.release)
+        predicted[-1] = second / contact.frequency_ratio**2
+    return predicted, holds
+
+
+def _standing(orbit: Orbit, values: np.ndarray, amplitude: float) -> Standing:
+    there = bool(orbit.exists)
+    node, doubling, _ = values[len(OF_ORBITS) :]
+    return Standing(
+        exists=there,
+        is_stable=there and bool(orbit.is_stable()),
+        is_admissible=there and bool(orbit.is_admissible()),
+        saddle_node=finite(node),
+        saddle_node_margin=finite(1 - node / amplitude),
+        period_doubling=finite(doubling),
+        period_doubling_margin=finite(doubling / amplitude - 1),
+    )
+
+
+def families(case: Case, asked: Sequence[int], or_first: bool = False) -> tuple[Family, ...]:
+    """The families ``asked`` in which at least one model has an orbit.
+
+    If there is no such family, the result is the first of ``asked`` with ``or_first``, and
+    otherwise an error.
+
+    Raises
+    ------
+    NoOrbitError
+        If no model has an orbit; the message gives the Λ that the first family needs.
+
+    Examples
+    --------
+    >>> from bouncing_ball.beyond.calculator.case import Table
+    >>> from bouncing_ball.paper.contact.spring_damper import SpringDamper
+    >>> case = Case(1.0, Table(1.0, 0.5, 1.0), SpringDamper(10.0, 0.1))
+    >>> [family.n for family in families(case, [1, 2, 3])]
+    [1]
+    """
+    n, lam = np.array(asked), case.table.amplitude
+    orbits: list[Orbit] = []
+    found: list[list[np.ndarray]] = []
+    for model in case.models.values():
+        still = np.full(n.shape, RESTITUTION_THRESHOLD if found else case.permanent_contact)
+        node = model.saddle_node(n).amplitude
+        limits = node, model.period_doubling(n).amplitude, still
+        # Below its saddle-node a model has no orbit, so that none is searched for.
+        orbits.append(model.orbit(n, np.where(lam < node, np.nan, lam)))
+        found.append([*(getattr(orbits[-1], quantity) for quantity in OF_ORBITS), *limits])
+    values = np.array(found)
+    there = np.any([orbit.exists for orbit in orbits], axis=0)
+    there[0] |= or_first and not there.any()
+    if not there.any():
+        # The restitution model's where that of a strongly damped law was not found.
+        lowest = next(node for node in values[:, len(OF_ORBITS), 0] if node == node)
+        which = f"{asked[0]}-T orbit" if len(asked) == 1 else "n-T orbit"
+        laid = lam <= case.permanent_contact
+        rests = ", and a ball laid on the table stays at rest" if laid else ""
+        raise NoOrbitError(
+            f"no {which} in any model{rests}: the table's acceleration is Λ = {lam:.4g} times "
+            f"gravity, and the {asked[0]}-T orbit needs {lowest:.4g}"
+        )
+    by_law, holds = by_error_law(case, n)
+    return tuple(
+        _family(case, asked[k], [x[k] for x in orbits], values[:, :, k], by_law[:, k], holds[k])
+        for k in np.flatnonzero(there).tolist()
+    )
+
+
+def _family(
+    case: Case, n: int, orbits: Sequence[Any], values: np.ndarray, by_law: np.ndarray, holds: bool
+) -> Family:
+    """A family from its orbits in all models, the ``values`` of the quantities, shape
+    (model, quantity), and the result of the error law.
+    """
+    unit, orbit = case.table, orbits[0]
+    standing = [_standing(*each, unit.amplitude) for each in zip(orbits, values, strict=True)]
+    depth, force = _loads(orbit)
+    restitution, corrected = map(_moduli, relative(values[0], values[1:]))
+    return Family(
+        n=n,
+        exists=standing[0].exists,
+        is_stable=standing[0].is_stable,
+        is_admissible=standing[0].is_admissible,
+        standing=dict(zip(case.models, standing, strict=True)),
+        max_height=finite(orbit.max_height * unit.length),
+        impact_speed=finite(-orbit.relative_impact_velocity * unit.length / unit.time),
+        contact_duration=finite(orbit.contact_duration * unit.time),
+        greatest_compression=finite(depth * unit.length),
+        peak_force=finite(force * case.mass * unit.gravity),
+        peak_force_over_weight=finite(force),
+        errors=restitution,
+        corrected_errors=corrected,
+        law_errors=_moduli(by_law),
+        law_holds=bool(holds),
+    )
+
+
+# From contacts that last a considerable part of the table's period to contacts stiffer than those
+# of any simulation. The grid is fine, so that two crossings hardly fall between neighbours.
+RATIOS = np.geomspace(1.0, 1e6, 97)
+NO_ORBIT = "no orbit"
+"""A status in addition to :class:`~bouncing_ball.paper.comparison.thresholds.ThresholdStatus`."""
+
+
+def needed(
+    quantity: str, tolerance: float, contact: SpringDamper, n: int, amplitude: float
+) -> Needed:
+    """The ϖ that a tolerance needs, for contacts with the ζ and the release of a given contact.
+
+    Parameters
+    ----------
+    quantity : str
+        One of :class:`~bouncing_ball.paper.comparison.errors.Quantity`.
+    tolerance : float
+        Largest relative error allowed.
+    contact : SpringDamper
+    n : int
+    amplitude : float
+        Λ.
+
+    Examples
+    --------
+    Λ_SD = 1 - 1/ϖ² without damping:
+
+    >>> found = needed("permanent_contact", 0.01, SpringDamper(5.0, 0.0), 1, 1.0)
+    >>> round(found.frequency_ratio, 12), round(found.by_law, 12)
+    (10.0, 10.0)
+    """
+    zeta, rule = contact.damping_ratio, contact.release
+    # The error law of a limit does not depend on Λ. A Λ too small for an orbit is therefore
+    # replaced by nπ, which is above the saddle-node.
+    there = amplitude if quantity in OF_ORBITS else max(amplitude, n * np.pi)
+    try:
+        by_law = finite(law_thresholds(n, zeta, there, rule, tolerance)[Quantity(quantity)])
+    except NoOrbitError:
+        return Needed(quantity, tolerance, None, None, None, NO_ORBIT, NO_ORBIT)
+    found = search(zeta, rule, n, amplitude, RATIOS, tolerance, (quantity,))
+    ratio, corrected = map(finite, found.threshold[:, 0, 0])
+    return Needed(quantity, tolerance, ratio, by_law, corrected, *map(str, found.status[:, 0, 0]))

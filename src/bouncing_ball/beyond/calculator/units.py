@@ -1,0 +1,168 @@
+"""Quantities with units, converted at the interface: SI numbers inside.
+
+A text is a number followed by its unit: ``50 Hz``, ``0.5 mm``, ``2e6 N/m``.
+A plain number is in SI units. Pint receives the unit alone and never an expression, so that texts
+of a command line are not evaluated.
+
+An angle has a dimension here, and a hertz is one turn per second. ``Hz``, ``rad/s``, ``rpm`` and
+``deg/s`` therefore have the same dimension; a bare ``1/s`` is refused, because it might mean turns
+or radians.
+"""
+
+import math
+import re
+import textwrap
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+from typing import Annotated, Any, Literal, NamedTuple
+
+from bouncing_ball.errors import ParameterError, Range, count
+
+# A number, and the rest of the text.
+_TEXT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
+# Letters, products, quotients and powers of one digit. A power of a power is refused, because pint
+# would evaluate it, however large it is. A digit after a letter is a power as well: m/s2.
+_POWER = re.compile(r"(?<=[^\W\d_])(?=\d(?!\d))")
+_UNIT = re.compile(r"(?:[^\W\d]|[ ·*/%°²³¹⁻]|\^-?\d(?![\d^])|_0|1(?= */)){1,40}")
+
+
+class Unit(NamedTuple):
+    """The annotation of a parameter: its SI unit, an example, and the range allowed.
+
+    Products and powers of a few numbers in the default range neither overflow nor underflow.
+    """
+
+    name: str
+    example: str
+    allowed: Range = Range(1e-40, 1e40, "[]")
+
+
+@cache
+def _registry() -> Any:
+    # Imported where it is needed, because it takes half a second and plain numbers do not need it.
+    import pint
+
+    registry: Any = pint.UnitRegistry(None, on_redefinition="ignore")
+    registry.load_definitions(Path(pint.__file__).with_name("default_en.txt"))
+    registry.define("radian = [angle] = rad")
+    registry.define("hertz = turn / second = Hz")
+    return registry
+
+
+def number(name: str, value: Any, kind: Unit) -> float:
+    """The value of a parameter in SI units.
+
+    Parameters
+    ----------
+    name : str
+        The name of the parameter in an error.
+    value : float, str or pint.Quantity
+        The value; a plain number is in SI units.
+    kind : Unit
+        The unit of the parameter and an example. The range is not checked here.
+
+    Raises
+    ------
+    ModelError
+        If the value is not a finite number with a unit of the right dimension.
+
+    Examples
+    --------
+    >>> stiffness, frequency = Unit("N/m", "1e6 N/m"), Unit("Hz", "50 Hz")
+    >>> number("stiffness", 2e6, stiffness), number("stiffness", "2 kN/mm", stiffness)
+    (2000000.0, 2000000.0)
+    >>> number("frequency", "3000 rpm", frequency)
+    50.0
+    >>> number("frequency", "20 ms", frequency)
+    Traceback (most recent call last):
+    ...
+    bouncing_ball.errors.ParameterError: frequency = 20 ms is of the dimension [time]: \
+write it as '50 Hz'
+    """
+    short = textwrap.shorten(str(value), 60, placeholder="…")
+    unit, example = "", f"write it as {kind.example!r}"
+
+    def wrong(why: str, said: str = short) -> ParameterError:
+        return ParameterError(f"{{{name}}} = {{}} {why}", said)
+
+    if isinstance(value, str):
+        found = _TEXT.fullmatch(value.strip())
+        if found is None:
+            raise wrong(f"does not begin with a number: {example}", repr(short))
+        value, unit = found.groups()
+    elif hasattr(value, "magnitude") and hasattr(value, "units"):
+        value, unit = value.magnitude, str(value.units).replace("dimensionless", "")
+    try:
+        plain = float(value)
+    except (TypeError, ValueError):
+        raise wrong("is neither a number nor a text", repr(value)) from None
+    found_value, why = _converted(plain, unit, kind) if unit else (plain, "")
+    if why:
+        raise wrong(f"{why}: {example}")
+    if not math.isfinite(found_value):
+        raise wrong("is not a finite number")
+    return found_value
+
+
+def _converted(value: float, unit: str, kind: Unit) -> tuple[float, str]:
+    """A value in SI units and an empty text, or NaN and the reason why it cannot be converted.
+
+    For an acceleration the unit g means standard gravity and not the gram.
+    """
+    registry, why = _registry(), "has an unknown unit"
+    if (kind.name, unit) == ("m/s^2", "g"):
+        unit = "standard_gravity"
+    # Pint also raises the errors of its tokenizer, which are of many types.
+    unit = _POWER.sub("^", unit)
+    with suppress(Exception):
+        if _UNIT.fullmatch(unit.replace("**", "^")):
+            one = registry.Quantity(value, registry.parse_units(unit))
+            why = f"is of the dimension {one.dimensionality}"
+            # Fifteen digits keep all digits that a user wrote, without the rounding error.
+            return float(f"{one.m_as(kind.name):.15g}"), ""
+    return math.nan, why
+
+
+_PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n"}
+
+
+def percent(share: float) -> str:
+    """A share as a percentage with at most six digits.
+
+    Examples
+    --------
+    >>> percent(0.01), percent(1e-6), percent(0.125)
+    ('1 %', '0.0001 %', '12.5 %')
+    """
+    return f"{100 * share:.6g} %"
+
+
+def shown(value: float | None, unit: str = "", least: float = 1e-5) -> str:
+    """A value as text: four digits with a prefix of its unit, or a share in "%" with two digits.
+
+    A share below ``least``, or below 1e-5 if this is smaller, is given as "less than" that bound.
+
+    Examples
+    --------
+    >>> shown(1.25e-5, "s"), shown(2e7, "N/m"), shown(None, "m"), shown(1.25e-5)
+    ('12.5 µs', '20 MN/m', 'none', '1.25e-05')
+    >>> [shown(share, "%") for share in (0.0123, 2.5e-5, 1e-9, 0.995)]
+    ['1.2 %', '0.0025 %', 'less than 0.001 %', '100 %']
+    >>> shown(2.5e-6, "%", 1e-6), shown(1e-9, "%", 1e-6)
+    ('0.00025 %', 'less than 0.0001 %')
+    """
+    if value is None:
+        return "none"
+    if unit == "%":
+        if 0 < value < (least := min(least, 1e-5)):
+            return f"less than {percent(least)}"
+        return f"{100 * value:.2g} %" if value < 0.995 else f"{100 * value:.0f} %"
+    if value == 0 or not unit:
+        return f"{value:.4g} {unit}".rstrip()
+    power = min(9, max(-9, 3 * math.floor(math.log10(abs(float(f"{value:.4g}"))) / 3)))
+    return f"{value / 10**power:.4g} {_PREFIXES[power]}{unit}"
+
+
+Index = Annotated[int, count(1000)]
+Rule = Literal["displacement", "force"]

@@ -1,0 +1,36 @@
+"""Physics engines: their contact parameters from k, c and m, and the impacts that result.
+
+All quantities are in SI units. The engines are not imported and need not be installed.
+"""
+
+from bouncing_ball.beyond.engines.drake import Drake
+from bouncing_ball.beyond.engines.engine import Engine
+from bouncing_ball.beyond.engines.mujoco import MuJoCo
+from bouncing_ball.beyond.engines.proportional import (
+    Generic,
+    Lammps,
+    Liggghts,
+    MercuryDPM,
+    PyBullet,
+)
+from bouncing_ball.errors import one_of
+
+_ALL = (Generic(), MuJoCo(), Lammps(), Liggghts(), PyBullet(), Drake(), MercuryDPM())
+ENGINES: dict[str, Engine] = {engine.name: engine for engine in _ALL}
+"""The engines by name."""
+
+
+def engine_named(name: str) -> Engine:
+    """The engine with this name.
+
+    Raises
+    ------
+    ModelError
+        If no engine has this name; the message lists the engines.
+
+    Examples
+    --------
+    >>> engine_named("mujoco").releases
+    (<Release.FORCE: 'force'>,)
+    """
+    return one_of("engine", name, ENGINES)

@@ -1,0 +1,200 @@
+"""The cascade of flights of the T-periodic orbits into which permanent contact continues.
+
+The shift of cascades of period doublings by a contact of finite stiffness (beyond the paper).
+
+Errors are relative to the simple model as in Eqs. 37-38, with their sign: (Λ_SD - Λ)/Λ, with Λ of
+the restitution model, or of the corrected one, at the same doubling.
+"""
+
+from typing import Annotated
+
+import numpy as np
+import xarray as xr
+from pydantic import Field
+
+from bouncing_ball.beyond.corrected.errors import models
+from bouncing_ball.beyond.long_run.cascade_of_flights import openings, stiff_openings
+from bouncing_ball.beyond.long_run.period_doublings import MOST, cascade
+from bouncing_ball.datasets.parameters import (
+    Family,
+    LossyRestitution,
+    Many,
+    Parameters,
+    Span,
+    number,
+)
+from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.paper.contact.damping import Release, damping_ratio
+from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+
+VARIABLES = {
+    "flights": Variable("flights of the orbit in a period", symbol="k"),
+    "opening_amplitude": Variable(
+        "amplitude at which the orbit gets one flight more", symbol="Λ_k"
+    ),
+    "opening_multiplier": Variable(
+        "larger modulus of the multipliers at an opening", budget=1e-10, scale="1"
+    ),
+    "stiff_opening": Variable(
+        "ϖ² times the distance of an opening from Λ_SD, limit for ϖ → ∞", symbol="E_k"
+    ),
+    "doubling": Variable("period doubling of the orbit of so many doubled periods", symbol="k"),
+    "step": Variable("step between two period doublings", symbol="k"),
+    "restitution_cascade": Variable(
+        "amplitude of the period doublings, restitution model", symbol="Λ_k", budget=1e-13
+    ),
+    "cascade_ratio": Variable(
+        "ratio of successive distances of period doublings, restitution model", budget=1e-09
+    ),
+    "contact_cascade_ratio": Variable(
+        "ratio of successive distances of period doublings, spring-damper", budget=1e-08
+    ),
+    "cascade_error": Variable(
+        "relative error of a simple model in the amplitude of the period doublings, with its sign",
+        budget=1e-10,
+    ),
+    "cascade_coefficient": Variable(
+        "coefficient of the restitution model's error at the period doublings",
+        symbol="K_k",
+        budget=1e-06,
+    ),
+    "cascade_second_order": Variable(
+        "coefficient of the corrected model's error at the period doublings",
+        symbol="C_k",
+        budget=0.001,
+    ),
+    "measured_cascade": Variable(
+        "amplitude of the period doublings in a measurement at an assumed frequency", symbol="Λ"
+    ),
+}
+
+
+class Flights(Parameters):
+    """Contacts of several r on a grid of ϖ, and the number of openings that are followed."""
+
+    restitution: Many[LossyRestitution]
+    frequency_ratio: Span
+    flights: Annotated[int, number("openings that are followed", ge=2, le=6)]
+
+
+def cascade_of_flights(parameters: Flights, release: Release) -> xr.Dataset:
+    """The amplitudes above which the T-periodic orbit above Λ_SD has one more flight per period.
+
+    The dataset has ``threshold_amplitude`` Λ_SD (restitution, ϖ). ``opening_amplitude``
+    (restitution, flights, ϖ) is the Λ up to which the orbit has this number of flights, and
+    ``opening_multiplier`` the larger modulus of its multipliers there; both are NaN where no stable
+    orbit was found. ``stiff_opening`` (restitution, flights) is the limit of E = ϖ²(Λ - Λ_SD) for
+    stiff contacts. All except the first are NaN unless the release is the displacement release.
+    """
+    restitution, ratio = np.array(parameters.restitution), parameters.frequency_ratio.grid()
+    zeta, most = damping_ratio(restitution), parameters.flights
+    law = SpringDamper(ratio, zeta[:, np.newaxis], release)
+    found = np.full((2, zeta.size, most, ratio.size), np.nan)
+    stiff = np.full((zeta.size, most), np.nan)
+    if release is Release.DISPLACEMENT:
+        found = np.array(openings(zeta, ratio, most))
+        found = np.where(found[1] < 1, found, np.nan)
+        stiff = np.stack([stiff_openings(z, most) for z in zeta])
+    dims = ("restitution", "flights", "frequency_ratio")
+    held = SpringDamperModel(law).permanent_contact_threshold()
+    return described(
+        {
+            "threshold_amplitude": (("restitution", "frequency_ratio"), held),
+            "opening_amplitude": (dims, found[0]),
+            "opening_multiplier": (dims, found[1]),
+            "stiff_opening": (dims[:2], stiff),
+        },
+        coords={
+            "restitution": restitution,
+            "flights": np.arange(1, most + 1),
+            "frequency_ratio": ratio,
+        },
+        variables=VARIABLES,
+    )
+
+
+_GRAVITY = 9.80665
+"""Standard gravity in m/s²."""
+
+
+class Measured(Parameters):
+    """Period doublings measured over the amplitude of a table, at an assumed frequency."""
+
+    frequency: Annotated[float, number("frequency of the table", "Hz", gt=0, le=1e6)]
+    amplitudes: Many[Annotated[float, number("amplitude of a doubling", "m", gt=0, le=1)]]
+
+
+class Cascades(Parameters):
+    """Cascades of period doublings of the n-T orbits, for several r and a grid of ϖ."""
+
+    n: Family
+    restitution: Many[LossyRestitution]
+    frequency_ratio: Span
+    doublings: Annotated[
+        int,
+        Field(
+            description="period doublings of each cascade; the ratio needs three, and beyond "
+            f"{MOST} rounding decides",
+            ge=3,
+            le=MOST,
+        ),
+    ]
+    measured: Measured
+
+
+_STIFF = np.array([1000.0, 2000.0])
+"""Two ϖ from which K is computed: higher orders contribute at smaller ϖ, and rounding errors at
+much larger ϖ."""
+
+
+def cascades(parameters: Cascades, release: Release) -> xr.Dataset:
+    """Λ at the period doublings of the orbits of 2ᵏ n table periods, k = 0, 1, …
+
+    ``restitution_cascade`` (restitution, doubling) is Λ of the restitution model.
+    ``cascade_ratio`` (restitution, step) are the ratios of successive distances in Λ, which tend to
+    Feigenbaum's number, and ``contact_cascade_ratio`` (restitution, step, ϖ) those of the contact.
+    ``cascade_error`` (model, restitution, doubling, ϖ) is the signed relative error of each simple
+    model. To leading order, the error of the restitution model is K/ϖ, where K is
+    ``cascade_coefficient`` (restitution, doubling), and that of the corrected model is C/ϖ², where
+    C is ``cascade_second_order``. Both are measured at two stiff contacts, and the next order is
+    eliminated (Richardson). Values are NaN where a doubling was not found. ``measured_cascade``
+    (doubling,) is Λ of a measurement.
+    """
+    r, ratios = np.array(parameters.restitution), parameters.frequency_ratio.grid()
+    known = np.array(parameters.measured.amplitudes) / _GRAVITY
+    known *= (2 * np.pi * parameters.measured.frequency) ** 2
+    measured = np.pad(known, (0, parameters.doublings - known.size), constant_values=np.nan)
+    along = np.concatenate([ratios, _STIFF])
+    contact = SpringDamper.from_restitution(r[:, np.newaxis], along, release)
+    # The restitution model has the r of a free impact on the contact and does not depend on ϖ.
+    of_models = models(contact[:, :1])[1], models(contact)[2], models(contact)[0]
+    simple, corrected, exact = (
+        cascade(model.period_doubling(parameters.n), parameters.doublings) for model in of_models
+    )
+    errors = np.stack([exact.amplitude / x.amplitude - 1 for x in (simple, corrected)])
+    once, twice = np.moveaxis(
+        errors[..., -2:] * _STIFF ** np.array([1, 2]).reshape(2, 1, 1, 1), -1, 0
+    )
+    first, second = (2 * twice - once).swapaxes(1, 2)
+    error = errors[..., : ratios.size].swapaxes(1, 2)
+    of_contact = exact.ratios()[..., : ratios.size].swapaxes(0, 1)
+    return described(
+        {
+            "restitution_cascade": (("restitution", "doubling"), simple.amplitude[..., 0].T),
+            "measured_cascade": ("doubling", measured),
+            "cascade_ratio": (("restitution", "step"), simple.ratios()[..., 0].T),
+            "contact_cascade_ratio": (("restitution", "step", "frequency_ratio"), of_contact),
+            "cascade_error": (("model", "restitution", "doubling", "frequency_ratio"), error),
+            "cascade_coefficient": (("restitution", "doubling"), first),
+            "cascade_second_order": (("restitution", "doubling"), second),
+        },
+        coords={
+            "model": ["restitution", "corrected"],
+            "restitution": r,
+            "doubling": np.arange(parameters.doublings),
+            "step": np.arange(1, parameters.doublings - 1),
+            "frequency_ratio": ratios,
+        },
+        variables=VARIABLES,
+    )

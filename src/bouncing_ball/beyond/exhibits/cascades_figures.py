@@ -1,0 +1,72 @@
+"""The cascade of flights: openings of the long contact over ϖ, and their limits.
+
+The shift of cascades of period doublings by the contact, and the errors of both simple
+models.
+"""
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from bouncing_ball.datasets.selection import each
+from bouncing_ball.drawing.canvas import WIDE, canvas, coloured, legend_below, logarithmic
+from bouncing_ball.drawing.labels import number, parameters
+from bouncing_ball.drawing.style import COLOURS, GUIDE, MODELS
+
+_DASHES = ("-", (0, (6, 1.5)), (0, (4, 1.5, 1, 1.5)), (0, (2, 1)))
+_RATIO = r"frequency ratio $\varpi$"
+
+
+def cascade_of_flights(data: xr.Dataset) -> Figure:
+    """ext_flights: E of the openings over ϖ for the first r, and their limits for all r."""
+    figure, (left, right) = canvas(WIDE, 3.2, columns=2)
+    shown, ratio = data.isel(restitution=0), data.frequency_ratio.values
+    excess = ratio**2 * (shown.opening_amplitude - shown.threshold_amplitude)
+    for one, line, colour in zip(each(shown, "flights"), excess, COLOURS, strict=False):
+        k = int(one.flights)
+        name = rf"from {k} to {k + 1}, $E_{k}$"
+        left.plot(ratio, line, color=colour, linestyle=_DASHES[k % 4], label=name)
+        left.plot(ratio[-1], one.stiff_opening, marker=5, color=colour, clip_on=False)
+    ylabel = r"$E=\varpi^2\,(\Lambda-\Lambda_{SD})$"
+    title = rf"flights in a period, $r={number(float(shown.restitution))}$"
+    logarithmic(left, xlabel=_RATIO, yscale="log", ylabel=ylabel, title=title)
+    left.legend(loc="upper left")
+    for one, colour in coloured(data.sortby("restitution"), "restitution"):
+        r, limits = float(one.restitution), one.stiff_opening.values
+        right.plot(data.flights, limits, "o-", color=colour, markersize=3, label=number(r))
+        right.plot(data.flights, limits[-1] * r ** (2 * (data.flights[-1] - data.flights)), **GUIDE)
+    right.set(yscale="log", xlabel="opening $k$", ylabel=r"$E_k$ for $\varpi\to\infty$")
+    right.set(xticks=data.flights.values, title=r"limits; dotted: $E_{k+1}/E_k=1/r^2$")
+    right.legend(loc="upper left", title="$r$, from above")
+    return figure
+
+
+_CASCADE_DASHES = ("-", (0, (6, 1.5)), (0, (4, 1.5, 1, 1.5)), (0, (2, 1)), (0, (1, 1.5)))
+
+
+def cascades(data: xr.Dataset) -> Figure:
+    """Errors of both models at each doubling along ϖ; K over the doublings for each r."""
+    figure, (errors, law) = canvas(WIDE, 3.2, columns=2)
+    shown = data.isel(restitution=data.sizes["restitution"] // 2)
+    ratio = data.frequency_ratio.values
+    lines = []
+    for order, model in enumerate(data["model"].values, 1):
+        one = np.abs(shown.cascade_error.sel(model=model))
+        look = MODELS[model] | {"linewidth": 0.9}
+        lines.append(errors.plot(ratio, one.transpose("frequency_ratio", ...), **look)[0])
+        guide = float(one.isel(doubling=-1, frequency_ratio=-1)) * (ratio[-1] / ratio) ** order
+        errors.plot(ratio, guide, **GUIDE)
+    logarithmic(errors, xlabel=r"frequency ratio $\varpi$", yscale="log", ylim=(1e-8, 1))
+    errors.set_ylabel(r"relative error of $\Lambda$ at the period doublings")
+    chosen = rf"{parameters(data, 'n')}, $r$ = {float(shown.restitution):g}"
+    errors.set_title(f"{chosen}; all doublings; dotted: slopes 1, 2")
+    for r, colour, dashes in zip(data.restitution.values, COLOURS, _CASCADE_DASHES, strict=False):
+        one = data.cascade_coefficient.sel(restitution=r)
+        name = rf"$r$ = {r:g}"
+        law.plot(data.doubling, one, "o", color=colour, linestyle=dashes, markersize=3, label=name)
+    law.axhline(0, color="#8c8c8c", linewidth=0.6)
+    law.set(xlabel=r"$k$ of the orbit of $2^k$ impacts", ylabel=r"$K_k$ of the error $K_k/\varpi$")
+    law.set(title="$K_k$ has a limit: the cascade shifts as a whole", xticks=data.doubling)
+    law.legend(loc="best")
+    legend_below(figure, lines, labels=[f"{x} model" for x in data["model"].values], ncols=2)
+    return figure

@@ -1,0 +1,245 @@
+r"""Errors due to the time steps of physics engines, compared with those of the models (beyond the
+paper).
+
+A contact that an engine resolves by N time steps has the restitution r_N of its scheme, which
+depends on the fraction of a step at which the contact begins (:mod:`bouncing_ball.beyond.engines.scheme`).
+The ball is therefore simulated here from event to event with the exact contact that has this r,
+which changes from impact to impact. Errors of heights are relative to the height of the engine, or
+of the model, as in Eq. 37. The results of the engines are read from the accepted dataset of their
+runs.
+"""
+
+from collections.abc import Mapping
+from typing import Annotated
+
+import numpy as np
+import xarray as xr
+from pydantic import AfterValidator, Strict
+
+from bouncing_ball.beyond.corrected.errors import SIMPLE, errors
+from bouncing_ball.beyond.engines.scheme import Scheme, restitution_in_steps
+from bouncing_ball.beyond.simulation import next_impact
+from bouncing_ball.datasets.parameters import Family, Many, Parameters, Restitution, Seed, number
+from bouncing_ball.datasets.selection import index_of
+from bouncing_ball.datasets.variables import Variable, describe
+from bouncing_ball.paper.comparison.errors import relative
+from bouncing_ball.paper.contact.damping import Release, damping_ratio
+from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.orbits.orbit import Orbit
+from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+
+VARIABLES = {
+    "engine": Variable("physics engine"),
+    "engine_version": Variable("version of an engine that ran"),
+    "measured_restitution": Variable(
+        "restitution of an engine's free impact that is farthest from the one asked for"
+    ),
+    "free_steps": Variable("time steps in a contact from which on r is within the tolerance of it"),
+    "contact_steps": Variable("time steps in a contact of an engine's orbit"),
+    "height_error": Variable(
+        "relative error of the greatest height, mean over the cycles (positive: too low)",
+        budget=1e-12,
+        scale="1",
+    ),
+    "height_scatter": Variable(
+        "standard deviation of the relative errors of the greatest heights", budget=1e-12, scale="1"
+    ),
+    "step_scatter": Variable(
+        "root mean square of the relative errors of the greatest heights, simulated with contacts at random fractions of a time step",
+        budget=1e-11,
+    ),
+    "bounce_time": Variable(
+        "processor time for a bounce over that of the simulation from event to event"
+    ),
+    "model_time": Variable(
+        "processor time for a bounce in a model's simulation over that of the spring-damper"
+    ),
+    "bounce_steps": Variable("time steps of an engine in a period of an orbit"),
+    "bounce_error": Variable(
+        "root mean square of the relative errors of the greatest heights, in an engine",
+        budget=1e-12,
+        scale="1",
+    ),
+    "single_steps": Variable("time steps in a contact of a single bounce of an engine"),
+    "single_bounce": Variable("time steps of an engine in a period of a single bounce"),
+    "single_error": Variable(
+        "root mean square of the relative errors of single bounces in an engine",
+        budget=1e-12,
+        scale="1",
+    ),
+    "model_error": Variable(
+        "relative error of the greatest height in a model", budget=1e-12, scale="1"
+    ),
+    "scheme": Variable("time stepping of engines"),
+    "steps": Variable("time steps in a contact", symbol="N"),
+    "step_error": Variable(
+        "root mean square of the relative errors of the greatest heights, simulated with the r of N steps",
+        budget=1e-11,
+    ),
+    "steps_in_bounce": Variable("time steps in a period of the orbit"),
+    "equal_steps": Variable(
+        "time steps in a period of the orbit for the corrected model's error", budget=1e-09
+    ),
+}
+Steps = Annotated[int, number("time steps in a contact, at least 8 to resolve it", ge=8, le=131072)]
+
+
+class EngineOrbit(Parameters):
+    """One of the orbits that were run in the engines, and how it is simulated here in few and in
+    many time steps.
+    """
+
+    n: Family
+    restitution: Restitution
+    release: Annotated[Release, Strict(False)]
+    steps: Annotated[Many[Steps], AfterValidator(sorted)]
+    balls: Annotated[int, number("balls in each simulation", ge=1, le=1000)]
+    transient: Annotated[int, number("number of first impacts that are skipped", ge=0, le=1000)]
+    impacts: Annotated[int, number("number of impacts that are recorded", ge=1, le=1000)]
+    seed: Seed
+
+
+def greatest_heights(orbit: Orbit, restitution: np.ndarray) -> np.ndarray:
+    """Greatest heights of balls that start on orbits, with a given r at each impact.
+
+    Parameters
+    ----------
+    orbit : Orbit
+        Of spring-damper contacts, shape (...).
+    restitution : ndarray, shape (impacts, ...)
+
+    Returns
+    -------
+    ndarray, shape (impacts, ...)
+        The greatest heights of the flights after the impacts.
+
+    Examples
+    --------
+    >>> from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+    >>> orbit = SpringDamperModel(SpringDamper(10.0, damping_ratio(0.85))).orbit(1, 1.0)
+    >>> tops = greatest_heights(orbit, np.full(5, 0.85))
+    >>> bool(np.all(abs(tops / orbit.max_height - 1) < 1e-12))
+    True
+    """
+    contact, lam, tops = orbit.law, orbit.amplitude, []
+    phase, speed = orbit.phase, orbit.relative_impact_velocity
+    for zeta in damping_ratio(restitution, contact.release):
+        law = SpringDamper(contact.frequency_ratio, zeta, contact.release)
+        phase, speed, *_ = next_impact(law, lam, phase, speed)
+        velocity = lam * np.cos(phase) + speed
+        tops.append(lam * np.sin(phase) + velocity * velocity / 2)
+    return np.array(tops)
+
+
+def step_errors(orbit: Orbit, parameters: EngineOrbit) -> np.ndarray:
+    """Root mean square errors of the height of a bounce, shape (scheme, orbit, steps).
+
+    Each impact begins at a random fraction of a time step; the fractions are the same in all
+    simulations.
+    """
+    p, zeta = parameters, float(np.ravel(orbit.law.damping_ratio)[0])
+    tables = np.array(
+        [[restitution_in_steps(x, zeta, p.release, k) for k in p.steps] for x in Scheme]
+    )
+    rng = np.random.default_rng(p.seed)
+    places = rng.integers(tables.shape[-1], size=(p.transient + p.impacts, p.balls))
+    # (impact, scheme, orbit, steps, ball)
+    drawn = np.moveaxis(tables[..., places], 2, 0)[:, :, np.newaxis]
+    drawn = np.broadcast_to(drawn, (*drawn.shape[:2], orbit.size, *drawn.shape[3:]))
+    every = orbit[:, np.newaxis, np.newaxis]
+    tops = greatest_heights(every, drawn)[p.transient :]
+    return np.sqrt(np.mean(relative(every.max_height, tops) ** 2, axis=(0, -1)))
+
+
+def model_errors(orbit: Orbit, impacts: int) -> np.ndarray:
+    """Relative errors of the height in the simple models and the simulation, shape (model, ...).
+
+    The simulation runs from event to event; its error is the largest over ``impacts`` impacts.
+    """
+    off = errors(orbit.law, orbit.n, orbit.amplitude, ["max_height"])[:, 0]
+    own = np.broadcast_to(orbit.law.restitution, (impacts, *orbit.amplitude.shape))
+    tops = greatest_heights(orbit, own)
+    return np.array([*off, np.max(np.abs(relative(orbit.max_height, tops)), axis=0)])
+
+
+def steps_of(steps: np.ndarray, errors: np.ndarray, error: float) -> float:
+    """The number of steps with a given error, by a power law between neighbouring errors.
+
+    Parameters
+    ----------
+    steps, errors : array, shape (count,)
+        Rising numbers of steps in a contact, and the errors that they cause, which fall.
+    error : float
+        The error that is wanted, above zero.
+
+    Returns
+    -------
+    float
+        Not rounded; NaN outside the range of ``errors``.
+
+    Examples
+    --------
+    >>> round(steps_of(np.array([10, 100]), np.array([0.1, 0.01]), 0.02), 12)
+    50.0
+    """
+    log = -np.log(error), -np.log(errors), np.log(steps)
+    return float(np.exp(np.interp(*log, left=np.nan, right=np.nan)))
+
+
+def conformance(data: Mapping[str, xr.Dataset], parameters: EngineOrbit) -> xr.Dataset:
+    """The accepted runs of the engines beside the models, and the part that their schemes explain.
+
+    Parameters
+    ----------
+    data : mapping
+        ``engines``, the dataset of the runs.
+    parameters : EngineOrbit
+        The orbit of which bounces are simulated over the steps in a contact.
+
+    Returns
+    -------
+    xarray.Dataset
+        The variables of the runs, and over their dimensions ``bounce_steps``, the time steps in a
+        period, and ``bounce_error``, the root mean square error of a bounce; ``single_bounce`` are
+        the time steps in a period of the ``single_error``.
+        ``model_error`` is over (release, model, restitution, n, frequency_ratio), and for the
+        spring-damper it is the error of its simulation. For one orbit there are ``step_error`` over
+        (scheme, frequency_ratio, steps), see :func:`step_errors`, ``steps_in_bounce``, the time
+        steps in a period, and ``equal_steps`` over (scheme, frequency_ratio), those of the
+        corrected model's error by :func:`steps_of`.
+
+    Raises
+    ------
+    ModelError
+        If the engines did not run this orbit.
+    """
+    runs = data["engines"]
+    along = ("restitution", "n", "frequency_ratio")
+    r, n, ratio = (runs[name].values for name in along)
+    place = [index_of(runs[name], name, getattr(parameters, name)) for name in along[:2]]
+    shown = index_of(runs.release, "release", parameters.release)
+    off, per_step, orbits = [], [], []
+    for rule in map(Release.of, runs.release.values):
+        contact = SpringDamper(ratio, damping_ratio(r[:, np.newaxis, np.newaxis], rule), rule)
+        lam = runs.amplitude.sel(release=rule).transpose(*along).values
+        orbits.append(SpringDamperModel(contact).orbit(n[:, np.newaxis], lam))
+        off.append(model_errors(orbits[-1], parameters.transient + parameters.impacts))
+        per_step.append(2 * np.pi * n[:, np.newaxis] / contact.free_duration)
+    off, per_step = np.array(off), np.array(per_step)
+    simulated = step_errors(orbits[shown][*place], parameters)
+    corrected = np.abs(off[shown, SIMPLE.index("corrected")][*place])
+    in_bounce = per_step[shown][*place, :, np.newaxis] * parameters.steps
+    equal = [list(map(steps_of, in_bounce, each, corrected)) for each in simulated]
+    found = {
+        "bounce_steps": runs.contact_steps * xr.DataArray(per_step, dims=("release", *along)),
+        "bounce_error": np.hypot(runs.height_error, runs.height_scatter),
+        "single_bounce": runs.single_steps * xr.DataArray(per_step[shown][*place], dims=along[2]),
+        "model_error": (("release", "model", *along), off),
+        "step_error": (("scheme", "frequency_ratio", "steps"), simulated),
+        "steps_in_bounce": (("frequency_ratio", "steps"), in_bounce),
+        "equal_steps": (("scheme", "frequency_ratio"), equal),
+    }
+    axes = {"model": [*SIMPLE, "spring-damper"], "scheme": [*Scheme], "steps": [*parameters.steps]}
+    return describe(
+        runs.assign_coords(axes).assign(found).drop_attrs(deep=False), variables=VARIABLES
+    )

@@ -1,0 +1,126 @@
+"""Random orbits with all their quantities, and motions of balls, as references for other programs.
+
+The page of the explorer computes them again in the reader's browser.
+"""
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.beyond.corrected.errors import models
+from bouncing_ball.beyond.exhibits.random_orbits import random_orbits
+from bouncing_ball.beyond.long_run.destination import label
+from bouncing_ball.beyond.simulation import simulate
+from bouncing_ball.datasets.parameters import Parameters, Seed, Span
+from bouncing_ball.datasets.variables import Variable, describe
+from bouncing_ball.paper.contact.damping import Release, restitution_coefficient
+from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.orbits.orbit import OBSERVABLES
+
+VARIABLES = {
+    "trace": Variable("trace of the monodromy", symbol="tr"),
+    "determinant": Variable("determinant of the monodromy", symbol="det"),
+    "restitution_trace": Variable("trace of the monodromy, restitution model", symbol="tr"),
+    "restitution_period_doubling": Variable(
+        "amplitude of the period doubling, restitution model", symbol="Λ_PD"
+    ),
+    "corrected_phase": Variable("phase of impact, corrected model", symbol="φ", units="rad"),
+    "corrected_trace": Variable("trace of the monodromy, corrected model", symbol="tr"),
+    "corrected_saddle_node": Variable(
+        "amplitude of the saddle-node, corrected model", symbol="Λ_SN"
+    ),
+    "corrected_period_doubling": Variable(
+        "amplitude of the period doubling, corrected model", symbol="Λ_PD"
+    ),
+    "corrected_max_height": Variable("greatest height, corrected model", symbol="max z"),
+    "velocity": Variable("velocity of the ball before the first impact", symbol="z′_i"),
+    "end_impact": Variable("number of that impact, from 0"),
+    "end_time": Variable(
+        "time of that impact since the first one, or of the rest that follows it", symbol="τ"
+    ),
+    "ball_restitution": Variable("restitution coefficient of a ball that is followed", symbol="r"),
+    "ball_frequency_ratio": Variable(
+        "frequency ratio of the contact of a ball that is followed", symbol="ϖ"
+    ),
+    "ball_amplitude": Variable("amplitude of the table of a ball that is followed", symbol="Λ"),
+}
+# Part of the restitution model's stable range, from near its saddle-node (0) to beyond its
+# period doubling (1).
+_PLACES = (0.02, 1.2)
+# Balls that end at rest, on an orbit, on a period-doubled orbit, and on a locked orbit. None is
+# near chaos, where the results of two computers differ.
+_GIVEN = ("ball_restitution", "ball_frequency_ratio", "ball_amplitude", "start_phase", "velocity")
+_BALLS = np.broadcast_arrays(0.5, 80.0, [0.6, 1.2, 1.6, 2.5], 1.0, -3.0)
+_ENDS = ("periods", "impacts", "end_impact", "end_phase", "end_speed", "end_time")
+
+
+class References(Parameters):
+    """Frequency ratios, for each of which one contact and one orbit are drawn at random."""
+
+    frequency_ratio: Span
+    seed: Seed
+
+
+def reference_orbits(parameters: References) -> xr.Dataset:
+    """One random orbit for each ϖ of a grid, under each release rule.
+
+    All variables have the shape (release, sample): the contact and the orbit (``n``,
+    ``restitution`` by Eq. 16, ``frequency_ratio``, ``amplitude``), its observables with the phase
+    in rad, ``trace`` and ``determinant`` of the monodromy, its bifurcations, ``ball`` and
+    ``contact_force`` in the middle of the contact, and values of both simple models
+    (``restitution_…``, ``corrected_…``). NaN where there is no orbit or no bifurcation.
+
+    The balls have the shape (model, motion): how they start (``ball_…``, ``start_phase``,
+    ``velocity``), the ``periods`` and ``impacts`` until they repeat, and number, phase, speed and
+    time of their impact number 100, or of the last one before they rest (``end_…``); the sum of
+    infinitely many impacts is included in the time.
+    """
+    omega = parameters.frequency_ratio.grid()
+    parts = [_under(rule, omega, parameters.seed + k) for k, rule in enumerate(Release)]
+    orbits = xr.concat(parts, dim="release").assign_coords(release=[str(rule) for rule in Release])
+    return describe(orbits.merge(_followed()), variables=VARIABLES)
+
+
+def _followed() -> xr.Dataset:
+    r, omega, lam, phase, velocity = _BALLS
+    ends = []
+    for law in (r, SpringDamper.from_restitution(r, omega, Release.DISPLACEMENT)):
+        found, run = label(law, lam, phase, velocity), simulate(law, lam, phase, velocity, 100)
+        last = run.impacts - 1, np.arange(r.size)
+        at = run.phase, -run.relative_velocity, run.time + run.settling
+        ends.append([found.periods, found.impacts, last[0], *(values[last] for values in at)])
+    given = {name: ("motion", values) for name, values in zip(_GIVEN, _BALLS, strict=True)}
+    results = zip(_ENDS, np.swapaxes(ends, 0, 1), strict=True)
+    of_models = {name: (("model", "motion"), values) for name, values in results}
+    return xr.Dataset(given | of_models, {"model": ["restitution", "spring-damper"]})
+
+
+def _under(rule: Release, omega: np.ndarray, seed: int) -> xr.Dataset:
+    n, zeta, lam, _ = random_orbits(omega.size, seed, rule, _PLACES)
+    r = restitution_coefficient(zeta)
+    exact, simple, corrected = models(SpringDamper.from_restitution(r, omega, rule))
+    orbit = exact.orbit(n, lam)
+    trace, determinant = orbit.trace_and_determinant()
+    by_r, repaired = simple.orbit(n, lam), corrected.orbit(n, lam)
+    middle = orbit.contact_duration / 2
+    values = {
+        "n": n,
+        "restitution": r,
+        "frequency_ratio": omega,
+        "amplitude": lam,
+        **{name: getattr(orbit, name) for name in OBSERVABLES[1:]},
+        "trace": trace,
+        "determinant": determinant,
+        "saddle_node_amplitude": exact.saddle_node(n).amplitude,
+        "period_doubling_amplitude": exact.period_doubling(n).amplitude,
+        "ball": orbit.contact_path(middle)[0],
+        "contact_force": exact.contact.force(*-np.array(orbit.contact_motion(middle))),
+        "restitution_phase": by_r.phase,
+        "restitution_trace": by_r.trace_and_determinant()[0],
+        "restitution_period_doubling": simple.period_doubling(n).amplitude,
+        "corrected_phase": repaired.phase,
+        "corrected_max_height": repaired.max_height,
+        "corrected_trace": repaired.trace_and_determinant()[0],
+        "corrected_saddle_node": corrected.saddle_node(n).amplitude,
+        "corrected_period_doubling": corrected.period_doubling(n).amplitude,
+    }
+    return xr.Dataset({name: ("sample", np.asarray(value)) for name, value in values.items()})

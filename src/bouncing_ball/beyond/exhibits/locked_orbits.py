@@ -1,0 +1,334 @@
+"""How long balls wander before they lock, in the restitution model and in contacts.
+
+At which ϖ a contact has the locked orbit of the restitution model (beyond the paper).
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import Annotated
+
+import numpy as np
+import xarray as xr
+from scipy.stats import CensoredData, chi2, ecdf, norm, spearmanr
+
+from bouncing_ball.beyond.exhibits.motion_samples import (
+    Confidence,
+    Grid,
+    exponent,
+    models,
+    share,
+    with_limits,
+)
+from bouncing_ball.beyond.long_run.destination import label
+from bouncing_ball.beyond.long_run.lift_off import returns
+from bouncing_ball.beyond.long_run.motions import Kind
+from bouncing_ball.datasets.parameters import (
+    Amplitude,
+    FrequencyRatio,
+    LossyRestitution,
+    Many,
+    Parameters,
+    Seed,
+    Sharded,
+    number,
+)
+from bouncing_ball.datasets.shards import Arrays, Found, Part
+from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.paper.contact.damping import Release
+
+VARIABLES = {
+    "node": Variable("place in the plane of amplitude and restitution coefficient"),
+    "sensitivity": Variable(
+        "derivative of the phase at which chattering ends by 1/ϖ, its magnitude", symbol="S"
+    ),
+    "wait": Variable("phase from the end of chattering to the lift-off", symbol="w"),
+    "same": Variable(
+        "share of the places at which the contact locks with the restitution model's period"
+    ),
+    "same_low": Variable(
+        "lower limit of the confidence interval of the share with the same period"
+    ),
+    "same_high": Variable(
+        "upper limit of the confidence interval of the share with the same period"
+    ),
+    "predicted": Variable(
+        "frequency ratio over the predicted one, middle of a range", symbol="ϖ w/S"
+    ),
+    "same_by_prediction": Variable("share with the same period by the prediction"),
+    "same_by_prediction_low": Variable(
+        "lower limit of the confidence interval of the share by the prediction"
+    ),
+    "same_by_prediction_high": Variable(
+        "upper limit of the confidence interval of the share by the prediction"
+    ),
+    "predictor": Variable("what predicts the needed frequency ratio"),
+    "rank_correlation": Variable("rank correlation of a predictor with the needed frequency ratio"),
+    "rank_correlation_low": Variable(
+        "lower limit of the confidence interval of the rank correlation"
+    ),
+    "rank_correlation_high": Variable(
+        "upper limit of the confidence interval of the rank correlation"
+    ),
+    "jump_share": Variable("share of the places whose locked period changes with the amplitude"),
+    "jump_share_low": Variable(
+        "lower limit of the confidence interval of the share next to a discontinuity"
+    ),
+    "jump_share_high": Variable(
+        "upper limit of the confidence interval of the share next to a discontinuity"
+    ),
+    "life_ratio": Variable(
+        "frequency ratio of the contact, infinite for the restitution model", symbol="ϖ"
+    ),
+    "life": Variable("time from the start in periods of the table"),
+    "survival": Variable("share of the balls that are not on their locked orbit yet"),
+    "mean_life": Variable("mean time until a ball is on its locked orbit in periods of the table"),
+    "mean_life_low": Variable(
+        "lower limit of the confidence interval of the mean time until a ball is locked"
+    ),
+    "mean_life_high": Variable(
+        "upper limit of the confidence interval of the mean time until a ball is locked"
+    ),
+    "chaotic_share": Variable("share of the balls that are chaotic to the end"),
+    "chaotic_share_low": Variable(
+        "lower limit of the confidence interval of the share that is chaotic to the end"
+    ),
+    "chaotic_share_high": Variable(
+        "upper limit of the confidence interval of the share that is chaotic to the end"
+    ),
+}
+# Distance from an impact of the final motion within which a ball has reached this motion.
+_NEAR = 1e-3
+# Number of times at which the survival is given.
+_TIMES = 60
+
+
+class Place(Parameters):
+    """One r and one Λ."""
+
+    restitution: LossyRestitution
+    amplitude: Amplitude
+
+
+class Transients(Sharded):
+    """Balls with random starts, at several places."""
+
+    cases: Many[Place]
+    frequency_ratio: Many[FrequencyRatio]
+    balls: Annotated[int, number("random starts for each case and ϖ", ge=10, le=10000)]
+    impacts: Annotated[int, number("largest number of impacts of a ball", ge=50, le=100000)]
+    confidence: Confidence
+    seed: Seed
+
+
+def columns(cases: Sequence[Place]) -> np.ndarray:
+    """The values of cases in the order of their fields, shape (values, cases)."""
+    return np.array([[value for _, value in case] for case in cases]).T
+
+
+def mean_life(time: np.ndarray, ends: np.ndarray, confidence: float) -> tuple[float, ...]:
+    """Mean life at a constant rate, and its limits, from times until an end or until censoring.
+
+    It is the sum of all times over the number of ends; its interval is that of a Poisson count.
+
+    Parameters
+    ----------
+    time : array, shape (count,)
+        Times until the end of each life, or until it is no longer observed.
+    ends : array of bool, shape (count,)
+        Whether the end was observed.
+    confidence : float
+        The probability with which the interval contains the mean life, in (0, 1).
+
+    Returns
+    -------
+    tuple of float
+        Mean, lower limit and upper limit, in the unit of the times; the mean and the upper limit
+        are infinite if no end was observed.
+
+    Examples
+    --------
+    >>> float(mean_life(np.array([1.0, 3.0]), np.array([True, False]), 0.95)[0])
+    4.0
+    """
+    total, count = time.sum(), ends.sum()
+    low = 2 * total / chi2.ppf((1 + confidence) / 2, 2 * count + 2)
+    if not count:
+        return np.inf, low, np.inf
+    return total / count, low, 2 * total / chi2.ppf((1 - confidence) / 2, 2 * count)
+
+
+def lives(parameters: Transients, release: Release, part: Part = np.asarray) -> Arrays:
+    """Times until balls reach the motion on which they end, and the kinds of these motions.
+
+    Returns
+    -------
+    dict of array
+        ``life`` in periods of the table, counted up to the last impact if the ball does not lock,
+        and ``life_kind``, shape (case, life_ratio, ball). The restitution model is the last along
+        ``life_ratio``.
+    """
+    random, balls = np.random.default_rng(parameters.seed), parameters.balls
+    phase, speed = random.uniform(-np.pi, np.pi, balls), random.uniform(1.0, 9.0, balls)
+    phase, speed = part(np.stack([phase, speed]))
+    r, table = columns(parameters.cases)[..., np.newaxis, np.newaxis]
+    start = table, phase, table * np.cos(phase) - speed
+    times, kinds = [], []
+    simple, _, contact = models(r, np.array(parameters.frequency_ratio)[:, np.newaxis], release)
+    for model in (contact, simple):
+        shape = np.broadcast_shapes(model.shape, table.shape, phase.shape)
+        passed, at, velocity = path = np.full((3, parameters.impacts, *shape), np.nan)
+        found = label(model.impact_law, *start, impacts=parameters.impacts, path=path)
+        apart = np.abs(reduce_angle(at - found.end_phase))
+        apart = np.maximum(apart, np.abs(velocity - found.end_velocity))
+        kinds.append(found.kind)
+        last = np.where(found.kind == Kind.LOCKED, (apart < _NEAR).argmax(axis=0), len(at) - 1)
+        times.append(np.take_along_axis(passed, last[np.newaxis], axis=0)[0] / (2 * np.pi))
+    return {"life": np.concatenate(times, axis=1), "life_kind": np.concatenate(kinds, axis=1)}
+
+
+def transients(parameters: Transients, release: Release, found: Found = None) -> xr.Dataset:
+    """The shares of balls that have not yet reached the motion on which they lock.
+
+    ``survival`` (case, life_ratio, life) is the estimate of Kaplan and Meier, over the time in
+    periods of the table. ``mean_life`` (case, life_ratio) and its limits are also in periods; see
+    :func:`mean_life`. A ball that is not found to lock is censored at its last impact, and a ball
+    that ends on an orbit without sticking is left out. If some balls lock, those that are chaotic
+    to the end are taken to be on another attractor and left out of the mean life;
+    ``chaotic_share`` (case, life_ratio) is their share of all. The restitution model has ϖ = ∞.
+    ``case_restitution`` and ``case_amplitude`` are over the case.
+    """
+    found, (r, lam) = found or lives(parameters, release), columns(parameters.cases)
+    time, kind = found["life"], found["life_kind"]
+    end, other = kind == Kind.LOCKED, (kind == Kind.ORBIT) | (kind == Kind.SUBHARMONIC)
+    chaotic = kind == Kind.CHAOTIC
+    apart = chaotic & end.any(axis=-1, keepdims=True)
+    grid, level = np.geomspace(1, parameters.impacts, _TIMES), parameters.confidence
+    shape = time.shape[:-1]
+    survival, (life, lasting) = np.empty((*shape, _TIMES)), np.empty((2, *shape, 3))
+    for k in np.ndindex(shape):
+        own, locks = time[k][~other[k]], end[k][~other[k]]
+        survival[k] = ecdf(CensoredData.right_censored(own, ~locks)).sf.evaluate(grid)
+        stays = ~(other | apart)[k]
+        life[k] = mean_life(time[k][stays], end[k][stays], level)
+        lasting[k] = share(chaotic[k], level)[1:]
+    dims = ("case", "life_ratio")
+    return described(
+        {
+            "survival": ((*dims, "life"), survival),
+            **with_limits({"mean_life": (dims, life), "chaotic_share": (dims, lasting)}),
+            "case_restitution": ("case", r),
+            "case_amplitude": ("case", lam),
+        },
+        coords={"life_ratio": [*parameters.frequency_ratio, np.inf], "life": grid},
+        variables=VARIABLES,
+    )
+
+
+# Edges of the ranges of ϖ w/S.
+_EDGES = np.geomspace(1e-4, 1e4, 17)
+PREDICTORS = ("S/w", "periods")
+
+
+class LockedOrbits(Grid):
+    """Random places in a range of (Λ, r), and places at which transients are followed."""
+
+    nodes: Annotated[int, number("random places", ge=10, le=100000)]
+    shifts: Many[Annotated[float, number("changes of Λ", gt=0, le=1)]]
+    seed: Seed
+
+    def places(self) -> np.ndarray:
+        random, of = np.random.default_rng(self.seed), (self.restitution, self.amplitude)
+        return np.array([random.uniform(x.min, x.max, self.nodes) for x in of])
+
+
+def correlation(one: np.ndarray, other: np.ndarray, confidence: float) -> np.ndarray:
+    """Spearman's rank correlation with its limits (D. G. Bonett and T. A. Wright, 2000).
+
+    Parameters
+    ----------
+    one, other : array, shape (count,)
+        Pairs of values; only their ranks count, so that infinite values are allowed.
+    confidence : float
+        The probability with which the interval contains the correlation, in (0, 1).
+
+    Returns
+    -------
+    array, shape (3,)
+        The correlation, its lower limit and its upper limit.
+    """
+    rho = spearmanr(one, other).statistic
+    width = norm.ppf((1 + confidence) / 2) * np.sqrt((1 + rho**2 / 2) / (one.size - 3))
+    return np.array([rho, *np.tanh(np.arctanh(rho) + width * np.array([-1, 1]))])
+
+
+def returns_at_places(
+    parameters: LockedOrbits, release: Release, part: Part = np.asarray
+) -> Arrays:
+    """The returns of the restitution model at each place, and whether the contact locks as it does.
+
+    Returns
+    -------
+    dict of array
+        The fields of :class:`~bouncing_ball.beyond.long_run.lift_off.Return`, shape (change, place),
+        first without a change of Λ and then with each change; and ``same``, shape (ϖ, place),
+        whether the contact has a locked orbit of the same period.
+    """
+    r, lam = part(parameters.places())
+    ratios, shifts = (np.array([x]).T for x in (parameters.frequency_ratio, parameters.shifts))
+    found = returns(r, lam + np.concatenate([[[0.0]], shifts]), parameters.impacts)
+    contact = models(r, ratios, release)[-1].impact_law
+    motion = label(contact, lam, -np.pi / 2, 0.0, impacts=parameters.impacts)
+    same = (motion.kind == Kind.LOCKED) & (motion.periods == found.periods[0])
+    return {**found._asdict(), "same": same}
+
+
+def locked_orbits(
+    data: Mapping[str, xr.Dataset], parameters: LockedOrbits, release: Release, found: Found = None
+) -> xr.Dataset:
+    """The places at which a contact has the locked orbit of the restitution model, and predictors.
+
+    The places are uniformly distributed in Λ and r. Over ``node`` the dataset has ``restitution``
+    and ``amplitude``, and ``periods``, ``sensitivity`` S and ``wait`` w of
+    :func:`bouncing_ball.beyond.long_run.lift_off.returns`, which are 0 or NaN where the ball is not
+    found to stick again; such places are left out of all shares. ``needed_ratio`` is the smallest
+    of the given ϖ above which the contact locks with the same period after a rest on the table; it
+    is infinite if the contact does not do so at the largest ϖ.
+    ``same`` (frequency_ratio) is the share of places with the same period, and
+    ``same_by_prediction`` (predicted) this share in ranges of ϖ w/S, for all ϖ together.
+    ``rank_correlation`` (predictor) is the correlation of a predictor with the smallest ϖ.
+    ``jump_share`` (shift) is the share of places next to a discontinuity, at which the period
+    changes, or is not found, if Λ changes by the shift, and ``uncertainty_exponent`` its exponent.
+    Each has a lower and an upper limit, ``_low`` and ``_high``. The variables of
+    :func:`bouncing_ball.beyond.exhibits.locked_orbits.transients`, ``ext_lives``, are added.
+    """
+    found, level = found or returns_at_places(parameters, release), parameters.confidence
+    ratios, shifts = (np.array(x) for x in (parameters.frequency_ratio, parameters.shifts))
+    (r, lam), (period, *moved), same = parameters.places(), found["periods"], found["same"]
+    s, wait = found["sensitivity"][0], found["wait"][0]
+    sticks, changed = period > 0, np.array(moved) != period
+    right = np.logical_and.accumulate(same[::-1])[::-1]
+    least = np.where(right.any(axis=0), ratios[np.argmax(right, axis=0)], np.inf)
+    place = np.digitize(ratios[:, np.newaxis] * wait / s, _EDGES) - 1
+    by_place = [share(same[(place == k) & sticks], level)[1:] for k in range(_EDGES.size - 1)]
+    same, changed = same[:, sticks], changed[:, sticks]
+    correlations = [correlation(x[sticks], least[sticks], level) for x in (s / wait, period)]
+    nodes = {"restitution": r, "amplitude": lam, "periods": period, "sensitivity": s}
+    nodes |= {"wait": wait, "needed_ratio": np.where(sticks, least, np.nan)}
+    limited = {
+        "same": ("frequency_ratio", [share(x, level)[1:] for x in same]),
+        "same_by_prediction": ("predicted", by_place),
+        "rank_correlation": ("predictor", correlations),
+        "jump_share": ("shift", [share(x, level)[1:] for x in changed]),
+        "uncertainty_exponent": ((), exponent(changed.T, shifts, level)),
+    }
+    orbits = described(
+        {name: ("node", values) for name, values in nodes.items()} | with_limits(limited),
+        coords={
+            "frequency_ratio": ratios,
+            "predicted": np.sqrt(_EDGES[1:] * _EDGES[:-1]),
+            "predictor": list(PREDICTORS),
+            "shift": shifts,
+        },
+        variables=VARIABLES,
+    )
+    return orbits.merge(data["ext_lives"])

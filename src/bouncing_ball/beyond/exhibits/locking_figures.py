@@ -1,0 +1,59 @@
+"""The motions on which balls end in the three models, side by side on the same axes."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
+
+from bouncing_ball.beyond.exhibits.means_figures import _HIGHEST, _LOWEST
+from bouncing_ball.beyond.exhibits.motion_maps import (
+    _DOTS,
+    _LOCKED,
+    _LOOKS,
+    _OTHERS,
+    _PERIODS,
+    _RATES,
+    _draw_shares,
+    _key,
+    _node_map,
+)
+from bouncing_ball.drawing.canvas import legend_below, stacked
+from bouncing_ball.drawing.labels import number
+from bouncing_ball.drawing.style import Look
+
+
+def locking(data: xr.Dataset) -> Figure:
+    """Period of the locked orbit and largest exponent over (Λ, r) for each model; below, the share
+    of nodes on which the contact agrees with each simple model along ϖ.
+    """
+    figure, (maps, exponents, below) = stacked(8.0, (2.8, 2.8, 2.4))
+    kinds = maps.subplots(1, data.sizes["model"], sharex=True, sharey=True)
+    rates = exponents.subplots(1, data.sizes["model"], sharex=True, sharey=True)
+    ratio = number(float(data.frequency_ratio[0]))
+    look: Look = {"cmap": _RATES, "vmin": _LOWEST, "vmax": _HIGHEST}
+    for model, upper, lower in zip(data["model"].values, kinds, rates, strict=True):
+        one = data.sel(model=model)
+        _draw_kinds(upper, one)
+        rate = one.lyapunov_exponent.values.clip(_LOWEST)
+        shown = _node_map(lower, one, rate, ["permanent contact"], **look)
+        upper.set_title(model if model == "restitution" else rf"{model}, $\varpi={ratio}$")
+        lower.set_xlabel(r"amplitude $\Lambda$")
+    kinds[0].set_ylabel("restitution coefficient $r$")
+    rates[0].set_ylabel("restitution coefficient $r$")
+    bar: Look = {"location": "bottom", "aspect": 60, "shrink": 0.6, "extend": "both"}
+    label = r"largest Lyapunov exponent $\lambda$ per period of the table"
+    exponents.colorbar(shown, ax=list(rates), label=label, **bar)
+    legend_below(maps, _key(data), ncols=7, fontsize=7)
+    title = "contact against the {} model"
+    _draw_shares(below, data, "agreement", "motion_group", _LOOKS, title)
+    below.axes[0].set_ylabel("share of nodes with the\nsame kind and period")
+    return figure
+
+
+def _draw_kinds(axes: Axes, one: xr.Dataset) -> None:
+    place = np.searchsorted(_PERIODS, one.periods.values, side="right") - 1
+    for k, kind in enumerate(_OTHERS, len(_PERIODS)):
+        place[(one.kind == kind).values] = k
+    colours = ListedColormap([*_LOCKED, *_OTHERS.values()])
+    _node_map(axes, one, place, _DOTS, cmap=colours, vmin=-0.5, vmax=colours.N - 0.5)

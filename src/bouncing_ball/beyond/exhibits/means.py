@@ -1,0 +1,161 @@
+"""The ϖ above which a simple model has accurate means over a motion, over (Λ, r) (beyond the
+paper)."""
+
+from typing import Annotated
+
+import numpy as np
+import xarray as xr
+from scipy.stats import t as student
+
+from bouncing_ball.beyond.exhibits.motion_samples import LIMITS, SIMPLE, Grid, models, share
+from bouncing_ball.beyond.long_run.destination import label
+from bouncing_ball.beyond.long_run.means import means
+from bouncing_ball.datasets.parameters import Seed, Tolerance, number
+from bouncing_ball.datasets.shards import Arrays, Found, Part
+from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.paper.contact.damping import Release
+
+VARIABLES = {
+    "mean": Variable("mean over the motion on which a ball ends"),
+    "mean_error": Variable(
+        "difference of the contact's mean from the simple model's, relative to the latter"
+    ),
+    "mean_margin": Variable("half the width of the confidence interval of this error"),
+    "decision": Variable("what is known of this frequency ratio"),
+    "right": Variable("share of the nodes that are known to be right from this frequency ratio on"),
+    "right_low": Variable("lower limit of the confidence interval of the share known to be right"),
+    "right_high": Variable("upper limit of the confidence interval of the share known to be right"),
+    "right_nodes": Variable("nodes at which the simple model's mean is a number"),
+}
+DECISIONS = ("from this on", "not at any", "undecided", "no number")
+"""The result for the smallest ϖ above which a mean is accurate. In this order: it is known; even
+the largest ϖ is not enough; the interval of an error contains the tolerance; or the value of the
+simple model is infinite."""
+
+MEANS = ("power", "height", "flights", "exponent")
+# Speeds of balls at the start are up to this times Λ.
+_FASTEST = 4.0
+# Lower bound of half the width of an interval: a motion that repeats is found within 1e-6 of its
+# state.
+_KNOWN = 1e-6
+
+
+class MeanMotions(Grid):
+    """A grid over (Λ, r) with several balls for each node, which start alike in all models."""
+
+    starts: Annotated[int, number("balls for each node, which make the interval", ge=3, le=10000)]
+    samples: Annotated[
+        int, number("impacts of a mean over a motion that does not repeat", ge=10, le=10**7)
+    ]
+    tolerance: Tolerance
+    seed: Seed
+
+
+def needed(error: np.ndarray, margin: np.ndarray, tolerance: float) -> tuple[np.ndarray, ...]:
+    """The index of the smallest ϖ above which an error is within the tolerance, and whether it is
+    known, as an index into :data:`DECISIONS`.
+
+    Parameters
+    ----------
+    error, margin : array
+        Errors and half the widths of their intervals, with ϖ along the first axis.
+
+    Examples
+    --------
+    >>> error = np.array([[0.3], [0.02], [0.001]])
+    >>> [x.tolist() for x in needed(error, np.full((3, 1), 0.005), 0.01)]
+    [[2], [0]]
+    """
+    size, last = np.abs(error), len(error)
+    # From the largest ϖ down to the first ϖ at which the error is not known to be small.
+    within = (size + margin <= tolerance)[::-1]
+    right = np.argmin(np.concatenate([within, within[:1] & False]), axis=0)
+    at = np.minimum(right, last - 1)[np.newaxis]
+    beyond = np.take_along_axis((size - margin > tolerance)[::-1], at, axis=0)[0]
+    decision = np.where(beyond | (right == last), np.where(right > 0, 0, 1), 2)
+    return last - right, np.where(np.isnan(error).any(axis=0), 3, decision)
+
+
+def _errors(simple: np.ndarray, contact: np.ndarray, confidence: float) -> np.ndarray:
+    """Relative errors of a simple model and half the widths of their intervals, from pairs of balls
+    with the same start along the last axis.
+    """
+    balls = contact.shape[-1]
+    width = student.ppf((1 + confidence) / 2, balls - 1) / np.sqrt(balls)
+    with np.errstate(invalid="ignore"):
+        apart, scale = contact - simple, np.abs(simple.mean(axis=-1))
+        found = np.stack([apart.mean(axis=-1), width * apart.std(axis=-1, ddof=1)]) / scale
+    found[1] = np.maximum(found[1], _KNOWN)
+    return np.where(np.isfinite(found[0]), found, np.nan)
+
+
+def errors_at_nodes(parameters: MeanMotions, release: Release, part: Part = np.asarray) -> Arrays:
+    """The errors of the means of the simple models at each node.
+
+    Returns
+    -------
+    dict of array
+        ``mean_error`` and ``mean_margin`` of :func:`mean_motions`, shape (simple, mean, ϖ, node).
+    """
+    random, balls = np.random.default_rng(parameters.seed), parameters.starts
+    phase, speed = random.uniform(-np.pi, np.pi, balls), random.uniform(0.0, _FASTEST, balls)
+    r, lam = part(parameters.places())[..., np.newaxis]
+    ratios = np.array(parameters.frequency_ratio)[:, np.newaxis, np.newaxis]
+    velocity, values = lam * (np.cos(phase) - speed), []
+    for model in models(r, ratios, release):
+        law = model.impact_law
+        found = label(law, lam, phase, velocity, impacts=parameters.impacts)
+        flights, height, power, exponent = means(law, lam, found, parameters.samples)
+        exponent = np.where(found.periods > 0, found.exponent, exponent)
+        of = np.stack([power, height, flights, exponent])
+        # Over the mean, ϖ, the node and the ball; the restitution model has one ϖ.
+        values.append(of.reshape(len(MEANS), -1, lam.size, balls))
+    *simple, contact = values
+    errors = np.stack([_errors(x, contact, parameters.confidence) for x in simple], axis=1)
+    return {"mean_error": errors[0], "mean_margin": errors[1]}
+
+
+def mean_motions(parameters: MeanMotions, release: Release, found: Found = None) -> xr.Dataset:
+    """The smallest ϖ above which the means of a simple model are accurate, over (Λ, r).
+
+    The balls of a node start with the same impacts in all models, random in phase and speed. Each
+    ball gives a mean over the motion on which it ends, of any kind. The paired differences of these
+    means give the error of the simple model, and its interval by Student's distribution.
+    ``mean_error`` (simple, mean, ϖ, restitution, amplitude) is (contact - simple)/simple of the
+    power, height, flights per period and exponent, and ``mean_margin`` half the width of its
+    interval. ``needed_ratio`` (simple, mean, restitution, amplitude) is the smallest of the given ϖ
+    above which all errors are within the tolerance, NaN where ``decision`` is not "from this on";
+    see :data:`DECISIONS`. ``right`` (simple, mean, ϖ) is the share of the nodes at which the mean
+    is known to be accurate above this ϖ, among the nodes where the value of the simple model is
+    finite. ``right_low`` and ``right_high`` are its Wilson limits, and ``right_nodes`` is the
+    number of nodes.
+    """
+    ratios = np.array(parameters.frequency_ratio)
+    found = found or errors_at_nodes(parameters, release)
+    along = {x: parameters.unfolded(y) for x, y in found.items()}
+    error, margin = (np.moveaxis(x, 2, 0) for x in along.values())
+    place, known = needed(error, margin, parameters.tolerance)
+    least = np.where(known == 0, ratios[np.minimum(place, ratios.size - 1)], np.nan)
+    right = np.stack([(known == 0) & (place <= k) for k in range(ratios.size)], axis=2)
+    counted = known != DECISIONS.index("no number")
+    shares = np.empty((*right.shape[:3], 4))
+    for k in np.ndindex(right.shape[:3]):
+        shares[k] = share(right[k][counted[k[:2]]], parameters.confidence)
+    dims, nodes = ("simple", "mean"), ("restitution", "amplitude")
+    names = ("right_nodes", *(f"right{x}" for x in LIMITS))
+    return described(
+        {
+            **{x: ((*dims, "frequency_ratio", *nodes), y) for x, y in along.items()},
+            "needed_ratio": ((*dims, *nodes), least),
+            "decision": ((*dims, *nodes), np.array(DECISIONS)[known]),
+            **{x: ((*dims, "frequency_ratio"), shares[..., k]) for k, x in enumerate(names)},
+        },
+        coords={
+            "simple": list(SIMPLE),
+            "mean": list(MEANS),
+            "frequency_ratio": ratios,
+            "restitution": parameters.restitution.grid(),
+            "amplitude": parameters.amplitude.grid(),
+        },
+        variables=VARIABLES,
+    )

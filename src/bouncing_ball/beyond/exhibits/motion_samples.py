@@ -1,0 +1,191 @@
+"""The motions on which balls end in the three models: over (Λ, r), and over Λ (beyond the paper).
+
+If a motion is chaotic, or lies next to the boundary of a basin, rounding errors decide its course
+after some tens of impacts. Datasets therefore contain the kinds of motions, and means over many
+impacts.
+
+The share of starts, or of parameters, whose result changes if they are changed by ε.
+
+For a boundary of dimension D in a plane this share is proportional to ε^α, where α = 2 - D is the
+uncertainty exponent (C. Grebogi, S. W. McDonald, E. Ott and J. A. Yorke, 1983).
+"""
+
+from typing import Annotated
+
+import numpy as np
+from pydantic import Field
+from scipy.stats import binomtest
+
+from bouncing_ball.beyond.corrected.errors import models as of_contact
+from bouncing_ball.datasets.parameters import (
+    Amplitude,
+    AmplitudeMax,
+    FrequencyRatio,
+    Interval,
+    LossyRestitution,
+    Many,
+    Sharded,
+    listed,
+    number,
+)
+from bouncing_ball.paper.contact.damping import Release
+from bouncing_ball.paper.contact.spring_damper import SpringDamper
+
+Confidence = Annotated[float, number("level of the confidence intervals", gt=0.5, lt=1)]
+Impacts = Annotated[int, listed("Impacts")]
+
+
+class Even(Interval):
+    """Equally spaced values of a parameter, both ends included."""
+
+    samples: Annotated[int, number("number of values, both ends included", ge=2, le=2001)]
+
+    def grid(self) -> np.ndarray:
+        """The values, shape (samples,)."""
+        return np.linspace(self.min, self.max, self.samples)
+
+
+class Amplitudes(Even):
+    """Equally spaced amplitudes Λ > 0 of the table's acceleration, at most 100 g."""
+
+    min: Annotated[Amplitude, Field(description="smallest Λ")]
+    max: Annotated[AmplitudeMax, Field(description="largest Λ, above min")]
+
+
+class Restitutions(Even):
+    """Equally spaced restitution coefficients r, of which none is elastic."""
+
+    min: Annotated[LossyRestitution, Field(description="smallest r")]
+    max: Annotated[LossyRestitution, Field(description="largest r, above min")]
+
+
+class Grid(Sharded):
+    """A grid over (Λ, r), and contacts at several ϖ."""
+
+    amplitude: Amplitudes
+    restitution: Restitutions
+    frequency_ratio: Many[FrequencyRatio]
+    impacts: Impacts
+    confidence: Confidence
+
+    def places(self) -> np.ndarray:
+        """r and Λ of all nodes, those with one r after each other, shape (2, nodes)."""
+        axes = np.meshgrid(self.restitution.grid(), self.amplitude.grid(), indexing="ij")
+        return np.reshape(axes, (2, -1))
+
+    def unfolded(self, values: np.ndarray) -> np.ndarray:
+        """Values over all nodes, their last axis, over (restitution, amplitude)."""
+        shape = self.restitution.samples, self.amplitude.samples
+        return values.reshape(*values.shape[:-1], *shape)
+
+
+SIMPLE = ("restitution", "corrected")
+MODELS = (*SIMPLE, "spring-damper")
+LIMITS = ("", "_low", "_high")
+"""Suffixes of the names of an estimate and of the two limits of its interval."""
+
+
+def models(restitution: np.ndarray, ratio: float | np.ndarray, release: Release) -> tuple:
+    """Restitution, corrected and spring-damper model with the r of a free impact on the contact.
+
+    Parameters
+    ----------
+    restitution, ratio : array_like
+        r by Eq. 16, which gives the contact its ζ, and ϖ. They broadcast.
+    release : Release
+        The rule that ends the contact.
+
+    Returns
+    -------
+    tuple of ImpactModel
+        In the order of :data:`MODELS`. The restitution model has the shape of r, the others that to
+        which r and ϖ broadcast.
+    """
+    exact, *simple = of_contact(SpringDamper.from_restitution(restitution, ratio, release))
+    return *simple, exact
+
+
+def share(chosen: np.ndarray, confidence: float) -> tuple[float, float, float, float]:
+    """The number of truth values, the share of those that are true, and its Wilson limits.
+
+    The limits hold for independent values. The share and its limits are NaN if there are no values.
+
+    Parameters
+    ----------
+    chosen : array of bool
+        Of any shape.
+    confidence : float
+        The probability with which the interval contains the share, in (0, 1).
+
+    Returns
+    -------
+    tuple of float
+        Number, share, lower limit and upper limit.
+
+    Examples
+    --------
+    >>> count, found, low, high = share(np.array([True, False, True, False]), 0.95)
+    >>> count, found, round(float(low + high), 12)
+    (4, 0.5, 1.0)
+    """
+    if not chosen.size:
+        return 0, np.nan, np.nan, np.nan
+    tested = binomtest(int(chosen.sum()), chosen.size)
+    return chosen.size, tested.statistic, *tested.proportion_ci(confidence, "wilson")
+
+
+def with_limits(estimates: dict[str, tuple]) -> dict[str, tuple]:
+    """The variables of estimates and of their limits, under names with the suffixes :data:`LIMITS`.
+
+    The values of ``estimates`` are pairs of dimensions and arrays, whose last axis holds an
+    estimate, its lower limit and its upper limit.
+
+    Examples
+    --------
+    >>> found = with_limits({"share": ("case", [[0.5, 0.4, 0.6]])})
+    >>> {name: values.tolist() for name, (dims, values) in found.items()}
+    {'share': [0.5], 'share_low': [0.4], 'share_high': [0.6]}
+    """
+    return {
+        f"{name}{end}": (dims, np.array(values)[..., k])
+        for name, (dims, values) in estimates.items()
+        for k, end in enumerate(LIMITS)
+    }
+
+
+_RESAMPLED, _SEED = 400, 1
+
+
+def exponent(changes: np.ndarray, size: np.ndarray, confidence: float) -> np.ndarray:
+    """α with its lower and upper limit, from independent results that change or do not change.
+
+    α is the slope of the least-squares line of the logarithm of the share over ln ε, weighted with
+    the number of changes, because the variance of the logarithm of a small count is about the
+    inverse of the count. Its interval is that of a bootstrap. A share of 0 counts as half a change.
+
+    Parameters
+    ----------
+    changes : array of bool, shape (results, sizes)
+        Whether each result changes with each size ε of the change.
+    size : array, shape (sizes,)
+        At least two different ε > 0.
+    confidence : float
+        The probability with which the interval contains α, in (0, 1).
+
+    Returns
+    -------
+    array, shape (3,)
+        α, its lower limit and its upper limit.
+
+    Examples
+    --------
+    >>> changes = np.arange(1000)[:, np.newaxis] < [100, 10]
+    >>> round(float(exponent(changes, np.array([1e-2, 1e-4]), 0.95)[0]), 9)
+    0.5
+    """
+    count = len(changes)
+    drawn = np.random.default_rng(_SEED).integers(count, size=(_RESAMPLED, count))
+    drawn[0] = np.arange(count)
+    share = np.maximum(changes[drawn].mean(axis=1), 0.5 / count)
+    slope = np.polyfit(np.log(size), np.log(share).T, 1, w=np.sqrt(share[0]))[0]
+    return np.array([slope[0], *np.quantile(slope, [(1 - confidence) / 2, (1 + confidence) / 2])])

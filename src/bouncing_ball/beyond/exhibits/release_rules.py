@@ -1,0 +1,175 @@
+"""The influence of the rule that ends a contact (beyond the paper).
+
+The paper ends a contact at δ = 0, where a damped contact pulls; a dry contact
+ends where its force vanishes. Three things are compared along ϖ:
+
+* the bifurcations of Table 1 under both rules;
+* the 1 % thresholds of the restitution model with the r of Eq. 16;
+* the same with the restitution coefficient that the force release really has.
+
+A free impact of a spring-damper contact, by the damping ratio (beyond the paper).
+
+Without gravity the impact depends on k, c and m only through ω = √(k/m) and ζ = c/(2√(km)), which
+users of physics engines need to know. Times are ωt, which are the times of a contact with ϖ = 1.
+"""
+
+import numpy as np
+import xarray as xr
+from scipy.optimize.elementwise import find_minimum
+
+from bouncing_ball.datasets.parameters import (
+    Family,
+    LossyRestitution,
+    Many,
+    Parameters,
+    Samples,
+    Span,
+    Tolerance,
+)
+from bouncing_ball.datasets.variables import Variable, describe, described
+from bouncing_ball.paper.contact.damping import Release, damping_ratio, restitution_coefficient
+from bouncing_ball.paper.contact.oscillator import responses
+from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.exhibits.error_thresholds import ErrorsAlongRatio, thresholds_along
+from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.paper.orbits.stability import Bifurcation
+
+VARIABLES = {
+    "bifurcation_amplitude": Variable("excitation amplitude of the bifurcation", symbol="Λ"),
+    "force_restitution": Variable("restitution coefficient of the force release", symbol="r_F"),
+    "period_doubling_turn": Variable(
+        "frequency ratio at which the period doubling is lowest", symbol="ϖ", budget=1e-05
+    ),
+    "free_force": Variable(
+        "force of a free contact, over mω times the impact speed", symbol="F/(mωv)"
+    ),
+    "contact_end": Variable("when a free contact ends, in units of 1/ω", symbol="ωt_c"),
+    "end_restitution": Variable(
+        "restitution coefficient of a free impact by the release", symbol="r"
+    ),
+}
+
+
+class RuleThresholds(ErrorsAlongRatio):
+    """One orbit, the quantities compared on it, and the tolerated relative error."""
+
+    tolerance: Tolerance
+
+
+class ReleaseRules(Parameters):
+    """Families whose bifurcations are followed along ϖ, and an orbit for the thresholds."""
+
+    n: Many[Family]
+    restitution: LossyRestitution
+    frequency_ratio: Span
+    thresholds: RuleThresholds
+
+
+def _lowest_doubling(
+    ratios: np.ndarray, amplitude: np.ndarray, zeta: float, rule: Release, n: np.ndarray
+) -> np.ndarray:
+    """The ϖ at which each period doubling is lowest; NaN if that is an end of the scan.
+
+    ``amplitude`` is Λ of the period doublings on the scan, shape (n, ϖ).
+    """
+
+    def doubling(log_ratio: np.ndarray, n: np.ndarray) -> np.ndarray:
+        model = SpringDamperModel(SpringDamper(np.exp(log_ratio), zeta, rule))
+        return model.period_doubling(n).amplitude
+
+    lowest = np.argmin(np.where(np.isnan(amplitude), np.inf, amplitude), axis=-1)
+    inside = np.clip(lowest, 1, ratios.size - 2)
+    # Where the middle one of three samples is not the lowest they are no bracket, which
+    # find_minimum reports as a failure.
+    bracket = tuple(np.log(ratios[inside + k]) for k in (-1, 0, 1))
+    found = find_minimum(doubling, bracket, args=(n,))
+    return np.where(found.success, np.exp(found.x), np.nan)
+
+
+def _bifurcations(parameters: ReleaseRules, rule: Release) -> xr.Dataset:
+    """Both bifurcations along ϖ under a rule, and the ϖ of the lowest period doubling."""
+    families, ratios = np.array(parameters.n), parameters.frequency_ratio.grid()
+    zeta = float(damping_ratio(parameters.restitution))
+    model, n = SpringDamperModel(SpringDamper(ratios, zeta, rule)), families[:, np.newaxis]
+    ends = np.stack([model.saddle_node(n).amplitude, model.period_doubling(n).amplitude], axis=-1)
+    turns = _lowest_doubling(ratios, ends[..., 1], zeta, rule, families)
+    return xr.Dataset(
+        {
+            "bifurcation_amplitude": (("n", "frequency_ratio", "bound"), ends),
+            "period_doubling_turn": ("n", turns),
+        },
+        coords={
+            "n": families,
+            "frequency_ratio": ratios,
+            "bound": list(Bifurcation),
+            "release": str(rule),
+        },
+    )
+
+
+def _thresholds(wanted: RuleThresholds) -> xr.Dataset:
+    """The ϖ above which each quantity is within the tolerance, for each reading of r."""
+    r = wanted.restitution
+    own = float(restitution_coefficient(damping_ratio(r), Release.FORCE))
+    readings = {
+        "displacement release, r of Eq. 16": (Release.DISPLACEMENT, r),
+        "force release, r of Eq. 16": (Release.FORCE, r),
+        "force release, its own r": (Release.FORCE, own),
+    }
+    found = [
+        thresholds_along(wanted, rule, wanted.quantities, [wanted.tolerance], simple)
+        .isel(tolerance=0, drop=True)
+        .drop_dims("frequency_ratio")
+        .assign_coords(reading=reading)
+        for reading, (rule, simple) in readings.items()
+    ]
+    return xr.concat(found, "reading").assign(force_restitution=own)
+
+
+def release_rules(parameters: ReleaseRules) -> xr.Dataset:
+    """Bifurcations and thresholds under both release rules.
+
+    The dataset has ``bifurcation_amplitude`` (release, n, ϖ, bound), values of Λ;
+    ``period_doubling_turn`` (release, n), the ϖ at which each period doubling is lowest;
+    ``error_threshold``, a ϖ, and ``threshold_status`` (reading, quantity), where a reading is a
+    release rule with an r of the restitution model; and the numbers ``damping_ratio`` and
+    ``force_restitution``. NaN where there is none.
+    """
+    dataset = xr.concat([_bifurcations(parameters, rule) for rule in Release], "release")
+    dataset["damping_ratio"] = float(damping_ratio(parameters.restitution))
+    return describe(dataset.merge(_thresholds(parameters.thresholds)), variables=VARIABLES)
+
+
+class FreeImpacts(Parameters):
+    """The contact whose force is drawn over time, and the smallest r of the curves over ζ."""
+
+    restitution: LossyRestitution
+    restitution_min: LossyRestitution
+    samples: Samples
+
+
+def free_impacts(parameters: FreeImpacts) -> xr.Dataset:
+    """Free impacts by release rule and ζ, and the force during one contact.
+
+    The dataset has ``restitution`` and ``contact_duration``, in units of 1/ω, over (release,
+    damping_ratio); ``free_force`` over ``time``, for the contact with r by the displacement
+    release, divided by mω times the impact speed; ``contact_end``, the time at which each release
+    ends that contact, and ``end_restitution``, over ``release``.
+    """
+    zeta = np.linspace(0.0, damping_ratio(parameters.restitution_min), parameters.samples)
+    shown = float(damping_ratio(parameters.restitution))
+    along, ones = ([SpringDamper(1.0, z, rule) for rule in Release] for z in (zeta, shown))
+    time = np.linspace(0.0, float(ones[0].free_duration), parameters.samples)
+    penetration, rate = responses(time, 1.0, shown).impulse
+    dims = ("release", "damping_ratio")
+    return described(
+        {
+            "restitution": (dims, [one.restitution for one in along]),
+            "contact_duration": (dims, [one.free_duration for one in along]),
+            "free_force": ("time", ones[0].force(penetration, rate)),
+            "contact_end": ("release", [float(one.free_duration) for one in ones]),
+            "end_restitution": ("release", [float(one.restitution) for one in ones]),
+        },
+        coords={"release": [str(rule) for rule in Release], "damping_ratio": zeta, "time": time},
+        variables=VARIABLES,
+    )

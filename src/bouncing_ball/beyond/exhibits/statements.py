@@ -1,0 +1,218 @@
+"""Our statements about the whole motion, beyond the paper: each with the interval of its number.
+
+No statement is about more than its sample: balls, places and contacts are those of its dataset.
+"""
+
+import sys
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.beyond.long_run.period_doublings import FEIGENBAUM
+from bouncing_ball.paper.claims.claim import claim, defined_in
+from bouncing_ball.paper.claims.ledger import assess
+from bouncing_ball.paper.claims.verdict import decided
+
+PARAMETERS: dict[str, dict[str, Any]] = {
+    "ext_locking": {"frequency_ratio": [100.0, 1000.0, 10000.0]},
+    "ext_locked": {},
+    "ext_lives": {"frequency_ratio": [100.0, 1000.0, 10000.0]},
+    "ext_cascades": {
+        "n": 1,
+        "restitution": [0.3, 0.5, 0.65, 0.85],
+        "frequency_ratio": {"min": 2.0, "max": 2000.0},
+        "measured": {"frequency": 60.0, "amplitudes": [0.000106, 0.000115]},
+    },
+    "ext_means": {"frequency_ratio": [10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0, 10000.0]},
+    "ext_basins": {},
+}
+"""The parameters that the statements name, for each dataset that decides one."""
+
+
+def limits(data, name, **place):
+    """An estimate and its lower and upper limit at a place of a dataset, shape (3,)."""
+    return np.array([data[f"{name}{end}"].sel(place).item() for end in ("", "_low", "_high")])
+
+
+def same_period(data, group, ratio):
+    """Share of the nodes locked in the restitution model that have this period at this ϖ, (3,)."""
+    agreement = data["ext_locking"].sel(simple="restitution", motion_group=group)
+    return limits(agreement, "agreement", frequency_ratio=ratio)
+
+
+@claim("locking")
+def short_periods_agree(data):
+    """where the restitution model locks with 1 to 4 T, a contact of ϖ = 100 has the same period
+
+    Condition: at more than nine of ten nodes in Λ and r
+    """
+    return decided(same_period(data, "locked, 1 to 4 T", 100), above=0.9)
+
+
+@claim("locking")
+def long_periods_differ(data):
+    """where it locks with more than 10 T, not even a contact of ϖ = 10⁴ has the same period
+
+    Condition: the period is the same at less than a quarter of the nodes
+    """
+    return decided(same_period(data, "locked, above 10 T", 1e4), below=0.25)
+
+
+@claim("locking")
+def prediction_ranks(data):
+    """S/W ranks random places by the ϖ from which on the contact has their locked orbit
+
+    Condition: the rank correlation is above 0.9
+    """
+    return decided(limits(data["ext_locked"], "rank_correlation", predictor="S/w"), above=0.9)
+
+
+@claim("locking")
+def dense_discontinuities(data):
+    """the share of places whose locked period changes with Λ hardly falls with the change
+
+    Condition: its exponent is below 0.1; next to a smooth boundary it is 1
+    """
+    return decided(limits(data["ext_locked"], "uncertainty_exponent"), below=0.1)
+
+
+@claim("means")
+def power_needs_more(data):
+    """no stiffness up to ϖ = 10⁴ is known to make the power of the restitution model right to 1 %
+    at most places
+
+    Condition: the share of the nodes in Λ and r known to be right at ϖ = 10⁴ is below a half
+    """
+    right = data["ext_means"].sel(simple="restitution", mean="power")
+    return decided(limits(right, "right", frequency_ratio=1e4), below=0.5)
+
+
+@claim("basins")
+def compliant_contacts_throw(data):
+    """at ϖ = 2, r = 0.85 and Λ = 0.9 no ball comes to rest on the contact, as many do in the
+    restitution model
+
+    Condition: the basin of permanent contact has less than a fiftieth of the starts on the contact
+    """
+    on_contact = data["ext_basins"].sel(case=0, model="spring-damper")
+    return decided(limits(on_contact, "basin_share", motion="permanent contact"), below=0.02)
+
+
+@claim("basins")
+def fractal_boundaries(data):
+    """at the same place the boundaries of the basins on the contact are fractal
+
+    Condition: their exponent of uncertainty is below 1
+    """
+    on_contact = data["ext_basins"].sel(case=0, model="spring-damper")
+    return decided(limits(on_contact, "uncertainty_exponent"), below=1)
+
+
+@claim("basins")
+def smooth_when_stiffer(data):
+    """at ϖ = 30, r = 0.5 and Λ = 1.45 the boundary of the basins is smooth on the scales of its
+    dataset
+
+    Condition: its exponent of uncertainty is above 0.8; that of a smooth curve is 1
+    """
+    on_contact = data["ext_basins"].sel(case=1, model="spring-damper")
+    return decided(limits(on_contact, "uncertainty_exponent"), above=0.8)
+
+
+@claim("transients")
+def lasting_chaos(data):
+    """at r = 0.6 and Λ = 3 chaos on a contact of ϖ = 10⁴ lasts for a million periods and more
+
+    Condition: its mean life is above a million periods; whether it lasts for ever no sample decides
+    """
+    return decided(limits(data["ext_lives"], "mean_life", case=2, life_ratio=1e4), above=1e6)
+
+
+@claim("transients")
+def chaos_beside_locking(data):
+    """at r = 0.5 and Λ = 2.5 a ball of the restitution model may stay chaotic instead of locking
+
+    Condition: more than one of a hundred random starts is chaotic to the last of the impacts of its
+    dataset
+    """
+    shares = data["ext_lives"].sel(case=1, life_ratio=np.inf)
+    return decided(limits(shares, "chaotic_share"), above=0.01)
+
+
+def _missed(data, model, order, coefficient):
+    """Largest relative difference of a model's errors from a law of this order, from ϖ = 100 on."""
+    stiff = data["ext_cascades"].sel(model=model, frequency_ratio=slice(100, None))
+    return abs(stiff.cascade_error * stiff.frequency_ratio**order / stiff[coefficient] - 1).max()
+
+
+@claim("cascades")
+def end_of_the_first_order(data):
+    """the first order K_k/ϖ gives the shift of every doubling from ϖ = 100 on
+
+    Condition: no shift differs from it by more than a tenth
+    """
+    return decided(_missed(data, "restitution", 1, "cascade_coefficient"), below=0.1)
+
+
+@claim("cascades")
+def corrected_cascades(data):
+    """the error of the corrected model is of second order in 1/ϖ at every doubling
+
+    Condition: from ϖ = 100 on it is C/ϖ² to within a hundredth, with C from two stiffer contacts
+    """
+    return decided(_missed(data, "corrected", 2, "cascade_second_order"), below=0.01)
+
+
+@claim("cascades")
+def cascade_moves_as_a_whole(data):
+    """the coefficients K_k of the shift of a cascade have a limit
+
+    Condition: for every r the last one differs from the one before by less than a hundredth
+    """
+    before, last = data["ext_cascades"].cascade_coefficient.values[:, -2:].T
+    return decided(np.max(np.abs(last / before - 1)), below=0.01)
+
+
+@claim("cascades")
+def feigenbaum(data):
+    """in every contact the distances of doublings tend to Feigenbaum's ratio
+
+    Condition: the last ratio is within a hundredth of it
+    """
+    last = data["ext_cascades"].contact_cascade_ratio.isel(step=-1)
+    return decided(abs(last / FEIGENBAUM - 1).max(), below=0.01)
+
+
+@claim("cascades")
+def measured_doublings(data):
+    """the exact map with r = 0.5 has its period doublings where a textbook's table had them
+
+    Condition: both amplitudes are within a hundredth
+
+    Remark: r and the frequency of 60 Hz are assumed, because they could not be read
+    """
+    found = data["ext_cascades"].sel(restitution=0.5)
+    return decided(abs(found.restitution_cascade / found.measured_cascade - 1).max(), below=0.01)
+
+
+@claim("transients")
+def longer_transients(data):
+    """a ball on a contact of ϖ = 10⁴ may take ten times as long to lock as in the restitution model
+
+    Condition: the mean lives at r = 0.6 and Λ = 3 differ by this factor, even between the limits of
+    their intervals that are closest to each other
+    """
+    lives = data["ext_lives"].sel(case=2)
+    contact, simple = (limits(lives, "mean_life", life_ratio=x) for x in (1e4, np.inf))
+    return decided(contact / simple[[0, 2, 1]], above=10)
+
+
+def statements(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
+    """The verdict on each of our statements about the whole motion.
+
+    The arguments, the dataset and the errors are those of :func:`assess`. Each number has the unit
+    of the variable from which its statement takes it.
+    """
+    return assess([*defined_in(sys.modules[__name__])], data, PARAMETERS)

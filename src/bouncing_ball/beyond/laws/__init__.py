@@ -1,0 +1,1 @@
+"""Contacts of any law: Hertzian contacts, impedances, and their computation by collocation."""

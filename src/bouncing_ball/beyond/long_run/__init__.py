@@ -1,0 +1,1 @@
+"""The motions on which balls end: repeating, locked, chaotic; their means, exponents and cascades."""

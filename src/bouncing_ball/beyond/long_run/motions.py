@@ -1,0 +1,97 @@
+"""The motions on which balls end, as arrays with an entry per ball."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.numerics.arrays import Batch
+
+
+class Kind(StrEnum):
+    """The kind of motion on which a ball ends."""
+
+    ORBIT = "orbit"
+    """The motion repeats after n periods of the table and k impacts, where n and k have no common
+    divisor: an n-T orbit with k impacts, without sticking."""
+    SUBHARMONIC = "subharmonic"
+    """The motion repeats only after m n periods and m k impacts, m > 1, without sticking: for
+    example m = 2 beyond the period doubling of an n-T orbit."""
+    LOCKED = "locked"
+    """The motion repeats, and the ball sticks to the table in each repetition."""
+    PERMANENT_CONTACT = "permanent contact"
+    CHAOTIC = "chaotic"
+    """The motion has not repeated before rounding errors have grown to its size, and neighbouring
+    motions separate from it at an exponential rate."""
+    UNDECIDED = "undecided"
+
+
+class Reason(StrEnum):
+    """Why a motion is undecided."""
+
+    NONE = ""
+    # The reason that is given if nothing else is known.
+    NO_RECURRENCE = "it has neither repeated nor shown an exponent beyond its error"
+    MARGINAL = "it returns, and its neighbours come closer too slowly to tell that it repeats"
+    ROUNDING = "rounding errors grow to the size of the motion before it repeats"
+    NO_RELEASE = "no end of a contact was found"
+
+
+@dataclass(frozen=True, repr=False)
+class Motions(Batch):
+    """The motions on which balls end, arrays of one shape.
+
+    Parameters
+    ----------
+    kind : array of Kind
+    periods : array of int
+        Periods of the table after which the motion repeats; 0 if it does not repeat.
+    impacts : array of int
+        Impacts after which the motion repeats. In the restitution model the infinitely many impacts
+        that are summed up before the ball sticks are not counted. 0 in permanent contact.
+    exponent : array
+        Largest Lyapunov exponent per period of the table. For a motion that repeats it follows from
+        the larger multiplier, and is -∞ if the multiplier is zero; NaN where it is not known.
+    exponent_error : array
+        Standard error of the exponent; 0 for a motion that repeats, and NaN where it is not known.
+    reason : array of Reason
+        The reason for which a motion is undecided.
+    followed : array of int
+        Impacts after which the kind was known.
+    end_phase, end_velocity : array
+        Table phase φ and absolute velocity z′_i before the last of these impacts: a start from
+        which the ball is on the motion at once. NaN in permanent contact.
+    digits_lost : array
+        Decimal digits of the start that the motion has lost: the logarithm of the largest factor by
+        which a deviation has grown. A double has 16 digits. If more than about 14 digits are lost,
+        the last digit decides on which of several motions the ball ends, although the same bits
+        give the same answer on every computer. The number grows with the impacts of a chaotic
+        motion.
+    """
+
+    kind: np.ndarray
+    periods: np.ndarray
+    impacts: np.ndarray
+    exponent: np.ndarray
+    exponent_error: np.ndarray
+    reason: np.ndarray
+    followed: np.ndarray
+    end_phase: np.ndarray
+    end_velocity: np.ndarray
+    digits_lost: np.ndarray
+
+    @classmethod
+    def unknown(cls, balls: int) -> Self:
+        """Arrays for a number of balls, whose entries are not known yet."""
+        text = (np.full(balls, "", dtype=np.array(list(names)).dtype) for names in (Kind, Reason))
+        kind, reason = text
+        periods, impacts, followed = np.zeros((3, balls), dtype=int)
+        exponent, error, phase, velocity, lost = np.full((5, balls), np.nan)
+        return cls(kind, periods, impacts, exponent, error, reason, followed, phase, velocity, lost)
+
+    def fill(self, index: np.ndarray, **values: ArrayLike) -> None:
+        """Store results of the balls with these indices."""
+        for name, value in values.items():
+            getattr(self, name)[index] = value

@@ -1,0 +1,178 @@
+"""Figures of the motions on which balls end: over Λ, over another argument, and over starts.
+
+The datasets are those of :mod:`bouncing_ball.beyond.long_run.grids`.
+"""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from bouncing_ball.datasets import CASE, PERIOD_DOUBLING, SADDLE_NODE
+from bouncing_ball.drawing.canvas import WIDE, WIDTH, canvas, coloured, legend_below
+from bouncing_ball.drawing.labels import in_a_row, symbol, title
+from bouncing_ball.drawing.style import COLOURS, TABLE, Look
+
+KINDS = ("orbit", "subharmonic", "locked", "permanent contact", "chaotic", "undecided")
+"""The kinds of motion in the order of their colours."""
+# Motions that do not repeat have pale colours, because they fill their bands.
+_HUES = dict(zip(KINDS, (*COLOURS[:4], "#9a9a9a", "#d9b8d9"), strict=True))
+# Basins are areas, coloured in order of their shares with light and dark colours in turn.
+_AREAS = ("#3F96CC", "#000000", "#E8B04A", "#AA3A00", "#B7DDF2", "#5B5B5B", "#F4E3B5", "#D9D9D9")
+
+
+def _kinds_legend(figure: Figure, found: set[str]) -> None:
+    marks = [
+        Line2D([], [], color=_HUES[kind], marker="o", markersize=3.5, linestyle="none", label=kind)
+        for kind in KINDS
+        if kind in found
+    ]
+    legend_below(figure, marks, ncols=len(marks))
+
+
+def orbit_diagram(data: xr.Dataset) -> Figure:
+    """Phase and speed of the impacts on the attractors over Λ, in the colour of their kind."""
+    figure, panels = canvas(WIDE, 5.0, rows=2, sharex=True)
+    lam = np.broadcast_to(data.amplitude.values[:, np.newaxis, np.newaxis], data.impact_phase.shape)
+    units = {"impact_phase": np.pi, "impact_speed": 1.0}
+    for axes, (name, unit) in zip(panels, units.items(), strict=True):
+        for kind in reversed(KINDS):
+            here = (data.kind == kind).values
+            if here.any():
+                fills = kind in ("chaotic", "undecided")
+                look = {"marker": ","} if fills else {"marker": "o", "markersize": 0.9, "mew": 0}
+                x, y = lam[here].ravel(), data[name].values[here].ravel() / unit
+                axes.plot(x, y, color=_HUES[kind], linestyle="none", rasterized=True, **look)
+    panels[0].set(ylabel=r"phase of impact $\varphi/\pi$", ylim=(-1, 1), title=title(data))
+    panels[1].set(ylabel=r"speed of impact $-\delta'$", ylim=(0, None))
+    panels[1].set(xlabel=r"amplitude $\Lambda$")
+    if data.amplitude.size > 1:
+        panels[1].set_xlim(float(data.amplitude[0]), float(data.amplitude[-1]))
+    _kinds_legend(figure, set(np.unique(data.kind)))
+    return figure
+
+
+def motions(data: xr.Dataset) -> Figure:
+    """Periods of the motions, in the colour of their kind; 0 for a motion that does not repeat."""
+    return _over_argument(data, "periods", "periods until it repeats")
+
+
+def exponent(data: xr.Dataset) -> Figure:
+    """The largest Lyapunov exponents with their standard errors."""
+    name = r"exponent $\lambda$ per period $2\pi$"
+    return _over_argument(data, "lyapunov_exponent", name, "lyapunov_error")
+
+
+def _over_argument(data: xr.Dataset, name: str, label: str, error: str | None = None) -> Figure:
+    figure, axes = canvas(WIDTH, 2.6)
+    rows, _ = in_a_row(data)
+    place, argument = np.arange(rows.sizes[CASE]), "number of the start"
+    if len(data.dims) == 1:
+        (along,) = data.dims
+        place, argument = data[along].values, symbol(str(along))
+    for kind in KINDS:
+        here = (rows.kind == kind).values & np.isfinite(rows[name].values)
+        if here.any():
+            bar = None if error is None else rows[error].values[here]
+            look = {"color": _HUES[kind], "linestyle": "none", "markersize": 3}
+            axes.errorbar(place[here], rows[name].values[here], bar, marker="o", **look)
+    axes.set(xlabel=argument, ylabel=label, title=title(data))
+    _kinds_legend(figure, set(np.unique(rows.kind)))
+    return figure
+
+
+def basins(data: xr.Dataset) -> Figure:
+    """The motions on which starts end, over phase and speed; shares in the legend."""
+    figure, axes = canvas(WIDE, 4.2)
+    order = np.argsort(-data.share.values, kind="stable")
+    shown = min(len(_AREAS), order.size)
+    rank = np.empty(order.size, dtype=int)
+    rank[order] = np.minimum(np.arange(order.size), shown - 1)
+    place = data.start_phase.values / np.pi, data.start_speed.values, rank[data.destination.values]
+    look: Look = {"cmap": ListedColormap(_AREAS[:shown]), "vmin": -0.5, "vmax": shown - 0.5}
+    axes.pcolormesh(*place, rasterized=True, **look)
+    axes.set(xlabel=r"phase of the first impact $\varphi/\pi$", title=title(data))
+    axes.set_ylabel(r"speed of the first impact $-\delta'$")
+    names = [_name(data.isel(motion=k)) for k in order[:shown]]
+    if order.size > shown:
+        rest = float(data.share.values[order[shown - 1 :]].sum())
+        names[-1] = f"{order.size - shown + 1} others ({rest:.1%})"
+    patches = [Patch(color=_AREAS[k], label=name) for k, name in enumerate(names)]
+    legend_below(figure, patches, ncols=3)
+    return figure
+
+
+def _name(motion: xr.Dataset) -> str:
+    periods, impacts = int(motion.motion_periods), int(motion.motion_impacts)
+    words = str(motion.motion_kind.values)
+    if periods and impacts:
+        words += f", {periods} T, {impacts} impact{'s' if impacts > 1 else ''}"
+    return f"{words} ({float(motion.share):.1%})"
+
+
+def orbits(data: xr.Dataset) -> Figure:
+    """Phase of impact and greatest height of orbits over the last axis of a labelled dataset.
+
+    There is a curve for each place along the other axes; it is solid for stable orbits and dashed
+    for unstable orbits.
+    """
+    figure, panels = canvas(WIDE, 2.8, columns=2)
+    figure.suptitle(title(data))
+    for curve, place, look in _curves(data, panels):
+        for axes, values in zip(panels, (curve.phase / np.pi, curve.max_height), strict=True):
+            axes.plot(place, values.where(curve.stable), **look)
+            axes.plot(place, values, **look | {"linestyle": "--", "linewidth": 0.8, "label": None})
+    panels[0].set(ylabel=r"phase of impact $\varphi/\pi$")
+    panels[1].set(ylabel=r"greatest height $\max\,z$")
+    if data.phase.ndim > 1:
+        legend_below(figure, ncols=4)
+    return figure
+
+
+def limits(data: xr.Dataset) -> Figure:
+    """Saddle-node and period doubling over the last axis of a labelled dataset."""
+    figure, axes = canvas(WIDTH, 2.8)
+    figure.suptitle(title(data))
+    for curve, place, look in _curves(data, [axes]):
+        for kind, dashes in ((SADDLE_NODE, "-"), (PERIOD_DOUBLING, "--")):
+            values = curve[f"{kind.replace('-', '_').replace(' ', '_')}_amplitude"]
+            label = ", ".join(x for x in (kind, look["label"]) if x)
+            axes.plot(place, values, **look | {"linestyle": dashes, "label": label})
+    axes.set(ylabel=r"amplitude $\Lambda$", ylim=(0, None))
+    legend_below(figure, ncols=2)
+    return figure
+
+
+def _curves(
+    data: xr.Dataset, panels: Sequence[Axes]
+) -> Iterator[tuple[xr.Dataset, np.ndarray, Look]]:
+    """Each curve of a labelled dataset over the last axis, with its look; the axis is labelled."""
+    along = str(list(data.dims)[-1])
+    rows, names = in_a_row(data, along)
+    place = data[along].values
+    wide = along == "frequency_ratio" and place.max() > 30 * place.min()
+    for axes in panels:
+        axes.set(xlabel=symbol(along), xscale="log" if wide else "linear")
+    for (curve, colour), name in zip(coloured(rows, CASE), names, strict=True):
+        yield curve, place, {"color": colour, "label": name, "marker": ".", "markersize": 3}
+
+
+def over_time(data: xr.Dataset) -> Figure:
+    """Balls and table over time; each ball has a colour and the differing arguments as its name."""
+    figure, axes = canvas(WIDE, 2.8)
+    balls, names = in_a_row(data, "time")
+    periods = data.time / (2 * np.pi)
+    tables = balls.table.values
+    for k in range(1 if np.ptp(tables, axis=0).max() == 0 else len(tables)):
+        axes.plot(periods, tables[k], color=TABLE, label="table $w$", linewidth=0.9)
+    for (ball, colour), name in zip(coloured(balls, CASE), names, strict=True):
+        axes.plot(periods, ball.ball, color=colour, label=name or "ball $z$", linewidth=1.0)
+    axes.set(xlabel=r"time $\tau/2\pi$", ylabel="$z$, $w$", title=title(data))
+    axes.set(xlim=(0, float(periods[-1])))
+    legend_below(figure, ncols=5)
+    return figure

@@ -1,1 +1,0 @@
-"""The claims of Carbonelli, Perret-Liaudet, Rigaud and Feki (2011), section by section."""

@@ -1,1 +1,0 @@
-"""The comparison of two folders of artifacts, and copying results over the accepted record."""

@@ -1,1 +1,0 @@
-"""The charts and tables of the atlas, made from the summary of the atlas."""

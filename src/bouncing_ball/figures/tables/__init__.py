@@ -1,1 +1,0 @@
-"""Tables of datasets as texts: ``rows`` defines each table, ``formats`` writes it."""

@@ -1,0 +1,10 @@
+"""Numerical methods that know no ball: rows of arrays, certified first zeros, continuation.
+
+Pseudo-arclength continuation follows the solutions of F(x, p) = 0. Its parts are a
+:class:`~bouncing_ball.numerics.corrector.Problem`, a corrector, a step control and events;
+:mod:`bouncing_ball.numerics.continuation` combines them. N is the number of equations, and a point
+y = (x, p) has N + 1 entries, of which the last is the parameter.
+
+References: E. L. Allgower and K. Georg, *Numerical Continuation Methods*, Springer 1990; W.
+Govaerts, *Numerical Methods for Bifurcations of Dynamical Equilibria*, SIAM 2000.
+"""

@@ -1,0 +1,215 @@
+"""Frozen dataclasses over arrays, one element per contact, ball or orbit, and rows in blocks.
+
+Their fields broadcast together, like the arguments of a function. A scalar field
+applies to all elements and remains a scalar.
+"""
+
+import functools
+import inspect
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from itertools import pairwise
+from typing import Any, Self
+
+import numpy as np
+
+
+def _entry(value: Any, shape: tuple[int, ...], index: Any) -> Any:
+    """The elements of a field at an index; a scalar, which applies to all, is unchanged."""
+    if isinstance(value, Batch):
+        return value._entries(shape, index)
+    if not np.ndim(value):
+        return value
+    return (value if np.shape(value) == shape else np.broadcast_to(value, shape))[index]
+
+
+def in_words(value: Any) -> str:
+    """A number or an array as text, rounded and abbreviated.
+
+    Examples
+    --------
+    >>> in_words(np.pi), in_words(np.linspace(0, 1, 100)), in_words("force")
+    ('3.14159', '[0 0.010101 ... 0.989899 1]', "'force'")
+    """
+    if isinstance(value, str):
+        return f"'{value}'"
+    if not np.issubdtype(np.asarray(value).dtype, np.number):
+        return repr(value)
+    return np.array2string(
+        np.asarray(value),
+        threshold=8,
+        edgeitems=2,
+        formatter={"float_kind": lambda number: f"{number:.6g}"},
+    )
+
+
+def plain(value: Any) -> Any:
+    """A result in the form that a user receives.
+
+    A single number becomes a Python number, a single object a :class:`Single`; arrays are
+    unchanged. A method is wrapped, so that its result is converted in the same way.
+
+    Examples
+    --------
+    >>> plain(np.array(0.5)), plain(np.bool_(True)), plain(np.array([0.5]))
+    (0.5, True, array([0.5]))
+    """
+    if isinstance(value, np.ndarray | np.generic):
+        return value if value.ndim else value.item()
+    if getattr(value, "shape", None) == () and type(value) is not Single:
+        return Single(value)
+    if isinstance(value, tuple):
+        return getattr(value, "_make", tuple)(map(plain, value))
+    return plainly(value) if inspect.ismethod(value) else value
+
+
+def plainly(call: Callable) -> Callable:
+    """A function wrapped so that :func:`plain` is applied to its results."""
+    return functools.wraps(call)(lambda *given, **more: plain(call(*given, **more)))
+
+
+class Single:
+    """One element of a batch, whose numbers are returned as Python numbers.
+
+    A batch computes with arrays, even if it has a single element, whereas a user who requests one
+    orbit receives floats.
+
+    Examples
+    --------
+    >>> from bouncing_ball.paper.contact.spring_damper import SpringDamper
+    >>> one = Single(SpringDamper(np.array(5.0), 0.0))
+    >>> one.frequency_ratio, one.damped_frequency, isinstance(one, SpringDamper)
+    (5.0, 5.0, True)
+    """
+
+    __slots__ = ("_of",)
+
+    def __init__(self, of: Any) -> None:
+        self._of = of
+
+    @property  # type: ignore[misc]
+    def __class__(self) -> type:
+        return type(self._of)
+
+    def __reduce__(self) -> Any:
+        return Single, (self._of,)
+
+    def __getattr__(self, name: str) -> Any:
+        return plain(getattr(self._of, name))
+
+    def __call__(self, *given: Any, **more: Any) -> Any:
+        return plain(self._of(*given, **more))
+
+    def __dir__(self) -> list[str]:
+        return dir(self._of)
+
+    def __repr__(self) -> str:
+        return repr(self._of)
+
+
+@dataclass(frozen=True, repr=False)
+class Batch:
+    """Base class of frozen dataclasses of arrays: a shape, indexing, a length.
+
+    A single element, of shape (), has no length and cannot be indexed.
+
+    Examples
+    --------
+    >>> from bouncing_ball.paper.contact.spring_damper import SpringDamper
+    >>> contact = SpringDamper(np.array([5.0, 10.0]), 0.1)
+    >>> contact.shape, contact[1]
+    ((2,), SpringDamper(frequency_ratio=10, damping_ratio=0.1, release='displacement'))
+    """
+
+    def __repr__(self) -> str:
+        values = (f"{f.name}={in_words(getattr(self, f.name))}" for f in fields(self))
+        return f"{type(self).__name__}({', '.join(values)})"
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape to which the fields broadcast."""
+        shapes = {np.shape(getattr(self, f.name)) for f in fields(self)} - {()}
+        return shapes.pop() if len(shapes) == 1 else np.broadcast_shapes(*shapes)
+
+    @property
+    def size(self) -> int:
+        """The number of elements; 1 for a single element."""
+        return math.prod(self.shape)
+
+    def __len__(self) -> int:
+        if not self.shape:
+            raise TypeError(f"a single {type(self).__name__} has no length")
+        return self.shape[0]
+
+    def _entries(self, shape: tuple[int, ...], index: Any) -> Self:
+        # The values have been checked, so that __init__ need not be called.
+        part = object.__new__(type(self))
+        values = {f.name: getattr(self, f.name) for f in fields(self)}
+        part.__dict__.update({k: _entry(v, shape, index) for k, v in values.items()})
+        return part
+
+    def __getitem__(self, index: Any) -> Self:
+        if not self.shape and index != ():
+            raise IndexError(f"a single {type(self).__name__} cannot be indexed")
+        return self._entries(self.shape, index)
+
+    def flat(self, shape: tuple[int, ...]) -> Self:
+        """The elements broadcast to a shape and flattened to a row.
+
+        A single element is unchanged, because it applies to all elements of the row.
+        """
+        if not self.shape:
+            return self
+        return self._entries(shape, np.unravel_index(np.arange(math.prod(shape)), shape))
+
+    def take(self, which: Any) -> Self:
+        """The elements of a row with these indices.
+
+        A single element is unchanged, because it applies to the whole row.
+        """
+        return self[which] if self.shape else self
+
+
+# Largest number of balls in a block, chosen such that the arrays stay in the cache. Smaller blocks
+# cost more, because a few slow balls determine the number of steps of each block.
+BLOCK = 8192
+
+
+def blocks(size: int, largest: int = BLOCK) -> list[slice]:
+    """Slices of about equal length that cover all balls, each of at most ``largest``.
+
+    Examples
+    --------
+    >>> blocks(3), len(blocks(10_000))
+    ([slice(0, 3, None)], 2)
+    """
+    edges = np.linspace(0, size, -(-size // largest) + 1, dtype=int)
+    return [slice(int(a), int(b)) for a, b in pairwise(edges)]
+
+
+class Row:
+    """An object whose attributes are flat arrays over balls, or numbers that apply to all balls."""
+
+    def take(self, which: Any) -> Self:
+        """The same object, restricted to some of the balls."""
+        part = object.__new__(type(self))
+        vars(part).update({name: pick(value, which) for name, value in vars(self).items()})
+        return part
+
+
+def pick(value: Any, which: Any) -> Any:
+    """Some entries of a flat array, of a tuple of arrays, or of a :class:`Row`.
+
+    A number applies to all balls and is returned unchanged.
+
+    Examples
+    --------
+    >>> pick(np.array([1.0, 2.0, 3.0]), [0, 2]).tolist(), pick(0.5, [0, 2])
+    ([1.0, 3.0], 0.5)
+    """
+    if isinstance(value, np.ndarray):
+        return value[which] if value.ndim else value
+    if isinstance(value, tuple):
+        return type(value)(*(pick(x, which) for x in value))
+    return value.take(which) if isinstance(value, Row) else value

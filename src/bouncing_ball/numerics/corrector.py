@@ -1,0 +1,167 @@
+"""Newton's method for square systems and for a problem with one added condition; tangents."""
+
+from collections.abc import Callable
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+_TINY = np.finfo(float).tiny
+
+
+class Problem(Protocol):
+    """N equations F(y) = 0 for N unknowns x and one parameter p, with y = (x, p).
+
+    Both methods broadcast over leading axes. The unknowns should be scaled to
+    order one, because the arclength is the Euclidean norm of y.
+    """
+
+    def residual(self, y: np.ndarray) -> np.ndarray:
+        """F(y), shape (..., N) for y of shape (..., N + 1)."""
+
+    def jacobian(self, y: np.ndarray) -> np.ndarray:
+        """∂F/∂y, shape (..., N, N + 1)."""
+
+
+class Correction(NamedTuple):
+    """Outcome of Newton iterations from one or many guesses.
+
+    ``point`` has the shape of the guesses. ``converged``, ``residual`` (the largest modulus of an
+    equation at the last iteration) and ``step`` (the norm of the last Newton step relative to
+    1 + |y|) have the shape of its leading axes. ``iterations`` is the number of iterations until
+    all guesses had converged or failed.
+    """
+
+    point: np.ndarray
+    converged: np.ndarray
+    iterations: int
+    residual: np.ndarray
+    step: np.ndarray
+
+
+class NewtonSettings(NamedTuple):
+    """Criteria for the convergence and the failure of a Newton iteration.
+
+    ``tolerance`` bounds the norm of the last step, relative to 1 + |y|. Because the
+    convergence is quadratic, the point is then as accurate as F is computed. ``longest`` is the
+    greatest length of a step, and ``max_iterations`` the greatest number of steps.
+    """
+
+    tolerance: float = 1e-12
+    max_iterations: int = 8
+    longest: float = np.inf
+
+
+Equations = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+"""Maps y (..., N) to the values of N equations (..., N) and their Jacobian (..., N, N)."""
+
+Condition = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+"""Maps y (..., N + 1) to a value (...,) and its gradient (..., N + 1)."""
+
+
+def newton(
+    problem: Problem,
+    guess: np.ndarray,
+    condition: Condition,
+    settings: NewtonSettings = NewtonSettings(),
+) -> Correction:
+    """Solve F(y) = 0 together with one scalar condition.
+
+    Parameters
+    ----------
+    problem : Problem
+        N equations.
+    guess : ndarray, shape (..., N + 1)
+        Many guesses are iterated together; each stops when it has converged.
+    condition : Condition
+        The equation N + 1, for example that of a plane, or a test function set to zero.
+    settings : NewtonSettings
+
+    Returns
+    -------
+    Correction
+        An iteration has not converged if it reached the greatest number of steps, met a singular
+        matrix or left the domain of F.
+    """
+
+    def equations(y):
+        value, gradient = condition(y)
+        right = np.concatenate([problem.residual(y), value[..., np.newaxis]], axis=-1)
+        return right, np.concatenate([problem.jacobian(y), gradient[..., np.newaxis, :]], axis=-2)
+
+    return solve(equations, guess, settings)
+
+
+def solve(
+    equations: Equations, guess: np.ndarray, settings: NewtonSettings = NewtonSettings()
+) -> Correction:
+    """Solve N equations in N unknowns, from one or many guesses of shape (..., N).
+
+    Examples
+    --------
+    >>> found = solve(lambda y: (y * y - 4, 2 * y[..., np.newaxis]), np.array([[1.0], [-3.0]]))
+    >>> found.point.tolist(), found.converged.tolist()
+    ([[2.0], [-2.0]], [True, True])
+    """
+    y = np.array(guess, dtype=float)
+    shape = y.shape[:-1]
+    converged, going = np.zeros(shape, dtype=bool), np.ones(shape, dtype=bool)
+    residual, size = np.full(shape, np.inf), np.full(shape, np.inf)
+    iteration = 0
+    while iteration < settings.max_iterations and np.any(going):
+        iteration += 1
+        right, matrix = equations(y)
+        residual = np.where(going, np.max(np.abs(right), axis=-1), residual)
+        going &= np.isfinite(residual) & np.all(np.isfinite(matrix), axis=(-2, -1))
+        # A matrix of NaN would cause a warning beside one that is singular.
+        known = np.where(going[..., np.newaxis, np.newaxis], matrix, np.eye(y.shape[-1]))
+        change = _solve(known, right)
+        length = np.linalg.norm(change, axis=-1)
+        part = np.minimum(1.0, settings.longest / np.maximum(length, _TINY))
+        going &= np.isfinite(length)
+        y = np.where(going[..., np.newaxis], y - part[..., np.newaxis] * change, y)
+        size = np.where(going, length / (1 + np.linalg.norm(y, axis=-1)), size)
+        converged |= going & (size <= settings.tolerance)
+        going &= ~converged
+    return Correction(y, converged, iteration, residual, size)
+
+
+def _solve(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Solutions of linear systems; NaN where the matrix is singular or has NaN entries."""
+    try:
+        return np.linalg.solve(matrix, right[..., np.newaxis])[..., 0]
+    except np.linalg.LinAlgError:
+        singular = np.linalg.det(matrix) == 0
+        matrix = np.where(singular[..., np.newaxis, np.newaxis], np.nan, matrix)
+        return np.linalg.solve(matrix, right[..., np.newaxis])[..., 0]
+
+
+def plane(normal: np.ndarray, through: np.ndarray) -> Condition:
+    """The condition that y lies in the plane ``normal · (y - through) = 0``.
+
+    Examples
+    --------
+    >>> value, gradient = plane(np.array([0.0, 2.0]), np.array([1.0, 1.0]))(np.array([5.0, 4.0]))
+    >>> float(value), gradient.tolist()
+    (6.0, [0.0, 2.0])
+    """
+
+    def condition(y):
+        return np.sum(normal * (y - through), axis=-1), np.broadcast_to(normal, y.shape)
+
+    return condition
+
+
+def tangent(jacobian: np.ndarray, along: np.ndarray) -> np.ndarray:
+    """Unit tangent of the solution curve, oriented along ``along``, shape (..., N + 1).
+
+    It is the null vector of the N × (N + 1) Jacobian, which is also defined at a fold. The
+    arguments have shapes (..., N, N + 1) and (..., N + 1).
+
+    Examples
+    --------
+    >>> tangent(np.array([[1.0, 1.0]]), np.array([0.0, -1.0])).round(6).tolist()
+    [0.707107, -0.707107]
+    """
+    vector = np.linalg.svd(jacobian)[2][..., -1, :]
+    ahead = np.sum(vector * along, axis=-1, keepdims=True)
+    return np.where(ahead < 0, -vector, vector)

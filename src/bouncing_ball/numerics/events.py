@@ -1,0 +1,144 @@
+"""Special points on a branch: zeros of test functions, and limits of a domain.
+
+An event is a zero of a test function g(y). It is detected by a sign change between two points of
+the branch, and then located as a solution of the extended system ``F(y) = 0, g(y) = 0``, to the
+tolerance of Newton's method whatever the length of the step. A domain is given by a truth value
+alone, so that its limits on the branch are located by bisection.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from bouncing_ball.numerics.corrector import Condition, NewtonSettings, Problem, newton, plane
+
+# Step of the central differences for ∇g, near the optimum ε^(1/3). It affects the speed of
+# convergence but not the limit, which depends on g alone.
+_DIFFERENCE = 6e-6
+# With an approximate gradient more iterations are needed than in the plain corrector.
+_PATIENT = NewtonSettings(max_iterations=20)
+# Rounding may move a zero at an end of the bracket outside, by at most this part of the bracket.
+_SLACK = 1e-6
+# Number of bisections of a chord, whose ends no longer move once they agree to rounding.
+_BISECTIONS = 60
+_TINY, _ROUNDING = np.finfo(float).tiny, 4e-16
+
+
+@dataclass(frozen=True)
+class Event:
+    """A test function on the branch.
+
+    Parameters
+    ----------
+    name : str
+        The name of the located zeros in results.
+    function : callable
+        g(y), for y of shape (..., N + 1).
+    terminal : bool
+        Whether the branch ends at a zero. The function is then positive inside the domain.
+    reason : str
+        The reason why the branch ends at a terminal event, as a sentence.
+    """
+
+    name: str
+    function: Callable[[np.ndarray], np.ndarray]
+    terminal: bool = False
+    reason: str = ""
+
+
+class SpecialPoint(NamedTuple):
+    """A located event: its name, and its point y of shape (N + 1,)."""
+
+    name: str
+    point: np.ndarray
+
+
+def parameter_bound(bound: float, upper: bool, reason: str) -> Event:
+    """Terminal event at which the parameter, the last entry of y, reaches a bound.
+
+    Examples
+    --------
+    >>> event = parameter_bound(2.0, upper=True, reason="p = 2")
+    >>> event.terminal, float(event.function(np.array([0.0, 1.5])))
+    (True, 0.5)
+    """
+    sign = -1.0 if upper else 1.0
+    return Event("parameter bound", lambda y: sign * (y[..., -1] - bound), True, reason)
+
+
+def vanishing(function: Callable[[np.ndarray], np.ndarray]) -> Condition:
+    """The condition that a test function vanishes, with its gradient by central differences.
+
+    Examples
+    --------
+    >>> value, gradient = vanishing(lambda y: y[..., 0] ** 2)(np.array([3.0, 1.0]))
+    >>> float(value), gradient.round(6).tolist()
+    (9.0, [6.0, 0.0])
+    """
+
+    def condition(y):
+        size = y.shape[-1]
+        offsets = np.concatenate([np.zeros((1, size)), np.eye(size), -np.eye(size)])
+        offsets = offsets.reshape(-1, *(1,) * (y.ndim - 1), size)
+        values = function(y + _DIFFERENCE * offsets)
+        slopes = (values[1 : size + 1] - values[size + 1 :]) / (2 * _DIFFERENCE)
+        return values[0], np.moveaxis(slopes, 0, -1)
+
+    return condition
+
+
+def locate(
+    problem: Problem, event: Event, left: np.ndarray, right: np.ndarray
+) -> SpecialPoint | None:
+    """The zero of an event between two points of the branch, each of shape (N + 1,).
+
+    Newton's method on the extended system starts from the secant estimate. The result is None if
+    the method does not converge, or converges outside the bracket, because a step of the
+    continuation was too long or because there is no zero.
+    """
+    values, chord = [float(event.function(y)) for y in (left, right)], right - left
+    guess = left + values[0] / (values[0] - values[1]) * chord
+    found = newton(problem, guess, vanishing(event.function), _PATIENT)
+    progress = (found.point - left) @ chord / (chord @ chord)
+    if not (found.converged and -_SLACK <= progress <= 1 + _SLACK):
+        return None
+    return SpecialPoint(event.name, found.point)
+
+
+def domain_limits(
+    problem: Problem, inside_at: Callable[[np.ndarray], np.ndarray], points: np.ndarray
+) -> np.ndarray:
+    """The last points of a branch inside a domain, one for each of the limits that it crosses.
+
+    A limit lies between a point inside and a point outside. It is found by bisection of the chord
+    between the two points, where each midpoint is corrected onto the branch, until the two points
+    agree to rounding.
+
+    Parameters
+    ----------
+    problem : Problem
+        Its solutions are the branch.
+    inside_at : callable
+        Tells for solutions of shape (..., N + 1) whether they are inside.
+    points : ndarray, shape (m, N + 1)
+        Solutions in order along the branch.
+
+    Returns
+    -------
+    ndarray, shape (k, N + 1)
+        One point for each of the k limits, in order along the branch.
+    """
+    known = inside_at(points)
+    at = np.flatnonzero(known[:-1] != known[1:])
+    inside, outside = points[at + ~known[at]], points[at + known[at]]
+    for _ in range(_BISECTIONS if at.size else 0):
+        middle, normal = (inside + outside) / 2, outside - inside
+        length = np.linalg.norm(normal, axis=-1, keepdims=True)
+        found = newton(problem, middle, plane(normal / np.maximum(length, _TINY), middle))
+        good = inside_at(found.point)
+        closer = found.converged & (length[:, 0] > _ROUNDING * np.linalg.norm(inside, axis=-1))
+        inside[closer & good] = found.point[closer & good]
+        outside[closer & ~good] = found.point[closer & ~good]
+    return inside

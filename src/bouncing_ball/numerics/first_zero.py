@@ -1,0 +1,194 @@
+r"""The first upward zero of a smooth function, by steps that cannot pass over a zero.
+
+Let y(s) < 0, with y″ ≤ K and \|y‴\| ≤ J from s on. Then ::
+
+    y(s + h) ≤ y + y′ h + K h²/2
+
+Hence no zero lies before the positive root h₀ of this parabola. For steps h ≤ H
+the bound K may be replaced by a local bound, with \|y⁗\| ≤ L ::
+
+    K_H = min(K, y″ + H max(y‴, 0)/3 + L H²/12)
+
+and the step is the longest that H = 4h₀, 16h₀, ... allows. Such steps
+approach a simple zero from the left with third order. Where two zeros lie close
+together, or the function only touches zero, they become slow but do not fail. They are
+taken until both
+
+* ``2K \|y\| ≤ θ y′²`` and y′ > 0, so that the next zero is simple and near (Newton
+  and Kantorovich), and
+* ``(\|y‴\| + L h₀) h₀² ≤ κ y′``, so that one more step, to the zero of the function's
+  parabola, reaches the last digit; its error is of order κ⁴ h₀.
+
+Flights and contacts are both *motions* of this kind, see :class:`Motion`.
+"""
+
+from abc import ABC, abstractmethod
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from bouncing_ball.numerics.arrays import Row, pick
+
+# θ and κ above.
+_SIMPLE, _CLOSE = np.array(0.25), np.array(3e-4)
+# Ratio of successive H.
+_REACH = np.array(4.0)
+# Number of steps after which the search ends as undecided. Each step is a considerable part of
+# the shortest time scale of the function, so that these are hundreds of oscillations.
+_MAX_STEPS = 3000
+# Constants as arrays without an axis, as in :mod:`bouncing_ball.numerics.elementary`.
+_ZERO, _QUARTER, _THIRD, _TINY, _MINUS_TWO = map(np.array, (0.0, 0.25, 1 / 3, 1e-300, -2.0))
+
+
+class State(NamedTuple):
+    """y and its derivatives at one time, and the bounds K, J, L from this time on.
+
+    ``ended`` marks the functions for which the search may stop without a zero; ``None`` means
+    that there are no such functions.
+    """
+
+    value: np.ndarray
+    rate: np.ndarray
+    second: np.ndarray
+    third: np.ndarray
+    second_bound: np.ndarray
+    third_bound: np.ndarray
+    fourth_bound: np.ndarray
+    ended: np.ndarray | None = None
+
+
+class Motion(Row, ABC):
+    """A row of functions of time whose first upward zeros are computed."""
+
+    @abstractmethod
+    def __call__(self, time: np.ndarray) -> State:
+        """The state of each function at its time."""
+
+    def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
+        """A later time before which there is certainly no zero, or the time itself.
+
+        ``steps`` is the number of steps taken so far, because an expensive bound is worth its cost
+        only after several steps.
+        """
+        return time
+
+
+class Zero(NamedTuple):
+    """First upward zeros: their times, and y′ there.
+
+    ``ended`` marks the functions whose search stopped without a zero (see :class:`State`), and
+    ``undecided`` those for which it took too many steps.
+    """
+
+    time: np.ndarray
+    rate: np.ndarray
+    ended: np.ndarray
+    undecided: np.ndarray
+
+
+def _root(bound, v, rising, square, twice):
+    """Positive root h of y + v h + (bound) h²/2; a long step if there is none.
+
+    Further arguments are v = y′, whether v > 0, v², and -2y.
+    """
+    root = np.sqrt(np.maximum(square + bound * twice, _ZERO))
+    falling = (root - v) / np.maximum(bound, _TINY)
+    return np.where(rising, twice / (v + root + _TINY), falling)
+
+
+def safe_step(state: State) -> tuple[np.ndarray, np.ndarray]:
+    """The longest step that certainly passes no zero, and whether it may be the last.
+
+    Examples
+    --------
+    The step is exact for a parabola, here y = s² - 1 at s = 0:
+
+    >>> one = np.ones(1)
+    >>> step, _ = safe_step(State(-one, 0 * one, 2 * one, 0 * one, 2.0, 0.0, 0.0))
+    >>> step.tolist()
+    [1.0]
+    """
+    v, rising, square = state.rate, state.rate > _ZERO, state.rate * state.rate
+    # If y touches zero from below, rounding may give a positive value.
+    twice = _MINUS_TWO * np.minimum(state.value, _ZERO)
+    start = v, rising, square, twice
+    first = _root(state.second_bound, *start)
+    step = _prolonged(first, start, state)
+    # From y = y′ = 0 with y″ < 0 on, y ≤ y″ h²/2 + J h³/6.
+    sinking = -3 * state.second / (state.third_bound + _TINY)
+    step = np.maximum(step, np.where(rising, _ZERO, sinking))
+    bend = (np.abs(state.third) + state.fourth_bound * first) * (first * first)
+    simple = state.second_bound * twice <= _SIMPLE * square
+    return step, (bend <= _CLOSE * v) & simple & rising
+
+
+def _prolonged(first, start, state: State):
+    """Certified steps, at least as long as the ``first`` ones."""
+    step, now = first.copy(), first
+    which: Any = slice(None)
+    own = *start, state.second, state.third, state.second_bound, state.fourth_bound
+    while True:
+        *start, second, third, second_bound, fourth_bound = own
+        reach = _REACH * now
+        growth = np.maximum(third, _ZERO) + _QUARTER * fourth_bound * reach
+        bound = np.minimum(second + reach * growth * _THIRD, second_bound)
+        longer = np.minimum(_root(bound, *start), reach)
+        # If the reach limited the step, a longer reach is tried.
+        further = ((longer == reach) & (longer > now)).nonzero()[0]
+        now = np.maximum(now, longer)
+        step[which] = now
+        if not further.size:
+            return step
+        if further.size < now.size:
+            which = further if isinstance(which, slice) else which[further]
+            now, own = now[further], tuple(pick(x, further) for x in own)
+
+
+def first_zero(motion: Motion, start: np.ndarray) -> Zero:
+    """First upward zero of each motion, searched from the time ``start`` on.
+
+    The caller guarantees that no zero lies between 0 and ``start``. If the function is zero at
+    ``start`` and rises, ``start`` is the result. The arrays are one-dimensional.
+    """
+    time = np.array(start, dtype=float)
+    ended, undecided = np.zeros((2, *time.shape), dtype=bool)
+    active, part, now = slice(None), motion, time
+    for steps in range(_MAX_STEPS):
+        state = part(now)
+        step, done = safe_step(state)
+        later = part.skip(now + step, steps)
+        # The current time is a zero at the start, or if y touches zero up to rounding.
+        rate = state.rate
+        here = state.value >= _ZERO
+        if here.any():
+            here &= (rate > 0) | ((rate == 0) & (state.second >= 0))
+        if state.ended is not None:
+            stop = state.ended & ~(done | here)
+            ended[active] = stop
+            here |= stop
+        later = np.where(here, now, later)
+        done |= later == now
+        time[active] = later
+        left = (~done).nonzero()[0]
+        if left.size == 0:
+            break
+        if left.size < now.size:
+            active = left if isinstance(active, slice) else active[left]
+            part, later = part.take(left), later[left]
+        now = later
+    undecided[active] = left.size > 0
+    time, rate = _to_the_last_digit(motion, time)
+    return Zero(np.maximum(time, start), rate, ended, undecided)
+
+
+def _to_the_last_digit(motion, time):
+    """The times, improved by one step to the zero of the function's parabola, and y′ there."""
+    state = motion(time)
+    v, acceleration = state.rate, state.second
+    twice, square = _MINUS_TWO * state.value, v * v
+    root = np.sqrt(np.maximum(square + acceleration * twice, _ZERO))
+    # If the zero may be multiple, because y touches zero, the time is not changed.
+    simple = (v > _ZERO) & (state.second_bound * np.abs(twice) <= square)
+    step = np.where(simple, twice / (v + root + _TINY), _ZERO)
+    rate = v + step * (acceleration + 0.5 * step * state.third)
+    return time + step, rate

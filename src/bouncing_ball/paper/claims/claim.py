@@ -1,0 +1,213 @@
+'''Claims and explanations as small functions of the datasets.
+
+A claim is a function whose docstring states the claim of the paper in our words, and which
+returns the finding that decides the claim::
+
+    @claim("Abstract and Introduction")
+    def contact_shortens(data):
+        """the contact gets shorter as its stiffness increases
+
+        Condition: the contact duration falls from every contact of Fig. 13 to the next
+        """
+        return below(data["fig13"].contact_duration.diff("frequency_ratio"), 0)
+
+The id of a claim is the name of the function, unless another id is given. If a claim can be read in
+several ways, the function returns a mapping from the name of each reading to its finding. If it is
+clear which reading the paper means, this reading comes first, and the claim is ``meant``.
+'''
+
+import inspect
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from bouncing_ball.datasets.files import rows_beside
+from bouncing_ball.errors import ModelError
+from bouncing_ball.paper.claims.parameters import NotAsked, PaperData
+from bouncing_ball.paper.claims.verdict import Finding, Verdict, against_print, at_most
+
+Data = Mapping[str, Any]
+# An explanation of claims that are not reproduced is a function whose docstring is the text, and
+# which returns checks, all of which must hold.
+Explanation = Callable[[Data], Mapping[str, Finding]]
+
+
+def _answer(name: str, decide: Callable[[Data], Any], data: Data) -> Any:
+    """The result of a function of the datasets; missing data are an error with one line."""
+    try:
+        return decide(data)
+    except (ModelError, KeyError, AttributeError) as error:
+        raise ModelError(f"{name!r}: {' '.join(str(error).split())}") from error
+
+
+def paragraphs(function: Callable[..., Any]) -> dict[str, Any]:
+    '''The first paragraph of a docstring as ``statement``, and the others by their first word.
+
+    Examples
+    --------
+    >>> def stiff(data):
+    ...     """the contact is stiff
+    ...
+    ...     Condition: ϖ is above 100
+    ...     """
+    >>> paragraphs(stiff)
+    {'statement': 'the contact is stiff', 'condition': 'ϖ is above 100'}
+    '''
+    first, *others = inspect.getdoc(function).split("\n\n")  # type: ignore[union-attr]
+    parts = (" ".join(other.split()).partition(": ") for other in others)
+    return {"statement": " ".join(first.split()), **{key.lower(): text for key, _, text in parts}}
+
+
+def name_of(function: Callable[..., Any]) -> str:
+    """The name of a claim or an explanation, by default that of its function.
+
+    Examples
+    --------
+    >>> name_of(name_of)
+    'name of'
+    """
+    return function.__name__.replace("_", " ")
+
+
+def checked(explanation: Explanation, data: Data) -> tuple[bool, str]:
+    """Whether all checks of an explanation hold, and a text: the checks, or why none were made.
+
+    Raises
+    ------
+    ModelError
+        If a dataset, or a variable of it, is missing.
+    """
+    try:
+        found = _answer(name_of(explanation), explanation, PaperData(data))
+    except NotAsked as reason:
+        return False, str(reason)
+    said = (f"{name}: {one} (required {one.required})" for name, one in found.items())
+    return all(one.verdict is Verdict.REPRODUCED for one in found.values()), "; ".join(said)
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A claim of the paper, and the function that decides it.
+
+    Parameters
+    ----------
+    id : str
+        The name of the claim.
+    kind : str
+        The group in which the claim is counted: ``number``, ``statement`` or ``restored formula``.
+        The signs of a restored formula are illegible in the text at hand, so that the check shows
+        that this form is right, and not that the paper printed it.
+    item, statement : str
+        The place in the paper, and the statement there in our words.
+    decide : callable
+        A function of the datasets that returns a :class:`~bouncing_ball.paper.claims.verdict.Finding`,
+        or a mapping of findings by reading; with ``printed``, it returns numbers instead.
+    printed : str
+        The number with the digits that the paper prints; empty if the claim is not a number.
+    condition, remark : str
+        The decidable condition that stands for the statement, and a remark on its reading.
+    answer : str
+        A possible answer of the authors to a verdict other than reproduced.
+    meant : bool
+        Whether the paper means the first reading.
+    explanation : callable, optional
+        The reason why the claim is not reproduced: named conditions on the datasets.
+    restates : Claim, optional
+        The claim that this claim repeats; the tally counts repetitions separately.
+    """
+
+    id: str
+    kind: str
+    item: str
+    statement: str
+    decide: Callable[[Data], Any]
+    printed: str = ""
+    condition: str = ""
+    remark: str = ""
+    answer: str = ""
+    meant: bool = False
+    explanation: Explanation | None = None
+    restates: "Claim | None" = None
+
+    def verdict(self, data: PaperData) -> tuple[Finding, str]:
+        """The finding, and a text that gives the reason if the claim has no verdict.
+
+        Raises
+        ------
+        ModelError
+            If a dataset, or a variable of it, is missing.
+        """
+        try:
+            found = _answer(self.id, self.decide, data)
+        except NotAsked as reason:
+            return Finding(np.nan, Verdict.NOT_ASKED, self.printed), str(reason)
+        if self.printed:
+            found = against_print(found, self.printed)
+        readings = {"": found} if isinstance(found, Finding) else found
+        first, *others = readings.values()
+        if all(other.verdict is first.verdict for other in others):
+            return first, ""
+        words = "; ".join(f"{name}: {one.verdict} ({one})" for name, one in readings.items())
+        if self.meant and first.verdict is Verdict.REPRODUCED:
+            return replace(first, verdict=Verdict.QUALIFIED), words
+        return Finding(np.nan, Verdict.UNDECIDABLE), words
+
+
+def claim(item: str, id: str = "", **given: Any) -> Callable[[Callable[[Data], Any]], Claim]:
+    """Decorator that makes a claim of a function and its docstring.
+
+    Parameters
+    ----------
+    item : str
+        The place of the claim in the paper.
+    id : str
+        The name of the claim, by default the name of the function.
+    **given
+        Further fields of :class:`Claim`. With the digits of a number as ``printed``, the function
+        returns the computed number.
+    """
+    kind = "number" if "printed" in given else "statement"
+
+    def made(function: Callable[[Data], Any]) -> Claim:
+        named = id or name_of(function)
+        return Claim(named, kind, item, decide=function, **paragraphs(function), **given)
+
+    return made
+
+
+def formula(name: str, item: str, text: str, row: str = "", **given: Any) -> Claim:
+    """The claim that a printed formula is right, decided by one row of the dataset ``formulas``.
+
+    The name of the row is ``item`` unless ``row`` is given.
+    """
+
+    def decide(data: Data) -> Finding:
+        return of_formula(data, row or item)
+
+    return Claim(name, "restored formula", item, text, decide, **given)
+
+
+def formulas(where: str) -> list[Claim]:
+    """The printed formulas of a part of the paper, from the table ``claim.csv``."""
+    rows = [row for row in rows_beside(__file__) if row.pop("where") == where]
+    return [formula(**row) for row in rows]
+
+
+def of_formula(data: Data, row: str) -> Finding:
+    """The finding that a formula agrees with its second computation up to rounding.
+
+    ``row`` is the label of the formula along ``formula`` in the dataset ``formulas``.
+    """
+    one = data["formulas"].sel(formula=row)
+    return at_most(one.disagreement, one.budget)
+
+
+def defined_in(module: ModuleType) -> Iterator[Claim]:
+    """The claims of a module in their order, including claims in lists."""
+    for value in vars(module).values():
+        for one in value if isinstance(value, list) else [value]:
+            if isinstance(one, Claim):
+                yield one

@@ -1,0 +1,198 @@
+"""Table 1 under eight hypotheses about the authors' computation, called readings.
+
+Six readings are the models of this package with another damping, release or rounding, and Eqs. 7
+and 8. Two readings alter an equation: a contact without gravity, and a period doubling whose
+linearised flight neglects the displacement of the table, as Holmes' map does.
+"""
+
+from collections.abc import Callable
+from typing import Self
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+from scipy.optimize.elementwise import find_minimum, find_root
+
+from bouncing_ball.datasets.rounding import levels
+from bouncing_ball.datasets.variables import Variable, describe
+from bouncing_ball.paper.claims import as_printed
+from bouncing_ball.paper.contact.damping import Release, damping_ratio
+from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.exhibits.printed_table1 import AXES, LAST_DIGIT, RESTITUTION, printed_table
+from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.paper.orbits.spring_damper_orbit import SpringDamperOrbit
+from bouncing_ball.paper.orbits.stability import Bifurcation
+
+VARIABLES = {
+    "rows": Variable("rows of the table that are compared", equation="Table 1"),
+    "rank": Variable("place of the reading, the closest to the printed table first"),
+    "difference": Variable("computed less printed value, in units of the last digit", budget=1e-08),
+    "largest_difference": Variable("largest difference, in units of the last digit", budget=1e-08),
+    "rms_difference": Variable(
+        "root mean square difference, in units of the last digit", budget=1e-08
+    ),
+    "reproduced": Variable("number of entries within half a unit of the last digit"),
+    "entries": Variable("number of entries compared"),
+    "unreachable": Variable("number of saddle-nodes printed below every computed orbit"),
+}
+PRINTED_DAMPING = 0.052
+"""ζ in the paper's rounding, an alternative to ζ by Eq. 16."""
+# Number of samples of a branch along ε, and the largest |ε| in units of 1/ϖ, the scale of the fold.
+_SAMPLES, _REACH = 401, 12.0
+
+
+class WeightlessOrbit(SpringDamperOrbit):
+    """n-T orbits with gravity in flight, but not in contact."""
+
+    @classmethod
+    def on_branch(cls, excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> Self:
+        """The orbits with excess angles ε of the contact.
+
+        At a fixed duration Eqs. 23-25 are linear in u = δ′ at the start, Λ cos φ and Λ sin φ.
+        """
+        duration = (contact.free_angle + excess) / contact.damped_frequency
+
+        def orbit(u, x, y):
+            return cls(n, contact, np.hypot(x, y), np.arctan2(y, x), duration, u + x)
+
+        none, *units = (orbit(*at).residual() for at in ((0.0, 0.0, 0.0), *np.eye(3)))
+        matrix = np.stack([one - none for one in units], axis=-1)
+        solved = np.linalg.solve(matrix, -none[..., np.newaxis])[..., 0]
+        return orbit(*np.moveaxis(solved, -1, 0))
+
+    def contact_flow(self, time: np.ndarray):
+        flow, sag = super().contact_flow(time), self.law.flow(time, 0.0, 0.0, 0.0, 0.0)
+        jacobian = flow.jacobian.copy()
+        jacobian[..., 0] -= sag.jacobian[..., 0]
+        return type(flow)(*(x - y for x, y in zip(flow[:3], sag[:3], strict=True)), jacobian)
+
+
+def high_bounce_monodromy(orbit: SpringDamperOrbit) -> np.ndarray:
+    """Monodromy of orbits with the linearised flight of Holmes' map, shape (..., 2, 2).
+
+    This flight ends at the height at which it began, ``z′_b T - T²/2 = 0`` in place of Eq. 25, so
+    that ``dT = -T dz′_b/z′_i``.
+    """
+    d_duration, _, d_velocity = np.moveaxis(orbit.contact_jacobian()[..., :2], -2, 0)
+    d_release = d_duration + np.array([1.0, 0.0])
+    sine = orbit.amplitude * np.sin(orbit.release_phase)
+    d_bounce = d_velocity - sine[..., np.newaxis] * d_release
+    d_flight = -(orbit.flight_time / orbit.impact_velocity)[..., np.newaxis] * d_bounce
+    d_landing = d_release + d_flight
+    table = (orbit.amplitude * np.sin(orbit.phase))[..., np.newaxis]
+    return np.stack([d_landing, d_bounce - d_flight + table * d_landing], axis=-2)
+
+
+@np.errstate(divide="ignore", invalid="ignore")  # where the ball grazes
+def altered_ends(
+    contact: SpringDamper, n: np.ndarray, orbit_at: Callable, monodromy: Callable
+) -> np.ndarray:
+    """Λ at the saddle-node and the period doubling of altered branches, shape (m, 2).
+
+    The saddle-node is the minimum of Λ along the branch for any linearisation, because no orbit has
+    a smaller Λ. The period doubling is the root of 1 + tr + det nearest to the saddle-node on the
+    side of the short contacts.
+
+    Parameters
+    ----------
+    contact : SpringDamper
+        With ϖ of shape (m,).
+    n : ndarray, shape (m,)
+    orbit_at : callable
+        The orbits as a function of ε, the contact and n; their contacts last (θ₀ + ε)/ϖ_d.
+    monodromy : callable
+        The monodromy of these orbits, shape (..., 2, 2).
+    """
+
+    def amplitude(excess, which):
+        return orbit_at(excess, contact[which], n[which]).amplitude
+
+    def doubling(excess, which):
+        matrix = monodromy(orbit_at(excess, contact[which], n[which]))
+        trace = np.trace(matrix, axis1=-2, axis2=-1)
+        return Bifurcation.PERIOD_DOUBLING.test(trace, np.linalg.det(matrix))
+
+    every, sample = np.arange(n.size), np.arange(_SAMPLES)[:, np.newaxis]
+    reach = np.minimum(_REACH / contact.frequency_ratio, 0.9 * contact.free_angle)
+    grid = np.linspace(-reach, reach, _SAMPLES)
+    lowest = np.nanargmin(amplitude(grid, every), axis=0)
+    node = find_minimum(amplitude, [grid[lowest + k, every] for k in (-1, 0, 1)], args=(every,))
+    unstable = (doubling(grid, every) < 0) & (sample < lowest)
+    left = grid[np.max(sample * unstable, axis=0), every]
+    root = find_root(doubling, (left, node.x), args=(every,))
+    return np.stack([node.f_x, amplitude(root.x, every)], axis=-1)
+
+
+def readings() -> dict[str, np.ndarray]:
+    """Both ends of each range under the eight readings, shape (ϖ, n, 2).
+
+    "Equations as they stand" means Eqs. 11-26 and the linearised return map; in one reading the
+    digits beyond the last printed digit are cut off. ζ to first order is -ln r/π. Under
+    "high-bounce stability" the orbit is exact. "All rows from Eqs. 7-8" shows the influence of the
+    stiffness.
+    """
+    omega, n = np.meshgrid(AXES["frequency_ratio"], AXES["n"], indexing="ij")
+    zeta = float(damping_ratio(RESTITUTION))
+
+    def of_model(damping: float = zeta, release: Release = Release.DISPLACEMENT) -> np.ndarray:
+        model = SpringDamperModel(SpringDamper(omega, damping, release))
+        return np.stack([x(n).amplitude for x in (model.saddle_node, model.period_doubling)], -1)
+
+    def altered(orbit_at: Callable, monodromy: Callable) -> np.ndarray:
+        contact = SpringDamper(omega.ravel(), zeta)
+        return altered_ends(contact, n.ravel(), orbit_at, monodromy).reshape(*n.shape, 2)
+
+    plain = of_model()
+    ends = [end(n, RESTITUTION) for end in (as_printed.saddle_node, as_printed.period_doubling)]
+    return {
+        "equations as they stand": plain,
+        "digits cut off": np.floor(plain / LAST_DIGIT) * LAST_DIGIT,
+        "damping as printed": of_model(PRINTED_DAMPING),
+        "damping to first order": of_model(-np.log(RESTITUTION) / np.pi),
+        "force release": of_model(release=Release.FORCE),
+        "no gravity in contact": altered(WeightlessOrbit.on_branch, WeightlessOrbit.monodromy),
+        "high-bounce stability": altered(SpringDamperOrbit.on_branch, high_bounce_monodromy),
+        "all rows from Eqs. 7-8": np.stack(ends, axis=-1),
+    }
+
+
+def forensics() -> xr.Dataset:
+    """Table 1 under every reading, ranked by the rms difference in the two rows of smaller ϖ.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``computed`` and ``difference`` (in units of the last digit) over (reading,
+        frequency_ratio, n, bound); the largest and the rms difference and the number of reproduced
+        entries over (reading, rows); and ``unreachable`` over reading, the number of printed
+        saddle-nodes that lie below the fold by more than rounding, where no orbit exists.
+    """
+    found, printed = readings(), printed_table()
+    axes = {"reading": list(found), **printed.coords}
+    computed = xr.DataArray(np.array(list(found.values())), axes, ("reading", *printed.dims))
+    difference = (computed - printed) / LAST_DIGIT
+    below = difference.sel(bound=Bifurcation.SADDLE_NODE, drop=True) > 0.5
+    ratio = printed.frequency_ratio
+    groups = {"all rows": ratio > 0, "compliant rows": ratio < ratio.max()}
+    groups |= {f"ϖ = {float(value):g}": ratio == value for value in ratio}
+    rows = xr.Variable("rows", list(groups))
+    over = list(printed.dims)
+    parts = xr.concat([difference.where(group) for group in groups.values()], rows)
+    data = xr.Dataset(
+        {
+            "computed": computed,
+            "printed": printed,
+            "difference": difference,
+            "largest_difference": abs(parts).max(over).transpose("reading", "rows"),
+            "rms_difference": ((parts**2).mean(over) ** 0.5).transpose("reading", "rows"),
+            "reproduced": (abs(parts) <= 0.5).sum(over).transpose("reading", "rows"),
+            "entries": parts.isel(reading=0, drop=True).count(over),
+            "unreachable": below.sum(["frequency_ratio", "n"]),
+        }
+    )
+    distances = (data.rms_difference.sel(rows=name).values for name in list(groups)[:2])
+    order = np.lexsort([levels(values) for values in distances])
+    ranked = data.isel(reading=order).assign(rank=("reading", 1 + np.arange(len(found))))
+    return describe(ranked, variables=VARIABLES).assign_attrs(
+        last_digit=LAST_DIGIT, restitution=RESTITUTION, printed_damping_ratio=PRINTED_DAMPING
+    )

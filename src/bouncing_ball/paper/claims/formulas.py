@@ -1,0 +1,320 @@
+"""The comparison of every formula of the paper that can be wrong with a second computation.
+
+Each row of the dataset gives the largest disagreement over a sample of parameters, and the
+disagreement that rounding explains. The formulas are those of
+:mod:`bouncing_ball.paper.claims.as_printed`. They are compared with simulated cycles, with the
+multipliers of orbits, and with the equations of motion, differentiated by complex steps. These
+computations use the formulas only where the comparison says so.
+"""
+
+from typing import Annotated
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.datasets.parameters import Parameters, Seed, number
+from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.paper.claims import as_printed as printed
+from bouncing_ball.paper.contact.permanent_contact import permanent_contact_threshold
+from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.motion.linear_contact import LinearContactDynamics
+from bouncing_ball.paper.motion.restitution import RestitutionDynamics
+from bouncing_ball.paper.motion.sticking import lift_off_phase
+from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
+from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.paper.orbits.stability import Bifurcation
+
+VARIABLES = {
+    "formula": Variable("printed formula"),
+    "compared_with": Variable("what the formula is compared with"),
+    "static_error": Variable(
+        "relative error of Eq. 16 on a table at rest, with gravity", equation="Eq. 16", budget=1e-12
+    ),
+}
+# Motions, roots and minima are exact up to rounding, 1e-16, which cancellation of their terms
+# amplifies; a factor of 10⁴ covers the samples.
+ROUNDING = 1e-12
+# The smallest r, which is the smallest normal double.
+_FAINT = float(np.finfo(float).tiny)
+# An impact speed at which the weight, 1/(ϖv) of the impact force, is less than rounding.
+WEIGHTLESS = 1e16
+# A small ϖ, at which Λ_SD ϖ² differs from 1 by the order of ϖ².
+_COMPLIANT = 1e-4
+# The r and ϖ for Eq. 16 on a table at rest; the impact velocity is that of the 1-T orbit.
+STATIC = {"restitution": [0.85, 0.65], "frequency_ratio": [10.0, 100.0]}
+# For each formula: the comparison, the disagreement, and the disagreement that rounding explains.
+Checks = dict[str, tuple[str, float, float]]
+
+
+def check(comparison: str, *defects, budget: float = ROUNDING) -> tuple[str, float, float]:
+    """The comparison, the largest absolute entry of all defects, and the budget.
+
+    The largest entry is NaN if one of the defects is NaN.
+
+    Examples
+    --------
+    >>> check("a root", [0.5, -2.0], 1.0, budget=1e-8)
+    ('a root', 2.0, 1e-08)
+    """
+    return comparison, float(np.max([np.max(np.abs(x)) for x in defects])), budget
+
+
+def slopes(motion, time):
+    """Derivatives of height and velocity of a motion by a complex step, exact up to rounding.
+
+    Examples
+    --------
+    >>> slopes(lambda time: np.array([time**2, 2 * time]), 3.0).tolist()
+    [6.0, 2.0]
+    """
+    step = 1e-30
+    return np.imag(motion(time + 1j * step)) / step
+
+
+def impact_cycle(phase, velocity, r, lam):
+    """One simulated cycle of the restitution model, between states (φ, v) just after an impact.
+
+    The result is φ and v after the next impact, and the time between the impacts; arrays broadcast.
+    """
+    falling = (lam * np.cos(phase) - velocity) / r
+    cycle = RestitutionDynamics.of(r, lam).next_impact(phase, falling)
+    bounced = lam * np.cos(cycle.phase) - r * cycle.relative_velocity
+    return cycle.phase, bounced, cycle.time
+
+
+def restitution_model(rng, samples) -> Checks:
+    """Checks of Eqs. 1 to 9: impacts from random states, and orbits with their stability.
+
+    ``rng`` is the random generator and ``samples`` the number of parameter sets, also in the other
+    functions of this module.
+    """
+    r, lam = rng.uniform(0.1, 0.95, samples), rng.uniform(0.1, 3, samples)
+    phase = rng.uniform(-np.pi, np.pi, samples)
+    velocity = lam + rng.uniform(0.5, 6, samples)
+    landing, rebound, time = impact_cycle(phase, velocity, r, lam)
+    table = lam * np.cos(landing)
+    falling = table - (rebound - table) / r
+    height, fallen = printed.free_flight(phase + time, phase, lam * np.sin(phase), velocity)
+    flight = height - lam * np.sin(landing), fallen - falling
+    map_height = printed.landing_defect(phase, velocity, time, lam)
+    bounced = printed.bounced_velocity(phase, velocity, time, lam, r)
+
+    n = rng.integers(1, 6, samples).astype(float)
+    along, model = n * np.pi * (1 - r) / (1 + r), RestitutionModel(r)
+    above = along * rng.uniform(1.01, 3, samples)
+    phi, launch = printed.fixed_point(n, r, above)
+    back_phase, back_velocity, _ = impact_cycle(phi, launch, r, above)
+    fixed = reduce_angle(back_phase - phi), back_velocity - launch
+    # The orbit with φ = 0, where both sides of the fold meet, exists at this Λ only.
+    fold = printed.saddle_node(n, r)
+    met_phase, met_velocity, _ = impact_cycle(0.0 * r, n * np.pi, r, fold)
+    at_fold = model.orbit_of(n, fold, 0.0 * r).trace_and_determinant()
+    folds = Bifurcation.SADDLE_NODE.test(*at_fold), met_phase, met_velocity - n * np.pi
+    doubling = printed.period_doubling(n, r)
+    corrected = np.hypot(2 * (1 + r * r) / (1 + r) ** 2, along)
+    flips = model.orbit_of(n, corrected, np.arccos(along / corrected)).trace_and_determinant()
+    # Holmes' map, whose next phase is φ + 2v, has the trace 1 + r - 2p and the determinant r.
+    push = (1 + r) * np.sqrt(doubling**2 - along**2)
+    holmes = Bifurcation.PERIOD_DOUBLING.test(1 + r - 2 * push, r)
+    # A ball at rest on two tables, with Λ slightly below and above the threshold of Eq. 9.
+    stays = np.isnan(lift_off_phase(1 + np.array([-1, 1]) * ROUNDING)).tolist() == [True, False]
+
+    simulated, flip = "simulated flight and impact", "multiplier at -1 of "
+    exact = check(flip + "the map of Eq. 5", Bifurcation.PERIOD_DOUBLING.test(*flips))
+    return {
+        "Eq. 2": check(simulated, printed.restitution_law(falling, table, r) - rebound),
+        "Eq. 4": check(simulated, *flight),
+        "Eq. 5": check(simulated, map_height, bounced - rebound),
+        "Eq. 6": check("one simulated cycle", *fixed),
+        "Eq. 7": check("one simulated cycle, and a Floquet multiplier at 1", *folds),
+        "Eq. 8": check("the corrected form", doubling / corrected - 1),
+        "Eq. 8, Holmes' map": check(flip + "Holmes' map", holmes),
+        "Eq. 8, corrected": exact,
+        "Eq. 9": check("lift-off of a ball at rest", float(not stays)),
+    }
+
+
+def printed_contact(time, omega, zeta, lam, phase, impact):
+    """Eqs. 12-13 for a contact that starts with an impact: height and velocity, shape (2, ...).
+
+    The constants A and B are linear in the height and velocity of the impact (Eqs. 21-22).
+    """
+    zero, rate = printed.contact(0.0, omega, zeta, lam, phase, 0.0, 0.0)
+    a = lam * np.sin(phase) - zero
+    b = (impact - rate + zeta * omega * a) / (omega * np.sqrt(1 - zeta**2))
+    return np.array(printed.contact(time, omega, zeta, lam, phase, a, b))
+
+
+def acceleration(rise, rate, frequency, damping, gravity=1.0):
+    """The absolute acceleration by Eq. 11, δ″ + w″ = -1 - 2ζϖ δ′ - ϖ² δ.
+
+    With the frequency of the contact in rad/s and g in m/s² this is Eq. 10.
+    """
+    return -gravity - 2 * damping * frequency * rate - frequency**2 * rise
+
+
+def measured_restitution(r, frequency_ratio, velocity):
+    """Speed after a simulated impact on a table at rest, divided by the speed before this impact.
+
+    The result is NaN where the ball stays on the table.
+    """
+    contact = SpringDamper(frequency_ratio, printed.damping_ratio(r))
+    still = LinearContactDynamics.of(contact, 0.0)
+    return still.next_impact(0.0, -velocity).relative_velocity / -velocity
+
+
+def damping(rng, samples) -> Checks:
+    """Checks of Eq. 16 and its limits r = 1 and r → 0."""
+    r, omega = rng.uniform(0.1, 0.99, samples), np.exp(rng.uniform(0, 5, samples))
+    # For r → 0, 1 - ζ tends to π²/(2 ln² r), but slowly; the budget is twice this value.
+    slow, faint = np.pi**2 / np.log(_FAINT) ** 2, 1 - printed.damping_ratio(_FAINT)
+    impact = measured_restitution(r, omega, WEIGHTLESS) - r
+    return {
+        "Eq. 16": check("simulated impact, table at rest, no gravity", impact),
+        "Eq. 16, r = 1": check("no damping", printed.damping_ratio(1.0)),
+        "Eq. 16, r → 0": check("critical damping", faint, budget=slow),
+    }
+
+
+def static_error() -> xr.DataArray:
+    """|r_static - r|/r of a heavy ball on a table at rest, over r and ϖ.
+
+    The result is NaN where the ball does not rebound.
+    """
+    r, ratio = np.meshgrid(*STATIC.values(), indexing="ij")
+    return xr.DataArray(np.abs(measured_restitution(r, ratio, np.pi) / r - 1), STATIC)
+
+
+def contact_orbits(rng, samples) -> Checks:
+    """Checks of the definition of ϖ, and of Eqs. 12 to 15 and 21 to 27 on orbits that repeat."""
+    omega, zeta = np.exp(rng.uniform(0.7, 5, samples)), rng.uniform(0.01, 0.5, samples)
+    n = rng.integers(1, 4, samples)
+    contact = SpringDamper(omega, zeta)
+    model = SpringDamperModel(contact)
+    lam = model.saddle_node(n).amplitude + rng.uniform(0.05, 0.5, samples)
+    orbit = model.orbit(n, lam)
+    phase, impact, end = orbit.phase, orbit.impact_velocity, orbit.contact_duration
+    u = orbit.relative_impact_velocity
+    again = orbit.cycle(phase, u)
+    repeated = reduce_angle(again.phase - phase), again.relative_velocity - u
+
+    def simulated(time):
+        """δ, δ′, height and velocity at a time after the impact."""
+        rise, rate, *_ = contact.flow(time, 0.0, u, phase, lam)
+        return rise, rate, rise + lam * np.sin(phase + time), rate + lam * np.cos(phase + time)
+
+    time = end * rng.uniform(0.1, 1, samples)
+    rise, rate, *held = simulated(time)
+    off = printed_contact(time, omega, zeta, lam, phase, impact) - held
+    # Eq. 10 in metres and seconds, for a contact whose frequency is ϖ times that of the table.
+    gravity, table = 9.81, rng.uniform(20, 60, samples)
+    length, speed = gravity / table**2, gravity / table
+    physical = acceleration(rise * length, rate * speed, omega * table, zeta, gravity) / gravity
+
+    def scaled(ratio):
+        """The difference of Eq. 11 with a frequency ratio from Eq. 10, over ϖ."""
+        return (acceleration(rise, rate, ratio, zeta) - physical) / omega
+
+    # Eqs. 21-22 give A and B; the following defects are those of Eqs. 23-26.
+    *_, level, velocity = simulated(end)
+    left = printed_contact(end, omega, zeta, lam, phase, impact) - (level, velocity)
+    landing = np.array(printed.flight(2 * np.pi * n, end, velocity, lam, phase))
+    landed = landing - (lam * np.sin(phase), impact)
+    thrown = printed.bounce_velocity(impact, n, end) - velocity
+    units, orbits = "Eq. 10 in physical units; ", "orbits that repeat in the simulation"
+    return {
+        "ϖ = Ω/ω, Ω of the table": check(f"{units}one of two readings", scaled(1 / omega)),
+        "ϖ = Ω/ω, Ω of the contact": check(f"{units}the other reading", scaled(omega)),
+        "Eqs. 12-13": check("simulated contact", off),
+        "Eqs. 14-15": check(orbits, landed),
+        "Eqs. 21-26": check(orbits, *repeated, left, landed),
+        "Eq. 27": check("simulated contact", thrown),
+    }
+
+
+def steady_amplitude(omega, zeta):
+    """Amplitude of δ by Eq. 31 about its mean -1/ϖ², over Λ.
+
+    The amplitude follows from δ at two times that are a quarter of a cycle apart.
+    """
+    lam = omega**-2.0
+    swing = (printed.steady_displacement(time, omega, zeta, lam) for time in (0.0, np.pi / 2))
+    return np.hypot(*(omega**2 * each + 1 for each in swing))
+
+
+def permanent_contact(rng, samples) -> Checks:
+    """Checks of Eqs. 31 to 36 on permanent contact: the steady motion, Λ_SD, its inverse and
+    minimum.
+    """
+    omega, zeta = np.exp(rng.uniform(-0.5, 2, samples)), rng.uniform(0.02, 0.5, samples)
+    lam, begin = rng.uniform(0.1, 2, samples), rng.uniform(-np.pi, np.pi, samples)
+    end = begin + rng.uniform(0.5, 6, samples)
+
+    def steady(time):
+        return printed.steady_displacement(time, omega, zeta, lam)
+
+    start = steady(begin), slopes(steady, begin)
+    later = SpringDamper(omega, zeta).flow(end - begin, *start, begin, lam).displacement
+    at_any = omega**2 * steady_amplitude(omega, zeta)
+    threshold = printed.permanent_contact_threshold(omega, zeta) * at_any - 1
+    resonant = 2 * zeta * steady_amplitude(1.0, zeta) - 1
+    # Λ_SD grows as 1/ϖ², with a next term of relative order ϖ².
+    compliant = 1 / steady_amplitude(_COMPLIANT, zeta) - 1
+
+    # Λ_SD² is quadratic in 1/ϖ², so that its only stationary point is the minimum.
+    place = (1 - 2 * zeta**2) ** -0.5
+    bottom = permanent_contact_threshold(place, zeta)
+    flat = slopes(lambda ratio: printed.permanent_contact_threshold(ratio, zeta), place)
+    # Λ between the minimum and 1, where both frequency ratios exist.
+    level = bottom + (1 - bottom) * rng.uniform(0.1, 0.9, samples)
+
+    def inverse(sign):
+        """Defects of a printed ϖ: in its threshold, and in its place beside the minimum."""
+        ratio = printed.permanent_contact_frequency_ratio(level, zeta, sign)
+        off = permanent_contact_threshold(ratio, zeta) / level - 1
+        return check("roots of Λ_SD", off, np.sign(ratio - place) - sign)
+
+    minimum = printed.permanent_contact_minimum(zeta) / bottom - 1
+    amplitude = "amplitude of Eq. 31"
+    return {
+        "Eq. 31": check("simulated contact", steady(end) - later),
+        "Eq. 33": check(amplitude, threshold),
+        "Eq. 33, ϖ = 1": check(amplitude, resonant),
+        "Eq. 33, ϖ → 0": check(amplitude, compliant, budget=2 * _COMPLIANT**2),
+        "Eq. 34": inverse(1),
+        "Eq. 35": inverse(-1),
+        "Eq. 36": check("minimum of Λ_SD", minimum, flat),
+    }
+
+
+class Formulas(Parameters):
+    """The random parameters on which the formulas are checked."""
+
+    samples: Annotated[int, number("random parameters for each formula", ge=8, le=1000)]
+    seed: Seed
+
+
+def formulas(parameters: Formulas) -> xr.Dataset:
+    """Disagreement of every printed formula with a second computation.
+
+    The dataset has ``disagreement`` (formula,), the largest difference in the sample, NaN if a
+    comparison found no value; ``budget`` (formula,), the difference that rounding explains; the
+    text ``compared_with`` (formula,); and ``static_error`` (restitution, frequency_ratio), the
+    relative error of r on a table at rest. All are dimensionless.
+    """
+    rng = np.random.default_rng(parameters.seed)
+    checks: Checks = {}
+    for part in (restitution_model, contact_orbits, damping, permanent_contact):
+        checks |= part(rng, parameters.samples)
+    comparison, disagreement, budget = zip(*checks.values(), strict=True)
+    return described(
+        {
+            "disagreement": ("formula", np.array(disagreement)),
+            "budget": ("formula", np.array(budget)),
+            "compared_with": ("formula", np.array(comparison)),
+            "static_error": static_error(),
+        },
+        coords={"formula": list(checks)},
+        variables=VARIABLES,
+    )

@@ -1,0 +1,142 @@
+"""The tables of the run: for each table a function of its dataset, with the name of the table.
+
+Each function returns the header and the rows as texts, made from parts of the dataset and columns
+(:mod:`.layout`).
+
+Claims and their verdicts in the form in which an article needs them.
+"""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.datasets.rounding import compared_text
+from bouncing_ball.datasets.selection import each
+from bouncing_ball.drawing.tables import Columns, Table, at, entry_of, table, text, value
+
+
+def formulas(data: xr.Dataset) -> Table:
+    """Printed formulas: the comparison, the disagreement, and the disagreement allowed.
+
+    For a disagreement of the size of rounding the entry is its bound.
+    """
+    columns: Columns = {
+        "formula": text("formula"),
+        "compared with": text("compared_with"),
+        "largest disagreement": lambda part: compared_text(
+            float(part.disagreement), float(part.budget), ".1e"
+        ),
+        "allowed": value("budget", ".0e"),
+    }
+    return table(each(data, "formula"), columns)
+
+
+def forensics(data: xr.Dataset) -> Table:
+    """Readings of Table 1, the closest first; differences in units of the last digit.
+
+    The entry is a dash if a reading has no orbit.
+    """
+    columns: Columns = {"rank": text("rank"), "reading": text("reading")}
+    for name in data.rows.values[:2]:
+        columns[f"largest, {name}"] = at(value("largest_difference", ".2f"), rows=name)
+        columns[f"rms, {name}"] = at(value("rms_difference", ".2f"), rows=name)
+    for name in data.rows.values[:2]:
+        columns[f"reproduced, {name}"] = at(
+            lambda part: f"{int(part.reproduced)} of {int(part.entries)}", rows=name
+        )
+    columns["printed below every orbit"] = text("unreachable")
+    return table(each(data, "reading"), columns)
+
+
+def witness(data: xr.Dataset) -> Table:
+    """Largest disagreement between the routes to the orbits of each figure or table.
+
+    An entry is a bound of the largest disagreement, which is the budget unless this is exceeded,
+    and the number of orbits in brackets. The disagreement itself is not printed, because it
+    consists of rounding errors, which differ between processors.
+    """
+
+    def entry(part: xr.Dataset) -> str:
+        found, allowed = float(part.disagreement), float(part.budget)
+        text = f"≤ {allowed:.0e}" if found <= allowed else f"{found:.1e}"
+        return f"{text} ({int(part.orbits)})" if part.orbits else "–"
+
+    kinds = {str(kind): at(entry, comparison=kind) for kind in data.comparison.values}
+    header, body = table(each(data, "artifact"), {"artifact": text("artifact"), **kinds})
+    return header, [["budget", *(f"{float(value):.0e}" for value in data.budget.values)], *body]
+
+
+def claims(data: xr.Dataset) -> Table:
+    """Claims of the paper: place, statement, number, deviation, verdict.
+
+    The column "printed or required" has the printed number, or the bound that a
+    formula or a statement must meet.
+    """
+    columns: Columns = {
+        "claim": text("claim"),
+        "where": text("item"),
+        "what the paper says": text("statement"),
+        "printed or required": text("required"),
+        "found": found_text,
+        "deviation": deviation_text,
+        "verdict": text("verdict"),
+    }
+    return table(each(data, "claim"), columns)
+
+
+def found_text(claim: xr.Dataset) -> str:
+    """The number found, with two digits more than printed, or four digits if nothing is printed.
+
+    For a number of the size of rounding the text is its bound.
+    """
+    printed = claim.printed_text.item()
+    if not printed and np.isfinite(claim.found):
+        return compared_text(float(claim.found), float(claim.limit))
+    return entry_of(claim.found, f".{len(printed.partition('.')[2]) + 2}f")
+
+
+def deviation_text(claim: xr.Dataset) -> str:
+    """The deviation in units of the last printed digit, and in per cent."""
+    units, share = float(claim.deviation_units), float(claim.deviation)
+    return "" if np.isnan(units) else f"{units:+.2f} ({100 * share:+.3g} %)"
+
+
+class Claims:
+    """Access to the claims of a dataset by name and by verdict, or to ``all`` in their order.
+
+    A claim has as attributes its ``id``, the variables of the dataset over ``claim``, and ``found``
+    in the form of the table of claims.
+    """
+
+    def __init__(self, data: xr.Dataset) -> None:
+        rows = data[[name for name, values in data.items() if values.dims == ("claim",)]]
+        found = [found_text(row) for row in each(rows, "claim")]
+        frame = rows.assign(found=("claim", found)).to_dataframe().rename_axis("id").reset_index()
+        self._claims: dict[str, Any] = {row.id: row for row in frame.itertuples()}
+        self.all = list(self._claims.values())
+
+    def __call__(self, name: str) -> Any:
+        """The claim with this id."""
+        return self._claims[name]
+
+    def count(self, verdict: str = "", *, table: str = "", group: str = "independent") -> int:
+        """Number of claims with a verdict, or of all if it is empty; of one table if that is named.
+
+        ``group`` is ``independent`` for all claims except restatements, ``all``, or the name of a
+        group.
+        """
+        return sum(
+            (claim.group == group or group == "all")
+            or (group == "independent" and claim.group != "restatement")
+            for claim in self.all
+            if verdict in ("", claim.verdict) and table in ("", claim.printed_table)
+        )
+
+    def asked(self, name: str) -> bool:
+        """Whether a claim has a verdict, for which the run must have the paper's parameters."""
+        return self(name).verdict != "not asked"
+
+    def not_asked(self) -> list[str]:
+        """The reasons why claims have no verdict: parameters that differ from the paper's."""
+        return sorted({self(name).reason for name in self._claims if not self.asked(name)})

@@ -1,0 +1,214 @@
+"""The verdict on a claim, from the comparison with a printed number or from a condition."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from bouncing_ball.datasets.rounding import compared_text
+from bouncing_ball.errors import ModelError
+
+CLOSE_UNITS = 2
+"""The largest difference, in units of the last printed digit, at which a number is close and not
+contradicted, because a rounded intermediate result, or a point read off a curve, may cause such a
+difference. The bound is our choice."""
+# Relative tolerance, because rounding must not decide about a number that is equal to a bound.
+_ROUNDING = 1e-9
+
+
+class Verdict(StrEnum):
+    """The verdicts from the best to the worst, and last the absence of a verdict."""
+
+    REPRODUCED = "reproduced"
+    """Within half a unit of the last printed digit; a condition that holds."""
+    QUALIFIED = "qualified"
+    """Reproduced in the reading that the paper means, but not in the others."""
+    CLOSE = "close"
+    """A number farther away, by no more than :data:`CLOSE_UNITS`."""
+    CONTRADICTED = "contradicted"
+    UNDECIDABLE = "undecidable"
+    """The verdict depends on how the claim is read."""
+    NOT_ASKED = "not asked"
+    """The datasets were not computed with the paper's parameters."""
+    CONFIRMED = "confirmed"
+    """A statement of ours that holds in the whole interval of the number found."""
+    NOT_DECIDED = "not decided"
+    """A statement of ours that holds in a part of the interval."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """The number that decides a claim in one reading, with its verdict.
+
+    ``required`` is the printed number, or the condition as a formula; ``limit`` is the bound of the
+    condition, NaN for a printed number. ``deviation_units`` and ``deviation`` are the difference
+    from a printed number in units of its last digit and relative to it, NaN for a condition.
+    ``low`` and ``high`` are the limits of an estimate, NaN if the number is not an estimate.
+    """
+
+    found: float
+    verdict: Verdict
+    required: str = ""
+    limit: float = np.nan
+    deviation_units: float = np.nan
+    deviation: float = np.nan
+    low: float = np.nan
+    high: float = np.nan
+
+    def __str__(self) -> str:
+        """The number found, or its bound if the bound is of the size of rounding."""
+        return compared_text(self.found, self.limit)
+
+
+def _finite(values: ArrayLike | xr.DataArray) -> np.ndarray:
+    """The numbers as an array; it is an error if there are none or one is NaN, because then
+    nothing could be decided.
+    """
+    numbers = np.asarray(values, dtype=float)
+    missing = int(np.isnan(numbers).sum())
+    if missing or not numbers.size:
+        name = getattr(values, "name", None) or "the number that decides"
+        raise ModelError(f"{name}: {missing} of {numbers.size} numbers missing")
+    return numbers
+
+
+def largest(values: ArrayLike | xr.DataArray) -> float:
+    """The largest of some numbers.
+
+    Raises
+    ------
+    ModelError
+        If there are no numbers, or one of them is NaN.
+
+    Examples
+    --------
+    >>> largest([1.0, 3.0])
+    3.0
+    """
+    return float(_finite(values).max())
+
+
+def smallest(values: ArrayLike | xr.DataArray) -> float:
+    """The smallest of some numbers.
+
+    Raises
+    ------
+    ModelError
+        If there are no numbers, or one of them is NaN.
+
+    Examples
+    --------
+    >>> smallest([1.0, 3.0])
+    1.0
+    """
+    return float(_finite(values).min())
+
+
+def _condition(value: float, sign: str, bound: float, holds: bool) -> Finding:
+    verdict = Verdict.REPRODUCED if holds else Verdict.CONTRADICTED
+    return Finding(value, verdict, f"{sign} {bound:g}", bound)
+
+
+def at_most(values, bound) -> Finding:
+    """The finding that all values are at most a bound; a tie counts in favour of the condition.
+
+    If there are several bounds, the smallest decides.
+
+    Raises
+    ------
+    ModelError
+        If there are no values, or one of them is NaN. The other conditions raise the same error.
+
+    Examples
+    --------
+    >>> [str(at_most(x, 0.01).verdict) for x in (0.009, 0.01, [0.009, 0.011])]
+    ['reproduced', 'reproduced', 'contradicted']
+    """
+    value, limit = largest(values), smallest(bound)
+    return _condition(value, "≤", limit, value <= limit + _ROUNDING * abs(limit))
+
+
+def at_least(values, bound) -> Finding:
+    """The finding that all values are at least a bound; a tie counts in favour of the condition.
+
+    If there are several bounds, the largest decides.
+
+    Examples
+    --------
+    >>> [str(at_least(x, 2).verdict) for x in (3, 2, [3, 1])]
+    ['reproduced', 'reproduced', 'contradicted']
+    """
+    value, limit = smallest(values), largest(bound)
+    return _condition(value, "≥", limit, value >= limit - _ROUNDING * abs(limit))
+
+
+def below(values, bound) -> Finding:
+    """The finding that all values are below a bound, or below the smallest of several bounds.
+
+    Examples
+    --------
+    >>> [str(below(x, 2).verdict) for x in (1, 2)]
+    ['reproduced', 'contradicted']
+    """
+    value, limit = largest(values), smallest(bound)
+    return _condition(value, "<", limit, value < limit)
+
+
+def above(values, bound) -> Finding:
+    """The finding that all values are above a bound, or above the largest of several bounds.
+
+    Examples
+    --------
+    >>> [str(above(x, 2).verdict) for x in (3, 2)]
+    ['reproduced', 'contradicted']
+    """
+    value, limit = smallest(values), largest(bound)
+    return _condition(value, ">", limit, value > limit)
+
+
+def against_print(value: float, printed: str) -> Finding:
+    """The finding on a computed number, by its distance from a printed number in last digits.
+
+    Raises
+    ------
+    ModelError
+        If the number is NaN.
+
+    Examples
+    --------
+    >>> pairs = (82.177, "82"), (0.2395, "0.238"), (9.81, "6")
+    >>> [str(against_print(*pair).verdict) for pair in pairs]
+    ['reproduced', 'close', 'contradicted']
+    """
+    value, wanted = largest(value), float(printed)
+    units = (value - wanted) * 10.0 ** len(printed.partition(".")[2])
+    if abs(units) <= 0.5 + _ROUNDING:
+        verdict = Verdict.REPRODUCED
+    elif abs(units) <= CLOSE_UNITS + _ROUNDING:
+        verdict = Verdict.CLOSE
+    else:
+        verdict = Verdict.CONTRADICTED
+    return Finding(value, verdict, printed, np.nan, units, (value - wanted) / abs(wanted))
+
+
+def decided(estimate: ArrayLike, *, above: float = -np.inf, below: float = np.inf) -> Finding:
+    """The finding that the interval of an estimate lies above a bound, or below one.
+
+    ``estimate`` is a number, or a number with its lower and its upper limit. The statement is
+    contradicted if the whole interval lies beyond the bound, and not decided if a part of it does,
+    or if a limit is NaN.
+
+    Examples
+    --------
+    >>> [str(decided([x, x - 1, x + 1], above=3).verdict) for x in (5, 3, 1)]
+    ['confirmed', 'not decided', 'contradicted']
+    """
+    value, low, high = map(float, np.broadcast_to(estimate, 3))
+    # A mean life may be infinite.
+    holds = low > above and (high < below or np.isinf(below))
+    fails = high <= above or low >= below
+    verdict = Verdict.CONTRADICTED if fails else Verdict.NOT_DECIDED
+    required = f"> {above:g}" if np.isinf(below) else f"< {below:g}"
+    return Finding(value, Verdict.CONFIRMED if holds else verdict, required, low=low, high=high)

@@ -1,0 +1,167 @@
+"""Damping, restitution and the release rule of a linear contact (Eqs. 16, 23).
+
+A contact ends where ``δ + κ δ′ = 0``. With κ = 0 the ball is back at the
+table's level; with κ = 2ζ/ϖ the contact force vanishes. Formulas
+contain the condition as ``sin α = κϖ/2``, which is 0 or ζ, so that both releases have the same
+formulas; a free contact ends at the angle π - 2α.
+
+During half a period of a free damped oscillator, without gravity, the speed is
+multiplied by ``r = exp(-π ζ / √(1 - ζ²))`` (Nagurka and Huang). If instead the
+contact ends where its force vanishes, at the angle π - 2 arcsin ζ, the
+speed is multiplied by ``exp(-ζ (π - 2 arcsin ζ) / √(1 - ζ²))`` (Schwager and
+Pöschel, Granular Matter 9, 2007).
+"""
+
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.errors import one_of, require
+from bouncing_ball.numerics.elementary import arctangent, exponential, logarithm, sine_and_versine
+
+
+class Release(StrEnum):
+    """The condition that ends a contact."""
+
+    DISPLACEMENT = "displacement"
+    """The ball is back at the table's level, δ = 0 (Eq. 23, the paper's)."""
+    FORCE = "force"
+    """The contact force vanishes, 2ζϖ δ′ + ϖ² δ = 0, so that it never pulls the ball."""
+
+    @classmethod
+    def of(cls, rule: str) -> "Release":
+        """The release with this name.
+
+        Raises
+        ------
+        ModelError
+            If there is no such release.
+
+        Examples
+        --------
+        >>> Release.of("force")
+        <Release.FORCE: 'force'>
+        """
+        return one_of("release", rule, {str(each): each for each in cls})
+
+    def sine(self, damping_ratio: ArrayLike) -> np.ndarray:
+        """``sin α = κϖ/2``: 0 for the displacement release, ζ for the force release.
+
+        Examples
+        --------
+        >>> float(Release.DISPLACEMENT.sine(0.3)), float(Release.FORCE.sine(0.3))
+        (0.0, 0.3)
+        """
+        zeta = np.asarray(damping_ratio, dtype=float)
+        return zeta if self is Release.FORCE else np.zeros_like(zeta)
+
+    def free_angle(self, damping_ratio: ArrayLike) -> np.ndarray:
+        """π - 2α: the angle ϖ_d s at which a free contact with ζ < 1 ends.
+
+        Examples
+        --------
+        >>> float(Release.DISPLACEMENT.free_angle(0.5)) == np.pi
+        True
+        """
+        # This form, 2 arccos, keeps its digits as ζ → 1, where π - 2 arcsin would lose them.
+        sine = self.sine(damping_ratio)
+        return 2 * arctangent(np.sqrt((1 - sine) * (1 + sine)), sine)
+
+
+# Newton steps for β in 2β cot β = -ln r. The initial error is below 10 %, and each
+# step doubles the number of correct digits.
+_NEWTON_STEPS = 6
+# The difference between π/2 and the double nearest to it.
+_REST = 6.123233995736766e-17
+
+
+def damping_ratio(restitution: ArrayLike, release: Release = Release.DISPLACEMENT) -> np.ndarray:
+    """Damping ratio ζ of a free contact with the restitution coefficient r.
+
+    ``ζ = -ln r / √(π² + ln² r)`` (Eq. 16) for the displacement release. For the
+    force release ζ = cos β with ``2β cot β = -ln r``.
+
+    Parameters
+    ----------
+    restitution : array_like
+        r in (0, 1] for the displacement release, in (e⁻², 1] for the force release.
+    release : Release
+        The condition that ends the contact in which r is measured.
+
+    Raises
+    ------
+    ModelError
+        If any r lies outside its range. The lower bounds 0 and e⁻² are the limits
+        for ζ → 1.
+
+    Examples
+    --------
+    >>> float(damping_ratio(1.0))
+    0.0
+    >>> round(float(damping_ratio(0.65)), 4), round(float(damping_ratio(0.65, Release.FORCE)), 4)
+    (0.1359, 0.1499)
+    """
+    r = np.asarray(restitution, dtype=float)
+    require((r > 0) & (r <= 1), r, "restitution coefficient r", "in (0, 1]")
+    decrement = -logarithm(r) + 0.0  # + 0.0 turns -0 into 0 at r = 1
+    if release is Release.DISPLACEMENT:
+        return decrement / np.sqrt(np.pi * np.pi + decrement * decrement)
+    allowed = "in (e⁻², 1], the range of the force release with ζ < 1"
+    require(decrement < 2, r, "restitution coefficient r", allowed)
+    # cos(π/2) gives the rounding of π/2, which is below the rounding of r = 1.
+    return np.where(decrement > 0, _cosine(_half_angle(decrement)), 0.0)
+
+
+def _cosine(beta: np.ndarray) -> np.ndarray:
+    """cos β, accurate near π/2 because the rounding error of π/2 is added."""
+    return sine_and_versine((np.pi / 2 - beta) + _REST)[0]
+
+
+def _half_angle(decrement: np.ndarray) -> np.ndarray:
+    """β in (0, π/2] with ``2β cot β = decrement`` < 2, by Newton's method.
+
+    2β cot β falls from 2 to 0 and is concave, so that the steps converge from
+    the right without leaving the interval. The starting point replaces the curve by
+    the parabola 2 - 8 (β/π)², which agrees with it at β = 0 and β = π/2.
+    """
+    start = np.pi / 2 * np.sqrt(1 - decrement / 2)
+    beta = np.maximum(start, np.finfo(float).tiny)
+    for _ in range(_NEWTON_STEPS):
+        sine, cosine = sine_and_versine(beta)[0], _cosine(beta)
+        value = 2 * beta * cosine / sine - decrement
+        slope = 2 * (cosine * sine - beta) / (sine * sine)
+        beta = beta - value / slope
+    return beta
+
+
+def restitution_coefficient(
+    damping: ArrayLike, release: Release = Release.DISPLACEMENT
+) -> np.ndarray:
+    """Restitution coefficient of a free, underdamped linear contact.
+
+    ``r = exp(-(π - 2α) ζ/√(1 - ζ²))``, the inverse of :func:`damping_ratio`. For the
+    force release r is greater, because the contact ends before its force pulls the ball.
+
+    Parameters
+    ----------
+    damping : array_like
+        ζ in [0, 1).
+    release : Release
+        The condition that ends the contact.
+
+    Raises
+    ------
+    ModelError
+        If any ζ lies outside [0, 1): the formula holds for underdamped contacts only.
+
+    Examples
+    --------
+    >>> float(restitution_coefficient(0.0))
+    1.0
+    """
+    zeta = np.asarray(damping, dtype=float)
+    allowed = "in [0, 1): an overdamped contact has no restitution coefficient"
+    require((zeta >= 0) & (zeta < 1), zeta, "damping ratio ζ", allowed)
+    angle = Release.of(release).free_angle(zeta)
+    return exponential(-angle * zeta / np.sqrt((1 - zeta) * (1 + zeta)))

@@ -1,0 +1,94 @@
+"""One orbit followed along ϖ, curve by curve (Figs. 5, 6, 10, 13)."""
+
+from itertools import cycle
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from bouncing_ball.datasets.selection import each
+from bouncing_ball.drawing.canvas import canvas, coloured, draw_curve, legend_below, logarithmic
+from bouncing_ball.drawing.labels import note, number, parameters
+from bouncing_ball.drawing.style import COLOURS, GUIDE, RESTITUTION, Look
+
+_DASHES = ("-", (0, (5, 1.5)), (0, (1, 1)), (0, (5, 1.5, 1, 1.5)))
+# Above this frequency ratio the points are close to the point of the restitution model.
+_NAMED_UP_TO = 10.0
+_LIMIT: Look = {"markersize": 9, "zorder": 5, "linestyle": "none", "color": RESTITUTION}
+
+
+def apparent_restitution(data: xr.Dataset) -> Figure:
+    """Figs. 5 and 6: a curve for each (r, Λ), with the restitution coefficients as guides."""
+    figure, axes = canvas(height=2.8)
+    for restitution in data.restitution.values:
+        axes.axhline(restitution, **GUIDE)
+    _draw_cases(axes, data, "apparent_restitution", "apparent restitution $r_a$")
+    # The legend is between the lowest curve and the next curve, if these are far apart.
+    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.12), title=parameters(data, "n"))
+    return figure
+
+
+def bounce_velocity(data: xr.Dataset) -> Figure:
+    """Fig. 10: a curve for each Λ, with the restitution model's nπ as a guide."""
+    figure, axes = canvas(height=2.6)
+    limit = float(data.restitution_bounce_velocity)
+    axes.axhline(limit, **GUIDE)
+    note(axes, r"$n\pi$", (float(data.frequency_ratio[0]), limit), (4, 3), fontsize=8)
+    _draw_cases(axes, data, "bounce_velocity", r"bouncing-off velocity $z′_b$")
+    axes.legend(loc="lower right", title=parameters(data, "n"))
+    return figure
+
+
+def poincare_map(data: xr.Dataset) -> Figure:
+    """Fig. 13: phase and velocity, over π, at the start and at the end of contact.
+
+    Each curve is parametrised by ϖ, and a few values of ϖ are marked.
+    """
+    figure, axes = canvas(4.4, 4.0)
+    for k, (curve, colour) in enumerate(zip(each(data, "case"), cycle(COLOURS[1:]))):
+        end = (curve.release_phase, curve.bounce_velocity, data.restitution_bounce_velocity)
+        start = (curve.phase, curve.impact_velocity, data.restitution_impact_velocity)
+        for (phase, velocity, limit), name, dashes, face in (
+            (end, r"end of contact, $(\varphi+\tau_b,\,z′_b)$", "-", colour),
+            (start, r"start of contact, $(\varphi,\,z′_i)$", (0, (4, 1.5)), "white"),
+        ):
+            look: Look = {"color": colour, "linestyle": dashes, "markerfacecolor": face}
+            # The legend names the curves of the first case only.
+            _draw_trace(axes, curve, phase, velocity, name if k == 0 else None, look)
+            axes.plot(curve.restitution_phase / np.pi, limit / np.pi, "*", **_LIMIT)
+    axes.plot([], [], "*", label="restitution model", **_LIMIT)
+    axes.set(xlabel=r"phase of the table over $\pi$", ylabel=r"velocity of the ball, $z′/\pi$")
+    axes.margins(x=0.14)
+    legend_below(figure, ncols=2)
+    amplitudes = [rf"$\Lambda={number(x)}$" for x in data["amplitude"].values]
+    axes.set_title(", ".join([parameters(data, "n", "restitution"), *amplitudes]))
+    return figure
+
+
+def _draw_cases(axes: Axes, data: xr.Dataset, name: str, ylabel: str) -> None:
+    """One curve of a variable for each case, named by its r and Λ."""
+    for (one, colour), dashes in zip(coloured(data, "case"), cycle(_DASHES), strict=False):
+        r, lam = (number(float(one[parameter])) for parameter in ("restitution", "amplitude"))
+        label = rf"$r={r}$, $\Lambda={lam}$"
+        look: Look = {"color": colour, "linestyle": dashes, "label": label}
+        draw_curve(axes, one.frequency_ratio, one[name], one.admissible, **look)
+    logarithmic(axes, data.frequency_ratio, ylabel=ylabel)
+
+
+def _draw_trace(axes: Axes, curve: xr.Dataset, phase, velocity, label, look: Look) -> None:
+    """Phase and velocity over π as ϖ varies; round values of ϖ are marked.
+
+    Small values are named on curves with a label only, because names on all curves would overlap.
+    """
+    x, y = phase.values / np.pi, velocity.values / np.pi
+    marked = np.flatnonzero(curve.labelled.values)
+    look |= {"label": label, "marker": "o", "markersize": 4, "markevery": marked.tolist()}
+    draw_curve(axes, x, y, curve.admissible, **look)
+    for k, at in enumerate(marked):
+        ratio = float(curve.frequency_ratio[at])
+        if label and ratio <= _NAMED_UP_TO:
+            # The names of neighbours are on different sides of the curve.
+            offset, side = ((5, 4), "left") if k % 2 == 0 else ((-5, -4), "right")
+            name, point = rf"$\varpi={number(ratio)}$", (x[at], y[at])
+            note(axes, name, point, offset, ha=side, va="center", fontsize=8)

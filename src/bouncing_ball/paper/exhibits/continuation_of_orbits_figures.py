@@ -1,0 +1,145 @@
+"""Branches of n-T orbits with stability and bifurcations: phase of the table against Λ.
+
+Lines are solid for stable, dashed for unstable and dotted for inadmissible orbits (Figs. 3, 8, 9,
+15).
+"""
+
+from itertools import cycle, pairwise
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from bouncing_ball.datasets import CASE, SADDLE_NODE
+from bouncing_ball.datasets.selection import each
+from bouncing_ball.drawing.canvas import WIDE, canvas, coloured, legend_below
+from bouncing_ball.drawing.labels import in_a_row, parameters, title
+from bouncing_ball.drawing.style import COLOURS, LINES, MARKS
+from bouncing_ball.drawing.tables import Columns, Table, entry_of, table, text, value
+
+
+def domains(data: xr.Dataset) -> Figure:
+    """Figs. 8 and 9: the spring-damper model's branch for each ϖ, in one panel."""
+    figure = over_amplitude(data.drop_attrs())
+    title = parameters(data, "n", "restitution")
+    figure.axes[0].set(title=title, xlim=(0.0, data.attrs["amplitude_max"]))
+    return figure
+
+
+def over_amplitude(data: xr.Dataset) -> Figure:
+    """Branches of a labelled dataset as in Figs. 8 and 9, named by the arguments that differ."""
+    figure, axes = canvas(WIDE, 4.2)
+    rows, names = in_a_row(data, "point", "special", "multiplier", "end")
+    _name_curves(axes, [name for name in names if name])
+    for curve, colour in coloured(rows, CASE):
+        _draw_spring_damper(axes, up_to_second_saddle_node(curve), colour, colour)
+    touching = bool((rows.contact_duration > 0).any())
+    above = r", and above it $\varphi+\tau_b$" if touching else ""
+    axes.set(xlabel=r"amplitude $\Lambda$", title=title(data), xlim=(0.0, data.amplitude.max()))
+    axes.set(ylabel=rf"phase of the table over $\pi$: $\varphi${above}")
+    legend_below(figure, ncols=7)
+    return figure
+
+
+def both_domains(data: xr.Dataset) -> Figure:
+    """Fig. 15: the branches of both models."""
+    figure, axes = canvas(5.6, 3.4)
+    of_branch = ("amplitude", "phase", "stable", "admissible")
+    rigid = xr.Dataset({name: data[f"restitution_{name}"] for name in of_branch})
+    contact = (r"spring-damper, $\varphi$", r"spring-damper, $\varphi+\tau_b$")
+    _name_curves(axes, [r"restitution, $\varphi$", *contact])
+    _draw_branch(axes, rigid, rigid.phase, COLOURS[0])
+    _draw_named_points(axes, data, COLOURS[0])
+    curve = data.squeeze("frequency_ratio")
+    _draw_spring_damper(axes, curve, COLOURS[1], COLOURS[2])
+    # If the contact has no such branch, all its values are NaN.
+    lowest = float(curve.amplitude.fillna(data.saddle_node_amplitude).min())
+    title = parameters(data, "n", "restitution", "frequency_ratio")
+    _name_axes(axes, data, r"phase of the table over $\pi$", title, left=0.9 * lowest)
+    legend_below(figure, ncols=4)
+    return figure
+
+
+def up_to_second_saddle_node(curve: xr.Dataset) -> xr.Dataset:
+    """The branch from its short contacts to the saddle-node at which its unstable side turns back.
+
+    Beyond that saddle-node the contacts are longer. A branch whose unstable side does not turn back
+    is returned unchanged.
+    """
+    durations = curve.special_contact_duration.values[curve.special_kind.values == SADDLE_NODE]
+    if len(durations) < 2:
+        return curve
+    longest = np.sort(durations)[1]
+    return curve.isel(
+        point=curve.contact_duration.values <= longest,
+        special=curve.special_contact_duration.values <= longest,
+    )
+
+
+def _name_axes(axes: Axes, data: xr.Dataset, ylabel: str, title: str, left: float = 0.0) -> None:
+    axes.set(xlabel=r"amplitude $\Lambda$", ylabel=ylabel, title=title)
+    axes.set_xlim(left, data.attrs["amplitude_max"])
+
+
+def _name_curves(axes: Axes, names: list[str]) -> None:
+    """Entries of the legend, in the order of the colours."""
+    for name, colour in zip(names, cycle(COLOURS), strict=False):
+        axes.plot([], [], color=colour, label=name)
+
+
+def _draw_branch(axes: Axes, curve: xr.Dataset, phase: xr.DataArray, colour: str) -> None:
+    """A branch in pieces of one look, each extended to the first point of the next piece."""
+    x, y = curve.amplitude.values, phase.values / np.pi
+    kinds = np.where(curve.admissible, np.where(curve.stable, "stable", "unstable"), "inadmissible")
+    edges = [0, *(np.flatnonzero(kinds[1:] != kinds[:-1]) + 1), len(kinds)]
+    for start, stop in pairwise(edges):
+        run = slice(start, stop + 1)
+        axes.plot(x[run], y[run], color=colour, label=kinds[start], **LINES[kinds[start]])
+
+
+def _draw_named_points(axes: Axes, data: xr.Dataset, colour: str) -> None:
+    """The bifurcations and grazing orbits of the restitution model, where the dataset has them."""
+    for kind in MARKS:
+        name = kind.replace("-", "_").replace(" ", "_")
+        if f"{name}_phase" in data:
+            _mark(axes, kind, data[f"{name}_amplitude"], data[f"{name}_phase"], colour)
+
+
+def _draw_spring_damper(axes: Axes, curve: xr.Dataset, start: str, end: str) -> None:
+    """The phases at the start and at the end of contact, with the special points."""
+    for phase, place, colour in (
+        (curve.phase, curve.special_phase, start),
+        (curve.release_phase, curve.special_phase + curve.special_contact_duration, end),
+    ):
+        _draw_branch(axes, curve, phase, colour)
+        for kind in MARKS:
+            there = place.where(curve.special_kind == kind)
+            _mark(axes, kind, curve.special_amplitude, there, colour)
+
+
+def _mark(axes: Axes, kind: str, x: xr.DataArray, phase: xr.DataArray, colour: str) -> None:
+    """The special points of a kind, if there are any."""
+    if phase.notnull().any():
+        axes.plot(x, phase / np.pi, color=colour, zorder=4, label=kind, **MARKS[kind])
+
+
+def table1(data: xr.Dataset) -> Table:
+    """Stability ranges over Λ: each end of each range computed, printed, and their difference.
+
+    Differences are in Λ. The rows of the restitution model have no printed values.
+    """
+    ends: Columns = {"n": text("n"), "bound": text("bound")}
+    contacts: Columns = {
+        "ϖ": value("frequency_ratio", "g"),
+        **ends,
+        "computed": value("computed", ".5f"),
+        "printed": value("printed", ".3f", ""),
+        "difference": lambda part: entry_of(part.computed - part.printed, "+.5f", ""),
+    }
+    header, body = table(each(data, "frequency_ratio", *ends), contacts)
+    for part in each(data, "impact_map", *ends):
+        place = [column(part) for column in ends.values()]
+        name = f"restitution ({part.impact_map.item()} map)"
+        body.append([name, *place, entry_of(part.restitution_range, ".5f"), "", ""])
+    return header, body

@@ -1,0 +1,90 @@
+"""Thresholds of permanent contact along ϖ (Figs. 11 and 16)."""
+
+import xarray as xr
+
+from bouncing_ball.datasets.parameters import Parameters, Restitution, Span, Tolerance
+from bouncing_ball.datasets.variables import Variable, describe, described
+from bouncing_ball.paper.comparison.errors import Quantity
+from bouncing_ball.paper.contact.damping import Release, damping_ratio
+from bouncing_ball.paper.contact.permanent_contact import (
+    RESTITUTION_THRESHOLD,
+    permanent_contact_minimum,
+    permanent_contact_threshold,
+)
+from bouncing_ball.paper.exhibits.error_thresholds import thresholds_along
+from bouncing_ball.paper.exhibits.orbit_parameters import OrbitsAlongRatio
+
+VARIABLES = {
+    "minimum_threshold": Variable(
+        "lowest threshold of permanent contact", symbol="2ζ√(1-ζ²)", equation="Eq. 36"
+    ),
+    "minimum_frequency_ratio": Variable(
+        "where the lowest threshold is", symbol="1/√(1-2ζ²)", equation="Eqs. 34-36"
+    ),
+    "restitution_threshold": Variable(
+        "threshold of permanent contact, restitution model", symbol="Λ_CR", equation="Eq. 9"
+    ),
+}
+
+
+class PermanentContact(Parameters):
+    """The threshold of permanent contact of one restitution coefficient along ϖ.
+
+    It has a minimum where ζ < 1/√2 (Eq. 36), which is r > e^-π = 0.0432.
+    """
+
+    restitution: Restitution
+    frequency_ratio: Span
+
+
+def permanent_contact(parameters: PermanentContact, release: Release) -> xr.Dataset:
+    """The threshold of permanent contact along ϖ, in both models (Fig. 11, Eqs. 33 and 36).
+
+    The dataset has ``threshold_amplitude`` (ϖ,), a value of Λ, and the numbers
+    ``minimum_threshold`` and ``minimum_frequency_ratio`` of its minimum, ``restitution_threshold``
+    = Λ_CR, and ``damping_ratio`` ζ.
+
+    Raises
+    ------
+    ModelError
+        If the damping is too strong for a minimum to exist.
+    """
+    ratios = parameters.frequency_ratio.grid()
+    zeta = float(damping_ratio(parameters.restitution))
+    curve = permanent_contact_threshold(ratios, zeta, release)
+    lowest = permanent_contact_minimum(zeta, release)
+    return described(
+        {
+            "threshold_amplitude": ("frequency_ratio", curve),
+            "minimum_threshold": ((), float(lowest.threshold)),
+            "minimum_frequency_ratio": ((), float(lowest.frequency_ratio)),
+            "restitution_threshold": ((), RESTITUTION_THRESHOLD),
+            "damping_ratio": ((), zeta),
+        },
+        coords={"frequency_ratio": ratios},
+        variables=VARIABLES,
+    )
+
+
+class PermanentContactError(PermanentContact):
+    """The threshold of permanent contact along ϖ, and its tolerated relative error."""
+
+    tolerance: Tolerance
+
+
+def permanent_contact_error(parameters: PermanentContactError, release: Release) -> xr.Dataset:
+    """Permanent contact along ϖ in both models, and ϖ_PC for the tolerance (Eq. 38, Fig. 16).
+
+    The dataset has the variables of :func:`error_thresholds` for the one quantity, and those of
+    :func:`~bouncing_ball.paper.exhibits.permanent_contact.permanent_contact`.
+
+    Raises
+    ------
+    ModelError
+        If the damping is too strong for a minimum of the threshold to exist.
+    """
+    # n and Λ have no influence, because the threshold of permanent contact depends on neither.
+    nowhere = OrbitsAlongRatio.model_construct(n=1, amplitude=1.0, **dict(parameters))
+    asked = [Quantity.PERMANENT_CONTACT]
+    dataset = thresholds_along(nowhere, release, asked, [parameters.tolerance])
+    return describe(dataset.merge(permanent_contact(parameters, release)), variables=VARIABLES)

@@ -1,0 +1,102 @@
+"""Orbits of the restitution model: time history and domains (Figs. 2 and 3)."""
+
+from typing import Annotated
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.datasets.parameters import Samples, number
+from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.paper.exhibits.orbit_parameters import FamilyBranches, OrbitParameters
+from bouncing_ball.paper.orbits import restitution_branch as orbits
+from bouncing_ball.paper.orbits.restitution_branch import ImpactMap
+from bouncing_ball.paper.orbits.restitution_model import RestitutionModel, RestitutionOrbit
+
+VARIABLES = {
+    "grazing_amplitude": Variable(
+        "amplitude at which the unstable orbit grazes the table", symbol="Λ"
+    ),
+    "grazing_phase": Variable(
+        "phase at which the unstable orbit grazes the table", symbol="φ", units="rad"
+    ),
+}
+
+
+class RestitutionHistory(OrbitParameters):
+    """One orbit of the restitution model over time."""
+
+    periods: Annotated[int, number("periods of the orbit shown", ge=1, le=20)]
+    samples: Samples
+
+
+def _grazing(orbits: RestitutionOrbit) -> np.ndarray:
+    """φ and Λ at which the unstable orbits of one family graze the table; NaN if they do not."""
+    system = RestitutionModel(orbits.law).system(int(orbits.n[0]))
+    found = system.grazing(system.point(orbits))
+    return found[0, [0, -1]] if len(found) else np.full(2, np.nan)
+
+
+def restitution_orbits(parameters: FamilyBranches) -> xr.Dataset:
+    """φ against Λ for several families of the restitution model (Fig. 3).
+
+    The dataset has ``amplitude``, ``phase`` in rad, ``stable`` and ``admissible`` (n, point), from
+    the unstable to the stable side up to Λ = ``amplitude_max``; Λ and φ of the saddle-node and of
+    the grazing orbit (n,); and those of the period doubling for both maps (impact_map, n).
+
+    Raises
+    ------
+    NoOrbitError
+        If a family does not exist up to ``amplitude_max``.
+    """
+    n = np.array(parameters.n)
+    r, top = parameters.restitution, parameters.amplitude_max
+    fold = orbits.saddle_node(n, r)
+    amplitude, phase = orbits.branch(n, r, top, parameters.points)
+    shown = RestitutionOrbit.of(n[:, np.newaxis], r, amplitude, phase)
+    grazing = np.array([_grazing(shown[k]) for k in range(n.size)])
+    maps = list(ImpactMap)
+    doubling = np.array([orbits.period_doubling(n, r, kind) for kind in maps])
+    lift = np.array([[float(orbits.period_doubling_lift(r, kind))] for kind in maps])
+    return described(
+        {
+            "amplitude": (("n", "point"), amplitude),
+            "phase": (("n", "point"), phase),
+            "stable": (("n", "point"), shown.is_stable()),
+            "admissible": (("n", "point"), shown.is_admissible()),
+            "grazing_amplitude": ("n", grazing[:, 1]),
+            "grazing_phase": ("n", grazing[:, 0]),
+            "saddle_node_amplitude": ("n", fold),
+            "saddle_node_phase": ("n", np.zeros_like(fold)),
+            "period_doubling_amplitude": (("impact_map", "n"), doubling),
+            "period_doubling_phase": (("impact_map", "n"), np.arctan2(lift, fold)),
+        },
+        coords={"n": n, "impact_map": [str(kind) for kind in maps]},
+        variables=VARIABLES,
+    )
+
+
+def restitution_history(parameters: RestitutionHistory) -> xr.Dataset:
+    """Ball and table over some periods of an orbit of the restitution model (Fig. 2).
+
+    The dataset has ``time``, ``ball``, ``ball_velocity`` and ``table`` (sample,), and the number
+    ``phase`` in rad.
+
+    Raises
+    ------
+    NoOrbitError
+        If Λ lies below the saddle-node.
+    """
+    n, lam = parameters.n, parameters.amplitude
+    orbit = RestitutionModel(parameters.restitution).require_orbit(n, lam)
+    time = np.linspace(0.0, parameters.periods * 2 * np.pi * n, parameters.samples)
+    height, velocity = orbit.path(time)
+    return described(
+        {
+            "time": ("sample", time),
+            "ball": ("sample", height),
+            "ball_velocity": ("sample", velocity),
+            "table": ("sample", lam * np.sin(time + orbit.phase)),
+            "phase": ((), float(orbit.phase)),
+        },
+        variables=VARIABLES,
+    )

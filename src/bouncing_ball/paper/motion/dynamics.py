@@ -1,0 +1,229 @@
+"""The simulation of balls from impact to impact, by the contacts and flights of any model.
+
+A subclass of :class:`Dynamics` computes the ends of contacts; everything else follows from them.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any, ClassVar, NamedTuple, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.errors import ModelError, require
+from bouncing_ball.numerics.arrays import BLOCK, Batch, blocks, pick
+from bouncing_ball.numerics.elementary import reduce_angle, table
+from bouncing_ball.paper.contact.law import ContactLaw
+from bouncing_ball.paper.motion.deviations import Deviation, Jacobian
+from bouncing_ball.paper.motion.flight import Flight, land
+from bouncing_ball.paper.motion.sequence import RECORDED, Cycle, ImpactSequence, Status
+
+# Rounding may give a ball at rest on the table a small upward velocity.
+_ROUNDING = 8 * np.finfo(float).eps
+
+
+class Impact(NamedTuple):
+    """Starts of contact: the table's phase, δ and δ′, and further results of the model."""
+
+    phase: np.ndarray
+    displacement: np.ndarray
+    velocity: np.ndarray
+    known: Any = None
+
+    @classmethod
+    def at_level(cls, phase: np.ndarray, velocity: np.ndarray, known: Any = None) -> "Impact":
+        """Starts at the table's level, δ = 0."""
+        return cls(reduce_angle(phase), np.zeros_like(phase), velocity, known)
+
+
+class Departure(NamedTuple):
+    """Ends of contact: the table's phase, the duration of the contact, the flight that follows and
+    the :class:`~bouncing_ball.paper.motion.sequence.Status`.
+
+    ``settling`` is the part of the duration in which the ball still bounces. ``aloft`` is a time
+    of flight before which the ball has not landed; it is used if it exceeds
+    :meth:`Flight.sure <bouncing_ball.paper.motion.flight.Flight.sure>`. ``by`` has the derivatives of
+    the contact's end, if they are computed together with it. ``sticks`` marks the balls that stay
+    until the table's downward acceleration exceeds gravity, and is None without derivatives.
+    """
+
+    phase: np.ndarray
+    duration: np.ndarray
+    flight: Flight
+    status: np.ndarray
+    settling: np.ndarray | float = 0.0
+    aloft: np.ndarray | float = 0.0
+    by: Any = None
+    sticks: Any = None
+
+
+@dataclass(frozen=True, repr=False)
+class Dynamics(Batch, ABC):
+    """A law of the impact on a table of amplitude Λ.
+
+    Each model is a subclass, which computes the ends of contacts, and the ends of flights if these
+    are not landings. All arrays are one-dimensional with an entry per ball, and ``block`` is the
+    largest number of balls computed at the same time.
+    """
+
+    law: Any
+    amplitude: np.ndarray
+
+    block: ClassVar[int] = BLOCK
+    forgets: ClassVar[bool] = False
+    """Whether the state in which a ball leaves after sticking is independent of earlier impacts."""
+
+    @classmethod
+    def of(cls, law: Any, amplitude: ArrayLike) -> Self:
+        """The dynamics of a law at Λ.
+
+        Raises
+        ------
+        ModelError
+            If Λ is not finite and ≥ 0.
+        """
+        lam = np.asarray(amplitude, dtype=float)
+        require((lam >= 0) & np.isfinite(lam), lam, "amplitude Λ", "finite and ≥ 0")
+        return cls(law, lam)
+
+    def start(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
+        """First impacts, which start at phases φ with δ′ at the table's level."""
+        return Impact.at_level(phase, velocity)
+
+    def at_section(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
+        """The impacts with these states, in the coordinates of :meth:`section`."""
+        return self.start(phase, velocity)
+
+    @abstractmethod
+    def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
+        """The ends of the contacts that start with these impacts; with ``differentiate`` also which
+        balls stick, and what :meth:`jacobian` needs.
+        """
+
+    def fly(self, departure: Departure) -> tuple[Impact, np.ndarray]:
+        """The next impact of balls that leave, and the time from the last impact to it.
+
+        Raises
+        ------
+        ModelError
+            If a flight is too long for floating-point numbers.
+        """
+        landing = land(departure.flight, departure.flight.sure())
+        impact = Impact.at_level(departure.phase + landing.time, -landing.rate)
+        return impact, departure.duration + landing.time
+
+    @abstractmethod
+    def jacobian(
+        self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
+    ) -> Jacobian:
+        """Derivative of the map from one impact to the next, in the coordinates of :meth:`section`.
+
+        ``passed`` is the time between the two impacts.
+        """
+
+    def section(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
+        """The state of an impact on the Poincaré section: a phase and a relative velocity."""
+        return impact.phase, impact.velocity
+
+    def landed(
+        self,
+        released: Iterable[Deviation],
+        departure: Departure,
+        after: Impact,
+        passed: np.ndarray,
+        lag: np.ndarray | float = 0.0,
+    ) -> Jacobian:
+        """The derivative whose columns are the two deviations at the release after the flight.
+
+        The flight ends where δ + κ δ′ = 0, with κ = ``lag``.
+        """
+        flight, end = departure.flight, table(after.phase, self.amplitude)
+        time = passed - departure.duration
+        columns = (x.flown((flight.x, flight.y), end, time, after.velocity, lag) for x in released)
+        return Jacobian.of_columns(*columns)
+
+    def in_a_row(self, *states: ArrayLike) -> tuple[Self, list[np.ndarray], tuple[int, ...]]:
+        """The dynamics and states of balls, flattened, and the shape to which they broadcast."""
+        arrays = [np.asarray(x, dtype=float) for x in states]
+        shape = np.broadcast_shapes(self.shape, *(x.shape for x in arrays))
+        return self.flat(shape), [np.broadcast_to(x, shape).reshape(-1) for x in arrays], shape
+
+    def kept(self, which: np.ndarray, *rows: Any) -> tuple:
+        """The dynamics and the rows of the balls with these indices."""
+        return self.take(which), *(pick(x, which) for x in rows)
+
+    def first_impacts(
+        self, phase: ArrayLike, velocity: ArrayLike
+    ) -> tuple[Self, np.ndarray, np.ndarray, tuple[int, ...]]:
+        """The dynamics of balls, and φ and δ′ ≤ 0 of their first impacts, flattened; their shape.
+
+        Raises
+        ------
+        ModelError
+            If a state is not finite, or if a ball rises from the table.
+        """
+        flat, (start, before), shape = self.in_a_row(phase, velocity)
+        if not np.all(np.isfinite(start) & np.isfinite(before)):
+            raise ModelError("the phase and the velocity of the impact must be finite")
+        relative = before - table(start, flat.amplitude)[0]
+        if not np.all(relative <= _ROUNDING * (np.abs(before) + flat.amplitude)):
+            raise ModelError("a ball that rises from the table has no impact: z′ > w′")
+        return flat, start, np.minimum(relative, 0.0), shape
+
+    def simulate(self, phase: ArrayLike, velocity: ArrayLike, impacts: int) -> ImpactSequence:
+        """Follow balls through a number of impacts, see :func:`.simulation.simulate`."""
+        flat, start, relative, shape = self.first_impacts(phase, velocity)
+        rows = {name: np.full((impacts, start.size), np.nan) for name in RECORDED}
+        status = np.zeros(start.size, dtype=np.int8)
+        for part in blocks(start.size, self.block):
+            own = [values[:, part] for values in rows.values()]
+            here = flat.take(part)
+            here._run(here.start(start[part], relative[part]), own, status[part])
+        return ImpactSequence(
+            amplitude=np.broadcast_to(self.amplitude, shape),
+            contact=self.law if isinstance(self.law, ContactLaw) else None,
+            status=status.reshape(shape),
+            **{name: values.reshape(impacts, *shape) for name, values in rows.items()},
+        )
+
+    def _run(self, impact: Impact, rows: list[np.ndarray], status: np.ndarray) -> None:
+        """Fill the rows and the status of one block of balls, impact by impact."""
+        dynamics = self
+        time = np.zeros_like(impact.phase)
+        alive: Any = slice(None)
+        impacts = len(rows[0])
+        for row in range(impacts):
+            departure = dynamics.depart(impact)
+            flight = departure.flight
+            values = (time, *impact[:3], departure.duration, flight.displacement, flight.velocity)
+            for column, value in zip(rows, (*values, departure.settling), strict=True):
+                column[row, alive] = value
+            if np.any(departure.status):
+                status[alive] = departure.status
+                going = np.flatnonzero(departure.status == Status.BOUNCING)
+                alive = np.arange(len(status))[alive][going]
+                dynamics, departure, time = dynamics.kept(going, departure, time)
+            if row == impacts - 1 or not len(time):
+                break
+            impact, passed = dynamics.fly(departure)
+            time = time + passed
+
+    def next_impact(self, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
+        """The Poincaré map from one impact (φ, δ′) to the next, for arguments that broadcast.
+
+        Raises
+        ------
+        ModelError
+            If a flight is too long for floating-point numbers.
+        """
+        flat, (start, velocity), shape = self.in_a_row(phase, relative_velocity)
+        out = np.full((len(Cycle._fields), start.size), np.nan)
+        out[-1] = np.inf
+        for part in blocks(start.size, self.block):
+            here = flat.take(part)
+            departure = here.depart(here.start(start[part], velocity[part]))
+            going = np.flatnonzero(departure.status == Status.BOUNCING)
+            landed, passed = here.take(going).fly(pick(departure, going))
+            out[:, part.start + going] = landed.phase, landed.velocity, landed.displacement, passed
+        return Cycle(*out.reshape(len(Cycle._fields), *shape))

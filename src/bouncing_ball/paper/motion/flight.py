@@ -1,0 +1,152 @@
+r"""Free flight and the landing that ends it.
+
+Let s be the time since the ball left the table, δ_b and v its relative displacement and
+velocity at s = 0, and X = Λ cos φ_b, Y = Λ sin φ_b at the table's phase φ_b. Then ::
+
+    δ(s) = δ_b + v s - s²/2 + Y (1 - cos s) + X (s - sin s)
+    δ″   = -1 + Λ sin(φ_b + s) ≥ -(1 + Λ),    |δ‴| ≤ Λ
+
+This form loses no digits in a short flight. The ball cannot land while it is
+above the table's highest point, z > Λ, and the search skips this part.
+"""
+
+import numpy as np
+
+from bouncing_ball.errors import ModelError
+from bouncing_ball.numerics.elementary import sine_and_versine
+from bouncing_ball.numerics.first_zero import Motion, State, Zero, first_zero
+
+
+class Flight(Motion):
+    """The motion y = -δ of balls in flight; its first upward zero is the landing.
+
+    Parameters
+    ----------
+    displacement, velocity : array
+        δ_b and v, relative to the table.
+    x, y : array
+        Λ cos φ_b and Λ sin φ_b.
+    amplitude : float or array
+        Λ.
+    """
+
+    def __init__(self, displacement, velocity, x, y, amplitude):
+        self.displacement, self.velocity = displacement, velocity
+        self.x, self.y, self.amplitude = x, y, amplitude
+        thrown = velocity + x
+        over = thrown * thrown + 2 * (displacement + (y - amplitude))
+        root = np.sqrt(np.maximum(over, 0.0))
+        # z > Λ between these two times; they are equal if z never exceeds Λ.
+        self.above, self.below = thrown - root, thrown + root
+
+    def gap(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """δ, δ′, δ″ and δ‴ after a time of flight."""
+        sine, versine = sine_and_versine(time)
+        x, y = self.x, self.y
+        late = time - sine
+        displacement = self.displacement + time * (self.velocity - 0.5 * time)
+        displacement = displacement + (y * versine + x * late)
+        rise = y * sine + x * versine
+        lift = y + (x * sine - y * versine)
+        push = x - rise
+        return displacement, (self.velocity - time) + rise, lift - 1, push
+
+    def __call__(self, time: np.ndarray) -> State:
+        displacement, rate, second, third = self.gap(time)
+        lam = self.amplitude
+        return State(-displacement, -rate, -second, -third, 1 + lam, lam, lam)
+
+    def skip(self, time: np.ndarray, steps: int = 0) -> np.ndarray:
+        return np.where((time >= self.above) & (time < self.below), self.below, time)
+
+    def room(self) -> np.ndarray:
+        """v² + 2(1 + Λ)δ_b; if it is positive and v > 0, the ball certainly comes above the
+        table's level.
+        """
+        return self.velocity * self.velocity + 2 * (1 + self.amplitude) * self.displacement
+
+    def sure(self) -> np.ndarray:
+        """A time before which the ball has certainly not landed.
+
+        It is the flight time of a ball thrown with v from δ_b against the strongest
+        relative gravity, 1 + Λ. For a ball at rest on a table with Y ≥ 1, which recedes, it
+        follows from ``δ ≥ (Y - 1) s²/2 + X s³/6 - Λ s⁴/24``.
+        """
+        time = (self.velocity + np.sqrt(np.maximum(self.room(), 0.0))) / (1 + self.amplitude)
+        if np.all(self.velocity):
+            return time
+        x, top, excess = self.x, np.maximum(self.amplitude, 1.0), self.y - 1
+        rests = (self.velocity == 0) & (self.displacement == 0) & (excess >= 0)
+        lift = np.maximum(excess, 0.0)
+        steep = np.minimum(lift / np.maximum(np.abs(x), 1e-300), np.sqrt(3 * lift / top))
+        return np.where(rests, np.maximum(steep, 4 * x / top), time)
+
+
+class Rise(Motion):
+    """The motion δ of balls below the table's level; the search stops if they fall ever faster."""
+
+    def __init__(self, flight: Flight):
+        self.flight = flight
+
+    def __call__(self, time: np.ndarray) -> State:
+        displacement, rate, second, third = self.flight.gap(time)
+        lam = self.flight.amplitude
+        ended = (rate <= 0) & (second <= 0)
+        return State(displacement, rate, second, third, 1 + lam, lam, lam, ended)
+
+
+class Fall(Motion):
+    """The motion -δ′ of balls that rise relative to the table; its first zero is their top."""
+
+    def __init__(self, flight: Flight):
+        self.flight = flight
+
+    def __call__(self, time: np.ndarray) -> State:
+        _, rate, second, third = self.flight.gap(time)
+        lam = self.flight.amplitude
+        # The fourth derivative of δ is minus that of the table: δ⁗ = -Λ sin τ = -(1 + δ″).
+        return State(-rate, -second, -third, second + 1, lam, lam, lam)
+
+
+def emerge(flight: Flight) -> tuple[np.ndarray, np.ndarray]:
+    """Whether balls released at the table's level or below it rise above it.
+
+    The results are a time before which they have certainly not landed, and whether they rise.
+    """
+    time, rising = flight.sure(), flight.velocity > 0
+    unsure = np.flatnonzero(rising & (flight.room() <= 0))
+    if unsure.size:
+        part = flight.take(unsure)
+        # The ball is highest where it first stops rising, and no step can pass over this time.
+        top = part.gap(first_zero(Fall(part), np.zeros(unsure.size)).time)[0]
+        rise = first_zero(Rise(part), np.zeros(unsure.size))
+        rising[unsure] = (top > 0) & ~(rise.ended | rise.undecided) & (rise.rate > 0)
+        # Above the table's level the flight is bounded by that against the gravity 1 + Λ.
+        time[unsure] = rise.time + 2 * rise.rate / (1 + part.amplitude)
+    return time, rising
+
+
+def land(flight: Flight, start: np.ndarray) -> Zero:
+    """The first landing; ``start`` is a time before which there is certainly none.
+
+    The ``rate`` of the result is minus the relative impact velocity.
+
+    Raises
+    ------
+    ModelError
+        If no landing was found, because the flight is too long for floating-point numbers.
+
+    Examples
+    --------
+    A ball thrown up with the velocity 3 from a table at rest comes back after s = 6:
+
+    >>> zero, three = np.zeros(1), np.full(1, 3.0)
+    >>> flight = Flight(zero, three, zero, zero, 0.0)
+    >>> landing = land(flight, flight.sure())
+    >>> landing.time.tolist(), landing.rate.tolist()
+    ([6.0], [3.0])
+    """
+    landing = first_zero(flight, flight.skip(start))
+    if landing.undecided.any():
+        raise ModelError("a landing was not found: the flight is out of floating-point range")
+    return landing

@@ -1,0 +1,79 @@
+"""Rest on the table, and the lift-off that ends it.
+
+A ball rests on the table while the load g = 1 - Λ sin τ is positive. It leaves when Λ sin τ rises
+through 1, because the table's downward acceleration then exceeds gravity. If g ≤ 0 already, it
+leaves at once. For Λ ≤ 1 it never leaves.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.numerics.arrays import pick
+from bouncing_ball.numerics.elementary import arctangent, reduce_angle, table
+from bouncing_ball.paper.motion.dynamics import Departure
+from bouncing_ball.paper.motion.flight import Flight
+from bouncing_ball.paper.motion.sequence import Status
+
+
+def lift_off_phase(amplitude: ArrayLike) -> np.ndarray:
+    """Phase arcsin(1/Λ) at which a ball at rest leaves the table; NaN for Λ ≤ 1.
+
+    Examples
+    --------
+    >>> bool(np.isclose(lift_off_phase(2.0), np.pi / 6))
+    True
+    """
+    lam = np.asarray(amplitude, dtype=float)
+    return np.where(lam > 1, _lift(np.maximum(lam, 1.0)), np.nan)
+
+
+def _lift(top: np.ndarray) -> np.ndarray:
+    return arctangent(1.0, np.sqrt((top - 1) * (top + 1)))
+
+
+def pressed(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Whether a ball at rest stays on the table at the phase with Λ cos τ = x and Λ sin τ = y.
+
+    Examples
+    --------
+    >>> pressed(np.zeros(2), np.array([0.5, 1.5])).tolist()
+    [True, False]
+    """
+    return (y < 1) | ((y == 1) & (x <= 0))
+
+
+def stay(departure: Departure, rests: np.ndarray, amplitude: np.ndarray) -> Departure:
+    """The departures after the balls marked by ``rests`` have rested on the table.
+
+    These balls rest on the table from the phase of the given departure on until they lift off.
+    """
+    if not rests.any():
+        return departure
+    x, y = table(departure.phase, amplitude)
+    held, forever = pressed(x, y), rests & (amplitude <= 1)
+    top = np.maximum(amplitude, 1.0)
+    lift = _lift(top)
+    wait = np.where(held, np.mod(reduce_angle(lift - departure.phase), 2 * np.pi), 0.0)
+    # Rounding must not postpone a lift-off at the present phase by a full turn.
+    wait = np.where(wait > 2 * np.pi - 1e-9, 0.0, wait)
+    # At lift-off Λ sin τ = 1 exactly.
+    x, y = np.where(held, np.sqrt((top - 1) * (top + 1)), x), np.where(held, 1.0, y)
+    still, own = np.where(forever, np.nan, 0.0), departure.flight
+    state = (own.displacement, still), (own.velocity, still), (own.x, x), (own.y, y)
+    displacement, velocity, x, y = (np.where(rests, rest, left) for left, rest in state)
+    return departure._replace(
+        phase=np.where(rests & held, lift, departure.phase),
+        duration=departure.duration + np.where(rests, np.where(forever, np.inf, wait), 0.0),
+        flight=Flight(displacement, velocity, x, y, amplitude),
+        status=np.where(forever, Status.PERMANENT_CONTACT, Status.BOUNCING),
+    )
+
+
+def lifted(departure: Departure, amplitude: np.ndarray) -> Departure:
+    """The departures with those marked as sticking that leave by lift-off, a state that does not
+    depend on their earlier motion.
+    """
+    rests = (departure.flight.velocity == 0) & (departure.flight.displacement == 0)
+    which = rests.nonzero()[0]
+    rests[which] = departure.phase[which] == lift_off_phase(pick(amplitude, which))
+    return departure._replace(sticks=rests)

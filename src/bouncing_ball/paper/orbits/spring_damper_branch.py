@@ -1,0 +1,290 @@
+r"""The n-T branch of the spring-damper model as an explicit curve.
+
+The paper solves its six equations (Eqs. 21-26) by numerical continuation.
+At a fixed contact duration D they are *linear* in ::
+
+    X = Λ cos φ,    Y = Λ sin φ,    u = δ′ at impact
+
+Let T = 2πn - D be the flight time, and g, G, h the responses of the contact at
+time D (see :mod:`bouncing_ball.paper.contact.spring_damper`). The equations are then
+
+* release (Eq. 23): ``δ_b + κ δ′_b = 0``, that is ``u g + X Im h + Y Re h = G``
+  for the displacement release, κ = 0;
+* velocity (Eqs. 24, 26, 20): ``δ′_b + Λ cos(φ + D) = u + X + T``, where
+  ``δ′_b = u g′ + X Im h′ + Y Re h′ - g``;
+* landing (Eqs. 25, 19): ``δ_b + Λ sin(φ + D) + (u + X + T) T - T²/2 = Y``
+  with ``δ_b = -κ δ′_b``.
+
+The solution of this 3×3 system is the orbit. D is therefore a parameter of the entire branch,
+saddle-node and period doubling included, with ``Λ = √(X² + Y²)`` and ``φ = atan2(Y, X)``.
+
+For a stiff contact the branch occupies a range of D of order 1/ϖ² around the free half
+period, and a double has too few digits of D to distinguish its points. The curve is
+therefore parametrised by the *excess angle* ε, ``ϖ_d D = θ₀ + ε``, where θ₀ is the
+angle at which the free contact would be released, π - 2α with sin α = κϖ/2
+(:mod:`bouncing_ball.paper.contact.damping`). The one sensitive coefficient,
+that of u in the release condition, is then proportional to sin ε.
+
+Differentiating the three equations along ε gives dΛ/dε. It vanishes at the
+saddle-node, and also where the ball grazes at impact or release, where no
+multiplier is 1. The determinant of the monodromy M is ``exp(-2ζϖD)``, because the
+contact contracts the volume of (τ, δ, δ′) at the rate 2ζϖ and the flight preserves it.
+Its trace follows from ``det(M - 1) = 1 - tr + det``, which is the Jacobian
+determinant of velocity and landing in (φ, u), divided by u. With A the matrix of the
+three equations and R_D the derivative of the first one along D at fixed (X, Y, u), ::
+
+    1 - tr + det = -(det A / (u R_D)) ½ d(Λ²)/dD
+
+All quantities are dimensionless; all functions broadcast.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.errors import require
+from bouncing_ball.numerics.arrays import blocks, pick
+from bouncing_ball.paper.contact.oscillator import responses
+from bouncing_ball.paper.contact.spring_damper import SpringDamper
+
+# Number of points computed at the same time, so that the intermediate arrays stay in the cache.
+_BLOCK = 8192
+# Bound of |p(ν)| s² below which the oscillator's integrals replace the quotients. It is lower
+# than there, because only the values of the responses are needed here and not their
+# derivatives: the terms exceed the result by a factor of 16 at most.
+_DELICATE = 0.5
+
+
+class BranchPoint(NamedTuple):
+    """Points of the branch, their derivatives along ε, and their stability; arrays of one shape.
+
+    ``x``, ``y``, ``u`` are Λ cos φ, Λ sin φ and the relative impact velocity;
+    ``contact_duration`` is D; ``d_x``, ``d_y`` are the derivatives dX/dε and dY/dε;
+    ``determinant`` is that of the monodromy and ``saddle_node`` its ``1 - tr + det``.
+    """
+
+    contact_duration: np.ndarray
+    x: np.ndarray
+    y: np.ndarray
+    u: np.ndarray
+    d_x: np.ndarray
+    d_y: np.ndarray
+    saddle_node: np.ndarray
+    determinant: np.ndarray
+
+    @property
+    def trace(self) -> np.ndarray:
+        """Trace of the monodromy, from its determinant and 1 - tr + det."""
+        return 1 + self.determinant - self.saddle_node
+
+    @property
+    def amplitude(self) -> np.ndarray:
+        """Λ = √(X² + Y²)."""
+        return np.sqrt(self.x * self.x + self.y * self.y)
+
+    @property
+    def phase(self) -> np.ndarray:
+        """φ = atan2(Y, X), in (-π, π]."""
+        return np.arctan2(self.y, self.x)
+
+    @property
+    def fold(self) -> np.ndarray:
+        """½ d(Λ²)/dε = X dX/dε + Y dY/dε = Λ dΛ/dε, which is zero at the saddle-node."""
+        return self.x * self.d_x + self.y * self.d_y
+
+
+def _responses(duration, sin_angle, cos_angle, sin_d, cos_d, decay, omega, zeta, root):
+    """g, g′, G, Q = Re h and P = Im h at time D, from the sine and cosine of ϖ_d D and of D.
+
+    These are the quotients of :mod:`bouncing_ball.paper.contact.oscillator` in real arithmetic. In short
+    or resonant contacts the quotients lose digits, and the values come from that module instead.
+    """
+    stiffness, loss = omega * omega, 2 * zeta * omega
+    g = decay * sin_angle / (omega * root)
+    g_rate = decay * (cos_angle - zeta / root * sin_angle)
+    rest = g_rate + loss * g
+    detuning = stiffness - 1
+    gamma = detuning * detuning + loss * loss
+    square = duration * duration
+    delicate = np.minimum(gamma * square, stiffness * stiffness * square) * square
+    delicate = delicate < _DELICATE * _DELICATE
+    troubled = np.any(delicate)
+    if troubled:
+        gamma = np.where(delicate, 1.0, gamma)
+    gravity = (1 - rest) / stiffness
+    # h = (e^{iD} - g′ - (i + 2ζϖ) g)/(ϖ² - 1 + 2iζϖ)
+    real, imaginary = cos_d - rest, sin_d - g
+    q = (real * detuning + imaginary * loss) / gamma
+    p = (imaginary * detuning - real * loss) / gamma
+    if troubled:
+        arrays = np.broadcast_arrays(duration, omega, zeta, delicate)
+        exact = responses(*(x[delicate] for x in arrays[:3]))
+        gravity, q, p = (np.array(np.broadcast_to(x, delicate.shape)) for x in (gravity, q, p))
+        gravity[delicate] = exact.gravity.value
+        q[delicate], p[delicate] = exact.table.value.real, exact.table.value.imag
+    return g, g_rate, gravity, q, p
+
+
+def _solve(rows, right):
+    """Solution of 3×3 systems by Cramer's rule, a solver for further right sides, and det A."""
+    (a1, a2, a3), (b1, b2, b3), (c1, c2, c3) = rows
+    bc = b2 * c3 - b3 * c2, b3 * c1 - b1 * c3, b1 * c2 - b2 * c1
+    ca = c2 * a3 - c3 * a2, c3 * a1 - c1 * a3, c1 * a2 - c2 * a1
+    ab = a2 * b3 - a3 * b2, a3 * b1 - a1 * b3, a1 * b2 - a2 * b1
+    determinant = a1 * bc[0] + a2 * bc[1] + a3 * bc[2]
+    # The determinant is zero at a pole of the branch, where Λ is infinite and there is no orbit.
+    if np.any(determinant == 0):
+        determinant = np.where(determinant == 0, np.nan, determinant)
+    inverse = 1 / determinant
+
+    def solve(s, t, v):
+        return tuple((s * bc[k] + t * ca[k] + v * ab[k]) * inverse for k in range(3))
+
+    return solve(*right), solve, determinant
+
+
+def branch_point(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> BranchPoint:
+    """The n-T orbit whose contact lasts for the time ``D = (θ₀ + ε)/ϖ_d``.
+
+    Parameters
+    ----------
+    excess : array_like
+        ε, an angle of the contact's damped oscillation in radians.
+    contact : SpringDamper
+        ϖ, ζ < 1 and the release rule.
+    n : array_like of int
+        Index of the family.
+
+    Returns
+    -------
+    BranchPoint
+        Arrays of the shape to which the arguments broadcast.
+
+    Raises
+    ------
+    ModelError
+        If ζ ≥ 1: an overdamped contact does not oscillate, so that ε is not defined.
+
+    Examples
+    --------
+    A stiff elastic contact lasts exactly half a free period when the table's
+    acceleration balances gravity, Λ sin φ = 1:
+
+    >>> point = branch_point(0.0, SpringDamper(1e6, 0.0), 1)
+    >>> bool(abs(point.y - 1) < 1e-5), bool(abs(point.u + np.pi) < 1e-5)
+    (True, True)
+    """
+    arguments = [
+        np.asarray(x, dtype=float)
+        for x in (excess, contact.frequency_ratio, contact.damping_ratio, contact.release_sine, n)
+    ]
+    zeta = arguments[2]
+    if not (zeta < 1).all():
+        require(zeta < 1, zeta, "damping ratio ζ", "below 1")
+    shape = np.broadcast_shapes(*(x.shape for x in arguments))
+    size = math.prod(shape)
+    if size <= _BLOCK:
+        return _branch_point(*arguments)
+    # Scalars stay scalars; arrays are computed in blocks.
+    flat = [x if x.ndim == 0 else np.broadcast_to(x, shape).ravel() for x in arguments]
+    parts = [_branch_point(*(pick(x, part) for x in flat)) for part in blocks(size, _BLOCK)]
+    return BranchPoint(*(np.concatenate(x).reshape(shape) for x in zip(*parts, strict=True)))
+
+
+def _branch_point(eps, omega, zeta, sine, n) -> BranchPoint:
+    """:func:`branch_point` for one block of arrays; ``sine`` is sin α = κϖ/2."""
+    root = np.sqrt((1 - zeta) * (1 + zeta))
+    per_angle = 1 / (omega * root)
+    duration = (2 * np.arccos(sine) + eps) * per_angle
+    flight = 2 * np.pi * n - duration
+    loss, stiffness = 2 * zeta * omega, omega * omega
+    twice, lag = 2 * sine, 2 * sine / omega
+
+    # θ₀ = π - 2α: the sine and cosine of 2α are exact.
+    sin_eps, cos_eps = np.sin(eps), np.cos(eps)
+    sin_2a, cos_2a = twice * np.sqrt((1 - sine) * (1 + sine)), 1 - twice * sine
+    sin_angle = sin_2a * cos_eps - cos_2a * sin_eps
+    cos_angle = -cos_2a * cos_eps - sin_2a * sin_eps
+    sin_half, cos_half = np.sin(duration / 2), np.cos(duration / 2)
+    sin_d, versine = 2 * sin_half * cos_half, -2 * sin_half * sin_half
+    cos_d = 1 + versine
+    decay = np.exp(-zeta * omega * duration)
+    g, dg, gravity, q, p = _responses(
+        duration, sin_angle, cos_angle, sin_d, cos_d, decay, omega, zeta, root
+    )
+    # Accelerations from the oscillator's equation; h′ = i h + g, so that P′ = Q
+    # and Q′ = g - P.
+    ddg = -loss * dg - stiffness * g
+    dq, ddq, ddp = g - p, dg - q, g - p
+    push = -decay / root * sin_eps
+    d_push = decay / root * (zeta * omega * sin_eps - omega * root * cos_eps)
+    # Coefficients of (u, X, Y) and their derivatives along D: ϖ (δ + κ δ′) = 0.
+    release = push, omega * p + twice * q, omega * q + twice * dq
+    d_release = d_push, omega * q + twice * ddp, omega * dq + twice * ddq
+    weight, d_weight = omega * gravity + twice * g, omega * g + twice * dg
+    # δ_b = -κ δ′_b, which is exactly 0 for the displacement release.
+    landing = flight - lag * dg, flight + sin_d - lag * q, versine - lag * dq
+    d_landing = -1 - lag * ddg, versine - lag * ddp, -sin_d - lag * ddq
+    fall, d_fall = -flight * flight / 2 - lag * g, flight - lag * dg
+    velocity = dg - 1, q + versine, dq - sin_d
+    d_velocity = ddg, ddp - sin_d, ddq - cos_d
+
+    equations = release, velocity, landing
+    (u, x, y), solve, matrix = _solve(equations, (weight, g + flight, fall))
+    along = [
+        db - (row[0] * u + row[1] * x + row[2] * y)
+        for db, row in ((d_weight, d_release), (dg - 1, d_velocity), (d_fall, d_landing))
+    ]
+    _, d_x, d_y = solve(*along)
+    # Infinite or not a number where the ball grazes at impact or at release.
+    with np.errstate(divide="ignore", invalid="ignore"):
+        saddle = matrix * (x * d_x + y * d_y) / (u * along[0])
+    # Both broadcast to the shape of the other fields.
+    duration, determinant = duration + 0 * u, decay * decay + 0 * u
+    return BranchPoint(duration, x, y, u, d_x * per_angle, d_y * per_angle, saddle, determinant)
+
+
+# Number of Gauss-Newton steps. The start is exact up to the rounding of D, so that few suffice.
+_ITERATIONS = 4
+
+
+def nearest_excess(
+    contact: SpringDamper, n: ArrayLike, x: ArrayLike, y: ArrayLike, excess: np.ndarray
+) -> np.ndarray:
+    """ε of the point of the branch that is nearest to a given one in (X, Y, ε).
+
+    Comparing orbits at equal Λ would divide by zero at a fold. For a stiff contact D has too few
+    digits for a comparison at equal D, because X and Y change rapidly with D. Elsewhere X and Y
+    may hardly change along the branch. The nearest point in all three variables is well
+    conditioned everywhere.
+
+    Parameters
+    ----------
+    contact : SpringDamper
+    n : array_like of int
+    x, y : array_like
+        X = Λ cos φ and Y = Λ sin φ of the given orbits.
+    excess : ndarray
+        ε of the given orbits.
+
+    Returns
+    -------
+    ndarray
+        Of the shape to which the arguments broadcast.
+
+    Examples
+    --------
+    >>> contact = SpringDamper(5.0, 0.1)
+    >>> point = branch_point(0.25, contact, 1)
+    >>> round(float(nearest_excess(contact, 1, point.x, point.y, np.array(0.25))), 12)
+    0.25
+    """
+    own = excess
+    for _ in range(_ITERATIONS):
+        point = branch_point(excess, contact, n)
+        along = (x - point.x) * point.d_x + (y - point.y) * point.d_y
+        square = point.d_x * point.d_x + point.d_y * point.d_y
+        excess = excess + (along + own - excess) / (square + 1)
+    return excess

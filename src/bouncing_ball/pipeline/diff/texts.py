@@ -1,0 +1,115 @@
+"""The comparison of texts line by line: words exactly, numbers as far as their data allow."""
+
+import re
+from decimal import Decimal
+from difflib import SequenceMatcher
+from itertools import zip_longest
+from pathlib import Path
+
+from bouncing_ball.pipeline.diff.outcome import Outcome, Row
+
+# A printed number with its sign and exponent. An exponent has at most four digits, because the
+# artifacts have no longer ones, and Decimal would refuse them.
+_NUMBER = re.compile(r"[-+]?[0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]{1,4}(?![0-9]))?")
+
+
+def _same_to_the_last_digit(old: str, new: str) -> bool:
+    """Whether two printed numbers may be the same number, rounded on two processors.
+
+    Examples
+    --------
+    >>> _same_to_the_last_digit("0.25", "0.26"), _same_to_the_last_digit("0.25", "0.27")
+    (True, False)
+    >>> _same_to_the_last_digit("99.99", "100"), _same_to_the_last_digit("7", "8")
+    (True, False)
+    >>> _same_to_the_last_digit("-4.5e-13", "-4.6e-13"), _same_to_the_last_digit("0.25", "0.3")
+    (True, False)
+    """
+    if old == new:
+        return True
+    if old.lstrip("+-").isdigit() and new.lstrip("+-").isdigit():
+        # A number without decimals is a count, or a part of a name.
+        return False
+    # If the numbers of decimals differ, at a power of ten or with zeros left out, the step is the
+    # smaller unit.
+    last = min(int(Decimal(number).as_tuple().exponent) for number in (old, new))
+    return abs(Decimal(old) - Decimal(new)) <= Decimal(1).scaleb(last)
+
+
+def may_be_rounding(old: str, new: str) -> bool:
+    """Whether two lines have the same words, and numbers that differ by a last digit at most.
+
+    Examples
+    --------
+    >>> may_be_rounding("r = 0.25 in 3 orbits", "r = 0.26 in 3 orbits")
+    True
+    >>> may_be_rounding("right, with 0.25", "wrong, with 0.25")
+    False
+    """
+    return _NUMBER.split(old) == _NUMBER.split(new) and all(
+        map(_same_to_the_last_digit, _NUMBER.findall(old), _NUMBER.findall(new))
+    )
+
+
+def compare_texts(record: str, new: str, data: Outcome | None) -> list[Row]:
+    """All lines that differ, each with its outcome.
+
+    If the data have drifted within their budget, the last digit of a printed number may change by
+    one. No other change is allowed: no word, no count, and no digit if the data are identical or
+    there are none.
+
+    Parameters
+    ----------
+    record, new : str
+    data : Outcome or None
+        The worst outcome of the datasets from which the text is made.
+
+    Examples
+    --------
+    >>> for data in (Outcome.WITHIN, Outcome.IDENTICAL):
+    ...     print(*[str(line.outcome) for line in compare_texts("0.25\\nb", "0.26\\nb", data)])
+    within budget
+    drifted
+    >>> line, = compare_texts("are right\\n", "are wrong\\n", Outcome.WITHIN)
+    >>> line.name, str(line.outcome), line.record, line.new
+    ('line 1', 'drifted', 'are right', 'are wrong')
+    """
+    before, after = record.split("\n"), new.split("\n")
+    # Lines are matched by their words, so that a line whose number changes is still matched.
+    old_words, new_words = ([_NUMBER.sub("#", line) for line in side] for side in (before, after))
+    blocks = SequenceMatcher(None, old_words, new_words, autojunk=False).get_opcodes()
+    found = []
+    for _, first, last, new_first, new_last in blocks:
+        pairs = zip_longest(before[first:last], after[new_first:new_last])
+        for number, (old, line) in enumerate(pairs, start=first + 1):
+            if old != line:
+                there = data is Outcome.WITHIN and old is not None and line is not None
+                within = there and may_be_rounding(str(old), str(line))
+                outcome = Outcome.WITHIN if within else Outcome.DRIFTED
+                found.append(Row(f"line {number}", outcome, old, line))
+    return found
+
+
+def words_of(path: Path, data: Outcome | None = None) -> str:
+    """The words and numbers of a file, as lines.
+
+    For a vector graphic these are the labels, and the letters that draw them, because matplotlib
+    draws a text as outlines, one for each letter, with the text in a comment. For an HTML page it
+    is all text except the commit, and except the reference numbers if their dataset, whose outcome
+    is ``data``, is not identical: they have all its digits. Any other text is returned unchanged.
+
+    Raises
+    ------
+    OSError, UnicodeDecodeError
+        If the file cannot be read, or is not UTF-8.
+    """
+    text = path.read_text(encoding="utf-8")
+    match path.suffix:
+        case ".svg":
+            words = r'<!-- (.*?) -->|href="#([\w-]+-[0-9a-f]+)"|<text[^>]*>(.*?)</text>'
+            return "\n".join("".join(parts) for parts in re.findall(words, text))
+        case ".html":
+            moved = "" if data is Outcome.IDENTICAL else r'|(?<=id="references">)[^<]*'
+            return re.sub(rf'(?<="commit": ")\w+{moved}', "", text)
+        case _:
+            return text

@@ -1,0 +1,194 @@
+"""The progress of a run, and its last sentence.
+
+A run notes the number of its jobs, and each job that ends adds a line. Snakemake also counts its
+steps, but with three lines for each.
+
+A run may end with exit status 1 although no job failed, for example because of a difference from
+the record, or because results were not accepted. For a failed job Snakemake prints ten lines, with
+a command that the user did not type; such a run ends with one sentence instead.
+
+The adapter between Snakemake and the package: the log of a job, one-line errors, files.
+
+The scripts of the workflow are a few lines that call this module; ``snakemake`` is the object that
+Snakemake provides for them.
+"""
+
+import gc
+import signal
+import sys
+import traceback
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.datasets.files import (
+    CONVENTIONS,
+    parameter_attributes,
+    read_dataset,
+    write_dataset,
+    write_text,
+)
+from bouncing_ball.errors import ModelError
+from bouncing_ball.pipeline.configuration import load, typed
+from bouncing_ball.pipeline.provenance import gather
+
+_NOTES, _CONCLUSION = Path(".snakemake/progress"), Path("results/logs/conclusion")
+
+
+def begin(jobs: int) -> None:
+    """Note that a run with this number of jobs begins."""
+    _NOTES.parent.mkdir(exist_ok=True)
+    _NOTES.write_text(f"{jobs}\n", encoding="ascii")
+
+
+def advance() -> str:
+    """Note that a job has ended, and return the share done, an empty text outside of a run."""
+    if not _NOTES.is_file():
+        return ""
+    # A short line is appended completely, even if other jobs append lines at the same time.
+    with _NOTES.open("a", encoding="ascii") as notes:
+        notes.write("done\n")
+    jobs, *ended = _NOTES.read_text(encoding="ascii").splitlines()
+    return f"{len(ended)} of {jobs}, {100 * len(ended) // int(jobs)} %"
+
+
+def conclude(sentence: str) -> None:
+    """End the run with this sentence, which replaces an earlier one."""
+    write_text(_CONCLUSION, sentence)
+
+
+def concluded() -> str:
+    """The sentence with which this run ends, or an empty text; it is removed by this call."""
+    sentence = _CONCLUSION.read_text(encoding="utf-8") if _CONCLUSION.is_file() else ""
+    _CONCLUSION.unlink(missing_ok=True)
+    return sentence
+
+
+REFERENCE = (
+    "Carbonelli, Perret-Liaudet, Rigaud and Feki, Investigation of restitution coefficient "
+    "and spring-damper models for the bouncing ball problem, DETC2011-47870 (2011)"
+)
+HISTORY = "computed from the equations; the attributes provenance_* say by what and from what"
+
+
+@contextmanager
+def logged(snakemake: Any) -> Iterator[list[str]]:
+    """Collect lines for the log of the job; on failure print one line about the failure.
+
+    The traceback is then in the log, and the process exits with status 1.
+    """
+    # Ctrl-C ends the job at once. An exception could be raised while a netCDF file is locked, and
+    # closing the file would then wait forever. Because files are written completely or not at all,
+    # no file is damaged.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    # Imported modules remain in use, and few objects of a job are in cycles: excluding the former
+    # from garbage collection, and collecting seldom, saves time.
+    gc.freeze()
+    gc.set_threshold(100_000)
+    # For every dataset xarray checks whether its values are quantities of pint. The values of a
+    # job are plain numbers, and importing pint takes longer than reading them.
+    without_pint = sys.modules.setdefault("pint", None) is None  # type: ignore[arg-type]
+    name = "/".join([snakemake.rule, *snakemake.wildcards])
+    lines: list[str] = []
+    log = Path(snakemake.log[0])
+    try:
+        yield lines
+        outputs = list(snakemake.output)
+        write_text(log, "".join(f"{line}\n" for line in lines))
+        if outputs:
+            done = advance()
+            print("made", *outputs, *([f"({done})"] if done else []), flush=True)
+    except Exception as error:
+        kind = "" if isinstance(error, ValueError) else f"{type(error).__name__}: "
+        # For example, writing the log fails if the disk is full.
+        with suppress(OSError):
+            write_text(log, traceback.format_exc())
+        sys.exit(f"{name}: {kind}{' '.join(str(error).split())} (details in {log})")
+    finally:
+        if without_pint:
+            del sys.modules["pint"]
+
+
+def read_input(path: str) -> xr.Dataset:
+    """A dataset that another job has made for this job.
+
+    Raises
+    ------
+    ModelError
+        If the file is damaged; the message has the command that makes it again.
+    """
+    try:
+        return read_dataset(path)
+    except ModelError as error:
+        again = f"make it again, snakemake --cores 2 --force {path}"
+        raise ModelError(f"{error}: {again}") from error
+
+
+def joined(shards: Sequence[xr.Dataset]) -> dict[str, np.ndarray]:
+    """The arrays of all places, from the datasets of all shards in their order.
+
+    Examples
+    --------
+    >>> joined([xr.Dataset({"twice": ("place", [k, k])}) for k in range(2)])
+    {'twice': array([0, 0, 1, 1])}
+    """
+    whole = {str(x): np.concatenate([s[x].values for s in shards], axis=-1) for x in shards[0]}
+    # Texts read from a file have the type object.
+    return {x: y.astype(str) if y.dtype == object else y for x, y in whole.items()}
+
+
+def provenance(snakemake: Any) -> dict[str, str]:
+    """The provenance of the files that the job writes.
+
+    It is gathered when a file is written and is not a parameter of the job, because Snakemake
+    would then run every job again after each commit.
+    """
+    # The scripts are in workflow/scripts of the repository; the run may be in another folder.
+    repository = Path(snakemake.scriptdir).resolve().parents[1]
+    modules = set(snakemake.input.get("source", []))
+    inputs = [str(path) for path in snakemake.input if path not in modules]
+    return gather(str(snakemake.output[0]), inputs, repository, snakemake.config)
+
+
+def make_dataset(snakemake: Any) -> None:
+    """Run the study of the job and write its dataset.
+
+    The provenance becomes global attributes, and so do the parameters and the settings of the run,
+    unless the study itself sets attributes.
+    """
+    with logged(snakemake) as lines:
+        job = snakemake.params
+        data = {Path(path).stem: read_input(path) for path in snakemake.input.data}
+        given = dict(job.arguments)
+        others: dict[str, Any] = {"data": data} if data else {}
+        if shards := snakemake.input.get("shards"):
+            others["found"] = joined([read_input(path) for path in shards])
+        dataset = typed(load(job.study))(**given, **others)
+        if bare := [name for name, x in dataset.variables.items() if "units" not in x.attrs]:
+            raise ModelError(f"{bare[0]} has no unit: the study ends with describe(dataset)")
+        named = given.pop("parameters", {}) | given
+        parameters = dataset.attrs or parameter_attributes(named)
+        publish(snakemake, dataset, parameters)
+        sizes = ", ".join(f"{name} {size}" for name, size in dataset.sizes.items())
+        lines.append(f"{snakemake.output.data}: {sizes}")
+        if "end_reason" in dataset:
+            lines += [str(reason) for reason in dataset.end_reason.values.ravel()]
+
+
+def publish(
+    snakemake: Any, dataset: xr.Dataset, parameters: Mapping[str, Any], *, compressed: bool = False
+) -> None:
+    """Write the job's dataset, with its title, parameters and provenance as attributes."""
+    dataset.attrs = {
+        "Conventions": CONVENTIONS,
+        "title": snakemake.params.title,
+        "references": REFERENCE,
+        "history": HISTORY,
+        **parameters,
+        **provenance(snakemake),
+    }
+    write_dataset(dataset, snakemake.output.data, compressed=compressed)

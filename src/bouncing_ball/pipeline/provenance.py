@@ -1,0 +1,302 @@
+"""The origin of an artifact, as the artifact itself records it.
+
+A dataset holds its provenance in netCDF attributes, a PNG file in its text, an SVG file in its
+description; a table or a page has the provenance of its dataset. The provenance contains neither a
+time nor the name of a machine, so that two runs of one commit give the same bytes.
+
+``bouncing-ball explain FILE``: the origin of an artifact, and the commands that make it
+again.
+"""
+
+import json
+import os
+import platform
+import shlex
+import subprocess
+from collections.abc import Iterable, Mapping
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+import bouncing_ball
+from bouncing_ball.errors import ModelError, printable
+from bouncing_ball.pipeline.configuration import read_yaml
+
+PREFIX = "provenance_"
+"""The prefix of the attributes' names."""
+
+LIBRARIES = ("numpy", "scipy", "xarray", "netCDF4", "matplotlib")
+CONFIGURATION = "config/config.yaml"
+CARRIERS = (".nc", ".png", ".svg")
+"""Suffixes of the files that carry their provenance themselves."""
+
+RECORD = ("figures", "paper.md", "supplement.md")
+"""The accepted results in git, which affect no new result."""
+
+_DESCRIPTION = "{http://purl.org/dc/elements/1.1/}description"
+
+
+class Revision(NamedTuple):
+    """The full hash of a commit, and whether the tree was dirty (yes or no), or unknown."""
+
+    commit: str
+    dirty: str
+
+
+UNKNOWN = Revision("unknown", "unknown")
+
+
+def _git(folder: Path, *arguments: str) -> str | None:
+    """The output of git; None if git fails or is not installed."""
+    # In a hook the variables GIT_… name a repository that may not be this one. Without optional
+    # locks, parallel jobs do not wait for each other's lock of the index.
+    environment = {key: value for key, value in os.environ.items() if key[:4] != "GIT_"}
+    try:
+        done = subprocess.run(
+            ["git", "-C", str(folder), *arguments],
+            env=environment | {"GIT_OPTIONAL_LOCKS": "0"},
+            capture_output=True,
+            encoding="utf-8",
+            check=True,
+        )
+    except (OSError, subprocess.CalledProcessError):
+        return None
+    return done.stdout
+
+
+def revision(folder: Path) -> Revision:
+    """The commit checked out in a folder, and whether its tree is dirty.
+
+    Untracked files count, unless git ignores them; the accepted record does not count.
+    The result is :data:`UNKNOWN` without git, or if the folder is not the top of a repository.
+    """
+    head = _git(folder, "rev-parse", "--show-cdup", "HEAD")
+    excluded = [f":(exclude){name}" for name in RECORD]
+    status = _git(folder, "status", "--porcelain", "--untracked-files=normal", "--", ".", *excluded)
+    # The first line is the path of the folder below the top of the repository: empty at the top.
+    if head is None or status is None or not head.startswith("\n"):
+        return UNKNOWN
+    return Revision(head.strip(), "yes" if status else "no")
+
+
+def checkout(*starts: Path) -> Path | None:
+    """The first folder, at or above each start in turn, that holds this workflow, or None."""
+    for start in starts:
+        for folder in (start, *start.parents):
+            if (folder / "Snakefile").is_file() and (folder / "src" / "bouncing_ball").is_dir():
+                return folder
+    return None
+
+
+def changes(config: Mapping[str, Any], written: Mapping[str, Any]) -> dict[str, Any]:
+    """The values of a configuration that differ from the written configuration, nested as there.
+
+    Examples
+    --------
+    >>> written = {"release": "force", "fig11": {"restitution": 0.85, "points": 11}}
+    >>> changes({"release": "force", "fig11": {"restitution": 0.7, "points": 11}}, written)
+    {'fig11': {'restitution': 0.7}}
+    """
+    found = {}
+    for key, value in config.items():
+        before = written.get(key)
+        if isinstance(value, Mapping) and isinstance(before, Mapping):
+            if inside := changes(value, before):
+                found[key] = inside
+        elif key not in written or value != before:
+            found[key] = value
+    return found
+
+
+# Cached, because finding a version parses the metadata of the package.
+_version = cache(version)
+
+
+def versions() -> dict[str, str]:
+    """Versions of Python and of the libraries that affect the artifacts."""
+    return {"python": platform.python_version(), **{name: _version(name) for name in LIBRARIES}}
+
+
+def gather(
+    target: str, inputs: Iterable[str], repository: Path, config: Mapping[str, Any]
+) -> dict[str, str]:
+    """The provenance of the files that a job writes, in a checkout and with a configuration.
+
+    Returns
+    -------
+    dict of str
+        Attributes of a dataset, or metadata of a picture: ``commit``, the full hash or unknown;
+        ``dirty``, whether the tree had uncommitted changes (yes, no or unknown); ``configuration``,
+        as JSON the values of the run that differ from config/config.yaml; ``target``, the file to
+        request from Snakemake to make the artifact again, or a command ``make …``; ``inputs`` and
+        ``versions``, as JSON the files that it is made from and the versions of Python and the
+        libraries. Each name begins with :data:`PREFIX`.
+
+    Raises
+    ------
+    ConfigurationError
+        If config/config.yaml cannot be read.
+    """
+    now = revision(repository)
+    written = read_yaml(repository / CONFIGURATION)
+    # A run may be in any folder; files outside it are named relative to the top of the checkout.
+    named = {os.path.relpath(path, repository) if ".." in path else path for path in inputs}
+    made = {
+        "commit": now.commit,
+        "dirty": now.dirty,
+        "configuration": json.dumps(changes(config, written), sort_keys=True),
+        "target": target,
+        "inputs": json.dumps(sorted(named)),
+        "versions": json.dumps(versions()),
+    }
+    return {PREFIX + name: text for name, text in made.items()}
+
+
+def read_attributes(path: Path) -> dict[str, Any]:
+    """The attributes of a dataset, or the metadata of a picture.
+
+    Raises
+    ------
+    ModelError
+        If the file is of another kind, cannot be read, or is damaged.
+    """
+    # Imported where they are needed, because each import takes time.
+    try:
+        match path.suffix:
+            case ".nc":
+                from netCDF4 import Dataset
+
+                with Dataset(path) as dataset:
+                    return {name: dataset.getncattr(name) for name in dataset.ncattrs()}
+            case ".png":
+                from PIL import Image
+
+                with Image.open(path, formats=["PNG"]) as picture:
+                    return {str(name): value for name, value in picture.info.items()}
+            case _:
+                from xml.etree import ElementTree
+
+                found = ElementTree.parse(path).find(f".//{_DESCRIPTION}")
+                return {} if found is None else dict(json.loads(found.text or "{}"))
+    # The libraries raise errors of many types on a damaged file.
+    except Exception:
+        raise ModelError(f"{path} cannot be read: damaged, or not ours") from None
+
+
+def read_provenance(path: Path) -> dict[str, Any]:
+    """The provenance of a dataset or a picture, by the names of :func:`gather` without the prefix.
+
+    Raises
+    ------
+    ModelError
+        If the file cannot be read, see :func:`read_attributes`, or carries no provenance.
+    """
+    attributes = read_attributes(path).items()
+    found = {name.removeprefix(PREFIX): x for name, x in attributes if name.startswith(PREFIX)}
+    if not found:
+        raise ModelError(f"{path} carries no provenance")
+    return found | {
+        name: json.loads(found[name]) for name in ("configuration", "inputs", "versions")
+    }
+
+
+# Git ignores this file, so that it does not mark the next run as dirty.
+_CHANGED = "results/configuration.json"
+
+
+def _carrier(path: Path) -> Path:
+    """The file that carries the provenance of an artifact: the artifact itself, or its dataset.
+
+    For the article and the supplement it is the dataset of the claims, the last dataset of a run.
+    """
+    if not path.is_file():
+        raise ModelError(f"{path} cannot be read: no such file")
+    if path.suffix in CARRIERS:
+        return path
+    dataset = Path("figures/claims.nc" if path.name in RECORD else f"{path.stem}.nc")
+    if not (path.parent / dataset).is_file():
+        why = f"there is no {dataset} next to it"
+        raise ModelError(f"{path} is not an artifact of this workflow: {why}")
+    return path.parent / dataset
+
+
+def _parameters(path: Path, commit: str) -> dict[str, Any]:
+    """The parameters, from the dataset beside the artifact if it has the same commit."""
+    beside = path.with_suffix(".nc")
+    attributes = read_attributes(beside) if beside.is_file() else {}
+    if attributes.get(PREFIX + "commit") != commit:
+        return {}
+    return {
+        name: np.asarray(value).tolist()
+        for name, value in attributes.items()
+        if not name.startswith((PREFIX, "title", "references", "history", "Conventions"))
+    }
+
+
+def _commands(made: Mapping[str, Any], target: str, checked_out: bool | None) -> list[str]:
+    """The commands that make a file again, ready to paste into a shell."""
+    # --force, because Snakemake does not make a file again that is up to date.
+    force = "snakemake --cores 2 --force"
+    commands = [target if target.startswith("make ") else f"{force} {shlex.quote(target)}"]
+    if changed := made["configuration"]:
+        text = shlex.quote(json.dumps(changed))
+        commands = [
+            f"mkdir -p results && printf '%s\\n' {text} > {_CHANGED}",
+            f"{commands[0]} --configfile {_CHANGED}",
+        ]
+    if checked_out or made["commit"] == "unknown":
+        return commands
+    return [f"git checkout {shlex.quote(made['commit'])}", "make setup", *commands]
+
+
+def explain(file: Path, /) -> dict[str, Any]:
+    """What an artifact is made from, as plain values.
+
+    Parameters
+    ----------
+    file
+        An artifact, or a copy of one.
+
+    Raises
+    ------
+    ModelError
+        If the file is not one of this workflow, or carries no provenance.
+    """
+    made = read_provenance(_carrier(file))
+    repository = checkout(Path.cwd(), Path(bouncing_ball.__file__).resolve())
+    now = revision(repository) if repository else UNKNOWN
+    unknown = "unknown" in (made["commit"], now.commit)
+    checked_out = None if unknown else made["commit"] == now.commit
+    target = made["target"]
+    if file.suffix not in CARRIERS:
+        target = f"results/{'' if file.name in RECORD else 'figures/'}{file.name}"
+    running = versions().items()
+    return {
+        "file": str(file),
+        "commit": made["commit"],
+        "checked_out": checked_out,
+        "dirty": made["dirty"],
+        "configuration": made["configuration"],
+        "parameters": _parameters(file, made["commit"]),
+        "inputs": made["inputs"],
+        "versions": made["versions"],
+        "running": {name: x for name, x in running if made["versions"].get(name) != x},
+        "make_again": _commands(made, target, checked_out),
+    }
+
+
+def lines(answer: Mapping[str, Any]) -> list[str]:
+    """The answer of :func:`explain` as a readable table, line by line."""
+    rows: dict[str, Any] = {}
+    for name, value in answer.items():
+        parts = value if isinstance(value, Mapping) else {"": value}
+        title = name.replace("_", " ")
+        rows |= {f"{title} {key}".strip(): part for key, part in parts.items()}
+    rows["make again"] = " && ".join(answer["make_again"])
+    texts = {k: x if isinstance(x, str) else json.dumps(x) for k, x in rows.items()}
+    width = max(map(len, rows)) + 2
+    # Texts from a file are made printable; paths and commands must not be cut off.
+    return [f"{printable(name):<{width}}{printable(text, None)}" for name, text in texts.items()]

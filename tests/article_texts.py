@@ -1,0 +1,69 @@
+"""All texts that are read from the accepted datasets, for tests to change."""
+
+from pathlib import Path
+
+import pytest
+
+from bouncing_ball.beyond.atlas.figures import shares
+from bouncing_ball.beyond.exhibits import (
+    contact_laws_figures,
+    corrected_model_figures,
+    engine_steps_figures,
+)
+from bouncing_ball.datasets.files import read_dataset
+from bouncing_ball.drawing.tables import to_csv, to_markdown
+from bouncing_ball.paper.claims import tables as rows
+from bouncing_ball.paper.claims.ledger import ledger
+from bouncing_ball.paper.exhibits import continuation_of_orbits_figures, error_thresholds_figures
+from bouncing_ball.pipeline.article import render_article
+
+ROOT = Path(__file__).resolve().parents[1]
+TEMPLATES = ROOT / "workflow" / "report" / "paper"
+TABLES = {
+    "table1": continuation_of_orbits_figures.table1,
+    "thresholds": error_thresholds_figures.thresholds,
+    "ext_orders": corrected_model_figures.ext_orders,
+    "ext_laws": contact_laws_figures.ext_laws,
+    "ext_engines": engine_steps_figures.ext_engines,
+    "formulas": rows.formulas,
+    "forensics": rows.forensics,
+    "witness": rows.witness,
+    "claims": rows.claims,
+}
+DERIVED = ("claims",)
+
+
+@pytest.fixture(scope="session")
+def record(recorded):
+    """The accepted datasets that are computed, not read off others."""
+    return {name: data for name, data in recorded.items() if name not in DERIVED}
+
+
+def all_texts(data):
+    """All tables in all formats, the article and its supplement."""
+    data = {**data, "claims": ledger(data)}
+    made = {}
+    for name, draw in TABLES.items():
+        table = draw(data[name])
+        for form in (to_csv, to_markdown):
+            made[name, form.__name__] = form(*table)
+    texts = {name: made[name, "to_markdown"] for name in TABLES}
+    data["atlas"] = read_dataset(ROOT / "config" / "atlas.nc")
+    texts["atlas"] = to_markdown(*shares(data["atlas"]))
+    for name in ("article", "supplement"):
+        made[name] = render_article(
+            TEMPLATES / f"{name}.md.j2", data, texts, rows.Claims(data["claims"])
+        )
+    return made
+
+
+@pytest.fixture(scope="session")
+def texts():
+    """Makes all tables in all formats, and the article, from datasets by name."""
+    return all_texts
+
+
+@pytest.fixture(scope="session")
+def accepted(record):
+    """Those of the record."""
+    return all_texts(record)

@@ -1,0 +1,154 @@
+"""What a ball does in the end: labels, statistics and the verdict on them."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball import design
+from bouncing_ball.beyond.calculator.motion import aside, height_and_power
+from bouncing_ball.beyond.calculator.results import Mean, Motion
+from bouncing_ball.beyond.calculator.verdict import judged_by_motion
+from bouncing_ball.beyond.long_run.destination import label
+from bouncing_ball.beyond.long_run.means import means as means_of
+from bouncing_ball.beyond.simulation import simulate
+from bouncing_ball.paper.contact.spring_damper import SpringDamper
+
+UNIT = {"mass": 1.0, "angular_frequency": 1.0, "gravity": 1.0, "restitution": 0.85, "n": 1}
+
+
+@pytest.mark.parametrize("law", [1.0, SpringDamper(4.0, 0.0), SpringDamper(40.0, 0.0)])
+def test_an_elastic_ball_has_the_energy_that_the_table_gives_it(law):
+    found = simulate(law, 1.7, 0.4, -4.0, 40)
+    _, power = height_and_power(found, 3)
+    level, speed = 1.7 * np.sin(found.phase), found.impact_velocity
+    energy = speed**2 / 2 + level
+    given = power * (found.time[-1] - found.time[3])
+    # The nodes of a contact are right to rounding; so is the simulation.
+    assert given == pytest.approx(energy[-1] - energy[3], rel=1e-9, abs=1e-9)
+
+
+def test_an_instant_takes_its_impulse_times_the_speed_of_the_table():
+    found = simulate(0.6, 2.3, 0.4, -4.0, 60)
+    impulse = -1.6 * found.relative_velocity[:-1]
+    work = np.sum(impulse * 2.3 * np.cos(found.phase[:-1]))
+    assert height_and_power(found)[1] == pytest.approx(work / found.time[-1], rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("amplitude", "kind", "says"),
+    [
+        (0.8, "orbit", "The 1-T orbit is stable: a ball on it stays on it. A ball laid on the"),
+        (
+            1.1,
+            "subharmonic",
+            "doubled orbit, which repeats after 2 periods of the table and 2 impacts.",
+        ),
+        (2.0, "chaotic", "A ball that starts near it ends in chaotic motion."),
+    ],
+)
+def test_the_headline_says_what_the_ball_does(amplitude, kind, says):
+    found = design(**UNIT, acceleration=amplitude, stiffness=5000.0, tolerance="20 %")
+    assert found.motion.kind == kind and says in found.headline
+    assert found.headline != found.verdict
+    if kind == "orbit":
+        assert found.motion.laid == "permanent contact"
+        # A ball laid on this table is thrown onto the orbit.
+        thrown = design(**UNIT | {"restitution": 0.2}, acceleration=2.43, stiffness=4900.0)
+        assert thrown.motion.laid is None
+        return
+    assert found.motion.restitution_kind == kind
+    # An orbit that no ball has is not judged.
+    assert "1-T orbit" not in found.verdict
+    if kind == "chaotic":
+        for name in ("height", "power"):
+            exact, simple = getattr(found.motion, f"mean_{name}").values()
+            off, margin = vars(found.motion.mean_error[name]).values()
+            assert off == pytest.approx(abs(exact.value / simple.value - 1), rel=1e-9)
+            shown = (
+                f"at most {100 * (off + margin):.2g} %" if margin > off else f"{100 * off:.2g} % ±"
+            )
+            assert shown in found.verdict
+            assert 0 < exact.half_width < 0.1 * exact.value
+        # What the table gives, the impacts lose: (1 - r²)/2 of the squared relative speed.
+        impacts = simulate(0.85, 2.0, 1.4, np.linspace(-3.2, -3.0, 64), 500)
+        lost = (1 - 0.85**2) / 2 * np.sum(impacts.relative_velocity[100:-1] ** 2, axis=0)
+        power = lost / (impacts.time[-1] - impacts.time[100])
+        margin = 4 * (power.std() / 8 + simple.half_width / 2)
+        assert simple.value == pytest.approx(power.mean(), abs=margin)
+
+
+@pytest.mark.parametrize(
+    ("amplitude", "restitution", "kind", "says"),
+    [(0.2, 0.85, "permanent contact", "stays at rest."), (1.1, 0.2, "locked", "sticks to the")],
+)
+def test_where_there_is_no_orbit_the_ball_is_laid_on_the_table(amplitude, restitution, kind, says):
+    given = UNIT | {"n": None, "restitution": restitution, "stiffness": 5000.0}
+    found = design(**given, acceleration=f"{amplitude} m/s^2", tolerance="5 %")
+    assert found.headline.startswith("No model has an n-T orbit.") and says in found.headline
+    assert found.motion.kind == found.motion.restitution_kind == kind and found.is_good_enough
+    assert "no n-T orbit in any model" in found.reason and not found.judged.exists
+    if kind == "locked":
+        # Means over whole repetitions are those of one repetition, which all balls share.
+        laws = SpringDamper.from_restitution(restitution, np.sqrt(5000.0)), restitution
+        for law, *shown in zip(
+            laws, found.motion.mean_height.values(), found.motion.mean_power.values(), strict=True
+        ):
+            motion = label(law, amplitude, np.pi, -amplitude)
+            once = means_of(law, amplitude, motion, 1)[1:3]
+            assert [x.value for x in shown] == pytest.approx(once.tolist(), rel=1e-9)
+
+
+def test_a_verdict_on_an_orbit_says_that_it_leaves_out_a_ball_laid_on_the_table():
+    found = design(**UNIT | {"n": 7, "stiffness": 1e5}, acceleration=2.0, tolerance="20 %")
+    assert found.motion.kind == "orbit" and found.motion.laid not in (None, "permanent contact")
+    assert found.verdict.endswith(", and is not judged.") and "; a ball laid" in found.verdict
+
+
+def test_a_ball_laid_on_the_table_is_left_out_without_a_word_where_it_rests_in_both_models():
+    # A ball with restitution alone rests up to Λ = 1.
+    for laid, amplitude in (("permanent contact", 1.01), ("chaotic", 0.9)):
+        assert aside(Motion("orbit", 1, 1, laid), amplitude).endswith("and is not judged")
+    assert aside(Motion("orbit", 1, 1, "permanent contact"), 1.0) == ""
+
+
+def test_without_loss_a_ball_stays_beside_the_orbit(short_runs):
+    lossless = UNIT | {"restitution": 1.0, "stiffness": 1e4, "tolerance": "5 %"}
+    found = design(**lossless, acceleration=0.5)
+    assert "loses no energy" in found.headline and found.is_good_enough
+    assert not any("no ball stays" in note for note in found.notes)
+    # Beyond the period doubling at Λ = 1 neighbours leave it even so.
+    beyond = design(**lossless, acceleration=1.2)
+    assert "not stable" in beyond.headline and "1-T orbit" not in beyond.verdict
+
+
+def motion(kind, other, **more):
+    return Motion(kind, 0, 0, None, other, 0, 0, **more)
+
+
+def means(height, width):
+    errors = {"height": Mean(height, width), "power": Mean(0.01, 0.0)}
+    return motion("chaotic", "locked", mean_error=errors)
+
+
+LOCKED = ("locked", "locked")
+
+
+@pytest.mark.parametrize(
+    ("found", "good", "says"),
+    [
+        (motion("permanent contact", "permanent contact"), True, "the ball rests in both models"),
+        (motion("locked", "permanent contact"), False, "its motion is permanent contact, and the"),
+        (motion("subharmonic", "orbit"), False, "is periodic, and the contact's is doubled"),
+        (motion(*LOCKED, greatest={"a": 1.04, "b": 1.0}), True, "is 4 % off, within 5 %"),
+        (motion(*LOCKED, greatest={"a": 1.06, "b": 1.0}), False, "is 6 % off, beyond 5 %"),
+        (motion("chaotic", "chaotic"), False, "is not known"),
+        (motion("undecided", "permanent contact"), False, "is not known"),
+        (means(0.02, 0.005), True, "height is 2 % ± 0.5 % off and the mean power is 1 % ± 0 % off"),
+        (means(0.0, 0.02), True, "height is at most 2 % off and the mean power is 1 % ± 0 % off"),
+        (means(0.009, 0.045), False, "not decided at 5 %: the mean height is at most 5.4 % off"),
+        (means(0.04, 0.02), False, "not decided at 5 %: the mean height is 4 % ± 2 % off"),
+        (means(0.12, 0.005), False, "not good enough: the mean height is 12 % ± 0.5 % off"),
+    ],
+)
+def test_the_verdict_on_a_motion(found, good, says):
+    verdict = judged_by_motion(found, 0.05, 1)
+    assert verdict.is_good_enough is good and says in verdict.verdict

@@ -1,0 +1,34 @@
+"""Basins of three models against the stable orbits, and against each other for a stiff contact."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.beyond.exhibits.basins import MOTIONS, basins
+from bouncing_ball.beyond.exhibits.motion_samples import models
+from bouncing_ball.paper.contact.damping import Release
+from bouncing_ball.pipeline.configuration import typed
+
+CASE = {"restitution": 0.5, "frequency_ratio": 1e5, "amplitude": 1.3}
+SIZES = {"velocity_max": 6.0, "starts": 24, "random": 60, "shifts": [0.1, 0.01], "impacts": 200}
+
+
+@pytest.fixture(scope="module")
+def data():
+    return typed(basins)({"cases": [CASE], "confidence": 0.95, "seed": 3, **SIZES}, "displacement")
+
+
+def test_a_stable_orbit_lies_in_its_basin(data):
+    for k, model in enumerate(models(np.array(0.5), 1e5, Release.DISPLACEMENT)):
+        orbit = model.orbit(1, 1.3)
+        place = {"start_phase": orbit.phase, "start_speed": -orbit.relative_impact_velocity}
+        end = data.destination.isel(case=0, model=k).sel(place, method="nearest")
+        assert MOTIONS[int(end)] == "1-T orbit"
+
+
+def test_a_stiff_contact_has_the_restitution_models_basins(data):
+    image = data.destination.isel(case=0)
+    # A boundary moves by some units of 1/ϖ, of which a cell is a thousand.
+    assert (image != image.isel(model=0)).mean() < 0.01
+    assert data.basin_share.sum("motion").values == pytest.approx(np.ones((1, 3)))
+    assert np.all(data.basin_share_low <= data.basin_share)
+    assert np.all(data.uncertain_share.isel(shift=0) >= data.uncertain_share.isel(shift=1))

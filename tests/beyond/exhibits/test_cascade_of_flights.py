@@ -1,0 +1,35 @@
+"""Openings as a dataset."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.beyond.exhibits.cascades import cascade_of_flights
+from bouncing_ball.pipeline.configuration import typed
+
+FLIGHTS = {
+    "restitution": [0.85, 0.65],
+    "frequency_ratio": {"min": 1.2, "max": 100.0, "samples": 25},
+    "flights": 2,
+}
+
+
+def test_openings_over_both_parameters(described):
+    found = described(typed(cascade_of_flights)(FLIGHTS, "displacement"))
+    assert found.opening_amplitude.dims == ("restitution", "flights", "frequency_ratio")
+    # Each row is that of its r: Λ_SD at ϖ = 1.2 by another program, and the limits of E.
+    assert float(found.threshold_amplitude[0, 0]) == pytest.approx(0.3175, abs=1e-4)
+    excess = 100.0**2 * (found.opening_amplitude - found.threshold_amplitude).isel(
+        frequency_ratio=-1
+    )
+    np.testing.assert_allclose(
+        excess.transpose(*found.stiff_opening.dims), found.stiff_opening, rtol=0.02
+    )
+    # A compliant contact loses its stability first.
+    assert np.isnan(found.opening_amplitude[..., 0]).all() and (found.opening_multiplier.max() < 1)
+
+
+def test_limits_are_those_of_the_papers_release():
+    found = typed(cascade_of_flights)(FLIGHTS | {"restitution": [0.85]}, "force")
+    for name in ("opening_amplitude", "stiff_opening"):
+        assert np.isnan(found[name]).all()
+    assert np.isfinite(found.threshold_amplitude).all()

@@ -1,0 +1,56 @@
+"""The study of cascades, against the closed law of the first doubling's error."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.beyond.error_law import coefficients
+from bouncing_ball.beyond.exhibits.cascades import cascades
+from bouncing_ball.paper.contact.damping import Release, damping_ratio
+from bouncing_ball.pipeline.configuration import typed
+
+R = [0.5, 0.85]
+STIFF = {"min": 500.0, "max": 1000.0, "samples": 2}
+# Ω² = 1 g/m.
+MEASURED = {"frequency": 9.80665**0.5 / (2 * np.pi), "amplitudes": [0.5]}
+CONFIG = {"n": 1, "restitution": R, "frequency_ratio": STIFF, "doublings": 3, "measured": MEASURED}
+
+
+@pytest.fixture(scope="module", params=list(Release))
+def study(request):
+    return request.param, typed(cascades)(CONFIG, request.param)
+
+
+def test_k_of_the_first_doubling_is_that_of_the_error_law(study):
+    """Measured on orbits here, and there a closed form."""
+    release, data = study
+    assert np.allclose(data.measured_cascade, [0.5, np.nan, np.nan], equal_nan=True)
+    law = coefficients(1, damping_ratio(np.array(R)), data.restitution_cascade[:, 0], release)
+    # Of the error's expansion the third order is left, over the two ϖ.
+    assert np.allclose(data.cascade_coefficient[:, 0], law["period_doubling"], rtol=1e-4)
+
+
+def test_errors_tend_to_the_two_laws(study):
+    _, data = study
+    error, ratio = data.cascade_error, data.frequency_ratio
+    missed = error.sel(model="restitution") * ratio - data.cascade_coefficient
+    # The next order is one of 1/ϖ: twice as stiff a contact misses half as much.
+    halves = missed.isel(frequency_ratio=0) / missed.isel(frequency_ratio=1)
+    assert np.allclose(halves, 2, atol=0.1)
+    # The corrected model's third order may nearly vanish; at ϖ = 500 it is below one per cent.
+    left = error.sel(model="corrected") * ratio**2 / data.cascade_second_order - 1
+    assert np.all(np.abs(left) < 0.01)
+
+
+def test_a_contact_keeps_the_ratio_of_the_doublings(study):
+    _, data = study
+    shift = data.contact_cascade_ratio / data.cascade_ratio - 1
+    assert np.all(shift != 0) and np.max(np.abs(shift)) < 1e-2
+    assert np.allclose(shift.isel(frequency_ratio=0) / shift.isel(frequency_ratio=1), 2, atol=0.05)
+
+
+def test_a_doubling_that_is_not_found_does_not_affect_the_others():
+    """At ϖ = 0.8 the first doubling lies at Λ < 1, where a ball that leaves the orbit rests."""
+    span = {"min": 0.8, "max": 8.0, "samples": 2}
+    changed = {"restitution": [0.05, 0.94], "frequency_ratio": span, "doublings": 5}
+    data = typed(cascades)(CONFIG | changed, Release.DISPLACEMENT)
+    assert np.all(np.isfinite(data.cascade_error).sum("doubling") == [1, 5])

@@ -1,0 +1,56 @@
+"""Our statements about the whole motion on the accepted datasets, and on false ones."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.beyond.exhibits import statements as whole_motion
+from bouncing_ball.beyond.exhibits.statements import statements
+from bouncing_ball.paper.claims.claim import defined_in
+from bouncing_ball.paper.claims.verdict import decided
+
+# A false value of the variable that decides a statement; of an interval it is the bound itself.
+FALSE = {
+    "short periods agree": ("ext_locking", "agreement", 0.9),
+    "long periods differ": ("ext_locking", "agreement", 0.25),
+    "prediction ranks": ("ext_locked", "rank_correlation", 0.9),
+    "dense discontinuities": ("ext_locked", "uncertainty_exponent", 0.1),
+    "power needs more": ("ext_means", "right", 0.5),
+    "compliant contacts throw": ("ext_basins", "basin_share", 0.02),
+    "fractal boundaries": ("ext_basins", "uncertainty_exponent", 1.0),
+    "smooth when stiffer": ("ext_basins", "uncertainty_exponent", 0.8),
+    "lasting chaos": ("ext_lives", "mean_life", 1e6),
+    "chaos beside locking": ("ext_lives", "chaotic_share", 0.01),
+    "cascade moves as a whole": ("ext_cascades", "cascade_coefficient", [1, 2] * 3),
+    "end of the first order": ("ext_cascades", "cascade_error", 0.1),
+    "corrected cascades": ("ext_cascades", "cascade_second_order", 1.0),
+    "feigenbaum": ("ext_cascades", "contact_cascade_ratio", 4.5),
+    "measured doublings": ("ext_cascades", "restitution_cascade", 1.5),
+    "longer transients": ("ext_lives", "mean_life", 50.0),
+}
+CLAIMS = {one.id: one for one in defined_in(whole_motion)}
+
+
+@pytest.fixture(scope="module")
+def data(recorded, table):
+    return {name: recorded[name] for name in table["statements"]["reads"]}
+
+
+def test_the_statements_on_the_accepted_datasets(data, described):
+    found = described(statements(data))
+    assert set(found.verdict.values) == {"confirmed"}
+    assert np.all(found.low <= found.found) and np.all(found.found <= found.high)
+
+
+@pytest.mark.parametrize("name", CLAIMS)
+def test_a_false_dataset_turns_the_statement(data, name):
+    dataset, variable, value = FALSE[name]
+    whole = data[dataset].copy(deep=True)
+    shape = np.broadcast_to(value, whole[variable].shape)
+    ends = [x for x in ("", "_low", "_high") if f"{variable}{x}" in whole]
+    whole = whole.assign({f"{variable}{x}": (whole[variable].dims, shape) for x in ends})
+    assert CLAIMS[name].decide({**data, dataset: whole}).verdict == "contradicted"
+
+
+def test_a_missing_limit_decides_nothing():
+    assert decided([5, np.nan, 6], above=3).verdict == "not decided"
+    assert decided([5, 4, np.inf], above=3).verdict == "confirmed"

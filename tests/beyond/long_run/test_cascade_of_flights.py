@@ -1,0 +1,150 @@
+"""The cascade of flights above Λ_SD: by simulation, in its limit, and by another program."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+from bouncing_ball.beyond.long_run.cascade_of_flights import (
+    OpeningContacts,
+    openings,
+    stiff_openings,
+)
+from bouncing_ball.beyond.long_run.destination import label
+from bouncing_ball.beyond.simulation import simulate
+from bouncing_ball.errors import ModelError
+from bouncing_ball.paper.contact.damping import damping_ratio
+from bouncing_ball.paper.contact.permanent_contact import permanent_contact_threshold
+from bouncing_ball.paper.contact.spring_damper import SpringDamper
+
+
+def motions(r, ratio, excess):
+    """What a ball that is set down after the top of the table ends on, at E."""
+    zeta, excess = damping_ratio(r), np.asarray(excess)
+    lam = permanent_contact_threshold(ratio, zeta) + excess / np.square(ratio)
+    phase = np.pi / 2 + 3 / ratio
+    slow = lam * np.cos(phase) - 0.1 / np.square(ratio)
+    return label(SpringDamper(ratio, zeta), lam, phase, slow)
+
+
+@pytest.mark.parametrize(
+    ("r", "ratio", "excess", "flights", "multipliers"),
+    [
+        (0.65, 10.3, [12.5, 25.0], [2, 2], [0.041, 0.330]),
+        (0.85, 20.0, [9.5, 20.0], [2, 3], [0.072, 0.245]),
+        (0.85, 100.0, [9.5], [2], [0.0]),
+    ],
+)
+def test_the_flights_that_another_program_found(r, ratio, excess, flights, multipliers):
+    found = motions(r, ratio, excess)
+    assert (found.periods == 1).all() and found.impacts.tolist() == flights
+    np.testing.assert_allclose(np.exp(found.exponent), multipliers, atol=5e-4)
+
+
+def test_balls_have_as_many_flights_as_the_cascade_says():
+    r, ratio = np.array([0.3, 0.65, 0.85]), np.geomspace(12.0, 200.0, 19)
+    found = openings(damping_ratio(r), ratio, 3)
+    ratio, found = ratio[::6], type(found)(*(x[..., ::6] for x in found))
+    held = permanent_contact_threshold(ratio, damping_ratio(r)[:, np.newaxis])
+    top = ratio**2 * (found.amplitude - held[:, np.newaxis])
+    stable = found.multiplier < 1
+    assert stable.sum() >= 30
+    below = np.concatenate([np.zeros_like(top[:, :1]), top[:, :-1]], axis=1)
+    flights = np.broadcast_to(np.arange(1, 4)[:, np.newaxis], top.shape)
+    for excess, more in (((below + top) / 2, 0), (0.999 * top, 0), (1.001 * top, 1)):
+        seen = motions(*(np.broadcast_to(x, top.shape)[stable] for x in
+                         (r[:, np.newaxis, np.newaxis], ratio, excess)))  # fmt: skip
+        assert (seen.periods == 1).all()
+        np.testing.assert_array_equal(seen.impacts, flights[stable] + more)
+    # The power 3/2 of the new flight leaves the multipliers as they are at the opening.
+    off = np.exp(seen.exponent) - found.multiplier[stable]
+    assert np.abs(off).max() < 0.05
+
+
+def test_the_derivatives_and_the_multipliers_are_those_of_the_motion():
+    law, rng = SpringDamper(9.0, 0.12), np.random.default_rng(2)
+    problem = OpeningContacts(law, 2)
+    y = np.array([1.4, 1.2, 0.3, 0.5, 0.3, 0.4, 0.4, -0.3, 0.2, -0.2])
+    y, step = y * (1 + 0.01 * rng.normal(size=(3, 10))), 1e-6 * np.eye(10)
+    around = [problem.system(y[:, np.newaxis] + sign * step)[0] for sign in (1, -1)]
+    slopes = np.moveaxis((around[0] - around[1]) / 2e-6, 1, -1)
+    np.testing.assert_allclose(problem.system(y)[1], slopes, atol=1e-8)
+    zeta = damping_ratio(0.85)
+    found = openings([zeta], np.array([20.0]), 2)
+    excess = 400 * (found.amplitude - permanent_contact_threshold(20.0, zeta))
+    seen = motions(0.85, 20.0, (1 - 1e-9) * excess.ravel())
+    np.testing.assert_allclose(np.exp(seen.exponent), found.multiplier.ravel(), rtol=1e-3)
+
+
+def test_a_new_flight_changes_the_motion_by_the_power_of_three_halves():
+    """The motion that opens at a height η above the table, against the one held in contact."""
+    law, lam, phase, later = SpringDamper(20.0, 0.12), 1.1, 2.3, 3.0
+
+    def held(velocity, time):
+        return law.flow(time, 0.0, velocity, phase, lam)[:2]
+
+    def top(velocity):
+        time = np.linspace(0.05, 0.3, 20_001)
+        return held(velocity, time)[0].max()
+
+    touch, heights, apart = brentq(top, -0.2, -0.02), [], []
+    for part in (1e-2, 2.5e-3, 6.25e-4):
+        velocity = touch * (1 + part)
+        motion = simulate(law, lam, phase, lam * np.cos(phase) + velocity, 2)
+        start = motion.time[1] - motion.time[0]
+        flow = law.flow(later - start, 0.0, motion.relative_velocity[1], motion.phase[1], lam)
+        heights.append(top(velocity))
+        apart.append(np.subtract(flow[:2], held(velocity, later)))
+    power = np.diff(np.log(np.abs(apart)), axis=0) / np.diff(np.log(heights))[:, np.newaxis]
+    np.testing.assert_allclose(power, 1.5, atol=0.03)
+
+
+@pytest.mark.parametrize("r", [0.3, 0.65, 0.85, 0.95])
+def test_the_limits_are_reached_with_the_square_of_the_ratio(r):
+    zeta, ratio = float(damping_ratio(r)), np.array([200.0, 400.0])
+    found = openings([zeta], ratio, 2).amplitude[0]
+    excess = ratio**2 * (found - permanent_contact_threshold(ratio, zeta))
+    off = stiff_openings(zeta, 2)[:, np.newaxis] - excess
+    # But for the next order, and for the weak oscillation that is left when the ball leaves again.
+    np.testing.assert_allclose(off[:, 0] / off[:, 1], 4, atol=0.4)
+
+
+def test_the_limit_is_that_of_its_equation_by_another_integrator():
+    """At E_k contact k after the first landing just touches x = 0."""
+    r = 0.65
+    zeta = float(damping_ratio(r))
+    for k, excess in enumerate(stiff_openings(zeta, 3), 1):
+        level = excess + 2 * zeta**2 - 1
+
+        def pull(s, y, held, level=level):
+            return [y[1], level - s * s / 2 - held * (2 * zeta * y[1] + y[0])]
+
+        def table(_, y, held):
+            return y[0] if held >= 0 else 0.0
+
+        rate = np.sqrt(2 * excess)
+        s, y, exact = 2 * zeta - rate, [0.0, rate], {"rtol": 1e-11, "atol": 1e-13}
+        for leg in range(2 * k - 1):
+            table.terminal, table.direction = True, 1 if leg % 2 else -1
+            y[0] = 1e-12 if leg % 2 == 0 else -1e-12
+            run = solve_ivp(pull, (s, s + 99), y, args=(leg % 2,), events=table, **exact)
+            s, y = run.t[-1], list(run.y[:, -1])
+        run = solve_ivp(pull, (s, s + 6), y, args=(1,), max_step=0.01, **exact)
+        rises = np.flatnonzero((run.y[1, :-1] > 0) & (run.y[1, 1:] <= 0))[0]
+        assert abs(run.y[0, rises]) < 1e-4 * excess
+
+
+@pytest.mark.parametrize(("r", "most"), [(0.3, 11), (0.5, 15)])
+def test_chattering_multiplies_the_openings_by_the_square_of_the_restitution(r, most):
+    """r² E_{k+1}/E_k = 1 + (a + b k) r^k: k contacts take a part of the chatter of order k r^k."""
+    limits = stiff_openings(float(damping_ratio(r)), most)
+    away = (r**2 * limits[1:] / limits[:-1] - 1) / r ** np.arange(1, most)
+    slopes = np.diff(away)[-3:]
+    assert 0 < slopes[-1] < 0.1
+    np.testing.assert_allclose(slopes, slopes[-1], rtol=0.03)
+
+
+@pytest.mark.parametrize("zeta", [0.0, 0.95, np.nan])
+def test_without_an_oscillation_that_dies_out_there_is_no_limit(zeta):
+    with pytest.raises(ModelError, match=r"in \(0, 0.9\]"):
+        stiff_openings(zeta, 1)

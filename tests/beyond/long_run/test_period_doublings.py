@@ -1,0 +1,88 @@
+"""Cascades: the orbits that double, Feigenbaum's ratio, and how a contact shifts the cascade."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.beyond.corrected.orbits import CorrectedModel
+from bouncing_ball.beyond.long_run.destination import label
+from bouncing_ball.beyond.long_run.period_doublings import FEIGENBAUM, Turns, cascade
+from bouncing_ball.beyond.simulation import simulate
+from bouncing_ball.errors import ModelError
+from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
+from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+
+R, RATIOS = 0.5, np.array([20.0, 40.0, 80.0, 160.0])
+CONTACT = SpringDamper.from_restitution(R, RATIOS)
+MODELS = [SpringDamperModel(CONTACT), CorrectedModel.of_contact(CONTACT)]
+
+
+@pytest.fixture(scope="module")
+def restitution():
+    return cascade(RestitutionModel(R).period_doubling(1), 6)
+
+
+@pytest.fixture(scope="module", params=MODELS, ids=lambda model: model.name)
+def model(request):
+    return request.param
+
+
+@pytest.fixture(scope="module")
+def found(model):
+    return cascade(model.period_doubling(1), 4)
+
+
+def test_the_ratios_tend_to_feigenbaums(restitution):
+    """By the theory their distance falls by a constant factor, which is about -0.12."""
+    away = restitution.ratios() - FEIGENBAUM
+    assert np.all(np.abs(away[1:]) < np.abs(away[:-1])) and abs(away[-1]) < 0.006
+
+
+def test_a_ball_at_a_doubling_returns_after_2_to_the_k_impacts_in_the_simulation(restitution):
+    for k, (lam, phase, relative) in enumerate(zip(*restitution, strict=True)):
+        impacts = simulate(R, lam, phase, relative + lam * np.cos(phase), 2**k + 1)
+        # Multipliers of a turn are of order one, but those of its parts are not.
+        assert impacts.time[-1] == pytest.approx(2 * np.pi * 2**k, abs=1e-9)
+        assert impacts.relative_velocity[-1] == pytest.approx(relative, abs=1e-9)
+
+
+def test_the_period_of_what_attracts_doubles_there(model, found):
+    """Found without the orbit's equations: by where balls end beside each doubling."""
+    law, sides = model.period_doubling(1).law, np.array([[[-0.2]], [[0.2]]])
+    lam = found.amplitude[:-1] + sides * np.diff(found.amplitude, axis=0)
+    phase, relative = found.phase[:-1], found.velocity[:-1]
+    motion = label(law, lam, phase, relative + lam * np.cos(phase), impacts=5000)
+    expected = 2 ** (np.arange(3)[:, np.newaxis] + np.arange(2)[:, np.newaxis, np.newaxis])
+    np.testing.assert_array_equal(motion.impacts, np.broadcast_to(expected, lam.shape))
+
+
+def test_the_derivatives_are_those_of_differences(model):
+    law = model.period_doubling(1).law
+    turns = Turns(law, 1, 3)
+    y = np.stack(np.broadcast_arrays(0.4, -4.4, np.full(RATIOS.size, 1.6)), axis=-1)
+    step = 1e-6
+    for c in range(3):
+        moved = np.eye(3)[c] * step
+        slope = (turns.system(y + moved)[0] - turns.system(y - moved)[0]) / (2 * step)
+        assert np.allclose(turns.system(y)[1][..., c], slope, rtol=1e-6, atol=1e-6)
+
+
+def test_a_contact_shifts_the_cascade_by_the_first_order_and_corrected_by_the_second(
+    found, model, restitution
+):
+    """Halving 1/ϖ halves the distance from the limit, and quarters it for what is left."""
+    if isinstance(model, CorrectedModel):
+        exact = cascade(SpringDamperModel(CONTACT).period_doubling(1), 4)
+        error, order = found.amplitude / exact.amplitude - 1, 2
+    else:
+        error, order = found.amplitude / restitution.amplitude[:4, np.newaxis] - 1, 1
+    assert np.all(error != 0)
+    falls = np.log2(error[:, :-1] / error[:, 1:])
+    # The next order adds C/ϖ to the relative change of the error: it halves as well.
+    away = falls - order
+    assert np.all(np.abs(away[:, 1:]) < 0.6 * np.abs(away[:, :-1])) and np.max(np.abs(away)) < 0.25
+
+
+def test_a_cascade_of_no_doublings_or_too_many_is_refused(refusal):
+    with refusal(ModelError, "number of period doublings = 9", "from 1 to 8"):
+        cascade(RestitutionModel(R).period_doubling(1), 9)

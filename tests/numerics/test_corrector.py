@@ -1,0 +1,90 @@
+"""Newton's method on an extended system, and tangents."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane, tangent
+
+EPS = np.finfo(float).eps
+
+
+class Circle:
+    """x² + p² = 1."""
+
+    def residual(self, y):
+        return np.sum(y * y, axis=-1, keepdims=True) - 1
+
+    def jacobian(self, y):
+        return 2 * y[..., np.newaxis, :]
+
+
+def test_converges_to_the_intersection_with_a_plane():
+    # The line x = 2p meets the circle at p = 1/√5.
+    normal = np.array([1.0, -2.0])
+    found = newton(Circle(), np.array([1.0, 0.6]), plane(normal, np.zeros(2)))
+    assert found.converged
+    assert found.point == pytest.approx(np.array([2.0, 1.0]) / np.sqrt(5), abs=4 * EPS)
+    assert found.iterations <= 6
+    assert found.step <= NewtonSettings().tolerance
+
+
+def test_convergence_is_quadratic():
+    # With the exact Jacobian each residual is about the square of the last.
+    residuals = []
+    for count in (1, 2, 3, 4):
+        settings = NewtonSettings(tolerance=0.0, max_iterations=count)
+        condition = plane(np.array([1.0, -2.0]), np.zeros(2))
+        residuals.append(newton(Circle(), np.array([1.0, 0.6]), condition, settings).residual)
+    # residuals[0] is that of the guess; the plane is met after one step.
+    assert residuals[2] < residuals[1] ** 2
+    assert residuals[3] < residuals[2] ** 2
+
+
+def test_many_guesses_at_once():
+    angles = np.linspace(0.1, 6.0, 11)
+    guess = 1.1 * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+    normals = np.stack([-np.sin(angles), np.cos(angles)], axis=-1)
+    found = newton(Circle(), guess, plane(normals, guess))
+    assert found.converged.all()
+    assert found.point == pytest.approx(guess / 1.1, abs=4 * EPS)
+
+
+def test_a_bad_guess_spoils_no_other():
+    # One converges, one meets a singular matrix, and one misses the circle.
+    guess = np.array([[1.0, 0.6], [0.0, 0.0], [1.0, 2.0]])
+    normals = np.array([[1.0, -2.0], [1.0, -2.0], [0.0, 1.0]])
+    through = np.array([[0.0, 0.0], [0.0, 0.0], [1.0, 2.0]])
+    found = newton(Circle(), guess, plane(normals, through))
+    assert found.converged.tolist() == [True, False, False]
+    assert found.point[0] == pytest.approx(np.array([2.0, 1.0]) / np.sqrt(5), abs=4 * EPS)
+    assert found.point[1].tolist() == [0.0, 0.0]
+
+
+def test_no_step_is_longer_than_the_longest():
+    settings = NewtonSettings(max_iterations=1, longest=0.1)
+    guess = np.array([3.0, 0.0])
+    found = newton(Circle(), guess, plane(np.array([0.0, 1.0]), guess), settings)
+    # Newton's own step, of (9 - 1)/6, is what convergence is judged by.
+    assert found.point == pytest.approx(np.array([2.9, 0.0]), abs=4 * EPS)
+    assert found.step == pytest.approx(8 / 6 / 3.9, rel=1e-14)
+
+
+def test_singular_matrix():
+    # ∇F = 0 at the centre.
+    found = newton(Circle(), np.zeros(2), plane(np.array([1.0, 0.0]), np.zeros(2)))
+    assert not found.converged
+    assert (found.iterations, found.residual, found.step) == (1, 1.0, np.inf)
+    assert found.point.tolist() == [0.0, 0.0]
+
+
+def test_tangent_is_the_unit_null_vector_on_the_given_side():
+    rng = np.random.default_rng(3)
+    for size in (1, 2, 5):
+        jacobian = rng.normal(size=(size, size + 1))
+        along = rng.normal(size=size + 1)
+        vector = tangent(jacobian, along)
+        # Condition numbers below 1e3 for these seeds.
+        assert np.linalg.norm(vector) == pytest.approx(1.0, abs=4 * EPS)
+        assert jacobian @ vector == pytest.approx(np.zeros(size), abs=1e-12)
+        assert vector @ along > 0
+        assert tangent(jacobian, -along) == pytest.approx(-vector, abs=1e-12)

@@ -1,0 +1,196 @@
+"""Claims as functions, on small datasets: parameters, readings, explanations, the dataset."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from bouncing_ball.errors import ModelError
+from bouncing_ball.paper.claims import parameters
+from bouncing_ball.paper.claims.claim import Claim, claim, formula
+from bouncing_ball.paper.claims.ledger import assess, tally
+from bouncing_ball.paper.claims.parameters import NotAsked, PaperData
+from bouncing_ball.paper.claims.verdict import above, at_most
+
+BOUNDS = {"first": 83, "second": 82}
+
+
+def it_turns(data):
+    """It sinks
+    first.
+    """
+    return {"rise at the second": at_most(data["fig"].rise.sel(n=2), 0)}
+
+
+@claim("Fig. 14", printed="82")
+def height_threshold(data):
+    """the threshold
+
+    Remark: read off
+    a curve
+    """
+    return data["fig"].threshold
+
+
+@claim("Fig. 14", id="rises", explanation=it_turns)
+def rising(data):
+    """the height rises
+
+    Condition: it rises everywhere
+    """
+    return above(data["fig"].rise, 0)
+
+
+@claim("Fig. 14", explanation=it_turns, restates=height_threshold)
+def two_readings(data):
+    """the threshold again"""
+    return {name: at_most(data["fig"].threshold, bound) for name, bound in BOUNDS.items()}
+
+
+right = formula("a law", "Eq. 1", "the law")
+limit = formula("a limit", "Eq. 2", "the limit", row="Eq. 1")
+
+
+@pytest.fixture(autouse=True)
+def papers(monkeypatch):
+    """The paper's parameters of the small dataset."""
+    needed = {"n": 1, "cases": [{"r": 0.5}], "span": {"min": 0.5, "max": 10.0}}
+    needed["tolerances"] = [0.01, 0.02]
+    monkeypatch.setattr(parameters, "PARAMETERS", {"fig": needed, "formulas": {}})
+
+
+@pytest.fixture
+def data():
+    fig = xr.Dataset(
+        {"threshold": ((), 82.18), "rise": ("n", [0.5, -0.25, 1.0])},
+        coords={"n": [1, 2, 3]},
+        attrs={
+            "n": np.int64(1),
+            "cases": '[{"r": 0.5}]',
+            "span__max": 10.0,
+            "span__min": 0.5,
+            "tolerances": np.array([0.01, 0.02]),
+            "release": "displacement",
+        },
+    )
+    rows = xr.Dataset({"disagreement": ("formula", [1e-13]), "budget": ("formula", [1e-12])})
+    return {"fig": fig, "formulas": rows.assign_coords(formula=["Eq. 1"])}
+
+
+def row(claim: Claim, data):
+    result = assess([claim], data).isel(claim=0)
+    return {name: values.item() for name, values in result.data_vars.items() if not values.dims}
+
+
+def test_a_printed_number(data):
+    found = row(height_threshold, data)
+    assert found["deviation_units"] == pytest.approx(0.18)
+    assert found["deviation"] == pytest.approx(0.18 / 82)
+    del found["deviation_units"], found["deviation"]
+    # A number that is not compared with a bound has none, and no interval.
+    assert {name: value for name, value in found.items() if value == value != ""} == {
+        "item": "Fig. 14",
+        "group": "number",
+        "statement": "the threshold",
+        "printed_text": "82",
+        "remark": "read off a curve",
+        "decided_by": "fig",
+        "required": "82",
+        "found": 82.18,
+        "verdict": "reproduced",
+        "explained": True,
+    }
+    assert height_threshold.id == "height threshold"
+
+
+def test_a_statement_and_its_explanation(data):
+    result = assess([rising], data)
+    found = row(rising, data)
+    assert (found["verdict"], found["found"], found["required"]) == ("contradicted", -0.25, "> 0")
+    assert found["condition"] == "it rises everywhere"
+    assert (found["explained_by"], found["explained"], found["limit"]) == ("it turns", True, 0)
+    assert result.explanation_text.item() == "It sinks first."
+    assert result.explanation_holds.item()
+    assert result.explanation_checks.item() == "rise at the second: -0.25 (required ≤ 0)"
+    data["fig"]["rise"] = ("n", [0.5, 0.25, -1.0])
+    found = row(rising, data)
+    assert (found["verdict"], found["explained"]) == ("contradicted", False)
+
+
+def test_readings_that_differ_leave_a_claim_open(data):
+    found = row(two_readings, data)
+    assert (found["verdict"], found["restates"]) == ("undecidable", "height threshold")
+    assert found["reason"] == ("first: reproduced (82.18); second: contradicted (82.18)")
+    assert np.isnan(found["found"]) and found["explained"]
+    meant = row(replace(two_readings, meant=True), data)
+    assert (meant["verdict"], meant["found"]) == ("qualified", 82.18)
+    data["fig"]["threshold"] += 100
+    assert row(two_readings, data)["verdict"] == "contradicted"
+    assert row(replace(two_readings, meant=True), data)["verdict"] == "contradicted"
+
+
+def test_formulas_and_groups(data):
+    assert row(right, data)["verdict"] == "reproduced"
+    assert [
+        row(claim, data)["group"] for claim in (right, height_threshold, rising, two_readings)
+    ] == [*("restored formula", "number", "statement", "restatement")]
+    data["formulas"]["disagreement"] *= 100
+    assert row(limit, data)["verdict"] == "contradicted"
+    assert row(limit, data)["required"] == "≤ 1e-12"
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"n": 2}, "n = 2; the claim requires 1"),
+        ({"cases": '[{"r": 0.6}]'}, 'cases = [{"r": 0.6}]; the claim requires [{"r": 0.5}]'),
+        ({"span__max": 9.9}, "span__max = 9.9; the claim requires 10.0"),
+        ({"span__max": "far"}, "span__max = far; the claim requires 10.0"),
+        ({"tolerances": 0.01}, "tolerances = 0.01; the claim requires [0.01, 0.02]"),
+        ({"release": "force"}, "release = force; the claim requires displacement"),
+    ],
+)
+def test_with_other_parameters_a_claim_is_not_asked(data, change, said):
+    data["fig"] = data["fig"].assign_attrs(change)
+    found = row(rising, data)
+    assert found["reason"] == f"fig was computed with {said}"
+    assert (found["verdict"], found["explained"]) == ("not asked", True)
+    assert np.isnan([found["found"], found["limit"]]).all()
+    result = assess([rising], data)
+    assert not result.explanation_holds.item()
+    assert result.explanation_checks.item() == found["reason"]
+    with pytest.raises(NotAsked):
+        PaperData(data)["fig"]
+
+
+def test_the_paper_parameters_are_no_more_than_required(data):
+    data["fig"] = data["fig"].assign_attrs(other=3, n=[1])
+    del data["fig"].attrs["release"]  # only where a dataset has it
+    assert row(rising, data)["verdict"] == "contradicted"
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda data: data.pop("fig"), "fig"),
+        (lambda data: data.update(fig=data["fig"].drop_vars("rise")), "rise"),
+        (lambda data: data.update(fig=data["fig"].sel(n=[1, 3])), "not all values found in index"),
+        (lambda data: data["fig"].rise.values.fill(np.nan), "rise: 1 of 1 numbers missing"),
+    ],
+)
+def test_what_is_missing_is_an_error_in_one_line(data, change, said, one_line):
+    change(data)
+    with pytest.raises(ModelError) as error:
+        assess([rising], data)
+    one_line(error, said)
+    assert str(error.value).startswith(("'rises': ", "'it turns': "))
+
+
+def test_the_tally(data):
+    some = [rising, two_readings, height_threshold, right]
+    assert tally(assess(some, data)) == "3 claims of the paper: 2 reproduced, 1 contradicted"
+    data["fig"]["rise"] = ("n", [0.5, 0.25, -1.0])
+    assert tally(assess(some, data)).endswith(", 1 without explanation")
+    data["fig"].attrs["n"] = 2
+    assert ", 2 not asked" in tally(assess(some, data))

@@ -1,0 +1,141 @@
+"""Readings of Table 1: the altered equations against an independent return map."""
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from bouncing_ball.paper.claims.forensics import (
+    PRINTED_DAMPING,
+    WeightlessOrbit,
+    altered_ends,
+    forensics,
+    high_bounce_monodromy,
+)
+from bouncing_ball.paper.claims.tables import forensics as rows
+from bouncing_ball.paper.contact.damping import damping_ratio
+from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.orbits import restitution_branch as restitution_orbit
+from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.paper.orbits.spring_damper_orbit import SpringDamperOrbit
+
+ZETA = float(damping_ratio(0.85))
+WEIGHTLESS, HIGH_BOUNCE = "no gravity in contact", "high-bounce stability"
+
+
+@pytest.fixture(scope="module")
+def study(described):
+    return described(forensics())
+
+
+def cycle(phase, u, orbit, reference, *, weight, rise):
+    """One altered cycle, with its events located by Brent's method."""
+    omega, zeta = float(orbit.law.frequency_ratio), float(orbit.law.damping_ratio)
+    lam, duration = float(orbit.amplitude), float(orbit.contact_duration)
+    flight = float(orbit.flight_time)
+
+    def state(s):
+        held = np.array(reference.contact_state(s, 0.0, u, phase, lam, omega, zeta))
+        sag = np.array(reference.contact_state(s, 0.0, 0.0, 0.0, 0.0, omega, zeta))
+        return held - (1 - weight) * sag
+
+    s = brentq(lambda s: state(s)[0], 0.97 * duration, 1.03 * duration, xtol=1e-300, rtol=9e-16)
+    d, v = state(s)
+    height, thrown = d + lam * np.sin(phase + s), v + lam * np.cos(phase + s)
+    # High bounce: z′_b T - T²/2 keeps the value that it has on the orbit.
+    closed = (float(orbit.bounce_velocity) - flight / 2) * flight
+
+    def gap(t):
+        flown = thrown * t - t * t / 2
+        return height + flown - lam * np.sin(phase + s + t) if rise else flown - closed
+
+    t = brentq(gap, 0.97 * flight, 1.03 * flight, xtol=1e-300, rtol=9e-16)
+    return np.array([phase + s + t, thrown - t - lam * np.cos(phase + s + t)])
+
+
+@pytest.mark.parametrize(("omega", "n"), [(10.0, 1), (2.0, 2)])
+@pytest.mark.parametrize(
+    ("orbit_at", "monodromy", "weight", "rise"),
+    [
+        (WeightlessOrbit.on_branch, WeightlessOrbit.monodromy, 0, True),
+        (SpringDamperOrbit.on_branch, high_bounce_monodromy, 1, False),
+        (SpringDamperOrbit.on_branch, SpringDamperOrbit.monodromy, 1, True),
+    ],
+)
+def test_orbit_and_monodromy_are_those_of_the_altered_return_map(
+    reference, omega, n, orbit_at, monodromy, weight, rise
+):
+    orbit = orbit_at(np.array(-0.05), SpringDamper(omega, ZETA), np.array(n))
+    start = np.array([float(orbit.phase), float(orbit.relative_impact_velocity)])
+
+    def once(at):
+        return cycle(*at, orbit, reference, weight=weight, rise=rise)
+
+    assert once(start) == pytest.approx(start + np.array([2 * np.pi * n, 0]), abs=1e-10)
+    # Central differences: 1e-10 of truncation, 1e-10/1e-5 of rounding.
+    steps = 1e-5 * np.eye(2)
+    expected = np.stack([once(start + h) - once(start - h) for h in steps], axis=-1) / 2e-5
+    assert monodromy(orbit) == pytest.approx(expected, abs=5e-5)
+
+
+def test_the_ends_of_an_unaltered_branch_are_those_of_the_model():
+    contact, n = SpringDamper(np.array([2.0, 10.0, 1e4]), ZETA), np.full(3, 2)
+    model = SpringDamperModel(contact)
+    found = altered_ends(contact, n, SpringDamperOrbit.on_branch, SpringDamperOrbit.monodromy)
+    expected = np.stack([model.saddle_node(n).amplitude, model.period_doubling(n).amplitude], -1)
+    # At a fold Λ is known to rounding; at the other end ε has the digits of D.
+    assert found == pytest.approx(expected, abs=1e-10)
+
+
+def test_the_stiff_limits_are_holmes_map_and_the_restitution_model(study):
+    stiff = study.computed.sel(frequency_ratio=1e4)
+    n = study.n.values
+    maps = restitution_orbit.ImpactMap
+    for reading, impact_map in ((HIGH_BOUNCE, maps.HOLMES), (WEIGHTLESS, maps.EXACT)):
+        doubling = restitution_orbit.period_doubling(n, 0.85, impact_map)
+        found = stiff.sel(reading=reading, bound="period doubling").values
+        assert found == pytest.approx(doubling, abs=1e-4)  # of the order 1/ϖ
+        nodes = stiff.sel(reading=reading, bound="saddle-node").values
+        assert nodes == pytest.approx(restitution_orbit.saddle_node(n, 0.85), abs=1e-4)
+
+
+def test_readings_of_the_damping(study):
+    for reading, zeta in (
+        ("damping as printed", PRINTED_DAMPING),
+        ("damping to first order", -np.log(0.85) / np.pi),
+        ("equations as they stand", ZETA),
+    ):
+        node = SpringDamperModel(SpringDamper(10.0, zeta)).saddle_node(3).amplitude
+        found = study.computed.sel(reading=reading, frequency_ratio=10, n=3, bound="saddle-node")
+        assert float(found) == float(node)
+
+
+def test_distances_are_those_of_the_differences(study):
+    assert study.sizes["reading"] == 8
+    difference = (study.computed - study.printed) / 0.001
+    np.testing.assert_allclose(study.difference, difference, atol=1e-9)
+    soft = difference.sel(frequency_ratio=[10.0, 2.0])
+    for rows_name, part in (("all rows", difference), ("compliant rows", soft)):
+        flat = part.values.reshape(8, -1)
+        at = study.sel(rows=rows_name)
+        np.testing.assert_allclose(at.rms_difference, np.sqrt((flat**2).mean(1)))
+        np.testing.assert_allclose(at.largest_difference, np.abs(flat).max(1))
+        assert at.reproduced.values.tolist() == (np.abs(flat) <= 0.5).sum(1).tolist()
+        assert at.entries.item() == flat.shape[1]
+    order = study.rms_difference.sel(rows="compliant rows").values
+    assert (np.diff(order) > 0).all() and study["rank"].values.tolist() == list(range(1, 9))
+
+
+def test_digits_cut_off_and_what_no_orbit_reaches(study):
+    plain, cut = (study.sel(reading=name) for name in ("equations as they stand", "digits cut off"))
+    assert ((plain.computed - cut.computed) >= 0).all()
+    assert ((plain.computed - cut.computed) < 0.001).all()
+    below = (plain.computed - plain.printed).sel(bound="saddle-node") / 0.001
+    assert plain.unreachable.item() == int((below > 0.5).sum()) == 3
+    assert cut.unreachable.item() == int((below > 1).sum()) == 1
+
+
+def test_rows_of_the_table(study):
+    header, body = rows(study)
+    assert len(body) == 8 and {len(line) for line in body} == {len(header)}
+    stand = next(line for line in body if line[1] == "equations as they stand")
+    assert stand[2:] == ["6.30", "3.34", "5.44", "2.88", "4 of 18", "1 of 12", "3"]

@@ -1,0 +1,83 @@
+"""Figures 5, 6, 10 and 13: orbits along ϖ."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from bouncing_ball.datasets.parameters import Span
+from bouncing_ball.paper.contact.damping import damping_ratio
+from bouncing_ball.paper.exhibits.apparent_restitution import (
+    Case,
+    Cases,
+    apparent_restitution,
+    frequency_sweep,
+)
+from bouncing_ball.pipeline.configuration import typed
+
+# As the configuration gives them.
+apparent_restitution, frequency_sweep = map(typed, (apparent_restitution, frequency_sweep))
+
+SPAN = {"min": 1.0, "max": 1000.0, "samples": 7}
+CASES = {
+    "n": 1,
+    "cases": [
+        {"restitution": 1.0, "amplitude": 0.8},
+        {"restitution": 0.65, "amplitude": 1.0},
+        {"restitution": 0.10, "amplitude": 2.6},
+    ],
+    "frequency_ratio": SPAN,
+}
+
+
+@pytest.mark.parametrize("release", ["displacement", "force"])
+def test_every_entry_is_an_orbit_of_its_parameters(described, reference, release):
+    # Off the resonance at ϖ = 1, where the paper's solution of the elastic contact has no value.
+    data = described(
+        apparent_restitution(CASES | {"frequency_ratio": SPAN | {"min": 1.5}}, release)
+    )
+    assert data.phase.dims == ("case", "frequency_ratio") and data.phase.shape == (3, 7)
+    for (i, case), ratio in itertools.product(
+        enumerate(CASES["cases"]), data.frequency_ratio.values
+    ):
+        at = data.sel(case=i, frequency_ratio=ratio)
+        r, lam = float(at.restitution), float(at.amplitude)
+        assert (r, lam) == tuple(case.values())
+        if np.isnan(at.phase):
+            assert not bool(at.stable)
+            continue
+        phase, speed = float(at.phase), float(at.impact_velocity - lam * np.cos(at.phase))
+        duration, zeta = float(at.contact_duration), float(damping_ratio(r))
+        end = reference.cycle(phase, speed, 1, lam, ratio, zeta, duration, release == "force")
+        # The roundings of the events, over a flight of some 2π.
+        assert end == pytest.approx((phase + 2 * np.pi, speed), abs=1e-11)
+        assert float(at.release_phase) == pytest.approx(phase + duration, abs=1e-15)
+
+
+def test_not_stable_where_there_is_no_orbit():
+    # r = 0.1 needs Λ ≥ 2.57 when stiff; the configuration does not allow less.
+    cases = Cases.model_construct(
+        n=1, cases=(Case(restitution=0.10, amplitude=2.0),), frequency_ratio=Span(**SPAN)
+    )
+    data = apparent_restitution(cases, "displacement")
+    gone = np.isnan(data.phase.values)
+    assert gone[0, -1]
+    assert not data.stable.values[gone].any()
+    assert np.isnan(data.max_height.values[gone]).all()
+
+
+def test_sweep_of_one_restitution(described):
+    parameters = {"n": 2, "restitution": 0.85, "amplitude": [1.1, 0.6], "frequency_ratio": SPAN}
+    data = described(frequency_sweep(parameters, "displacement"))
+    assert data.amplitude.values.tolist() == [1.1, 0.6]
+    assert data.restitution.values.tolist() == [0.85, 0.85]
+    # Limits by hand: Eq. 6 and nπ.
+    node = 2 * np.pi * 0.15 / 1.85
+    assert data.restitution_phase.values == pytest.approx(np.arccos(node / np.array([1.1, 0.6])))
+    assert float(data.restitution_bounce_velocity) == 2 * np.pi
+    assert float(data.restitution_impact_velocity) == -2 * np.pi
+    # At ϖ = 1000 the differences are of order 1/ϖ, with factors of up to 5.
+    last = data.isel(frequency_ratio=-1)
+    assert last.phase.values == pytest.approx(last.restitution_phase.values, abs=5e-3)
+    assert last.bounce_velocity.values == pytest.approx(np.full(2, 2 * np.pi), abs=5e-3)
+    assert last.impact_velocity.values == pytest.approx(np.full(2, -2 * np.pi), abs=5e-3)

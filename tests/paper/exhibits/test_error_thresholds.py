@@ -1,0 +1,93 @@
+"""How stiff a contact must be for the restitution model to be right."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.paper.comparison.errors import Quantity, modulus, relative_errors
+from bouncing_ball.paper.comparison.thresholds import ThresholdStatus
+from bouncing_ball.paper.contact.damping import Release, damping_ratio
+from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.exhibits.error_thresholds import error_thresholds, height_error
+from bouncing_ball.paper.exhibits.permanent_contact import permanent_contact_error
+from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
+from bouncing_ball.paper.orbits.spring_damper_bifurcations import orbit_at
+from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.pipeline.configuration import typed
+
+PARAMETERS = {
+    "n": 1,
+    "restitution": 0.65,
+    "amplitude": 1.0,
+    "quantities": [str(q) for q in Quantity],
+    "tolerances": [0.1, 0.01],
+    "frequency_ratio": {"min": 1.0, "max": 1e4, "samples": 81},
+}
+
+
+def test_one_percent_height_of_the_paper(described):
+    # Eq. 37, Figure 14: n = 1, r = 0.65, Λ = 1; printed "≈ 82".
+    parameters = {key: PARAMETERS[key] for key in ("n", "restitution", "amplitude")}
+    parameters |= {"frequency_ratio": {"min": 1.0, "max": 1000.0, "samples": 31}, "tolerance": 0.01}
+    data = described(typed(height_error)(parameters, "displacement"))
+    assert data.error_threshold.item() == pytest.approx(82.177, abs=5e-4)
+    assert data.threshold_status.values.tolist() == [[str(ThresholdStatus.FOUND)]]
+    reference = np.pi**2 / 2 + np.sqrt(1 - (np.pi * 0.35 / 1.65) ** 2)
+    assert float(data.restitution_max_height) == pytest.approx(reference, rel=1e-14)
+    expected = np.abs(data.max_height / reference - 1)
+    np.testing.assert_allclose(data.relative_error.sel(quantity="max_height"), expected, rtol=1e-9)
+
+
+def test_one_percent_permanent_contact(described):
+    # Eq. 38, Figure 16; printed "≈ 6".
+    span = {"min": 0.5, "max": 100.0, "samples": 101}
+    parameters = {"restitution": 0.65, "frequency_ratio": span, "tolerance": 0.01}
+    data = described(typed(permanent_contact_error)(parameters, "displacement"))
+    ratio = data.error_threshold.item()
+    assert ratio == pytest.approx(9.81177, abs=5e-6)
+    # Λ_SD of Eq. 35, 1 % below the restitution model's Λ = 1.
+    gamma = (ratio**2 - 1) ** 2 + (2 * float(damping_ratio(0.65)) * ratio) ** 2
+    assert np.sqrt(gamma) / ratio**2 == pytest.approx(0.99, rel=1e-12)
+
+
+def test_all_quantities(described):
+    data = described(typed(error_thresholds)(PARAMETERS, "displacement"))
+    assert data.relative_error.dims == ("quantity", "frequency_ratio")
+    assert data.error_threshold.dims == ("quantity", "tolerance")
+    assert data["quantity"].values.tolist() == PARAMETERS["quantities"]
+    # With the r and the ζ of Eq. 16, exact over restitution model.
+    contact = SpringDamper(data.frequency_ratio.values, float(damping_ratio(0.65)))
+    exact, simple = SpringDamperModel(contact), RestitutionModel(0.65)
+    expected = modulus(relative_errors(exact, [simple], 1, 1.0, tuple(Quantity))[0])
+    np.testing.assert_allclose(data.relative_error, expected, rtol=1e-9)
+    for k, tolerance in enumerate(PARAMETERS["tolerances"]):
+        one = data.isel(tolerance=k)
+        beyond = one.relative_error.where(data.frequency_ratio > one.error_threshold.fillna(0))
+        assert float(beyond.max()) <= tolerance
+
+
+def test_force_release():
+    paper = typed(error_thresholds)(PARAMETERS, "displacement")
+    dry = typed(error_thresholds)(PARAMETERS, "force")
+    # A contact released at zero force keeps more velocity than Eq. 16 says: r_a
+    # never comes within 1 % of r.
+    at = {"quantity": "apparent_restitution"}
+    assert str(dry.threshold_status.sel(at)[1].values) == ThresholdStatus.NEVER_WITHIN
+    assert str(paper.threshold_status.sel(at)[1].values) == ThresholdStatus.FOUND
+    contact = SpringDamper(1e4, float(damping_ratio(0.65)), Release.FORCE)
+    expected = float(orbit_at(contact, 1, 1.0).apparent_restitution) / 0.65 - 1
+    assert float(dry.relative_error.sel(at)[-1]) == pytest.approx(expected, rel=1e-9)
+
+
+def test_a_threshold_at_the_end_of_the_bifurcation():
+    # r = 0.0893 and 1-T: contacts have a saddle-node from ϖ = 3.6 on only.
+    span = {"min": 1.0, "max": 1e4, "samples": 101}
+    one = {"n": 1, "restitution": 0.0893, "amplitude": 3.0, "frequency_ratio": span}
+    asked = {"quantities": ["saddle_node"], "tolerances": [0.5]}
+    data = typed(error_thresholds)(one | asked, "displacement")
+    assert data.threshold_status.item() == ThresholdStatus.FOUND
+    fine, threshold = np.geomspace(1.0, 10.0, 20001), data.error_threshold.item()
+    exact = SpringDamperModel(SpringDamper.from_restitution(0.0893, fine))
+    there = np.isfinite(exact.saddle_node(1).amplitude)
+    first = int(np.argmax(there))
+    assert np.all(there[first:]) and fine[first - 1] <= threshold <= fine[first]
+    assert np.array_equal(np.isinf(data.relative_error[0]), data.frequency_ratio < threshold)

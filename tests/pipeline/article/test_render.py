@@ -1,0 +1,112 @@
+"""The article from small templates and datasets."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+import yaml
+
+from bouncing_ball.errors import ModelError
+from bouncing_ball.paper.claims.tables import Claims
+from bouncing_ball.pipeline.article import render_article, with_citations
+
+ROOT = Path(__file__).resolve().parents[3]
+TEMPLATES = ROOT / "workflow" / "report" / "paper"
+
+
+def claims(**changes):
+    """Two claims, one reproduced and one contradicted."""
+    columns = {
+        "group": ["number", "number"],
+        "item": ["Fig. 14", "Eq. 38, Fig. 16"],
+        "printed_table": ["", ""],
+        "printed_text": ["82", "6"],
+        "verdict": ["reproduced", "contradicted"],
+        "reason": ["", ""],
+        "found": [82.177, 9.8118],
+        "limit": [np.nan, np.nan],
+    } | changes
+    data = {key: ("claim", values) for key, values in columns.items()}
+    return xr.Dataset(data, {"claim": ["heights", "contact"]})
+
+
+@pytest.fixture
+def render(tmp_path):
+    def run(template, ledger=None, **data):
+        (tmp_path / "article.md.j2").write_text(template, encoding="utf-8")
+        shown = Claims(claims() if ledger is None else ledger)
+        return render_article(tmp_path / "article.md.j2", data, {}, shown)
+
+    return run
+
+
+def test_numbers_come_from_the_datasets(render):
+    data = xr.Dataset({"x": ("n", [1.0, 9.8118])}, {"n": [1, 2]})
+    assert render("{{ decimal(data.t.x.sel(n=2).item(), 2) }}", t=data) == "9.81"
+    data["x"] = data.x + 1
+    assert render("{{ decimal(data.t.x.sel(n=2).item(), 2) }}", t=data) == "10.81"
+
+
+def test_verdicts_come_from_the_claims(render):
+    text = '{{ claims("contact").verdict }} {{ claims.count("reproduced") }}/{{ claims.count() }}'
+    assert render(text) == "contradicted 1/2"
+    assert render(text, ledger=claims(verdict=["close", "close"])) == "close 0/2"
+
+
+def test_what_is_not_there_is_an_error(render):
+    with pytest.raises(KeyError, match="height"):
+        render('{{ claims("height") }}')
+
+
+def test_restatements_are_counted_apart():
+    shown = Claims(claims(group=["number", "restatement"]))
+    assert (shown.count(), shown.count(group="all")) == (1, 2)
+    assert (shown.count("contradicted"), shown.count("contradicted", group="all")) == (0, 1)
+    assert (shown.count(group="restatement"), shown.count(group="statement")) == (1, 0)
+
+
+def test_other_parameters_are_reported_once():
+    reason = "fig14 was computed with n = 2; the claim requires 1"
+    shown = Claims(claims(reason=[reason, reason], verdict=["not asked"] * 2))
+    assert shown.not_asked() == [reason]
+    assert not shown.asked("heights")
+    # The verdict says it, not the words.
+    assert Claims(claims(reason=[reason, reason])).not_asked() == []
+
+
+def test_pandoc_numbers_citations_and_lists_the_works(tmp_path):
+    for name in ("references.yaml", "numbered.csl"):
+        (tmp_path / name).write_bytes((TEMPLATES / name).read_bytes())
+    text = "A *b* [@holmes1982; @carbonelli2011], $x_1$ [@holmes1982].\n\n"
+    text += '<div id="refs"></div>\n\nEnd.\n'
+    head, holmes, paper, end = filter(None, with_citations(text, tmp_path).splitlines())
+    assert head == "A *b* [1, 2], $x_1$ [1]." and end == "End."
+    # How much of a work was read is said.
+    assert holmes.startswith('1. P. J. Holmes, "The dynamics of repeated impacts')
+    assert holmes.endswith("Vibration 84 (1982) 173–189. (Not read.)")
+    assert paper.endswith("doi:10.1115/DETC2011-47870 (DOI not checked).")
+    with pytest.raises(ModelError, match="nobody not found"):
+        with_citations("[@nobody]\n", tmp_path)
+
+
+def test_every_reference_is_cited():
+    known = yaml.safe_load((TEMPLATES / "references.yaml").read_text(encoding="utf-8"))
+    texts = "".join(path.read_text(encoding="utf-8") for path in TEMPLATES.glob("*.md.j2"))
+    cited = re.findall(r"@(\w+)", " ".join(re.findall(r"\[@[^]]+\]", texts)))
+    assert {work["id"] for work in known["references"]} == set(cited)
+
+
+def test_nan_is_not_printed():
+    shown = Claims(claims(found=[np.nan, 9.8118], verdict=["undecidable", "contradicted"]))
+    assert shown("heights").found == "–"
+
+
+def test_names_have_numbers_in_the_order_of_their_captions(render):
+    text = "**Table «b».** **Figure «a», a ball.** See Figure «a» and Table «b».\n## End\n«End»"
+    assert render(text) == (
+        "**Table 2.** **Figure 17, a ball.** See Figure 17 and Table 2.\n## 1. End\n1"
+    )
+    with pytest.raises(KeyError, match="nowhere"):
+        render("Figure «nowhere»")

@@ -1,0 +1,74 @@
+"""The commit of a repository, and whether anything has changed since."""
+
+import shutil
+import subprocess
+
+import pytest
+
+from bouncing_ball.pipeline.provenance import UNKNOWN, checkout, revision
+
+
+@pytest.fixture
+def repository(tmp_path, monkeypatch):
+    """A repository with a source, a record and an ignored folder, all committed."""
+    for name in ("AUTHOR", "COMMITTER"):
+        monkeypatch.setenv(f"GIT_{name}_NAME", "tests")
+        monkeypatch.setenv(f"GIT_{name}_EMAIL", "tests")
+    monkeypatch.setenv("GIT_CONFIG_GLOBAL", "/dev/null")
+    monkeypatch.setenv("GIT_CONFIG_NOSYSTEM", "1")
+    top = tmp_path / "top"
+    files = ("Snakefile", "src/bouncing_ball/a.py", "figures/fig01.png", "paper.md")
+    for file in files:
+        (top / file).parent.mkdir(parents=True, exist_ok=True)
+        (top / file).write_text("old", encoding="utf-8")
+    (top / ".gitignore").write_text("results/\n", encoding="utf-8")
+    for command in (["init", "--quiet"], ["add", "."], ["commit", "--quiet", "-m", "first"]):
+        subprocess.run(["git", *command], cwd=top, check=True)
+    return top
+
+
+def head(folder):
+    return subprocess.check_output(["git", "rev-parse", "HEAD"], cwd=folder, text=True).strip()
+
+
+@pytest.mark.parametrize(
+    ("file", "dirty"),
+    [
+        (".git/new", "no"),
+        ("src/bouncing_ball/a.py", "yes"),
+        # A new module counts, what git ignores and the record itself do not.
+        ("src/bouncing_ball/b.py", "yes"),
+        ("results/fig01.png", "no"),
+        ("figures/fig01.png", "no"),
+        ("figures/fig99.png", "no"),
+        ("paper.md", "no"),
+    ],
+)
+def test_what_makes_a_tree_dirty(repository, file, dirty):
+    (repository / file).parent.mkdir(exist_ok=True)
+    (repository / file).write_text("new", encoding="utf-8")
+    assert revision(repository) == (head(repository), dirty)
+
+
+def test_a_hook_of_another_repository_does_not_mislead(repository, tmp_path, monkeypatch):
+    expected = head(repository)
+    monkeypatch.setenv("GIT_DIR", str(tmp_path / "elsewhere"))
+    assert revision(repository) == (expected, "no")
+
+
+def test_unknown_without_a_repository_of_its_own(repository, tmp_path, monkeypatch):
+    # A tarball unpacked inside of somebody's repository is not that commit.
+    assert revision(repository / "src") == UNKNOWN
+    assert revision(tmp_path) == UNKNOWN
+    assert revision(tmp_path / "nowhere") == UNKNOWN
+    shutil.rmtree(repository / ".git")
+    subprocess.run(["git", "init", "--quiet"], cwd=repository, check=True)
+    assert revision(repository) == UNKNOWN
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert revision(repository) == UNKNOWN
+
+
+def test_the_checkout_is_found_from_within(repository, tmp_path):
+    assert checkout(repository / "src" / "bouncing_ball") == repository
+    assert checkout(tmp_path, repository) == repository
+    assert checkout(tmp_path) is None

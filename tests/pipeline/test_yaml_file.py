@@ -1,0 +1,62 @@
+"""Configuration files that do not exist or are not valid YAML."""
+
+import re
+from pathlib import Path
+
+import pytest
+import yaml
+
+import bouncing_ball
+from bouncing_ball.pipeline.configuration import ConfigurationError, parse_yaml, read_yaml
+
+ROOT = Path(bouncing_ball.__file__).resolve().parents[2]
+
+
+MISTAKES = pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (None, "No such file or directory"),
+        ("close_within: ü".encode("latin-1"), "not UTF-8 text"),
+        (b"a: 1\nb: \x07\n", "not YAML: "),
+        (b"a: 1\nb: [1\n", "not YAML in line 3: "),
+        (b"a: 1\nb: !!python/name:os.system\n", "not YAML in line 2: "),
+    ],
+)
+
+
+@MISTAKES
+def test_a_mistake_is_one_line(tmp_path, one_line, content, said):
+    path = tmp_path / "a.yaml"
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises(ConfigurationError, match=f"^{re.escape(said)}") as error:
+        read_yaml(path)
+    one_line(error, said)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("release: a\nb: 1\nrelease: c\n", "duplicate key 'release' in line 3"),
+        ("a: {n: 1, n: 1}", "duplicate key 'n' in line 1"),
+        # Two keys of the mapping in Python, which are the same text.
+        ("- {1: a, '1': b}", "duplicate key '1' in line 1"),
+        ("? [1, 2]\n: 3", "not YAML in line 1: found unhashable key"),
+        ("a: &a [1]\nb: *c", "not YAML in line 2: found undefined alias"),
+        ("a: 1\n---\nb: 1", "not YAML in line 2: "),
+    ],
+)
+def test_what_is_said_twice_or_hidden(refusal, text, said):
+    with refusal(ConfigurationError, said):
+        parse_yaml(text)
+
+
+def test_an_alias_stands_for_what_it_names():
+    assert parse_yaml("a: &a [1, 2]\nb: *a") == {"a": [1, 2], "b": [1, 2]}
+
+
+def test_every_file_of_the_project_is_read():
+    files = [path for path in ROOT.glob("*/**/*.yaml") if ".venv" not in str(path)]
+    assert len(files) >= 5
+    for path in files:
+        assert read_yaml(path) == yaml.safe_load(path.read_text(encoding="utf-8")), path

@@ -11,7 +11,7 @@ from bouncing_ball.datasets.parameters import (
     LossyRestitution,
     Many,
     Parameters,
-    listed,
+    number,
 )
 from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball.errors import NoOrbitError
@@ -47,7 +47,12 @@ VARIABLES = {
 class Continuation(Parameters):
     """Settings of the continuation for the whole run."""
 
-    largest_step: Annotated[float, listed("largest_step")]
+    largest_step: Annotated[
+        float,
+        number(
+            "largest step in arclength; a longer one may pass two bifurcations", ge=0.02, le=0.5
+        ),
+    ]
 
 
 class Branches(Parameters):

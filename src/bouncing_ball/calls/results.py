@@ -18,8 +18,7 @@ from bouncing_ball.datasets.labelled import Grid, Labelled
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import ModelError, NoOrbitError, require
 from bouncing_ball.numerics.continuation import ContinuationError
-from bouncing_ball.numerics.elementary import table
-from bouncing_ball.paper.motion.flight import Flight, land
+from bouncing_ball.paper.motion.flight import Flight, land, table
 from bouncing_ball.paper.motion.sequence import Status
 from bouncing_ball.paper.orbits.branch import (
     branch_columns,

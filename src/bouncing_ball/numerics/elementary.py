@@ -156,15 +156,3 @@ def arctangent(y: ArrayLike, x: ArrayLike) -> np.ndarray:
     angle = np.where(up > along, np.pi / 2 - angle, angle)
     angle = np.where(np.asarray(x) < 0, np.pi - angle, angle)
     return np.copysign(angle, y)
-
-
-def table(phase: np.ndarray, amplitude: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
-    """Λ cos φ and Λ sin φ: the table's velocity and height, or minus its jerk and acceleration.
-
-    Examples
-    --------
-    >>> [float(x) for x in table(np.zeros(()), 2.0)]
-    [2.0, 0.0]
-    """
-    sine, versine = sine_and_versine(phase)
-    return amplitude * (1 - versine), amplitude * sine

@@ -17,6 +17,18 @@ from bouncing_ball.numerics.elementary import sine_and_versine
 from bouncing_ball.numerics.first_zero import Motion, State, Zero, first_zero
 
 
+def table(phase: np.ndarray, amplitude: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
+    """Λ cos φ and Λ sin φ: the table's velocity and height, or minus its jerk and acceleration.
+
+    Examples
+    --------
+    >>> [float(x) for x in table(np.zeros(()), 2.0)]
+    [2.0, 0.0]
+    """
+    sine, versine = sine_and_versine(phase)
+    return amplitude * (1 - versine), amplitude * sine
+
+
 class Flight(Motion):
     """The motion y = -δ of balls in flight; its first upward zero is the landing.
 

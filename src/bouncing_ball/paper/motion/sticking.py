@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.numerics.arrays import pick
-from bouncing_ball.numerics.elementary import arctangent, reduce_angle, table
+from bouncing_ball.numerics.elementary import arctangent, reduce_angle
 from bouncing_ball.paper.motion.dynamics import Departure
-from bouncing_ball.paper.motion.flight import Flight
+from bouncing_ball.paper.motion.flight import Flight, table
 from bouncing_ball.paper.motion.sequence import Status
 
 

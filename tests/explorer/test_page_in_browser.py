@@ -312,9 +312,9 @@ def test_a_contact_of_mujoco_that_is_not_linear_is_left_to_the_command(seen, ans
         assert state["refused"].startswith("with the impedance 0.95 MuJoCo's contact is not linear")
         assert state["verdict"] == state["command"] == ""
     call = (
-        "bouncing-ball design --mass 20g --frequency 50Hz --acceleration 0.8g --n 1 --from mujoco"
+        "bouncing-ball design --mass 20g --frequency 50Hz --acceleration 0.8g --from mujoco"
     )
-    assert answered(f"{call} --solref '-1e5 -20'")["law"]["name"] == "impedance"
+    assert answered(f"{call} --n 1 --solref '-1e5 -20'")["law"]["name"] == "impedance"
 
 
 def test_the_physical_tab_by_key(seen):

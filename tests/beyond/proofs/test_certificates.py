@@ -156,12 +156,31 @@ def test_a_box_that_is_too_wide_is_not_certified(monkeypatch):
         certify(fold_test)
 
 
-def test_a_start_far_away_is_refused_or_finds_the_same():
+@pytest.mark.parametrize("shift", [-3.0, 0.5, 2.0])
+def test_a_shifted_start_is_refused_or_leads_to_the_same_saddle_node(monkeypatch, shift):
+    same = saddle_node(GIVEN)
+    start = certificates._start
+    monkeypatch.setattr(certificates, "_start", lambda *given: start(*given) + shift)
     try:
-        found = certify(fold_test, start=30.0)
+        found = saddle_node(GIVEN)
     except ProofError:
         return
-    assert not found.contains(certify(fold_test).mid())
+    assert found.excess.overlaps(same.excess)
+
+
+@pytest.mark.parametrize(
+    ("name", "proof"), [("fold_test", saddle_node), ("doubling_test", period_doubling)]
+)
+def test_a_wrong_sign_in_the_test_function_contradicts_the_return_map(monkeypatch, name, proof):
+    right = getattr(certificates, name)
+
+    def wrong(*given):
+        # The zeros of this function are no bifurcations.
+        return right(*given) - arb("0.001")
+
+    monkeypatch.setattr(certificates, name, wrong)
+    with pytest.raises(ProofError, match=r"contradicts|proved|excluded"):
+        proof(GIVEN)
 
 
 def test_a_wrong_sign_of_the_damping_is_noticed():

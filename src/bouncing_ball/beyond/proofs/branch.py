@@ -107,7 +107,7 @@ class Contact:
 
 
 class Point(NamedTuple):
-    """A point of the branch: D, T, (u, X, Y), the determinant of the linear system, δ_b and δ′_b."""
+    """A point of the branch: D, T, (u, X, Y), the linear system's determinant, δ_b and δ′_b."""
 
     duration: Number
     flight: Number

@@ -16,7 +16,7 @@ from flint import arb, ctx, fmpq
 
 from bouncing_ball.beyond.proofs.admissibility import contact_holds, flight_is_free
 from bouncing_ball.beyond.proofs.branch import Contact, Point, point
-from bouncing_ball.beyond.proofs.return_map import flip_coefficient, return_map
+from bouncing_ball.beyond.proofs.return_map import ReturnMap, flip_coefficient, return_map
 from bouncing_ball.beyond.proofs.series import Series
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.contact.damping import Release
@@ -205,6 +205,7 @@ def saddle_node(problem: Problem, digits: int = 30) -> Certificate:
         # The derivative of ½ dΛ²/dε is not 0 on the ball, because its reciprocal was used.
         orbit = point(contact, problem.n, excess)
         proved = [Proved.UNIQUE, Proved.FOLD, *_regular(contact, orbit)]
+        _require_multiplier(contact, orbit, return_map(contact, orbit, 1), 1)
         return _certificate(contact, excess, orbit, proved, bits)
 
 
@@ -239,17 +240,28 @@ def criticality(contact: Contact, orbit: Point) -> Proved:
     ProofError
         If the sign of the coefficient is not certain.
     """
-    determinant = (-2 * contact.decay * orbit.duration).exp()
     found = return_map(contact, orbit)
-    (a, b), (c, d) = found.monodromy
-    if not (a * d - b * c).overlaps(determinant):
-        raise ProofError("the return map contradicts the determinant exp(-2ζϖD)")
+    determinant = _require_multiplier(contact, orbit, found, -1)
     coefficient = flip_coefficient(found, determinant)
     if coefficient > 0:
         return Proved.SUPERCRITICAL
     if coefficient < 0:
         return Proved.SUBCRITICAL
     raise ProofError("the sign of the period doubling's cubic coefficient is not certain")
+
+
+def _require_multiplier(contact: Contact, orbit: Point, found: ReturnMap, multiplier: int) -> arb:
+    """The determinant, after a check that the return map has it and the multiplier 1 or -1.
+
+    The return map is a second derivation: it shares only the flow with the equations of the branch.
+    """
+    determinant = (-2 * contact.decay * orbit.duration).exp()
+    (a, b), (c, d) = found.monodromy
+    if not (a * d - b * c).overlaps(determinant):
+        raise ProofError("the return map contradicts the determinant exp(-2ζϖD)")
+    if not (1 - multiplier * (a + d) + determinant).contains(0):
+        raise ProofError(f"the return map contradicts the multiplier {multiplier}")
+    return determinant
 
 
 def orbit_at(

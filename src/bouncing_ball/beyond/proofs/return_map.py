@@ -12,8 +12,6 @@ from flint import arb
 from bouncing_ball.beyond.proofs.branch import Contact, Point
 from bouncing_ball.beyond.proofs.series import Series
 
-_ORDER = 3
-
 
 class ReturnMap(NamedTuple):
     """The deviations of the next phase and relative velocity, as series in those of this start."""
@@ -29,12 +27,12 @@ class ReturnMap(NamedTuple):
         return (a, b), (c, d)
 
 
-def return_map(contact: Contact, orbit: Point) -> ReturnMap:
+def return_map(contact: Contact, orbit: Point, order: int = 3) -> ReturnMap:
     """The Taylor series of the return map about an orbit.
 
     The constant terms of the conditions are exactly 0 on an orbit; they are set to 0.
     """
-    phase, speed = (Series.variable(arb(0), k, _ORDER) for k in (0, 1))
+    phase, speed = (Series.variable(arb(0), k, order) for k in (0, 1))
     u = speed + orbit.u
     sine, cosine = phase.sin_cos()
     x = orbit.x * cosine - orbit.y * sine
@@ -44,8 +42,8 @@ def return_map(contact: Contact, orbit: Point) -> ReturnMap:
     # The duration of the contact.
     push = orbit.x * orbit.duration.sin() + orbit.y * orbit.duration.cos()
     pace = orbit.rate + lag * contact.acceleration(orbit.gap, orbit.rate, push)
-    later = Series.constant(arb(0), _ORDER)
-    for _ in range(_ORDER):
+    later = Series.constant(arb(0), order)
+    for _ in range(order):
         gap, rate = contact.state(later + orbit.duration, u, x, y)
         later = later - (gap + lag * rate).without_value() / pace
     gap, rate = contact.state(later + orbit.duration, u, x, y)
@@ -54,8 +52,8 @@ def return_map(contact: Contact, orbit: Point) -> ReturnMap:
     turn_sine, turn_cosine = (later + orbit.duration).sin_cos()
     off_x = x * turn_cosine - y * turn_sine
     off_y = y * turn_cosine + x * turn_sine
-    more = Series.constant(arb(0), _ORDER)
-    for _ in range(_ORDER):
+    more = Series.constant(arb(0), order)
+    for _ in range(order):
         height, _velocity = _flight(more + orbit.flight, gap, rate, off_x, off_y)
         more = more - height.without_value() / orbit.u
     _, velocity = _flight(more + orbit.flight, gap, rate, off_x, off_y)

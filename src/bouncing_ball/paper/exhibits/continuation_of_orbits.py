@@ -21,15 +21,9 @@ from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.orbit_parameters import BranchEnd, Points
 from bouncing_ball.paper.exhibits.printed_table1 import printed_table
 from bouncing_ball.paper.orbits import restitution_branch as restitution_orbits
-from bouncing_ball.paper.orbits.branch import (
-    PLACE,
-    branch_columns,
-    columns,
-    joined,
-    no_branch,
-    whole_branch,
-)
+from bouncing_ball.paper.orbits.branch import whole_branch
 from bouncing_ball.paper.orbits.equations import OrbitSystem
+from bouncing_ball.paper.orbits.observables import PLACE, branch_columns, columns, joined, no_branch
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.orbits.stability import Bifurcation

@@ -106,7 +106,9 @@ def coloured(data: xr.Dataset, dim: str) -> Iterator[tuple[xr.Dataset, str]]:
 
 def draw_curve(axes: Axes, x: Any, y: Any, admissible: Any, **look: Any) -> None:
     """A curve of orbits with a given look, dotted where the orbits are inadmissible."""
-    x, y, shown = np.asarray(x), np.asarray(y), np.asarray(admissible, dtype=bool)
+    x = np.asarray(x)
+    y = np.asarray(y)
+    shown = np.asarray(admissible, dtype=bool)
     axes.plot(x, np.where(shown, y, np.nan), **look)
     if not np.all(shown):
         axes.plot(x, np.where(shown, np.nan, y), color=look["color"], **LINES["inadmissible"])

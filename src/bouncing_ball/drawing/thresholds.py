@@ -11,7 +11,8 @@ from bouncing_ball.drawing.style import CONTACT, GUIDE
 
 def draw_relative_error(axes: Axes, data: xr.Dataset, name: str, digits: int) -> None:
     """The relative error on a logarithmic axis, the tolerance, and the ϖ of the last crossing."""
-    error, tolerance = data.relative_error.squeeze("quantity"), float(data.tolerance[0])
+    error = data.relative_error.squeeze("quantity")
+    tolerance = float(data.tolerance[0])
     shown = np.isfinite(error.values) & (error.values > 0)
     axes.plot(data.frequency_ratio.values[shown], error.values[shown], color=CONTACT)
     axes.axhline(tolerance, **GUIDE)

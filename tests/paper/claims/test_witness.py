@@ -56,8 +56,10 @@ def test_all_routes_agree_on_all_that_is_shown(result, recorded):
 def test_the_multipliers_are_those_of_the_simulated_map(recorded, find, name):
     shown = next(find(recorded[name]))
     orbit = shown.orbit[shown.admissible.astype(bool)]
-    phase, speed = orbit.phase, orbit.relative_impact_velocity
-    step, matrix = 1e-6 * np.abs(speed), orbit.monodromy()
+    phase = orbit.phase
+    speed = orbit.relative_impact_velocity
+    step = 1e-6 * np.abs(speed)
+    matrix = orbit.monodromy()
     # Central differences: the rounding of a cycle's time over the step, which is small near
     # permanent contact, is above the truncation, 1e-12 times a third derivative.
     rounding = 100 * np.finfo(float).eps * 2 * np.pi * orbit.n / step

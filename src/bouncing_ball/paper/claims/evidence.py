@@ -78,7 +78,9 @@ def stiff_orbit_error(data: Data) -> xr.DataArray:
     origin of the phase, so that the error is also given as a share of a cycle.
     """
     sweep = curves(data, "fig05", "fig06", "fig10")
-    n, r, lam = sweep.n, sweep.restitution, sweep.amplitude
+    n = sweep.n
+    r = sweep.restitution
+    lam = sweep.amplitude
     phase, velocity = printed.fixed_point(n, r, lam)
     errors = {
         "max_height": sweep.max_height / (lam * np.sin(phase) + velocity**2 / 2) - 1,
@@ -93,7 +95,8 @@ def stiff_orbit_error(data: Data) -> xr.DataArray:
 
 def amplitude_matters_below(data: Data) -> float:
     """Fig. 10: the interpolated ϖ below which the curves differ by more than 1 % of nπ."""
-    sweep, ratio = data["fig10"], data["fig10"].frequency_ratio.values
+    sweep = data["fig10"]
+    ratio = data["fig10"].frequency_ratio.values
     apart = sweep.bounce_velocity.max("case") - sweep.bounce_velocity.min("case")
     share = np.ravel(apart / sweep.restitution_bounce_velocity)
     last = int(np.flatnonzero(share > TOLERANCE).max(initial=0))
@@ -132,7 +135,8 @@ def range_error(data: Data) -> xr.DataArray:
     the order of the branch, which ends on the stable side.
     """
     both = data["fig15"].isel(frequency_ratio=0)
-    kinds, lam = both.special_kind.values, both.special_amplitude.values
+    kinds = both.special_kind.values
+    lam = both.special_amplitude.values
     ends = [[np.nan, *lam[kinds == kind]][-1] for kind in BOUNDS]
     rigid = np.array([both.saddle_node_amplitude, both.period_doubling_amplitude], dtype=float)
     return xr.DataArray(np.abs(ends / rigid - 1), {"bound": list(BOUNDS)})

@@ -34,6 +34,7 @@ def over_amplitude(data: xr.Dataset) -> Figure:
     figure, axes = canvas(WIDE, 4.2)
     rows, names = in_a_row(data, "point", "special", "multiplier", "end")
     _name_curves(axes, [name for name in names if name])
+    # Both phases of a curve have its colour.
     for curve, colour in coloured(rows, CASE):
         _draw_spring_damper(axes, up_to_second_saddle_node(curve), colour, colour)
     touching = bool((rows.contact_duration > 0).any())
@@ -49,8 +50,12 @@ def both_domains(data: xr.Dataset) -> Figure:
     figure, axes = canvas(5.6, 3.4)
     of_branch = ("amplitude", "phase", "stable", "admissible")
     rigid = xr.Dataset({name: data[f"restitution_{name}"] for name in of_branch})
-    contact = (r"spring-damper, $\varphi$", r"spring-damper, $\varphi+\tau_b$")
-    _name_curves(axes, [r"restitution, $\varphi$", *contact])
+    names = [
+        r"restitution, $\varphi$",
+        r"spring-damper, $\varphi$",
+        r"spring-damper, $\varphi+\tau_b$",
+    ]
+    _name_curves(axes, names)
     draw_branch(axes, rigid, rigid.phase, COLOURS[0])
     mark_named_orbits(axes, data, COLOURS[0])
     curve = data.squeeze("frequency_ratio")
@@ -87,14 +92,19 @@ def _name_curves(axes: Axes, names: list[str]) -> None:
 
 def _draw_spring_damper(axes: Axes, curve: xr.Dataset, start: str, end: str) -> None:
     """The phases at the start and at the end of contact, with the special points."""
-    for phase, place, colour in (
-        (curve.phase, curve.special_phase, start),
-        (curve.release_phase, curve.special_phase + curve.special_contact_duration, end),
-    ):
-        draw_branch(axes, curve, phase, colour)
-        for kind in MARKS:
-            there = place.where(curve.special_kind == kind)
-            mark_orbits(axes, kind, curve.special_amplitude, there, colour)
+    _draw_phase(axes, curve, curve.phase, curve.special_phase, start)
+    special_release = curve.special_phase + curve.special_contact_duration
+    _draw_phase(axes, curve, curve.release_phase, special_release, end)
+
+
+def _draw_phase(
+    axes: Axes, curve: xr.Dataset, phase: xr.DataArray, special: xr.DataArray, colour: str
+) -> None:
+    """One phase along a branch, and the same phase of its special points."""
+    draw_branch(axes, curve, phase, colour)
+    for kind in MARKS:
+        there = special.where(curve.special_kind == kind)
+        mark_orbits(axes, kind, curve.special_amplitude, there, colour)
 
 
 def table1(data: xr.Dataset) -> Table:

@@ -30,7 +30,8 @@ def thresholds(data: xr.Dataset) -> Table:
 
     If the threshold is outside the range scanned, the entry is the end of the range after < or >.
     """
-    low, high = (f"{float(data.frequency_ratio[k]):g}" for k in (0, -1))
-    found = threshold(".5g", f"< {low}", f"> {high}")
+    low = float(data.frequency_ratio[0])
+    high = float(data.frequency_ratio[-1])
+    found = threshold(".5g", f"< {low:g}", f"> {high:g}")
     columns = {f"{100 * each:g} %": at(found, tolerance=each) for each in data.tolerance.values}
     return table(each(data, "quantity"), {"quantity": quantity_in_words, **columns})

@@ -33,7 +33,8 @@ def permanent_contact_error(data: xr.Dataset) -> Figure:
 
 def _draw_threshold(axes: Axes, data: xr.Dataset) -> None:
     """Λ_SD, or Λ_F of the force release, with its minimum."""
-    high, minimum = float(data.frequency_ratio[-1]), float(data.minimum_threshold)
+    high = float(data.frequency_ratio[-1])
+    minimum = float(data.minimum_threshold)
     force = data.attrs.get("release") == "force"
     symbol = r"$\Lambda_{F}$" if force else r"$\Lambda_{SD}$"
     name = f"spring-damper, {symbol}"

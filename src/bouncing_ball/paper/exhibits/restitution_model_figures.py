@@ -31,7 +31,8 @@ def restitution_families(data: xr.Dataset) -> Figure:
         mark_named_orbits(axes, family.sel(impact_map="exact"), colour)
         # The name is beside the branch, because five colours cannot be distinguished in grey.
         top = family.isel(point=family.phase.fillna(-np.inf).argmax("point"))
-        end, name = (top.amplitude, top.phase / np.pi), f"$n={family.n.item()}$"
+        end = (top.amplitude, top.phase / np.pi)
+        name = f"$n={family.n.item()}$"
         axes.annotate(name, end, (3, 0), textcoords="offset points", va="center", color=colour)
     label_branch_axes(axes, data, r"phase $\varphi/\pi$", parameters(data, "restitution"))
     legend_below(figure, ncols=4)

@@ -23,12 +23,18 @@ def curves(data: Data, *names: str) -> xr.Dataset:
     """The sweeps of figures along ϖ with all their curves; dimensions ``orbit``,
     ``frequency_ratio``.
     """
-    read = ["apparent_restitution", "bounce_velocity", "max_height", "phase"]
-    axes = ["restitution", "amplitude"]
+    read = [
+        "restitution",
+        "amplitude",
+        "apparent_restitution",
+        "bounce_velocity",
+        "max_height",
+        "phase",
+    ]
     parts = []
     for name in names:
-        sweep = data[name].reset_coords()[read + axes].rename(case="orbit")
-        pairs = zip(*(sweep[axis].values for axis in axes), strict=True)
+        sweep = data[name].reset_coords()[read].rename(case="orbit")
+        pairs = zip(sweep.restitution.values, sweep.amplitude.values, strict=True)
         # Rounding does not change six digits, and six digits distinguish the curves.
         labels = [f"{name} r={r:.6g} Λ={lam:.6g}" for r, lam in pairs]
         parts.append(sweep.assign(n=data[name].attrs["n"]).assign_coords(orbit=labels))
@@ -50,7 +56,8 @@ def worst_when_stiff(values: xr.DataArray) -> xr.DataArray:
 def rebound(data: Data) -> xr.DataArray:
     """Largest increase of |r_a - r| above its value at a more compliant contact, by ``orbit``."""
     error = abs(apparent(data)).transpose("orbit", "frequency_ratio")
-    return (error - np.fmin.accumulate(error.values, axis=1)).max("frequency_ratio")
+    smallest_so_far = np.fmin.accumulate(error.values, axis=1)
+    return (error - smallest_so_far).max("frequency_ratio")
 
 
 def dip(data: Data, amplitude: float) -> xr.DataArray:

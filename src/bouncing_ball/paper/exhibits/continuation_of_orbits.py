@@ -20,6 +20,7 @@ from bouncing_ball.paper.contact.damping import Release, damping_ratio
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.orbit_parameters import BranchEnd, Points
 from bouncing_ball.paper.exhibits.printed_table1 import printed_table
+from bouncing_ball.paper.orbits import observables
 from bouncing_ball.paper.orbits import restitution_branch as restitution_orbits
 from bouncing_ball.paper.orbits.branch import whole_branch
 from bouncing_ball.paper.orbits.equations import OrbitSystem
@@ -29,6 +30,7 @@ from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.orbits.stability import Bifurcation
 
 VARIABLES = {
+    "absence": Variable("why there is no stable range"),
     "restitution_admissible": Variable(
         "whether nothing else happens during the restitution model's orbit"
     ),
@@ -36,6 +38,8 @@ VARIABLES = {
     "restitution_stable": Variable("whether the restitution model's orbit is stable"),
     "restitution_range": Variable("end of the stability range, restitution model", symbol="Λ"),
 }
+# The variables of branches are declared beside the function that writes them.
+_VARIABLES = VARIABLES | observables.VARIABLES
 
 
 class Continuation(Parameters):
@@ -115,7 +119,7 @@ def orbit_branches(parameters: Domains, release: Release, continuation: Continua
     rows = [_branch(ratio, parameters, release, continuation) for ratio in ratios]
     zeta = float(damping_ratio(parameters.restitution))
     branches = joined(rows, "frequency_ratio").assign(damping_ratio=zeta)
-    return describe(branches, variables=VARIABLES)
+    return describe(branches, variables=_VARIABLES)
 
 
 class BothDomains(Branches):
@@ -157,7 +161,7 @@ def both_domains(
         period_doubling_amplitude=doubling.amplitude,
         period_doubling_phase=doubling.phase,
     )
-    return describe(both, variables=VARIABLES)
+    return describe(both, variables=_VARIABLES)
 
 
 def first_limits(branch: Branch) -> np.ndarray:
@@ -235,7 +239,7 @@ def stability_ranges(
     )
     if np.any(absence != ""):
         dataset["absence"] = (("frequency_ratio", "n"), absence.astype(str))
-    return describe(dataset, variables=VARIABLES)
+    return describe(dataset, variables=_VARIABLES)
 
 
 def _stability_range(

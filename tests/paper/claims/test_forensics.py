@@ -36,9 +36,10 @@ def cycle(phase, u, orbit, reference, *, weight, rise):
     flight = float(orbit.flight_time)
 
     def state(s):
-        held = np.array(reference.contact_state(s, 0.0, u, phase, lam, omega, zeta))
-        sag = np.array(reference.contact_state(s, 0.0, 0.0, 0.0, 0.0, omega, zeta))
-        return held - (1 - weight) * sag
+        contact = {"omega": omega, "zeta": zeta}
+        held = reference.contact_state(s, d0=0.0, v0=u, phase=phase, lam=lam, **contact)
+        sag = reference.contact_state(s, d0=0.0, v0=0.0, phase=0.0, lam=0.0, **contact)
+        return np.array(held) - (1 - weight) * np.array(sag)
 
     s = brentq(lambda s: state(s)[0], 0.97 * duration, 1.03 * duration, xtol=1e-300, rtol=9e-16)
     d, v = state(s)

@@ -51,7 +51,16 @@ def test_every_entry_is_an_orbit_of_its_parameters(described, reference, release
         speed = float(at.impact_velocity - lam * np.cos(at.phase))
         duration = float(at.contact_duration)
         zeta = float(damping_ratio(r))
-        end = reference.cycle(phase, speed, 1, lam, ratio, zeta, duration, release == "force")
+        end = reference.cycle(
+            phase,
+            speed,
+            n=1,
+            lam=lam,
+            omega=ratio,
+            zeta=zeta,
+            duration=duration,
+            force_release=release == "force",
+        )
         # The roundings of the events, over a flight of some 2π.
         assert end == pytest.approx((phase + 2 * np.pi, speed), abs=1e-11)
         assert float(at.release_phase) == pytest.approx(phase + duration, abs=1e-15)

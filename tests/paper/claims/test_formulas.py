@@ -25,7 +25,7 @@ def checked():
     return typed(formulas)(PARAMETERS)
 
 
-def test_which_formulas_are_right(checked, described):
+def test_all_formulas_but_the_known_wrong_ones_are_right(checked, described):
     data = described(checked)
     assert set(data.formula.values) - agreeing(data) == WRONG
     # By per cents: no matter of the budget.
@@ -141,7 +141,7 @@ def test_the_steady_amplitude_is_that_of_the_resonance_curve():
     assert checks.steady_amplitude(omega, zeta) == pytest.approx(expected, rel=1e-12)
 
 
-def test_the_measured_restitution_without_and_with_gravity():
+def test_without_gravity_or_damping_the_measured_restitution_is_that_of_eq_16():
     r = np.array([0.85, 0.3])
     omega = np.array([5.0, 50.0])
     assert measured_restitution(r, omega, WEIGHTLESS) == pytest.approx(r, abs=1e-14)
@@ -149,7 +149,7 @@ def test_the_measured_restitution_without_and_with_gravity():
     assert measured_restitution(1.0, 5.0, 2.0) == pytest.approx(1.0, abs=1e-13)
 
 
-def test_the_static_error(checked, reference):
+def test_the_static_error_is_that_of_the_first_return_to_the_table(checked, reference):
     error = checked.static_error
     assert error.dims == ("restitution", "frequency_ratio")
     # The largest of the four, from the first return to δ = 0.

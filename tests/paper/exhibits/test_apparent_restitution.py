@@ -78,7 +78,7 @@ def test_not_stable_where_there_is_no_orbit():
     assert np.isnan(data.max_height.values[gone]).all()
 
 
-def test_sweep_of_one_restitution(described):
+def test_the_orbits_of_a_sweep_tend_to_those_of_the_restitution_model(described):
     parameters = {"n": 2, "restitution": 0.85, "amplitude": [1.1, 0.6], "frequency_ratio": SPAN}
     data = described(frequency_sweep(parameters, "displacement"))
     assert data.amplitude.values.tolist() == [1.1, 0.6]

@@ -64,7 +64,7 @@ class WeightlessOrbit(SpringDamperOrbit):
         return orbit(*np.moveaxis(solved, -1, 0))
 
     def contact_flow(self, time: np.ndarray):
-        """The motion in contact without the part of the weight, which is that of a table at rest."""
+        """The motion in contact, less the part of the weight, which acts on a table at rest."""
         flow = super().contact_flow(time)
         sag = self.law.flow(time, 0.0, 0.0, 0.0, 0.0)
         jacobian = flow.jacobian.copy()

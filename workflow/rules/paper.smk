@@ -144,6 +144,30 @@ use rule study as error_thresholds with:
         ),
 
 
+use rule study as lowest_period_doubling with:
+    """The frequency ratio at which the period doubling of each family is lowest."""
+    wildcard_constraints:
+        artifact=stage(
+            "paper.exhibits.lowest_period_doubling",
+            lowest_doubling=dict(
+                title="Frequency ratio at which the period doubling is lowest, by family",
+                study="lowest_period_doublings",
+            ),
+        ),
+
+
+use rule study as kinds_of_motion with:
+    """A periodic, a subharmonic and a chaotic motion of the restitution model."""
+    wildcard_constraints:
+        artifact=stage(
+            "paper.exhibits.kinds_of_motion",
+            three_balls=dict(
+                title="Periodic, subharmonic and chaotic motion of the restitution model, one ball for each",
+                study="kinds_of_motion",
+            ),
+        ),
+
+
 # The audit of the paper. A rule whose artifact has the name of its module ends in `_study`, because
 # the target of the artifact has this name already.
 
@@ -205,15 +229,15 @@ use rule study as witness_study with:
         ),
 
 
-use rule study as ledger with:
+use rule study as claims_study with:
     """The verdicts on the paper's claims."""
     wildcard_constraints:
         artifact=stage(
-            "paper.claims.ledger",
+            "paper.claims.claims",
             figures="paper.claims.tables",
             claims=dict(
                 title="Verdicts on the paper's claims",
-                study="ledger",
+                study="claims",
                 table="claims",
                 reads=(
                     "fig03",
@@ -229,11 +253,11 @@ use rule study as ledger with:
                     "fig16",
                     "table1",
                     "thresholds",
-                    "ext_release",
+                    "lowest_doubling",
+                    "three_balls",
                     "formulas",
                     "forensics",
                     "witness",
-                    "ext_locking",
                 ),
             ),
         ),

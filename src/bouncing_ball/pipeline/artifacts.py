@@ -33,9 +33,18 @@ class Artifact:
 
     Examples
     --------
-    >>> shown = {"module": "paper.exhibits.orbits", "figures": "paper.exhibits.orbits_figures"}
-    >>> Artifact(name="fig08", study="branches", drawing="domains", **shown).files
-    ['results/figures/fig08.nc', 'results/figures/fig08.png', 'results/figures/fig08.svg']
+    >>> artifact = Artifact(
+    ...     name="table1",
+    ...     module="paper.exhibits.orbits",
+    ...     figures="paper.exhibits.orbits_figures",
+    ...     title="Table 1",
+    ...     study="ranges",
+    ...     table="table1",
+    ... )
+    >>> artifact.files
+    ['results/figures/table1.nc', 'results/figures/table1.csv', 'results/figures/table1.md']
+    >>> artifact.wing, artifact.dataset
+    ('paper', 'results/figures/table1.nc')
     """
 
     name: str

@@ -69,8 +69,8 @@ def data_beside(module: Path) -> list[Path]:
 
     Examples
     --------
-    >>> [path.name for path in data_beside(_ROOT / "datasets" / "parameters.py")]
-    ['parameters.csv']
+    >>> "matplotlibrc" in [path.name for path in data_beside(_ROOT / "drawing" / "style.py")]
+    True
     """
     return [
         path

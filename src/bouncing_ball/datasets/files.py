@@ -17,7 +17,6 @@ from bouncing_ball.errors import ModelError
 PICTURES = (".pdf", ".png", ".svg")
 """Suffixes of the figures that users request."""
 
-
 CONVENTIONS = "CF-1.11"
 """The netCDF conventions that the files follow."""
 

@@ -29,8 +29,6 @@ ARROW: Look = {
     "shrinkB": 0,
 }
 GUIDE: Look = {"color": "#8c8c8c", "linewidth": 0.7, "linestyle": (0, (1, 1.5))}
-
-
 # Branches of orbits, by their stability and admissibility.
 LINES: dict[str, Look] = {
     "stable": {"linestyle": "-", "linewidth": 1.3},

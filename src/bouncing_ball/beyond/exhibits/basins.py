@@ -16,7 +16,7 @@ from bouncing_ball.beyond.exhibits.motion_samples import (
     share,
     with_limits,
 )
-from bouncing_ball.beyond.long_run.destination import label
+from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.motions import Kind, Motions
 from bouncing_ball.datasets.parameters import FrequencyRatio, Many, Seed, Sharded, number
 from bouncing_ball.datasets.shards import Arrays, Found, Part
@@ -103,7 +103,7 @@ def destinations(parameters: Basins, release: Release, part: Part = np.asarray) 
     ends = []
     for model in models(r, ratio, release):
         velocity = lam * np.cos(start) - towards
-        found = label(model.impact_law, lam, start, velocity, impacts=parameters.impacts)
+        found = final_motions(model.impact_law, lam, start, velocity, impacts=parameters.impacts)
         ends.append(_destination(found))
     return {"destination": np.stack(ends, axis=1).astype(np.int8)}
 

@@ -136,8 +136,6 @@ def stable_between(data):
 
 
 sticking = formula("sticking", "Eq. 9", "permanent contact for amplitudes up to 1")
-
-
 # The spring-damper model.
 
 _RATIO = "ϖ = Ω/ω, Ω of the contact"

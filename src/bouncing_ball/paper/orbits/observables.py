@@ -16,11 +16,8 @@ OBSERVED = (
     *("phase", "contact_duration", "release_phase"),
     *("impact_velocity", "bounce_velocity", "apparent_restitution"),
 )
-
-
 PLACE = ("amplitude", "phase", "contact_duration")
 """The quantities of special orbits that the datasets contain."""
-
 
 GRAZING = "grazing"
 

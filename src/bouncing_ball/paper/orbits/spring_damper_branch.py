@@ -95,7 +95,7 @@ class BranchPoint(NamedTuple):
         return self.x * self.d_x + self.y * self.d_y
 
 
-class _Contact(NamedTuple):
+class _ContactEnd(NamedTuple):
     """The contact at its end, at the time D: its responses and their derivatives.
 
     ``g``, ``gravity`` and ``q``, ``p`` are g, G, Q = Re h and P = Im h at D, and d… and dd… the
@@ -121,7 +121,7 @@ class _Contact(NamedTuple):
     decay: np.ndarray
 
     @classmethod
-    def of(cls, eps, duration, omega, zeta, sine, root) -> "_Contact":
+    def of(cls, eps, duration, omega, zeta, sine, root) -> "_ContactEnd":
         """The contact with the excess angle ε and D; ``root`` is √(1 - ζ²)."""
         loss = 2 * zeta * omega
         stiffness = omega * omega
@@ -140,7 +140,9 @@ class _Contact(NamedTuple):
         decay = np.exp(-zeta * omega * duration)
         g = decay * sin_angle / (omega * root)
         dg = decay * (cos_angle - zeta / root * sin_angle)
-        gravity, q, p = _forced_responses(duration, g, dg, sin_d, cos_d, omega, zeta)
+        gravity, q, p = _forced_responses(
+            duration, omega, zeta, g=g, dg=dg, sin_d=sin_d, cos_d=cos_d
+        )
         # From the oscillator's equation, and from h′ = i h + g, so that P′ = Q and Q′ = g - P.
         ddg = -loss * dg - stiffness * g
         dq = g - p
@@ -163,7 +165,7 @@ class _Contact(NamedTuple):
         )
 
 
-def _forced_responses(duration, g, dg, sin_d, cos_d, omega, zeta):
+def _forced_responses(duration, omega, zeta, *, g, dg, sin_d, cos_d):
     """G, Q = Re h and P = Im h at time D, from g and g′ and from the sine and cosine of D.
 
     These are the quotients of :mod:`bouncing_ball.paper.contact.oscillator` in real arithmetic. In
@@ -210,34 +212,33 @@ class _Equation(NamedTuple):
         return self.d_right - (self.d_row[0] * u + self.d_row[1] * x + self.d_row[2] * y)
 
 
-def _equations(contact: _Contact, flight, omega, sine) -> tuple[_Equation, _Equation, _Equation]:
+def _equations(end: _ContactEnd, flight, omega, sine) -> tuple[_Equation, _Equation, _Equation]:
     """The three equations of an orbit: release, velocity and landing."""
-    g, dg, ddg = contact.g, contact.dg, contact.ddg
-    q, dq, ddq = contact.q, contact.dq, contact.ddq
-    p, ddp = contact.p, contact.ddp
-    sin_d, cos_d = contact.sin_d, contact.cos_d
-    cos_less_one = contact.cos_less_one
     twice = 2 * sine
     lag = 2 * sine / omega
     # ϖ (δ_b + κ δ′_b) = 0
     release = _Equation(
-        row=(contact.push, omega * p + twice * q, omega * q + twice * dq),
-        right=omega * contact.gravity + twice * g,
-        d_row=(contact.d_push, omega * q + twice * ddp, omega * dq + twice * ddq),
-        d_right=omega * g + twice * dg,
+        row=(end.push, omega * end.p + twice * end.q, omega * end.q + twice * end.dq),
+        right=omega * end.gravity + twice * end.g,
+        d_row=(end.d_push, omega * end.q + twice * end.ddp, omega * end.dq + twice * end.ddq),
+        d_right=omega * end.g + twice * end.dg,
     )
     velocity = _Equation(
-        row=(dg - 1, q + cos_less_one, dq - sin_d),
-        right=g + flight,
-        d_row=(ddg, ddp - sin_d, ddq - cos_d),
-        d_right=dg - 1,
+        row=(end.dg - 1, end.q + end.cos_less_one, end.dq - end.sin_d),
+        right=end.g + flight,
+        d_row=(end.ddg, end.ddp - end.sin_d, end.ddq - end.cos_d),
+        d_right=end.dg - 1,
     )
     # δ_b = -κ δ′_b, which is exactly 0 for the displacement release.
     landing = _Equation(
-        row=(flight - lag * dg, flight + sin_d - lag * q, cos_less_one - lag * dq),
-        right=-flight * flight / 2 - lag * g,
-        d_row=(-1 - lag * ddg, cos_less_one - lag * ddp, -sin_d - lag * ddq),
-        d_right=flight - lag * dg,
+        row=(
+            flight - lag * end.dg,
+            flight + end.sin_d - lag * end.q,
+            end.cos_less_one - lag * end.dq,
+        ),
+        right=-flight * flight / 2 - lag * end.g,
+        d_row=(-1 - lag * end.ddg, end.cos_less_one - lag * end.ddp, -end.sin_d - lag * end.ddq),
+        d_right=flight - lag * end.dg,
     )
     return release, velocity, landing
 
@@ -314,8 +315,8 @@ def _branch_point(eps, omega, zeta, sine, n) -> BranchPoint:
     per_angle = 1 / (omega * root)
     duration = (2 * np.arccos(sine) + eps) * per_angle
     flight = 2 * np.pi * n - duration
-    contact = _Contact.of(eps, duration, omega, zeta, sine, root)
-    equations = _equations(contact, flight, omega, sine)
+    end = _ContactEnd.of(eps, duration, omega, zeta, sine, root)
+    equations = _equations(end, flight, omega, sine)
     solve, determinant = _cramer([equation.row for equation in equations])
     u, x, y = solve(*(equation.right for equation in equations))
     changes = [equation.change(u, x, y) for equation in equations]
@@ -333,7 +334,7 @@ def _branch_point(eps, omega, zeta, sine, n) -> BranchPoint:
         d_x=d_x * per_angle,
         d_y=d_y * per_angle,
         saddle_node=saddle_node,
-        determinant=contact.decay * contact.decay + none,
+        determinant=end.decay * end.decay + none,
     )
 
 

@@ -27,7 +27,7 @@ def drawn(request):
     share = rng.uniform(0.01, 0.99, size)
     omega = np.exp(rng.uniform(*np.log([2.0, 1e4]), size))
     # Below r = 0.35 the branch of a compliant contact may have no fold, see
-    # test_a_branch_without_a_fold_has_a_single_side. Nearly elastic contacts have a test of their own.
+    # test_a_branch_without_a_fold_has_a_single_side. Nearly elastic contacts are tested below.
     r = rng.uniform(0.35, 0.9999, size)
     omega[::10] = 2.0
     omega[1::10] = 1e4

@@ -44,8 +44,8 @@ class Departure(NamedTuple):
     ``settling`` is the part of the duration in which the ball still bounces. ``aloft`` is a time of
     flight before which the ball has not landed; it is used if it exceeds :meth:`.Flight.sure`.
     ``by`` has the derivatives of the contact's end, if they are computed together with it.
-    ``sticks`` marks the balls that stay until the table's downward acceleration exceeds gravity, and
-    is None without derivatives.
+    ``sticks`` marks the balls that stay until the table's downward acceleration exceeds gravity;
+    it is None without derivatives.
     """
 
     phase: np.ndarray

@@ -3,8 +3,7 @@
 If a contact is determined by its start, the unknowns are (φ, z′_i), the phase and the velocity
 at the impact, and the parameter is Λ. The contact then gives its duration and the state at its
 end, and two equations remain, for the velocity and the height of the flight that follows
-(Eqs. 24-25). Both are of order one however short the contact is. In the corrected model the only
-unknown is the phase of the instant.
+(Eqs. 24-25). Both are of order one however short the contact is.
 
 A linear contact may also pass the release and end at a later one, as on some orbits that are not
 admissible. Its duration is therefore a third unknown, ϖ τ_b, and its release (Eq. 23) a third

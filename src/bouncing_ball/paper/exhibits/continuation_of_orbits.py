@@ -199,7 +199,7 @@ def stability_ranges(
         try:
             contact = SpringDamper.from_restitution(parameters.restitution, ratio, release)
             model, step = SpringDamperModel(contact), continuation.largest_step
-            branch = whole_branch(model, n, parameters.amplitude_max, step, Bifurcation)
+            branch = whole_branch(model, n, parameters.amplitude_max, step, list(Bifurcation))
             limits = model.system(n).orbit(first_limits(branch))
             found[at] = np.stack([getattr(limits, name) for name in PLACE], axis=-1)
         except (NoOrbitError, ContinuationError) as error:

@@ -130,29 +130,11 @@ SHARED = {
     "contact_force": Variable("force of the table over the weight", symbol="F"),
     "disagreement": Variable("largest disagreement between two routes", budget=1.0, scale="budget"),
     "budget": Variable("disagreement allowed"),
-    "digits_lost": Variable(
-        "decimal digits of the start that the motion has lost on the way", budget=math.inf
-    ),
     "computed": Variable("end of the stability range, this replication", symbol="Λ"),
     "printed": Variable("end of the stability range, as printed", symbol="Λ", equation="Table 1"),
     "height": Variable("height from which the ball falls", symbol="h"),
     "periods": Variable("periods of the table after which the motion repeats, 0 if it does not"),
     "impacts": Variable("impacts until the motion repeats, 0 if it does not"),
-    "end_velocity": Variable("velocity of the ball before that impact"),
-    "start": Variable("start of a ball at one amplitude"),
-    "impact": Variable("impact of the motion on which the ball ends"),
-    "impact_phase": Variable(
-        "phase of the table at an impact of the motion on which the ball ends",
-        symbol="φ",
-        units="rad",
-    ),
-    "impact_speed": Variable(
-        "speed of the ball towards the table at an impact of the motion on which it ends"
-    ),
-    "motion_kind": Variable("kind of one of the motions on which balls end"),
-    "motion_periods": Variable("periods of the table after which one of the motions repeats"),
-    "motion_impacts": Variable("impacts until one of the motions repeats"),
-    "share_error": Variable("standard error of a share"),
     "simple": Variable("simple model with which the contact is compared"),
     "needed_ratio": Variable(
         "smallest of the frequency ratios tried from which on the error is known to be within the tolerance",

@@ -5,10 +5,12 @@ import pytest
 
 from bouncing_ball.beyond.calculator.motion import height_and_power
 from bouncing_ball.beyond.exhibits.motion_samples import models
+from bouncing_ball.beyond.laws.hertzian import LinearHuntCrossley
 from bouncing_ball.beyond.long_run import means as work
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.means import means
 from bouncing_ball.paper.contact.damping import Release
+from bouncing_ball.paper.contact.spring_damper import SpringDamper
 
 RELEASE = Release.DISPLACEMENT
 
@@ -65,3 +67,12 @@ def test_the_exponent_is_the_mappers_and_a_ball_at_rest_has_no_means():
     of = means(law, np.array([2.0, 0.9]), found, 400)
     assert abs(of[3, 0] - found.exponent[0]) < 8 * found.exponent_error[0]
     assert found.kind[1] == "permanent contact" and np.isnan(of[:, 1]).all()
+
+
+def test_a_law_whose_contact_is_a_spring_has_the_means_of_the_linear_contact():
+    amplitude = np.array([0.7, 1.3])
+    spring = SpringDamper(20.0, 0.0, Release.FORCE)
+    found = final_motions(spring, amplitude, 0.5, -4.0, impacts=3)
+    linear = means(spring, amplitude, found, 5)
+    general = means(LinearHuntCrossley(400.0, 0.0), amplitude, found, 5)
+    assert np.allclose(general, linear, rtol=1e-9)

@@ -378,7 +378,8 @@ def _followed(
     origin = np.zeros((*threshold.shape, size))
     origin[..., 0] = np.pi / 2
     origin[..., 1] = threshold
-    # The powers of 1/ϖ by which φ, Λ, the times and the speeds differ from the origin.
+    # The powers of 1/ϖ by which φ, Λ, the times and the speeds are scaled. The first speed is
+    # scaled like a time, which only changes the guesses for it.
     power = np.repeat([1.0, 2.0, 1.0, 3.0], [1, 1, legs + 1, legs - 1])
     unit = omega[:, np.newaxis] ** -power
 

@@ -7,7 +7,13 @@ import numpy as np
 import xarray as xr
 from scipy.stats import t as student
 
-from bouncing_ball.beyond.exhibits.motion_samples import LIMITS, SIMPLE, Grid, models, share
+from bouncing_ball.beyond.exhibits.motion_samples import (
+    LIMITS,
+    SIMPLE,
+    ParameterPlane,
+    share,
+    three_models,
+)
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.means import means
 from bouncing_ball.datasets.parameters import Seed, Tolerance, number
@@ -40,7 +46,7 @@ _FASTEST = 4.0
 _KNOWN = 1e-6
 
 
-class MeanMotions(Grid):
+class MeanMotions(ParameterPlane):
     """A grid over (Λ, r) with several balls for each node, which start alike in all models."""
 
     starts: Annotated[int, number("balls for each node, which make the interval", ge=3, le=10000)]
@@ -102,7 +108,7 @@ def errors_at_nodes(parameters: MeanMotions, release: Release, part: Part = np.a
     r, lam = part(parameters.places())[..., np.newaxis]
     ratios = np.array(parameters.frequency_ratio)[:, np.newaxis, np.newaxis]
     velocity, values = lam * (np.cos(phase) - speed), []
-    for model in models(r, ratios, release):
+    for model in three_models(r, ratios, release):
         law = model.impact_law
         found = final_motions(law, lam, phase, velocity, impacts=parameters.impacts)
         flights, height, power, exponent = means(law, lam, found, parameters.samples)

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.beyond.exhibits.locking import _KNOWN
-from bouncing_ball.beyond.exhibits.motion_samples import MODELS, Amplitudes, Impacts, models
+from bouncing_ball.beyond.exhibits.motion_samples import MODELS, Amplitudes, Impacts, three_models
 from bouncing_ball.beyond.long_run.grids import REACH, diagram
 from bouncing_ball.datasets.parameters import FrequencyRatio, LossyRestitution, Sharded, number
 from bouncing_ball.datasets.shards import Arrays, Found, Part
@@ -51,7 +51,9 @@ def phases_of_impacts(parameters: Diagram, release: Release, part: Part = np.asa
     near = np.arange(max(own[0] - REACH, 0), min(own[-1] + REACH + 1, lam.size))
     edges = np.linspace(-np.pi, np.pi, bins + 1)
     columns = []
-    for model in models(np.array(parameters.restitution), parameters.frequency_ratio, release):
+    for model in three_models(
+        np.array(parameters.restitution), parameters.frequency_ratio, release
+    ):
         found = diagram(model, lam[near], parameters.starts, parameters.samples, parameters.impacts)
         found = found.isel(amplitude=own - near[0])
         phase = found.impact_phase.values

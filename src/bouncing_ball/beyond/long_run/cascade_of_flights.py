@@ -182,12 +182,12 @@ class _StiffContact:
         swing = complex(start, -(speed + aside + zeta * start) / root.imag)
         return cls(excess, aside, root, swing)
 
-    def height(self, t: ArrayLike) -> Any:
+    def height(self, t: Any) -> Any:
         """x at times t since the start."""
         oscillation = np.real(self.swing * np.exp(self.root * t))
         return self.excess - (self.aside + t) ** 2 / 2 + oscillation
 
-    def rate(self, t: ArrayLike) -> Any:
+    def rate(self, t: Any) -> Any:
         """x′ at times t since the start."""
         return -self.aside - t + np.real(self.root * self.swing * np.exp(self.root * t))
 

@@ -103,13 +103,14 @@ def locking(parameters: Locking, release: Release, found: Found = None) -> xr.Da
 
     ``kind``, ``periods``, ``impacts``, ``lyapunov_exponent`` and ``lyapunov_error`` (model,
     restitution, amplitude) are those of
-    :func:`bouncing_ball.beyond.long_run.destination.final_motions` at the first ϖ, with one ball for each node; the error of an exponent is at least 1e-5. ``agreement``
-    (simple, frequency_ratio, motion_group) is the share of nodes at which the ball of the contact
-    ends on a motion of the same kind and period as the ball of the simple model.
-    ``agreement_low`` and ``agreement_high`` are the limits of its Wilson interval, and
-    ``agreement_nodes`` is the number of nodes of the group at which both motions are known: see
-    :func:`agreement`. ``saddle_node_amplitude`` and ``period_doubling_amplitude`` (model,
-    restitution) are those of the 1-T orbit.
+    :func:`bouncing_ball.beyond.long_run.destination.final_motions` at the first ϖ, with one ball
+    for each node; the error of an exponent is at least 1e-5. ``agreement`` (simple,
+    frequency_ratio, motion_group) is the share of nodes at which the ball of the contact ends on a
+    motion of the same kind and period as the ball of the simple model. ``agreement_low`` and
+    ``agreement_high`` are the limits of its Wilson interval, and ``agreement_nodes`` is the number
+    of nodes of the group at which both motions are known: see :func:`agreement`.
+    ``saddle_node_amplitude`` and ``period_doubling_amplitude`` (model, restitution) are those of
+    the 1-T orbit.
     """
     ratios = np.array(parameters.frequency_ratio)
     motions = Motions(**(found or motions_at_nodes(parameters, release)))

@@ -86,9 +86,9 @@ class ParameterPlane(Sharded):
 
 MODELS = (*SIMPLE, "spring-damper")
 LEAST_ERROR = 1e-5
-"""Smallest error of a Lyapunov exponent, and of a mean relative to it. A motion repeats within 1e-6
-of its state, so that the error of its multipliers is about 1e-6 times the curvature of the map,
-which is of order one to ten."""
+"""Smallest error of a Lyapunov exponent that is stated. A motion repeats within 1e-6 of its state,
+so that the error of its multipliers is about 1e-6 times the curvature of the map, which is of order
+one to ten."""
 LIMITS = ("", "_low", "_high")
 """Suffixes of the names of an estimate and of the two limits of its interval."""
 

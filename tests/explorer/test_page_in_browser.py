@@ -311,9 +311,7 @@ def test_a_contact_of_mujoco_that_is_not_linear_is_left_to_the_command(seen, ans
     for state in seen["nonlinear"]:
         assert state["refused"].startswith("with the impedance 0.95 MuJoCo's contact is not linear")
         assert state["verdict"] == state["command"] == ""
-    call = (
-        "bouncing-ball design --mass 20g --frequency 50Hz --acceleration 0.8g --from mujoco"
-    )
+    call = "bouncing-ball design --mass 20g --frequency 50Hz --acceleration 0.8g --from mujoco"
     assert answered(f"{call} --n 1 --solref '-1e5 -20'")["law"]["name"] == "impedance"
 
 

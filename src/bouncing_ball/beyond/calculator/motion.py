@@ -20,7 +20,7 @@ import numpy as np
 
 from bouncing_ball.beyond.calculator.case import PhysicalCase
 from bouncing_ball.beyond.calculator.results import Family, FinalMotion, Mean
-from bouncing_ball.beyond.long_run.destination import label
+from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.means import over_steps
 from bouncing_ball.beyond.long_run.motions import Kind
 from bouncing_ball.paper.comparison.errors import relative
@@ -69,7 +69,7 @@ def of_family(case: PhysicalCase, family: Family, tolerance: float) -> FinalMoti
     start = _start(case, orbit)
     # The exact model and the restitution model.
     found = {
-        name: label(
+        name: final_motions(
             _law(case, name), case.table.amplitude, start.phase, start.velocity, impacts=_IMPACTS
         )
         for name in list(case.models)[:2]
@@ -140,7 +140,7 @@ def _laid(case: PhysicalCase, family: Family) -> str | None:
     lam = case.table.amplitude
     if lam <= case.permanent_contact:
         return str(Kind.PERMANENT_CONTACT)
-    found = label(_law(case, next(iter(case.models))), lam, 0.0, lam, impacts=_IMPACTS)
+    found = final_motions(_law(case, next(iter(case.models))), lam, 0.0, lam, impacts=_IMPACTS)
     same = found.kind == Kind.ORBIT and (int(found.periods), int(found.impacts)) == (family.n, 1)
     return None if same else str(found.kind)
 

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from declared_artifacts import ARTIFACTS
 
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import ModelError
@@ -26,8 +27,8 @@ from bouncing_ball.paper.orbits.spring_damper_orbit import SpringDamperOrbit
 
 
 @pytest.fixture(scope="module")
-def result(recorded, described, table):
-    names = table["witness"]["reads"]
+def result(recorded, described):
+    names = ARTIFACTS["witness"].reads
     assert set(names) == set(" ".join(SHOWN.values()).split())
     return described(witness({name: recorded[name] for name in names}))
 

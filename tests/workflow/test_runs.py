@@ -64,7 +64,9 @@ def test_a_run_that_nothing_interrupts_gives_the_same_bytes(pristine, fresh):
 
 
 @pytest.mark.long
-def test_two_figures_that_are_interrupted_and_resumed_elsewhere_have_the_same_bytes(pristine, tmp_path):
+def test_two_figures_that_are_interrupted_and_resumed_elsewhere_have_the_same_bytes(
+    pristine, tmp_path
+):
     # In another folder, and few at once: the same bytes as those of a whole run.
     elsewhere = replace(pristine, path=tmp_path / "elsewhere", package=str(pristine.path / "src"))
     shutil.copytree(pristine.path / "config", elsewhere.path / "config")

@@ -48,7 +48,7 @@ from bouncing_ball.pipeline.provenance import CONFIGURATION, gather
 
 ROOT = Path(__file__).parents[3]
 WRITTEN = read_yaml(ROOT / CONFIGURATION)
-PARAMETERS = WRITTEN["extensions"]["ext_engines"]
+PARAMETERS = WRITTEN["beyond"]["ext_engines"]
 RADIUS = 1.0
 
 

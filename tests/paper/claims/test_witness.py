@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from declared_artifacts import ARTIFACTS
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.numerics.corrector import newton
@@ -25,8 +26,8 @@ from bouncing_ball.paper.orbits.spring_damper_orbit import SpringDamperOrbit
 
 
 @pytest.fixture(scope="module")
-def result(recorded, described, table):
-    names = table["witness"]["reads"]
+def result(recorded, described):
+    names = ARTIFACTS["witness"].reads
     assert set(names) == set().union(*SHOWN.values())
     return described(witness({name: recorded[name] for name in names}))
 

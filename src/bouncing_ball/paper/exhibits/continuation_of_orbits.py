@@ -254,7 +254,7 @@ def _stability_range(
     """
     model = SpringDamperModel(SpringDamper.from_restitution(given.restitution, ratio, release))
     branch = whole_branch(
-        model, n, given.amplitude_max, continuation.largest_step, ends=Bifurcation
+        model, n, given.amplitude_max, continuation.largest_step, ends=list(Bifurcation)
     )
     limits = model.system(n).orbit(first_limits(branch))
     return np.stack([getattr(limits, name) for name in PLACE], axis=-1)

@@ -1,4 +1,9 @@
-"""TODO docstring of paper.orbits.observables."""
+"""Quantities of orbits, and of branches with their special orbits and ends, as datasets have them.
+
+The variables of a branch are the observables along it, over the dimension ``point``, and the place
+of each special orbit, over ``special``: its bifurcations, and the grazing orbits, at which the
+orbits become inadmissible.
+"""
 
 from typing import Any
 
@@ -37,13 +42,20 @@ VARIABLES = {
 }
 
 OBSERVED = (
-    *("phase", "contact_duration", "release_phase"),
-    *("impact_velocity", "bounce_velocity", "apparent_restitution"),
+    "phase",
+    "contact_duration",
+    "release_phase",
+    "impact_velocity",
+    "bounce_velocity",
+    "apparent_restitution",
 )
+"""The quantities of orbits along a branch or along ϖ."""
+
 PLACE = ("amplitude", "phase", "contact_duration")
 """The quantities of special orbits that the datasets contain."""
 
 GRAZING = "grazing"
+"""The kind of the special orbits that graze the table."""
 
 
 def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:
@@ -74,12 +86,18 @@ def branch_columns(system: OrbitSystem, branch: Branch, count: int) -> xr.Datase
         If the steps along the branch were too long for it to be resampled.
     """
     y = resample(system, branch, count)
-    chosen = [s for s in branch.special if s.name in list(Bifurcation)]
-    grazing = system.grazing(y)
-    points = np.array([*(s.point for s in chosen), *grazing]).reshape(-1, y.shape[-1])
-    kinds = [*(str(s.name) for s in chosen), *[GRAZING] * len(grazing)]
+    points = []
+    kinds = []
+    for special in branch.special:
+        if special.name in list(Bifurcation):
+            points.append(special.point)
+            kinds.append(str(special.name))
+    for point in system.grazing(y):
+        points.append(point)
+        kinds.append(GRAZING)
+    special_orbits = system.orbit(np.array(points).reshape(-1, y.shape[-1]))
     ends = [str(branch.start), str(branch.end)]
-    return orbits_in_columns(system.orbit(y), system.orbit(points), kinds, ends)
+    return orbits_in_columns(system.orbit(y), special_orbits, kinds, ends)
 
 
 def orbits_in_columns(
@@ -92,17 +110,19 @@ def orbits_in_columns(
     multiplier), ``special_…`` over ``special``, and ``end_reason`` over ``end``, where the end of
     the unstable side comes first.
     """
-    floquet = orbit.multipliers()
     along = columns(orbit, "amplitude", *OBSERVED) | {"residual": orbit.defect()}
-    places = {name: getattr(special, name) for name in PLACE} | {"residual": special.defect()}
     data: dict[str, Any] = {name: ("point", values) for name, values in along.items()}
-    for part in ("real", "imag"):
-        data[f"multiplier_{part}"] = ("point", "multiplier"), getattr(floquet, part)
+    floquet = orbit.multipliers()
+    data["multiplier_real"] = ("point", "multiplier"), floquet.real
+    data["multiplier_imag"] = ("point", "multiplier"), floquet.imag
     data["special_kind"] = "special", np.array(kinds, dtype=object)
-    data |= {f"special_{name}": ("special", values) for name, values in places.items()}
+    for name in PLACE:
+        data[f"special_{name}"] = "special", getattr(special, name)
+    data["special_residual"] = "special", special.defect()
+    data["end_reason"] = "end", ends
     # Numbers, so that branches with different numbers of special points are aligned.
     coords = {"special": np.arange(len(kinds)), "end": ["unstable side", "stable side"]}
-    return xr.Dataset(data | {"end_reason": ("end", ends)}, coords)
+    return xr.Dataset(data, coords)
 
 
 def no_branch(count: int, error: Exception) -> xr.Dataset:

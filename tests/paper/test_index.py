@@ -32,3 +32,8 @@ def test_the_index_of_figures_leads_to_the_stage_that_makes_each_figure():
             # The schematics have pictures only.
             expected = artifact.module if artifact.study else artifact.figures
             assert expected == f"paper.exhibits.{module}"
+
+
+def test_no_artifact_of_the_paper_reads_a_dataset_of_the_second_wing():
+    read = {name for each in ARTIFACTS.values() if each.wing == "paper" for name in each.reads}
+    assert read and {ARTIFACTS[name].wing for name in read} == {"paper"}

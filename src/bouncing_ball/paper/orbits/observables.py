@@ -10,12 +10,36 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.datasets.variables import Variable
 from bouncing_ball.numerics.continuation import Branch, resample
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.equations import OrbitSystem
 from bouncing_ball.paper.orbits.orbit import Orbit
 from bouncing_ball.paper.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.paper.orbits.stability import Bifurcation
+
+VARIABLES = {
+    "special": Variable("special point of the branch, in order of arclength"),
+    "special_kind": Variable("kind of special point"),
+    "special_amplitude": Variable("excitation amplitude at the special point", symbol="Λ"),
+    "special_phase": Variable(
+        "phase at the special point", symbol="φ", units="rad", equation="Eq. 21"
+    ),
+    "special_contact_duration": Variable(
+        "contact duration at the special point", symbol="τ_b", equation="Eq. 23", budget=1e-12
+    ),
+    "special_residual": Variable(
+        "residual of the extended system at the special point", budget=1e-12, scale="1"
+    ),
+    "multiplier": Variable("Floquet multiplier, the larger modulus first", symbol="μ"),
+    "multiplier_real": Variable("real part of the Floquet multiplier", symbol="Re μ"),
+    "multiplier_imag": Variable("imaginary part of the Floquet multiplier", symbol="Im μ"),
+    "residual": Variable(
+        "largest defect of the orbit equations", equation="Eqs. 21-26", budget=1e-12, scale="1"
+    ),
+    "end": Variable("end of the branch"),
+    "end_reason": Variable("why the branch ends there"),
+}
 
 OBSERVED = (
     "phase",

@@ -146,8 +146,7 @@ def arguments(
     {'parameters': {'n': 1}, 'release': 'force'}
     """
     return {
-        name: run[section][artifact] if name == "parameters" else run[name]
-        for name in taken(study)
+        name: run[section][artifact] if name == "parameters" else run[name] for name in taken(study)
     }
 
 

@@ -25,10 +25,13 @@ def test_a_commit_runs_nothing_again_and_a_change_what_it_decides(complete):
     (complete.path / "results/figures/formulas.nc").unlink()
     assert complete.planned() == {
         *("fig12", "Drawing fig12"),
-        "Drawing ext_flights",
+        # Both are drawn by the module of their stage.
+        *("Drawing ext_flights", "Drawing ext_cascades"),
         *("forensics", "Setting forensics"),
-        # Figure 15 is of one module with the table.
         *("table1", "Setting table1"),
+        # These figures are of one stage with the table.
+        *("fig08", "Drawing fig08"),
+        *("fig09", "Drawing fig09"),
         *("fig15", "Drawing fig15"),
         *("formulas", "Setting formulas"),
         # Every orbit shown is followed by the comparison of the three routes.

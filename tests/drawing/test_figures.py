@@ -39,7 +39,8 @@ def lines(figure):
 def test_a_figure_follows_its_data_and_names_its_axes(record, name):
     data = record[name]
     moved = data.map(lambda values: values * 1.5 + 0.1 if values.dtype.kind == "f" else values)
-    before, after = drawn(name, data), drawn(name, moved)
+    before = drawn(name, data)
+    after = drawn(name, moved)
     assert any(axes.get_xlabel() for axes in before.axes)
     assert any(axes.get_ylabel() or axes.get_yticklabels() for axes in before.axes)
     pairs = zip(lines(before), lines(after), strict=True)

@@ -13,8 +13,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from declared_artifacts import ARTIFACTS as DECLARED
+from declared_artifacts import STUDIES
 
-from bouncing_ball.pipeline.configuration import arguments, load, read_yaml, typed
+from bouncing_ball.pipeline.configuration import arguments, read_yaml, typed
 from bouncing_ball.pipeline.diff.datasets import ARTIFACTS, IGNORED, compare_datasets
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -79,20 +81,21 @@ OTHER_SOURCES = {
 
 
 @pytest.fixture(scope="module")
-def results(stages, coarse, recorded):
+def results(coarse, recorded):
     """For each artifact and variable, the results under all variations."""
     found = {}
-    for artifact, study in stages.items():
-        made = typed(load(study))
+    for artifact, study in STUDIES.items():
+        made = typed(study)
         # What is made of other datasets moves as they do, but for one; two take minutes.
-        reads = "data" in inspect.signature(load(study)).parameters and artifact != "ext_locked"
+        reads = "data" in inspect.signature(study).parameters and artifact != "ext_locked"
         if reads or artifact in ("ext_means", "ext_lives"):
             continue
         # The last doublings move most, and a share of 36 exponents decides nothing.
         fewer = {key: number for (name, key), number in coarse.items() if name == artifact}
         fewer = {} if artifact in ("ext_cascades", "ext_diagram") else fewer
         given = mapped(
-            arguments(study, artifact, RUN), lambda key, x, fewer=fewer: fewer.get(key, x)
+            arguments(study, DECLARED[artifact].wing, artifact, RUN),
+            lambda key, x, fewer=fewer: fewer.get(key, x),
         )
         made = partial(made, data=recorded) if artifact == "ext_locked" else made
         record = made(**given)

@@ -5,6 +5,7 @@ import re
 from importlib.util import find_spec
 
 import pytest
+from declared_artifacts import ARTIFACTS
 
 import bouncing_ball.paper
 import bouncing_ball.paper.exhibits
@@ -24,14 +25,14 @@ def test_the_index_of_figures_has_every_figure_and_the_table():
     assert figures == list(range(1, 17)) and "Table 1" in index
 
 
-def test_the_index_of_figures_leads_to_the_stage_that_makes_each_figure(stages):
+def test_the_index_of_figures_leads_to_the_stage_that_makes_each_figure():
     index = bouncing_ball.paper.exhibits.__doc__
     for row, module in re.findall(r"^Fig\. ([\d, ]+?)  *:mod:`\.(\w+)`", index, flags=re.M):
         for number in row.split(","):
-            study = stages.get(f"fig{int(number):02d}")
-            if study is None:
-                # The schematics have no study.
-                assert module == "schematics_figures"
+            artifact = ARTIFACTS[f"fig{int(number):02d}"]
+            # The schematics have no study.
+            if artifact.study is None:
+                assert artifact.figures == f"paper.exhibits.{module}"
             else:
-                assert study.startswith(f"paper.exhibits.{module}.")
+                assert artifact.module == f"paper.exhibits.{module}"
                 assert importlib.import_module(f"bouncing_ball.paper.exhibits.{module}_figures")

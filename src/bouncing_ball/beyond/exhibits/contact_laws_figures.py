@@ -3,11 +3,20 @@
 import xarray as xr
 from matplotlib.figure import Figure
 
-from bouncing_ball.beyond.exhibits.corrected_model_figures import panels_by_quantity
 from bouncing_ball.datasets.selection import each
+from bouncing_ball.drawing.canvas import panels_by_quantity
 from bouncing_ball.drawing.labels import parameters
 from bouncing_ball.drawing.style import GUIDE, LAWS
-from bouncing_ball.drawing.tables import Columns, Table, at, entry_of, quantity, table, text, value
+from bouncing_ball.drawing.tables import (
+    Columns,
+    Table,
+    at,
+    entry_of,
+    quantity_in_words,
+    table,
+    text,
+    value,
+)
 
 
 def contact_laws(data: xr.Dataset) -> Figure:
@@ -40,7 +49,7 @@ def ext_laws(data: xr.Dataset) -> Table:
     the threshold of the height.
     """
     grid = data.centroid_ratio.values
-    columns: Columns = {"quantity": quantity, "law": text("law")}
+    columns: Columns = {"quantity": quantity_in_words, "law": text("law")}
     for model in data.model.values:
         for ratio in grid[[0, round((len(grid) - 1) / 2), -1]]:
             error = at(value("relative_error", ".2g"), model=model, centroid_ratio=ratio)

@@ -1,15 +1,22 @@
 """The corrected model: flights that meet at an instant, and orders of convergence."""
 
 import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bouncing_ball.datasets.selection import each
-from bouncing_ball.drawing.canvas import WIDE, canvas, legend_below, logarithmic
-from bouncing_ball.drawing.labels import QUANTITIES, note, parameters
+from bouncing_ball.drawing.canvas import canvas, legend_below, logarithmic, panels_by_quantity
+from bouncing_ball.drawing.labels import note, parameters
 from bouncing_ball.drawing.style import COLOURS, CONTACT, GUIDE, MODELS, TABLE, Look
-from bouncing_ball.drawing.tables import Columns, Table, at, entry_of, quantity, table, value
-from bouncing_ball.paper.exhibits.error_thresholds_figures import _threshold
+from bouncing_ball.drawing.tables import (
+    Columns,
+    Table,
+    at,
+    entry_of,
+    quantity_in_words,
+    table,
+    threshold,
+    value,
+)
 
 
 def meeting_flights(data: xr.Dataset) -> Figure:
@@ -47,20 +54,6 @@ def meeting_flights(data: xr.Dataset) -> Figure:
     return figure
 
 
-def panels_by_quantity(
-    data: xr.Dataset, height: float, xlabel: str
-) -> tuple[Figure, dict[str, Axes]]:
-    """Two rows of three panels, one for the errors of each quantity, with labels at the outside."""
-    figure, slots = canvas(WIDE, height, 2, 3, sharex=True, sharey=True)
-    for axes in slots.flat:
-        axes.set(xlabel=xlabel, ylabel="relative error")
-        axes.label_outer()
-    by_quantity = dict(zip(map(str, data["quantity"].values), slots.flat, strict=False))
-    for name, axes in by_quantity.items():
-        axes.set_title(QUANTITIES[name])
-    return figure, by_quantity
-
-
 def orders(data: xr.Dataset) -> Figure:
     """ext_orders: errors of both models along ϖ, with the slopes 1 and 2."""
     figure, axes_of = panels_by_quantity(data, 4.2, r"frequency ratio $\varpi$")
@@ -91,9 +84,9 @@ def ext_orders(data: xr.Dataset) -> Table:
     C is the corrected model's error times ϖ²; the last column is the ϖ at which
     the restitution model's error changes its sign.
     """
-    found = _threshold(".4g", "all", "none")
+    found = threshold(".4g", "all", "none")
     columns: Columns = {
-        "quantity": quantity,
+        "quantity": quantity_in_words,
         "K": value("coefficient", ".4f"),
         "C": value("second_order", ".4f"),
         "law": value("law_threshold", ".4g"),

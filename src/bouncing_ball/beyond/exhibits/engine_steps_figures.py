@@ -1,4 +1,4 @@
-"""Errors due to the time steps of physics engines, beside the errors of the simple models."""
+"""Errors of physics engines over their time steps, beside those of the models (ext_engines)."""
 
 import numpy as np
 import xarray as xr

@@ -28,7 +28,6 @@ from bouncing_ball.datasets.parameters import (
     LossyRestitution,
     Many,
     Sharded,
-    listed,
     number,
 )
 from bouncing_ball.paper.contact.damping import Release
@@ -37,7 +36,15 @@ from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 
 Confidence = Annotated[float, number("level of the confidence intervals", gt=0.5, lt=1)]
-Impacts = Annotated[int, listed("Impacts")]
+Impacts = Annotated[
+    int,
+    number(
+        "number of impacts after which the search for a repetition ends; an exponent with "
+        "its error needs some hundreds",
+        ge=200,
+        le=100000,
+    ),
+]
 
 
 class Even(Interval):

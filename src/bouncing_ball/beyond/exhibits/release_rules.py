@@ -14,7 +14,6 @@ physics engines need to know. Times are ωt, which are the times of a contact wi
 
 import numpy as np
 import xarray as xr
-from scipy.optimize.elementwise import find_minimum
 
 from bouncing_ball.datasets.parameters import (
     Family,
@@ -29,16 +28,15 @@ from bouncing_ball.datasets.variables import Variable, describe, described
 from bouncing_ball.paper.contact.damping import Release, damping_ratio, restitution_coefficient
 from bouncing_ball.paper.contact.oscillator import responses
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.exhibits.error_thresholds import ErrorsAlongRatio, thresholds_along
+from bouncing_ball.paper.exhibits.error_thresholds import ErrorsAlongRatio
+from bouncing_ball.paper.exhibits.errors_along_ratio import errors_along_ratio
+from bouncing_ball.paper.exhibits.lowest_period_doubling import lowest_along_ratio
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.orbits.stability import Bifurcation
 
 VARIABLES = {
     "bifurcation_amplitude": Variable("excitation amplitude of the bifurcation", symbol="Λ"),
     "force_restitution": Variable("restitution coefficient of the force release", symbol="r_F"),
-    "period_doubling_turn": Variable(
-        "frequency ratio at which the period doubling is lowest", symbol="ϖ", budget=1e-05
-    ),
     "free_force": Variable(
         "force of a free contact, over mω times the impact speed", symbol="F/(mωv)"
     ),
@@ -64,27 +62,6 @@ class ReleaseRules(Parameters):
     thresholds: RuleThresholds
 
 
-def _lowest_doubling(
-    ratios: np.ndarray, amplitude: np.ndarray, zeta: float, rule: Release, n: np.ndarray
-) -> np.ndarray:
-    """The ϖ at which each period doubling is lowest; NaN if that is an end of the scan.
-
-    ``amplitude`` is Λ of the period doublings on the scan, shape (n, ϖ).
-    """
-
-    def doubling(log_ratio: np.ndarray, n: np.ndarray) -> np.ndarray:
-        model = SpringDamperModel(SpringDamper(np.exp(log_ratio), zeta, rule))
-        return model.period_doubling(n).amplitude
-
-    lowest = np.argmin(np.where(np.isnan(amplitude), np.inf, amplitude), axis=-1)
-    inside = np.clip(lowest, 1, ratios.size - 2)
-    # Where the middle one of three samples is not the lowest they are no bracket, which
-    # find_minimum reports as a failure.
-    bracket = tuple(np.log(ratios[inside + k]) for k in (-1, 0, 1))
-    found = find_minimum(doubling, bracket, args=(n,))
-    return np.where(found.success, np.exp(found.x), np.nan)
-
-
 def _bifurcations(parameters: ReleaseRules, rule: Release) -> xr.Dataset:
     """Both bifurcations along ϖ under a rule, and the ϖ of the lowest period doubling."""
     families = np.array(parameters.n)
@@ -94,7 +71,7 @@ def _bifurcations(parameters: ReleaseRules, rule: Release) -> xr.Dataset:
     saddle_nodes = model.saddle_node(families[:, np.newaxis]).amplitude
     doublings = model.period_doubling(families[:, np.newaxis]).amplitude
     ends = np.stack([saddle_nodes, doublings], axis=-1)
-    turns = _lowest_doubling(ratios, doublings, zeta, rule, families)
+    turns = lowest_along_ratio(ratios, doublings, zeta, rule, families)
     return xr.Dataset(
         {
             "bifurcation_amplitude": (("n", "frequency_ratio", "bound"), ends),
@@ -119,7 +96,16 @@ def _thresholds(wanted: RuleThresholds) -> xr.Dataset:
         "force release, its own r": (Release.FORCE, own),
     }
     found = [
-        thresholds_along(wanted, rule, wanted.quantities, [wanted.tolerance], simple)
+        errors_along_ratio(
+            r,
+            rule,
+            n=wanted.n,
+            amplitude=wanted.amplitude,
+            ratios=wanted.frequency_ratio.grid(),
+            quantities=wanted.quantities,
+            tolerances=[wanted.tolerance],
+            compared_restitution=simple,
+        )
         .isel(tolerance=0, drop=True)
         .drop_dims("frequency_ratio")
         .assign_coords(reading=reading)

@@ -31,11 +31,10 @@ from scipy.optimize import brentq
 from bouncing_ball.beyond.simulation import simulate
 from bouncing_ball.errors import require
 from bouncing_ball.numerics.corrector import NewtonSettings, solve
-from bouncing_ball.numerics.elementary import table
 from bouncing_ball.paper.contact.permanent_contact import permanent_contact_threshold
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.motion.deviations import Deviation, Jacobian
-from bouncing_ball.paper.motion.flight import Flight
+from bouncing_ball.paper.motion.flight import Flight, table
 
 # Number of samples of an oscillation, among which its first maximum is bracketed.
 _FINE = 400

@@ -33,9 +33,10 @@ from bouncing_ball.beyond.long_run.lyapunov import DIGITS, FORGOTTEN, NEAR, Stre
 from bouncing_ball.beyond.long_run.motions import Kind, Motions, Reason
 from bouncing_ball.beyond.simulation import Law, dynamics_of
 from bouncing_ball.numerics.arrays import pick
-from bouncing_ball.numerics.elementary import reduce_angle, table
+from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.motion.deviations import Jacobian
 from bouncing_ball.paper.motion.dynamics import Departure, Dynamics, Impact
+from bouncing_ball.paper.motion.flight import table
 from bouncing_ball.paper.motion.sequence import Status
 
 IMPACTS = 2000

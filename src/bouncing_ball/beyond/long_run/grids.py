@@ -36,6 +36,7 @@ VARIABLES = {
     "motion_impacts": Variable("impacts until one of the motions repeats"),
     "share_error": Variable("standard error of a share"),
 }
+
 MOST_BALLS = 20_000_000
 """Largest number of balls that are followed at the same time; they take some gigabytes."""
 # Balls start again from the ends of balls that are this many amplitudes away.

@@ -25,10 +25,11 @@ from numpy.typing import ArrayLike
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
 from bouncing_ball.beyond.simulation import dynamics_of
 from bouncing_ball.numerics.arrays import pick
-from bouncing_ball.numerics.elementary import reduce_angle, table
+from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.motion.dynamics import Departure, Dynamics, Impact
+from bouncing_ball.paper.motion.flight import table
 
 # The ϖ of the corrected model from whose map the first order is computed. The relative error from
 # the second order is of order 1/ϖ, and that from rounding of order ε ϖ.

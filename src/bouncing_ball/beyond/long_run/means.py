@@ -25,10 +25,10 @@ from numpy.typing import ArrayLike
 from bouncing_ball.beyond.laws.collocation import integrals
 from bouncing_ball.beyond.long_run.motions import Motions
 from bouncing_ball.beyond.simulation import Law, dynamics_of
-from bouncing_ball.numerics.elementary import table
 from bouncing_ball.paper.contact.law import ContactLaw
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.motion.dynamics import Departure, Dynamics, Impact
+from bouncing_ball.paper.motion.flight import table
 from bouncing_ball.paper.motion.linear_contact import has_closed_form
 from bouncing_ball.paper.motion.sequence import Status
 

@@ -1,10 +1,14 @@
-"""The quantities of orbits, and of a branch with its ends, that datasets and answers contain."""
+"""The branch of n-T orbits of a model, followed from one end to the other.
 
+The branch is a solution curve of the model's equations
+(:mod:`bouncing_ball.paper.orbits.equations`), with Λ as the parameter. It is followed to both sides
+from an orbit in the stable range, until the orbits end or Λ leaves a window.
+"""
+
+from collections.abc import Collection
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.continuation import (
@@ -12,48 +16,26 @@ from bouncing_ball.numerics.continuation import (
     ContinuationError,
     StepControl,
     continue_both_ways,
-    resample,
 )
-from bouncing_ball.numerics.events import parameter_bound
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.numerics.events import Event, parameter_bound
 from bouncing_ball.paper.orbits.equations import OrbitSystem
 from bouncing_ball.paper.orbits.model import ImpactModel
-from bouncing_ball.paper.orbits.orbit import Orbit
-from bouncing_ball.paper.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.paper.orbits.stability import Bifurcation
 
-OBSERVED = (
-    *("phase", "contact_duration", "release_phase"),
-    *("impact_velocity", "bounce_velocity", "apparent_restitution"),
-)
-PLACE = ("amplitude", "phase", "contact_duration")
-"""The quantities of special orbits that the datasets contain."""
-
-GRAZING = "grazing"
-# By default a branch ends at this multiple of the Λ of its period doubling. A fold below the
-# second number belongs to an elastic contact. The third is the number of orbits that are tried as
-# starting points of a branch.
-_BEYOND, _LOWEST, _STARTS = 1.4, 1e-4, 16
-
-
-def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:
-    """The named quantities of orbits, with the stability and the admissibility of the orbits.
-
-    Every array has the shape of the orbits.
-
-    Examples
-    --------
-    >>> from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
-    >>> found = columns(RestitutionModel(1.0).orbit(1, 0.5), "phase")
-    >>> found
-    {'phase': 1.5707963267948966, 'stable': False, 'admissible': True}
-    """
-    judged = {"stable": orbit.is_stable(), "admissible": orbit.is_admissible()}
-    return {name: getattr(orbit, name) for name in names} | judged
+# By default a branch ends at this multiple of the Λ of its period doubling.
+_BEYOND_DOUBLING = 1.4
+# Smallest Λ of a branch: a fold below it belongs to an elastic contact.
+_LOWEST = 1e-4
+# Number of Λ at which an orbit to start from is searched.
+_STARTS = 16
 
 
 def whole_branch(
-    model: ImpactModel, n: int, amplitude_max: float | None, largest_step: float, ends: Any = ()
+    model: ImpactModel,
+    n: int,
+    amplitude_max: float | None,
+    largest_step: float,
+    ends: Collection[Bifurcation] = (),
 ) -> Branch:
     """The branch of n-T orbits of a single model, from one end to the other, up to some Λ.
 
@@ -78,26 +60,29 @@ def whole_branch(
         If the branch begins above this Λ, or if no orbit is found to start from.
     ContinuationError
         If the continuation stops before an end of the branch or a bound of Λ.
+
+    Examples
+    --------
+    >>> from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
+    >>> found = whole_branch(RestitutionModel(0.85), 1, 1.2, largest_step=0.1)
+    >>> for special in found.special:
+    ...     print(special.name, round(float(special.point[-1]), 4))
+    parameter bound 1.2
+    saddle-node 0.2547
+    period doubling 1.0383
+    parameter bound 1.2
     """
-    fold, doubling = (float(f(n).amplitude) for f in (model.saddle_node, model.period_doubling))
+    fold = float(model.saddle_node(n).amplitude)
+    doubling = float(model.period_doubling(n).amplitude)
     low = fold if fold > 0 else 0.0
-    top = amplitude_max or _BEYOND * (doubling if doubling > low else max(2 * low, 1.0))
-    none = f"no {n}-T orbit up to Λ = {top:g} for {model.label}"
+    top = amplitude_max or _default_top(low, doubling)
     if low >= top:
-        raise NoOrbitError(f"{none}: the branch begins at Λ = {low:.6g}")
+        raise NoOrbitError(f"{_none(model, n, top)}: the branch begins at Λ = {low:.6g}")
     stable = min(doubling, top)
-    tried = np.linspace(low, top, _STARTS + 1)[1:]
     middle = (low + (stable if stable > low else top)) / 2
-    tried = np.append(middle, tried[np.argsort(np.abs(tried - middle))])
-    system, orbits = model.system(n), model.orbit(n, tried)
-    if not np.any(orbits.exists):
-        raise NoOrbitError(f"{none} was found to start from")
-    start = system.point(orbits[int(np.argmax(orbits.exists))])
-    events = [replace(x, terminal=x.terminal or x.name in ends) for x in system.events()]
-    events += [
-        parameter_bound(x, upper, f"left the window at amplitude {x:g}")
-        for x, upper in ((_LOWEST, False), (top, True))
-    ]
+    start = _start(model, n, middle, low, top)
+    system = model.system(n)
+    events = _events(system, top, ends)
     control = StepControl(largest=largest_step)
     found = continue_both_ways(system, start, events=events, control=control)
     for end in (found.start, found.end):
@@ -106,57 +91,31 @@ def whole_branch(
     return found
 
 
-def branch_columns(system: OrbitSystem, branch: Branch, count: int) -> xr.Dataset:
-    """A branch at ``count`` points with equal steps of arclength, and its special orbits.
-
-    The variables are those of :func:`orbits_in_columns`; grazing orbits are found between the
-    points.
-
-    Raises
-    ------
-    ContinuationError
-        If the steps along the branch were too long for it to be resampled.
-    """
-    y = resample(system, branch, count)
-    chosen = [s for s in branch.special if s.name in list(Bifurcation)]
-    grazing = system.grazing(y)
-    points = np.array([*(s.point for s in chosen), *grazing]).reshape(-1, y.shape[-1])
-    kinds = [*(str(s.name) for s in chosen), *[GRAZING] * len(grazing)]
-    ends = [str(branch.start), str(branch.end)]
-    return orbits_in_columns(system.orbit(y), system.orbit(points), kinds, ends)
+def _default_top(low: float, doubling: float) -> float:
+    """The largest Λ if none is given; without a period doubling it follows from the fold."""
+    return _BEYOND_DOUBLING * (doubling if doubling > low else max(2 * low, 1.0))
 
 
-def orbits_in_columns(
-    orbit: Orbit, special: Orbit, kinds: list[str], ends: list[str]
-) -> xr.Dataset:
-    """Orbits along a branch, its special orbits with their kinds, and the reasons for its two ends.
-
-    Over ``point``, the dataset has the observables of the orbits, with phases in rad, and
-    ``amplitude``, ``stable``, ``admissible`` and ``residual``. The multipliers are over (point,
-    multiplier), ``special_…`` over ``special``, and ``end_reason`` over ``end``, where the end of
-    the unstable side comes first.
-    """
-    floquet = orbit.multipliers()
-    along = columns(orbit, "amplitude", *OBSERVED) | {"residual": orbit.defect()}
-    places = {name: getattr(special, name) for name in PLACE} | {"residual": special.defect()}
-    data: dict[str, Any] = {name: ("point", values) for name, values in along.items()}
-    for part in ("real", "imag"):
-        data[f"multiplier_{part}"] = ("point", "multiplier"), getattr(floquet, part)
-    data["special_kind"] = "special", np.array(kinds, dtype=object)
-    data |= {f"special_{name}": ("special", values) for name, values in places.items()}
-    # Numbers, so that branches with different numbers of special points are aligned.
-    coords = {"special": np.arange(len(kinds)), "end": ["unstable side", "stable side"]}
-    return xr.Dataset(data | {"end_reason": ("end", ends)}, coords)
+def _none(model: ImpactModel, n: int, top: float) -> str:
+    return f"no {n}-T orbit up to Λ = {top:g} for {model.label}"
 
 
-def no_branch(count: int, error: Exception) -> xr.Dataset:
-    """A dataset like that of :func:`branch_columns`, of NaN, with the error as its end reasons."""
-    system = OrbitSystem(1, SpringDamper(1.0, 0.0), SpringDamperOrbit.at)
-    none = system.orbit(np.full((count, 4), np.nan))
-    return orbits_in_columns(none, none[:0], [], [str(error)] * 2)
+def _start(model: ImpactModel, n: int, middle: float, low: float, top: float) -> np.ndarray:
+    """The point of an orbit at Λ = ``middle``, or at the nearest of several Λ that has one."""
+    others = np.linspace(low, top, _STARTS + 1)[1:]
+    nearest_first = others[np.argsort(np.abs(others - middle))]
+    orbits = model.orbit(n, np.append(middle, nearest_first))
+    if not np.any(orbits.exists):
+        raise NoOrbitError(f"{_none(model, n, top)} was found to start from")
+    first = int(np.argmax(orbits.exists))
+    return model.system(n).point(orbits[first])
 
 
-def joined(branches: list[xr.Dataset], dim: str) -> xr.Dataset:
-    """Branches along a new dimension; those with fewer special orbits are filled with NaN."""
-    whole = xr.concat(branches, dim, join="outer")
-    return whole.assign(special_kind=whole.special_kind.fillna("").astype(str))
+def _events(system: OrbitSystem, top: float, ends: Collection[Bifurcation]) -> list[Event]:
+    """The events of the equations, of which those in ``ends`` are terminal, and the bounds of Λ."""
+    events = [
+        replace(event, terminal=event.terminal or event.name in ends) for event in system.events()
+    ]
+    for bound, upper in ((_LOWEST, False), (top, True)):
+        events.append(parameter_bound(bound, upper, f"left the window at amplitude {bound:g}"))
+    return events

@@ -1,0 +1,199 @@
+"""The verdict on every claim of the paper, and the number of claims with each verdict."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.paper.claims import (
+    both_models,
+    evidence,
+    impact_models,
+    parameters,
+    periodic_orbits,
+)
+from bouncing_ball.paper.claims.claim import Claim, checked, defined_in, name_of, paragraphs
+from bouncing_ball.paper.claims.parameters import PaperData
+from bouncing_ball.paper.claims.verdict import CLOSE_UNITS, Verdict
+
+VARIABLES = {
+    "item": Variable("figure, table or equation of the paper"),
+    "orbit": Variable("orbit along the frequency ratio, curve of a figure"),
+    "measure": Variable("quantity compared along these orbits"),
+    "stiff_orbit_error": Variable(
+        "largest relative error of an orbit among stiff contacts", budget=1e-12
+    ),
+    "short_of_lift": Variable("smallest 1 - Λ sin φ of Fig. 6, with φ of Eq. 6", budget=1e-11),
+    "inadmissible_orbits": Variable("orbits drawn that do not have one impact per period"),
+    "range_error": Variable("relative error of the ends of the stability range", budget=1e-12),
+    "printed_slight_move": Variable(
+        "largest relative move of a printed end from the stiffest row to the next",
+        equation="Table 1",
+    ),
+    "period_doubling_lowest": Variable(
+        "ϖ at which the period doubling is lowest", symbol="ϖ", budget=1e-05
+    ),
+    "permanent_contact_error": Variable(
+        "relative error of Λ_CR at the printed threshold", equation="Eq. 38"
+    ),
+    "claim": Variable("claim of the paper"),
+    "group": Variable("what the claim is counted as"),
+    "restates": Variable("claim that it says again"),
+    "statement": Variable("what the claim says"),
+    "printed_text": Variable("the number as printed"),
+    "remark": Variable("how the claim was read"),
+    "condition": Variable("condition that decides a statement in words"),
+    "answer": Variable("what its author might answer to the verdict"),
+    "decided_by": Variable("datasets that decide"),
+    "required": Variable("the number as printed, or the bound to be met"),
+    "low": Variable("lower limit of the confidence interval of the number found", budget=math.inf),
+    "high": Variable("upper limit of the confidence interval of the number found", budget=math.inf),
+    "limit": Variable("the bound to be met, as a number", budget=math.inf),
+    "found": Variable("the number found", budget=math.inf),
+    "deviation_units": Variable("deviation in units of the last printed digit", budget=math.inf),
+    "deviation": Variable("relative deviation", budget=math.inf),
+    "verdict": Variable("reproduced, qualified, close, contradicted, undecidable or not asked"),
+    "printed_table": Variable("the printed table whose entry the claim is"),
+    "explained_by": Variable("name of the explanation"),
+    "explained": Variable("neither close nor contradicted, or explained by checks that hold"),
+    "explanation": Variable("explanation of claims that are close or contradicted"),
+    "explanation_text": Variable("the explanation in words"),
+    "explanation_checks": Variable(
+        "the checks of the explanation, with the numbers found", budget=math.inf
+    ),
+    "explanation_holds": Variable("whether the checks of the explanation hold"),
+}
+_CHAPTERS = (impact_models, periodic_orbits, both_models)
+CLAIMS: tuple[Claim, ...] = tuple(claim for chapter in _CHAPTERS for claim in defined_in(chapter))
+"""Every claim of the paper that can be decided, in the order of the paper."""
+
+
+def _row(
+    claim: Claim,
+    data: Mapping[str, xr.Dataset],
+    holding: set[str],
+    parameters: Mapping[str, Mapping[str, Any]] | None,
+) -> dict[str, object]:
+    """The entries of the dataset for one claim; ``holding`` names the explanations that hold."""
+    asked = PaperData(data, parameters)
+    finding, reason = claim.verdict(asked)
+    explained_by = name_of(claim.explanation) if claim.explanation else ""
+    needs_none = finding.verdict not in (Verdict.CLOSE, Verdict.CONTRADICTED)
+    return {
+        "item": claim.item,
+        "statement": claim.statement,
+        "remark": claim.remark,
+        "condition": claim.condition,
+        "answer": claim.answer,
+        "group": "restatement" if claim.restates else claim.kind,
+        "restates": claim.restates.id if claim.restates else "",
+        "printed_text": claim.printed,
+        "decided_by": ", ".join(asked.used),
+        **asdict(finding),
+        "reason": reason,
+        "printed_table": "Table 1" if claim.item == "Table 1" and claim.printed else "",
+        "explained_by": explained_by,
+        "explained": needs_none or explained_by in holding,
+    }
+
+
+def assess(
+    claims: Sequence[Claim],
+    data: Mapping[str, xr.Dataset],
+    parameters: Mapping[str, Mapping[str, Any]] | None = None,
+) -> xr.Dataset:
+    """The verdict on each claim, over ``claim``, and the explanations whose checks hold, over
+    ``explanation``.
+
+    Raises
+    ------
+    ModelError
+        If a dataset that decides a claim or an explanation, or a variable of it, is missing.
+    """
+    why = {name_of(one.explanation): one.explanation for one in claims if one.explanation}
+    checks = {name: checked(explanation, data) for name, explanation in why.items()}
+    holding = {name for name, (holds, _) in checks.items() if holds}
+    rows = [_row(claim, data, holding, parameters) for claim in claims]
+    return described(
+        {
+            **{key: ("claim", np.array([row[key] for row in rows])) for key in rows[0]},
+            "explanation_text": ("explanation", [paragraphs(x)["statement"] for x in why.values()]),
+            "explanation_holds": ("explanation", [holds for holds, _ in checks.values()]),
+            "explanation_checks": ("explanation", [found for _, found in checks.values()]),
+        },
+        coords={"claim": [one.id for one in claims], "explanation": list(why)},
+        variables=VARIABLES,
+    )
+
+
+def claims(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
+    """The verdict on every claim of the paper, and the numbers that the article prints with them.
+
+    Parameters
+    ----------
+    data : mapping of str to xarray.Dataset
+        The datasets that decide the claims, by name: those of
+        :data:`~bouncing_ball.paper.claims.parameters.PARAMETERS`.
+
+    Returns
+    -------
+    xarray.Dataset
+        The dataset of :func:`assess`, and results of :mod:`~bouncing_ball.paper.claims.evidence`
+        under the names of the functions. The attributes are the paper's limits and the bound within
+        which a number is close.
+
+    Raises
+    ------
+    ModelError
+        If a dataset, or a variable of it, is missing.
+    """
+    printed = (
+        evidence.stiff_orbit_error,
+        evidence.short_of_lift,
+        evidence.inadmissible_orbits,
+        evidence.range_error,
+        evidence.printed_slight_move,
+        evidence.period_doubling_lowest,
+        evidence.permanent_contact_error,
+    )
+    numbers = {one.__name__: xr.DataArray(one(data)).reset_coords(drop=True) for one in printed}
+    return xr.merge([assess(CLAIMS, data), described(numbers, variables=VARIABLES)]).assign_attrs(
+        close_units=CLOSE_UNITS,
+        tolerance=parameters.TOLERANCE,
+        stiff_frequency_ratio=parameters.STIFF,
+        permanent_contact_frequency_ratio=parameters.PERMANENT_CONTACT,
+    )
+
+
+_WORDS = {
+    Verdict.QUALIFIED: "reproduced in one reading only",
+    Verdict.CLOSE: "reproduced closely",
+}
+
+
+def tally(decided: xr.Dataset) -> str:
+    """The numbers of claims and of verdicts in one line, without restatements.
+
+    Parameters
+    ----------
+    decided : Dataset
+        ``verdict``, ``group`` and ``explained`` over ``claim``.
+
+    Examples
+    --------
+    >>> decided = xr.Dataset({"verdict": ("claim", ["close", "close", "reproduced"]),
+    ...                       "group": ("claim", ["number", "restatement", "number"]),
+    ...                       "explained": ("claim", [True, True, True])})
+    >>> tally(decided)
+    '2 claims of the paper: 1 reproduced, 1 reproduced closely'
+    """
+    verdicts = decided.verdict.values[decided.group.values != "restatement"]
+    found = [one for one in Verdict if str(one) in verdicts]
+    counts = [f"{np.sum(verdicts == str(one))} {_WORDS.get(one, one)}" for one in found]
+    unexplained = int(np.sum(~decided.explained.values.astype(bool)))
+    counts += [f"{unexplained} without explanation"] if unexplained else []
+    return f"{verdicts.size} claims of the paper: {', '.join(counts)}"

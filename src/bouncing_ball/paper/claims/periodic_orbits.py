@@ -1,0 +1,284 @@
+"""Claims about the n-T orbits of the spring-damper model and about permanent contact.
+
+The orbits have Eqs. 18-27, Figs. 8-10 and Table 1, permanent contact Eqs. 28-36 and Fig. 11.
+"""
+
+from itertools import product
+from typing import Any
+
+from bouncing_ball.paper.claims import evidence, impact_models
+from bouncing_ball.paper.claims.claim import Claim, claim, formula, of_formula
+from bouncing_ball.paper.claims.parameters import STIFF
+from bouncing_ball.paper.claims.verdict import above, at_least, at_most, below
+from bouncing_ball.paper.exhibits.printed_table1 import AXES, printed_text
+from bouncing_ball.paper.orbits.stability import Bifurcation
+
+# The orbits.
+
+_FIGURES = "Figs. 8 and 9"
+EQUATIONS = [
+    formula(
+        "orbit equations",
+        "Eqs. 18-26",
+        "equations of the n-T orbits",
+        row="Eqs. 21-26",
+    ),
+    formula(
+        "velocity balance",
+        "Eq. 27",
+        "bouncing-off velocity from that of impact",
+    ),
+]
+
+
+@claim("Abstract and Eqs. 21-26")
+def no_analytical_solution(data):
+    """the n-T orbits of the spring-damper model need continuation, as they have no analytical
+    solution
+
+    Condition: a solution takes more than the evaluation of a formula. For the whole branch, the
+    formula misses some published orbit by more than rounding. For a given amplitude, branches fold,
+    so that the duration of contact is not a function of the amplitude
+
+    Remark: at a fixed duration of contact the equations of the orbit are linear, so that the whole
+    branch has a formula, with the duration as its parameter. At a given amplitude the duration is
+    a root of a scalar equation, which has several roots; that they have no formula is not shown
+
+    Answer: the equations are transcendental in the unknowns that the paper chose
+    """
+    return {
+        "the whole branch": above(*evidence.route_disagreement(data)),
+        "the orbits at a given amplitude": at_least(evidence.folds(data), 1),
+    }
+
+
+@claim("Figs. 3, 5, 6, 8-10 and 13-15")
+def one_impact_per_period(data):
+    """the orbits that are drawn have one impact per period
+
+    Condition: all of them are admissible, so that no earlier impact or release occurs on them
+    """
+    return at_most(evidence.inadmissible_orbits(data), 0)
+
+
+@claim(_FIGURES)
+def superimposed_when_stiff(data):
+    """for the stiff contact the curves of both phases coincide
+
+    Condition: no contact of the stiffest branch is longer than a hundredth of a radian
+    """
+    return at_most(evidence.contact_durations(data, -1), 0.01)
+
+
+@claim(_FIGURES)
+def apart_when_compliant(data):
+    """the curves of both phases diverge as the frequency ratio decreases
+
+    Condition: every contact of the most compliant branch is longer than a hundredth of a radian
+    """
+    return at_least(evidence.contact_durations(data, 0), 0.01)
+
+
+@claim("Figs. 8 and 9, Table 1", id="saddle-node falls")
+def saddle_node_falls(data):
+    """with decreasing frequency ratio the saddle-node moves to lower amplitudes
+
+    Condition: it falls from every row of Table 1 to the next more compliant one, for every n
+
+    Remark: the introduction says that the existence conditions of the orbits change
+    """
+    return below(evidence.row_shift(data).sel(bound=Bifurcation.SADDLE_NODE), 0)
+
+
+def period_doubling_turns(data):
+    """With decreasing ϖ the period doubling first moves down, turns at a moderate ϖ, and then
+    moves up. In the printed table it rises at once, because its stiffest row is that of Eq. 8.
+    """
+    computed = evidence.row_shift(data).sel(bound=Bifurcation.PERIOD_DOUBLING, frequency_ratio=10)
+    return {"largest computed rise from the stiffest contact to ϖ = 10": below(computed, 0)}
+
+
+@claim("Figs. 8 and 9, Table 1", explanation=period_doubling_turns)
+def period_doubling_rises_when_stiff(data):
+    """from the stiffest contact to a frequency ratio of 10 the period doubling moves to higher
+    amplitudes
+
+    Condition: it rises from the first row of Table 1 to the second, for every n
+
+    Answer: compared with the restitution model of Eq. 8 it does rise
+    """
+    ends = evidence.row_shift(data).sel(bound=Bifurcation.PERIOD_DOUBLING)
+    return above(ends.sel(frequency_ratio=10), 0)
+
+
+@claim("Figs. 8 and 9, Table 1")
+def period_doubling_rises_when_compliant(data):
+    """from a frequency ratio of 10 to 2 the period doubling moves to higher amplitudes
+
+    Condition: it rises from the second row of Table 1 to the third, for every n
+    """
+    ends = evidence.row_shift(data).sel(bound=Bifurcation.PERIOD_DOUBLING)
+    return above(ends.sel(frequency_ratio=2), 0)
+
+
+@claim("Table 1")
+def range_widens(data):
+    """with decreasing frequency ratio the stability range is extended
+
+    Condition: the width grows from every row of Table 1 to the next more compliant one, for every n
+    """
+    return above(evidence.row_shift(data).diff("bound"), 0)
+
+
+def ends_of_the_approximate_map(data):
+    """The printed upper ends of the stiffest row are those of Eq. 8, which assumes flights that are
+    high against the excitation. The spring-damper model does not assume this and converges to the
+    map of Eq. 5.
+    """
+    printed = evidence.stiff_difference(data, "printed", "holmes")
+    computed = evidence.stiff_difference(data, "computed", "exact")
+    return {
+        "largest distance of the printed ends from Eqs. 7 and 8": at_most(printed, 0.0005),
+        "largest distance of the computed ends from the map of Eq. 5": at_most(computed, 0.0005),
+        "error of the period doubling of Eq. 5": of_formula(data, "Eq. 8, corrected"),
+    }
+
+
+def no_reading_fits(data):
+    """No reading of the equations that we tried gives all printed digits of the more compliant
+    contacts, and some of the printed saddle-nodes lie below every orbit of the equations.
+    """
+    # The second group of rows is that of the compliant contacts.
+    rows = data["forensics"].isel(rows=1)
+    below_all = rows.unreachable.sel(reading="equations as they stand")
+    return {
+        "largest number of entries reproduced in these rows": below(rows.reproduced, rows.entries),
+        "saddle-nodes printed below every orbit": at_least(below_all, 1),
+    }
+
+
+def _entry(ratio: float, n: int, bound: str) -> Claim:
+    """The claim of one printed number of Table 1; the stiffest row restates Eqs. 7 and 8."""
+    said: dict[str, Any] = {
+        "explanation": no_reading_fits,
+        "answer": "the last digits are those to which points of a branch were computed or read off",
+    }
+    if ratio == max(AXES["frequency_ratio"]):
+        equation = getattr(impact_models, Bifurcation(bound).name.lower())
+        said = {"explanation": ends_of_the_approximate_map, "restates": equation}
+        said["answer"] = "the row is that of Eqs. 7 and 8, as the text says"
+    return Claim(
+        f"Table 1: {ratio:g}, {n}, {bound}",
+        "number",
+        "Table 1",
+        f"{bound} of the {n}-T orbits at a frequency ratio of {ratio:g}",
+        lambda data: data["table1"].computed.sel(frequency_ratio=ratio, n=n, bound=bound),
+        printed=printed_text(ratio, n, bound),
+        remark="the exponent of the first frequency ratio is unreadable, taken as 4",
+        **said,
+    )
+
+
+TABLE_1 = [_entry(*place) for place in product(*AXES.values())]
+
+
+@claim("Table 1")
+def stiff_row(data):
+    """the stability ranges of the stiffest contact are those of the restitution model
+
+    Condition: the computed ends agree to half a unit of the printed digits
+
+    Remark: this holds for the computed ranges; the printed upper ends are those of Eq. 8
+    """
+    return at_most(evidence.stiff_difference(data, "computed", "exact"), 0.0005)
+
+
+@claim("Fig. 10")
+def departure_from_nπ(data):
+    """the bouncing-off velocity is no longer nπ: it starts to depart below a frequency ratio of 100
+
+    Condition: it differs from nπ by at least 0.2 % at every contact up to that frequency ratio, for
+    every amplitude
+
+    Remark: the paper does not say when a departure starts; we take 0.2 % for visible
+    """
+    sweep = data["fig10"].sel(frequency_ratio=slice(None, STIFF))
+    error = abs(sweep.bounce_velocity / sweep.restitution_bounce_velocity - 1)
+    return at_least(error, 0.002)
+
+
+@claim("Fig. 10", meant=True)
+def amplitude_does_not_matter(data):
+    """the bouncing-off velocity does not depend on the amplitude
+
+    Condition: the frequency ratio from which on the three curves are within 1 % of nπ of each other
+    is below the left end of the axis
+
+    Remark: the left end of the axis is unreadable; below the frequency ratio found the amplitude
+    matters
+
+    Answer: the three curves coincide in the figure except at its very edge
+    """
+    meeting = evidence.amplitude_matters_below(data)
+    return {f"on an axis from {left} on": at_most(meeting, left) for left in (2, 1)}
+
+
+# Permanent contact.
+
+THRESHOLD = [
+    formula(
+        "steady response",
+        "Eqs. 29-31",
+        "displacement in permanent contact",
+        row="Eq. 31",
+    ),
+    formula(
+        "threshold",
+        "Eqs. 32-33",
+        "the largest amplitude of permanent contact",
+        row="Eq. 33",
+    ),
+]
+
+
+@claim("after Eq. 33")
+def stiff_threshold(data):
+    """the threshold tends to 1 for an infinite frequency ratio
+
+    Condition: it is within a millionth at the stiffest contact scanned
+    """
+    error = data["thresholds"].relative_error.sel(quantity="permanent_contact")
+    return at_most(error.isel(frequency_ratio=-1), 1e-6)
+
+
+SHAPE = [
+    formula(
+        "compliant threshold",
+        "after Eq. 33",
+        "the threshold grows beyond all bounds for a vanishing frequency ratio",
+        row="Eq. 33, ϖ → 0",
+        remark="found to grow as the inverse square of the frequency ratio",
+    ),
+    formula(
+        "resonant threshold",
+        "after Eq. 33",
+        "the threshold is 2ζ at ϖ = 1",
+        row="Eq. 33, ϖ = 1",
+    ),
+    formula(
+        "larger frequency ratio",
+        "Eq. 34",
+        "the larger frequency ratio of a threshold",
+    ),
+    formula(
+        "smaller frequency ratio",
+        "Eq. 35",
+        "the smaller frequency ratio of a threshold",
+    ),
+    formula(
+        "lowest threshold",
+        "Eq. 36, Fig. 11",
+        "the lowest threshold, at any ϖ",
+        row="Eq. 36",
+    ),
+]

@@ -97,7 +97,7 @@ def test_the_orbits_that_were_looked_for_are_counted(small, monkeypatch):
     assert found.values.tolist() == 3 * [plan.nodes_per_tile * len(plan.ratios)]
 
 
-def test_counts_add_up(small, atlas):
+def test_the_counts_add_up_to_the_number_of_nodes(small, atlas):
     plan = small()
     nodes = atlas.threshold_counts.sum("threshold_bin").values
     reached = np.isin(np.arange(np.prod(plan.shape)), plan.rows).reshape(plan.shape)

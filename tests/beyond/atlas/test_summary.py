@@ -80,7 +80,7 @@ def made():
 
 
 @pytest.mark.parametrize("name", EXPECTED)
-def test_by_hand(made, name):
+def test_the_summary_is_the_one_computed_by_hand(made, name):
     first = dict.fromkeys(("quantity", "limit_quantity", "supremum_quantity", "model", "n"), 0)
     one = made[name].isel(first, missing_dims="ignore")
     assert np.allclose(np.squeeze(one.values), EXPECTED[name], rtol=1e-7)

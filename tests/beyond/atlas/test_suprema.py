@@ -18,7 +18,7 @@ def error(plan, row, r, place, kind, ratio=100.0):
     return np.abs(every[SIMPLE.index(model), 0])
 
 
-def test_the_suprema_in_closed_form(small):
+def test_the_suprema_with_a_closed_form_have_its_values(small):
     plan, span = small(), (0.05, 1 - 1e-9)
     # Λ_SD = 1 - 1/ϖ² without damping; damping brings it closer to 1 while ζ² < 1/2.
     still = partial(largest, plan, 0, ("restitution", Quantity.PERMANENT_CONTACT))
@@ -27,7 +27,7 @@ def test_the_suprema_in_closed_form(small):
     assert np.isinf(largest(plan, 0, ("restitution", Quantity.PHASE), 100.0, *span))
 
 
-def test_the_last_r_at_which_the_height_fails(small):
+def test_below_the_failing_restitution_the_height_exceeds_the_tolerance(small):
     # At ϖ = 100 and the saddle-node; recomputed with Newton's method on Eqs. 21-26.
     plan = small()
     at = partial(largest, plan, 0, ("restitution", Quantity.MAX_HEIGHT), 100.0)

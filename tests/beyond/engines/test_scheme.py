@@ -135,7 +135,7 @@ def test_many_steps_follow_the_law_of_few():
         ((-0.1, 50), "damping ratio ζ = -0.1 is not in [0, 1)"),
     ],
 )
-def test_mistakes(arguments, says, refusal):
+def test_a_mistake_is_refused_in_one_line(arguments, says, refusal):
     zeta, steps = arguments
     with refusal(ModelError, says):
         restitution_in_steps(Scheme.IMPLICIT, zeta, Release.FORCE, steps)

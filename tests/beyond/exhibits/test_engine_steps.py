@@ -54,7 +54,7 @@ def test_the_error_falls_as_one_over_the_steps(found):
 
 
 @pytest.mark.parametrize(("changed", "says"), [({"n": 3}, "n = 3"), ({"restitution": 0.7}, "0.7")])
-def test_an_orbit_that_no_engine_ran(changed, says, refusal):
+def test_an_orbit_that_no_engine_ran_is_refused(changed, says, refusal):
     with refusal(ModelError, says, "is not among"):
         conformed(**changed)
 

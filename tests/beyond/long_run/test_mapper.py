@@ -52,7 +52,7 @@ def test_balls_that_stick_repeat_as_another_simulation_saw_it(law, amplitude, pe
 
 
 @pytest.mark.parametrize("r", [0.5, 0.85])
-def test_the_cascade(r):
+def test_the_first_doublings_have_the_amplitudes_and_periods_of_the_cascade(r):
     # Where the orbits of period 1, 2, 4 and 8 lose stability, by finite differences of the map.
     ends = {
         0.5: [1.526824, 1.667131, 1.696781, 1.703181],

@@ -1,4 +1,4 @@
-"""The walks against the root finding of :mod:`bouncing_ball.paper.orbits.spring_damper_bifurcations`."""
+"""The walks against the root finding of the bifurcations of the spring-damper model."""
 
 import numpy as np
 import pytest

@@ -24,8 +24,8 @@ def study(ratio, lam, r, **changed):
 
 def test_exponents_of_orbits_are_those_of_their_multipliers():
     data = study(100.0, (2.2, 2.4, 3), (0.2, 0.25, 2))
-    for model, name in zip(three_models(data.restitution.values[:, None], 100.0, Release.DISPLACEMENT),
-                           data["model"].values, strict=True):  # fmt: skip
+    models = three_models(data.restitution.values[:, None], 100.0, Release.DISPLACEMENT)
+    for model, name in zip(models, data["model"].values, strict=True):
         one = data.sel(model=name)
         orbit = model.orbit(1, data["amplitude"].values)
         larger = np.abs(orbit.multipliers()).max(axis=-1)

@@ -58,6 +58,6 @@ def test_at_a_discontinuity_the_wait_vanishes():
         grid = np.linspace(low, high, 1025)
         last = np.argmin(returns(r, grid, 50).periods == period)
         low = grid[last - 1]
-    high = grid[last]
+        high = grid[last]
     waits = [returns(r, x, 50).wait for x in (low, high)]
     assert np.nanmin(waits) < 1e-4 < returns(r, low - 0.01, 50).wait

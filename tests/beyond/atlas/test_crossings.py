@@ -72,7 +72,8 @@ def test_errors_side_by_side_have_the_thresholds_that_each_has_alone():
 
 @pytest.mark.slow
 def test_thresholds_are_those_of_a_search(small):
-    plan, random = small(), np.random.default_rng(3)
+    plan = small()
+    random = np.random.default_rng(3)
     fine = np.geomspace(plan.ratios[0], plan.ratios[-1], 121)
     for _ in range(2):
         one = plan.nodes(random.choice(plan.rows), random.integers(plan.nodes_per_row, size=1))

@@ -72,7 +72,8 @@ def test_the_snippet_has_the_numbers(name, release):
 
 @pytest.mark.parametrize(("name", "release"), BOTH)
 def test_a_text_with_places_for_numbers_is_the_snippet(name, release):
-    engine, step = ENGINES[name], 1.25e-6
+    engine = ENGINES[name]
+    step = 1.25e-6
     values = engine.numbers(engine.for_step(CONTACT, step)) | CONTACT._asdict()
     values["time_step"] = step
     texts = {key: repr(value) for key, value in values.items()}

@@ -38,7 +38,8 @@ def test_a_delay_may_grow_beyond_all_numbers():
 
 
 def test_a_contact_agrees_where_the_prediction_says():
-    place, common = {"restitution": 0.5, "amplitude": 2.5}, {"confidence": 0.95, "seed": 5}
+    place = {"restitution": 0.5, "amplitude": 2.5}
+    common = {"confidence": 0.95, "seed": 5}
     balls = {"cases": [place], "frequency_ratio": [1000.0], "balls": 20, "impacts": 250}
     lives = typed(transients.transients)(balls | common, "displacement")
     given = {

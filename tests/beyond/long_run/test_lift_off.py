@@ -33,7 +33,8 @@ def test_the_sensitivity_is_the_corrected_models_to_first_order():
         for model in three_models(np.array(r), ratio, Release.DISPLACEMENT)[:2]:
             path = model.simulate(lam, *LYING, 20)
             # Bounce 14 of 25, which is followed by T = 2 r v/(g (1 - r)) of chattering.
-            phase, speed = path.phase[14], -path.relative_velocity[14]
+            phase = path.phase[14]
+            speed = -path.relative_velocity[14]
             ends.append(phase + 2 * r * speed / ((1 - lam * np.sin(phase)) * (1 - r)))
         late.append(ratio * abs(ends[1] - ends[0]))
     # Richardson; the bounces after the 14th delay it by a few of their durations over T.

@@ -18,7 +18,8 @@ from bouncing_ball.paper.contact.spring_damper import SpringDamper
 
 def main(balls: int, impacts: int) -> None:
     rng = np.random.default_rng(0)
-    r, lam = rng.uniform(0.1, 0.95, balls), rng.uniform(0.9, 5, balls)
+    r = rng.uniform(0.1, 0.95, balls)
+    lam = rng.uniform(0.9, 5, balls)
     phase = rng.uniform(-np.pi, np.pi, balls)
     velocity = -lam - rng.uniform(0, 12, balls)
     contact = SpringDamper.from_restitution(r, 100.0)

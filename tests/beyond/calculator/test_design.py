@@ -327,7 +327,7 @@ def test_no_orbit_or_no_contact(change, says, refusal):
         (LAW | {"contact_time": 3e-4, "engine": "mujoco"}, "is not written for mujoco"),
     ],
 )
-def test_mistakes(change, says, refusal):
+def test_a_mistake_is_refused_in_one_line(change, says, refusal):
     with refusal(ModelError, says):
         design(**{**STEEL, "restitution": 0.85, **change})
 

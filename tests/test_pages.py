@@ -58,7 +58,9 @@ def known_names():
     for path in SOURCE.rglob("*.py"):
         module = import_module(dotted(path))
         names.add(module.__name__)
-        for name, value in vars(module).items():
+        # The public functions are loaded when they are first used, so that dir names more than vars.
+        for name in {*dir(module), *vars(module)}:
+            value = vars(module).get(name)
             if isinstance(value, ModuleType):
                 continue
             names.add(f"{module.__name__}.{name}")

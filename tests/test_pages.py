@@ -58,7 +58,7 @@ def known_names():
     for path in SOURCE.rglob("*.py"):
         module = import_module(dotted(path))
         names.add(module.__name__)
-        # The public functions are loaded when they are first used, so that dir names more than vars.
+        # Public functions are loaded when they are first used: dir names more than vars.
         for name in {*dir(module), *vars(module)}:
             value = vars(module).get(name)
             if isinstance(value, ModuleType):

@@ -39,7 +39,8 @@ def steel():
 
 
 def test_the_groups_are_those_of_the_model(steel):
-    omega, zeta = 2 * math.pi * 50, -math.log(0.85) / math.hypot(math.pi, math.log(0.85))
+    omega = 2 * math.pi * 50
+    zeta = -math.log(0.85) / math.hypot(math.pi, math.log(0.85))
     own = math.sqrt(1e7 / 0.02)
     assert steel.frequency_ratio == pytest.approx(own / omega, rel=1e-14)
     assert steel.damping_ratio == pytest.approx(zeta)
@@ -71,7 +72,8 @@ def test_every_family_has_its_errors_margins_and_orbit(steel):
         assert one.impact_speed == pytest.approx(speed, rel=1e-12)
         for name, standing in one.standing.items():
             assert standing.exists and standing.is_stable and standing.is_admissible, name
-            fall, rise = 1 - standing.saddle_node_margin, 1 + standing.period_doubling_margin
+            fall = 1 - standing.saddle_node_margin
+            rise = 1 + standing.period_doubling_margin
             assert standing.saddle_node == pytest.approx(0.8 * fall, rel=1e-14)
             assert standing.period_doubling == pytest.approx(0.8 * rise, rel=1e-14)
 
@@ -110,7 +112,8 @@ def test_choosing_inverts_the_exact_error():
 def test_permanent_contact(release):
     # Λ_SD by Eq. 33, and without tension over the force that damping adds to the spring's.
     found = design(**UNIT | {"n": 2}, stiffness=36.0, acceleration=0.9, release=release)
-    zeta, x = found.damping_ratio, 1 / 36
+    zeta = found.damping_ratio
+    x = 1 / 36
     expected = math.sqrt((1 - x) ** 2 + 4 * zeta**2 * x)
     if release is Release.FORCE:
         expected /= math.sqrt(1 + 4 * zeta**2 * x)
@@ -139,7 +142,8 @@ def test_a_contact_that_cannot_pull_has_another_restitution():
 
 
 def test_ways_to_say_the_same():
-    one, omega = design(**STEEL, restitution=0.85, n=1), 2 * math.pi * 50
+    one = design(**STEEL, restitution=0.85, n=1)
+    omega = 2 * math.pi * 50
     for rate in ({"angular_frequency": f"{omega!r} rad/s"}, {"period": "20 ms"}):
         other = design(
             **rate, mass=0.02, table_amplitude=0.8 * 9.80665 / omega**2, gravity="1 g", n=1,
@@ -162,7 +166,8 @@ def test_a_hertz_contact_without_loss_keeps_its_energy():
     expected = 2.868 * (0.004**2 / (5e-3 * 115e9**2 * speed)) ** 0.2
     assert found.contact_time == pytest.approx(expected, rel=2e-4)
     # ½ m v² = (8/15) E* √R p^{5/2} and F = (4/3) E* √R p^{3/2}, but for the weight.
-    rigid, depth = 4 / 3 * 115e9 * math.sqrt(5e-3), one.greatest_compression
+    rigid = 4 / 3 * 115e9 * math.sqrt(5e-3)
+    depth = one.greatest_compression
     weight = 2 * 0.004 * 9.80665 / one.peak_force
     assert 0.4 * rigid * depth**2.5 == pytest.approx(0.002 * one.impact_speed**2, rel=2 * weight)
     assert one.peak_force == pytest.approx(rigid * depth**1.5, rel=1e-9)
@@ -212,7 +217,8 @@ def test_an_orbit_that_is_stable_in_the_simple_model_alone():
 
 @pytest.mark.parametrize("name", ["exists", "is_stable", "is_admissible"])
 def test_each_disagreement_alone_is_not_good_enough(steel, name):
-    one, need = steel.orbits[1], dataclasses.replace(steel.needed, tolerance=0.007)
+    one = steel.orbits[1]
+    need = dataclasses.replace(steel.needed, tolerance=0.007)
     assert assessed(one, need, 71.0).is_good_enough
     simple = dataclasses.replace(one.standing["restitution"], **{name: False})
     other = dataclasses.replace(one, standing=one.standing | {"restitution": simple})

@@ -1,6 +1,4 @@
-"""What a design says in sentences: the motion of the ball, the verdict on the restitution model with
-its reason, and further notes.
-"""
+"""What a design says in sentences: the motion, the verdict with its reason, and further notes."""
 
 import math
 from collections.abc import Mapping

@@ -15,6 +15,7 @@ from bouncing_ball.beyond.error_law import (
     small_parameter,
 )
 from bouncing_ball.beyond.exhibits.random_orbits import random_orbits
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.paper.comparison.errors import OF_IMPACTS, Quantity
 from bouncing_ball.paper.contact.damping import Release, damping_ratio, restitution_coefficient
@@ -73,7 +74,7 @@ def factors(seed, size, release):
     """|error - K|/(S δ) of random orbits with ϖ from 1 to 10⁴, and the arguments of the law."""
     n, zeta, lam, rng = random_orbits(size, seed, release)
     contact = SpringDamper(10 ** rng.uniform(0, 4, size), zeta, release)
-    arguments = n, Signature(contact)(), lam
+    arguments = n, Signature(LinearLaw.of(contact))(), lam
     return remainder(*arguments, errors(contact, n, lam)[0]), arguments
 
 

@@ -5,6 +5,7 @@ import pytest
 
 from bouncing_ball.beyond.corrected import branch as corrected_branch
 from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
@@ -13,7 +14,7 @@ from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 def constants(contact):
     """τ₁, σ₂, μ and the delay of the release with the load."""
     omega, zeta, lag = contact.frequency_ratio, contact.damping_ratio, contact.lag
-    instant = Signature(contact)()
+    instant = Signature(LinearLaw.of(contact))()
     r, delay, duration = instant.restitution, instant.delay, instant.duration
     weight = (1 + r) / omega**2
     rho = lag - 2 * zeta * (1 + r) / omega
@@ -50,7 +51,7 @@ def test_it_is_of_third_order(n, zeta, release):
     errors = []
     for omega in (80.0, 160.0, 320.0):
         contact = SpringDamper(omega, zeta, release)
-        exact, instant = SpringDamperModel(contact), Signature(contact)()
+        exact, instant = SpringDamperModel(contact), Signature(LinearLaw.of(contact))()
         tau, squared, jerk, later = constants(contact)
         low = corrected_branch.saddle_node(n, instant)
         high, _ = corrected_branch.period_doubling(n, instant)

@@ -52,6 +52,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.beyond.corrected.instant import Instant
 from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.paper.comparison.errors import OF_IMPACTS, Quantity
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
@@ -263,7 +264,7 @@ def coefficients(
     -1.0
     """
     contact = SpringDamper(1.0, np.asarray(damping_ratio, dtype=float), release)
-    return first_order(n, Signature(contact)(), amplitude)
+    return first_order(n, Signature(LinearLaw.of(contact))(), amplitude)
 
 
 def law_thresholds(

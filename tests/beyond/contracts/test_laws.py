@@ -14,17 +14,17 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from bouncing_ball.beyond.corrected.signature import Signature, free_impact
-from bouncing_ball.beyond.history import history
 from bouncing_ball.beyond.laws.collocation import contacts, path
+from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.beyond.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball.beyond.laws.hertzian import HuntCrossley, KuwabaraKono, LinearHuntCrossley, Tsuji
 from bouncing_ball.beyond.laws.impedance import Impedance
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.laws.permanent_contact import permanent_contact
 from bouncing_ball.beyond.simulation import next_impact, simulate
 from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.contact.law import ContactLaw
 from bouncing_ball.paper.contact.permanent_contact import permanent_contact_threshold
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.motion.history import history
 from bouncing_ball.paper.motion.sequence import Status
 
 
@@ -48,9 +48,9 @@ class Spring(ContactLaw):
 LAWS = {
     "linear": Spring(10.0, 0.136),
     "linear, force release": Spring(10.0, 0.136, Release.FORCE),
-    "undamped": SpringDamper(3.0, 0.0),
-    "soft": SpringDamper(1.5, 0.1),
-    "stiff, force release": SpringDamper(2e3, 0.05, "force"),
+    "undamped": LinearLaw(3.0, 0.0),
+    "soft": LinearLaw(1.5, 0.1),
+    "stiff, force release": LinearLaw(2e3, 0.05, "force"),
     "hunt-crossley": HuntCrossley(1e3, 0.08),
     "hunt-crossley, strong": HuntCrossley(1e3, 0.5),
     "tsuji": Tsuji(1e3, 0.3),
@@ -233,9 +233,9 @@ def test_the_tabulated_signature_is_the_impact_itself(law):
 @every_release
 def test_the_defaults_are_the_closed_forms(release):
     """Contact, signature, permanent contact, motion and history of the spring-damper."""
-    exact, law = SpringDamper(20.0, 0.13, release), Spring(20.0, 0.13, release)
+    exact, law = LinearLaw(20.0, 0.13, release), Spring(20.0, 0.13, release)
     for zeta in (0.0, 0.05, 0.4, 0.8):
-        closed = Signature(SpringDamper(20.0, zeta, release))(1.0)
+        closed = Signature(LinearLaw(20.0, zeta, release))(1.0)
         computed = Signature(Spring(20.0, zeta, release))([0.1, 3.3])
         for name in ("delay", "restitution", "duration"):
             np.testing.assert_allclose(getattr(computed, name), getattr(closed, name), rtol=1e-12)

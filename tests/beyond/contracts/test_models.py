@@ -20,11 +20,11 @@ from bouncing_ball.beyond.corrected.signature import Signature
 from bouncing_ball.beyond.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball.beyond.laws.hertzian import KuwabaraKono, Tsuji
 from bouncing_ball.beyond.laws.impedance import Impedance
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.laws.orbits import LawModel
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.numerics.corrector import NewtonSettings, newton
 from bouncing_ball.numerics.events import vanishing
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.model import ImpactModel
 from bouncing_ball.paper.orbits.orbit import OBSERVABLES
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
@@ -32,9 +32,9 @@ from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.orbits.stability import Bifurcation, Side
 
 EPS = np.finfo(float).eps
-SOFT = SpringDamper.from_restitution(0.85, 4.0)
-STIFF = SpringDamper.from_restitution(0.65, 50.0)
-PUSHING = SpringDamper.from_restitution(0.65, 20.0, "force")
+SOFT = LinearLaw.from_restitution(0.85, 4.0)
+STIFF = LinearLaw.from_restitution(0.65, 50.0)
+PUSHING = LinearLaw.from_restitution(0.65, 20.0, "force")
 HERTZ = {
     "tsuji": Tsuji(500.0, 0.3),
     "kuwabara-kono": KuwabaraKono(2e3, 0.008),
@@ -53,7 +53,7 @@ MODELS = {
     "soft contact": SpringDamperModel(SOFT),
     "stiff contact": SpringDamperModel(STIFF),
     "force release": SpringDamperModel(PUSHING),
-    "undamped contact": SpringDamperModel(SpringDamper(10.0, 0.0)),
+    "undamped contact": SpringDamperModel(LinearLaw(10.0, 0.0)),
     "corrected": CorrectedModel.of_contact(STIFF),
     "corrected, force release": CorrectedModel.of_contact(PUSHING),
     "corrected, kuwabara-kono": CorrectedModel(Signature(HERTZ["kuwabara-kono"])),

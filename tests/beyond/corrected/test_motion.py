@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.simulation import next_impact, simulate
 from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.motion.sequence import Status
 
 RELEASES = list(Release)
@@ -42,7 +42,7 @@ def states(seed):
 def errors(release, omega, change=lambda law: law):
     """Of the next impact's time and velocity, one of each ball."""
     lam, phase, velocity, zeta = states(5)
-    contact = SpringDamper(np.full(BALLS, omega), zeta, release)
+    contact = LinearLaw(np.full(BALLS, omega), zeta, release)
     exact = next_impact(contact, lam, phase, velocity)
     got = next_impact(change(Signature(contact)), lam, phase, velocity)
     return np.hypot(got.time - exact.time, got.relative_velocity - exact.relative_velocity)
@@ -80,7 +80,7 @@ def test_the_order_is_lost_with_any_of_the_numbers(release, change):
 
 def test_without_delay_and_load_it_is_the_restitution_model():
     lam, phase, velocity, _ = states(7)
-    law = Changed(Signature(SpringDamper(5.0, 0.2)), delay=0.0, load=0.0, duration=0.0)
+    law = Changed(Signature(LinearLaw(5.0, 0.2)), delay=0.0, load=0.0, duration=0.0)
     r = float(law(1.0).restitution)
     got = next_impact(law, lam, phase, velocity)
     known = next_impact(r, lam, phase, velocity)
@@ -92,7 +92,7 @@ def test_a_ball_above_the_table_at_every_landing():
     rng = np.random.default_rng(10)
     lam, phase = rng.uniform(0.3, 4, 300), rng.uniform(-3, 3, 300)
     velocity = lam * np.cos(phase) - rng.uniform(0.1, 6, 300)
-    run = simulate(Signature(SpringDamper(20.0, 0.1)), lam, phase, velocity, 300)
+    run = simulate(Signature(LinearLaw(20.0, 0.1)), lam, phase, velocity, 300)
     there = np.isfinite(run.time)
     assert np.all(run.relative_velocity[there] <= 0)
     assert np.all(np.diff(run.time, axis=0)[there[1:]] > 0)
@@ -103,7 +103,7 @@ def test_a_ball_above_the_table_at_every_landing():
 
 def test_a_weak_impact_stays_and_lifts_off():
     """A ball set down gently stays until the table recedes with more than gravity."""
-    law = Signature(SpringDamper(20.0, 0.3))
+    law = Signature(LinearLaw(20.0, 0.3))
     resting = simulate(law, 0.9, 0.0, 0.9 - 1e-3, 5)
     assert resting.status == Status.PERMANENT_CONTACT and resting.impacts == 1
     lifted = simulate(law, 1.5, 0.0, 1.5 - 1e-3, 2)
@@ -112,5 +112,5 @@ def test_a_weak_impact_stays_and_lifts_off():
     assert lifted.relative_bounce_velocity[0] == 0
     # In the exact contact the same ball leaves at the same moment, but for the
     # spring, which lets go where its force has gone: a delay of order 1/ϖ.
-    exact = simulate(SpringDamper(20.0, 0.3), 1.5, 0.0, 1.5 - 1e-3, 1)
+    exact = simulate(LinearLaw(20.0, 0.3), 1.5, 0.0, 1.5 - 1e-3, 1)
     assert float(exact.contact_duration[0]) == pytest.approx(phase, abs=4 / 20)

@@ -6,8 +6,8 @@ import pytest
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
 from bouncing_ball.beyond.corrected.signature import Signature
 from bouncing_ball.beyond.laws.hertzian import Tsuji
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.orbit import OBSERVABLES
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.orbits.stability import Side
@@ -17,7 +17,7 @@ COMPARED = (*OBSERVABLES[1:], "bounce_height")
 
 
 def models(omega, zeta, release):
-    contact = SpringDamper(omega, zeta, release)
+    contact = LinearLaw(omega, zeta, release)
     return CorrectedModel.of_contact(contact), SpringDamperModel(contact)
 
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.simulation import simulate
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
 
 RELEASES = list(Release)
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
@@ -20,13 +20,13 @@ def test_flights_continued_into_any_contact_meet_at_the_centroid_of_its_force():
         for _ in range(50):
             omega, zeta = 10 ** rng.uniform(0.3, 2), rng.uniform(0, 0.6)
             lam, phase, speed = rng.uniform(0, 3), rng.uniform(-3, 3), rng.uniform(2, 9)
-            contact = SpringDamper(omega, zeta, release)
+            contact = LinearLaw(omega, zeta, release)
             impact = simulate(contact, lam, phase, lam * np.cos(phase) - speed, 1)
             end, left = float(impact.contact_duration[0]), float(impact.release_displacement[0])
             if not np.isfinite(end):
                 continue
             time = end * (NODES + 1) / 2
-            flow = SpringDamper(omega, zeta).flow(time, 0.0, -speed, phase, lam)
+            flow = LinearLaw(omega, zeta).flow(time, 0.0, -speed, phase, lam)
             force = contact.force(-flow.displacement, -flow.velocity)
             impulse = np.sum(WEIGHTS * force)
             centroid = np.sum(WEIGHTS * force * time) / impulse
@@ -42,7 +42,7 @@ def test_flights_continued_into_any_contact_meet_at_the_centroid_of_its_force():
 
 @pytest.mark.parametrize("release", RELEASES)
 def test_an_elastic_contact_is_symmetric(release):
-    instant = Signature(SpringDamper(np.array([2.0, 50.0]), 0.0, release))()
+    instant = Signature(LinearLaw(np.array([2.0, 50.0]), 0.0, release))()
     np.testing.assert_array_equal(instant.delay, instant.duration / 2)
     np.testing.assert_array_equal(instant.restitution, 1.0)
     np.testing.assert_array_equal(instant.load, 0.0)
@@ -50,4 +50,4 @@ def test_an_elastic_contact_is_symmetric(release):
 
 def test_an_overdamped_contact_has_no_signature(refusal):
     with refusal(ModelError, "damping ratio ζ = 1.0", "below 1"):
-        Signature(SpringDamper(10.0, 1.0))
+        Signature(LinearLaw(10.0, 1.0))

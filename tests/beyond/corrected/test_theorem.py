@@ -5,12 +5,12 @@ import pytest
 
 from bouncing_ball.beyond.corrected.signature import Signature
 from bouncing_ball.beyond.laws.law_of_impact import law_of_impact
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.laws.orbits import LawModel
 from bouncing_ball.beyond.laws.registry import LAWS
 from bouncing_ball.beyond.simulation import simulate
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.contact.damping import damping_ratio
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
 
 R, LAM = 0.7, 1.3
 NAMES = ("displacement", "force", "hunt-crossley", "tsuji", "kuwabara-kono")
@@ -21,8 +21,8 @@ def law(name, duration):
     """The contact with r and D at the speed 4."""
     if name not in ("displacement", "force"):
         return law_of_impact(LAWS[name], R, duration, 4.0)
-    unit = SpringDamper(1.0, damping_ratio(R, name), name)
-    return SpringDamper(unit.free_duration / duration, unit.damping_ratio, name)
+    unit = LinearLaw(1.0, damping_ratio(R, name), name)
+    return LinearLaw(unit.free_duration / duration, unit.damping_ratio, name)
 
 
 def images(law, amplitude, phase, speed):

@@ -8,13 +8,13 @@ from scipy.special import beta
 
 from bouncing_ball.beyond.corrected.signature import free_impact
 from bouncing_ball.beyond.laws.collocation import Start, _left, _Motion, contacts, march, path
+from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.beyond.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball.beyond.laws.hertzian import HuntCrossley, KuwabaraKono, Tsuji, tsuji_damping
 from bouncing_ball.beyond.laws.impedance import Impedance
 from bouncing_ball.beyond.laws.law_of_impact import law_of_impact
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.errors import ModelError
-from bouncing_ball.paper.contact.law import ContactLaw
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
 
 
 @pytest.mark.parametrize("law", [HuntCrossley(50.0, 0.0), Tsuji(50.0, 0.0), KuwabaraKono(50.0, 0)])
@@ -61,7 +61,7 @@ def test_a_load_holds_an_undamped_impedance_up_to_the_level():
 
 
 def test_a_release_at_the_surface_is_there_exactly():
-    end = contacts(SpringDamper(10.0, 0.1), np.linspace(1, 5, 999), 0.3, 1.2)
+    end = contacts(LinearLaw(10.0, 0.1), np.linspace(1, 5, 999), 0.3, 1.2)
     assert np.isfinite(end.duration).all() and not end.penetration.any()
 
 
@@ -115,7 +115,7 @@ def test_contacts_of_a_ball_coming_to_rest_end_despite_rounding():
 
 def test_a_long_contact_ends_in_company_of_many_that_go_on():
     # Panels that end a contact take twice as many sweeps as the others, which are 99 in 100 here.
-    zero, one, law = np.zeros(300), np.ones(300), SpringDamper(20.0, 1.3)
+    zero, one, law = np.zeros(300), np.ones(300), LinearLaw(20.0, 1.3)
     start = Start(zero, one, zero, np.where(np.arange(300) < 3, 1.36, 0.3), one)
     together = march(law, start, 60).duration
     alone = march(law, Start(*(x[:3] for x in start)), 60).duration

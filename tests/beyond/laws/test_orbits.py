@@ -11,18 +11,18 @@ from bouncing_ball.beyond.error_law import first_order
 from bouncing_ball.beyond.laws.hertzian import HuntCrossley, KuwabaraKono, Tsuji
 from bouncing_ball.beyond.laws.impedance import Impedance
 from bouncing_ball.beyond.laws.law_of_impact import law_of_impact
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.laws.orbits import LawModel, law_at_orbit
 from bouncing_ball.beyond.laws.registry import LAWS, law_named
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.paper.comparison.errors import OF_ORBITS, relative
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.restitution_branch import rigid_speed
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
 from bouncing_ball.paper.orbits.spring_damper_bifurcations import orbits_at as by_formula
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.orbits.stability import Side
 
-KINDS = [SpringDamper, *LAWS.values()]
+KINDS = [LinearLaw, *LAWS.values()]
 every_kind = pytest.mark.parametrize("kind", KINDS, ids=[kind.name for kind in KINDS])
 
 
@@ -120,7 +120,7 @@ def test_just_above_the_fold_two_orbits_part_as_the_root_of_the_distance(r, dura
 @pytest.mark.parametrize(("amplitude", "number"), [(0.9, 3), (3.0, 1)])
 def test_a_branch_that_turns_again_is_followed_to_all_of_its_orbits(amplitude, number):
     """Also from far above the fold, which is at Λ = 0.18: the closed form has the same orbits."""
-    contact = SpringDamper(2.0, 0.05)
+    contact = LinearLaw(2.0, 0.05)
     found = by_branch(SpringDamperModel(contact), 1, amplitude)
     known = by_formula(contact, 1, amplitude)
     assert found.contact_duration.shape == (number,)

@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.paper.contact.law import ContactLaw
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
@@ -76,15 +75,6 @@ def linear_instant(contact: SpringDamper) -> Instant:
     loss = 2 * np.asarray(contact.damping_ratio) / contact.frequency_ratio
     load = (1 - r) * through - loss * (1 + r)
     return Instant(r * through / (1 + r), r + 0 * duration, load, duration)
-
-
-def known_instant(law: ContactLaw) -> Instant | None:
-    """The signature of a contact law if it has a closed form and is the same at every speed,
-    otherwise None.
-    """
-    if isinstance(law, SpringDamper):
-        return linear_instant(law)
-    return law.signature
 
 
 def rigid_instant(restitution: ArrayLike, slope: ArrayLike, speed: ArrayLike) -> Instant:

@@ -23,6 +23,7 @@ from bouncing_ball.beyond.corrected.impact import Hit, impact, meeting
 from bouncing_ball.beyond.corrected.instant import Instant
 from bouncing_ball.beyond.corrected.motion import CorrectedDynamics
 from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.orbit import Orbit, check_index
 from bouncing_ball.paper.orbits.stability import Side
@@ -38,8 +39,8 @@ class CorrectedOrbit(Orbit):
     Examples
     --------
     >>> from bouncing_ball.beyond.corrected.signature import Signature
-    >>> from bouncing_ball.paper.contact.spring_damper import SpringDamper
-    >>> orbit = CorrectedOrbit.at(1, Signature(SpringDamper(np.pi, 0.0)), 0.8, np.pi / 2)
+    >>> from bouncing_ball.beyond.laws.linear import LinearLaw
+    >>> orbit = CorrectedOrbit.at(1, Signature(LinearLaw(np.pi, 0.0)), 0.8, np.pi / 2)
     >>> float(orbit.bounce_velocity) == np.pi - 0.5, round(float(orbit.phase) - np.pi / 2, 12)
     (True, -0.5)
     """
@@ -182,7 +183,7 @@ class CorrectedModel(ContinuedModel):
         ModelError
             If ζ ≥ 1.
         """
-        return ConstantCorrectedModel(Signature(contact))
+        return ConstantCorrectedModel(Signature(LinearLaw.of(contact)))
 
     def signature(self, speed: ArrayLike) -> Instant:
         """The signature at impact speeds v > 0."""

@@ -51,18 +51,24 @@ of r.
 All quantities are dimensionless; all functions broadcast.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
-from bouncing_ball.beyond.corrected.instant import Instant, known_instant
+from bouncing_ball.beyond.corrected.instant import Instant
+from bouncing_ball.beyond.corrected.motion import CorrectedDynamics
 from bouncing_ball.beyond.laws.collocation import contacts
 from bouncing_ball.errors import ModelError
 from bouncing_ball.numerics.arrays import Batch
-from bouncing_ball.paper.contact.law import ContactLaw
+
+if TYPE_CHECKING:
+    from bouncing_ball.beyond.laws.contact_law import ContactLaw
 
 # Width of a panel in ln v, and its number of nodes: with a pole of r(v) at ln v = x ± iπ, like
 # that of 1/(1 + C v), the interpolation error is of the order of 6⁻²⁴.
@@ -98,7 +104,7 @@ def free_impact(law: ContactLaw, speed: ArrayLike) -> Instant:
     (1.0, 0.0)
     """
     v = np.asarray(speed, dtype=float)
-    known = known_instant(law)
+    known = law.signature
     if known is not None:
         return Instant(*(x + 0 * v for x in known))
     end = contacts(law, v, weight=0.0)
@@ -148,8 +154,8 @@ class Signature(Batch):
     The force of an elastic contact is symmetric in time, so that its centroid is in the middle and
     the effects of the load cancel:
 
-    >>> from bouncing_ball.paper.contact.spring_damper import SpringDamper
-    >>> instant = Signature(SpringDamper(2.0, 0.0))()
+    >>> from bouncing_ball.beyond.laws.linear import LinearLaw
+    >>> instant = Signature(LinearLaw(2.0, 0.0))()
     >>> float(instant.delay) == np.pi / 4, float(instant.restitution), float(instant.load)
     (True, 1.0, 0.0)
 
@@ -168,12 +174,22 @@ class Signature(Batch):
     @cached_property
     def _known(self):
         # Cached, because a simulation needs it at every impact.
-        return known_instant(self.law)
+        return self.law.signature
 
     @property
     def is_constant(self) -> bool:
         """Whether the signature is the same at every impact speed, as for a linear contact."""
         return self._known is not None
+
+    def dynamics(self, amplitude: ArrayLike) -> CorrectedDynamics:
+        """The impacts and flights of the corrected model on a table of amplitude Λ.
+
+        Raises
+        ------
+        ModelError
+            If Λ is outside its range.
+        """
+        return CorrectedDynamics.of(self, amplitude)
 
     @property
     def label(self) -> str:

@@ -27,15 +27,20 @@ The derivatives of the end follow from the linearised equations of the collocati
 system for each panel.
 """
 
+from __future__ import annotations
+
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.beyond.laws.scales import scales
+from bouncing_ball.beyond.laws.slopes import Slopes, slopes_of
 from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.contact.law import ContactLaw, Slopes, slopes_of
+
+if TYPE_CHECKING:
+    from bouncing_ball.beyond.laws.contact_law import ContactLaw
 
 # Nodes of a panel without and with derivatives. The Legendre coefficients of the derivatives are
 # larger by about the number of nodes, so that more nodes are needed for the same error of the end.
@@ -205,17 +210,14 @@ class _Panel(NamedTuple):
     turned: np.ndarray
 
 
-def _some(which, *rows: Any) -> Any:
-    """Some of the contacts, from laws and from tuples of arrays; contacts are the last axis.
+def _some(which: np.ndarray, law: ContactLaw, *rows: Any) -> Any:
+    """The laws of some of the contacts, and tuples of arrays whose last axis is the contacts.
 
     The indices are in ascending order, so that all of them select the rows themselves.
     """
     if which.size == rows[-1][0].shape[-1]:
-        return rows
-    return tuple(
-        x.take(which) if isinstance(x, ContactLaw) else x._make(y[..., which] for y in x)
-        for x in rows
-    )
+        return law, *rows
+    return law.take(which), *(row._make(x[..., which] for x in row) for row in rows)
 
 
 def _lever(m: int, root, out=None):
@@ -545,10 +547,10 @@ def march(
     --------
     After a quarter of an oscillation the ball is at the depth v/ϖ:
 
-    >>> from bouncing_ball.paper.contact.spring_damper import SpringDamper
+    >>> from bouncing_ball.beyond.laws.linear import LinearLaw
     >>> zero = np.zeros(1)
     >>> start = Start(zero, np.full(1, np.pi), zero, zero, zero)
-    >>> march(SpringDamper(np.pi, 0.0), start, until=np.full(1, 0.5)).penetration.round(12).tolist()
+    >>> march(LinearLaw(np.pi, 0.0), start, until=np.full(1, 0.5)).penetration.round(12).tolist()
     [1.0]
     """
     np.empty(_KEPT, dtype=np.int8)
@@ -677,8 +679,8 @@ def integrals(
     --------
     A fast ball hardly feels gravity, so that p = 1000 sin πt, whose integral is 2000/π:
 
-    >>> from bouncing_ball.paper.contact.spring_damper import SpringDamper
-    >>> law = SpringDamper(np.pi, 0.0)
+    >>> from bouncing_ball.beyond.laws.linear import LinearLaw
+    >>> law = LinearLaw(np.pi, 0.0)
     >>> sunk, moved = integrals(law, 1.0, 0.0, 1000.0 * np.pi, 0.0, 0.0)
     >>> round(float(sunk) / 1000, 3), float(moved)
     (0.637, 0.0)
@@ -713,8 +715,8 @@ def path(
 
     Examples
     --------
-    >>> from bouncing_ball.paper.contact.spring_damper import SpringDamper
-    >>> law = SpringDamper(np.pi, 0.0)
+    >>> from bouncing_ball.beyond.laws.linear import LinearLaw
+    >>> law = LinearLaw(np.pi, 0.0)
     >>> depth, rate = path(law, contacts(law, np.pi, weight=0.0), 0.5, np.pi, weight=0.0)
     >>> round(float(depth), 12), abs(round(float(rate), 12))
     (1.0, 0.0)

@@ -60,9 +60,9 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.beyond.laws.contact_law import ContactLaw, Unit
 from bouncing_ball.errors import require
-from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.contact.law import ContactLaw, Unit, check_damping, check_positive
+from bouncing_ball.paper.contact.damping import Release, check_damping, check_positive
 
 
 @dataclass(frozen=True, repr=False)

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.beyond.corrected.signature import free_impact
+from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.errors import ModelError, require
-from bouncing_ball.paper.contact.law import ContactLaw
 
 Law = TypeVar("Law", bound=ContactLaw)
 # Groups tried in turn until r is below the required one, and the absolute error of the result.

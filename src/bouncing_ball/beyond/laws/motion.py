@@ -2,7 +2,10 @@ r"""Contacts of finite duration, with any law: contact, release, flight, landing
 
 A state on the Poincaré section is (φ, δ′) at the start of contact. If the release is
 where the force vanishes, a contact may also start at δ < 0, see
-:mod:`bouncing_ball.paper.motion.resumption`; each such start counts as an impact.
+:mod:`bouncing_ball.paper.motion.resumption`; each such start counts as an impact. If a law has no
+lag κ, κ follows from the slopes of its grip at the release, and the grip of slow balls is sampled
+until they are above the table; a return of the grip between two samples would be missed. A ball
+that meets no force at p = 0, because the load pulls it, is followed in the same way while it sinks.
 
 The motion in contact is computed by :func:`bouncing_ball.beyond.laws.collocation.march`; for an
 underdamped spring-damper it has a closed form (:mod:`bouncing_ball.paper.motion.linear_contact`).
@@ -11,8 +14,10 @@ permanent if a steady contact at Λ does not release the ball, which is no proof
 otherwise. Landings are proved to be the first for every law.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -20,21 +25,34 @@ from bouncing_ball.beyond.corrected.signature import Signature
 from bouncing_ball.beyond.laws.collocation import MOST_PANELS, Start, march
 from bouncing_ball.beyond.laws.permanent_contact import holds
 from bouncing_ball.beyond.laws.scales import rest
+from bouncing_ball.beyond.laws.slopes import slopes_of
 from bouncing_ball.numerics.elementary import table
+from bouncing_ball.numerics.first_zero import first_zero
 from bouncing_ball.paper.motion.deviations import Deviation, Jacobian
 from bouncing_ball.paper.motion.dynamics import Departure, Impact
-from bouncing_ball.paper.motion.flight import Flight
-from bouncing_ball.paper.motion.resumption import ResumingDynamics
+from bouncing_ball.paper.motion.flight import Flight, Rise
+from bouncing_ball.paper.motion.resumption import (
+    ResumingDynamics,
+    leaves_fast,
+    of_slow_balls,
+)
 from bouncing_ball.paper.motion.sequence import Status
+
+if TYPE_CHECKING:
+    from bouncing_ball.beyond.laws.contact_law import ContactLaw
 
 # Panels of two periods of the table on a contact with up to some twenty oscillations in one, and
 # the depth of the ball at rest, over g/Ω², from which on a contact has so few.
-_SOME_PANELS, _COMPLIANT = 400, 1 / 400
+_SOME_PANELS = 400
+_COMPLIANT = 1 / 400
+# Number of samples of the grip of a slow ball, and of bisections for the time of its return.
+_SAMPLES = 65
+_BISECTIONS = 60
 
 
 @dataclass(frozen=True, repr=False)
 class ContactDynamics(ResumingDynamics):
-    """Contacts of any :class:`~bouncing_ball.paper.contact.law.ContactLaw`, and flights."""
+    """Contacts of any :class:`~bouncing_ball.beyond.laws.contact_law.ContactLaw`, and flights."""
 
     # The collocation divides its contacts into blocks itself. Large blocks here cost less, because
     # the few long contacts are then computed together.
@@ -82,6 +100,12 @@ class ContactDynamics(ResumingDynamics):
         free = Signature(self.law)(np.maximum(-impact.velocity, np.finfo(float).tiny)).duration
         return departure._replace(sticks=duration > 2 * free)
 
+    def resumption(self, flight: Flight) -> tuple[np.ndarray, np.ndarray]:
+        """A time before which the balls have not landed, and whether their contact resumes then."""
+        if self.law.lag is not None:
+            return super().resumption(flight)
+        return sampled_resumption(flight, self.law)
+
     def jacobian(
         self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
     ) -> Jacobian:
@@ -95,3 +119,42 @@ class ContactDynamics(ResumingDynamics):
             for c, k, sign in ((0, 1, 1), (1, 0, -1))
         )
         return self.landed(released, departure, after, passed)
+
+
+def sampled_resumption(flight: Flight, law: ContactLaw) -> tuple[np.ndarray, np.ndarray]:
+    """The result of :func:`~bouncing_ball.paper.motion.resumption.resumption` for a law without a
+    lag, whose grip is sampled along the flights of slow balls.
+    """
+    depth = -flight.displacement
+    rate = -flight.velocity
+    slopes = slopes_of(law.grip, depth, rate)
+    lag = slopes.by_rate / slopes.by_penetration
+    by_load = law.loaded_grip(depth, rate, 1.0) - law.loaded_grip(depth, rate, 0.0)
+    fast = leaves_fast(flight, lag, by_load / slopes.by_penetration)
+    return of_slow_balls(
+        flight, np.flatnonzero(~fast), lambda slow, which: _sampled(slow, law.take(which))
+    )
+
+
+def _sampled(flight: Flight, law: ContactLaw) -> tuple[np.ndarray, np.ndarray]:
+    """The time at which the grip returns or δ reaches 0, and whether the grip returns first."""
+
+    def held(time):
+        displacement, rate, second, _ = flight.gap(time)
+        return law.loaded_grip(np.maximum(-displacement, 0.0), -rate, -second) > 0
+
+    rise = first_zero(Rise(flight), np.zeros_like(flight.velocity))
+    share = np.linspace(0, 1, _SAMPLES)[1:-1, np.newaxis]
+    now = held(share * rise.time)
+    found = now.any(axis=0)
+    # The first sample with a positive grip, and the sample before it.
+    right = np.where(found, share[now.argmax(axis=0), 0], 1.0) * rise.time
+    left = np.maximum(right - rise.time / (_SAMPLES - 1), 0.0)
+    for _ in range(_BISECTIONS):
+        middle = (left + right) / 2
+        now = held(middle)
+        left = np.where(now, left, middle)
+        right = np.where(now, middle, right)
+    # For a ball that falls back before it reaches δ = 0 the grip returns at its top at the latest.
+    back = found | rise.ended | (rise.rate <= 0)
+    return np.where(back, right, rise.time), back

@@ -31,8 +31,10 @@ motions at the same Λ. A solution is refused if a ball is still held at a large
 All quantities are dimensionless.
 """
 
+from __future__ import annotations
+
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -40,7 +42,9 @@ from numpy.typing import ArrayLike
 from bouncing_ball.beyond.laws.scales import depth, rest
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.contact.law import ContactLaw
+
+if TYPE_CHECKING:
+    from bouncing_ball.beyond.laws.contact_law import ContactLaw
 
 _PERIOD = 2 * np.pi
 # The largest size of the grid and the tolerance of the relative residual. The error of Λ is below
@@ -145,8 +149,8 @@ def permanent_contact(law: ContactLaw) -> float:
     --------
     Λ_SD = √13/4 for ϖ = 2 and ζ = 1/2:
 
-    >>> from bouncing_ball.paper.contact.spring_damper import SpringDamper
-    >>> round(permanent_contact(SpringDamper(2.0, 0.5)) / 13**0.5, 15)
+    >>> from bouncing_ball.beyond.laws.linear import LinearLaw
+    >>> round(permanent_contact(LinearLaw(2.0, 0.5)) / 13**0.5, 15)
     0.25
     """
     if law.permanent_contact is not None:

@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.beyond.laws.collocation import integrals
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.long_run.motions import Motions
 from bouncing_ball.beyond.simulation import Law, dynamics_of
 from bouncing_ball.numerics.elementary import table
@@ -110,7 +111,12 @@ def over_steps(
         held, moved = -change(w_rate), change(w * w) / 2
         if law is not None:
             held, moved = (held, moved) - integrals(
-                law, duration, -gap[0], -rate[0], phase[0], amplitude
+                LinearLaw.of(law) if isinstance(law, SpringDamper) else law,
+                duration,
+                -gap[0],
+                -rate[0],
+                phase[0],
+                amplitude,
             )
     low, velocity = (gap + w)[1], rate + w_rate
     height = held + (low + (velocity[1] / 2 - flown / 6) * flown) * flown

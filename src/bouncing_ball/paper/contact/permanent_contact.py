@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import require
-from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.contact.law import check_damping, check_positive
+from bouncing_ball.paper.contact.damping import Release, check_damping, check_positive
 
 
 def permanent_contact_threshold(

@@ -7,13 +7,14 @@ import pytest
 from scipy.special import beta
 
 from bouncing_ball.beyond.corrected.signature import free_impact
-from bouncing_ball.beyond.laws.collocation import Start, _left, _Motion, contacts, march, path
+from bouncing_ball.beyond.laws.collocation import contacts, march, path
 from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.beyond.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball.beyond.laws.hertzian import HuntCrossley, KuwabaraKono, Tsuji, tsuji_damping
 from bouncing_ball.beyond.laws.impedance import Impedance
 from bouncing_ball.beyond.laws.law_of_impact import law_of_impact
 from bouncing_ball.beyond.laws.linear import LinearLaw
+from bouncing_ball.beyond.laws.panel import Balls, Start, Sweeps
 from bouncing_ball.errors import ModelError
 
 
@@ -91,12 +92,13 @@ def test_a_contact_is_found_whatever_its_neighbours():
 )
 def test_the_end_of_a_panel_is_sought_with_the_derivatives_of_what_vanishes_there(law, until):
     start = Start(*np.array([0.0, 2.0, 0.4, 1.2, 1.0])[:, np.newaxis])
-    now, m = _Motion(*np.ones((8, 1))), law.root
+    sweeps = Sweeps(law, start, Balls(*np.ones((8, 1))), until)
+    m = law.root
     state = np.array([[0.3], [-0.7], [0.2]])
     slope = np.array([[-0.7], [-1.7], [m * 0.3 ** (m - 1)]])
     # dq/ds is p′ and dt/ds is λ, and p″λ is any number. Central differences, 10⁻¹² + ε/10⁻⁶.
     (ahead, _), (back, _), (_, found) = (
-        _left(law, m, start, now, until, *(state + h * slope), slope[1]) for h in (1e-6, -1e-6, 0)
+        sweeps.left(*(state + h * slope), slope[1]) for h in (1e-6, -1e-6, 0)
     )
     np.testing.assert_allclose(found, (ahead - back) / 2e-6, rtol=1e-8)
 

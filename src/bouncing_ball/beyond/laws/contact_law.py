@@ -22,8 +22,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.beyond.corrected.instant import Instant
-from bouncing_ball.beyond.laws.collocation import Start, states
+from bouncing_ball.beyond.laws.collocation import states
 from bouncing_ball.beyond.laws.motion import ContactDynamics
+from bouncing_ball.beyond.laws.panel import Start
 from bouncing_ball.errors import ModelError
 from bouncing_ball.numerics.arrays import Batch
 from bouncing_ball.paper.contact.contact import Span

@@ -22,10 +22,10 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from bouncing_ball.beyond.corrected.signature import Signature
-from bouncing_ball.beyond.laws.collocation import MOST_PANELS, Start, march
+from bouncing_ball.beyond.laws.collocation import MOST_PANELS, march
+from bouncing_ball.beyond.laws.panel import Start, slopes_of
 from bouncing_ball.beyond.laws.permanent_contact import holds
 from bouncing_ball.beyond.laws.scales import rest
-from bouncing_ball.beyond.laws.slopes import slopes_of
 from bouncing_ball.numerics.elementary import table
 from bouncing_ball.numerics.first_zero import first_zero
 from bouncing_ball.paper.motion.deviations import Deviation, Jacobian

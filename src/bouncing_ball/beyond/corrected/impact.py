@@ -59,6 +59,7 @@ def impact(signature: Signature, amplitude: ArrayLike, phase: ArrayLike, arrival
     --------
     An elastic ball on a table at rest, with a contact of duration 1:
 
+    >>> from bouncing_ball.beyond.corrected.signature import Signature
     >>> from bouncing_ball.beyond.laws.linear import LinearLaw
     >>> hit = impact(Signature(LinearLaw(np.pi, 0.0)), 0.0, 0.0, -2.0)
     >>> float(hit.velocity), float(hit.depth)
@@ -66,12 +67,21 @@ def impact(signature: Signature, amplitude: ArrayLike, phase: ArrayLike, arrival
     """
     lam, psi, p = (np.asarray(x, dtype=float) for x in (amplitude, phase, arrival))
     sine, cosine = sine_and_cosine(psi)
-    x, y = lam * cosine, lam * sine
+    x = lam * cosine
+    y = lam * sine
     speed = x - p
     instant = signature(speed)
     depth = speed * instant.delay
     after = x + instant.restitution * speed + instant.load * (1 - y)
-    return Hit(psi, p, speed, depth, y - depth, after, instant)
+    return Hit(
+        phase=psi,
+        arrival=p,
+        speed=speed,
+        depth=depth,
+        height=y - depth,
+        velocity=after,
+        instant=instant,
+    )
 
 
 def meeting(
@@ -81,6 +91,7 @@ def meeting(
 
     Examples
     --------
+    >>> from bouncing_ball.beyond.corrected.signature import Signature
     >>> from bouncing_ball.beyond.laws.linear import LinearLaw
     >>> psi, p = meeting(Signature(LinearLaw(np.pi, 0.0)), 0.0, 0.25, -1.5)
     >>> float(psi), float(p)
@@ -103,6 +114,7 @@ def start_of(amplitude: ArrayLike, hit: Hit) -> tuple[np.ndarray, np.ndarray]:
 
     Examples
     --------
+    >>> from bouncing_ball.beyond.corrected.signature import Signature
     >>> from bouncing_ball.beyond.laws.linear import LinearLaw
     >>> hit = impact(Signature(LinearLaw(np.pi, 0.0)), 0.0, 0.75, -2.0)
     >>> [float(x) for x in start_of(0.0, hit)]

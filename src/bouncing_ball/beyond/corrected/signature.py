@@ -106,7 +106,7 @@ def free_impact(law: ContactLaw, speed: ArrayLike) -> Instant:
     v = np.asarray(speed, dtype=float)
     known = law.signature
     if known is not None:
-        return Instant(*(x + 0 * v for x in known))
+        return known.at(v)
     end = contacts(law, v, weight=0.0)
     if not np.all(np.isfinite(end.duration)):
         lost = np.broadcast_to(v, end.duration.shape)[np.isnan(end.duration)][0]
@@ -114,14 +114,22 @@ def free_impact(law: ContactLaw, speed: ArrayLike) -> Instant:
             f"{law.name}: a free impact of speed {lost:.3g} does not end within a dozen "
             "oscillations, because the law is adhesive or damped too strongly"
         )
-    by_speed, by_load = end.jacobian[..., 2, 1], end.jacobian[..., 2, 3]
+    by_speed = end.jacobian[..., 2, 1]
+    by_load = end.jacobian[..., 2, 3]
     r = -end.rate / v
     delay = (end.penetration + end.duration * r * v) / ((1 + r) * v)
     load = -by_load + (end.duration - delay) + delay * by_speed
-    return Instant(delay, r, load, end.duration, d_restitution=(-by_speed - r) / v)
+    return Instant(
+        delay=delay,
+        restitution=r,
+        load=load,
+        duration=end.duration,
+        d_restitution=(-by_speed - r) / v,
+    )
 
 
 def _width(law: ContactLaw) -> float:
+    """Width of a panel of the interpolation, in ln v."""
     return _WIDTH / _PARTS if law.has_kink and law.lag is None else _WIDTH
 
 
@@ -172,7 +180,7 @@ class Signature(Batch):
             raise ModelError("the signature of a contact law is tabulated for one law, not many")
 
     @cached_property
-    def _known(self):
+    def _known(self) -> Instant | None:
         # Cached, because a simulation needs it at every impact.
         return self.law.signature
 
@@ -202,10 +210,10 @@ class Signature(Batch):
         Its fields have the shape to which the speeds and the law broadcast.
         """
         v = np.asarray(speed, dtype=float)
-        if self.is_constant:
-            none = 0 * v
-            return Instant(*(x + none for x in self._known))
-        v, width = np.clip(v, _SLOWEST, _FASTEST), _width(self.law)
+        if self._known is not None:
+            return self._known.at(v)
+        v = np.clip(v, _SLOWEST, _FASTEST)
+        width = _width(self.law)
         log = np.log(v) / width
         number = np.floor(np.where(np.isnan(log), 0.0, log)).astype(int)
         values = np.full((2, 4, *v.shape), np.nan)
@@ -216,4 +224,14 @@ class Signature(Batch):
             x = 2 * (log[here] - panel) - 1
             values[0, :, here] = chebyshev.chebval(x, coefficients).T
             values[1, :, here] = (chebyshev.chebval(x, slopes) / v[here]).T
-        return Instant(*values[0], *values[1, :3])
+        delay, restitution, load, duration = values[0]
+        d_delay, d_restitution, d_load, _ = values[1]
+        return Instant(
+            delay=delay,
+            restitution=restitution,
+            load=load,
+            duration=duration,
+            d_delay=d_delay,
+            d_restitution=d_restitution,
+            d_load=d_load,
+        )

@@ -73,9 +73,16 @@ class ContactDynamics(ResumingDynamics):
         free = (depth == 0) & (grip < 0) & self.law.feels_load
         # No contact is computed for these balls, because none of its panels would be accepted.
         rate = np.where(free, np.nan, -impact.velocity)
-        start = Start(depth, rate, impact.phase, self.amplitude * one, one)
+        start = Start(
+            depth=depth,
+            rate=rate,
+            phase=impact.phase,
+            amplitude=self.amplitude * one,
+            weight=one,
+        )
         compliant = not self.law.shape and rest(self.law) > _COMPLIANT
-        for panels in (_SOME_PANELS, MOST_PANELS)[not compliant :]:
+        attempts = (_SOME_PANELS, MOST_PANELS) if compliant else (MOST_PANELS,)
+        for panels in attempts:
             end = march(self.law, start, panels, differentiate=differentiate)
             lost = np.flatnonzero(np.isnan(end.duration) & ~free)
             held = [k for k in lost if holds(self.law.take(k), float(start.amplitude[k]))]
@@ -83,22 +90,24 @@ class ContactDynamics(ResumingDynamics):
                 break
         # A ball that is released below the table's level may move down, if the load pulls it.
         rate = np.where(end.penetration > 0, -end.rate, np.maximum(-end.rate, 0.0))
-        for column, value in zip(end[:3], (0 * depth, depth, -impact.velocity), strict=True):
-            column[free] = value[free]
+        duration = np.where(free, 0.0, end.duration)
+        displacement = np.where(free, -depth, -end.penetration)
         rate = np.where(free, impact.velocity, rate)
-        phase, lost = impact.phase + end.duration, np.isnan(end.duration)
-        state = -end.penetration, rate, *table(phase, self.amplitude)
-        status = np.where(lost, Status.UNDECIDED, Status.BOUNCING)
+        phase = impact.phase + duration
+        x, y = table(phase, self.amplitude)
+        no_end = np.isnan(duration)
+        status = np.where(no_end, Status.UNDECIDED, Status.BOUNCING)
         status[held] = Status.PERMANENT_CONTACT
-        duration = np.where(lost, np.inf, end.duration)
-        flight = Flight(*state, self.amplitude)
+        flight = Flight(displacement, rate, x, y, self.amplitude)
+        duration = np.where(no_end, np.inf, duration)
         departure = Departure(phase, duration, flight, status, by=end.jacobian)
         if not differentiate:
             return departure
         # An undamped linear contact that starts at zero speed under a constant load lasts exactly
         # twice as long as a free impact. A longer contact therefore ends because the load changes.
-        free = Signature(self.law)(np.maximum(-impact.velocity, np.finfo(float).tiny)).duration
-        return departure._replace(sticks=duration > 2 * free)
+        speed = np.maximum(-impact.velocity, np.finfo(float).tiny)
+        of_free_impact = Signature(self.law)(speed).duration
+        return departure._replace(sticks=duration > 2 * of_free_impact)
 
     def resumption(self, flight: Flight) -> tuple[np.ndarray, np.ndarray]:
         """A time before which the balls have not landed, and whether their contact resumes then."""
@@ -112,11 +121,14 @@ class ContactDynamics(ResumingDynamics):
         """Derivative of the map over contact and flight; NaN if either impact is a resumption, or
         if the ball meets no force.
         """
-        known, by = (impact.displacement >= 0) & (after.displacement >= 0), departure.by
+        known = (impact.displacement >= 0) & (after.displacement >= 0)
         after = after._replace(velocity=np.where(known, after.velocity, np.nan))
+        by_phase = departure.by[:, :, 0]
+        # v = -δ′, so that the derivatives with respect to δ′ have the other sign.
+        by_speed = departure.by[:, :, 1]
         released = (
-            Deviation(k + sign * by[:, 0, c], -sign * by[:, 1, c], -sign * by[:, 2, c])
-            for c, k, sign in ((0, 1, 1), (1, 0, -1))
+            Deviation(1 + by_phase[:, 0], -by_phase[:, 1], -by_phase[:, 2]),
+            Deviation(-by_speed[:, 0], by_speed[:, 1], by_speed[:, 2]),
         )
         return self.landed(released, departure, after, passed)
 

@@ -199,7 +199,8 @@ def law_at_orbit(
         missed = -orbit.relative_impact_velocity - speed
         slope = np.full_like(taken, -1.0)
         np.divide(missed - missed_before, speed - before, out=slope, where=speed != before)
-        before, missed_before = speed, missed
+        before = speed
+        missed_before = missed
         speed = speed - missed / np.where(np.abs(slope + 1) < 0.5, slope, -1.0)
         if np.all(np.abs(missed) <= _SETTLED * speed):
             return law_of_impact(kind, restitution, taken, speed)

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 _ITERATIONS = 40
 _ENOUGH = 1e-3
 # Steps of ln p: the one for the difference quotient, and the longest of Newton's method.
-_DIFFERENCE, _LONGEST = 1e-4, 10.0
+_DIFFERENCE = 1e-4
+_LONGEST = 10.0
 
 
 class Scales(NamedTuple):
@@ -43,7 +44,8 @@ def depth(law: ContactLaw, rate: np.ndarray, power: float, wanted: np.ndarray) -
         p = np.exp(log)
         return np.log(law.force(p, rate)) + power * log
 
-    log, target = np.zeros_like(wanted), np.log(wanted)
+    log = np.zeros_like(wanted)
+    target = np.log(wanted)
     with np.errstate(all="ignore"):
         for _ in range(_ITERATIONS):
             missing = logarithm(log) - target

@@ -65,8 +65,10 @@ class Responses(NamedTuple):
 def _damped(s, a, q, w):
     """e^{-as} times C and S, for any sign of w = q - a²."""
     root = np.sqrt(np.abs(w))
-    decay, safe = np.exp(-a * s), np.where(root > 0, root, 1.0)
-    c, sn = decay * np.cos(root * s), decay * np.where(root > 0, np.sin(root * s) / safe, s)
+    decay = np.exp(-a * s)
+    safe = np.where(root > 0, root, 1.0)
+    c = decay * np.cos(root * s)
+    sn = decay * np.where(root > 0, np.sin(root * s) / safe, s)
     over = w < 0
     if np.any(over):
         # The slow exponent √-w - a is written as -q/(√-w + a), which has no cancellation and,
@@ -96,9 +98,11 @@ def _integrated(nu, s, a, q, w):
 
 def _exponential(nu, s, a, q, w, impulse: Response) -> Response:
     """The response to e^{νs} from rest; real for ν = 0."""
-    g, p = impulse.value, nu * nu + 2 * a * nu + q
+    g = impulse.value
+    p = nu * nu + 2 * a * nu + q
     delicate = np.abs(p) * s * s < _CANCELLATION
-    p, wave = np.where(delicate, 1.0, p), np.exp(nu * s)
+    p = np.where(delicate, 1.0, p)
+    wave = np.exp(nu * s)
     h = np.asarray((wave - impulse.rate - (nu + 2 * a) * g) / p)
     which = np.flatnonzero(delicate)
     for start in range(0, which.size, _BLOCK):
@@ -130,7 +134,13 @@ def responses(time: ArrayLike, frequency_ratio: ArrayLike, damping_ratio: ArrayL
     args = (np.asarray(x, dtype=float) for x in (time, frequency_ratio, damping_ratio))
     s, omega, zeta = np.broadcast_arrays(*args)
     # The product form of w keeps its digits near ζ = 1, where q - a² would lose them.
-    a, q, w = zeta * omega, omega * omega, omega * omega * (1 - zeta) * (1 + zeta)
+    a = zeta * omega
+    q = omega * omega
+    w = omega * omega * (1 - zeta) * (1 + zeta)
     c, g = _damped(s, a, q, w)
     impulse = Response(g, c - a * g)
-    return Responses(impulse, *(_exponential(nu, s, a, q, w, impulse) for nu in (0, 1j)))
+    return Responses(
+        impulse=impulse,
+        gravity=_exponential(0, s, a, q, w, impulse),
+        table=_exponential(1j, s, a, q, w, impulse),
+    )

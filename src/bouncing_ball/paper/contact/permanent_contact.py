@@ -61,7 +61,8 @@ def permanent_contact_minimum(
     >>> round(float(permanent_contact_minimum(0.6).threshold), 15)
     0.96
     """
-    zeta, sine = np.asarray(damping_ratio, dtype=float), Release.of(release).sine(damping_ratio)
+    zeta = np.asarray(damping_ratio, dtype=float)
+    sine = Release.of(release).sine(zeta)
     centre = 1 - 2 * (zeta - sine) * (zeta + sine)
     allowed = "in [0, 1/√2): the permanent-contact threshold has no minimum over ϖ there"
     require((zeta >= 0) & (centre > 0), zeta, "damping ratio ζ", allowed)

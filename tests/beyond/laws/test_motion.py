@@ -9,10 +9,9 @@ from bouncing_ball.beyond.laws.impedance import Impedance
 from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.laws.motion import sampled_resumption
 from bouncing_ball.beyond.simulation import next_impact, simulate
-from bouncing_ball.numerics.elementary import table
 from bouncing_ball.paper.contact.damping import Release, damping_ratio
 from bouncing_ball.paper.contact.permanent_contact import permanent_contact_threshold
-from bouncing_ball.paper.motion.flight import Flight, land
+from bouncing_ball.paper.motion.flight import Flight, land, table
 from bouncing_ball.paper.motion.history import history
 from bouncing_ball.paper.motion.resumption import resumption
 from bouncing_ball.paper.motion.sequence import Status

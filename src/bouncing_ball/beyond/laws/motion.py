@@ -26,11 +26,10 @@ from bouncing_ball.beyond.laws.collocation import MOST_PANELS, march
 from bouncing_ball.beyond.laws.panel import Start, slopes_of
 from bouncing_ball.beyond.laws.permanent_contact import holds
 from bouncing_ball.beyond.laws.scales import rest
-from bouncing_ball.numerics.elementary import table
 from bouncing_ball.numerics.first_zero import first_zero
 from bouncing_ball.paper.motion.deviations import Deviation, Jacobian
 from bouncing_ball.paper.motion.dynamics import Departure, Impact
-from bouncing_ball.paper.motion.flight import Flight, Rise
+from bouncing_ball.paper.motion.flight import Flight, Rise, table
 from bouncing_ball.paper.motion.resumption import (
     ResumingDynamics,
     leaves_fast,

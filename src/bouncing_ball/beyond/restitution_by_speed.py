@@ -63,7 +63,9 @@ class RestitutionLaw(Batch, ABC):
 
 
 class RestitutionLawDynamics(RestitutionDynamics):
-    """Impacts and flights with a restitution coefficient r(v); ``law`` is a :class:`RestitutionLaw`."""
+    """Impacts and flights with a restitution coefficient r(v); ``law`` is the
+    :class:`RestitutionLaw`.
+    """
 
     @classmethod
     def of(cls, law: RestitutionLaw, amplitude: ArrayLike) -> Self:

@@ -43,9 +43,10 @@ def turn(angle):
 
 @pytest.mark.parametrize("release", RELEASES)
 @pytest.mark.parametrize("case", CASES)
-def test_twenty_impacts_of_a_taylor_integrator(case, release, taylor_ball):
+def test_twenty_impacts_agree_with_a_taylor_integrator(case, release, taylor_ball):
     contact, lam, orbit = build(case, release)
-    phase, velocity = float(orbit.phase) + 0.1, float(orbit.impact_velocity) - 0.05
+    phase = float(orbit.phase) + 0.1
+    velocity = float(orbit.impact_velocity) - 0.05
     reference = taylor_ball(release is Release.FORCE)
     expected = reference.impacts(lam, case[2], contact.damping_ratio, phase, velocity, 20)
     got = simulate(contact, lam, phase, velocity, 20)
@@ -59,7 +60,9 @@ def test_twenty_impacts_of_a_taylor_integrator(case, release, taylor_ball):
 @pytest.mark.parametrize(
     ("omega", "zeta", "factor"), [(1.4, 0.3, 1.03), (0.7, 0.5, 1.1), (2.0, 0.5, 1.01)]
 )
-def test_contacts_that_resume_below_the_level(omega, zeta, factor, taylor_ball):
+def test_contacts_that_resume_below_the_level_agree_with_a_taylor_integrator(
+    omega, zeta, factor, taylor_ball
+):
     """Force release, little above the threshold of permanent contact: the table loses the
     ball and gets it back before it has come up to its level."""
     contact = LinearLaw(omega, zeta, Release.FORCE)
@@ -82,7 +85,7 @@ class _Unknown(LinearLaw):
         return self.force(penetration, rate)
 
 
-def test_what_comes_first_after_a_release_below_the_level():
+def test_after_a_release_below_the_level_the_first_of_landing_and_resumption_is_found():
     """A ball that is let go comes up to the level, or the force returns before."""
     rng = np.random.default_rng(1)
     size = 4000
@@ -91,9 +94,11 @@ def test_what_comes_first_after_a_release_below_the_level():
         *rng.uniform(0.05, [[0.95], [4]], (2, size)),
     )
     x, y = table(rng.uniform(-np.pi, np.pi, size), lam)
-    contact, rate = LinearLaw(omega, zeta, Release.FORCE), 10 ** rng.uniform(-3, 0.7, size)
+    contact = LinearLaw(omega, zeta, Release.FORCE)
+    rate = 10 ** rng.uniform(-3, 0.7, size)
     let_go = rate + contact.lag * (y - 1) > 0
-    contact, size = contact[let_go], let_go.sum()
+    contact = contact[let_go]
+    size = let_go.sum()
     flight = Flight(*(z[let_go] for z in (-2 * zeta / omega * rate, rate, x, y, lam)))
     time, resumed = resumption(flight, contact.lag)
     assert 0.1 < resumed.mean() < 0.9
@@ -150,7 +155,7 @@ def test_permanent_contact_begins_and_ends_at_its_threshold(omega, zeta, release
     assert sequence.impacts[1] == 40
 
 
-def test_cycle_of_a_permanent_contact():
+def test_after_a_permanent_contact_there_is_no_next_impact():
     cycle = next_impact(LinearLaw(10.0, 0.1), 0.2, [0.0, 1.0], [0.0, -50.0])
     assert np.isnan(cycle.phase[0]) and cycle.time[0] == np.inf
     assert np.isfinite(cycle.phase[1])
@@ -159,11 +164,13 @@ def test_cycle_of_a_permanent_contact():
 
 
 @pytest.mark.parametrize("release", RELEASES)
-def test_ensembles_equal_single_runs_exactly(release):
+def test_a_ball_among_many_moves_exactly_as_alone(release):
     rng = np.random.default_rng(3)
     size = 15
-    lam, omega = rng.uniform(0.5, 4.0, size), rng.uniform(1.5, 50.0, size)
-    zeta, phase = rng.uniform(0.0, 0.4, size), rng.uniform(-3.0, 3.0, size)
+    lam = rng.uniform(0.5, 4.0, size)
+    omega = rng.uniform(1.5, 50.0, size)
+    zeta = rng.uniform(0.0, 0.4, size)
+    phase = rng.uniform(-3.0, 3.0, size)
     velocity = lam * np.cos(phase) - rng.uniform(0.0, 5.0, size)
     many = simulate(LinearLaw(omega, zeta, release), lam, phase, velocity, 30)
     for k in range(size):
@@ -174,7 +181,7 @@ def test_ensembles_equal_single_runs_exactly(release):
             np.testing.assert_array_equal(getattr(one, name), getattr(many, name)[:, k], name)
 
 
-def test_blocks_make_no_difference():
+def test_the_size_of_blocks_changes_nothing():
     """More balls than a block holds, in a shape of two dimensions."""
     rng = np.random.default_rng(4)
     phase = rng.uniform(-3.0, 3.0, (2, 9000))
@@ -196,7 +203,9 @@ def test_blocks_make_no_difference():
     speed=st.floats(0.0, 8.0),
     release=st.sampled_from(RELEASES),
 )
-def test_the_ball_is_where_its_state_says(lam, omega, zeta, phase, speed, release):
+def test_a_ball_is_unloaded_in_flight_and_loaded_in_contact(
+    lam, omega, zeta, phase, speed, release
+):
     """In flight above the table or, after a release by force, unloaded; in contact below
     it or, by force, loaded."""
     contact = LinearLaw(omega, zeta, release)
@@ -215,7 +224,7 @@ def test_the_ball_is_where_its_state_says(lam, omega, zeta, phase, speed, releas
     assert np.all(loaded[~flying] <= noise)
 
 
-def test_a_stiff_undamped_contact_ends_in_the_end():
+def test_a_ball_that_rides_the_table_for_thousands_of_oscillations_leaves_it():
     """A ball that hardly moves rides the table for thousands of oscillations of the contact,
     in which nothing decays, before it leaves; no zero is passed over on the way."""
     omega, lam, phase = 3000.0, 0.999, 2.0
@@ -231,7 +240,7 @@ def test_a_stiff_undamped_contact_ends_in_the_end():
 
 
 @pytest.mark.parametrize("detuning", [0.0, 1e-9, 1e-6, 1e-3])
-def test_next_to_the_undamped_resonance(detuning):
+def test_next_to_the_undamped_resonance_a_contact_ends_where_its_flow_does(detuning):
     """There the steady part is infinite, and near it all digits are lost against the transient."""
     contact = LinearLaw(1 + detuning, 0.0)
     impact = simulate(contact, 1.2, 0.4, 1.2 * np.cos(0.4) - 3, 1)
@@ -241,7 +250,7 @@ def test_next_to_the_undamped_resonance(detuning):
     assert abs(end.velocity - impact.relative_bounce_velocity[0]) < 1e-12
 
 
-def test_nearly_critical_damping():
+def test_the_cycle_has_a_smooth_limit_at_critical_damping():
     """ζ → 1: the bound by half a free period is of no use, and not needed."""
     zeta = np.array([0.99, 0.99999, 1 - 1e-9])
     cycle = next_impact(LinearLaw(3.0, zeta), 2.0, -0.5, -3.0)

@@ -29,8 +29,9 @@ every_kind = pytest.mark.parametrize("kind", KINDS, ids=[kind.name for kind in K
 @pytest.mark.parametrize(
     "law", [HuntCrossley(1e3, 0.08), HuntCrossley(1e3, 0.5), KuwabaraKono(2e3, 0.008)]
 )
-def test_the_speed_of_the_restitution_models_orbits(law):
-    model, n = LawModel(law), np.array([1, 2, 5])
+def test_the_impact_speed_of_the_restitution_models_orbits_solves_its_equation(law):
+    model = LawModel(law)
+    n = np.array([1, 2, 5])
     speed, _ = restitution_speed(n, model)
     # The last step of Newton's method is below 1e-3, and leaves its square.
     period = (1 + model.signature(speed).restitution) * speed
@@ -42,7 +43,7 @@ SELDOM = [pytest.param(x, marks=pytest.mark.long) for x in LAWS if x not in ("ts
 
 
 @pytest.mark.parametrize("name", ["tsuji", "impedance", "by depth", *SELDOM])
-def test_the_orders_of_the_corrected_model_and_the_error_law(name):
+def test_the_corrected_model_and_the_error_law_leave_errors_of_second_order(name):
     errors = []
     for duration in (0.04, 0.02):
         if name == "by depth":
@@ -71,14 +72,14 @@ def test_the_orders_of_the_corrected_model_and_the_error_law(name):
 
 
 @every_kind
-def test_a_law_by_its_restitution_and_duration(kind):
+def test_a_law_has_the_restitution_and_duration_that_were_asked_for(kind):
     for r, duration, speed in ((0.3, 0.2, 1.0), (0.95, 1e-3, 7.0), (1.0, 0.1, 3.0)):
         impact = free_impact(law_of_impact(kind, r, duration, speed), speed)
         assert float(impact.restitution) == pytest.approx(r, rel=1e-13)
         assert float(impact.duration) == pytest.approx(duration, rel=1e-13)
 
 
-def test_what_is_refused():
+def test_an_unknown_law_and_an_impossible_impact_are_refused():
     with pytest.raises(ModelError, match=r"unknown contact law 'rubber': one of hunt-crossley"):
         law_named("rubber")
     for r, duration, speed in ((0.0, 1.0, 1.0), (1.1, 1.0, 1.0), (0.5, 0.0, 1.0), (0.5, 1.0, -1)):
@@ -88,7 +89,7 @@ def test_what_is_refused():
         law_of_impact(HuntCrossley, 1e-6, 0.1, 1.0)
 
 
-def test_far_above_the_fold_orbits_are_walked_to_or_said_not_to_be_found(monkeypatch):
+def test_far_above_the_fold_an_orbit_is_followed_to_or_reported_as_not_found(monkeypatch):
     model = LawModel(Tsuji(1e3, 0.3))
     orbit = model.require_orbit(20, 300.0, Side.UNSTABLE)
     # The contact is one of the collocation's; the equations hold to rounding of z ≈ Λ.

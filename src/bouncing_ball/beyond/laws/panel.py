@@ -472,7 +472,7 @@ class Sweeps:
         good &= error <= self.kind.spectrum
         released = self.last & ~turned
         surfaced = surfaced & ~turned
-        # Just below p = 0, at a rounding error, the positive grip would take hold of the ball again.
+        # Just below p = 0, at a rounding error, the positive grip would hold the ball again.
         self.root[-1, released & surfaced] = 0.0
         return Panel(
             root=self.root,

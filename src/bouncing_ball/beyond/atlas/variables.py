@@ -5,7 +5,8 @@ from bouncing_ball.datasets.variables import Variable
 VARIABLES = {
     "row": Variable("row of tiles: a release rule, an index n and a range of r"),
     "position": Variable(
-        "place in the stable range of the restitution model, from its saddle-node at 0 to its period doubling at 1",
+        "place in the stable range of the restitution model, from its saddle-node at 0 to its "
+        "period doubling at 1",
         symbol="(Λ - Λ_SN)/(Λ_PD - Λ_SN)",
     ),
     "threshold_bin": Variable(

@@ -3,13 +3,20 @@
 import xarray as xr
 from matplotlib.figure import Figure
 
-from bouncing_ball.beyond.exhibits.engine_steps_figures import _by_quantity
 from bouncing_ball.datasets.selection import each
-from bouncing_ball.drawing.canvas import canvas, legend_below, logarithmic
+from bouncing_ball.drawing.canvas import canvas, legend_below, logarithmic, panels_by_quantity
 from bouncing_ball.drawing.labels import note, parameters
 from bouncing_ball.drawing.style import COLOURS, CONTACT, GUIDE, MODELS, TABLE, Look
-from bouncing_ball.drawing.tables import Columns, Table, at, entry_of, quantity, table, value
-from bouncing_ball.paper.exhibits.error_thresholds_figures import _threshold
+from bouncing_ball.drawing.tables import (
+    Columns,
+    Table,
+    at,
+    entry_of,
+    quantity_in_words,
+    table,
+    threshold,
+    value,
+)
 
 
 def meeting_flights(data: xr.Dataset) -> Figure:
@@ -46,7 +53,7 @@ def meeting_flights(data: xr.Dataset) -> Figure:
 
 def orders(data: xr.Dataset) -> Figure:
     """ext_orders: errors of both models along ϖ, with the slopes 1 and 2."""
-    figure, axes_of = _by_quantity(data, 4.2, r"frequency ratio $\varpi$")
+    figure, axes_of = panels_by_quantity(data, 4.2, r"frequency ratio $\varpi$")
     ratio = data.frequency_ratio.values
     for quantity, axes in axes_of.items():
         for order, model in enumerate(data["model"].values, 1):
@@ -73,9 +80,9 @@ def ext_orders(data: xr.Dataset) -> Table:
     C is the corrected model's error times ϖ²; the last column is the ϖ at which
     the restitution model's error changes its sign.
     """
-    found = _threshold(".4g", "all", "none")
+    found = threshold(".4g", "all", "none")
     columns: Columns = {
-        "quantity": quantity,
+        "quantity": quantity_in_words,
         "K": value("coefficient", ".4f"),
         "C": value("second_order", ".4f"),
         "law": value("law_threshold", ".4g"),

@@ -45,7 +45,8 @@ VARIABLES = {
         "standard deviation of the relative errors of the greatest heights", budget=1e-12, scale="1"
     ),
     "step_scatter": Variable(
-        "root mean square of the relative errors of the greatest heights, simulated with contacts at random fractions of a time step",
+        "root mean square of the relative errors of the greatest heights, simulated with "
+        "contacts at random fractions of a time step",
         budget=1e-11,
     ),
     "bounce_time": Variable(
@@ -73,7 +74,8 @@ VARIABLES = {
     "scheme": Variable("time stepping of engines"),
     "steps": Variable("time steps in a contact", symbol="N"),
     "step_error": Variable(
-        "root mean square of the relative errors of the greatest heights, simulated with the r of N steps",
+        "root mean square of the relative errors of the greatest heights, simulated with the "
+        "r of N steps",
         budget=1e-11,
     ),
     "steps_in_bounce": Variable("time steps in a period of the orbit"),

@@ -1,8 +1,4 @@
-"""Errors of the restitution and of the corrected model, quantity by quantity.
-
-The errors are drawn for linear contacts (ext_orders), for contacts of other laws (ext_laws) and
-together with those of physics engines (ext_engines).
-"""
+"""Errors of physics engines over their time steps, beside those of the models (ext_engines)."""
 
 import numpy as np
 import xarray as xr
@@ -11,7 +7,7 @@ from matplotlib.figure import Figure
 
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.drawing.canvas import WIDE, canvas, legend_below
-from bouncing_ball.drawing.labels import QUANTITIES, number, parameters
+from bouncing_ball.drawing.labels import number, parameters
 from bouncing_ball.drawing.style import COLOURS, MODELS, Look
 from bouncing_ball.drawing.tables import Columns, Table, at, entry_of, table, text, value
 
@@ -71,18 +67,6 @@ def _draw_steps(axes: Axes, part: xr.Dataset, scheme: str) -> None:
     if scheme == "semi-implicit Euler":
         name = f"${number(float(f'{end:.2g}'))}$ times fewer steps"
         axes.text(0.04, 0.06, f"corrected: {name}", transform=axes.transAxes, fontsize=8)
-
-
-def _by_quantity(data: xr.Dataset, height: float, xlabel: str) -> tuple[Figure, dict[str, Axes]]:
-    """Two rows of three panels, one for the errors of each quantity, with labels at the outside."""
-    figure, slots = canvas(WIDE, height, 2, 3, sharex=True, sharey=True)
-    for axes in slots.flat:
-        axes.set(xlabel=xlabel, ylabel="relative error")
-        axes.label_outer()
-    by_quantity = dict(zip(map(str, data["quantity"].values), slots.flat, strict=False))
-    for quantity, axes in by_quantity.items():
-        axes.set_title(QUANTITIES[quantity])
-    return figure, by_quantity
 
 
 _OF_ENGINES = "free_steps measured_restitution contact_steps height_scatter".split()

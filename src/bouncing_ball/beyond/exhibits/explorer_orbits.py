@@ -17,6 +17,7 @@ from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.orbit import OBSERVABLES
 
 VARIABLES = {
+    "end_speed": Variable("speed of the ball towards the table at that impact", symbol="-δ′"),
     "trace": Variable("trace of the monodromy", symbol="tr"),
     "determinant": Variable("determinant of the monodromy", symbol="det"),
     "restitution_trace": Variable("trace of the monodromy, restitution model", symbol="tr"),

@@ -16,7 +16,8 @@ from bouncing_ball.paper.contact.damping import Release
 VARIABLES = {
     "motion_group": Variable("motions by what the simple model's ball ends on"),
     "agreement": Variable(
-        "share of nodes at which the contact's ball ends on a motion of the same kind and period as the simple model's"
+        "share of nodes at which the contact's ball ends on a motion of the same kind and "
+        "period as the simple model's"
     ),
     "agreement_low": Variable("lower limit of the confidence interval of this share"),
     "agreement_high": Variable("upper limit of the confidence interval of this share"),

@@ -29,7 +29,8 @@ from bouncing_ball.datasets.variables import Variable, describe, described
 from bouncing_ball.paper.contact.damping import Release, damping_ratio, restitution_coefficient
 from bouncing_ball.paper.contact.oscillator import responses
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.exhibits.error_thresholds import ErrorsAlongRatio, thresholds_along
+from bouncing_ball.paper.exhibits.error_thresholds import ErrorsAlongRatio
+from bouncing_ball.paper.exhibits.errors_along_ratio import errors_along_ratio
 from bouncing_ball.paper.exhibits.lowest_period_doubling import lowest_along_ratio
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.orbits.stability import Bifurcation
@@ -93,7 +94,16 @@ def _thresholds(wanted: RuleThresholds) -> xr.Dataset:
         "force release, its own r": (Release.FORCE, own),
     }
     found = [
-        thresholds_along(wanted, rule, wanted.quantities, [wanted.tolerance], simple)
+        errors_along_ratio(
+            r,
+            rule,
+            n=wanted.n,
+            amplitude=wanted.amplitude,
+            ratios=wanted.frequency_ratio.grid(),
+            quantities=wanted.quantities,
+            tolerances=[wanted.tolerance],
+            compared_restitution=simple,
+        )
         .isel(tolerance=0, drop=True)
         .drop_dims("frequency_ratio")
         .assign_coords(reading=reading)

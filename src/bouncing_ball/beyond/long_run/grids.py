@@ -3,6 +3,7 @@
 All quantities are dimensionless, and phases are in radians.
 """
 
+import math
 from typing import Any
 
 import numpy as np
@@ -12,8 +13,29 @@ from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.motions import Kind, Motions
 from bouncing_ball.datasets import CASE
 from bouncing_ball.datasets.labelled import Grid, Labelled
-from bouncing_ball.datasets.variables import describe
+from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball.errors import ParameterError
+
+VARIABLES = {
+    "digits_lost": Variable(
+        "decimal digits of the start that the motion has lost on the way", budget=math.inf
+    ),
+    "end_velocity": Variable("velocity of the ball before that impact"),
+    "start": Variable("start of a ball at one amplitude"),
+    "impact": Variable("impact of the motion on which the ball ends"),
+    "impact_phase": Variable(
+        "phase of the table at an impact of the motion on which the ball ends",
+        symbol="φ",
+        units="rad",
+    ),
+    "impact_speed": Variable(
+        "speed of the ball towards the table at an impact of the motion on which it ends"
+    ),
+    "motion_kind": Variable("kind of one of the motions on which balls end"),
+    "motion_periods": Variable("periods of the table after which one of the motions repeats"),
+    "motion_impacts": Variable("impacts until one of the motions repeats"),
+    "share_error": Variable("standard error of a share"),
+}
 
 MOST_BALLS = 20_000_000
 """Largest number of balls that are followed at the same time; they take some gigabytes."""
@@ -52,7 +74,7 @@ def _columns(found: Motions, dims: tuple[str, ...]) -> dict[str, Any]:
 
 
 def _described(data: dict[str, Any], coords: dict[str, Any], **attributes: Any) -> Any:
-    return describe(Labelled(data, coords)).assign_attrs(attributes)
+    return describe(Labelled(data, coords), VARIABLES).assign_attrs(attributes)
 
 
 def motions(grid: Grid, model: Any, impacts: int) -> Labelled:

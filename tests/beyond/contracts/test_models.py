@@ -304,6 +304,15 @@ def test_both_sides_are_among_all_orbits_at_an_amplitude(name):
     assert model.orbits(1, 1e-3).size == 0
 
 
+@every_model
+def test_a_side_may_be_given_by_its_name(name):
+    model = MODELS[name]
+    for side in Side:
+        named = model.orbit(1, 0.9, str(side))
+        assert named.distance(model.orbit(1, 0.9, side)) == 0
+        assert model.absence(1, 0.9, str(side)) == model.absence(1, 0.9, side)
+
+
 @pytest.mark.parametrize("name", [name for name in DISSIPATIVE if MODELS[name].has_closed_form])
 def test_a_closed_form_is_what_the_continuation_finds(name):
     # What a model overrides against what it would inherit.

@@ -79,6 +79,12 @@ def test_a_law_has_the_restitution_and_duration_that_were_asked_for(kind):
         assert float(impact.duration) == pytest.approx(duration, rel=1e-13)
 
 
+def test_a_law_at_an_orbit_is_the_same_for_a_side_and_its_name():
+    of_side = law_at_orbit(HuntCrossley, 0.65, 0.1, 1, 1.0, Side.UNSTABLE)
+    assert law_at_orbit(HuntCrossley, 0.65, 0.1, 1, 1.0, "unstable") == of_side
+    assert law_at_orbit(HuntCrossley, 0.65, 0.1, 1, 1.0) != of_side
+
+
 def test_an_unknown_law_and_an_impossible_impact_are_refused():
     with pytest.raises(ModelError, match=r"unknown contact law 'rubber': one of hunt-crossley"):
         law_named("rubber")

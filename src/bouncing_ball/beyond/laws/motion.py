@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from bouncing_ball.beyond.corrected.signature import Signature
-from bouncing_ball.beyond.laws.collocation import MOST_PANELS, march
+from bouncing_ball.beyond.laws.collocation import MOST_PANELS, ContactEnds, march
 from bouncing_ball.beyond.laws.panel import Start, slopes_of
 from bouncing_ball.beyond.laws.permanent_contact import holds
 from bouncing_ball.beyond.laws.scales import rest
@@ -64,17 +64,44 @@ class ContactDynamics(ResumingDynamics):
         If the force depends on the load and the load pulls, a slow ball meets no force at p = 0.
         Its contact then has the duration 0, and the ball continues its flight below p = 0.
         """
-        one = np.ones_like(impact.phase)
         # Without the maximum a displacement of 0 gives the depth -0.
         depth = np.maximum(-impact.displacement, 0.0)
+        free = self._meets_no_force(impact, depth)
+        end, held = self._ends(impact, depth, free, differentiate)
+        duration = np.where(free, 0.0, end.duration)
+        displacement = np.where(free, -depth, -end.penetration)
+        # A ball that is released below the table's level may move down, if the load pulls it.
+        velocity = np.where(end.penetration > 0, -end.rate, np.maximum(-end.rate, 0.0))
+        velocity = np.where(free, impact.velocity, velocity)
+        phase = impact.phase + duration
+        x, y = table(phase, self.amplitude)
+        no_end = np.isnan(duration)
+        status = np.where(no_end, Status.UNDECIDED, Status.BOUNCING)
+        status[held] = Status.PERMANENT_CONTACT
+        departure = Departure(
+            phase=phase,
+            duration=np.where(no_end, np.inf, duration),
+            flight=Flight(displacement, velocity, x, y, self.amplitude),
+            status=status,
+            by=end.jacobian,
+        )
+        return self._with_sticking(impact, departure) if differentiate else departure
+
+    def _meets_no_force(self, impact: Impact, depth: np.ndarray) -> np.ndarray:
+        """Whether a ball at the surface meets no force, because the load pulls it."""
         load = 1 - table(impact.phase, self.amplitude)[1]
         grip = self.law.loaded_grip(depth, -impact.velocity, load)
-        free = (depth == 0) & (grip < 0) & self.law.feels_load
-        # No contact is computed for these balls, because none of its panels would be accepted.
-        rate = np.where(free, np.nan, -impact.velocity)
+        return (depth == 0) & (grip < 0) & self.law.feels_load
+
+    def _ends(
+        self, impact: Impact, depth: np.ndarray, free: np.ndarray, differentiate: bool
+    ) -> tuple[ContactEnds, list[int]]:
+        """The ends of the contacts, and the indices of those that are permanent."""
+        one = np.ones_like(impact.phase)
         start = Start(
             depth=depth,
-            rate=rate,
+            # No contact is computed for free balls, because none of its panels would be accepted.
+            rate=np.where(free, np.nan, -impact.velocity),
             phase=impact.phase,
             amplitude=self.amplitude * one,
             weight=one,
@@ -84,29 +111,20 @@ class ContactDynamics(ResumingDynamics):
         for panels in attempts:
             end = march(self.law, start, panels, differentiate=differentiate)
             lost = np.flatnonzero(np.isnan(end.duration) & ~free)
-            held = [k for k in lost if holds(self.law.take(k), float(start.amplitude[k]))]
+            held = [int(k) for k in lost if holds(self.law.take(k), float(start.amplitude[k]))]
             if len(held) == lost.size:
                 break
-        # A ball that is released below the table's level may move down, if the load pulls it.
-        rate = np.where(end.penetration > 0, -end.rate, np.maximum(-end.rate, 0.0))
-        duration = np.where(free, 0.0, end.duration)
-        displacement = np.where(free, -depth, -end.penetration)
-        rate = np.where(free, impact.velocity, rate)
-        phase = impact.phase + duration
-        x, y = table(phase, self.amplitude)
-        no_end = np.isnan(duration)
-        status = np.where(no_end, Status.UNDECIDED, Status.BOUNCING)
-        status[held] = Status.PERMANENT_CONTACT
-        flight = Flight(displacement, rate, x, y, self.amplitude)
-        duration = np.where(no_end, np.inf, duration)
-        departure = Departure(phase, duration, flight, status, by=end.jacobian)
-        if not differentiate:
-            return departure
-        # An undamped linear contact that starts at zero speed under a constant load lasts exactly
-        # twice as long as a free impact. A longer contact therefore ends because the load changes.
+        return end, held
+
+    def _with_sticking(self, impact: Impact, departure: Departure) -> Departure:
+        """The departures with the balls marked whose contact ends because the load changes.
+
+        An undamped linear contact that starts at zero speed under a constant load lasts exactly
+        twice as long as a free impact; the contact of these balls lasts longer.
+        """
         speed = np.maximum(-impact.velocity, np.finfo(float).tiny)
         of_free_impact = Signature(self.law)(speed).duration
-        return departure._replace(sticks=duration > 2 * of_free_impact)
+        return departure._replace(sticks=departure.duration > 2 * of_free_impact)
 
     def resumption(self, flight: Flight) -> tuple[np.ndarray, np.ndarray]:
         """A time before which the balls have not landed, and whether their contact resumes then."""

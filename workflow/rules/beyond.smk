@@ -194,6 +194,19 @@ use rule study as explorer_orbits with:
         ),
 
 
+use rule study as proofs with:
+    """Numbers of the paper with intervals that certainly contain them."""
+    wildcard_constraints:
+        artifact=stage(
+            "beyond.exhibits.proofs",
+            ext_proofs=dict(
+                title="Table 1 and the thresholds, certified by ball arithmetic",
+                study="proofs",
+                table="ext_proofs",
+            ),
+        ),
+
+
 use rule study as statements_study with:
     """Verdicts on our statements about the whole motion."""
     wildcard_constraints:

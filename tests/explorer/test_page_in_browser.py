@@ -19,7 +19,6 @@ import pytest
 from bouncing_ball.beyond.engines.choice import ENGINES
 from bouncing_ball.beyond.engines.engine import Physical
 from bouncing_ball.beyond.exhibits.explorer_orbits import reference_orbits
-from bouncing_ball.beyond.history import history
 from bouncing_ball.beyond.long_run.motions import Kind
 from bouncing_ball.beyond.simulation import simulate
 from bouncing_ball.explorer.document import BOUND, to_html
@@ -27,6 +26,7 @@ from bouncing_ball.explorer.engine_cases import as_json
 from bouncing_ball.paper.comparison.errors import QUANTITIES
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.motion.history import history
 from bouncing_ball.pipeline.configuration import typed
 
 pytestmark = pytest.mark.slow

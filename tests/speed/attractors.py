@@ -12,6 +12,7 @@ import time
 import numpy as np
 
 from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 
@@ -23,7 +24,11 @@ def main(balls: int, impacts: int) -> None:
     phase = rng.uniform(-np.pi, np.pi, balls)
     velocity = -lam - rng.uniform(0, 12, balls)
     contact = SpringDamper.from_restitution(r, 100.0)
-    laws = {"restitution": r, "spring-damper": contact, "corrected": Signature(contact)}
+    laws = {
+        "restitution": r,
+        "spring-damper": contact,
+        "corrected": Signature(LinearLaw.of(contact)),
+    }
     for name, law in laws.items():
         start = time.process_time()
         found = final_motions(law, lam, phase, velocity, impacts=impacts)

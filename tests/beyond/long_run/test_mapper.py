@@ -7,6 +7,7 @@ import pytest
 
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
 from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.motions import Kind, Reason
 from bouncing_ball.beyond.simulation import next_impact
@@ -35,10 +36,10 @@ def beside(model, n, amplitude, moved=1e-3):
         (contact(0.6, 80.0), 3.0, 8),
         pytest.param(contact(0.6, 320.0), 3.0, 43, marks=pytest.mark.long),
         (contact(0.6, 1280.0), 3.0, 23),
-        pytest.param(Signature(contact(0.6, 80.0)), 3.0, 8, marks=pytest.mark.long),
+        pytest.param(Signature(LinearLaw.of(contact(0.6, 80.0))), 3.0, 8, marks=pytest.mark.long),
         (0.5, 2.5, 6),
         pytest.param(contact(0.5, 1280.0), 2.5, 6, marks=pytest.mark.long),
-        (Signature(contact(0.5, 80.0)), 2.5, 15),
+        (Signature(LinearLaw.of(contact(0.5, 80.0))), 2.5, 15),
     ],
 )
 def test_balls_that_stick_repeat_as_another_simulation_saw_it(law, amplitude, periods):
@@ -98,7 +99,9 @@ def test_an_answer_does_not_depend_on_the_other_balls():
         np.testing.assert_array_equal(getattr(again, name), values[order], err_msg=name)
 
 
-@pytest.mark.parametrize("law", [0.5, contact(0.5, 30.0), Signature(contact(0.5, 30.0))])
+@pytest.mark.parametrize(
+    "law", [0.5, contact(0.5, 30.0), Signature(LinearLaw.of(contact(0.5, 30.0)))]
+)
 def test_a_ball_on_a_slow_table_comes_to_rest(law):
     found = final_motions(law, [0.0, 0.5], 0.3, -3.0)
     assert set(found.kind) == {Kind.PERMANENT_CONTACT}
@@ -135,7 +138,7 @@ def test_laps_that_rounding_alone_makes_alike_are_no_sample():
     [
         0.85,
         contact(0.85, 80.0),
-        pytest.param(Signature(contact(0.85, 80.0)), marks=pytest.mark.long),
+        pytest.param(Signature(LinearLaw.of(contact(0.85, 80.0))), marks=pytest.mark.long),
     ],
 )
 def test_chaos_has_the_exponent_of_the_paths_side_by_side(law):

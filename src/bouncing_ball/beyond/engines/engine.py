@@ -19,9 +19,9 @@ from bouncing_ball.beyond.engines.scheme import (
     represented,
     steps_for,
 )
+from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.errors import ModelError, require
 from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.contact.law import ContactLaw
 
 ERROR = 0.001
 """The default of the largest error of a free impact's r that the time step may cause."""

@@ -34,7 +34,7 @@ def drifted(tree, budgets):
     write_dataset(data, path)
 
 
-def test_a_run_against_its_record_which_then_is_accepted(recorded, monkeypatch):
+def test_a_drifted_record_turns_diff_red_and_is_replaced_by_accept(recorded, monkeypatch):
     drifted(recorded, 0.5)
     lines = recorded.run("--cores", "1", "diff").stdout.splitlines()
     assert lines[-2].split()[:4] == ["fig11", "within", "budget", "50"]

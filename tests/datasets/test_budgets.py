@@ -13,11 +13,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from declared_artifacts import ARTIFACTS as DECLARED
-from declared_artifacts import STUDIES
+from declared_artifacts import ARTIFACTS, STUDIES
 
 from bouncing_ball.pipeline.configuration import arguments, read_yaml, typed
-from bouncing_ball.pipeline.diff.datasets import ARTIFACTS, IGNORED, compare_datasets
+from bouncing_ball.pipeline.diff.datasets import ARTIFACTS as BUDGETS
+from bouncing_ball.pipeline.diff.datasets import IGNORED, compare_datasets
 
 ROOT = Path(__file__).resolve().parents[2]
 RUN = read_yaml(ROOT / "config" / "config.yaml")
@@ -94,7 +94,7 @@ def results(coarse, recorded):
         fewer = {key: number for (name, key), number in coarse.items() if name == artifact}
         fewer = {} if artifact in ("ext_cascades", "ext_diagram") else fewer
         given = mapped(
-            arguments(study, DECLARED[artifact].wing, artifact, RUN),
+            arguments(study, ARTIFACTS[artifact].wing, artifact, RUN),
             lambda key, x, fewer=fewer: fewer.get(key, x),
         )
         made = partial(made, data=recorded) if artifact == "ext_locked" else made
@@ -121,7 +121,7 @@ def test_budgets_are_kept_and_no_wider_than_what_was_measured_asks_for(results, 
     assert len(results) > 100 and not beyond
     largest = {}
     for (artifact, name), found in results.items():
-        if name in budgets and name not in ARTIFACTS.get(artifact, {}):
+        if name in budgets and name not in BUDGETS.get(artifact, {}):
             share = max(each.share for each in found)
             largest[name] = max(share, largest.get(name, 0.0))
     # Ten times the change, and up to ten times more to the next power of ten; another

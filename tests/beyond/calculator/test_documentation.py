@@ -22,7 +22,7 @@ def marked(script):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("script", map(marked, SHOWN))
+@pytest.mark.parametrize("script", [marked(script) for script in SHOWN])
 def test_a_worked_example_prints_what_the_page_shows(script, capsys):
     runpy.run_path(str(ROOT / script))
     assert capsys.readouterr().out == SHOWN[script]

@@ -15,7 +15,8 @@ import numpy as np
 import pytest
 
 from bouncing_ball.pipeline.configuration import arguments, load, read_yaml, typed
-from bouncing_ball.pipeline.diff.datasets import ARTIFACTS, IGNORED, compare_datasets
+from bouncing_ball.pipeline.diff.budgets import ARTIFACTS, IGNORED
+from bouncing_ball.pipeline.diff.datasets import compare_datasets
 
 ROOT = Path(__file__).resolve().parents[2]
 RUN = read_yaml(ROOT / "config" / "config.yaml")

@@ -4,7 +4,8 @@ import os
 import subprocess
 from pathlib import Path
 
-from bouncing_ball.pipeline.provenance import CARRIERS, LIBRARIES, explain, read_provenance
+from bouncing_ball.pipeline.artifacts import CARRIERS
+from bouncing_ball.pipeline.provenance import LIBRARIES, explain, read_provenance
 
 
 def test_every_artifact_carries_its_provenance(pristine):

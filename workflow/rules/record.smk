@@ -19,13 +19,23 @@ rule accept:
         "../scripts/accept.py"
 
 
+# The artifacts requested together with `diff`, as in `snakemake --cores 2 fig14 diff`. Snakemake
+# knows its targets when it has read all rules.
+def requested(wildcards):
+    return sorted({*STUDIES, *DRAWINGS} & {*workflow.dag_settings.targets})
+
+
+# A local rule, because the jobs of a cluster do not know what else was requested.
 rule diff:
+    """The results against the record; `fig14 diff` makes and compares this artifact alone."""
+    localrule: True
     message:
         "Comparing the results with the record"
     input:
-        rules.all.input,
+        lambda wildcards: sum(map(files, requested(wildcards)), []) or rules.all.input,
     params:
         record=ROOT,
+        only=requested,
     log:
         "results/logs/diff.log",
     script:

@@ -13,7 +13,7 @@ from bouncing_ball.pipeline.provenance import UNKNOWN, Revision
 @pytest.fixture
 def run(pair, monkeypatch):
     """``run(*names)``: accept in a committed checkout, for which Snakemake has nothing to do."""
-    monkeypatch.setattr(module.origin, "revision", lambda _: Revision("1f0e", "no"))
+    monkeypatch.setattr(module.provenance, "revision", lambda _: Revision("1f0e", "no"))
     monkeypatch.setattr(module, "jobs_left", lambda *_: 0)
     (pair.record / "config").mkdir()
     (pair.record / "config" / "config.yaml").write_text("release: force\n", encoding="utf-8")
@@ -80,7 +80,7 @@ def test_what_is_named_is_copied_and_nothing_else(pair, run, refusal):
 )
 def test_a_refusal_changes_nothing(pair, run, monkeypatch, refusal, state, left, config, said):
     drift(pair)
-    monkeypatch.setattr(module.origin, "revision", lambda _: state)
+    monkeypatch.setattr(module.provenance, "revision", lambda _: state)
     monkeypatch.setattr(module, "jobs_left", lambda *_: left)
     (pair.new / "figures" / "fig17.png").touch()
     before = contents(pair)

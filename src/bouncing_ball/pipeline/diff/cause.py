@@ -36,25 +36,25 @@ def _nested(value: Any) -> Any:
     return value
 
 
-def _flat(name: str, value: Any) -> dict[str, str]:
-    """A parameter as texts by its name in the configuration, with an entry for each part of a case.
+def _flat(name: str, value: Any) -> dict[str, Any]:
+    """A parameter by its name in the configuration, with an entry for each part of a case.
 
     Examples
     --------
     >>> _flat("cases", '[{"restitution": 1.0, "amplitude": 0.8}]')
-    {'cases[0].restitution': '1.0', 'cases[0].amplitude': '0.8'}
+    {'cases[0].restitution': 1.0, 'cases[0].amplitude': 0.8}
     >>> _flat("frequency_ratio__min", 0.5), _flat("n", [1, 2])
-    ({'frequency_ratio.min': '0.5'}, {'n': '[1, 2]'})
+    ({'frequency_ratio.min': 0.5}, {'n': [1, 2]})
     """
     name = name.replace("__", ".")
     value = _nested(value)
     if isinstance(value, list) and any(isinstance(case, Mapping) for case in value):
         return {
-            f"{name}[{index}].{key}": str(part)
+            f"{name}[{index}].{key}": part
             for index, case in enumerate(value)
             for key, part in case.items()
         }
-    return {name: str(value)}
+    return {name: value}
 
 
 def parameter_changes(record: Mapping[Any, Any], new: Mapping[Any, Any]) -> list[ParameterChange]:
@@ -67,19 +67,23 @@ def parameter_changes(record: Mapping[Any, Any], new: Mapping[Any, Any]) -> list
     restitution 0.85 0.7
     n 1 none
     """
-    old, now = (
-        {
-            key: text
-            for name, value in parameters.items()
-            for key, text in _flat(name, value).items()
-        }
-        for parameters in (record, new)
-    )
-    return [
-        ParameterChange(name, old.get(name, "none"), now.get(name, "none"))
-        for name in {**old, **now}
-        if old.get(name) != now.get(name)
-    ]
+    old, now = (_all_flat(parameters) for parameters in (record, new))
+    names = [name for name in {**old, **now} if repr(old.get(name)) != repr(now.get(name))]
+    return [ParameterChange(name, *_texts(old.get(name), now.get(name))) for name in names]
+
+
+def _all_flat(parameters: Mapping[Any, Any]) -> dict[str, Any]:
+    flat: dict[str, Any] = {}
+    for name, value in parameters.items():
+        flat |= _flat(name, value)
+    return flat
+
+
+def _texts(record: Any, new: Any) -> tuple[str, str]:
+    """Two values as texts; a number and its text have quotation marks to tell them apart."""
+    shown = str if str(record) != str(new) else repr
+    old_text, new_text = ("none" if value is None else shown(value) for value in (record, new))
+    return old_text, new_text
 
 
 @dataclass(frozen=True)

@@ -18,16 +18,10 @@ from bouncing_ball.datasets.labelled import Grid, Labelled
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import ModelError, NoOrbitError, require
 from bouncing_ball.numerics.continuation import ContinuationError
-from bouncing_ball.numerics.elementary import table
-from bouncing_ball.paper.motion.flight import Flight, land
+from bouncing_ball.paper.motion.flight import Flight, land, table
 from bouncing_ball.paper.motion.sequence import Status
-from bouncing_ball.paper.orbits.branch import (
-    branch_columns,
-    columns,
-    joined,
-    no_branch,
-    whole_branch,
-)
+from bouncing_ball.paper.orbits.branch import whole_branch
+from bouncing_ball.paper.orbits.observables import branch_columns, columns, joined, no_branch
 from bouncing_ball.paper.orbits.orbit import OBSERVABLES, Orbit
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
 from bouncing_ball.paper.orbits.stability import Side
@@ -140,7 +134,7 @@ def branches(
 ) -> Labelled:
     """The branch at each point of a grid; NaN, with the reason, where there is no branch.
 
-    The variables are those of :func:`~bouncing_ball.paper.orbits.branch.orbits_in_columns`; the axes of
+    The variables are those of :func:`~bouncing_ball.paper.orbits.observables.orbits_in_columns`; the axes of
     the grid come first. ``models`` returns the model for n and the other arguments.
 
     Raises

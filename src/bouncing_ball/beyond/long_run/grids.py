@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball.beyond.corrected.instant import instant_of
-from bouncing_ball.beyond.long_run.destination import label
+from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.motions import Kind, Motions
 from bouncing_ball.datasets import CASE
 from bouncing_ball.datasets.labelled import Grid, Labelled
@@ -68,7 +68,7 @@ def motions(grid: Grid, model: Any, impacts: int) -> Labelled:
     """
     require_memory(grid.size, "a grid of starts")
     start = map(grid.row, ("amplitude", "phase", "velocity"))
-    found = label(model.impact_law, *start, impacts=impacts)
+    found = final_motions(model.impact_law, *start, impacts=impacts)
     return grid.unfold(_described(_columns(found, (CASE,)), {}, kind="motions"))
 
 
@@ -133,7 +133,7 @@ def _ends(
     If the speed is not positive, for example for a ball on the table, the ball starts with speed 1.
     """
     phase, speed = np.nan_to_num(phase), np.where(speed > 0, speed, 1.0)
-    return label(model.impact_law, amplitude, phase, amplitude * np.cos(phase) - speed,
+    return final_motions(model.impact_law, amplitude, phase, amplitude * np.cos(phase) - speed,
                  impacts=impacts)  # fmt: skip
 
 
@@ -170,7 +170,7 @@ def basins(model: Any, amplitude: float, starts: int, fast: float | None, impact
     phase, speed = 2 * np.pi * middle - np.pi, top * middle
     phi, towards = np.meshgrid(phase, speed)
     law = model.impact_law
-    found = label(law, amplitude, phi, amplitude * np.cos(phi) - towards, impacts=impacts)
+    found = final_motions(law, amplitude, phi, amplitude * np.cos(phi) - towards, impacts=impacts)
     names = np.array(list(Kind))
     number = np.argmax(found.kind[..., np.newaxis] == names, axis=-1)
     key = np.stack([number, found.periods, found.impacts], axis=-1).reshape(-1, 3)

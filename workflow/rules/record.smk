@@ -19,10 +19,19 @@ rule accept:
         "../scripts/accept.py"
 
 
-# The artifacts requested together with `diff`, as in `snakemake --cores 2 fig14 diff`. Snakemake
-# knows its targets when it has read all rules.
-def requested(wildcards):
-    return sorted({*STUDIES, *DRAWINGS} & {*workflow.dag_settings.targets})
+# The targets requested together with `diff`, as in `snakemake --cores 2 fig14 diff`. Snakemake
+# knows its targets only after it has read all rules.
+def requested():
+    names = sorted({*workflow.dag_settings.targets} - {"diff"})
+    return [name for name in names if workflow.is_rule(name)]
+
+
+# The artifacts of the requested targets: the files that such a rule makes, or that it lists.
+def requested_files(wildcards):
+    found = map(workflow.get_rule, requested())
+    files = [str(file) for rule in found for file in (rule.output or rule.input)]
+    texts = ("results/paper.md", "results/supplement.md")
+    return [file for file in files if file.startswith("results/figures/") or file in texts]
 
 
 # A local rule, because the jobs of a cluster do not know what else was requested.
@@ -32,10 +41,11 @@ rule diff:
     message:
         "Comparing the results with the record"
     input:
-        lambda wildcards: sum(map(files, requested(wildcards)), []) or rules.all.input,
+        lambda wildcards: requested_files(wildcards) or rules.all.input,
     params:
         record=ROOT,
-        only=requested,
+        artifacts=lambda wildcards: sorted({Path(file).stem for file in requested_files(wildcards)}),
+        name=lambda wildcards: "-".join(requested()),
     log:
         "results/logs/diff.log",
     script:

@@ -10,13 +10,12 @@ from bouncing_ball.pipeline.jobs import conclude, logged
 FOLDER = Path("results/diff")
 
 with logged(snakemake) as lines:
-    only = snakemake.params.only
-    comparison = compare_folders(Path(snakemake.params.record), Path("results"), only)
+    given = snakemake.params
+    comparison = compare_folders(Path(given.record), Path("results"), given.artifacts)
     report = to_terminal(comparison)
     lines += report.splitlines()
-    name = "-".join(only)
-    write_text(FOLDER / f"{name or 'diff'}.txt", report)
-    page = FOLDER / f"{name or 'index'}.html"
+    write_text(FOLDER / f"{given.name or 'diff'}.txt", report)
+    page = FOLDER / f"{given.name or 'index'}.html"
     write_text(page, to_html(comparison))
     print(report, end="", flush=True)
     if comparison.outcome.status:

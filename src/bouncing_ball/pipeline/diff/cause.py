@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline.artifacts import DATASET
+from bouncing_ball.pipeline.artifact_files import DATASET
 from bouncing_ball.pipeline.provenance import PREFIX, parameters_of, read_attributes
 
 _LIBRARIES = ("numpy", "scipy", "matplotlib")
@@ -108,30 +108,21 @@ class Origin:
     inputs: tuple[str, ...]
 
 
+UNKNOWN_ORIGIN = Origin({}, "", {}, ())
+
+
 def origin_of(path: Path) -> Origin:
-    """The origin of a dataset or a picture; all entries are empty if the file cannot be read."""
+    """The origin of a dataset or a picture, unknown if the file cannot be read."""
     try:
         attributes = read_attributes(path)
     except ModelError:
-        attributes = {}
+        return UNKNOWN_ORIGIN
     return Origin(
         parameters=parameters_of(attributes) if path.suffix == DATASET else {},
         code=str(attributes.get(f"{PREFIX}code", "")),
         versions=json.loads(attributes.get(f"{PREFIX}versions", "{}")),
         inputs=tuple(json.loads(attributes.get(f"{PREFIX}inputs", "[]"))),
     )
-
-
-def is_stale(origin: Origin, results: Path) -> bool:
-    """Whether other code than that of the working tree made an artifact of a run.
-
-    A run notes the digest of the code of each stage in ``results/code``; without these files, as in
-    results from elsewhere, nothing is known.
-    """
-    inputs = [Path(name) for name in origin.inputs]
-    digests = [results / "code" / path.name for path in inputs if path.parent.name == "code"]
-    known = [path.read_text(encoding="utf-8") for path in digests if path.is_file()]
-    return bool(origin.code and known) and not any(origin.code in text for text in known)
 
 
 def own_causes(record: Origin, new: Origin) -> list[str]:

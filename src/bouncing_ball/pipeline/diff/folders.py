@@ -20,16 +20,23 @@ from PIL import Image
 
 from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline.artifacts import (
+from bouncing_ball.pipeline.artifact_files import (
     DATASET,
     PICTURES,
     TEXTS,
-    Artifact,
+    ArtifactFiles,
     artifacts_among,
     artifacts_in,
+    digest_of_code,
 )
 from bouncing_ball.pipeline.diff import budgets
-from bouncing_ball.pipeline.diff.cause import Origin, is_stale, made_from, origin_of, own_causes
+from bouncing_ball.pipeline.diff.cause import (
+    UNKNOWN_ORIGIN,
+    Origin,
+    made_from,
+    origin_of,
+    own_causes,
+)
 from bouncing_ball.pipeline.diff.datasets import compare_datasets
 from bouncing_ball.pipeline.diff.outcome import Outcome, Row, Whole, worst
 from bouncing_ball.pipeline.diff.texts import compare_texts, words_of
@@ -115,10 +122,15 @@ def _rows(old: Path, now: Path, data: Outcome | None) -> list[Row]:
     return rows
 
 
-def _is_stale_file(path: Path, results: Path) -> bool:
+def _is_stale(file: str, results: Path) -> bool:
+    """Whether other code than that of the working tree made a file of a run, as far as known."""
     # An SVG file is made together with its PNG file.
-    carries = path.suffix in (DATASET, ".png") and path.exists()
-    return carries and (results / "code").is_dir() and is_stale(origin_of(path), results)
+    if not file.endswith((DATASET, ".png")) or not (results / file).exists():
+        return False
+    digest = digest_of_code(results, file)
+    if digest is None:
+        return False
+    return origin_of(results / file).code not in ("", digest)
 
 
 def judge(file: str, folders: tuple[Path, Path], data: Outcome | None) -> Whole:
@@ -141,7 +153,7 @@ def judge(file: str, folders: tuple[Path, Path], data: Outcome | None) -> Whole:
         warnings.simplefilter("ignore")
         try:
             rows = _rows(old, now, data)
-            if _is_stale_file(now, folders[1]):
+            if _is_stale(file, folders[1]):
                 rows.append(Row("", Outcome.STALE, note="made by older code"))
             shown = old.suffix == ".png"
             pictures = (_content(old), _content(now)) if shown else (None, None)
@@ -156,26 +168,28 @@ def judge(file: str, folders: tuple[Path, Path], data: Outcome | None) -> Whole:
 class _Judged:
     """An artifact with the outcome of its dataset, and what both versions say of their making."""
 
-    artifact: Artifact
+    artifact: ArtifactFiles
     data: Whole | None
     record: Origin
     new: Origin
 
     @property
-    def moved(self) -> bool:
-        return self.data is not None and not self.data.outcome.agrees
+    def outcome(self) -> Outcome:
+        """The outcome of the dataset, ``IDENTICAL`` if there is none."""
+        return self.data.outcome if self.data else Outcome.IDENTICAL
 
 
-def _judged(artifact: Artifact, folders: tuple[Path, Path]) -> _Judged:
+def _judged(artifact: ArtifactFiles, folders: tuple[Path, Path]) -> _Judged:
     data = judge(artifact.dataset, folders, None) if artifact.dataset else None
-    # A schematic has no dataset, and a text says nothing itself.
+    # A schematic has no dataset, and a text says nothing about its making.
     carriers = [file for file in artifact.files if file.endswith((DATASET, ".png"))]
-    carrier = carriers[0] if carriers else artifact.files[0]
-    record, new = (origin_of(folder / carrier) for folder in folders)
+    if not carriers:
+        return _Judged(artifact, data, UNKNOWN_ORIGIN, UNKNOWN_ORIGIN)
+    record, new = (origin_of(folder / carriers[0]) for folder in folders)
     return _Judged(artifact, data, record, new)
 
 
-def _inputs(judged: _Judged, artifacts: dict[str, Artifact]) -> list[str]:
+def _inputs(judged: _Judged, artifacts: dict[str, ArtifactFiles]) -> list[str]:
     """The names of the artifacts that another one is made from; a text is made from all."""
     if judged.artifact.is_text:
         return [name for name, artifact in artifacts.items() if artifact.dataset]
@@ -183,7 +197,7 @@ def _inputs(judged: _Judged, artifacts: dict[str, Artifact]) -> list[str]:
 
 
 def _with_inputs(
-    wanted: Collection[str], artifacts: dict[str, Artifact], folders: tuple[Path, Path]
+    wanted: Collection[str], artifacts: dict[str, ArtifactFiles], folders: tuple[Path, Path]
 ) -> dict[str, _Judged]:
     """The named artifacts, and all that they are made from, with their datasets compared."""
     found: dict[str, _Judged] = {}
@@ -196,14 +210,15 @@ def _with_inputs(
     return found
 
 
-def _roots(name: str, judged: dict[str, _Judged], artifacts: dict[str, Artifact]) -> set[str]:
+def _roots(name: str, judged: dict[str, _Judged], artifacts: dict[str, ArtifactFiles]) -> set[str]:
     """The artifacts from which the differences in the inputs of an artifact come."""
     found: set[str] = set()
     for source in _inputs(judged[name], artifacts):
-        if judged[source].moved and source != name:
+        if source != name and not judged[source].outcome.agrees:
             behind = _roots(source, judged, artifacts)
-            changed = judged[source].data.outcome is Outcome.PARAMETERS
-            found |= behind if behind and not changed else behind | {source}
+            found |= behind
+            if not behind or judged[source].outcome is Outcome.PARAMETERS:
+                found.add(source)
     return found
 
 
@@ -223,7 +238,9 @@ def _cause(whole: Whole, judged: _Judged, roots: Collection[str]) -> str:
             causes = ["a file could not be compared"]
     if causes:
         return "; ".join(causes)
-    if judged.data and judged.data.moved:
+    if judged.outcome is Outcome.STRUCTURE:
+        return "the structure of the dataset changed"
+    if judged.outcome is not Outcome.IDENTICAL:
         return "numbers moved" + (" within their budgets" if whole.outcome.agrees else "")
     pictures = [file for file in whole.moved if file.name.endswith(PICTURES)]
     return "the picture changed" if pictures else "the text changed"
@@ -247,9 +264,8 @@ def compare_folders(record: Path, new: Path, only: Collection[str] = ()) -> Whol
     for name in wanted:
         artifact = artifacts[name]
         data = judged[name].data
-        sources = _inputs(judged[name], artifacts) if artifact.is_text else [name]
-        outcomes = [judged[source].data.outcome for source in sources if judged[source].data]
-        outcome = worst(outcomes) if outcomes else None
+        made_of = _inputs(judged[name], artifacts) if artifact.is_text else [name]
+        outcome = worst(judged[source].outcome for source in made_of)
         others = [judge(file, folders, outcome) for file in artifact.others]
         whole = Whole(name, tuple([data, *others] if data else others))
         if whole.outcome is not Outcome.IDENTICAL:

@@ -1,4 +1,4 @@
-"""What an artifact is: the files that a run makes for one figure, table or text.
+"""The files of an artifact: what a run makes for one figure, table or text.
 
 A run writes to a folder, ``results/``; the accepted record has the same layout at the top of the
 repository. ``figures/`` holds the files of most artifacts, and all files of an artifact have its
@@ -36,14 +36,14 @@ _SUFFIXES = (DATASET, ".csv", *PICTURES, ".md", PAGE)
 
 
 @dataclass(frozen=True)
-class Artifact:
+class ArtifactFiles:
     """The files of one name, as paths relative to the folder; the dataset is the first.
 
     Examples
     --------
-    >>> fig14 = Artifact("fig14", ("figures/fig14.nc", "figures/fig14.png", "figures/fig14.svg"))
+    >>> fig14 = ArtifactFiles("fig14", ("figures/fig14.nc", "figures/fig14.png"))
     >>> fig14.dataset, fig14.others, fig14.is_text
-    ('figures/fig14.nc', ('figures/fig14.png', 'figures/fig14.svg'), False)
+    ('figures/fig14.nc', ('figures/fig14.png',), False)
     """
 
     name: str
@@ -78,7 +78,7 @@ def _files_in(folder: Path) -> list[str]:
     return files
 
 
-def artifacts_in(*folders: Path) -> dict[str, Artifact]:
+def artifacts_in(*folders: Path) -> dict[str, ArtifactFiles]:
     """The artifacts of which at least one folder has a file, by name; the texts come last.
 
     Raises
@@ -92,9 +92,20 @@ def artifacts_in(*folders: Path) -> dict[str, Artifact]:
     by_name: dict[str, list[str]] = {}
     for file in sorted(files, key=lambda file: _SUFFIXES.index(PurePosixPath(file).suffix)):
         by_name.setdefault(PurePosixPath(file).stem, []).append(file)
-    found = [Artifact(name, tuple(by_name[name])) for name in sorted(by_name)]
+    found = [ArtifactFiles(name, tuple(by_name[name])) for name in sorted(by_name)]
     found.sort(key=lambda artifact: artifact.is_text)
     return {artifact.name: artifact for artifact in found}
+
+
+def digest_of_code(results: Path, file: str) -> str | None:
+    """The digest of the code with which a run would make a dataset or a PNG file now.
+
+    A run notes it in ``code/``; without this file, as in results from elsewhere, it is unknown.
+    """
+    path = PurePosixPath(file)
+    job = path.stem if path.suffix == DATASET else f"draw_{path.stem}"
+    note = results / "code" / job
+    return note.read_text(encoding="utf-8").strip() if note.is_file() else None
 
 
 def artifacts_among(paths: Iterable[str]) -> list[str]:
@@ -102,7 +113,7 @@ def artifacts_among(paths: Iterable[str]) -> list[str]:
 
     Examples
     --------
-    >>> artifacts_among(["results/figures/fig14.nc", "results/code/fig14", "config/engines.nc"])
+    >>> artifacts_among(["results/figures/fig14.nc", "config/engines.nc", "README.md"])
     ['fig14', 'engines']
     """
     return [PurePosixPath(path).stem for path in paths if path.endswith(DATASET)]

@@ -184,7 +184,7 @@ def test_nothing_has_drifted_from_itself(values):
 
 
 @given(NUMBERS, st.integers(0, 11), st.floats(1e-6, 1e3))
-def test_a_drift_is_the_move_over_the_scale(values, k, scale):
+def test_a_drift_is_the_move_divided_by_the_scale(values, k, scale):
     k %= len(values)
     other = list(values)
     other[k] = 0.5 if not np.isfinite(values[k]) else values[k] + scale

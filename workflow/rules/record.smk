@@ -2,6 +2,11 @@
 # `git log figures/`.
 # Both rules have no outputs, so that Snakemake runs them at each call.
 
+from bouncing_ball.pipeline.diff.targets import (
+    requested_artifacts,
+    requested_files,
+    requested_names,
+)
 from bouncing_ball.pipeline.jobs import begin, concluded
 
 
@@ -19,21 +24,6 @@ rule accept:
         "../scripts/accept.py"
 
 
-# The targets requested together with `diff`, as in `snakemake --cores 2 fig14 diff`. Snakemake
-# knows its targets only after it has read all rules.
-def requested():
-    names = sorted({*workflow.dag_settings.targets} - {"diff"})
-    return [name for name in names if workflow.is_rule(name)]
-
-
-# The artifacts of the requested targets: the files that such a rule makes, or that it lists.
-def requested_files(wildcards):
-    found = map(workflow.get_rule, requested())
-    files = [str(file) for rule in found for file in (rule.output or rule.input)]
-    texts = ("results/paper.md", "results/supplement.md")
-    return [file for file in files if file.startswith("results/figures/") or file in texts]
-
-
 # A local rule, because the jobs of a cluster do not know what else was requested.
 rule diff:
     """The results against the record; `fig14 diff` makes and compares this artifact alone."""
@@ -41,11 +31,11 @@ rule diff:
     message:
         "Comparing the results with the record"
     input:
-        lambda wildcards: requested_files(wildcards) or rules.all.input,
+        lambda wildcards: requested_files(workflow) or rules.all.input,
     params:
         record=ROOT,
-        artifacts=lambda wildcards: sorted({Path(file).stem for file in requested_files(wildcards)}),
-        name=lambda wildcards: "-".join(requested()),
+        artifacts=lambda wildcards: requested_artifacts(workflow),
+        name=lambda wildcards: "-".join(requested_names(workflow)),
     log:
         "results/logs/diff.log",
     script:

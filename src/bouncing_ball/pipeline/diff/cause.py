@@ -7,7 +7,7 @@ that compute and draw, and other inputs. If there is none of these, the numbers 
 """
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -150,15 +150,14 @@ def own_causes(record: Origin, new: Origin) -> list[str]:
     return causes
 
 
-def made_from(names: Iterable[str]) -> str:
-    """The cause that lies in other artifacts, with their names.
+def made_from(names: Sequence[str]) -> str:
+    """The cause that lies in other artifacts, with the names of the first of them.
 
     Examples
     --------
     >>> made_from(["fig14"]), made_from(["fig05", "fig06", "fig08", "fig09", "fig10"])
     ('made from fig14', 'made from fig05, fig06, fig08, fig09 and 1 more')
     """
-    ordered = sorted(names)
-    more = len(ordered) - _NAMED
+    more = len(names) - _NAMED
     rest = f" and {more} more" if more > 0 else ""
-    return f"made from {', '.join(ordered[:_NAMED])}{rest}"
+    return f"made from {', '.join(names[:_NAMED])}{rest}"

@@ -11,7 +11,7 @@ differs because of those of them that do not agree with the record.
 
 import re
 import warnings
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -222,7 +222,12 @@ def _roots(name: str, judged: dict[str, _Judged], artifacts: dict[str, ArtifactF
     return found
 
 
-def _cause(whole: Whole, judged: _Judged, roots: Collection[str]) -> str:
+def _ordered(names: Collection[str], judged: dict[str, _Judged]) -> list[str]:
+    """Names of artifacts, those with other parameters first."""
+    return sorted(names, key=lambda name: (judged[name].outcome is not Outcome.PARAMETERS, name))
+
+
+def _cause(whole: Whole, judged: _Judged, roots: Sequence[str]) -> str:
     """Why an artifact differs from the record."""
     causes = own_causes(judged.record, judged.new)
     if roots:
@@ -241,9 +246,10 @@ def _cause(whole: Whole, judged: _Judged, roots: Collection[str]) -> str:
     if judged.outcome is Outcome.STRUCTURE:
         return "the structure of the dataset changed"
     if judged.outcome is not Outcome.IDENTICAL:
-        return "numbers moved" + (" within their budgets" if whole.outcome.agrees else "")
-    pictures = [file for file in whole.moved if file.name.endswith(PICTURES)]
-    return "the picture changed" if pictures else "the text changed"
+        return "numbers moved within their budgets" if whole.outcome.agrees else "numbers moved"
+    if any(file.name.endswith(PICTURES) for file in whole.moved):
+        return "the picture changed"
+    return "the text changed"
 
 
 def compare_folders(record: Path, new: Path, only: Collection[str] = ()) -> Whole:
@@ -269,8 +275,8 @@ def compare_folders(record: Path, new: Path, only: Collection[str] = ()) -> Whol
         others = [judge(file, folders, outcome) for file in artifact.others]
         whole = Whole(name, tuple([data, *others] if data else others))
         if whole.outcome is not Outcome.IDENTICAL:
-            cause = _cause(whole, judged[name], _roots(name, judged, artifacts))
-            whole = replace(whole, cause=cause)
+            roots = _ordered(_roots(name, judged, artifacts), judged)
+            whole = replace(whole, cause=_cause(whole, judged[name], roots))
         found.append(whole)
     found.sort(key=lambda whole: (-whole.outcome.rank, -whole.share, whole.name))
     return Whole("", tuple(found))

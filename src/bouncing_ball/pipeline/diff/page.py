@@ -133,9 +133,10 @@ def to_terminal(comparison: Whole) -> str:
 
 
 def _outcome_text(file: Whole) -> str:
-    """The outcome of a file with its share of the budget."""
-    share = share_text(file.share)
-    return f"{file.outcome} {share}".rstrip()
+    """The outcome of a file, with its share of the budget if it is judged by that."""
+    if file.outcome in (Outcome.WITHIN, Outcome.DRIFTED):
+        return f"{file.outcome} {share_text(file.share)}".rstrip()
+    return str(file.outcome)
 
 
 _Words = list[tuple[bool, str]]

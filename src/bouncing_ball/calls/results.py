@@ -20,6 +20,7 @@ from bouncing_ball.errors import ModelError, NoOrbitError, require
 from bouncing_ball.numerics.continuation import ContinuationError
 from bouncing_ball.paper.motion.flight import Flight, land, table
 from bouncing_ball.paper.motion.sequence import Status
+from bouncing_ball.paper.orbits import observables
 from bouncing_ball.paper.orbits.branch import whole_branch
 from bouncing_ball.paper.orbits.observables import branch_columns, columns, joined, no_branch
 from bouncing_ball.paper.orbits.orbit import OBSERVABLES, Orbit
@@ -126,7 +127,7 @@ def _over_time(grid: Grid, time: np.ndarray, found: dict[str, np.ndarray]) -> La
 
 
 def _unfolded(grid: Grid, rows: xr.Dataset, kind: str) -> Labelled:
-    return grid.unfold(describe(rows).assign_attrs(kind=kind))
+    return grid.unfold(describe(rows, observables.VARIABLES).assign_attrs(kind=kind))
 
 
 def branches(

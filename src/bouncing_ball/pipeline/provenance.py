@@ -23,7 +23,7 @@ import numpy as np
 
 import bouncing_ball
 from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline.artifact_files import CARRIERS, DATASET, RECORD, TEXTS, carrier_of
+from bouncing_ball.pipeline.artifacts import CARRIERS, DATASET, RECORD, TEXTS, carrier_of
 from bouncing_ball.pipeline.configuration import read_yaml
 
 PREFIX = "provenance_"

@@ -14,7 +14,7 @@ from typing import Any
 from bouncing_ball.datasets.files import replacing
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline import provenance
-from bouncing_ball.pipeline.artifact_files import CARRIERS
+from bouncing_ball.pipeline.artifacts import CARRIERS
 from bouncing_ball.pipeline.configuration import read_yaml
 from bouncing_ball.pipeline.diff.folders import compare_folders
 from bouncing_ball.pipeline.diff.outcome import Whole

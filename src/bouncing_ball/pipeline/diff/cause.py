@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline.artifact_files import DATASET
+from bouncing_ball.pipeline.artifacts import DATASET
 from bouncing_ball.pipeline.provenance import PREFIX, parameters_of, read_attributes
 
 _LIBRARIES = ("numpy", "scipy", "matplotlib")

@@ -20,7 +20,7 @@ from PIL import Image
 
 from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline.artifact_files import (
+from bouncing_ball.pipeline.artifacts import (
     DATASET,
     PICTURES,
     TEXTS,

@@ -9,7 +9,7 @@ from difflib import SequenceMatcher
 from itertools import takewhile
 from urllib.parse import quote
 
-from bouncing_ball.pipeline.artifact_files import DATASET
+from bouncing_ball.pipeline.artifacts import DATASET
 from bouncing_ball.pipeline.diff.outcome import Outcome, Row, Whole
 
 _SENTENCES = (

@@ -7,7 +7,7 @@ after it has read all rules, so that these functions are called by input functio
 from pathlib import Path
 from typing import Any
 
-from bouncing_ball.pipeline.artifact_files import TEXTS
+from bouncing_ball.pipeline.artifacts import TEXTS
 
 
 def requested_names(workflow: Any) -> list[str]:

@@ -78,7 +78,7 @@ def test_a_run_is_compared_with_its_record_and_then_accepted(recorded, monkeypat
 
 
 def test_one_artifact_is_made_and_compared_alone_and_its_parameter_is_named(recorded):
-    recorded.configure("figures", "fig11", "restitution", value=0.7)
+    recorded.configure("paper", "fig11", "restitution", value=0.7)
     done = recorded.run("--cores", "1", "fig11", "diff", check=False)
     lines = done.stdout.splitlines()
     made = [line.split()[1] for line in lines if line.startswith("made ")]

@@ -35,7 +35,7 @@ def drifted(tree, budgets):
     write_dataset(data, path)
 
 
-def test_a_run_is_compared_with_its_record_and_then_accepted(recorded, monkeypatch):
+def test_a_drifted_record_turns_diff_red_and_is_replaced_by_accept(recorded, monkeypatch):
     drifted(recorded, 0.5)
     lines = recorded.run("--cores", "1", "diff").stdout.splitlines()
     assert lines[-3] == "fig11: numbers moved within their budgets"

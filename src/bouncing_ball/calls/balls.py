@@ -9,13 +9,13 @@ import numpy as np
 from bouncing_ball.beyond.calculator.units import Rule
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
 from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.beyond.laws.law_of_impact import law_of_impact
 from bouncing_ball.beyond.laws.orbits import LawModel
 from bouncing_ball.beyond.laws.registry import law_named
 from bouncing_ball.calls.signatures import check
 from bouncing_ball.errors import ParameterError, Range
 from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.contact.law import ContactLaw
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.model import ImpactModel
 from bouncing_ball.paper.orbits.restitution_branch import rigid_speed

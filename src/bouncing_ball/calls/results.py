@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.beyond.history import history as of_one_ball
 from bouncing_ball.datasets import CASE
 from bouncing_ball.datasets.labelled import Grid, Labelled
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import ModelError, NoOrbitError, require
 from bouncing_ball.numerics.continuation import ContinuationError
 from bouncing_ball.paper.motion.flight import Flight, land, table
+from bouncing_ball.paper.motion.history import history as of_one_ball
 from bouncing_ball.paper.motion.sequence import Status
 from bouncing_ball.paper.orbits import observables
 from bouncing_ball.paper.orbits.branch import whole_branch

@@ -11,13 +11,13 @@ import numpy as np
 from bouncing_ball.beyond import error_law as error_laws
 from bouncing_ball.beyond.continued_orbits import restitution_speed
 from bouncing_ball.beyond.corrected.signature import Signature, free_impact
+from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.calls import balls as models
 from bouncing_ball.calls import over_time as motion
 from bouncing_ball.calls import periodic as orbits
 from bouncing_ball.calls.signatures import takes
 from bouncing_ball.cli.output import lines as lines
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.paper.contact.law import ContactLaw
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.motion.sequence import Status
 from bouncing_ball.paper.orbits.orbit import OBSERVABLES, Orbit

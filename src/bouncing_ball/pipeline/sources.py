@@ -51,7 +51,7 @@ def imports(path: Path) -> frozenset[str]:
 @cache
 def _data_of_folder(folder: Path) -> tuple[Path, ...]:
     """The files of a package that are not Python, also in its folders that are no packages."""
-    found = []
+    found: list[Path] = []
     for path in folder.iterdir():
         if path.is_dir():
             if path.name != "__pycache__" and not (path / "__init__.py").exists():

@@ -24,7 +24,8 @@ def test_the_end_of_a_motion_is_on_it(given):
         assert again[name].values.tolist() == found[name][1:].values.tolist()
     # From there the next impacts of a ball that repeats are the same, one period later.
     for each in (found.isel(amplitude=k) for k in range(1, lam.size)):
-        rows, start = int(each.impacts), (float(each.end_phase), float(each.end_velocity))
+        rows = int(each.impacts)
+        start = (float(each.end_phase), float(each.end_velocity))
         if each.kind in ("orbit", "subharmonic"):
             of = bb.model(**given)
             sequence = of.simulate(float(each.amplitude), *start, rows + 1)

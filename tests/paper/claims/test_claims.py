@@ -42,7 +42,7 @@ def test_every_formula_is_claimed_or_explains(data):
     assert all(f'"{row}"' in named for row in data["formulas"].formula.values)
 
 
-def test_the_tally(verdicts):
+def test_the_readme_has_the_tally_of_the_accepted_verdicts(verdicts):
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     assert f"\n{tally(verdicts)}\n" in readme
 

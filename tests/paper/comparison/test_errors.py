@@ -19,12 +19,12 @@ from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 
 
-def test_the_groups_of_quantities():
+def test_each_quantity_is_one_of_orbits_or_of_limits():
     assert OF_ORBITS + OF_LIMITS == tuple(Quantity)
     assert set(Quantity) - set(OF_IMPACTS) == {Quantity.PERMANENT_CONTACT}
 
 
-def test_values_of_both_models():
+def test_the_values_are_those_of_the_orbits_and_bifurcations_of_each_model():
     n, r, lam, omega = 2, 0.85, 1.0, 50.0
     exact = SpringDamperModel(SpringDamper.from_restitution(r, omega))
     zeta = -np.log(r) / np.hypot(np.pi, np.log(r))

@@ -72,7 +72,7 @@ def test_one_cycle_against_an_integration(described, n, release):
 
 
 @pytest.mark.parametrize(("n", "lam"), [(1, 1.0), (2, 1.5)])
-def test_both_models(described, n, lam):
+def test_the_histories_of_fig_12_are_those_of_the_orbits_of_both_models(described, n, lam):
     parameters = BOTH | {"n": n, "amplitude": lam}
     data = described(both_histories(parameters, "displacement"))
     assert data.ball.dims == ("frequency_ratio", "sample") and data.ball.shape == (2, 60)

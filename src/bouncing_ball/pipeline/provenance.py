@@ -21,7 +21,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-import bouncing_ball
 from bouncing_ball.errors import ModelError, printable
 from bouncing_ball.pipeline.configuration import read_yaml
 
@@ -266,7 +265,7 @@ def explain(file: Path, /) -> dict[str, Any]:
         If the file is not one of this workflow, or carries no provenance.
     """
     made = read_provenance(_carrier(file))
-    repository = checkout(Path.cwd(), Path(bouncing_ball.__file__).resolve())
+    repository = checkout(Path.cwd(), Path(__file__).resolve())
     now = revision(repository) if repository else UNKNOWN
     unknown = "unknown" in (made["commit"], now.commit)
     checked_out = None if unknown else made["commit"] == now.commit

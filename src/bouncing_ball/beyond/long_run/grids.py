@@ -1,4 +1,4 @@
-"""Motions on which balls end, as labelled datasets: for given starts, over Λ, and for basins.
+"""Motions on which balls end, as datasets: for given starts, over Λ, and for basins.
 
 All quantities are dimensionless, and phases are in radians.
 """
@@ -6,13 +6,13 @@ All quantities are dimensionless, and phases are in radians.
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from bouncing_ball.beyond.corrected.instant import instant_of
 from bouncing_ball.beyond.long_run.destination import label
 from bouncing_ball.beyond.long_run.motions import Kind, Motions
 from bouncing_ball.datasets import CASE
-from bouncing_ball.datasets.labelled import Grid, Labelled
-from bouncing_ball.datasets.variables import describe
+from bouncing_ball.datasets.variables import described
 from bouncing_ball.errors import ParameterError
 
 MOST_BALLS = 20_000_000
@@ -51,25 +51,22 @@ def _columns(found: Motions, dims: tuple[str, ...]) -> dict[str, Any]:
     return {names.get(name, name): (dims, value) for name, value in shown.items()}
 
 
-def _described(data: dict[str, Any], coords: dict[str, Any], **attributes: Any) -> Any:
-    return describe(Labelled(data, coords)).assign_attrs(attributes)
-
-
-def motions(grid: Grid, model: Any, impacts: int) -> Labelled:
-    """The motions on which the balls of a grid (Λ, φ, z′_i) end.
+def motions(
+    model: Any, amplitude: np.ndarray, phase: np.ndarray, velocity: np.ndarray, impacts: int
+) -> xr.Dataset:
+    """The motions on which a row of balls ends that start with the impacts (Λ, φ, z′_i).
 
     The variables are the fields of :class:`~bouncing_ball.beyond.long_run.motions.Motions`, except
-    ``followed``, over the axes of the grid.
+    ``followed``, over the row, the dimension "case".
 
     Raises
     ------
     ModelError
         If there are too many balls, or a state is outside its range.
     """
-    require_memory(grid.size, "a grid of starts")
-    start = map(grid.row, ("amplitude", "phase", "velocity"))
-    found = label(model.impact_law, *start, impacts=impacts)
-    return grid.unfold(_described(_columns(found, (CASE,)), {}, kind="motions"))
+    require_memory(amplitude.size, "a grid of starts")
+    found = label(model.impact_law, amplitude, phase, velocity, impacts=impacts)
+    return described(_columns(found, (CASE,)))
 
 
 def fastest(model: Any, amplitude: Any) -> np.ndarray:
@@ -89,7 +86,9 @@ def fastest(model: Any, amplitude: Any) -> np.ndarray:
     return (1 + r) * np.maximum(lam, 1.0) / np.maximum(1 - r, 0.05)
 
 
-def diagram(model: Any, amplitude: np.ndarray, starts: int, samples: int, impacts: int) -> Labelled:
+def diagram(
+    model: Any, amplitude: np.ndarray, starts: int, samples: int, impacts: int
+) -> xr.Dataset:
     """The attractors over Λ, from several starts and from the motions at neighbouring Λ.
 
     After the starts, balls start again at each Λ from the ends of balls at lower and at higher Λ.
@@ -122,7 +121,7 @@ def diagram(model: Any, amplitude: np.ndarray, starts: int, samples: int, impact
     seen = _impacts(model, lam, found, samples)
     dims = ("amplitude", "start")
     data = {name: ((*dims, "impact"), x) for name, x in zip(_SEEN, seen, strict=True)}
-    return _described(_columns(found, dims) | data, {"amplitude": amplitude}, kind="diagram")
+    return described(_columns(found, dims) | data, {"amplitude": amplitude})
 
 
 def _ends(
@@ -152,7 +151,9 @@ def _impacts(model: Any, amplitude: np.ndarray, found: Motions, samples: int) ->
     return np.moveaxis(np.where(late, np.nan, seen), 1, -1)
 
 
-def basins(model: Any, amplitude: float, starts: int, fast: float | None, impacts: int) -> Labelled:
+def basins(
+    model: Any, amplitude: float, starts: int, fast: float | None, impacts: int
+) -> xr.Dataset:
     """The motions on which a grid of impacts (φ, δ′) ends, with their shares of the grid.
 
     ``destination`` (start_speed, start_phase) is an index along ``motion``. Over ``motion`` the
@@ -189,4 +190,4 @@ def basins(model: Any, amplitude: float, starts: int, fast: float | None, impact
         **{name: ("motion", values) for name, values in of_motions.items()},
     }
     coords = {"start_phase": phase, "start_speed": speed}
-    return _described(data, coords, kind="basins", amplitude=amplitude)
+    return described(data, coords)

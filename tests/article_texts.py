@@ -13,7 +13,7 @@ from bouncing_ball.beyond.exhibits import (
 from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.drawing.tables import to_csv, to_markdown
 from bouncing_ball.paper.claims import tables as rows
-from bouncing_ball.paper.claims.ledger import ledger
+from bouncing_ball.paper.claims.claims import claims
 from bouncing_ball.paper.exhibits import continuation_of_orbits_figures, error_thresholds_figures
 from bouncing_ball.pipeline.article import render_article
 
@@ -41,7 +41,7 @@ def record(recorded):
 
 def all_texts(data):
     """All tables in all formats, the article and its supplement."""
-    data = {**data, "claims": ledger(data)}
+    data = {**data, "claims": claims(data)}
     made = {}
     for name, draw in TABLES.items():
         table = draw(data[name])

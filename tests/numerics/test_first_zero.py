@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from bouncing_ball.beyond.simulation import next_impact, simulate
-from bouncing_ball.numerics.elementary import table
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.motion.flight import Flight, land
+from bouncing_ball.paper.motion.flight import Flight, land, table
 
 # A gap function is known to about four units in the last place of its terms,
 # which are of order 10 here.

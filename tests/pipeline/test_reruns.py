@@ -70,7 +70,6 @@ def test_the_modules_of_a_stage_are_those_it_imports():
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     found = sources("bouncing_ball.paper.exhibits.continuation_of_orbits")
     assert [path for path in found if path.endswith(".py")] == done.stdout.splitlines()
-    assert [Path(path).name for path in found if path.endswith(".csv")] == ["parameters.csv"]
 
 
 def test_no_import_statement_is_missed():

@@ -12,7 +12,7 @@ import time
 import numpy as np
 
 from bouncing_ball.beyond.corrected.signature import Signature
-from bouncing_ball.beyond.long_run.destination import label
+from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 
 
@@ -25,7 +25,7 @@ def main(balls: int, impacts: int) -> None:
     laws = {"restitution": r, "spring-damper": contact, "corrected": Signature(contact)}
     for name, law in laws.items():
         start = time.process_time()
-        found = label(law, lam, phase, velocity, impacts=impacts)
+        found = final_motions(law, lam, phase, velocity, impacts=impacts)
         spent = time.process_time() - start
         followed = found.followed.sum()
         print(

@@ -15,7 +15,7 @@ rule paper:
         tables=expand("results/figures/{table}.md", table=TABLES),
         source=modules(
             *("pipeline.article", "beyond.atlas.figures", "paper.claims.tables"),
-            "paper.claims.ledger",
+            "paper.claims.claims",
         ),
     output:
         paper="results/paper.md",

@@ -104,6 +104,22 @@ use rule study as error_thresholds with:
         ),
 
 
+use rule study as lowest_period_doubling with:
+    """The frequency ratio at which the period doubling of each family is lowest."""
+    wildcard_constraints:
+        artifact=stage(
+            lowest_doubling="paper.exhibits.lowest_period_doubling.lowest_period_doublings",
+        ),
+
+
+use rule study as kinds_of_motion with:
+    """A periodic, a subharmonic and a chaotic motion of the restitution model."""
+    wildcard_constraints:
+        artifact=stage(
+            three_balls="paper.exhibits.kinds_of_motion.kinds_of_motion",
+        ),
+
+
 # Beyond the paper.
 use rule study as corrected_model with:
     """The corrected restitution model, and contacts with another release rule or another law."""
@@ -148,6 +164,6 @@ use rule study as audit with:
             formulas="paper.claims.formulas.formulas",
             forensics="paper.claims.forensics.forensics",
             witness="paper.claims.witness.witness",
-            claims="paper.claims.ledger.ledger",
+            claims="paper.claims.claims.claims",
             statements="beyond.exhibits.statements.statements",
         ),

@@ -6,7 +6,7 @@ from bouncing_ball.beyond.atlas.figures import shares
 from bouncing_ball.datasets.files import read_dataset, write_text
 from bouncing_ball.drawing.tables import to_markdown
 from bouncing_ball.paper.claims import tables as rows
-from bouncing_ball.paper.claims.ledger import tally
+from bouncing_ball.paper.claims.claims import tally
 from bouncing_ball.pipeline.article import render_article
 from bouncing_ball.pipeline.jobs import logged, read_input
 

@@ -6,9 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.beyond.laws.collocation import Start, states
-from bouncing_ball.numerics.elementary import table
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.motion.flight import Flight
+from bouncing_ball.paper.motion.flight import Flight, table
 from bouncing_ball.paper.motion.sequence import ImpactSequence, Status
 
 

@@ -20,17 +20,11 @@ from bouncing_ball.datasets.labelled import Grid, Labelled
 from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball.errors import ModelError, NoOrbitError, extra, require
 from bouncing_ball.numerics.continuation import ContinuationError
-from bouncing_ball.numerics.elementary import table
-from bouncing_ball.paper.motion.flight import Flight, land
+from bouncing_ball.paper.motion.flight import Flight, land, table
 from bouncing_ball.paper.motion.sequence import ImpactSequence, Status
-from bouncing_ball.paper.orbits.branch import (
-    branch_columns,
-    columns,
-    joined,
-    no_branch,
-    whole_branch,
-)
+from bouncing_ball.paper.orbits.branch import whole_branch
 from bouncing_ball.paper.orbits.model import ImpactModel
+from bouncing_ball.paper.orbits.observables import branch_columns, columns, joined, no_branch
 from bouncing_ball.paper.orbits.orbit import OBSERVABLES
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
 from bouncing_ball.paper.orbits.stability import Side
@@ -96,7 +90,7 @@ class PermanentContact(Labelled):
 
 class Branches(Labelled):
     """Branches of orbits over Λ; the variables are those of
-    :func:`~bouncing_ball.paper.orbits.branch.orbits_in_columns`.
+    :func:`~bouncing_ball.paper.orbits.observables.orbits_in_columns`.
     """
 
     __slots__ = ()

@@ -1,9 +1,8 @@
-"""CSV tables stored beside modules, and files that are written completely or not at all.
+"""Files that are written completely or not at all, and datasets as netCDF files.
 
-Datasets as netCDF files, written atomically and reproducibly.
+The same dataset has the same bytes every time.
 """
 
-import csv
 import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
@@ -18,18 +17,8 @@ from bouncing_ball.errors import ModelError
 PICTURES = (".pdf", ".png", ".svg")
 """Suffixes of the figures that users request."""
 
-
-def rows_beside(module: str) -> list[dict[str, str]]:
-    """The rows of the CSV table beside a module with the same name; ``module`` is its ``__file__``.
-
-    Examples
-    --------
-    >>> from bouncing_ball.datasets import parameters
-    >>> "name" in rows_beside(parameters.__file__)[0]
-    True
-    """
-    text = Path(module).with_suffix(".csv").read_text(encoding="utf-8")
-    return list(csv.DictReader(text.splitlines()))
+CONVENTIONS = "CF-1.11"
+"""The netCDF conventions that the files follow."""
 
 
 def require_writable(path: Path | None, suffixes: Sequence[str] = ()) -> None:
@@ -89,10 +78,6 @@ def write_text(path: str | Path, text: str) -> None:
     """
     with replacing(path) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="\n")
-
-
-CONVENTIONS = "CF-1.11"
-"""The netCDF conventions that the files follow."""
 
 
 def parameter_attributes(parameters: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:

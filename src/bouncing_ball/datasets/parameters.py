@@ -3,12 +3,9 @@
 Each study takes a subclass of :class:`Parameters` that is defined beside it. The check of the
 configuration, its one-line errors, its documentation and its JSON schema are made from these
 classes, so that each name, range and description is written once. The description gives the reason
-for each limit. Numbers that many studies take are rows of ``parameters.csv``.
+for each limit. Types of numbers that many studies take are below.
 """
 
-import csv
-import json
-from pathlib import Path
 from typing import Annotated, Any, Self, TypeVar
 
 import numpy as np
@@ -41,17 +38,6 @@ def number(description: str, unit: str = "1", **limits: Any) -> Any:
     return Field(description=description, json_schema_extra={"unit": unit}, **limits)
 
 
-_TABLE = Path(__file__).with_suffix(".csv").read_text(encoding="utf-8").splitlines()
-_ROWS = {row.pop("name"): row for row in csv.DictReader(_TABLE)}
-
-
-def listed(name: str) -> Any:
-    """The field of a number that many studies take, from its row of ``parameters.csv``."""
-    row = _ROWS[name]
-    limits = {key: json.loads(row[key]) for key in ("ge", "gt", "le", "lt") if row[key]}
-    return number(row["description"], **limits)
-
-
 def _distinct(values: tuple) -> tuple:
     if len(set(values)) < len(values):
         raise ValueError("must not repeat an item")
@@ -61,16 +47,74 @@ def _distinct(values: tuple) -> tuple:
 Many = Annotated[tuple[_T, ...], Strict(False), Field(min_length=1), AfterValidator(_distinct)]
 """One or more distinct values, given as a list in the configuration."""
 
-Family = Annotated[int, listed("Family")]
-Restitution = Annotated[float, listed("Restitution")]
-LossyRestitution = Annotated[float, listed("LossyRestitution")]
-LawRestitution = Annotated[float, listed("LawRestitution")]
-Amplitude = Annotated[float, listed("Amplitude")]
-AmplitudeMax = Annotated[float, listed("AmplitudeMax")]
-FrequencyRatio = Annotated[float, listed("FrequencyRatio")]
-Samples = Annotated[int, listed("Samples")]
-Tolerance = Annotated[float, listed("Tolerance")]
-Seed = Annotated[int, listed("Seed")]
+Family = Annotated[
+    int,
+    number(
+        "index n of the family, whose orbits have the period 2πn; beyond 20 different "
+        "routes to an orbit differ by rounding",
+        ge=1,
+        le=20,
+    ),
+]
+Restitution = Annotated[
+    float,
+    number(
+        "restitution coefficient r, which determines the damping (Eq. 16); below 0.05 the "
+        "ball hardly leaves the contact",
+        ge=0.05,
+        le=1,
+    ),
+]
+LossyRestitution = Annotated[
+    float,
+    number(
+        "restitution coefficient r; at r = 1 no orbit attracts, and below 0.05 the ball "
+        "hardly leaves the contact",
+        ge=0.05,
+        le=0.999,
+    ),
+]
+LawRestitution = Annotated[
+    float, number("restitution coefficient r that contacts of every law can have", ge=0.3, le=0.99)
+]
+Amplitude = Annotated[
+    float,
+    number(
+        "amplitude Λ of the table's acceleration over gravity; at 1000 all orbits of the "
+        "families n ≤ 20 are unstable",
+        gt=0,
+        le=1000,
+    ),
+]
+AmplitudeMax = Annotated[
+    float,
+    number(
+        "upper end of the Λ axis; at 100 all restitution orbits of the families n ≤ 20 "
+        "are unstable",
+        gt=0,
+        le=100,
+    ),
+]
+FrequencyRatio = Annotated[
+    float,
+    number(
+        "frequency ratio ϖ of contact and table; below 0.1 the ball at rest sinks in by "
+        "100 g/Ω², and beyond 10⁶ the contact disappears in the rounding errors of the "
+        "cycle",
+        ge=0.1,
+        le=1000000.0,
+    ),
+]
+Samples = Annotated[
+    int,
+    number(
+        "number of samples; a line needs two, and more than 20001 are not visible in a figure",
+        ge=2,
+        le=20001,
+    ),
+]
+Tolerance = Annotated[float, number("largest relative error", gt=0, lt=1)]
+Seed = Annotated[int, number("seed of the random numbers", ge=0)]
 
 
 class Sharded(Parameters):

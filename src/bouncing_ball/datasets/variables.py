@@ -92,6 +92,9 @@ SHARED = {
     "period_doubling_amplitude": Variable(
         "amplitude of the period doubling", symbol="Λ_PD", equation="Eq. 8"
     ),
+    "period_doubling_turn": Variable(
+        "frequency ratio at which the period doubling is lowest", symbol="ϖ", budget=1e-05
+    ),
     "period_doubling_phase": Variable(
         "phase at the period doubling", symbol="φ_PD", units="rad", equation="Eq. 6"
     ),

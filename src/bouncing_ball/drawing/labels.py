@@ -6,13 +6,31 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from bouncing_ball.datasets import CASE
-from bouncing_ball.datasets.files import rows_beside
 
-_ROWS = rows_beside(__file__)
-QUANTITIES = {row["name"]: row["title"] for row in _ROWS if row["title"]}
+QUANTITIES = {
+    "phase": r"phase of impact $\varphi$",
+    "max_height": r"greatest height $\max\,z$",
+    "bounce_velocity": r"bouncing-off velocity $z′_b$",
+    "apparent_restitution": r"apparent restitution $r_a$",
+    "saddle_node": r"saddle-node $\Lambda_{SN}$",
+    "period_doubling": r"period doubling $\Lambda_{PD}$",
+    "permanent_contact": "permanent contact",
+}
 """The titles of the quantities compared between the models."""
 
-_SYMBOLS = {row["name"]: row["symbol"] for row in _ROWS if row["symbol"]}
+# Parameters in the order in which a title lists them.
+_SYMBOLS = {
+    "n": "n",
+    "restitution": "r",
+    "measured_restitution": "r",
+    "amplitude": r"\Lambda",
+    "frequency_ratio": r"\varpi",
+    "damping_ratio": r"\zeta",
+    "duration": "D",
+    "height": "h",
+    "phase": r"\varphi",
+    "velocity": "z′_i",
+}
 
 
 def number(value: float) -> str:

@@ -1,6 +1,5 @@
 """The look that all figures share: colours, lines, markers and matplotlib's settings."""
 
-import tomllib
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
@@ -21,21 +20,47 @@ TABLE = "#8c8c8c"
 Look = dict[str, Any]
 """Keywords of a line or a marker."""
 
-ARROW: Look = {"arrowstyle": "-|>", "color": "black", "linewidth": 0.9, "mutation_scale": 9}
-ARROW |= {"shrinkA": 0, "shrinkB": 0}
+ARROW: Look = {
+    "arrowstyle": "-|>",
+    "color": "black",
+    "linewidth": 0.9,
+    "mutation_scale": 9,
+    "shrinkA": 0,
+    "shrinkB": 0,
+}
 GUIDE: Look = {"color": "#8c8c8c", "linewidth": 0.7, "linestyle": (0, (1, 1.5))}
-
-
-def _look(entry: Look) -> Look:
-    return {key: (0, tuple(x)) if isinstance(x, list) else x for key, x in entry.items()}
-
-
-_TABLES = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
-LINES, MARKS, MODELS, LAWS = (
-    {name: _look(entry) for name, entry in _TABLES[part].items()}
-    for part in ("lines", "marks", "models", "laws")
-)
-"""Looks by name: branches of orbits, special points of a branch, models, contact laws."""
+# Branches of orbits, by their stability and admissibility.
+LINES: dict[str, Look] = {
+    "stable": {"linestyle": "-", "linewidth": 1.3},
+    "unstable": {"linestyle": (0, (3.5, 2)), "linewidth": 1.0},
+    "inadmissible": {"linestyle": (0, (0.8, 2.2)), "linewidth": 0.8},
+}
+_HOLLOW: Look = {
+    "markersize": 5,
+    "linestyle": "none",
+    "markerfacecolor": "none",
+    "markeredgewidth": 1.0,
+}
+# Special points of a branch; hollow, so that markers which coincide can all be seen.
+MARKS: dict[str, Look] = {
+    "saddle-node": {"marker": "o", **_HOLLOW},
+    "period doubling": {"marker": "s", **_HOLLOW},
+    "grazing": {"marker": "^", "markersize": 4.5, "linestyle": "none"},
+}
+# The line of each model where several are compared; that of the contact is below the others.
+MODELS: dict[str, Look] = {
+    "spring-damper": {"color": CONTACT, "linewidth": 2.2, "alpha": 0.75},
+    "restitution": {"color": RESTITUTION, "linewidth": 1.0},
+    "corrected": {"color": CORRECTED, "linewidth": 1.2, "linestyle": (0, (4, 1.5))},
+}
+# Contact laws differ by their dashes as well as by their colours.
+LAWS: dict[str, Look] = {
+    "linear": {"color": COLOURS[0], "linestyle": "-"},
+    "linear, force release": {"color": COLOURS[0], "linestyle": (0, (1, 1.5))},
+    "hunt-crossley": {"color": COLOURS[1], "linestyle": (0, (4, 1.5))},
+    "tsuji": {"color": COLOURS[2], "linestyle": (0, (6, 1.5, 1, 1.5))},
+    "kuwabara-kono": {"color": COLOURS[3], "linestyle": (0, (2, 1))},
+}
 
 
 def style() -> AbstractContextManager[None]:

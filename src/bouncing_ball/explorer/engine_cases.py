@@ -7,7 +7,7 @@ import json
 from typing import Any
 
 from bouncing_ball.beyond.engines.choice import ENGINES
-from bouncing_ball.beyond.engines.engine import Engine, Physical, text_of
+from bouncing_ball.beyond.engines.engine import Engine, Physical
 from bouncing_ball.paper.contact.damping import Release, damping_ratio
 
 # m, k, r and the error of r that the time step may cause: from light to heavy and elastic balls.
@@ -37,8 +37,7 @@ def as_json() -> str:
     engines = {
         engine.name: {
             "scheme": str(engine.scheme),
-            "snippets": {str(rule): engine.template(rule) for rule in engine.releases}
-            | {law: text_of(f"{engine.name}-{law}").rstrip() for law in engine.laws},
+            "snippets": {str(rule): engine.template(rule) for rule in engine.releases},
         }
         for engine in ENGINES.values()
     }

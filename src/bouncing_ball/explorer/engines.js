@@ -1,4 +1,4 @@
-// The engines of bouncing_ball.engines: their parameters of k, c and m, and the time step for an
+// The engines of bouncing_ball.beyond.engines: their parameters of k, c and m, and the time step for an
 // error of r. Their texts and schemes come from Python, in the page's element "engines".
 "use strict";
 
@@ -25,7 +25,7 @@ function repr(x) {
 }
 
 // Of a mass of one, and ζ < 1: k and c with which implicit Euler has the positions of the exact
-// contact, by exp(-hμ) - 1 for its rate μ (bouncing_ball.engines.compensation).
+// contact, by exp(-hμ) - 1 for its rate μ (bouncing_ball.beyond.engines.scheme).
 function compensated(k, c, step) {
   const growth = Math.expm1(step * c / 2), angle = step * Math.sqrt(k - c * c / 4);
   const real = growth - (growth + 1) * 2 * Math.sin(angle / 2) ** 2, imaginary = (growth + 1) * Math.sin(angle);
@@ -101,6 +101,9 @@ const ENGINE_READS = {
   pybullet: (m, a, b) => [a / 2, b / 0.5], drake: (m, a, b) => [a / 2, a * b], mercurydpm: (m, a, b) => [a, b],
 };
 
+// Up to this impedance MuJoCo's contact is taken for a spring and a damper.
+const FELT = 0.01;
+
 // The numbers of an attribute, as many as are allowed.
 function numbersOf(name, text, least, most) {
   const parts = text.trim().split(/\s+/).filter(Boolean), numbers = parts.map(Number);
@@ -110,14 +113,15 @@ function numbersOf(name, text, least, most) {
   return numbers;
 }
 
-// dmin, dmax, width in m, midpoint and power of a solimp, with MuJoCo's defaults.
-function solimpOf(text) {
+// The largest impedance of a solimp, with MuJoCo's defaults and limits.
+function impedanceOf(text) {
   const given = numbersOf("solimp", text, 0, 5);
   for (const d of given.slice(0, 2))
     refuseIf(!(d >= 0 && d <= 1), `solimp has the impedance ${general(d, 6)}, which is not in [0, 1]`);
-  const found = [...given, ...[0.9, 0.95, 0.001, 0.5, 2].slice(given.length)];
-  const shares = found.slice(0, 2).map(d => Math.min(0.9999, Math.max(1e-4, d)));
-  return [...found[2] > 0 ? shares : shares.map(() => (shares[0] + shares[1]) / 2), ...found.slice(2)];
+  const [least, most, width] = [...given, ...[0.9, 0.95, 0.001].slice(given.length)];
+  const shares = [least, most].map(d => Math.min(0.9999, Math.max(1e-4, d)));
+  // Without a width MuJoCo takes their mean.
+  return width > 0 ? Math.max(...shares) : (shares[0] + shares[1]) / 2;
 }
 
 // k and c of the parameters of an engine, which are two texts, and perhaps a time step.
@@ -126,11 +130,13 @@ function readEngine(engine, mass, [one, two, three]) {
   const [step] = stepped ? numbersOf("time_step", three, 1, 1) : [1];
   refuseIf(!(step > 0), `time_step = ${repr(step)} is not a positive number of s`);
   if (engine === "mujoco") {
-    solimpOf(two);
+    const impedance = impedanceOf(two);
     refuseIf(!one.trim(), "solref is missing: give it, such as '-10000 -20'");
     const [a, b] = numbersOf("solref", one, 2, 2);
     refuseIf(!(a < 0 && b <= 0) && !(a > 0 && b > 0), `solref = '${general(a, 6)} ${general(b, 6)}' is neither `
       + "two negative numbers, -k/m and -c/m, nor two positive ones, a time constant and a damping ratio");
+    refuseIf(impedance > FELT, `with the impedance ${general(impedance, 6)} MuJoCo's contact is not linear: write `
+      + 'solimp = "1e-4 1e-4 0.001", or ask bouncing-ball design, which follows it');
     return a < 0 ? [-a * mass, Math.abs(b) * mass] : [mass / (a * b) ** 2, 2 * mass / a];
   }
   const values = [one, two].map((text, k) => {
@@ -144,51 +150,19 @@ function readEngine(engine, mass, [one, two, three]) {
   return stepped ? represented(k / mass, c / mass, step).map(x => x * mass) : [k, c];
 }
 
-// How MuJoCo's contact differs from a spring and a damper, in units of s and m: MuJoCo.remarks.
-function impedanceRemarks([least, most, width, midpoint, power], omega, zeta) {
-  const found = [`with the impedance ${general(most, 6)} a contact feels ${general(1 - most, 2)} of the load `
-    + '(gravity, table), and a spring and a damper all of it: solimp = "1e-4 1e-4 0.001"'];
-  if (Math.max(least, most) <= FELT) return [];
-  const spring = {omega, zeta, release: "force", sine: zeta}, r = ownRestitution(spring), {load} = signatureOf(spring);
-  found.push(`under a load a this r is r + σ a/v with σ = ${general(load + most * 2 * zeta / omega * r, 4)} s, and `
-    + `${general(load, 4)} s for a spring and a damper`);
-  if (least === most) return found;
-  const share = least / most, depth = width || 1, law = impedanceLaw(omega, zeta, most, least, depth, midpoint, power);
-  const each = [0.1, 1, 10].map(part => part * depth * omega).map(v =>
-    `${(-contactUnder(law, v, () => 0).rate / v).toFixed(4)} at ${general(v, 3)} m/s`);
-  return [...found, `this is the contact below the depth of ${general(depth, 6)} m; at the surface the spring is `
-    + `${general(share ** 2, 2)} and the damper ${general(share, 2)} of it`,
-  `a free impact has r = ${each.join(", ")}, and ${r.toFixed(4)} where it is much deeper than that`];
-}
-// Up to this impedance a contact is taken for a spring and a damper.
-const FELT = 0.01;
-
 // ---- The case of the physical tab.
-// Powers of m, length and time of the numbers of a law, and their units in SI.
-const LAW_UNITS = {
-  "hunt-crossley": {stiffness: ["N/m^1.5", 1, -0.5, -2], damping: ["s/m", 0, -1, 1]},
-  "hunt-crossley-linear": {stiffness: ["N/m", 1, 0, -2], damping: ["s/m", 0, -1, 1]},
-  "tsuji": {stiffness: ["N/m^1.5", 1, -0.5, -2]},
-  "kuwabara-kono": {stiffness: ["N/m^1.5", 1, -0.5, -2], damping: ["s", 0, 0, 1]},
-  "elasto-backlash": {"frequency ratio": ["rad/s", 0, 0, -1]},
-  "impedance": {"frequency ratio": ["rad/s", 0, 0, -1], width: ["m", 0, 1, 0]},
-};
 // Engines whose scheme is compensated, so that their parameters belong to a time step.
 const STEPPED = ["pybullet", "drake"];
-// Engines that have a law besides the linear one, by its name.
-const ENGINE_LAWS = {drake: {"hunt-crossley": "hunt-crossley-linear", "hunt-crossley-linear": "hunt-crossley-linear"}};
-
-// The contact in SI units, its dimensionless groups, its law if it is not linear, and remarks.
-function caseOf({given, engine, release, r, n, t, one, two, three, m, k, f}) {
+// The contact in SI units, its dimensionless groups, and remarks.
+function caseOf({given, engine, release, r, one, two, three, m, k, f}) {
   const mass = m / 1000, time = 1 / (2 * Math.PI * f), length = GRAVITY * time ** 2;
   if (given in ENGINE_NAMES) {
     const [stiffness, damping] = readEngine(given, mass, [one, two, three]);
     const omega = Math.sqrt(stiffness / mass), zeta = damping / (2 * mass * omega);
-    const imposed = given === "mujoco" ? solimpOf(two) : null;
     const root = Math.sqrt(zeta * zeta - 1), r = Math.exp(-2 * zeta * (root > 0 ? Math.asinh(root) / root : 1));
     refuseIf(!(zeta < 1), `damping ratio ζ = ${repr(zeta)} is not below 1: a free impact `
       + `${release === "force" ? `has r = ${r.toFixed(4)}` : "does not end"}, and orbits are computed for less damping only`);
-    const remarks = imposed ? impedanceRemarks(imposed, omega, zeta) : STEPPED.includes(given) && !three.trim()
+    const remarks = STEPPED.includes(given) && !three.trim()
       ? ["k, c and r are those in the limit of small time steps, which damp less; with the parameter time_step, in s, "
         + "they are those of this step"] : [];
     const by = rule => ({omega: omega * time, zeta, release: rule, sine: rule === "force" ? zeta : 0});
@@ -197,39 +171,15 @@ function caseOf({given, engine, release, r, n, t, one, two, three, m, k, f}) {
       const [before, after] = [own, release].map(rule => ownRestitution(by(rule)).toFixed(4));
       remarks.push(`r changes from ${before} to ${after}, because contacts end by ${own} in ${given}, and by ${release} in ${engine}`);
     }
-    let law = null;
-    if (imposed && engine === "none" && Math.max(...imposed.slice(0, 2)) > FELT) {
-      const [least, most, width, midpoint, power] = imposed;
-      law = {name: "impedance", ...impedanceLaw(omega * time, zeta, most, least, (width || 1) / length, midpoint, power)};
-    }
-    return {mass, time, length, stiffness, damping, contact, law, remarks};
+    return {mass, time, length, stiffness, damping, contact, remarks};
   }
-  if (given === "stiffness") {
-    const contact = contactOf(r, Math.sqrt(k / mass) * time, release, engine !== "none");
-    return {mass, time, length, stiffness: k, damping: 2 * contact.zeta * Math.sqrt(k * mass), contact, law: null, remarks: []};
-  }
-  const laws = ENGINE_LAWS[engine] ?? {};
-  refuseIf(engine !== "none" && !laws[given], `--law ${given} is not written for ${engine}: leave --law out`);
-  const name = laws[given] ?? given, unit = contactOf(r, 1, release, true), duration = t / 1000 / time;
-  const contact = {...unit, omega: freeAngle(unit) / dampedFrequency(unit) / duration};
-  const law = lawOfImpact(name, r, duration, 2 * Math.PI * n / (1 + r));
-  refuseIf(!law, `restitution coefficient r = ${general(r, 6)} is too small: no ${name} contact with it was found; `
-    + "damped so strongly, the ball hardly leaves");
-  const stiffness = mass * (contact.omega / time) ** 2, damping = 2 * contact.zeta * mass * contact.omega / time;
-  return {mass, time, length, stiffness, damping, contact, law: {name, ...law}, remarks: []};
+  const contact = contactOf(r, Math.sqrt(k / mass) * time, release, engine !== "none");
+  return {mass, time, length, stiffness: k, damping: 2 * contact.zeta * Math.sqrt(k * mass), contact, remarks: []};
 }
 
-// The numbers of a law in SI units: words, value, unit, name.
-const inSi = ({law, mass, time, length}) => Object.entries(law.numbers).map(([name, value]) => {
-  const [unit, a, b, c] = LAW_UNITS[law.name][name] ?? ["", 0, 0, 0];
-  const si = value * mass ** a * length ** b * time ** c;
-  return [`${law.name}, ${name}`, si, unit, `law ${name.replaceAll(" ", "_")}`];
-});
-
-// What to write into an engine for a contact of mass, stiffness and damping, with the law of it.
-function settingsOf(engines, name, release, {mass, stiffness, damping}, error, law = null) {
-  // Drake's law cannot take back the damping of a step.
-  const {snippets} = engines[name], scheme = law ? "implicit Euler" : engines[name].scheme;
+// What to write into an engine for a contact of mass, stiffness and damping.
+function settingsOf(engines, name, release, {mass, stiffness, damping}, error) {
+  const {snippets, scheme} = engines[name];
   const [m, k, c] = [mass, stiffness, damping].map(rounded);
   const omega = Math.sqrt(k / m), zeta = c / (2 * m * omega);
   const of = rule => ({omega, zeta, release: rule, sine: rule === "force" ? zeta : 0});
@@ -237,13 +187,12 @@ function settingsOf(engines, name, release, {mass, stiffness, damping}, error, l
   const time_step = rounded(freeAngle(contact) / dampedFrequency(contact) / steps);
   const written = scheme !== COMPENSATED ? [k, c]
     : compensated(k / m, c / m, time_step).map(x => rounded(x * m));
-  const numbers = law ? {point_contact_stiffness: rounded(2 * law.stiffness),
-    hunt_crossley_dissipation: rounded(law.damping)} : ENGINE_NUMBERS[name](m, ...written);
+  const numbers = ENGINE_NUMBERS[name](m, ...written);
   const texts = Object.fromEntries(
     Object.entries({mass: m, stiffness: k, damping: c, time_step, ...numbers}).map(([key, x]) => [key, repr(x)]));
   for (const rule of ["displacement", "force"]) texts[rule] = ownRestitution(of(rule)).toFixed(4);
   return {scheme, steps, time_step, restitution: ownRestitution(contact),
-    snippet: snippets[law ? "hunt-crossley" : release].replace(/@([\w.]+)@/g, (_, key) => texts[key])};
+    snippet: snippets[release].replace(/@([\w.]+)@/g, (_, key) => texts[key])};
 }
 
 // The settings of the package, computed again: the largest relative difference, and where.

@@ -1,5 +1,5 @@
-// The closed forms of bouncing_ball.orbits, in plain JavaScript: the same formulas in the
-// same order, so that both round alike. Everything is dimensionless; see docs/closed-form.md for
+// The closed forms of bouncing_ball.paper.orbits and bouncing_ball.beyond.corrected, in plain
+// JavaScript: the same formulas in the same order, so that both round alike. Everything is dimensionless; see docs/closed-form.md for
 // the derivation. "NaN" stands for what does not exist, as there.
 "use strict";
 
@@ -73,7 +73,7 @@ function contactOf(r, omega, release, measured = false) {
     : decrement / Math.hypot(Math.PI, decrement);
   return {omega, zeta, release, sine: release === "force" ? zeta : 0};
 }
-// ζ = cos β with 2β cot β = -ln r < 2, by Newton's method: damping_ratio of damping.py.
+// ζ = cos β with 2β cot β = -ln r < 2, by Newton's method: damping_ratio of paper.contact.damping.
 function forceDamping(decrement) {
   if (decrement === 0) return 0;
   let beta = Math.PI / 2 * Math.sqrt(1 - decrement / 2);
@@ -91,7 +91,8 @@ function ownRestitution(contact) {
   return Math.exp(-freeAngle(contact) * z / Math.sqrt((1 - z) * (1 + z)));
 }
 
-// The n-T orbit whose contact lasts (θ₀ + ε)/ϖ_d: branch_point of spring_damper_branch.py.
+// The n-T orbit whose contact lasts (θ₀ + ε)/ϖ_d: branch_point of
+// paper.orbits.spring_damper_branch.
 function branchPoint(eps, contact, n) {
   const {omega, zeta, sine} = contact;
   const root = Math.sqrt((1 - zeta) * (1 + zeta)), perAngle = 1 / (omega * root);
@@ -153,9 +154,9 @@ function traceOf({omega, zeta, sine}, flight, [u, x, y], sinD, cosD, at, push) {
   return columns[0][0] + columns[1][1];
 }
 
-// ---- Roots, as bouncing_ball.orbits.spring_damper_limits finds them.
-// Chandrupatla's method, to four units in the last place of the root, or to what is near enough.
-function rootOf(f, a, b, fa = f(a), fb = f(b), near = 0) {
+// ---- Roots, as bouncing_ball.paper.orbits.spring_damper_bifurcations finds them.
+// Chandrupatla's method, to four units in the last place of the root.
+function rootOf(f, a, b, fa = f(a), fb = f(b)) {
   if (fa === 0) return a;
   if (fb === 0) return b;
   let c = a, fc = fa, t = 0.5;
@@ -165,7 +166,7 @@ function rootOf(f, a, b, fa = f(a), fb = f(b), near = 0) {
     else [c, b, fc, fb] = [b, a, fb, fa];
     [a, fa] = [x, fx];
     const [m, fm] = Math.abs(fa) < Math.abs(fb) ? [a, fa] : [b, fb];
-    const least = 4 * Number.EPSILON * Math.abs(m) + Math.max(near, Number.MIN_VALUE);
+    const least = 4 * Number.EPSILON * Math.abs(m) + Number.MIN_VALUE;
     const limit = least / Math.abs(b - c);
     if (limit > 0.5 || fm === 0 || Number.isNaN(fx)) return m;
     const xi = (a - b) / (c - b), phi = (fa - fb) / (fc - fb);
@@ -422,23 +423,18 @@ function sampledAdmissible(orbit, samples = 600) {
   return true;
 }
 
-// All that the page shows of one state: of a contact, or of r and ϖ, and of a law in its place.
-function answer({r, omega, amplitude, n, release, side = "stable", contact = contactOf(r, omega, release), law}) {
-  const own = ownRestitution(contact), top = 1.3 * Math.max(amplitude, 1.2);
-  const signature = law ? signatureOver(law) : null;
-  const models = [law ? lawModel(law, law.name, signature, own, top) : contactModel(contact), restitutionModel(own),
-    law ? correctedLawModel(signature, top) : correctedModel(signatureOf(contact))];
+// All that the page shows of one state: of a contact, or of r and ϖ.
+function answer({r, omega, amplitude, n, release, side = "stable", contact = contactOf(r, omega, release)}) {
+  const own = ownRestitution(contact), signature = signatureOf(contact);
+  const models = [contactModel(contact), restitutionModel(own), correctedModel(signature)];
   const orbits = models.map(model => model.orbit(n, amplitude, side));
   const limits = models.map(m => ({saddle_node: m.saddleNode(n), period_doubling: m.periodDoubling(n)}));
-  const thresholds = [law ? permanentContactOf(law) : permanentContact(contact), 1, 1];
+  const thresholds = [permanentContact(contact), 1, 1];
   const value = (name, k) => name === "permanent_contact" ? thresholds[k]
     : name in limits[k] ? limits[k][name] : orbits[k].exists ? orbits[k][name] : NaN;
   const errors = k => Object.fromEntries(Object.keys(QUANTITIES).map(
     name => [name, Math.abs(value(name, 0) / value(name, k) - 1)]));
-  return {contact, law, own, models, orbits, limits, thresholds, errors: errors(1), corrected: errors(2),
-    // Of a law at the speed of the restitution model's orbit, whose r is that of the contact.
-    signature: law ? {...signature(2 * Math.PI * n / (1 + own)), r: own} : signatureOf(contact),
-    at: signature};
+  return {contact, own, models, orbits, limits, thresholds, signature, errors: errors(1), corrected: errors(2)};
 }
 
 // ---- What the package computed, computed again: the largest difference over the size of each

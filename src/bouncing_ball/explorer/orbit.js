@@ -8,8 +8,8 @@ const TOLERANCE = 0.01;
 
 // What a ball does that starts beside an unstable orbit, as far as the page follows contacts.
 const BESIDE = 1e-3;
-function insteadOf({amplitude, phase, impact_velocity}, {contact, law}) {
-  if (law || contact.release === "force") return "bouncing-ball design says what the ball does instead";
+function insteadOf({amplitude, phase, impact_velocity}, {contact}) {
+  if (contact.release === "force") return "bouncing-ball design says what the ball does instead";
   const end = endOf({contact}, amplitude, phase, impact_velocity * (1 + BESIDE));
   return `one that starts beside it ${SAID[end.kind](end)}`;
 }
@@ -148,7 +148,7 @@ function fillTables(found, question) {
 }
 
 // Lengths, times and forces of the physical tab: words, value, unit, and the name in the JSON of `design`.
-function physical(found, state, {mass, time, length, stiffness, damping, law}) {
+function physical(found, state, {mass, time, length, stiffness, damping}) {
   const orbit = found.orbits[0], {omega, zeta} = found.contact, weight = mass * GRAVITY;
   const start = freeAngle(found.contact) / dampedFrequency(found.contact) * time;
   const {depth, force} = loadsOf(orbit);
@@ -157,12 +157,11 @@ function physical(found, state, {mass, time, length, stiffness, damping, law}) {
     ["stiffness k", stiffness, "N/m", "stiffness"], ["damping c", damping, "N s/m", "damping"],
     ["natural frequency ω", omega / time, "rad/s"],
     ["restitution of a free impact", found.own, "", "measured_restitution"],
-    ...(law ? inSi({law, mass, time, length}) : []),
     ["amplitude of the table", state.acc * length, "m"],
     ["contact time, free", start, "s", "contact_time"],
     // There is one time step, an engine's if one is chosen.
     ...(state.engine === "none" ? [["largest time step, a fiftieth of it", start / 50, "s", "largest"]] : []),
-    ["static deflection", law ? restOf(law) * length : weight / stiffness, "m", "static_deflection"],
+    ["static deflection", weight / stiffness, "m", "static_deflection"],
     ["permanent contact up to Λ", found.thresholds[0], "", "permanent_contact"],
     ["greatest height", orbit.max_height * length, "m", "max_height"],
     ["duration of contact", orbit.contact_duration * time, "s", "contact_duration"],
@@ -186,37 +185,18 @@ function loadsOf(orbit) {
   return {depth, force};
 }
 
-// What the reader should know of the contact besides, in the words of calculator/verdict.py.
-function notesOf(found, {n, amplitude}, one) {
+// What the reader should know of the contact besides, in the words of the command `design`.
+function notesOf(found, {n}, one) {
   const [orbit] = found.orbits, {release, zeta, omega} = found.contact, name = `${n}-T orbit`;
   const admissible = sampledAdmissible(orbit);
-  return [...one.remarks, ...one.law ? lawNotes(found, n, amplitude, one) : [],
-    ...Number.isNaN(found.thresholds[0]) ? ["no threshold of permanent contact was found, because the contact is weakly damped"] : [],
+  return [...one.remarks,
     ...!orbit.exists ? [`at this Λ the contact has no ${name}`]
       : orbit.is_stable && admissible ? [] : [`the ${name} is `
         + `${admissible ? "unstable" : "inadmissible (an earlier impact occurs)"}, so that no ball stays on it`],
     ...omega < 1 ? ["the contact is slower than the table: the ball oscillates on a spring"] : [],
-    ...!one.law && release === "displacement" && zeta > 0
+    ...release === "displacement" && zeta > 0
       ? ["before its release at δ = 0 the contact pulls the ball; a contact that cannot pull has the r of a release "
         + "without force"] : []];
-}
-
-function lawNotes(found, n, amplitude, {law, length, contact}) {
-  const [orbit] = found.orbits;
-  // The contact of a solref has the ϖ of its impedance, unlike one that was found for an impact.
-  if (law.name !== "impedance" || law.numbers["frequency ratio"] !== contact.omega) {
-    const what = law.name === "tsuji" ? "Hertz contact with Tsuji's damping" : `${law.name} contact`;
-    const speeds = [n, n + 1].map(k => 2 * Math.PI * k / (1 + found.own));
-    return [`stiffness, damping, ϖ and ζ are those of a linear contact: it has the r of the ${what}, and its duration at the impact`,
-      ...(speeds.every(v => Math.abs(found.at(v).r - found.own) < 1e-8) ? [] : ["the restitution of this law depends on "
-        + "the speed: it is r at the speed of the restitution model's lowest stable orbit"])];
-  }
-  const about = "stiffness, damping, ϖ and ζ are those of the spring and damper of this solref";
-  const spring = contactModel(contact).orbit(n, amplitude, "stable");
-  if (!orbit.exists || !spring.exists) return [about];
-  const {depth} = loadsOf(orbit), off = orbit.max_height / spring.max_height - 1;
-  return [`${about}: at the orbit's depth of ${prefixed(depth * length, "m")}, where the impedance is `
-    + `${general(law.share(depth), 3)}, the ball bounces ${percent(Math.abs(off))} ${off > 0 ? "higher" : "lower"} than with them`];
 }
 
 // What an engine is to be told, and the rows of it.
@@ -224,9 +204,7 @@ function showEngine({engine, e}, one) {
   $("paste").hidden = engine === "none";
   if (engine === "none") return [];
   const {release} = one.contact;
-  // Drake's law has its numbers in SI units.
-  const law = one.law && Object.fromEntries(inSi(one).map(([, value,, key]) => [key.slice(4), value]));
-  const found = settingsOf(ENGINES, engine, release, one, e, law);
+  const found = settingsOf(ENGINES, engine, release, one, e);
   $("paste-says").textContent = `For ${engine}, with the ${release} release `
     + `(r = ${shown(found.restitution, 4)}, within ${e} in ${found.steps} steps of ${found.scheme} `
     + "in a contact):";

@@ -8,7 +8,7 @@ const BOUND = Number(document.body.dataset.bound);
 // ---- The page.
 const SELECTS = ["engine", "given", "model", "pace", "view"];
 let current = DEFAULTS;
-for (const [id, names] of [["laws", LAWS], ["engines-from", ENGINES], ["engine", ENGINES]])
+for (const [id, names] of [["engines-from", ENGINES], ["engine", ENGINES]])
   $(id).append(...Object.keys(names).map(name => new Option(name)));
 // A state without an answer: why, and nothing of the answer before it.
 function refuse(text) {
@@ -35,7 +35,7 @@ function show(hash) {
   $("command-name").textContent = `The same in the shell${onStage ? "" : ", with every digit and certified"}:`;
   for (const choice of document.querySelectorAll("input[name=release]"))
     choice.disabled = !releasesOf(state).includes(choice.value);
-  for (const name of ["k", "r", "t", ...TEXTS]) field(name).hidden = !givenBy(state.given).includes(name);
+  for (const name of ["k", "r", ...TEXTS]) field(name).hidden = !givenBy(state.given).includes(name);
   field("e").hidden = state.engine === "none";
   TEXTS.forEach((name, k) => field(name).querySelector("label").textContent = ENGINE_NAMES[state.given]?.[k]);
   if (why) return refuse(why);
@@ -60,7 +60,6 @@ function show(hash) {
   const [good, sentence] = verdictOf(found, question);
   $("verdict").textContent = sentence;
   $("verdict").dataset.good = good;
-  for (const name of document.querySelectorAll(".exact")) name.textContent = found.law?.name ?? "spring-damper";
   fillTables(found, question);
   if (state.tab === "design") {
     const one = question.physical;

@@ -7,14 +7,13 @@ const $ = id => document.getElementById(id);
 // differs from the one before, the periods that have passed, and how many times slower it plays.
 const DEFAULTS = {
   tab: "orbit", r: 0.85, w: 10, a: 0.8, n: 1, release: "displacement", side: "stable",
-  m: 20, f: 50, acc: 0.8, k: 1e7, engine: "none", e: 0.001, given: "stiffness", t: 0.1,
+  m: 20, f: 50, acc: 0.8, k: 1e7, engine: "none", e: 0.001, given: "stiffness",
   one: "", two: "", three: "",
   model: "both", phi: 0, v: -3, balls: 1, dv: 0, dphi: 0, from: 0, pace: "1", view: "height",
 };
 const RANGES = {
   r: [0.001, 1], w: [0.1, 1e6], a: [0.001, 100], n: [1, 20],
   m: [1e-9, 1e9], f: [1e-6, 1e9], acc: [0.001, 100], k: [1e-9, 1e18], e: [1e-6, 0.5],
-  t: [1e-9, 1e6],
   phi: [-10, 10], v: [-1000, 1000], balls: [1, 9], dv: [-10, 10], dphi: [-10, 10], from: [0, 1000],
 };
 // The parameters of an engine, as they are written in it.
@@ -27,7 +26,7 @@ const REFERENCES = Object.fromEntries(["references", "engines", "quantities", "s
 const {engines: {engines: ENGINES}, quantities: QUANTITIES, scenes: SCENES} = REFERENCES;
 const CHOICES = {
   tab: ["orbit", "design", "stage"], release: ["displacement", "force"], side: ["stable", "unstable"],
-  engine: ["none", ...Object.keys(ENGINES)], given: ["stiffness", ...Object.keys(LAWS), ...Object.keys(ENGINES)],
+  engine: ["none", ...Object.keys(ENGINES)], given: ["stiffness", ...Object.keys(ENGINES)],
   model: ["both", "restitution", "spring-damper"], pace: ["1", "4", "16"], view: ["height", "gap"],
 };
 const GRAVITY = 9.80665;
@@ -60,12 +59,11 @@ function parse(hash) {
 }
 
 // The releases that a state of the physical tab may have: those of its engine, or of the one whose
-// parameters are given; a law has its own.
+// parameters are given.
 function releasesOf({tab, engine, given}) {
   const name = engine === "none" ? given : engine;
   if (tab !== "design") return CHOICES.release;
-  if (ENGINES[name]) return CHOICES.release.filter(rule => rule in ENGINES[name].snippets);
-  return name in LAWS ? ["displacement"] : CHOICES.release;
+  return CHOICES.release.filter(rule => !(name in ENGINES) || rule in ENGINES[name].snippets);
 }
 function withRelease(state) {
   const rules = releasesOf(state);
@@ -81,8 +79,7 @@ function impossible(state) {
     return `unknown engine '${engine}': one of ${CHOICES.engine.slice(1).join(", ")}`;
   if (physical && !releasesOf(state).includes(state.release)) {
     const name = engine === "none" ? given : engine;
-    return name in LAWS ? `--release is not allowed with --law ${name}, which has its own`
-      : `${name} has no ${state.release} release: its contacts end by ${releasesOf(state).join(" and ")}`;
+    return `${name} has no ${state.release} release: its contacts end by ${releasesOf(state).join(" and ")}`;
   }
   if (physical && !(given in ENGINES) && engine !== "none" && state.release === "force" && r <= least)
     return `r = ${r} is not above e⁻² = ${shown(least, 4)}, the least of an `
@@ -100,7 +97,7 @@ function impossible(state) {
 }
 
 // The numbers, or the texts, by which the contact of the physical tab is given.
-const givenBy = given => given in ENGINES ? TEXTS.slice(0, ENGINE_NAMES[given].length) : given in LAWS ? ["t", "r"] : ["k", "r"];
+const givenBy = given => given in ENGINES ? TEXTS.slice(0, ENGINE_NAMES[given].length) : ["k", "r"];
 const TABS = {
   orbit: () => ["r", "w", "a", "n", "release", "side"],
   design: ({engine, given}) => ["tab", "m", "f", "acc", ...givenBy(given), "n", "release",
@@ -117,7 +114,7 @@ function asked(state) {
   if (state.tab === "orbit") return {r, n, release, side, omega: state.w, amplitude: state.a};
   const one = caseOf(state);
   // The calculator asks for the orbit that is stable next to the saddle-node.
-  return {n, side: "stable", amplitude: state.acc, contact: one.contact, law: one.law, physical: one};
+  return {n, side: "stable", amplitude: state.acc, contact: one.contact, physical: one};
 }
 
 function commandOf(state) {
@@ -130,12 +127,10 @@ function commandOf(state) {
     return `bouncing-ball orbit --restitution ${r} --frequency-ratio ${state.w} `
       + `--amplitude ${state.a} --n ${state.n} --release ${release} --side ${state.side}`;
   const texts = givenBy(given).filter(key => TEXTS.includes(key)).map((key, k) => [ENGINE_NAMES[given]?.[k], state[key].trim()]).filter(([, text]) => text);
-  const contact = given in LAWS ? [`--law ${given} --contact-time "${state.t} ms" --restitution ${r}`]
-    : given === "stiffness" ? [`--stiffness "${state.k} N/m" --restitution ${r}`]
-      : [`--from ${given}`, ...texts.map(([name, text]) =>
-        given === "mujoco" ? `--${name} "${text}"` : `--set ${name}=${text}`)];
+  const contact = given === "stiffness" ? [`--stiffness "${state.k} N/m" --restitution ${r}`]
+    : [`--from ${given}`, ...texts.map(([name, text]) =>
+      given === "mujoco" ? `--${name} "${text}"` : `--set ${name}=${text}`)];
   return [`bouncing-ball design --mass "${state.m} g" --frequency "${state.f} Hz"`,
-    `--acceleration "${state.acc} g"`, ...contact, `--n ${state.n}`,
-    ...(given in LAWS ? [] : [`--release ${release}`]),
+    `--acceleration "${state.acc} g"`, ...contact, `--n ${state.n}`, `--release ${release}`,
     ...(engine === "none" ? [] : [`--engine ${engine} --restitution-error ${state.e}`])].join(" ");
 }

@@ -1,4 +1,12 @@
-"""Predictor-corrector continuation of a branch, with events."""
+"""Predictor-corrector continuation of a branch, with events.
+
+A step starts from a state: a point y of the branch, its tangent t, and the values of the test
+functions. The predictor is ``y + h t``, and Newton's method in the plane normal to t is the
+corrector. Events within the step are then located, and :class:`StepControl` chooses the next h. A
+step is repeated with half its length if the corrector fails, if the tangent turns too much, or if
+an event cannot be located. The branch ends at a terminal event, where no step is short enough, or
+after a given number of points.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bouncing_ball.numerics.corrector import NewtonSettings, Problem, newton, plane, tangent
-from bouncing_ball.numerics.events import Event, SpecialPoint, locate
+from bouncing_ball.numerics.events import Event, SpecialPoint, changes_of_sign, locate_all
 
 
 class ContinuationError(RuntimeError):
@@ -131,34 +139,100 @@ def solve_at(problem: Problem, guess: np.ndarray) -> np.ndarray:
     return found.point
 
 
+class _State(NamedTuple):
+    """A point of a branch, its unit tangent, and the values of the test functions at the point."""
+
+    point: np.ndarray
+    tangent: np.ndarray
+    values: list[float]
+
+
+class _Step(NamedTuple):
+    """An accepted step.
+
+    ``reached`` is the state after the step, ``special`` holds the events on the way, and ``end`` is
+    the end of the branch if the last of these events is terminal. ``iterations`` is the number of
+    iterations of the corrector, and ``angle`` the angle by which the tangent turns.
+    """
+
+    reached: _State
+    special: tuple[SpecialPoint, ...]
+    end: End | None
+    iterations: int
+    angle: float
+
+
 class _Rejected(Exception):
     """A step that must be repeated with half its length.
 
-    The arguments are those of the :class:`End` of the branch if the step cannot be shorter.
+    If the step cannot be shorter, the branch ends, for the reason ``why``. ``finished`` is that of
+    this :class:`End`.
     """
 
+    def __init__(self, why: str, finished: bool = True):
+        super().__init__(why)
+        self.why = why
+        self.finished = finished
 
-def _located(problem, events, values, left, right):
-    """The events within a step, with their points, in order, up to the first terminal event.
 
-    ``values`` holds the values of each test function at both ends of the step; an event is present
-    if their signs differ.
+def _values(events: Sequence[Event], point: np.ndarray) -> list[float]:
+    return [float(event.function(point)) for event in events]
+
+
+def _end_at(event: Event) -> End:
+    return End(event.reason or event.name)
+
+
+def _first_state(
+    problem: Problem, start: np.ndarray, increasing: bool, events: Sequence[Event]
+) -> _State:
+    """The corrected start, with a tangent along which the parameter increases or decreases."""
+    point = solve_at(problem, np.asarray(start, dtype=float))
+    parameter = np.eye(point.size)[-1] * (1.0 if increasing else -1.0)
+    state = _State(point, tangent(problem.jacobian(point), parameter), _values(events, point))
+    for event, value in zip(events, state.values, strict=True):
+        if event.terminal and value < 0:
+            raise ContinuationError(
+                f"the start {np.array2string(point, precision=4)} lies beyond the end of the "
+                f"branch: {_end_at(event)}"
+            )
+    return state
+
+
+def _step(
+    problem: Problem, events: Sequence[Event], state: _State, length: float, max_angle: float
+) -> _Step:
+    """Predict and correct the next point, and locate the events on the way to it.
+
+    Raises
+    ------
+    _Rejected
+        If the corrector fails, the tangent turns by more than ``max_angle``, or an event cannot be
+        located.
     """
-    located, failure = [], None
-    for event, (before, after) in zip(events, values, strict=True):
-        if (before >= 0) != (after >= 0):
-            special = locate(problem, event, left, right)
-            if special:
-                located.append((event, special))
-            else:
-                why = f"{event.name} announced near {left} could not be located"
-                failure = End(event.reason or why, event.terminal)
-    located.sort(key=lambda pair: float((pair[1].point - left) @ (right - left)))
-    ends = [k for k, (event, _) in enumerate(located) if event.terminal]
-    if failure and not ends:
+    predicted = state.point + length * state.tangent
+    corrected = newton(problem, predicted, plane(state.tangent, predicted))
+    if not corrected.converged:
+        raise _Rejected(f"the corrector fails with residual {corrected.residual:.1e}")
+    point = corrected.point
+    ahead = tangent(problem.jacobian(point), state.tangent)
+    angle = float(np.arccos(np.clip(ahead @ state.tangent, -1.0, 1.0)))
+    if not angle <= max_angle:
+        raise _Rejected(f"the tangent turns by more than {max_angle} rad")
+    reached = _State(point, ahead, _values(events, point))
+    changed = changes_of_sign(events, state.values, reached.values)
+    passage = locate_all(problem, changed, state.point, point)
+    if passage.missed is not None:
         # The step may have left the domain in which the test function is defined.
-        raise _Rejected(*failure)
-    return located[: ends[0] + 1] if ends else located
+        event = passage.missed
+        why = f"{event.name} announced near {state.point} could not be located"
+        raise _Rejected(event.reason or why, event.terminal)
+    end = None
+    if passage.terminal is not None:
+        end = _end_at(passage.terminal)
+        point = passage.special[-1].point
+        reached = _State(point, tangent(problem.jacobian(point), ahead), [])
+    return _Step(reached, passage.special, end, corrected.iterations, angle)
 
 
 def continue_branch(
@@ -205,56 +279,35 @@ def continue_branch(
     ...
     ...     def jacobian(self, y):
     ...         return 2 * y[..., np.newaxis, :]
-    >>> start, turn = np.array([1.0, 0.0]), Event("turn", lambda y: y[..., 0])
+    >>> turn = Event("turn", lambda y: y[..., 0])
+    >>> start = np.array([1.0, 0.0])
     >>> found = continue_branch(Circle(), start, increasing=True, events=[turn], max_points=30)
     >>> [np.abs(special.point.round(12)).tolist() for special in found.special]
     [[0.0, 1.0]]
     """
-    y = solve_at(problem, np.asarray(start, dtype=float))
-    direction = tangent(problem.jacobian(y), np.eye(y.size)[-1] * (1.0 if increasing else -1.0))
-    values = [float(event.function(y)) for event in events]
-    for event, value in zip(events, values, strict=True):
-        if event.terminal and value < 0:
-            raise ContinuationError(
-                f"the start {np.array2string(y, precision=4)} lies beyond the end of the branch: "
-                f"{event.reason or event.name}"
-            )
-    points, tangents = [y], [direction]
+    state = _first_state(problem, start, increasing, events)
+    states = [state]
     special: list[SpecialPoint] = []
-    length, end = control.initial, None
-
-    def step() -> tuple[np.ndarray, np.ndarray, list[float], list, float]:
-        """Predict and correct a point, and locate the events within the step."""
-        predicted = y + length * direction
-        found = newton(problem, predicted, plane(direction, predicted))
-        if not found.converged:
-            raise _Rejected(f"the corrector fails with residual {found.residual:.1e}")
-        ahead = tangent(problem.jacobian(found.point), direction)
-        angle = float(np.arccos(np.clip(ahead @ direction, -1.0, 1.0)))
-        if not angle <= control.max_angle:
-            raise _Rejected(f"the tangent turns by more than {control.max_angle} rad")
-        after = [float(event.function(found.point)) for event in events]
-        both = list(zip(values, after, strict=True))
-        passed = _located(problem, events, both, y, found.point)
-        return found.point, ahead, after, passed, control.after(length, found.iterations, angle)
-
-    while end is None and len(points) < max_points:
+    length = control.initial
+    end: End | None = None
+    while end is None and len(states) < max_points:
         try:
-            y, direction, values, passed, length = step()
+            step = _step(problem, events, state, length, control.max_angle)
         except _Rejected as rejected:
-            why, *finished = rejected.args
-            end = End(f"step too small ({length:.1e}): {why}", *finished)
+            if length / 2 < control.smallest:
+                end = End(f"step too small ({length:.1e}): {rejected.why}", rejected.finished)
             length /= 2
-            end = None if length >= control.smallest else end
             continue
-        special.extend(where for _, where in passed)
-        if passed and passed[-1][0].terminal:
-            last, (_, y) = passed[-1]
-            direction, end = tangent(problem.jacobian(y), direction), End(last.reason or last.name)
-        points.append(y)
-        tangents.append(direction)
-    end = end or End(f"reached the limit of {max_points} points", finished=False)
-    return Branch(np.array(points), np.array(tangents), tuple(special), STARTED, end)
+        state = step.reached
+        states.append(state)
+        special.extend(step.special)
+        end = step.end
+        length = control.after(length, step.iterations, step.angle)
+    if end is None:
+        end = End(f"reached the limit of {max_points} points", finished=False)
+    points = np.array([state.point for state in states])
+    tangents = np.array([state.tangent for state in states])
+    return Branch(points, tangents, tuple(special), STARTED, end)
 
 
 def continue_both_ways(problem: Problem, start: np.ndarray, **options) -> Branch:
@@ -275,6 +328,11 @@ def continue_both_ways(problem: Problem, start: np.ndarray, **options) -> Branch
 _EQUALISING_ROUNDS = 8
 
 
+def _interpolated(wanted: np.ndarray, arc: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """Rows that are known at the arclengths ``arc``, interpolated linearly at those wanted."""
+    return np.stack([np.interp(wanted, arc, column) for column in rows.T], axis=-1)
+
+
 def resample(problem: Problem, branch: Branch, count: int) -> np.ndarray:
     """Solutions at equal distances along a branch, shape (count, N + 1).
 
@@ -292,12 +350,10 @@ def resample(problem: Problem, branch: Branch, count: int) -> np.ndarray:
     arc = branch.arclength
     if len(arc) < 2:
         raise ContinuationError(f"a branch of one point has no length: {branch.end}")
-    known = np.concatenate([branch.points, branch.tangents], axis=-1)
     wanted = np.linspace(0.0, arc[-1], count)
     for _ in range(_EQUALISING_ROUNDS):
-        guess, along = np.split(
-            np.stack([np.interp(wanted, arc, x) for x in known.T], axis=-1), 2, axis=-1
-        )
+        guess = _interpolated(wanted, arc, branch.points)
+        along = _interpolated(wanted, arc, branch.tangents)
         found = newton(problem, guess, plane(along, guess))
         if not np.all(found.converged):
             residual = found.residual.max()

@@ -1,4 +1,9 @@
-"""Newton's method for square systems and for a problem with one added condition; tangents."""
+"""Newton's method, for a system of equations and for a point of a branch.
+
+A :class:`Problem` has one unknown more than equations, and its solutions form a branch. One added
+:data:`Condition`, for example a plane across the branch, selects a point, which Newton's method
+finds. The tangent of the branch is the null vector of the problem's Jacobian.
+"""
 
 from collections.abc import Callable
 from typing import NamedTuple, Protocol
@@ -85,8 +90,9 @@ def newton(
 
     def equations(y):
         value, gradient = condition(y)
-        right = np.concatenate([problem.residual(y), value[..., np.newaxis]], axis=-1)
-        return right, np.concatenate([problem.jacobian(y), gradient[..., np.newaxis, :]], axis=-2)
+        values = np.concatenate([problem.residual(y), value[..., np.newaxis]], axis=-1)
+        matrix = np.concatenate([problem.jacobian(y), gradient[..., np.newaxis, :]], axis=-2)
+        return values, matrix
 
     return solve(equations, guess, settings)
 
@@ -104,28 +110,30 @@ def solve(
     """
     y = np.array(guess, dtype=float)
     shape = y.shape[:-1]
-    converged, going = np.zeros(shape, dtype=bool), np.ones(shape, dtype=bool)
-    residual, size = np.full(shape, np.inf), np.full(shape, np.inf)
+    converged = np.zeros(shape, dtype=bool)
+    going = np.ones(shape, dtype=bool)
+    residual = np.full(shape, np.inf)
+    size = np.full(shape, np.inf)
     iteration = 0
     while iteration < settings.max_iterations and np.any(going):
         iteration += 1
-        right, matrix = equations(y)
-        residual = np.where(going, np.max(np.abs(right), axis=-1), residual)
+        values, matrix = equations(y)
+        residual = np.where(going, np.max(np.abs(values), axis=-1), residual)
         going &= np.isfinite(residual) & np.all(np.isfinite(matrix), axis=(-2, -1))
         # A matrix of NaN would cause a warning beside one that is singular.
         known = np.where(going[..., np.newaxis, np.newaxis], matrix, np.eye(y.shape[-1]))
-        change = _solve(known, right)
+        change = _solve_linear(known, values)
         length = np.linalg.norm(change, axis=-1)
-        part = np.minimum(1.0, settings.longest / np.maximum(length, _TINY))
+        share = np.minimum(1.0, settings.longest / np.maximum(length, _TINY))
         going &= np.isfinite(length)
-        y = np.where(going[..., np.newaxis], y - part[..., np.newaxis] * change, y)
+        y = np.where(going[..., np.newaxis], y - share[..., np.newaxis] * change, y)
         size = np.where(going, length / (1 + np.linalg.norm(y, axis=-1)), size)
         converged |= going & (size <= settings.tolerance)
         going &= ~converged
     return Correction(y, converged, iteration, residual, size)
 
 
-def _solve(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
+def _solve_linear(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
     """Solutions of linear systems; NaN where the matrix is singular or has NaN entries."""
     try:
         return np.linalg.solve(matrix, right[..., np.newaxis])[..., 0]

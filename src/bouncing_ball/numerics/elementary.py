@@ -21,9 +21,15 @@ from numpy.typing import ArrayLike
 _TURN_HIGH = np.array(float.fromhex("0x1.921fb544p+2"))
 _TURN_LOW = np.array(float.fromhex("0x1.0b4611a626331p-32"))
 _TURNS = np.array(1 / (2 * np.pi))
-_LN2_HIGH, _LN2_LOW = map(np.array, (0.693145751953125, 1.42860682030941723212e-6))
+_LN2_HIGH = np.array(0.693145751953125)
+_LN2_LOW = np.array(1.42860682030941723212e-6)
 _LOG2E = np.array(1 / math.log(2))
-_QUARTER, _ONE, _TWO, _LEAST, _MOST = map(np.array, (0.25, 1.0, 2.0, -746.0, 709.0))
+_QUARTER = np.array(0.25)
+_ONE = np.array(1.0)
+_TWO = np.array(2.0)
+# Below the first exponent e^x is 0; above the second it is not computed.
+_LEAST_EXPONENT = np.array(-746.0)
+_LARGEST_EXPONENT = np.array(709.0)
 
 
 def _arrays(*rows: Sequence[float]) -> list[list[np.ndarray]]:
@@ -51,6 +57,7 @@ _ATAN = _arrays(
 
 
 def _polynomial(coefficients: Sequence[np.ndarray], x: np.ndarray) -> np.ndarray:
+    """The polynomial at x by Horner's scheme, from the coefficient of the highest power down."""
     value = coefficients[0] * x + coefficients[1]
     for coefficient in coefficients[2:]:
         value *= x
@@ -95,7 +102,14 @@ def sine_and_versine(angle: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
 
 
 def sine_and_cosine(angle: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    """sin x and cos x."""
+    """sin x and cos x; the cosine has an absolute error of the order of rounding.
+
+    Examples
+    --------
+    >>> sine, cosine = sine_and_cosine([0.0, np.pi])
+    >>> abs(sine.round(15)).tolist(), cosine.tolist()
+    ([0.0, 0.0], [1.0, -1.0])
+    """
     sine, versine = sine_and_versine(angle)
     return sine, 1 - versine
 
@@ -108,7 +122,7 @@ def exponential(x: ArrayLike) -> np.ndarray:
     >>> exponential([0.0, -1e3]).tolist()
     [1.0, 0.0]
     """
-    clipped = np.minimum(np.maximum(x, _LEAST), _MOST)
+    clipped = np.minimum(np.maximum(x, _LEAST_EXPONENT), _LARGEST_EXPONENT)
     power = np.rint(clipped * _LOG2E)
     rest = (clipped - power * _LN2_HIGH) - power * _LN2_LOW
     square = rest * rest
@@ -129,7 +143,8 @@ def logarithm(x: ArrayLike) -> np.ndarray:
     """
     fraction, power = np.frexp(np.asarray(x, dtype=float))
     low = fraction < math.sqrt(0.5)
-    fraction, power = np.where(low, 2 * fraction, fraction), power - low
+    fraction = np.where(low, 2 * fraction, fraction)
+    power = power - low
     f = (fraction - 1) / (fraction + 1)
     square = f * f
     series = 2 * f + 2 * f * square * _polynomial(_LOG[:-1], square)
@@ -144,8 +159,10 @@ def arctangent(y: ArrayLike, x: ArrayLike) -> np.ndarray:
     >>> arctangent([1.0, -1.0, 0.0], [1.0, 0.0, -1.0]).tolist() == [np.pi / 4, -np.pi / 2, np.pi]
     True
     """
-    up, along = np.abs(y), np.abs(x)
-    large, small = np.maximum(up, along), np.minimum(up, along)
+    up = np.abs(y)
+    along = np.abs(x)
+    large = np.maximum(up, along)
+    small = np.minimum(up, along)
     steep = small > 0.66 * large
     above = np.where(steep, small - large, small)
     below = np.where(steep, small + large, large)
@@ -156,15 +173,3 @@ def arctangent(y: ArrayLike, x: ArrayLike) -> np.ndarray:
     angle = np.where(up > along, np.pi / 2 - angle, angle)
     angle = np.where(np.asarray(x) < 0, np.pi - angle, angle)
     return np.copysign(angle, y)
-
-
-def table(phase: np.ndarray, amplitude: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
-    """Λ cos φ and Λ sin φ: the table's velocity and height, or minus its jerk and acceleration.
-
-    Examples
-    --------
-    >>> [float(x) for x in table(np.zeros(()), 2.0)]
-    [2.0, 0.0]
-    """
-    sine, versine = sine_and_versine(phase)
-    return amplitude * (1 - versine), amplitude * sine

@@ -6,7 +6,7 @@ tolerance of Newton's method whatever the length of the step. A domain is given 
 alone, so that its limits on the branch are located by bisection.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -21,9 +21,11 @@ _DIFFERENCE = 6e-6
 _PATIENT = NewtonSettings(max_iterations=20)
 # Rounding may move a zero at an end of the bracket outside, by at most this part of the bracket.
 _SLACK = 1e-6
-# Number of bisections of a chord, whose ends no longer move once they agree to rounding.
+# Largest number of bisections of a chord.
 _BISECTIONS = 60
-_TINY, _ROUNDING = np.finfo(float).tiny, 4e-16
+# A chord is bisected until its length relative to the point is at most this rounding error.
+_ROUNDING = 4e-16
+_TINY = np.finfo(float).tiny
 
 
 @dataclass(frozen=True)
@@ -98,13 +100,55 @@ def locate(
     the method does not converge, or converges outside the bracket, because a step of the
     continuation was too long or because there is no zero.
     """
-    values, chord = [float(event.function(y)) for y in (left, right)], right - left
-    guess = left + values[0] / (values[0] - values[1]) * chord
+    before = float(event.function(left))
+    after = float(event.function(right))
+    chord = right - left
+    guess = left + before / (before - after) * chord
     found = newton(problem, guess, vanishing(event.function), _PATIENT)
     progress = (found.point - left) @ chord / (chord @ chord)
     if not (found.converged and -_SLACK <= progress <= 1 + _SLACK):
         return None
     return SpecialPoint(event.name, found.point)
+
+
+def changes_of_sign(
+    events: Sequence[Event], before: Sequence[float], after: Sequence[float]
+) -> list[Event]:
+    """The events whose test functions differ in sign before and after a step."""
+    values = zip(events, before, after, strict=True)
+    return [event for event, first, last in values if (first >= 0) != (last >= 0)]
+
+
+class Passage(NamedTuple):
+    """The events on a step along a branch.
+
+    ``special`` holds the located events in order, up to the first terminal event, and ``terminal``
+    is this event, or None. ``missed`` is an event that could not be located, or None; it does not
+    matter if there is a terminal event.
+    """
+
+    special: tuple[SpecialPoint, ...]
+    terminal: Event | None
+    missed: Event | None
+
+
+def locate_all(
+    problem: Problem, events: Sequence[Event], left: np.ndarray, right: np.ndarray
+) -> Passage:
+    """The zeros of several events between two points of the branch, in order along the chord."""
+    located = []
+    missed = None
+    for event in events:
+        special = locate(problem, event, left, right)
+        if special is None:
+            missed = event
+        else:
+            located.append((event, special))
+    located.sort(key=lambda pair: float((pair[1].point - left) @ (right - left)))
+    for count, (event, _) in enumerate(located, start=1):
+        if event.terminal:
+            return Passage(tuple(special for _, special in located[:count]), event, None)
+    return Passage(tuple(special for _, special in located), None, missed)
 
 
 def domain_limits(
@@ -132,9 +176,13 @@ def domain_limits(
     """
     known = inside_at(points)
     at = np.flatnonzero(known[:-1] != known[1:])
-    inside, outside = points[at + ~known[at]], points[at + known[at]]
-    for _ in range(_BISECTIONS if at.size else 0):
-        middle, normal = (inside + outside) / 2, outside - inside
+    inside = points[np.where(known[at], at, at + 1)]
+    outside = points[np.where(known[at], at + 1, at)]
+    if not at.size:
+        return inside
+    for _ in range(_BISECTIONS):
+        middle = (inside + outside) / 2
+        normal = outside - inside
         length = np.linalg.norm(normal, axis=-1, keepdims=True)
         found = newton(problem, middle, plane(normal / np.maximum(length, _TINY), middle))
         good = inside_at(found.point)

@@ -29,15 +29,20 @@ import numpy as np
 
 from bouncing_ball.numerics.arrays import Row, pick
 
-# θ and κ above.
-_SIMPLE, _CLOSE = np.array(0.25), np.array(3e-4)
+# θ and κ above. All constants are arrays without an axis, as in
+# :mod:`bouncing_ball.numerics.elementary`.
+_SIMPLE = np.array(0.25)
+_CLOSE = np.array(3e-4)
 # Ratio of successive H.
 _REACH = np.array(4.0)
 # Number of steps after which the search ends as undecided. Each step is a considerable part of
 # the shortest time scale of the function, so that these are hundreds of oscillations.
 _MAX_STEPS = 3000
-# Constants as arrays without an axis, as in :mod:`bouncing_ball.numerics.elementary`.
-_ZERO, _QUARTER, _THIRD, _TINY, _MINUS_TWO = map(np.array, (0.0, 0.25, 1 / 3, 1e-300, -2.0))
+_ZERO = np.array(0.0)
+_QUARTER = np.array(0.25)
+_THIRD = np.array(1 / 3)
+_TINY = np.array(1e-300)
+_MINUS_TWO = np.array(-2.0)
 
 
 class State(NamedTuple):
@@ -86,14 +91,40 @@ class Zero(NamedTuple):
     undecided: np.ndarray
 
 
-def _root(bound, v, rising, square, twice):
-    """Positive root h of y + v h + (bound) h²/2; a long step if there is none.
+class _Start(NamedTuple):
+    """The start of a step: y′, whether y′ > 0, y′², and -2y ≥ 0."""
 
-    Further arguments are v = y′, whether v > 0, v², and -2y.
-    """
-    root = np.sqrt(np.maximum(square + bound * twice, _ZERO))
-    falling = (root - v) / np.maximum(bound, _TINY)
-    return np.where(rising, twice / (v + root + _TINY), falling)
+    rate: np.ndarray
+    rising: np.ndarray
+    square: np.ndarray
+    twice: np.ndarray
+
+    @classmethod
+    def of(cls, state: State) -> "_Start":
+        rate = state.rate
+        # If y touches zero from below, rounding may give a positive value.
+        twice = _MINUS_TWO * np.minimum(state.value, _ZERO)
+        return cls(rate, rate > _ZERO, rate * rate, twice)
+
+    def root(self, bound: np.ndarray) -> np.ndarray:
+        """Positive root h of y + y′ h + (bound) h²/2; a long step if there is none."""
+        root = np.sqrt(np.maximum(self.square + bound * self.twice, _ZERO))
+        falling = (root - self.rate) / np.maximum(bound, _TINY)
+        return np.where(self.rising, self.twice / (self.rate + root + _TINY), falling)
+
+
+class _Bounds(NamedTuple):
+    """y″ and y‴ at the start of a step, and the bounds K and L."""
+
+    second: np.ndarray
+    third: np.ndarray
+    second_bound: np.ndarray
+    fourth_bound: np.ndarray
+
+    def within(self, reach: np.ndarray) -> np.ndarray:
+        """K_H, the bound of y″ in steps h ≤ H."""
+        growth = np.maximum(self.third, _ZERO) + _QUARTER * self.fourth_bound * reach
+        return np.minimum(self.second + reach * growth * _THIRD, self.second_bound)
 
 
 def safe_step(state: State) -> tuple[np.ndarray, np.ndarray]:
@@ -108,31 +139,26 @@ def safe_step(state: State) -> tuple[np.ndarray, np.ndarray]:
     >>> step.tolist()
     [1.0]
     """
-    v, rising, square = state.rate, state.rate > _ZERO, state.rate * state.rate
-    # If y touches zero from below, rounding may give a positive value.
-    twice = _MINUS_TWO * np.minimum(state.value, _ZERO)
-    start = v, rising, square, twice
-    first = _root(state.second_bound, *start)
+    start = _Start.of(state)
+    first = start.root(state.second_bound)
     step = _prolonged(first, start, state)
     # From y = y′ = 0 with y″ < 0 on, y ≤ y″ h²/2 + J h³/6.
     sinking = -3 * state.second / (state.third_bound + _TINY)
-    step = np.maximum(step, np.where(rising, _ZERO, sinking))
+    step = np.maximum(step, np.where(start.rising, _ZERO, sinking))
     bend = (np.abs(state.third) + state.fourth_bound * first) * (first * first)
-    simple = state.second_bound * twice <= _SIMPLE * square
-    return step, (bend <= _CLOSE * v) & simple & rising
+    simple = state.second_bound * start.twice <= _SIMPLE * start.square
+    return step, (bend <= _CLOSE * state.rate) & simple & start.rising
 
 
-def _prolonged(first, start, state: State):
-    """Certified steps, at least as long as the ``first`` ones."""
-    step, now = first.copy(), first
+def _prolonged(first: np.ndarray, start: _Start, state: State) -> np.ndarray:
+    """Certified steps, at least as long as the ``first`` ones, with the local bounds K_H."""
+    step = first.copy()
+    now = first
     which: Any = slice(None)
-    own = *start, state.second, state.third, state.second_bound, state.fourth_bound
+    bounds = _Bounds(state.second, state.third, state.second_bound, state.fourth_bound)
     while True:
-        *start, second, third, second_bound, fourth_bound = own
         reach = _REACH * now
-        growth = np.maximum(third, _ZERO) + _QUARTER * fourth_bound * reach
-        bound = np.minimum(second + reach * growth * _THIRD, second_bound)
-        longer = np.minimum(_root(bound, *start), reach)
+        longer = np.minimum(start.root(bounds.within(reach)), reach)
         # If the reach limited the step, a longer reach is tried.
         further = ((longer == reach) & (longer > now)).nonzero()[0]
         now = np.maximum(now, longer)
@@ -141,7 +167,9 @@ def _prolonged(first, start, state: State):
             return step
         if further.size < now.size:
             which = further if isinstance(which, slice) else which[further]
-            now, own = now[further], tuple(pick(x, further) for x in own)
+            now = now[further]
+            start = pick(start, further)
+            bounds = pick(bounds, further)
 
 
 def first_zero(motion: Motion, start: np.ndarray) -> Zero:
@@ -152,43 +180,51 @@ def first_zero(motion: Motion, start: np.ndarray) -> Zero:
     """
     time = np.array(start, dtype=float)
     ended, undecided = np.zeros((2, *time.shape), dtype=bool)
-    active, part, now = slice(None), motion, time
+    active: Any = slice(None)
+    part = motion
+    now = time.copy()
     for steps in range(_MAX_STEPS):
         state = part(now)
-        step, done = safe_step(state)
-        later = part.skip(now + step, steps)
-        # The current time is a zero at the start, or if y touches zero up to rounding.
-        rate = state.rate
-        here = state.value >= _ZERO
-        if here.any():
-            here &= (rate > 0) | ((rate == 0) & (state.second >= 0))
+        step, last = safe_step(state)
+        here = _zero_here(state)
         if state.ended is not None:
-            stop = state.ended & ~(done | here)
+            stop = state.ended & ~(last | here)
             ended[active] = stop
             here |= stop
-        later = np.where(here, now, later)
-        done |= later == now
+        later = np.where(here, now, part.skip(now + step, steps))
+        done = last | (later == now)
         time[active] = later
         left = (~done).nonzero()[0]
         if left.size == 0:
             break
         if left.size < now.size:
             active = left if isinstance(active, slice) else active[left]
-            part, later = part.take(left), later[left]
+            part = part.take(left)
+            later = later[left]
         now = later
     undecided[active] = left.size > 0
     time, rate = _to_the_last_digit(motion, time)
     return Zero(np.maximum(time, start), rate, ended, undecided)
 
 
-def _to_the_last_digit(motion, time):
+def _zero_here(state: State) -> np.ndarray:
+    """Whether y is zero and rises: at the start, or where y touches zero up to rounding."""
+    here = state.value >= _ZERO
+    if here.any():
+        rate = state.rate
+        here &= (rate > 0) | ((rate == 0) & (state.second >= 0))
+    return here
+
+
+def _to_the_last_digit(motion: Motion, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The times, improved by one step to the zero of the function's parabola, and y′ there."""
     state = motion(time)
-    v, acceleration = state.rate, state.second
-    twice, square = _MINUS_TWO * state.value, v * v
+    rate = state.rate
+    acceleration = state.second
+    twice = _MINUS_TWO * state.value
+    square = rate * rate
     root = np.sqrt(np.maximum(square + acceleration * twice, _ZERO))
     # If the zero may be multiple, because y touches zero, the time is not changed.
-    simple = (v > _ZERO) & (state.second_bound * np.abs(twice) <= square)
-    step = np.where(simple, twice / (v + root + _TINY), _ZERO)
-    rate = v + step * (acceleration + 0.5 * step * state.third)
-    return time + step, rate
+    simple = (rate > _ZERO) & (state.second_bound * np.abs(twice) <= square)
+    step = np.where(simple, twice / (rate + root + _TINY), _ZERO)
+    return time + step, rate + step * (acceleration + 0.5 * step * state.third)

@@ -7,7 +7,7 @@ from bouncing_ball import design
 from bouncing_ball.beyond.calculator.motion import aside, height_and_power
 from bouncing_ball.beyond.calculator.results import Mean, Motion
 from bouncing_ball.beyond.calculator.verdict import judged_by_motion
-from bouncing_ball.beyond.long_run.destination import label
+from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.means import means as means_of
 from bouncing_ball.beyond.simulation import simulate
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
@@ -92,7 +92,7 @@ def test_where_there_is_no_orbit_the_ball_is_laid_on_the_table(amplitude, restit
         for law, *shown in zip(
             laws, found.motion.mean_height.values(), found.motion.mean_power.values(), strict=True
         ):
-            motion = label(law, amplitude, np.pi, -amplitude)
+            motion = final_motions(law, amplitude, np.pi, -amplitude)
             once = means_of(law, amplitude, motion, 1)[1:3]
             assert [x.value for x in shown] == pytest.approx(once.tolist(), rel=1e-9)
 

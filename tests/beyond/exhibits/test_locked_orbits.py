@@ -62,15 +62,16 @@ def test_a_contact_agrees_where_the_prediction_says():
 
 def test_a_ball_has_arrived_where_phase_and_velocity_agree(monkeypatch):
     # Impacts a period apart: at the phase of the end, at its velocity, and then at both.
-    times, kind = 2 * np.pi * np.arange(1, 4), np.full((1, 1, 10), Kind.LOCKED)
+    times = 2 * np.pi * np.arange(1, 4)
+    kind = np.full((1, 1, 10), Kind.LOCKED)
 
-    def label(*_, path, **__):
+    def final_motions(*_, path, **__):
         path[:, :3] = np.reshape([times, [1, 2, 1], [-5, -4, -4]], (3, 3, 1, 1, 1))
         return SimpleNamespace(end_phase=1.0, end_velocity=-4.0, kind=kind)
 
     model = SimpleNamespace(impact_law=None, shape=())
     monkeypatch.setattr(transients, "models", lambda *_: (model,) * 3)
-    monkeypatch.setattr(transients, "label", label)
+    monkeypatch.setattr(transients, "final_motions", final_motions)
     case = {"cases": [{"restitution": 0.5, "amplitude": 2.5}], "frequency_ratio": [10.0]}
     asked = transients.Transients(**case, balls=10, impacts=50, confidence=0.95, seed=1)
     data = transients.transients(asked, Release.DISPLACEMENT)

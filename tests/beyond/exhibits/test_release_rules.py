@@ -3,13 +3,12 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.beyond.exhibits.release_rules import _lowest_doubling, release_rules
+from bouncing_ball.beyond.exhibits.release_rules import release_rules
 from bouncing_ball.paper.comparison.thresholds import ThresholdStatus
 from bouncing_ball.paper.contact.damping import Release, damping_ratio
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.spring_damper_bifurcations import saddle_node
 from bouncing_ball.paper.orbits.spring_damper_branch import branch_point
-from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.pipeline.configuration import typed
 
 PARAMETERS = {
@@ -25,16 +24,6 @@ PARAMETERS = {
         "frequency_ratio": {"min": 1.0, "max": 1e4, "samples": 81},
     },
 }
-
-
-def test_the_lowest_period_doubling_is_that_of_a_fine_scan():
-    # That of the third family is lowest at the end of this scan, where nothing is said.
-    fine, n = np.geomspace(2.0, 40.0, 2001), np.array([1, 2, 3])
-    model = SpringDamperModel(SpringDamper(fine, 0.0517))
-    amplitude = model.period_doubling(n[:, np.newaxis]).amplitude
-    coarse = slice(None, None, 100)
-    found = _lowest_doubling(fine[coarse], amplitude[:, coarse], 0.0517, Release.DISPLACEMENT, n)
-    assert found == pytest.approx(fine[np.nanargmin(amplitude, axis=1)], rel=2e-3)
 
 
 @pytest.mark.slow

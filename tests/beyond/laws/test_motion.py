@@ -8,11 +8,10 @@ from hypothesis import strategies as st
 from bouncing_ball.beyond.history import history
 from bouncing_ball.beyond.laws.impedance import Impedance
 from bouncing_ball.beyond.simulation import next_impact, simulate
-from bouncing_ball.numerics.elementary import table
 from bouncing_ball.paper.contact.damping import Release, damping_ratio
 from bouncing_ball.paper.contact.permanent_contact import permanent_contact_threshold
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.motion.flight import Flight, land
+from bouncing_ball.paper.motion.flight import Flight, land, table
 from bouncing_ball.paper.motion.resumption import resumption
 from bouncing_ball.paper.motion.sequence import Status
 from bouncing_ball.paper.orbits.spring_damper_bifurcations import orbit_at

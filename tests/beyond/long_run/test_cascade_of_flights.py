@@ -10,7 +10,7 @@ from bouncing_ball.beyond.long_run.cascade_of_flights import (
     openings,
     stiff_openings,
 )
-from bouncing_ball.beyond.long_run.destination import label
+from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.simulation import simulate
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.contact.damping import damping_ratio
@@ -24,7 +24,7 @@ def motions(r, ratio, excess):
     lam = permanent_contact_threshold(ratio, zeta) + excess / np.square(ratio)
     phase = np.pi / 2 + 3 / ratio
     slow = lam * np.cos(phase) - 0.1 / np.square(ratio)
-    return label(SpringDamper(ratio, zeta), lam, phase, slow)
+    return final_motions(SpringDamper(ratio, zeta), lam, phase, slow)
 
 
 @pytest.mark.parametrize(

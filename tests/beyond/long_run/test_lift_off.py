@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.beyond.exhibits.motion_samples import models
-from bouncing_ball.beyond.long_run.destination import label
+from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.lift_off import returns
 from bouncing_ball.paper.contact.damping import Release
 
@@ -13,7 +13,7 @@ LYING = -np.pi / 2, 0.0
 
 def test_a_return_is_the_mappers_locked_orbit():
     r, lam = np.linspace(0.2, 0.6, 9), np.linspace(2.0, 4.6, 9)
-    found, mapped = returns(r, lam, 300), label(r, lam, *LYING, impacts=600)
+    found, mapped = returns(r, lam, 300), final_motions(r, lam, *LYING, impacts=600)
     locked = mapped.kind == "locked"
     assert locked.sum() > 5
     assert np.array_equal(found.periods[locked], mapped.periods[locked])
@@ -42,7 +42,7 @@ def test_a_contact_has_the_orbit_where_it_is_stiff_enough():
     found = returns(0.6, 3.0, 100)
     wanted = float(found.sensitivity / found.wait)
     contact = models(np.array(0.6), wanted * np.array([0.01, 10.0]), Release.DISPLACEMENT)[-1]
-    mapped = label(contact.impact_law, 3.0, *LYING, impacts=400)
+    mapped = final_motions(contact.impact_law, 3.0, *LYING, impacts=400)
     assert wanted > 1e5 and mapped.periods[1] == found.periods != mapped.periods[0]
 
 

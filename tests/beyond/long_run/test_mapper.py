@@ -7,7 +7,7 @@ import pytest
 
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
 from bouncing_ball.beyond.corrected.signature import Signature
-from bouncing_ball.beyond.long_run.destination import label
+from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.motions import Kind, Reason
 from bouncing_ball.beyond.simulation import next_impact
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
@@ -43,7 +43,7 @@ def beside(model, n, amplitude, moved=1e-3):
 )
 def test_balls_that_stick_repeat_as_another_simulation_saw_it(law, amplitude, periods):
     # The time between stickings, measured with other code before this was written.
-    found = label(law, amplitude, PHASES, -9.0, impacts=600)
+    found = final_motions(law, amplitude, PHASES, -9.0, impacts=600)
     locks = found.kind == Kind.LOCKED
     # A ball may be on a chaotic band of flights of two periods instead.
     assert locks.sum() >= 6
@@ -59,7 +59,7 @@ def test_the_cascade(r):
         0.85: [1.038304, 1.199733],
     }[r]
     amplitude = np.array([ends[0] - 0.05, *(0.4 * a + 0.6 * b for a, b in pairwise(ends))])
-    found = label(r, amplitude, *beside(RestitutionModel(r), 1, amplitude), impacts=20_000)
+    found = final_motions(r, amplitude, *beside(RestitutionModel(r), 1, amplitude), impacts=20_000)
     assert found.kind.tolist() == [Kind.ORBIT, *[Kind.SUBHARMONIC] * (len(ends) - 1)]
     assert found.periods.tolist() == found.impacts.tolist() == [1, 2, 4, 8][: len(ends)]
 
@@ -75,7 +75,7 @@ def test_the_cascade(r):
 )
 def test_the_exponent_of_an_orbit_is_that_of_its_multiplier(model):
     amplitude, n = np.array([0.8, 0.9, 1.0, 1.6]), np.array([1, 1, 1, 2])
-    found = label(model.impact_law, amplitude, *beside(model, n, amplitude))
+    found = final_motions(model.impact_law, amplitude, *beside(model, n, amplitude))
     assert set(found.kind) == {Kind.ORBIT}
     assert found.periods.tolist() == n.tolist()
     assert set(found.impacts) == {1}
@@ -89,38 +89,40 @@ def test_an_answer_does_not_depend_on_the_other_balls():
     amplitude, phase = rng.uniform(0.5, 4, 60), rng.uniform(-3, 3, 60)
     law = contact(rng.uniform(0.2, 0.9, 60), 100.0)
     start = amplitude, phase, -amplitude - 3
-    whole, order = label(law, *start, impacts=150), rng.permutation(60)
-    again = label(law[order], *(x[order] for x in start), impacts=150)
+    whole, order = final_motions(law, *start, impacts=150), rng.permutation(60)
+    again = final_motions(law[order], *(x[order] for x in start), impacts=150)
     for name, values in vars(whole).items():
         np.testing.assert_array_equal(getattr(again, name), values[order], err_msg=name)
 
 
 @pytest.mark.parametrize("law", [0.5, contact(0.5, 30.0), Signature(contact(0.5, 30.0))])
 def test_a_ball_on_a_slow_table_comes_to_rest(law):
-    found = label(law, [0.0, 0.5], 0.3, -3.0)
+    found = final_motions(law, [0.0, 0.5], 0.3, -3.0)
     assert set(found.kind) == {Kind.PERMANENT_CONTACT}
     assert found.periods.tolist() == [1, 1]
 
 
 def test_without_dissipation_nothing_is_attracted():
-    found = label(1.0, [0.0, 0.01, 6.0], 0.3, -7.0, impacts=500)
+    found = final_motions(1.0, [0.0, 0.01, 6.0], 0.3, -7.0, impacts=500)
     assert found.kind.tolist() == [Kind.UNDECIDED, Kind.UNDECIDED, Kind.CHAOTIC]
 
 
 def test_next_to_a_bifurcation_nothing_is_decided():
     # A multiplier is -1 but for 10⁻⁶ there.
-    found = label(0.5, 1.526824, *beside(RestitutionModel(0.5), 1, 1.526824, 1e-8), impacts=500)
+    found = final_motions(
+        0.5, 1.526824, *beside(RestitutionModel(0.5), 1, 1.526824, 1e-8), impacts=500
+    )
     assert (found.kind, found.reason) == (Kind.UNDECIDED, Reason.MARGINAL)
 
 
 def test_laps_that_rounding_alone_makes_alike_are_no_sample():
     # This ball sticks every 84 impacts in the same state, with e²⁰ between two neighbours.
-    lap, more = (label(0.6, 3.5, 0.3, -9.0, impacts=impacts) for impacts in (500, 2000))
+    lap, more = (final_motions(0.6, 3.5, 0.3, -9.0, impacts=impacts) for impacts in (500, 2000))
     assert lap.kind == more.kind == Kind.CHAOTIC
     # Of independent means four times as many would halve the error.
     assert 0.8 < lap.exponent_error / more.exponent_error < 1.25
     # And these every 16 impacts, so that all means are the same one.
-    found = label(0.36661137991872117, 1e6, [0.3, -1.0], -1.2e6, impacts=400)
+    found = final_motions(0.36661137991872117, 1e6, [0.3, -1.0], -1.2e6, impacts=400)
     assert set(found.kind) == {Kind.UNDECIDED} and set(found.reason) == {Reason.ROUNDING}
     assert np.isnan(found.exponent_error).all()
 
@@ -153,7 +155,7 @@ def test_chaos_has_the_exponent_of_the_paths_side_by_side(law):
         time = time[apart] + late * both.time[0, apart]
     assert grown.size > 0.9 * balls
     rates = 2 * np.pi * grown / time
-    found = label(law, lam, np.linspace(-3, 3, 28), -9.0, impacts=500)
+    found = final_motions(law, lam, np.linspace(-3, 3, 28), -9.0, impacts=500)
     assert set(found.kind) == {Kind.CHAOTIC}
     error = np.hypot(
         np.std(rates) / np.sqrt(rates.size), np.mean(found.exponent_error) / np.sqrt(28)
@@ -167,7 +169,7 @@ def test_the_last_digit_of_the_start_decides_only_where_the_others_are_lost():
     rng = np.random.default_rng(0)
     r, amplitude, phase = rng.uniform([[0.3], [1.0], [-3]], [[0.95], [5], [3]], (3, 300))
     velocity = amplitude * np.cos(phase) - amplitude * rng.uniform(0, 4, 300)
-    found = label(r, [amplitude, np.nextafter(amplitude, 9)], phase, velocity, impacts=500)
+    found = final_motions(r, [amplitude, np.nextafter(amplitude, 9)], phase, velocity, impacts=500)
     another = (found.kind[0] != found.kind[1]) | (found.impacts[0] != found.impacts[1])
     # An error of 2⁻⁵² that has grown by 10¹² is 2·10⁻⁴; no boundary of this sample is that near.
     kept = found.digits_lost[0] < 12

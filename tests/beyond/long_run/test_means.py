@@ -6,7 +6,7 @@ import pytest
 from bouncing_ball.beyond.calculator.motion import height_and_power
 from bouncing_ball.beyond.exhibits.motion_samples import models
 from bouncing_ball.beyond.long_run import means as work
-from bouncing_ball.beyond.long_run.destination import label
+from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.means import means
 from bouncing_ball.paper.contact.damping import Release
 
@@ -15,7 +15,7 @@ RELEASE = Release.DISPLACEMENT
 
 def found_and_means(model, amplitude, samples=100):
     velocity = amplitude * np.cos(1.0) - 9.0
-    found = label(model.impact_law, amplitude, 1.0, velocity, impacts=250)
+    found = final_motions(model.impact_law, amplitude, 1.0, velocity, impacts=250)
     return found, means(model.impact_law, amplitude, found, samples)
 
 
@@ -61,7 +61,7 @@ def test_errors_of_the_means_are_of_first_and_of_second_order():
 
 def test_the_exponent_is_the_mappers_and_a_ball_at_rest_has_no_means():
     law = np.array([0.85, 0.85])
-    found = label(law, np.array([2.0, 0.9]), 0.0, np.array([-9.0, 0.0]), impacts=400)
+    found = final_motions(law, np.array([2.0, 0.9]), 0.0, np.array([-9.0, 0.0]), impacts=400)
     of = means(law, np.array([2.0, 0.9]), found, 400)
     assert abs(of[3, 0] - found.exponent[0]) < 8 * found.exponent_error[0]
     assert found.kind[1] == "permanent contact" and np.isnan(of[:, 1]).all()

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
-from bouncing_ball.beyond.long_run.destination import label
+from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.period_doublings import FEIGENBAUM, Turns, cascade
 from bouncing_ball.beyond.simulation import simulate
 from bouncing_ball.errors import ModelError
@@ -51,7 +51,7 @@ def test_the_period_of_what_attracts_doubles_there(model, found):
     law, sides = model.period_doubling(1).law, np.array([[[-0.2]], [[0.2]]])
     lam = found.amplitude[:-1] + sides * np.diff(found.amplitude, axis=0)
     phase, relative = found.phase[:-1], found.velocity[:-1]
-    motion = label(law, lam, phase, relative + lam * np.cos(phase), impacts=5000)
+    motion = final_motions(law, lam, phase, relative + lam * np.cos(phase), impacts=5000)
     expected = 2 ** (np.arange(3)[:, np.newaxis] + np.arange(2)[:, np.newaxis, np.newaxis])
     np.testing.assert_array_equal(motion.impacts, np.broadcast_to(expected, lam.shape))
 

@@ -9,7 +9,7 @@ import xarray as xr
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.claims import parameters
 from bouncing_ball.paper.claims.claim import Claim, claim, formula
-from bouncing_ball.paper.claims.ledger import assess, tally
+from bouncing_ball.paper.claims.claims import assess, tally
 from bouncing_ball.paper.claims.parameters import NotAsked, PaperData
 from bouncing_ball.paper.claims.verdict import above, at_most
 

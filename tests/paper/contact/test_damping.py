@@ -11,7 +11,7 @@ EPS = np.finfo(float).eps
 
 
 @pytest.mark.parametrize("r", [1e-300, 1e-12, 0.05, 0.1, 0.65, 0.85, 0.999999, 1 - 2**-53])
-def test_damping_ratio_against_fifty_digits(r):
+def test_the_damping_ratio_agrees_with_fifty_digits(r):
     with mpmath.workdps(50):
         log = mpmath.log(mpmath.mpf(r))
         exact = float(-log / mpmath.sqrt(mpmath.pi**2 + log**2))
@@ -28,9 +28,10 @@ def test_elastic_contact_is_exactly_undamped(release):
 
 
 @pytest.mark.parametrize(("release", "least"), [("displacement", 1e-8), ("force", 0.1354)])
-def test_inverse_of_each_other(release, least):
+def test_restitution_and_damping_are_inverse_functions(release, least):
     r = np.concatenate([np.geomspace(least, 1.0, 40), [0.5, 0.85]])
-    release, zeta = Release(release), damping_ratio(r, Release(release))
+    release = Release(release)
+    zeta = damping_ratio(r, release)
     # d(ln r)/dζ is at most π/(1 - ζ²)^(3/2): a rounding of ζ is amplified by that much.
     slope = np.pi * zeta / ((1 - zeta) * (1 + zeta)) ** 1.5
     error = np.abs(restitution_coefficient(zeta, release) / r - 1)
@@ -38,7 +39,7 @@ def test_inverse_of_each_other(release, least):
 
 
 @pytest.mark.parametrize("r", [0.0, -0.1, 1.1, np.nan, np.inf])
-def test_restitution_outside_its_range(r, refusal):
+def test_a_restitution_coefficient_outside_its_range_is_refused(r, refusal):
     with refusal(ModelError, f"r = {r}", "(0, 1]"):
         damping_ratio(r)
 
@@ -50,7 +51,7 @@ def test_no_contact_released_at_zero_force_has_so_little_restitution(r, refusal)
 
 
 @pytest.mark.parametrize("zeta", [1.0, -1e-9, 2.0, np.nan])
-def test_damping_outside_its_range(zeta, refusal):
+def test_the_restitution_of_an_overdamped_contact_is_refused(zeta, refusal):
     with refusal(ModelError, f"ζ = {zeta}", "[0, 1)", "overdamped"):
         restitution_coefficient(zeta)
 

@@ -17,7 +17,8 @@ NUDGE = mpmath.mpf(10) ** -45
 def free(s, a, q):
     root = mpmath.sqrt(mpmath.mpc(q - a * a))
     decay = mpmath.exp(-a * s)
-    c, sn = mpmath.re(mpmath.cos(root * s)), mpmath.re(s * mpmath.sinc(root * s))
+    c = mpmath.re(mpmath.cos(root * s))
+    sn = mpmath.re(s * mpmath.sinc(root * s))
     return decay * sn, decay * (c - a * sn)
 
 
@@ -33,8 +34,9 @@ def forced(nu):
 def exact(function, s, omega, zeta):
     """The fields of a Response, in order, in 130 digits."""
     with mpmath.workdps(130):
-        s, omega, zeta = mpmath.mpf(s), mpmath.mpf(omega), mpmath.mpf(zeta)
-        a, q = zeta * omega + NUDGE, omega * omega + NUDGE / 3
+        s, omega, zeta = (mpmath.mpf(x) for x in (s, omega, zeta))
+        a = zeta * omega + NUDGE
+        q = omega * omega + NUDGE / 3
         return np.array([complex(x) for x in function(s, a, q)])
 
 
@@ -63,7 +65,8 @@ def random_contacts():
         rng.uniform(0, 1, count),
     ]
     zeta = np.choose(rng.integers(0, 6, count), kinds)
-    omega, s = 10 ** rng.uniform(-2, 4, count), 10 ** rng.uniform(-6, 1, count)
+    omega = 10 ** rng.uniform(-2, 4, count)
+    s = 10 ** rng.uniform(-6, 1, count)
     resonant = np.arange(count) < 60
     near = np.choose(rng.integers(0, 4, count), [1.0, 1 + 1e-9, 1 - 1e-9, 1 + 3e-10])
     omega = np.where(resonant, near, omega)
@@ -80,7 +83,7 @@ def random_contacts():
         ("table", forced(mpmath.mpc(0, 1))),
     ],
 )
-def test_all_fields_against_high_precision(name, function):
+def test_every_response_agrees_with_130_digits(name, function):
     s, omega, zeta = random_contacts()
     computed = np.atleast_2d(getattr(responses(s, omega, zeta), name))
     for k in range(len(s)):
@@ -102,7 +105,7 @@ def test_strong_damping_keeps_the_digits_of_the_slow_decay(zeta):
     assert abs(computed / expected - 1) <= 8 * EPS * (1 + omega * s)
 
 
-def test_start_from_rest():
+def test_at_the_start_only_the_impulse_has_a_rate():
     for omega, zeta in ((0.5, 0.0), (3.0, 0.2), (3.0, 1.0), (3.0, 2.0)):
         g, gravity, table = responses(0.0, omega, zeta)
         assert (float(g.value), float(g.rate)) == (0.0, 1.0)

@@ -36,12 +36,13 @@ def size(start, s):
 
 
 @given(contacts, st.floats(1e-4, 10))
-def test_flow_against_the_matrix_exponential(reference, start, s):
+def test_the_flow_is_that_of_the_matrix_exponential(reference, start, s):
     flow = flow_of(s, **start)
     expected = reference.contact_state(
         s, *(start[name] for name in (*ARGUMENTS[1:], "frequency_ratio", "damping_ratio"))
     )
-    omega, zeta = start["frequency_ratio"], start["damping_ratio"]
+    omega = start["frequency_ratio"]
+    zeta = start["damping_ratio"]
     # The exponential loses about the norm of its argument in roundings, here
     # 2(1 + ζ)ϖs, and works in the units of ϖδ and δ′, so that both share one.
     v = size(start, s)[1] + 1 + start["amplitude"]
@@ -51,7 +52,7 @@ def test_flow_against_the_matrix_exponential(reference, start, s):
 
 
 @pytest.mark.parametrize("s", [3.0, 0.3])
-def test_flow_runs_backwards(s):
+def test_the_flow_backwards_in_time_leads_to_the_start(s):
     # No range is given for the time, and the formulas are entire in it: 3.0
     # takes the quotient, 0.3 the mean over a circle.
     there = SpringDamper(2.0, 0.1).flow(s, -0.1, 0.2, 0.4, 1.2)
@@ -76,13 +77,14 @@ def test_flow_runs_backwards(s):
         (5.0, 0.1, 0.4),
     ],
 )
-def test_jacobian_against_differences(name, s, omega, zeta):
+def test_the_jacobian_is_the_derivative_of_the_flow(name, s, omega, zeta):
     values = dict(zip(ARGUMENTS, (s, 0.2, -1.5, 0.8, 1.3), strict=True))
     column = ARGUMENTS.index(name)
     jacobian = flow_of(*values.values(), omega, zeta).jacobian[:, column]
     # Fourth-order differences, in the oscillator's own units.
     h = 2e-3 / (max(omega, 1.0) if name == "time" else 1.0)
-    nodes, weights = np.array([-2, -1, 1, 2]), np.array([1, -8, 8, -1]) / 12
+    nodes = np.array([-2, -1, 1, 2])
+    weights = np.array([1, -8, 8, -1]) / 12
     states = []
     for node in nodes:
         moved = values | {name: values[name] + node * h}
@@ -95,21 +97,23 @@ def test_jacobian_against_differences(name, s, omega, zeta):
     assert jacobian == pytest.approx(difference, abs=2e-8 * scale)
 
 
-def test_acceleration_satisfies_the_equation():
-    s, phase, lam, omega, zeta = np.linspace(0, 3, 20), 0.3, 1.2, 5.0, 0.2
-    flow = SpringDamper(omega, zeta).flow(s, 0.1, -1.0, phase, lam)
-    force = SpringDamper(omega, zeta).force(-flow.displacement, -flow.velocity)
+def test_the_acceleration_is_that_of_the_equation_of_motion():
+    s = np.linspace(0, 3, 20)
+    phase, lam = 0.3, 1.2
+    contact = SpringDamper(5.0, 0.2)
+    flow = contact.flow(s, 0.1, -1.0, phase, lam)
+    force = contact.force(-flow.displacement, -flow.velocity)
     balance = force - 1 + lam * np.sin(s + phase)
     assert flow.acceleration == pytest.approx(balance, abs=200 * EPS)
 
 
 @pytest.mark.parametrize("omega", [0.0, -1.0, np.nan, np.inf])
-def test_frequency_ratio_outside_its_range(omega, refusal):
+def test_a_frequency_ratio_outside_its_range_is_refused(omega, refusal):
     with refusal(ModelError, f"ϖ = {omega}", "> 0"):
         SpringDamper(omega, 0.1)
 
 
 @pytest.mark.parametrize("zeta", [-1e-9, np.nan, np.inf])
-def test_damping_ratio_outside_its_range(zeta, refusal):
+def test_a_damping_ratio_outside_its_range_is_refused(zeta, refusal):
     with refusal(ModelError, f"ζ = {zeta}", "≥ 0"):
         SpringDamper(2.0, zeta)

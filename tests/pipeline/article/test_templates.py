@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from docutils.utils.math.latex2mathml import tex2mathml
 
-from bouncing_ball.paper.claims.ledger import CLAIMS
+from bouncing_ball.paper.claims.claims import CLAIMS
 
 ROOT = Path(__file__).resolve().parents[3]
 FOLDER = ROOT / "workflow" / "report" / "paper"

@@ -20,7 +20,7 @@ import numpy as np
 
 from bouncing_ball.beyond.calculator.case import Case
 from bouncing_ball.beyond.calculator.results import Family, Mean, Motion
-from bouncing_ball.beyond.long_run.destination import label
+from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.means import over_steps
 from bouncing_ball.beyond.long_run.motions import Kind
 from bouncing_ball.paper.comparison.errors import relative
@@ -66,7 +66,7 @@ def of_family(case: Case, family: Family, tolerance: float) -> Motion:
     if orbit is not None:
         start = _Start(float(orbit.phase), float(orbit.impact_velocity) * (1 + _BESIDE))
     found = {
-        name: label(_law(case, name), lam, start.phase, start.velocity, impacts=_IMPACTS)
+        name: final_motions(_law(case, name), lam, start.phase, start.velocity, impacts=_IMPACTS)
         for name in (exact, simple)
     }
     kinds = [(str(x.kind), int(x.periods), int(x.impacts)) for x in found.values()]
@@ -95,7 +95,7 @@ def _laid(case: Case, family: Family) -> str | None:
     lam = case.table.amplitude
     if lam <= case.permanent_contact:
         return str(Kind.PERMANENT_CONTACT)
-    found = label(_law(case, next(iter(case.models))), lam, 0.0, lam, impacts=_IMPACTS)
+    found = final_motions(_law(case, next(iter(case.models))), lam, 0.0, lam, impacts=_IMPACTS)
     same = found.kind == Kind.ORBIT and (int(found.periods), int(found.impacts)) == (family.n, 1)
     return None if same else str(found.kind)
 

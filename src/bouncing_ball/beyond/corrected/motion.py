@@ -23,10 +23,10 @@ from typing import ClassVar
 import numpy as np
 
 from bouncing_ball.beyond.corrected import impact as corrected_map
-from bouncing_ball.numerics.elementary import reduce_angle, table
+from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.motion.deviations import Deviation, Jacobian
 from bouncing_ball.paper.motion.dynamics import Departure, Dynamics, Impact
-from bouncing_ball.paper.motion.flight import Flight, emerge, land
+from bouncing_ball.paper.motion.flight import Flight, emerge, land, table
 from bouncing_ball.paper.motion.sticking import lifted, stay
 
 # Newton steps from the landing to the instant: the start has an error of third

@@ -16,9 +16,9 @@ from bouncing_ball.beyond.exhibits.motion_samples import (
     share,
     with_limits,
 )
-from bouncing_ball.beyond.long_run.destination import label
+from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.motions import Kind, Motions
-from bouncing_ball.datasets.parameters import FrequencyRatio, Many, Seed, Sharded, listed, number
+from bouncing_ball.datasets.parameters import FrequencyRatio, Many, Seed, Sharded, number
 from bouncing_ball.datasets.shards import Arrays, Found, Part
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.paper.contact.damping import Release
@@ -57,7 +57,9 @@ class Basins(Sharded):
     """Starts on an even grid for the picture, and random ones for shares and exponents."""
 
     cases: Many[Case]
-    velocity_max: Annotated[float, listed("velocity_max")]
+    velocity_max: Annotated[
+        float, number("largest relative speed of the first impact", ge=0.1, le=100)
+    ]
     starts: Annotated[int, number("starts along each axis, at middles of cells", ge=10, le=1000)]
     random: Annotated[int, number("random starts for each case", ge=10, le=10**6)]
     shifts: Many[Annotated[float, number("changes of the phase at the start", "rad", gt=0, le=1)]]
@@ -101,7 +103,7 @@ def destinations(parameters: Basins, release: Release, part: Part = np.asarray) 
     ends = []
     for model in models(r, ratio, release):
         velocity = lam * np.cos(start) - towards
-        found = label(model.impact_law, lam, start, velocity, impacts=parameters.impacts)
+        found = final_motions(model.impact_law, lam, start, velocity, impacts=parameters.impacts)
         ends.append(_destination(found))
     return {"destination": np.stack(ends, axis=1).astype(np.int8)}
 

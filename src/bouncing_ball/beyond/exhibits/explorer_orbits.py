@@ -8,7 +8,7 @@ import xarray as xr
 
 from bouncing_ball.beyond.corrected.errors import models
 from bouncing_ball.beyond.exhibits.random_orbits import random_orbits
-from bouncing_ball.beyond.long_run.destination import label
+from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.simulation import simulate
 from bouncing_ball.datasets.parameters import Parameters, Seed, Span
 from bouncing_ball.datasets.variables import Variable, describe
@@ -84,7 +84,10 @@ def _followed() -> xr.Dataset:
     r, omega, lam, phase, velocity = _BALLS
     ends = []
     for law in (r, SpringDamper.from_restitution(r, omega, Release.DISPLACEMENT)):
-        found, run = label(law, lam, phase, velocity), simulate(law, lam, phase, velocity, 100)
+        found, run = (
+            final_motions(law, lam, phase, velocity),
+            simulate(law, lam, phase, velocity, 100),
+        )
         last = run.impacts - 1, np.arange(r.size)
         at = run.phase, -run.relative_velocity, run.time + run.settling
         ends.append([found.periods, found.impacts, last[0], *(values[last] for values in at)])

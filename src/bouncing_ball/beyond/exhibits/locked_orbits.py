@@ -18,7 +18,7 @@ from bouncing_ball.beyond.exhibits.motion_samples import (
     share,
     with_limits,
 )
-from bouncing_ball.beyond.long_run.destination import label
+from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.lift_off import returns
 from bouncing_ball.beyond.long_run.motions import Kind
 from bouncing_ball.datasets.parameters import (
@@ -177,7 +177,7 @@ def lives(parameters: Transients, release: Release, part: Part = np.asarray) -> 
     for model in (contact, simple):
         shape = np.broadcast_shapes(model.shape, table.shape, phase.shape)
         passed, at, velocity = path = np.full((3, parameters.impacts, *shape), np.nan)
-        found = label(model.impact_law, *start, impacts=parameters.impacts, path=path)
+        found = final_motions(model.impact_law, *start, impacts=parameters.impacts, path=path)
         apart = np.abs(reduce_angle(at - found.end_phase))
         apart = np.maximum(apart, np.abs(velocity - found.end_velocity))
         kinds.append(found.kind)
@@ -277,7 +277,7 @@ def returns_at_places(
     ratios, shifts = (np.array([x]).T for x in (parameters.frequency_ratio, parameters.shifts))
     found = returns(r, lam + np.concatenate([[[0.0]], shifts]), parameters.impacts)
     contact = models(r, ratios, release)[-1].impact_law
-    motion = label(contact, lam, -np.pi / 2, 0.0, impacts=parameters.impacts)
+    motion = final_motions(contact, lam, -np.pi / 2, 0.0, impacts=parameters.impacts)
     same = (motion.kind == Kind.LOCKED) & (motion.periods == found.periods[0])
     return {**found._asdict(), "same": same}
 

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.beyond.exhibits.motion_samples import LIMITS, MODELS, SIMPLE, Grid, models, share
-from bouncing_ball.beyond.long_run.destination import label
+from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.motions import Kind, Motions
 from bouncing_ball.datasets.parameters import number
 from bouncing_ball.datasets.shards import Arrays, Found, Part
@@ -80,7 +80,7 @@ def motions_at_nodes(parameters: Locking, release: Release, part: Part = np.asar
     r, lam = part(parameters.places())
     start = parameters.phase, lam * np.cos(parameters.phase) - parameters.impact_speed
     found = [
-        vars(label(model.impact_law, lam, *start, impacts=parameters.impacts))
+        vars(final_motions(model.impact_law, lam, *start, impacts=parameters.impacts))
         for model in models(r, ratios[:, np.newaxis], release)
     ]
     # The restitution model is the same at every ϖ.
@@ -92,7 +92,7 @@ def locking(parameters: Locking, release: Release, found: Found = None) -> xr.Da
     """The motions on which balls end over (Λ, r), and where the models agree on them.
 
     ``kind``, ``periods``, ``impacts``, ``lyapunov_exponent`` and ``lyapunov_error`` (model,
-    restitution, amplitude) are those of :func:`bouncing_ball.beyond.long_run.destination.label` at the first
+    restitution, amplitude) are those of :func:`bouncing_ball.beyond.long_run.destination.final_motions` at the first
     ϖ, with one ball for each node; the error of an exponent is at least 1e-5. ``agreement``
     (simple, frequency_ratio, motion_group) is the share of nodes at which the ball of the contact
     ends on a motion of the same kind and period as the ball of the simple model.

@@ -8,7 +8,7 @@ import xarray as xr
 from scipy.stats import t as student
 
 from bouncing_ball.beyond.exhibits.motion_samples import LIMITS, SIMPLE, Grid, models, share
-from bouncing_ball.beyond.long_run.destination import label
+from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.means import means
 from bouncing_ball.datasets.parameters import Seed, Tolerance, number
 from bouncing_ball.datasets.shards import Arrays, Found, Part
@@ -104,7 +104,7 @@ def errors_at_nodes(parameters: MeanMotions, release: Release, part: Part = np.a
     velocity, values = lam * (np.cos(phase) - speed), []
     for model in models(r, ratios, release):
         law = model.impact_law
-        found = label(law, lam, phase, velocity, impacts=parameters.impacts)
+        found = final_motions(law, lam, phase, velocity, impacts=parameters.impacts)
         flights, height, power, exponent = means(law, lam, found, parameters.samples)
         exponent = np.where(found.periods > 0, found.exponent, exponent)
         of = np.stack([power, height, flights, exponent])

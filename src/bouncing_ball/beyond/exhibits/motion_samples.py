@@ -25,14 +25,21 @@ from bouncing_ball.datasets.parameters import (
     LossyRestitution,
     Many,
     Sharded,
-    listed,
     number,
 )
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 
 Confidence = Annotated[float, number("level of the confidence intervals", gt=0.5, lt=1)]
-Impacts = Annotated[int, listed("Impacts")]
+Impacts = Annotated[
+    int,
+    number(
+        "number of impacts after which the search for a repetition ends; an exponent with "
+        "its error needs some hundreds",
+        ge=200,
+        le=100000,
+    ),
+]
 
 
 class Even(Interval):

@@ -15,7 +15,6 @@ users of physics engines need to know. Times are ωt, which are the times of a c
 
 import numpy as np
 import xarray as xr
-from scipy.optimize.elementwise import find_minimum
 
 from bouncing_ball.datasets.parameters import (
     Family,
@@ -31,15 +30,13 @@ from bouncing_ball.paper.contact.damping import Release, damping_ratio, restitut
 from bouncing_ball.paper.contact.oscillator import responses
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.error_thresholds import ErrorsAlongRatio, thresholds_along
+from bouncing_ball.paper.exhibits.lowest_period_doubling import lowest_along_ratio
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.orbits.stability import Bifurcation
 
 VARIABLES = {
     "bifurcation_amplitude": Variable("excitation amplitude of the bifurcation", symbol="Λ"),
     "force_restitution": Variable("restitution coefficient of the force release", symbol="r_F"),
-    "period_doubling_turn": Variable(
-        "frequency ratio at which the period doubling is lowest", symbol="ϖ", budget=1e-05
-    ),
     "free_force": Variable(
         "force of a free contact, over mω times the impact speed", symbol="F/(mωv)"
     ),
@@ -65,34 +62,13 @@ class ReleaseRules(Parameters):
     thresholds: RuleThresholds
 
 
-def _lowest_doubling(
-    ratios: np.ndarray, amplitude: np.ndarray, zeta: float, rule: Release, n: np.ndarray
-) -> np.ndarray:
-    """The ϖ at which each period doubling is lowest; NaN if that is an end of the scan.
-
-    ``amplitude`` is Λ of the period doublings on the scan, shape (n, ϖ).
-    """
-
-    def doubling(log_ratio: np.ndarray, n: np.ndarray) -> np.ndarray:
-        model = SpringDamperModel(SpringDamper(np.exp(log_ratio), zeta, rule))
-        return model.period_doubling(n).amplitude
-
-    lowest = np.argmin(np.where(np.isnan(amplitude), np.inf, amplitude), axis=-1)
-    inside = np.clip(lowest, 1, ratios.size - 2)
-    # Where the middle one of three samples is not the lowest they are no bracket, which
-    # find_minimum reports as a failure.
-    bracket = tuple(np.log(ratios[inside + k]) for k in (-1, 0, 1))
-    found = find_minimum(doubling, bracket, args=(n,))
-    return np.where(found.success, np.exp(found.x), np.nan)
-
-
 def _bifurcations(parameters: ReleaseRules, rule: Release) -> xr.Dataset:
     """Both bifurcations along ϖ under a rule, and the ϖ of the lowest period doubling."""
     families, ratios = np.array(parameters.n), parameters.frequency_ratio.grid()
     zeta = float(damping_ratio(parameters.restitution))
     model, n = SpringDamperModel(SpringDamper(ratios, zeta, rule)), families[:, np.newaxis]
     ends = np.stack([model.saddle_node(n).amplitude, model.period_doubling(n).amplitude], axis=-1)
-    turns = _lowest_doubling(ratios, ends[..., 1], zeta, rule, families)
+    turns = lowest_along_ratio(ratios, ends[..., 1], zeta, rule, families)
     return xr.Dataset(
         {
             "bifurcation_amplitude": (("n", "frequency_ratio", "bound"), ends),

@@ -12,7 +12,7 @@ import xarray as xr
 
 from bouncing_ball.beyond.long_run.period_doublings import FEIGENBAUM
 from bouncing_ball.paper.claims.claim import claim, defined_in
-from bouncing_ball.paper.claims.ledger import assess
+from bouncing_ball.paper.claims.claims import assess
 from bouncing_ball.paper.claims.verdict import decided
 
 PARAMETERS: dict[str, dict[str, Any]] = {

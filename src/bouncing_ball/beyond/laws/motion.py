@@ -20,10 +20,9 @@ from bouncing_ball.beyond.corrected.signature import Signature
 from bouncing_ball.beyond.laws.collocation import MOST_PANELS, Start, march
 from bouncing_ball.beyond.laws.permanent_contact import holds
 from bouncing_ball.beyond.laws.scales import rest
-from bouncing_ball.numerics.elementary import table
 from bouncing_ball.paper.motion.deviations import Deviation, Jacobian
 from bouncing_ball.paper.motion.dynamics import Departure, Impact
-from bouncing_ball.paper.motion.flight import Flight
+from bouncing_ball.paper.motion.flight import Flight, table
 from bouncing_ball.paper.motion.resumption import ResumingDynamics
 from bouncing_ball.paper.motion.sequence import Status
 

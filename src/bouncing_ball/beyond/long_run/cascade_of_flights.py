@@ -22,7 +22,7 @@ contacts to that of the first flight.
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -31,17 +31,18 @@ from scipy.optimize import brentq
 from bouncing_ball.beyond.simulation import simulate
 from bouncing_ball.errors import require
 from bouncing_ball.numerics.corrector import NewtonSettings, solve
-from bouncing_ball.numerics.elementary import table
 from bouncing_ball.paper.contact.permanent_contact import permanent_contact_threshold
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.motion.deviations import Deviation, Jacobian
-from bouncing_ball.paper.motion.flight import Flight
+from bouncing_ball.paper.motion.flight import Flight, table
 
 # Number of samples of an oscillation, among which its first maximum is bracketed.
 _FINE = 400
 # The search for the next opening starts above the last opening by this fraction, where the new
-# flight is resolved, and goes up in steps of this factor.
-_ABOVE, _STEP = 1e-3, 1.2
+# flight is resolved.
+_ABOVE = 1e-3
+# The search for an opening goes up in steps of this factor.
+_STEP = 1.2
 _SETTINGS = NewtonSettings(max_iterations=10)
 # Largest difference in time at which a motion is regarded as returning. A contact that opens
 # elsewhere changes the times by far more, a considerable part of an oscillation.
@@ -79,64 +80,147 @@ class OpeningContacts:
         unknowns), gives δ and δ′ at the end.
         """
         legs = 2 * self.flights
+        # Each row of the unit matrix picks one unknown out of y.
         phase, lam, touch, *rest = np.eye(2 * legs + 2)
-        times, speeds = np.array(rest[: legs - 1]), rest[legs - 1 :]
-        lasts = [*times, -times.sum(axis=0), touch]
-        starts = [phase + times[:leg].sum(axis=0) for leg in range(legs)]
-        given = zip(lasts, [*speeds, speeds[-1]], [*starts, starts[-1]], strict=True)
-        ends = np.array([*speeds[1:], speeds[0], 0 * phase])
-        return np.array([(*x, lam) for x in given]), np.stack([0 * ends, ends], axis=1)
+        times = np.array(rest[: legs - 1])
+        speeds = rest[legs - 1 :]
+        start_phases = [phase + times[:leg].sum(axis=0) for leg in range(legs)]
+        by_leg = [
+            (time, speed, start_phase, lam)
+            for time, speed, start_phase in zip(
+                [*times, -times.sum(axis=0)], speeds, start_phases, strict=True
+            )
+        ]
+        until_touch = (touch, speeds[-1], start_phases[-1], lam)
+        # Each leg ends with the speed at which the next begins, and the touch has δ′ = 0.
+        end_speeds = np.array([*speeds[1:], speeds[0], 0 * phase])
+        ends = np.stack([0 * end_speeds, end_speeds], axis=1)
+        return np.array([*by_leg, until_touch]), ends
 
     def legs(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(δ, δ′) at the end of each leg and at the touch, shape (..., 2k + 1, 2), and their
         derivatives with respect to the duration of the leg, δ′ and the phase at its start, and Λ.
         """
-        time, speed, phase, lam = np.moveaxis(np.inner(y, self._linear[0]), -1, 0)
+        by_leg, _ = self._linear
+        time, speed, phase, lam = np.moveaxis(np.inner(y, by_leg), -1, 0)
         time[..., -2] += 2 * np.pi
+        # All legs are computed as contacts, and then every second one as a flight.
         flow = self.law.flow(time, 0.0, speed, phase, lam)
-        states, changes = np.stack(flow[:2], axis=-1), flow.jacobian[..., [0, 2, 3, 4]]
-        flights = (..., slice(0, -1, 2))
-        time, speed, phase, lam = time[flights], speed[flights], phase[flights], lam[flights]
-        (x, z), (x1, z1) = table(phase, lam), table(phase + time, lam)
-        height, rate, pull, _ = Flight(0.0, speed, x, z, lam).gap(time)
-        # The contribution of the table to δ and δ′ is proportional to Λ.
-        lifted, moved = (height - time * (speed - time / 2)) / lam, (rate - speed + time) / lam
-        rows = [rate, time, x - x1 - z * time, lifted], [pull, 1 + 0 * time, z1 - z, moved]
-        states[(*flights, slice(None))] = np.stack([height, rate], axis=-1)
-        changes[(*flights, slice(None), slice(None))] = np.moveaxis(
-            np.array(rows), (0, 1), (-2, -1)
+        states = np.stack(flow[:2], axis=-1)
+        changes = flow.jacobian[..., [0, 2, 3, 4]]
+        flights = slice(0, -1, 2)
+        flown, flown_changes = _flights(
+            time[..., flights], speed[..., flights], phase[..., flights], lam[..., flights]
         )
+        states[..., flights, :] = flown
+        changes[..., flights, :, :] = flown_changes
         return states, changes
 
     def system(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The defects of all equations, shape (..., 4k + 2), and their Jacobian."""
-        (states, changes), (by_leg, ends) = self.legs(y), self._linear
-        missed, matrix = states - np.inner(y, ends), changes @ by_leg - ends
-        return missed.reshape(y.shape), matrix.reshape(*y.shape, -1)
+        states, changes = self.legs(y)
+        by_leg, ends = self._linear
+        defects = states - np.inner(y, ends)
+        matrix = changes @ by_leg - ends
+        return defects.reshape(y.shape), matrix.reshape(*y.shape, -1)
 
     def multiplier(self, y: np.ndarray) -> np.ndarray:
         """The larger modulus of the multipliers, with the leading shape of y."""
         states, changes = self.legs(y)
         one = np.ones(y.shape[:-1])
-        whole = Jacobian(one, 0 * one, 0 * one, one)
+        monodromy = Jacobian(one, 0 * one, 0 * one, one)
         for leg in range(2 * self.flights):
             by_time, by_rate, by_phase, _ = np.moveaxis(changes[..., leg, :, :], -1, 0)
-            event = states[..., leg, 1], by_time[..., 1], 0
-            ends = (
-                Deviation(start, by[..., 0], by[..., 1]).to_event(*event)
-                for start, by in ((one, by_phase), (0 * one, by_rate))
+            rate = states[..., leg, 1]
+            acceleration = by_time[..., 1]
+            of_phase = Deviation(one, by_phase[..., 0], by_phase[..., 1])
+            of_rate = Deviation(0 * one, by_rate[..., 0], by_rate[..., 1])
+            change = Jacobian.of_columns(
+                of_phase.to_event(rate, acceleration, 0), of_rate.to_event(rate, acceleration, 0)
             )
-            whole = Jacobian.of_columns(*ends).after(whole)
-        return whole.spectral_radius()
+            monodromy = change.after(monodromy)
+        return monodromy.spectral_radius()
 
 
-def _held(t, excess: float, aside: float, root: complex, swing: complex):
-    """x in the contact of the stiff limit: p plus the oscillation Re(swing e^{root t})."""
-    return excess - (aside + t) ** 2 / 2 + np.real(swing * np.exp(root * t))
+def _flights(
+    time: np.ndarray, speed: np.ndarray, phase: np.ndarray, lam: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """(δ, δ′) at the end of flights, shape (..., 2), and their derivatives with respect to the
+    duration, and to δ′, phase and Λ at the start, shape (..., 2, 4).
+    """
+    x, z = table(phase, lam)
+    x1, z1 = table(phase + time, lam)
+    height, rate, pull, _ = Flight(0.0, speed, x, z, lam).gap(time)
+    # The contribution of the table to δ and δ′ is proportional to Λ.
+    height_by_lam = (height - time * (speed - time / 2)) / lam
+    rate_by_lam = (rate - speed + time) / lam
+    of_height = [rate, time, x - x1 - z * time, height_by_lam]
+    of_rate = [pull, 1 + 0 * time, z1 - z, rate_by_lam]
+    changes = np.moveaxis(np.array([of_height, of_rate]), (0, 1), (-2, -1))
+    return np.stack([height, rate], axis=-1), changes
 
 
-def _held_rate(t, excess: float, aside: float, root: complex, swing: complex):
-    return -aside - t + np.real(root * swing * np.exp(root * t))
+@dataclass(frozen=True)
+class _StiffContact:
+    """A contact of the stiff limit from its start at t = 0: p plus Re(swing e^{root t}).
+
+    ``aside`` is s - 2ζ at the start.
+    """
+
+    excess: float
+    aside: float
+    root: complex
+    swing: complex
+
+    @classmethod
+    def of(cls, excess: float, zeta: float, place: float, speed: float) -> "_StiffContact":
+        """The contact that starts at s = ``place`` with x′ = ``speed``."""
+        root = _root(zeta)
+        aside = place - 2 * zeta
+        start = aside * aside / 2 - excess
+        swing = complex(start, -(speed + aside + zeta * start) / root.imag)
+        return cls(excess, aside, root, swing)
+
+    def height(self, t: ArrayLike) -> Any:
+        """x at times t since the start."""
+        oscillation = np.real(self.swing * np.exp(self.root * t))
+        return self.excess - (self.aside + t) ** 2 / 2 + oscillation
+
+    def rate(self, t: ArrayLike) -> Any:
+        """x′ at times t since the start."""
+        return -self.aside - t + np.real(self.root * self.swing * np.exp(self.root * t))
+
+    def first_maximum(self) -> float | None:
+        """The time of the first maximum of x, None if x falls throughout."""
+        time = self._samples()
+        slope = self.rate(time)
+        turns = np.flatnonzero((slope[:-1] > 0) & (slope[1:] <= 0))
+        if not turns.size:
+            return None
+        before = turns[0]
+        return brentq(self.rate, time[before], time[before + 1], xtol=1e-14)
+
+    def end(self, top: float) -> float:
+        """The time at which x returns to 0, before the first maximum at the time ``top``."""
+        time = self._samples()
+        rising = time[np.argmax(self.rate(time) > 0)]
+        bottom = brentq(self.rate, 0.0, rising)
+        return brentq(self.height, bottom, top, xtol=1e-14)
+
+    def _samples(self) -> np.ndarray:
+        return np.linspace(0, 3 * np.pi / self.root.imag, _FINE)
+
+
+def _root(zeta: float) -> complex:
+    """The root -ζ + i√(1 - ζ²) of s² + 2ζs + 1."""
+    return complex(-zeta, np.sqrt((1 - zeta) * (1 + zeta)))
+
+
+def _flight_time(place: float, pull: float, speed: float) -> float:
+    """Duration of a flight of the stiff limit from s = ``place`` with x″ = ``pull`` and x′."""
+    # The flight rises by t (speed + pull t/2 - place t²/6 - t³/24).
+    zeros = np.roots([-1 / 24, -place / 6, pull / 2, speed])
+    return min(x.real for x in zeros if abs(x.imag) < 1e-9 and x.real > 0)
 
 
 def _landings(excess: float, zeta: float, most: int) -> list[tuple[float, tuple[float, ...]]]:
@@ -146,36 +230,33 @@ def _landings(excess: float, zeta: float, most: int) -> list[tuple[float, tuple[
     :class:`OpeningContacts`: the release, E, the time of the highest x, the durations of the
     earlier legs, and the speeds.
     """
-    root = complex(-zeta, np.sqrt((1 - zeta) * (1 + zeta)))
     speed = np.sqrt(2 * excess)
-    place = release = 2 * zeta - speed
+    release = 2 * zeta - speed
+    place = release
+    times: list[float] = []
+    speeds = [speed]
     found: list[tuple[float, tuple[float, ...]]] = []
-    times, speeds = (), (speed,)
     for _ in range(most):
         pull = excess + 2 * zeta * zeta - 1 - place * place / 2
-        # The flight rises by t (speed + pull t/2 - place t²/6 - t³/24).
-        zeros = np.roots([-1 / 24, -place / 6, pull / 2, speed])
-        flight = min(x.real for x in zeros if abs(x.imag) < 1e-9 and x.real > 0)
+        flight = _flight_time(place, pull, speed)
         speed = speed + flight * (pull - flight * (place / 2 + flight / 6))
         place = place + flight
-        times, speeds = (*times, flight), (*speeds, speed)
-        aside = place - 2 * zeta
-        a = aside * aside / 2 - excess
-        free = excess, aside, root, complex(a, -(speed + aside + zeta * a) / root.imag)
-        time = np.linspace(0, 3 * np.pi / root.imag, _FINE)
-        slope = _held_rate(time, *free)
-        turns = np.flatnonzero((slope[:-1] > 0) & (slope[1:] <= 0))
-        if not turns.size:
+        times.append(flight)
+        speeds.append(speed)
+
+        contact = _StiffContact.of(excess, zeta, place, speed)
+        top = contact.first_maximum()
+        if top is None:
             break
-        top = brentq(_held_rate, *time[turns[0] + np.arange(2)], args=free, xtol=1e-14)
-        highest = float(_held(top, *free))
+        highest = float(contact.height(top))
         found.append((highest, (release, excess, top, *times, *speeds)))
         if highest <= 0:
             break
-        bottom = brentq(_held_rate, 0.0, time[np.argmax(slope > 0)], args=free)
-        contact = brentq(_held, bottom, top, args=free, xtol=1e-14)
-        speed, place = _held_rate(contact, *free), place + contact
-        times, speeds = (*times, contact), (*speeds, speed)
+        duration = contact.end(top)
+        speed = contact.rate(duration)
+        place = place + duration
+        times.append(duration)
+        speeds.append(speed)
     return found
 
 
@@ -186,16 +267,17 @@ def _stiff_openings(zeta: float, most: int) -> list[np.ndarray]:
     """
     found: list[np.ndarray] = []
 
-    def top(excess: float) -> float:
+    def highest(excess: float) -> float:
         landings = _landings(excess, zeta, len(found) + 1)
         return landings[-1][0] if len(landings) > len(found) else -1.0
 
     high = 1e-3
     while len(found) < most:
         low = high
-        while top(high) < 0:
-            low, high = high, _STEP * high
-        excess = brentq(top, low, high, xtol=1e-13)
+        while highest(high) < 0:
+            low = high
+            high = _STEP * high
+        excess = brentq(highest, low, high, xtol=1e-13)
         found.append(np.array(_landings(excess, zeta, len(found) + 1)[-1][1]))
         high = excess * (1 + _ABOVE)
     return found
@@ -240,24 +322,28 @@ def openings(damping_ratio: ArrayLike, frequency_ratio: np.ndarray, most: int) -
     >>> bool(np.all(np.diff(found.amplitude, axis=1) > 0)), bool(np.all(found.multiplier < 1))
     (True, True)
     """
-    zetas, omega = np.asarray(damping_ratio, dtype=float), np.flip(frequency_ratio)
+    zetas = np.asarray(damping_ratio, dtype=float)
+    omega = np.flip(frequency_ratio)
     contact = SpringDamper(omega, zetas[:, np.newaxis])
-    held = permanent_contact_threshold(omega, contact.damping_ratio)
+    contact_of_legs = SpringDamper(omega[:, np.newaxis], zetas[:, np.newaxis, np.newaxis])
+    threshold = permanent_contact_threshold(omega, contact.damping_ratio)
     stiff = [_stiff_openings(z, most) for z in zetas]
-    found, before = np.full((2, most, *held.shape), np.nan), held
+    found = np.full((2, most, *threshold.shape), np.nan)
+    last = threshold
     for k in range(most):
         start = np.stack([one[k] for one in stiff])
-        problem = OpeningContacts(
-            SpringDamper(omega[:, np.newaxis], zetas[:, np.newaxis, np.newaxis]), k + 1
-        )
-        points = _followed(problem, omega, start, held)
+        problem = OpeningContacts(contact_of_legs, k + 1)
+        points = _followed(problem, omega, start, threshold)
+        amplitude = points[..., 1]
         # If two openings coincide in Λ, only the first is kept.
-        new = points[..., 1] - before > _ABOVE * (points[..., 1] - held)
-        points = np.where(new[..., np.newaxis], points, np.nan)
+        above_last = amplitude - last > _ABOVE * (amplitude - threshold)
+        points = np.where(above_last[..., np.newaxis], points, np.nan)
         points[~_returns(contact, k + 1, points)] = np.nan
-        before = points[..., 1]
-        found[:, k] = before, problem.multiplier(points)
-    return Openings(*found[..., ::-1].swapaxes(1, 2))
+        last = points[..., 1]
+        found[0, k] = last
+        found[1, k] = problem.multiplier(points)
+    amplitude, multiplier = found[..., ::-1].swapaxes(1, 2)
+    return Openings(amplitude, multiplier)
 
 
 def _returns(contact: SpringDamper, flights: int, points: np.ndarray) -> np.ndarray:
@@ -267,39 +353,61 @@ def _returns(contact: SpringDamper, flights: int, points: np.ndarray) -> np.ndar
     The simulation does not return if a contact opens elsewhere, where the equations continue it.
     """
     safe = np.where(np.isfinite(points), points, 1.0)
-    phase, amplitude = safe[..., 0] + safe[..., 3], safe[..., 1]
-    velocity = np.minimum(safe[..., 1 - 2 * flights], 0.0) + table(phase, amplitude)[0]
+    release_phase = safe[..., 0]
+    amplitude = safe[..., 1]
+    first_flight = safe[..., 3]
+    landing_rate = np.minimum(safe[..., 1 - 2 * flights], 0.0)
+    phase = release_phase + first_flight
+    velocity = landing_rate + table(phase, amplitude)[0]
     time = simulate(contact, amplitude, phase, velocity, flights + 2).time
     late = np.abs(time[flights:] - time[0] - 2 * np.pi).min(axis=0)
     return np.isfinite(points[..., 0]) & (late < _CLOSE)
 
 
 def _followed(
-    problem: OpeningContacts, omega: np.ndarray, start: np.ndarray, held: np.ndarray
+    problem: OpeningContacts, omega: np.ndarray, start: np.ndarray, threshold: np.ndarray
 ) -> np.ndarray:
-    """The unknowns at the openings, followed from the stiff limit, shape (ζ, ϖ, unknowns)."""
+    """The unknowns at the openings, followed from the stiff limit, shape (ζ, ϖ, unknowns).
+
+    ``start`` are the unknowns in the stiff limit, shape (ζ, unknowns), ``omega`` falls, and
+    ``threshold`` is Λ_SD, shape (ζ, ϖ).
+    """
     size = start.shape[-1]
-    power = np.repeat([1.0, 2.0, 1.0, 3.0], [1, 1, size // 2, size - 2 - size // 2])
+    legs = size // 2 - 1
+    origin = np.zeros((*threshold.shape, size))
+    origin[..., 0] = np.pi / 2
+    origin[..., 1] = threshold
+    # The powers of 1/ϖ by which φ, Λ, the times and the speeds differ from the origin.
+    power = np.repeat([1.0, 2.0, 1.0, 3.0], [1, 1, legs + 1, legs - 1])
     unit = omega[:, np.newaxis] ** -power
-    zero = np.zeros((*held.shape, size))
-    zero[..., 0], zero[..., 1] = np.pi / 2, held
+
+    # In these units the points depend smoothly on 1/ϖ². The first place is the stiff limit.
     place = np.concatenate([[0.0], omega**-2.0])
     points = np.repeat(start[:, np.newaxis], place.size, axis=1)
     known = np.broadcast_to(place == 0, points.shape[:2])
-    rows, count = np.arange(len(start)), 0
+    count = 0
     while known.sum() > count:
-        # Extrapolate by a straight line in 1/ϖ² through the last two points.
-        count, last = known.sum(), known.sum(axis=1) - 1
-        before = np.maximum(last - 1, 0)
-        near, far = points[rows, last], points[rows, before]
-        run = np.maximum(place[last] - place[before], np.finfo(float).tiny)
-        away = (place - place[last, np.newaxis]) / run[:, np.newaxis]
-        line = near[:, np.newaxis] + away[..., np.newaxis] * (near - far)[:, np.newaxis]
-        guess = np.where(known[..., np.newaxis], points, line)[:, 1:]
+        count = known.sum()
+        guess = np.where(known[..., np.newaxis], points, _extrapolated(points, place, known))
         with np.errstate(all="ignore"):
-            solved = solve(problem.system, zero + unit * guess, _SETTINGS)
-        forward = (solved.point[..., 2 : 2 + size // 2] > 0).all(axis=-1)
+            solved = solve(problem.system, origin + unit * guess[:, 1:], _SETTINGS)
+        forward = (solved.point[..., 2 : 3 + legs] > 0).all(axis=-1)
         known = np.insert(solved.converged & forward, 0, True, axis=1)
         known = np.logical_and.accumulate(known, axis=1)
-        points[:, 1:] = np.where(known[:, 1:, np.newaxis], (solved.point - zero) / unit, np.nan)
-    return zero + unit * points[:, 1:]
+        points[:, 1:] = np.where(known[:, 1:, np.newaxis], (solved.point - origin) / unit, np.nan)
+    return origin + unit * points[:, 1:]
+
+
+def _extrapolated(points: np.ndarray, place: np.ndarray, known: np.ndarray) -> np.ndarray:
+    """Straight lines over the places through the last two known points, shape of the points.
+
+    If only one point is known, the line is constant.
+    """
+    rows = np.arange(len(points))
+    last = known.sum(axis=1) - 1
+    before = np.maximum(last - 1, 0)
+    near = points[rows, last]
+    far = points[rows, before]
+    run = np.maximum(place[last] - place[before], np.finfo(float).tiny)
+    away = (place - place[last, np.newaxis]) / run[:, np.newaxis]
+    return near[:, np.newaxis] + away[..., np.newaxis] * (near - far)[:, np.newaxis]

@@ -33,27 +33,37 @@ from bouncing_ball.beyond.long_run.lyapunov import DIGITS, FORGOTTEN, NEAR, Stre
 from bouncing_ball.beyond.long_run.motions import Kind, Motions, Reason
 from bouncing_ball.beyond.simulation import Law, dynamics_of
 from bouncing_ball.numerics.arrays import pick
-from bouncing_ball.numerics.elementary import reduce_angle, table
+from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.motion.deviations import Jacobian
 from bouncing_ball.paper.motion.dynamics import Departure, Dynamics, Impact
+from bouncing_ball.paper.motion.flight import table
 from bouncing_ball.paper.motion.sequence import Status
 
 IMPACTS = 2000
 """Number of impacts after which the search for a repetition ends."""
 # Distance from the orbit within which a ball on its second turn is regarded as being on the orbit,
 # as NEAR is on the first turn: an angle, and a velocity over 1 + Λ. The error of the multipliers is
-# then this distance times the curvature of the map; they must be below 1 by the margin.
-_AGAIN, _MARGIN = 1e-6, 1e-3
+# then this distance times the curvature of the map.
+_NEAR_AGAIN = 1e-6
+# The margin by which the multipliers of an attracting motion must be smaller than 1.
+_MARGIN = 1e-3
 # Returns farther away than this are ignored.
 _SIGHT = 1e-2
 # A mark is moved forward after this fraction of all impacts so far, and at least this number.
-_SHARE, _LEAST = 0.5, 8
+_SHARE = 0.5
+_LEAST = 8
 # Number of standard errors by which the exponent of a chaotic motion must be positive; this happens
 # by chance once in three million.
 _ERRORS = 5.0
-# Number of balls followed at the same time, and the bytes that are allocated once at the start.
-_BLOCK, _KEPT = 1 << 16, 1 << 24
-_REASONS = list(Reason)
+# Number of balls followed at the same time.
+_BLOCK = 1 << 16
+# Number of bytes that are allocated once at the start.
+_KEPT = 1 << 24
+# The reasons as an array, so that a ball can hold the index of one.
+_REASONS = np.array(list(Reason))
+_NO_RECURRENCE = list(Reason).index(Reason.NO_RECURRENCE)
+_MARGINAL = list(Reason).index(Reason.MARGINAL)
+_ROUNDING = list(Reason).index(Reason.ROUNDING)
 
 
 class _Mark(NamedTuple):
@@ -72,15 +82,16 @@ class _Mark(NamedTuple):
     turn: np.ndarray
 
 
-class _Ball(NamedTuple):
-    """The state of each ball that is followed."""
+class _Balls(NamedTuple):
+    """The balls that are followed, arrays with an entry per ball."""
 
+    # The place of the ball in the results.
     lane: np.ndarray
     amplitude: np.ndarray
     # The number of impacts, and the time, since the start.
     seen: np.ndarray
     time: np.ndarray
-    # The reason for which the motion may stay undecided, as an index into the list of reasons.
+    # The reason for which the motion may stay undecided, as an index into the array of reasons.
     doubt: np.ndarray
     # The last lift-off of a ball with instantaneous impacts: the number of its impact, -1 if there
     # was none, and its time. A lap is the number of impacts between two lift-offs between which
@@ -92,18 +103,37 @@ class _Ball(NamedTuple):
     stretch: Stretching
 
     @classmethod
-    def new(cls, index: np.ndarray, amplitude: np.ndarray, impact: Impact) -> Self:
+    def new(cls, lane: np.ndarray, amplitude: np.ndarray, impact: Impact) -> Self:
         """Balls at their first impacts, which are their first marks."""
-        seen, doubt, lift, lap, marked, stuck, until, turn = np.zeros((8, index.size), dtype=int)
-        time, lift_time, mark_time = np.zeros((3, index.size))
-        one = Jacobian.identity(index.size)
-        place = impact.phase.copy(), impact.velocity.copy()
-        mark = _Mark(marked, mark_time, *place, one, stuck, until + _LEAST, turn)
-        of = seen, time, doubt + 1, lift - 1, lift_time, lap, mark, Stretching.of(index.size)
-        return cls(index, amplitude + time, *of)
+
+        def whole(number: int) -> np.ndarray:
+            return np.full(lane.size, number)
+
+        mark = _Mark(
+            impact=whole(0),
+            time=np.zeros(lane.size),
+            phase=impact.phase.copy(),
+            velocity=impact.velocity.copy(),
+            since=Jacobian.identity(lane.size),
+            stuck=whole(0),
+            until=whole(_LEAST),
+            turn=whole(0),
+        )
+        return cls(
+            lane=lane,
+            amplitude=amplitude + np.zeros(lane.size),
+            seen=whole(0),
+            time=np.zeros(lane.size),
+            doubt=whole(_NO_RECURRENCE),
+            lift=whole(-1),
+            lift_time=np.zeros(lane.size),
+            lap=whole(0),
+            mark=mark,
+            stretch=Stretching.of(lane.size),
+        )
 
 
-def label(
+def final_motions(
     law: Law,
     amplitude: ArrayLike,
     phase: ArrayLike,
@@ -140,15 +170,17 @@ def label(
     --------
     Below and above the period doubling at Λ = 1.527, and a motion that sticks to the table:
 
-    >>> found = label(0.5, [1.2, 1.6, 2.5], 1.0, -3.0)
+    >>> found = final_motions(0.5, [1.2, 1.6, 2.5], 1.0, -3.0)
     >>> found.kind.tolist(), found.periods.tolist(), found.impacts.tolist()[:2]
     (['orbit', 'subharmonic', 'locked'], [1, 2, 6], [1, 2])
 
     The path to a motion is the one that a simulation has, up to a rounding of the velocity:
 
     >>> from bouncing_ball.beyond.simulation import simulate
-    >>> path, start = np.empty((3, 20, 2)), (0.5, [1.2, 1.6], 1.0, -3.0)
-    >>> found, way = label(*start, impacts=20, path=path), simulate(*start, 20)
+    >>> path = np.empty((3, 20, 2))
+    >>> start = 0.5, [1.2, 1.6], 1.0, -3.0
+    >>> found = final_motions(*start, impacts=20, path=path)
+    >>> way = simulate(*start, 20)
     >>> apart = np.abs(path - [way.time, way.phase, way.impact_velocity])
     >>> found.followed.tolist(), apart[:2].max().tolist(), bool(apart[2].max() < 1e-15)
     ([20, 20], 0.0, True)
@@ -160,51 +192,59 @@ def label(
     # The derivatives of a long turn may overflow, and those of a ball that sticks are zero.
     with np.errstate(all="ignore"):
         found = _follow(dynamics, start, relative, impacts, path)
-    return Motions(*(x.reshape(shape) for x in vars(found).values()))
+    return Motions(**{name: values.reshape(shape) for name, values in vars(found).items()})
 
 
 def _follow(
-    dynamics: Dynamics, start: np.ndarray, relative: np.ndarray, impacts: int, path: Any
+    dynamics: Dynamics,
+    start: np.ndarray,
+    relative: np.ndarray,
+    impacts: int,
+    path: np.ndarray | None,
 ) -> Motions:
     """Follow all balls, in a block to which new balls are added when a quarter of it is free."""
-    found, size = Motions.unknown(start.size), start.size
-    ball: Any = None
+    found = Motions.unknown(start.size)
+    balls: Any = None
     impact: Any = None
-    alive = ahead = 0
-    while alive or ahead < size:
-        if ahead < size and 4 * (_BLOCK - alive) >= _BLOCK:
-            more = np.arange(ahead, min(ahead + _BLOCK - alive, size))
-            ahead += more.size
-            fresh = dynamics.take(more).start(start[more], relative[more])
-            born = _Ball.new(more, pick(dynamics.amplitude, more), fresh), fresh
-            ball, impact = _joined((ball, impact), born) if alive else born
-            now = dynamics.take(ball.lane)
+    started = 0
+    alive = 0
+    while alive or started < start.size:
+        free = _BLOCK - alive
+        if started < start.size and 4 * free >= _BLOCK:
+            lanes = np.arange(started, min(started + free, start.size))
+            started += lanes.size
+            first, new = _new_balls(dynamics.take(lanes), lanes, start[lanes], relative[lanes])
+            impact = _joined(impact, first) if alive else first
+            balls = _joined(balls, new) if alive else new
+            now = dynamics.take(balls.lane)
         if path is not None:
-            thrown = impact.velocity + table(impact.phase, ball.amplitude)[0]
-            path.reshape(3, impacts, -1)[:, ball.seen, ball.lane] = ball.time, impact.phase, thrown
+            _record(path.reshape(3, impacts, -1), balls, impact)
+
         departure = now.depart(impact, differentiate=True)
-        going = _resting(now, departure, ball, found)
-        now, impact, departure, ball = _kept(going, found, now, impact, departure, ball)
+        going = _flying(now, departure, balls, found)
+        if going.size < balls.lane.size:
+            _store_last_impacts(found, balls, impact, going)
+            now, impact, departure, balls = now.kept(going, impact, departure, balls)
+
         if going.size:
             after, passed = now.fly(departure)
-            _move(ball, now.jacobian(impact, departure, after, passed), passed, departure.sticks)
-            going = _returning(ball, now.section(after), impacts, found)
-            now, impact, ball = _kept(going, found, now, after, ball)
+            change = now.jacobian(impact, departure, after, passed)
+            _advance(balls, change, passed, departure.sticks)
+            going = _not_repeating(balls, *now.section(after), impacts, found)
+            impact = after
+            if going.size < balls.lane.size:
+                _store_last_impacts(found, balls, impact, going)
+                now, impact, balls = now.kept(going, impact, balls)
         alive = going.size
     return found
 
 
-def _kept(going: np.ndarray, found: Motions, now: Dynamics, impact: Impact, *rows: Any) -> Any:
-    """Select the balls that continue, in all arrays; store the last impacts of the other balls."""
-    ball = rows[-1]
-    if going.size < ball.lane.size:
-        last = np.delete(np.arange(ball.lane.size), going)
-        index, phase = ball.lane[last], impact.phase[last]
-        phase[found.kind[index] == Kind.PERMANENT_CONTACT] = np.nan
-        thrown = impact.velocity[last] + table(phase, ball.amplitude[last])[0]
-        found.fill(index, end_phase=phase, end_velocity=thrown)
-        now, impact, *rows = now.kept(going, impact, *rows)
-    return now, impact, *rows
+def _new_balls(
+    dynamics: Dynamics, lanes: np.ndarray, phase: np.ndarray, relative: np.ndarray
+) -> tuple[Impact, _Balls]:
+    """The first impacts of balls, and the balls."""
+    first = dynamics.start(phase, relative)
+    return first, _Balls.new(lanes, dynamics.amplitude, first)
 
 
 def _joined(one: Any, other: Any) -> Any:
@@ -215,123 +255,233 @@ def _joined(one: Any, other: Any) -> Any:
     return np.concatenate([one, other]) if isinstance(one, np.ndarray) and one.ndim else one
 
 
-def _write(found: Motions, ball: _Ball, which: np.ndarray, kind: ArrayLike, **values: Any) -> None:
-    lost = ball.stretch.most[which] / np.log(10)
-    found.fill(ball.lane[which], kind=kind, followed=ball.seen[which], digits_lost=lost, **values)
+def _absolute_velocity(
+    phase: np.ndarray, relative: np.ndarray, amplitude: np.ndarray
+) -> np.ndarray:
+    """z′ of balls with δ′ at phases of the table; NaN where the phase is NaN."""
+    return relative + table(phase, amplitude)[0]
 
 
-def _repeats(
-    found: Motions, ball: _Ball, which: np.ndarray, kind: ArrayLike, *values: ArrayLike
-) -> None:
-    """Store the kinds, periods, impacts and exponents of motions that repeat."""
-    known = dict(zip(("periods", "impacts", "exponent"), values, strict=True))
-    _write(found, ball, which, kind, exponent_error=0.0, **known)
+def _record(path: np.ndarray, balls: _Balls, impact: Impact) -> None:
+    """Store time, φ and z′ of the impacts in the path, shape (3, impacts, balls)."""
+    velocity = _absolute_velocity(impact.phase, impact.velocity, balls.amplitude)
+    path[:, balls.seen, balls.lane] = balls.time, impact.phase, velocity
 
 
-def _resting(dynamics: Dynamics, departure: Departure, ball: _Ball, found: Motions) -> np.ndarray:
+def _store_last_impacts(found: Motions, balls: _Balls, impact: Impact, going: np.ndarray) -> None:
+    """Store the impacts of all balls except those that continue."""
+    last = np.delete(np.arange(balls.lane.size), going)
+    lane = balls.lane[last]
+    phase = impact.phase[last]
+    phase[found.kind[lane] == Kind.PERMANENT_CONTACT] = np.nan
+    velocity = _absolute_velocity(phase, impact.velocity[last], balls.amplitude[last])
+    found.fill(lane, end_phase=phase, end_velocity=velocity)
+
+
+def _store(found: Motions, balls: _Balls, which: np.ndarray, **values: ArrayLike) -> None:
+    """Store results of some balls, with the impacts followed and the digits lost until now."""
+    found.fill(
+        balls.lane[which],
+        followed=balls.seen[which],
+        digits_lost=balls.stretch.most[which] / np.log(10),
+        **values,
+    )
+
+
+def _flying(dynamics: Dynamics, departure: Departure, balls: _Balls, found: Motions) -> np.ndarray:
     """Store which balls stay on the table, are not released, or lock because they stick again;
     return the indices of the others.
     """
     done = departure.status != Status.BOUNCING
-    stays = departure.status == Status.PERMANENT_CONTACT
     if done.any():
-        _write(found, ball, stays, Kind.PERMANENT_CONTACT, periods=1, exponent_error=0.0)
-        _write(found, ball, done & ~stays, Kind.UNDECIDED, reason=Reason.NO_RELEASE)
+        stays = departure.status == Status.PERMANENT_CONTACT
+        _store(found, balls, stays, kind=Kind.PERMANENT_CONTACT, periods=1, exponent_error=0.0)
+        _store(found, balls, done & ~stays, kind=Kind.UNDECIDED, reason=Reason.NO_RELEASE)
     if dynamics.forgets:
         sticks = ~done & departure.sticks
         if sticks.any():
-            time = ball.time + departure.duration
-            again, lost = sticks & (ball.lift >= 0), ball.stretch.lost()
-            lap, periods = ball.seen - ball.lift, _periods(time - ball.lift_time)
-            ball.lap[again & lost] = lap[again & lost]
-            again &= ~lost
-            _repeats(found, ball, again, Kind.LOCKED, periods[again], lap[again], -np.inf)
-            ball.lift[sticks], ball.lift_time[sticks] = ball.seen[sticks], time[sticks]
-            done |= again
+            done |= _sticking_again(balls, sticks, balls.time + departure.duration, found)
     return np.flatnonzero(~done)
 
 
+def _sticking_again(
+    balls: _Balls, sticks: np.ndarray, time: np.ndarray, found: Motions
+) -> np.ndarray:
+    """Store which balls lock because they stick for the second time, and return which do.
+
+    Between two lift-offs after which rounding errors have grown too much, nothing is known. The
+    time of the present lift-off is ``time``.
+    """
+    again = sticks & (balls.lift >= 0)
+    lost = balls.stretch.lost()
+    lap = balls.seen - balls.lift
+    periods = _periods(time - balls.lift_time)
+    balls.lap[again & lost] = lap[again & lost]
+    locks = again & ~lost
+    _store(
+        found,
+        balls,
+        locks,
+        kind=Kind.LOCKED,
+        periods=periods[locks],
+        impacts=lap[locks],
+        exponent=-np.inf,
+        exponent_error=0.0,
+    )
+    balls.lift[sticks] = balls.seen[sticks]
+    balls.lift_time[sticks] = time[sticks]
+    return locks
+
+
 def _periods(time: np.ndarray) -> np.ndarray:
+    """The nearest numbers of table periods."""
     return np.rint(time / (2 * np.pi)).astype(int)
 
 
-def _move(ball: _Ball, change: Jacobian, passed: np.ndarray, sticks: np.ndarray) -> None:
+def _advance(balls: _Balls, change: Jacobian, passed: np.ndarray, sticks: np.ndarray) -> None:
     """Advance the counts, times, derivatives and deviations of all balls to the next impact."""
-    mark, stretch = ball.mark, ball.stretch
-    ball.seen[:] += 1
-    ball.time[:] += passed
+    mark = balls.mark
+    stretch = balls.stretch
+    balls.seen[:] += 1
+    balls.time[:] += passed
     mark.stuck[:] += sticks
     for values, new in zip(mark.since, change.after(mark.since), strict=True):
         values[:] = new
     grown = stretch.grow(change)
     forgot = np.flatnonzero(sticks & (stretch.growth + grown < stretch.least - DIGITS))
     if forgot.size:
-        ball.doubt[forgot[stretch.lost()[forgot]]] = _REASONS.index(Reason.ROUNDING)
-        stretch.forget(forgot, grown, ball.time)
-    stretch.add(grown, ball.time, ball.seen)
+        balls.doubt[forgot[stretch.lost()[forgot]]] = _ROUNDING
+        stretch.forget(forgot, grown, balls.time)
+    stretch.add(grown, balls.time, balls.seen)
 
 
-def _returning(
-    ball: _Ball, state: tuple[np.ndarray, np.ndarray], impacts: int, found: Motions
+def _not_repeating(
+    balls: _Balls, phase: np.ndarray, velocity: np.ndarray, impacts: int, found: Motions
 ) -> np.ndarray:
     """Compare balls with their marks, and store which balls repeat or reach the last impact; return
     the indices of the others.
     """
-    mark, scale = ball.mark, 1 + ball.amplitude
-    turned, faster = reduce_angle(state[0] - mark.phase), (state[1] - mark.velocity) / scale
-    near = np.flatnonzero((np.abs(turned) < _SIGHT) & (np.abs(faster) < _SIGHT))
-    done, moves = np.zeros(turned.size, dtype=bool), ball.seen >= mark.until
+    phase_shift = reduce_angle(phase - balls.mark.phase)
+    velocity_shift = (velocity - balls.mark.velocity) / (1 + balls.amplitude)
+    near = np.flatnonzero((np.abs(phase_shift) < _SIGHT) & (np.abs(velocity_shift) < _SIGHT))
+    done = np.zeros(phase.size, dtype=bool)
+    moves = balls.seen >= balls.mark.until
     if near.size:
-        change, unit = pick(mark.since, near), scale[near]
-        step = change.to_fixed_point(turned[near], faster[near] * unit)
-        away = np.maximum(np.abs(step[0]), np.abs(step[1]) / unit)
-        radius, second = change.spectral_radius(), mark.turn[near] > 0
-        periods = _periods(ball.time[near] - mark.time[near])
-        back = (away <= np.where(second, _AGAIN, NEAR)) & (radius <= 1 - _MARGIN)
-        back &= (periods > 0) & (ball.stretch.worst[near] <= FORGOTTEN)
-        close = np.maximum(np.abs(turned[near]), np.abs(faster[near])) < _AGAIN
-        close &= np.abs(radius - 1) < _MARGIN
-        ball.doubt[near[close]] = _REASONS.index(Reason.MARGINAL)
-        length, sure, first = ball.seen[near] - mark.impact[near], back & second, back & ~second
-        own, whole = near[sure], np.gcd(periods, length)[sure] == 1
-        repeats = np.where(whole, Kind.ORBIT, Kind.SUBHARMONIC)
-        kind = np.where(mark.stuck[own] > 0, Kind.LOCKED, repeats)
-        exponent = np.log(radius) / periods
-        _repeats(found, ball, own, kind, periods[sure], length[sure], exponent[sure])
-        done[own] = True
-        mark.turn[near[first]], moves[near[first]] = length[first], True
-    _mark(ball, np.flatnonzero(moves & ~done), *state)
-    over = np.flatnonzero((ball.seen >= impacts) & ~done)
+        first, second = _returning(balls, near, phase_shift[near], velocity_shift[near], found)
+        moves[first] = True
+        done[second] = True
+    _move_marks(balls, np.flatnonzero(moves & ~done), phase, velocity)
+    over = np.flatnonzero((balls.seen >= impacts) & ~done)
     if over.size:
-        _give_up(ball, over, found)
+        _give_up(balls, over, found)
         done[over] = True
     return np.flatnonzero(~done)
 
 
-def _mark(ball: _Ball, here: np.ndarray, phase: np.ndarray, velocity: np.ndarray) -> None:
-    """Move the marks of some balls to their current impact; after a first return the mark stays for
-    one more turn.
+def _returning(
+    balls: _Balls,
+    near: np.ndarray,
+    phase_shift: np.ndarray,
+    velocity_shift: np.ndarray,
+    found: Motions,
+) -> tuple[np.ndarray, np.ndarray]:
+    """The indices of the balls that return to their marks for the first time, and for the second
+    time in as many impacts or fewer; the motions of the latter are stored.
+
+    ``near`` are the indices of balls near their marks. The shifts of their states from the marks
+    are an angle, and a velocity over 1 + Λ.
     """
-    mark, count = ball.mark, ball.seen[here]
+    mark = balls.mark
+    scale = 1 + balls.amplitude[near]
+    since = pick(mark.since, near)
+    radius = since.spectral_radius()
+    length = balls.seen[near] - mark.impact[near]
+    periods = _periods(balls.time[near] - mark.time[near])
+
+    step_phase, step_velocity = since.to_fixed_point(phase_shift, velocity_shift * scale)
+    from_orbit = np.maximum(np.abs(step_phase), np.abs(step_velocity) / scale)
+    returned_before = mark.turn[near] > 0
+    on_orbit = from_orbit <= np.where(returned_before, _NEAR_AGAIN, NEAR)
+    attracting = radius <= 1 - _MARGIN
+    resolved = balls.stretch.worst[near] <= FORGOTTEN
+    back = on_orbit & attracting & (periods > 0) & resolved
+
+    from_mark = np.maximum(np.abs(phase_shift), np.abs(velocity_shift))
+    marginal = (from_mark < _NEAR_AGAIN) & (np.abs(radius - 1) < _MARGIN)
+    balls.doubt[near[marginal]] = _MARGINAL
+
+    first = back & ~returned_before
+    mark.turn[near[first]] = length[first]
+    second = back & returned_before
+    _store_repeating(
+        found,
+        balls,
+        near[second],
+        periods=periods[second],
+        impacts=length[second],
+        exponent=(np.log(radius) / periods)[second],
+    )
+    return near[first], near[second]
+
+
+def _store_repeating(
+    found: Motions,
+    balls: _Balls,
+    which: np.ndarray,
+    periods: np.ndarray,
+    impacts: np.ndarray,
+    exponent: np.ndarray,
+) -> None:
+    """Store motions that repeat after these numbers of table periods and of impacts."""
+    coprime = np.gcd(periods, impacts) == 1
+    bouncing = np.where(coprime, Kind.ORBIT, Kind.SUBHARMONIC)
+    _store(
+        found,
+        balls,
+        which,
+        kind=np.where(balls.mark.stuck[which] > 0, Kind.LOCKED, bouncing),
+        periods=periods,
+        impacts=impacts,
+        exponent=exponent,
+        exponent_error=0.0,
+    )
+
+
+def _move_marks(balls: _Balls, here: np.ndarray, phase: np.ndarray, velocity: np.ndarray) -> None:
+    """Move the marks of some balls to their current impacts; after a first return the mark stays
+    for one more turn.
+    """
+    mark = balls.mark
+    count = balls.seen[here]
     # If the ball did not return for the second time, its first return no longer counts.
     turn = np.where(mark.until[here] > count, mark.turn[here], 0)
-    later = np.where(turn, turn + 1, np.maximum(_LEAST, (_SHARE * count).astype(int)))
-    state = count, ball.time[here], phase[here], velocity[here]
-    new = *state, *Jacobian.identity(here.size), 0, count + later, turn
-    for values, value in zip((*mark[:4], *mark.since, *mark[5:]), new, strict=True):
+    stay = np.where(turn, turn + 1, np.maximum(_LEAST, (_SHARE * count).astype(int)))
+    mark.impact[here] = count
+    mark.time[here] = balls.time[here]
+    mark.phase[here] = phase[here]
+    mark.velocity[here] = velocity[here]
+    for values, value in zip(mark.since, Jacobian.identity(here.size), strict=True):
         values[here] = value
-    ball.stretch.mark(here)
+    mark.stuck[here] = 0
+    mark.until[here] = count + stay
+    mark.turn[here] = turn
+    balls.stretch.mark(here)
 
 
-def _give_up(ball: _Ball, which: np.ndarray, found: Motions) -> None:
+def _give_up(balls: _Balls, which: np.ndarray, found: Motions) -> None:
     """Store which of the balls that have not repeated are chaotic, and which are undecided."""
-    rate, error = ball.stretch.exponent(which, ball.lap[which])
+    rate, error = balls.stretch.exponent(which, balls.lap[which])
+    separates = rate > _ERRORS * error
     # Next to a bifurcation neighbours may separate, but not exponentially.
-    chaotic = (rate > _ERRORS * error) & (ball.stretch.sums[which, 1] > -np.log(NEAR))
-    chaotic &= ball.doubt[which] != _REASONS.index(Reason.MARGINAL)
-    _write(
-        *(found, ball, which, np.where(chaotic, Kind.CHAOTIC, Kind.UNDECIDED)),
-        reason=np.where(chaotic, Reason.NONE, np.array(_REASONS)[ball.doubt[which]]),
+    exponentially = balls.stretch.sums[which, 1] > -np.log(NEAR)
+    doubt = balls.doubt[which]
+    chaotic = separates & exponentially & (doubt != _MARGINAL)
+    _store(
+        found,
+        balls,
+        which,
+        kind=np.where(chaotic, Kind.CHAOTIC, Kind.UNDECIDED),
+        reason=np.where(chaotic, Reason.NONE, _REASONS[doubt]),
         exponent=2 * np.pi * rate,
         exponent_error=2 * np.pi * error,
     )

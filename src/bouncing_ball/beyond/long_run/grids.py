@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.beyond.corrected.instant import instant_of
-from bouncing_ball.beyond.long_run.destination import label
+from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.motions import Kind, Motions
 from bouncing_ball.datasets import CASE
 from bouncing_ball.datasets.variables import described
@@ -65,7 +65,7 @@ def motions(
         If there are too many balls, or a state is outside its range.
     """
     require_memory(amplitude.size, "a grid of starts")
-    found = label(model.impact_law, amplitude, phase, velocity, impacts=impacts)
+    found = final_motions(model.impact_law, amplitude, phase, velocity, impacts=impacts)
     return described(_columns(found, (CASE,)))
 
 
@@ -132,7 +132,7 @@ def _ends(
     If the speed is not positive, for example for a ball on the table, the ball starts with speed 1.
     """
     phase, speed = np.nan_to_num(phase), np.where(speed > 0, speed, 1.0)
-    return label(model.impact_law, amplitude, phase, amplitude * np.cos(phase) - speed,
+    return final_motions(model.impact_law, amplitude, phase, amplitude * np.cos(phase) - speed,
                  impacts=impacts)  # fmt: skip
 
 
@@ -171,7 +171,7 @@ def basins(
     phase, speed = 2 * np.pi * middle - np.pi, top * middle
     phi, towards = np.meshgrid(phase, speed)
     law = model.impact_law
-    found = label(law, amplitude, phi, amplitude * np.cos(phi) - towards, impacts=impacts)
+    found = final_motions(law, amplitude, phi, amplitude * np.cos(phi) - towards, impacts=impacts)
     names = np.array(list(Kind))
     number = np.argmax(found.kind[..., np.newaxis] == names, axis=-1)
     key = np.stack([number, found.periods, found.impacts], axis=-1).reshape(-1, 3)

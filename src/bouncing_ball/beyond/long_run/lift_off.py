@@ -17,16 +17,19 @@ The ball misses the sticking if this delay exceeds the wait w until the table wo
 ball: the locked orbit should be the same for ϖ > S/w.
 """
 
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
 from bouncing_ball.beyond.simulation import dynamics_of
-from bouncing_ball.numerics.elementary import reduce_angle, table
+from bouncing_ball.numerics.arrays import pick
+from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.motion.dynamics import Departure, Dynamics, Impact
+from bouncing_ball.paper.motion.flight import table
 
 # The ϖ of the corrected model from whose map the first order is computed. The relative error from
 # the second order is of order 1/ϖ, and that from rounding of order ε ϖ.
@@ -51,6 +54,72 @@ class Return(NamedTuple):
     wait: np.ndarray
 
 
+class _Balls(NamedTuple):
+    """Balls on their way from the lift-off to the next sticking, and the deviations e times ϖ."""
+
+    lane: np.ndarray
+    # The time since the lift-off.
+    time: np.ndarray
+    # Shape (2, balls): the deviation of φ and that of δ′.
+    deviation: np.ndarray
+    impact: Impact
+    # The same states in the corrected model.
+    corrected_impact: Impact
+
+    def take(self, which: np.ndarray) -> Self:
+        """The balls with these indices."""
+        return self._replace(
+            lane=self.lane[which],
+            time=self.time[which],
+            deviation=self.deviation[:, which],
+            impact=pick(self.impact, which),
+            corrected_impact=pick(self.corrected_impact, which),
+        )
+
+
+def _store(
+    found: Return, balls: _Balls, departure: Departure, sticks: np.ndarray, impacts: int
+) -> None:
+    """Store the returns of the balls that stick after this number of impacts."""
+    lane = balls.lane[sticks]
+    time = (balls.time + departure.duration)[sticks]
+    late = np.abs(balls.deviation[0, sticks])
+    found.periods[lane] = np.rint(time / (2 * np.pi))
+    found.impacts[lane] = impacts
+    found.sensitivity[lane] = np.nan_to_num(late, nan=np.inf, posinf=np.inf)
+    found.wait[lane] = (departure.duration - departure.settling)[sticks]
+
+
+def _next_impacts(
+    dynamics: Dynamics, corrected: Dynamics, balls: _Balls, departure: Departure, *, lifts_off: bool
+) -> _Balls:
+    """The balls at their next impacts, with e ← M e + K/ϖ.
+
+    The lift-off is the same in both models, so that the time and e begin there.
+    """
+    impact = balls.impact
+    after, passed = dynamics.fly(departure)
+    corrected_after, _ = corrected.fly(corrected.depart(balls.corrected_impact))
+    phase, velocity = corrected.section(corrected_after)
+    shift = np.array([reduce_angle(phase - after.phase), velocity - after.velocity])
+    deviation = balls.deviation
+    if lifts_off:
+        passed = passed - departure.duration
+    else:
+        gravity = 1 - table(impact.phase, dynamics.amplitude)[1]
+        chattering_time = 2 * departure.flight.velocity / (1 - dynamics.law)
+        shift[:, (0 < gravity) & (chattering_time < _CHATTER * gravity**2)] = 0
+        with np.errstate(over="ignore", invalid="ignore"):
+            change = dynamics.jacobian(impact, departure, after, passed)
+            deviation = np.array(change.apply(*deviation))
+    return balls._replace(
+        time=balls.time + passed,
+        deviation=deviation + _STIFF * shift,
+        impact=after,
+        corrected_impact=corrected.at_section(after.phase, after.velocity),
+    )
+
+
 def returns(restitution: ArrayLike, amplitude: ArrayLike, impacts: int) -> Return:
     """The returns of balls that lift off from a table with Λ > 1, within a number of impacts.
 
@@ -59,45 +128,41 @@ def returns(restitution: ArrayLike, amplitude: ArrayLike, impacts: int) -> Retur
     >>> returns([0.5, 0.6], [2.5, 3.0], 100).periods.tolist()
     [6, 13]
     """
-    r, lam = np.broadcast_arrays(*map(np.asarray, (restitution, amplitude)))
-    corrected = CorrectedModel.of_contact(
-        SpringDamper.from_restitution(r.ravel() * 1.0, _STIFF, Release.DISPLACEMENT)
+    r, lam = np.broadcast_arrays(
+        np.asarray(restitution, dtype=float), np.asarray(amplitude, dtype=float)
     )
     # A ball at rest on the table, at a phase at which the table presses on it.
-    rest = np.full(r.shape, -np.pi / 2), np.zeros(r.shape)
-    dynamics, state, shape = dynamics_of(r, lam).in_a_row(*rest)
-    other = dynamics_of(corrected.impact_law, lam.ravel()).in_a_row(*(x.ravel() for x in rest))[0]
-    impact, beside = dynamics.start(*state), other.start(*state)
-    found = np.zeros((2, r.size), dtype=int), np.full((2, r.size), np.nan)
-    ball, time, late = np.arange(r.size), np.zeros(r.size), np.zeros((2, r.size))
+    phase = np.full(r.shape, -np.pi / 2)
+    velocity = np.zeros(r.shape)
+    dynamics, state, shape = dynamics_of(r, lam).in_a_row(phase, velocity)
+    contact = SpringDamper.from_restitution(r.ravel(), _STIFF, Release.DISPLACEMENT)
+    corrected_law = CorrectedModel.of_contact(contact).impact_law
+    corrected, _, _ = dynamics_of(corrected_law, lam.ravel()).in_a_row(*state)
+
+    found = Return(
+        periods=np.zeros(r.size, dtype=int),
+        impacts=np.zeros(r.size, dtype=int),
+        sensitivity=np.full(r.size, np.nan),
+        wait=np.full(r.size, np.nan),
+    )
+    balls = _Balls(
+        lane=np.arange(r.size),
+        time=np.zeros(r.size),
+        deviation=np.zeros((2, r.size)),
+        impact=dynamics.start(*state),
+        corrected_impact=corrected.start(*state),
+    )
     for count in range(impacts):
-        departure = dynamics.depart(impact, differentiate=True)
-        sticks = departure.sticks if count else np.zeros(ball.size, dtype=bool)
-        if sticks.any():
-            held = (departure.duration - departure.settling)[sticks]
-            turns = np.rint((time + departure.duration)[sticks] / (2 * np.pi))
-            found[0][:, ball[sticks]] = turns, np.full(held.size, count)
-            found[1][:, ball[sticks]] = (
-                np.nan_to_num(np.abs(late[0, sticks]), nan=np.inf, posinf=np.inf),
-                held,
-            )
-            left = np.flatnonzero(~sticks)
-            rows = impact, departure, beside, ball, time
-            dynamics, impact, departure, beside, ball, time = dynamics.kept(left, *rows)
-            other, late = other.take(left), late[:, left]
-        if not ball.size:
-            break
-        after, passed = dynamics.fly(departure)
-        moved = other.section(other.fly(other.depart(beside))[0])
-        shift = np.array([reduce_angle(moved[0] - after.phase), moved[1] - after.velocity])
+        departure = dynamics.depart(balls.impact, differentiate=True)
         if count:
-            gravity = 1 - table(impact.phase, dynamics.amplitude)[1]
-            bounces = 2 * departure.flight.velocity / (1 - dynamics.law)
-            shift[:, (0 < gravity) & (bounces < _CHATTER * gravity**2)] = 0
-            with np.errstate(over="ignore", invalid="ignore"):
-                late = np.array(dynamics.jacobian(impact, departure, after, passed).apply(*late))
-        late += _STIFF * shift
-        time += passed if count else passed - departure.duration
-        impact, beside = after, other.at_section(after.phase, after.velocity)
-    (periods, number), (sensitivity, wait) = found
-    return Return(*(x.reshape(shape) for x in (periods, number, sensitivity, wait)))
+            sticks = departure.sticks
+            if sticks.any():
+                _store(found, balls, departure, sticks, count)
+                left = np.flatnonzero(~sticks)
+                dynamics, departure = dynamics.kept(left, departure)
+                corrected = corrected.take(left)
+                balls = balls.take(left)
+        if not balls.lane.size:
+            break
+        balls = _next_impacts(dynamics, corrected, balls, departure, lifts_off=count == 0)
+    return Return(*(x.reshape(shape) for x in found))

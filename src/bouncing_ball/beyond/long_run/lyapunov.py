@@ -5,7 +5,7 @@ impact; the logarithms of its growth are added up. The Lyapunov exponent is the 
 growth to the mean time, over sections of 32 impacts, so that its standard error can be computed.
 """
 
-from typing import Any, NamedTuple, Self
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -16,8 +16,10 @@ NEAR = 1e-7
 # Logarithms of the growth from a rounding error to 1, and to the distance NEAR.
 DIGITS = -float(np.log(np.finfo(float).eps))
 FORGOTTEN = DIGITS + float(np.log(NEAR))
-# Number of impacts of each mean of the growth, and number of first means that are left out.
-_BATCH, _TRANSIENT = 32, 2
+# Number of impacts of each mean of the growth.
+_BATCH = 32
+# Number of first means that are left out.
+_TRANSIENT = 2
 # Relative error of a rate that is due to rounding: sums of n squares give the error √(n ε).
 _EQUAL = 1e-6
 # If a deviation shrinks to less than this length in one impact, a new deviation is started.
@@ -27,27 +29,39 @@ _TINY = 1e-300
 class Stretching(NamedTuple):
     """A deviation of length 1 of each ball, and the logarithm of its growth."""
 
+    # The parts dφ and dδ′ of the deviation.
     along: np.ndarray
     across: np.ndarray
     growth: np.ndarray
-    # least and lowest: the smallest growth since the last sticking, after which the motion does not
-    # depend on earlier impacts, and since the mark. most and worst: the largest rise of the growth
-    # above the former, at any time so far, and above the latter, since the mark.
+    # The smallest growth since the last sticking, after which the motion does not depend on earlier
+    # impacts, and the largest rise of the growth above it, at any time so far.
     least: np.ndarray
     most: np.ndarray
+    # The smallest growth since the mark, and the largest rise of the growth above it since then.
     lowest: np.ndarray
     worst: np.ndarray
-    # Growth and time at the last mean; the number of means, and the sums over them of the growth,
-    # of the time and of their products.
+    # Growth and time at the last mean.
     mean_growth: np.ndarray
     mean_time: np.ndarray
+    # The number of means, and the sums over them of the growth g, the time t, g², g t and t²,
+    # shape (balls, 6).
     sums: np.ndarray
 
     @classmethod
     def of(cls, balls: int) -> Self:
         """The deviations of a number of balls before their first flights."""
-        columns: Any = np.eye(9, 1) + np.zeros(balls)
-        return cls._make([*columns, np.zeros((balls, 6))])
+        return cls(
+            along=np.ones(balls),
+            across=np.zeros(balls),
+            growth=np.zeros(balls),
+            least=np.zeros(balls),
+            most=np.zeros(balls),
+            lowest=np.zeros(balls),
+            worst=np.zeros(balls),
+            mean_growth=np.zeros(balls),
+            mean_time=np.zeros(balls),
+            sums=np.zeros((balls, 6)),
+        )
 
     def grow(self, change: Jacobian) -> np.ndarray:
         """Carry the deviation to the next impact, and return the logarithm of its growth."""
@@ -68,10 +82,13 @@ class Stretching(NamedTuple):
         np.maximum(self.worst, self.growth - self.lowest, out=self.worst)
         at = np.flatnonzero(seen % _BATCH == 0)
         if at.size:
-            g, t = self.growth[at] - self.mean_growth[at], time[at] - self.mean_time[at]
-            self.mean_growth[at], self.mean_time[at] = self.growth[at], time[at]
+            g = self.growth[at] - self.mean_growth[at]
+            t = time[at] - self.mean_time[at]
+            self.mean_growth[at] = self.growth[at]
+            self.mean_time[at] = time[at]
             terms = np.stack([np.ones_like(t), g, t, g * g, g * t, t * t], axis=1)
-            self.sums[at] += terms * (seen[at] > _TRANSIENT * _BATCH)[:, np.newaxis]
+            counts = seen[at] > _TRANSIENT * _BATCH
+            self.sums[at] += terms * counts[:, np.newaxis]
 
     def forget(self, which: np.ndarray, grown: np.ndarray, time: np.ndarray) -> None:
         """Begin again for balls whose later motion does not depend on earlier impacts."""
@@ -87,7 +104,8 @@ class Stretching(NamedTuple):
 
     def mark(self, which: np.ndarray) -> None:
         """Begin a new mark of some balls."""
-        self.worst[which], self.lowest[which] = 0, self.growth[which]
+        self.worst[which] = 0
+        self.lowest[which] = self.growth[which]
 
     def exponent(self, which: np.ndarray, lap: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The growth per unit of time, and its standard error, NaN where the error is not known.
@@ -107,11 +125,11 @@ class Stretching(NamedTuple):
         >>> rate.tolist(), error.tolist()
         ([2.0, 2.0], [1.0, 2.0])
         """
-        number, growth, time, square, product, times = self.sums[which].T
+        number, growth, time, growth_squares, products, time_squares = self.sums[which].T
         rate = growth / time
         # The standard error of a ratio of means, where each mean is over a section of the motion.
-        rest = square - 2 * rate * product + rate * rate * times
-        error = np.sqrt(np.maximum(rest, 0.0) * number / (number - 1)) / time
+        residual = growth_squares - 2 * rate * products + rate * rate * time_squares
+        error = np.sqrt(np.maximum(residual, 0.0) * number / (number - 1)) / time
         laps = np.where(lap > 0, number * _BATCH / lap, 1.0)
         error *= np.sqrt(np.maximum(laps, 1.0))
         return rate, np.where(error > _EQUAL * np.abs(rate), error, np.nan)

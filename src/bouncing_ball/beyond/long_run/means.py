@@ -26,9 +26,9 @@ from numpy.typing import ArrayLike
 from bouncing_ball.beyond.laws.collocation import integrals
 from bouncing_ball.beyond.long_run.motions import Motions
 from bouncing_ball.beyond.simulation import Law, dynamics_of
-from bouncing_ball.numerics.elementary import table
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.motion.dynamics import Departure, Dynamics, Impact
+from bouncing_ball.paper.motion.flight import table
 from bouncing_ball.paper.motion.linear_contact import LinearContactDynamics, has_closed_form
 from bouncing_ball.paper.motion.sequence import Status
 
@@ -134,8 +134,8 @@ def means(law: Law, amplitude: ArrayLike, found: Motions, samples: int) -> np.nd
     --------
     In each period the 1-T orbit dissipates ½(1 - r²)v², where (1 + r) v = 2π:
 
-    >>> from bouncing_ball.beyond.long_run.destination import label
-    >>> flights, _, power, _ = means(0.5, 1.2, label(0.5, 1.2, 1.0, -3.0), 100)
+    >>> from bouncing_ball.beyond.long_run.destination import final_motions
+    >>> flights, _, power, _ = means(0.5, 1.2, final_motions(0.5, 1.2, 1.0, -3.0), 100)
     >>> float(flights.round(6)), bool(np.isclose(power, np.pi / 3))
     (1.0, True)
     """

@@ -85,11 +85,28 @@ class Motions(Batch):
     @classmethod
     def unknown(cls, balls: int) -> Self:
         """Arrays for a number of balls, whose entries are not known yet."""
-        text = (np.full(balls, "", dtype=np.array(list(names)).dtype) for names in (Kind, Reason))
-        kind, reason = text
-        periods, impacts, followed = np.zeros((3, balls), dtype=int)
-        exponent, error, phase, velocity, lost = np.full((5, balls), np.nan)
-        return cls(kind, periods, impacts, exponent, error, reason, followed, phase, velocity, lost)
+
+        def empty_texts(names: type[StrEnum]) -> np.ndarray:
+            return np.full(balls, "", dtype=np.array(list(names)).dtype)
+
+        def zeros() -> np.ndarray:
+            return np.zeros(balls, dtype=int)
+
+        def unknowns() -> np.ndarray:
+            return np.full(balls, np.nan)
+
+        return cls(
+            kind=empty_texts(Kind),
+            periods=zeros(),
+            impacts=zeros(),
+            exponent=unknowns(),
+            exponent_error=unknowns(),
+            reason=empty_texts(Reason),
+            followed=zeros(),
+            end_phase=unknowns(),
+            end_velocity=unknowns(),
+            digits_lost=unknowns(),
+        )
 
     def fill(self, index: np.ndarray, **values: ArrayLike) -> None:
         """Store results of the balls with these indices."""

@@ -24,7 +24,6 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.datasets.files import rows_beside
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.claims.parameters import NotAsked, PaperData
 from bouncing_ball.paper.claims.verdict import Finding, Verdict, against_print, at_most
@@ -188,12 +187,6 @@ def formula(name: str, item: str, text: str, row: str = "", **given: Any) -> Cla
         return of_formula(data, row or item)
 
     return Claim(name, "restored formula", item, text, decide, **given)
-
-
-def formulas(where: str) -> list[Claim]:
-    """The printed formulas of a part of the paper, from the table ``claim.csv``."""
-    rows = [row for row in rows_beside(__file__) if row.pop("where") == where]
-    return [formula(**row) for row in rows]
 
 
 def of_formula(data: Data, row: str) -> Finding:

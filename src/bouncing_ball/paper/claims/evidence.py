@@ -165,8 +165,7 @@ def printed_slight_move(data: Data) -> xr.DataArray:
 
 def period_doubling_lowest(data: Data) -> xr.DataArray:
     """The ϖ at which the period doubling is lowest, for the families n of Table 1."""
-    turns = data["ext_release"].period_doubling_turn.sel(release="displacement", drop=True)
-    return turns.reindex(n=data["table1"].n)
+    return data["lowest_doubling"].period_doubling_turn.reindex(n=data["table1"].n)
 
 
 def permanent_contact_error(data: Data) -> float:

@@ -73,7 +73,7 @@ PARAMETERS: dict[str, dict[str, Any]] = {
         ],
         "frequency_ratio": {"min": 1.0, "max": 10000.0, "samples": 101},
     },
-    "ext_release": {
+    "lowest_doubling": {
         "n": [1, 2, 3],
         "restitution": 0.85,
         "frequency_ratio": {"min": 2.0, "max": 1000.0, "samples": 61},
@@ -81,7 +81,7 @@ PARAMETERS: dict[str, dict[str, Any]] = {
     "formulas": {},
     "forensics": {},
     "witness": {},
-    "ext_locking": {"frequency_ratio": [100.0, 1000.0, 10000.0]},
+    "three_balls": {"restitution": 0.5, "amplitude": [1.2, 1.6, 1.75]},
 }
 """The paper's parameters of every dataset that decides claims, and the ranges that the conditions
 also need. The release is always the displacement release."""

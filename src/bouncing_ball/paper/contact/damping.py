@@ -128,7 +128,8 @@ def _half_angle(decrement: np.ndarray) -> np.ndarray:
     start = np.pi / 2 * np.sqrt(1 - decrement / 2)
     beta = np.maximum(start, np.finfo(float).tiny)
     for _ in range(_NEWTON_STEPS):
-        sine, cosine = sine_and_versine(beta)[0], _cosine(beta)
+        sine = sine_and_versine(beta)[0]
+        cosine = _cosine(beta)
         value = 2 * beta * cosine / sine - decrement
         slope = 2 * (cosine * sine - beta) / (sine * sine)
         beta = beta - value / slope

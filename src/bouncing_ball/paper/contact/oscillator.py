@@ -65,16 +65,18 @@ class Responses(NamedTuple):
 def _damped(s, a, q, w):
     """e^{-as} times C and S, for any sign of w = q - a²."""
     root = np.sqrt(np.abs(w))
-    decay, safe = np.exp(-a * s), np.where(root > 0, root, 1.0)
-    c, sn = decay * np.cos(root * s), decay * np.where(root > 0, np.sin(root * s) / safe, s)
-    over = w < 0
-    if np.any(over):
+    divisor = np.where(root > 0, root, 1.0)
+    decay = np.exp(-a * s)
+    c = decay * np.cos(root * s)
+    sn = decay * np.where(root > 0, np.sin(root * s) / divisor, s)
+    overdamped = w < 0
+    if np.any(overdamped):
         # The slow exponent √-w - a is written as -q/(√-w + a), which has no cancellation and,
         # for a > 0, no overflow.
-        slow = np.exp(np.where(over, -q / np.where(over, root + a, 1.0) * s, 0.0))
-        lost = np.expm1(np.where(over, -2 * root * s, 0.0))
-        c = np.where(over, slow * (1 + lost / 2), c)
-        sn = np.where(over, -slow * lost / (2 * safe), sn)
+        slow = np.exp(np.where(overdamped, -q / np.where(overdamped, root + a, 1.0) * s, 0.0))
+        lost = np.expm1(np.where(overdamped, -2 * root * s, 0.0))
+        c = np.where(overdamped, slow * (1 + lost / 2), c)
+        sn = np.where(overdamped, -slow * lost / (2 * divisor), sn)
     return c, sn
 
 
@@ -82,24 +84,29 @@ def _damped(s, a, q, w):
 def _gauss(radians: int) -> tuple[np.ndarray, np.ndarray]:
     """Nodes and weights on [0, 1] for an integral over this many radians of the table."""
     panels = 1 + radians // _PANEL
-    x, weight = np.polynomial.legendre.leggauss(_NODES - (-radians // panels))
+    # Rounded up to a whole number of radians in a panel.
+    radians_each = -(-radians // panels)
+    x, weight = np.polynomial.legendre.leggauss(_NODES + radians_each)
     start = np.arange(panels)[:, np.newaxis]
-    return ((start + (1 + x) / 2) / panels).ravel(), np.tile(weight / (2 * panels), panels)
+    nodes = ((start + (1 + x) / 2) / panels).ravel()
+    return nodes, np.tile(weight / (2 * panels), panels)
 
 
 def _integrated(nu, s, a, q, w):
-    """h from its integral."""
-    x, weight = _gauss(int(np.max(np.abs(s))))
+    """h from its integral, for one-dimensional arrays of contacts."""
+    nodes, weights = _gauss(int(np.max(np.abs(s))))
     s, a, q, w = (column[:, np.newaxis] for column in (s, a, q, w))
-    return (s * weight * _damped(s * (1 - x), a, q, w)[1] * np.exp(nu * s * x)).sum(axis=1)
+    impulse = _damped(s * (1 - nodes), a, q, w)[1]
+    return (s * weights * impulse * np.exp(nu * s * nodes)).sum(axis=1)
 
 
 def _exponential(nu, s, a, q, w, impulse: Response) -> Response:
     """The response to e^{νs} from rest; real for ν = 0."""
-    g, p = impulse.value, nu * nu + 2 * a * nu + q
+    g = impulse.value
+    p = nu * nu + 2 * a * nu + q
     delicate = np.abs(p) * s * s < _CANCELLATION
-    p, wave = np.where(delicate, 1.0, p), np.exp(nu * s)
-    h = np.asarray((wave - impulse.rate - (nu + 2 * a) * g) / p)
+    divisor = np.where(delicate, 1.0, p)
+    h = np.asarray((np.exp(nu * s) - impulse.rate - (nu + 2 * a) * g) / divisor)
     which = np.flatnonzero(delicate)
     for start in range(0, which.size, _BLOCK):
         at = which[start : start + _BLOCK]
@@ -130,7 +137,13 @@ def responses(time: ArrayLike, frequency_ratio: ArrayLike, damping_ratio: ArrayL
     args = (np.asarray(x, dtype=float) for x in (time, frequency_ratio, damping_ratio))
     s, omega, zeta = np.broadcast_arrays(*args)
     # The product form of w keeps its digits near ζ = 1, where q - a² would lose them.
-    a, q, w = zeta * omega, omega * omega, omega * omega * (1 - zeta) * (1 + zeta)
+    a = zeta * omega
+    q = omega * omega
+    w = omega * omega * (1 - zeta) * (1 + zeta)
     c, g = _damped(s, a, q, w)
     impulse = Response(g, c - a * g)
-    return Responses(impulse, *(_exponential(nu, s, a, q, w, impulse) for nu in (0, 1j)))
+    return Responses(
+        impulse=impulse,
+        gravity=_exponential(0, s, a, q, w, impulse),
+        table=_exponential(1j, s, a, q, w, impulse),
+    )

@@ -12,7 +12,7 @@ from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.orbit_parameters import OrbitAmplitude, require_orbit
-from bouncing_ball.paper.orbits.branch import OBSERVED, columns
+from bouncing_ball.paper.orbits.observables import OBSERVED, columns
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 

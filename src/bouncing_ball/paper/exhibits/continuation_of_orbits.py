@@ -11,25 +11,19 @@ from bouncing_ball.datasets.parameters import (
     LossyRestitution,
     Many,
     Parameters,
-    listed,
+    number,
 )
 from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.continuation import Branch, ContinuationError
-from bouncing_ball.paper.contact.damping import Release
+from bouncing_ball.paper.contact.damping import Release, damping_ratio
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.orbit_parameters import BranchEnd, Points
 from bouncing_ball.paper.exhibits.printed_table1 import printed_table
 from bouncing_ball.paper.orbits import restitution_branch as restitution_orbits
-from bouncing_ball.paper.orbits.branch import (
-    PLACE,
-    branch_columns,
-    columns,
-    joined,
-    no_branch,
-    whole_branch,
-)
+from bouncing_ball.paper.orbits.branch import whole_branch
 from bouncing_ball.paper.orbits.equations import OrbitSystem
+from bouncing_ball.paper.orbits.observables import PLACE, branch_columns, columns, joined, no_branch
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.orbits.stability import Bifurcation
@@ -47,7 +41,12 @@ VARIABLES = {
 class Continuation(Parameters):
     """Settings of the continuation for the whole run."""
 
-    largest_step: Annotated[float, listed("largest_step")]
+    largest_step: Annotated[
+        float,
+        number(
+            "largest step in arclength; a longer one may pass two bifurcations", ge=0.02, le=0.5
+        ),
+    ]
 
 
 class Branches(Parameters):
@@ -104,7 +103,8 @@ def _branch(
 def orbit_branches(parameters: Domains, release: Release, continuation: Continuation) -> xr.Dataset:
     """Branches along Λ for one n and several ϖ (Figs. 8 and 9).
 
-    The dataset has ``amplitude``, the observables of the orbits with phases in rad, ``stable``,
+    The dataset has the number ``damping_ratio`` ζ;
+    ``amplitude``, the observables of the orbits with phases in rad, ``stable``,
     ``admissible`` and ``residual`` (ϖ, point), at equal steps of arclength from the unstable to the
     stable side; ``multiplier_real`` and ``multiplier_imag`` (ϖ, point, multiplier);
     ``special_kind`` and further ``special_…`` variables of the saddle-nodes, period doublings and
@@ -113,7 +113,9 @@ def orbit_branches(parameters: Domains, release: Release, continuation: Continua
     """
     ratios = parameters.frequency_ratio
     rows = [_branch(ratio, parameters, release, continuation) for ratio in ratios]
-    return describe(joined(rows, "frequency_ratio"), variables=VARIABLES)
+    zeta = float(damping_ratio(parameters.restitution))
+    branches = joined(rows, "frequency_ratio").assign(damping_ratio=zeta)
+    return describe(branches, variables=VARIABLES)
 
 
 SADDLE_NODE, PERIOD_DOUBLING = Bifurcation

@@ -18,7 +18,7 @@ from bouncing_ball.datasets.parameters import (
     Restitution,
     Span,
     Tolerance,
-    listed,
+    number,
 )
 from bouncing_ball.paper.orbits.restitution_branch import saddle_node
 
@@ -85,7 +85,12 @@ class OrbitErrors(OrbitsAlongRatio):
 BranchEnd = Annotated[AmplitudeMax, _has_orbits(max)]
 """Λ up to which branches are followed, at or above the saddle-node of the highest family."""
 
-Points = Annotated[int, listed("Points")]
+Points = Annotated[
+    int,
+    number(
+        "number of points along each branch; fewer than 11 do not show its shape", ge=11, le=20001
+    ),
+]
 
 
 class FamilyBranches(Parameters):

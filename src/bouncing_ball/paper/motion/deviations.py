@@ -18,7 +18,7 @@ import numpy as np
 
 
 class Deviation(NamedTuple):
-    """The deviations dφ, dδ and dδ′, arrays with one entry per ball."""
+    """The deviations dφ, dδ and dδ′ of a ball; arrays with one entry per ball."""
 
     phase: np.ndarray
     displacement: np.ndarray
@@ -28,8 +28,11 @@ class Deviation(NamedTuple):
         """The deviation at the event δ + κ δ′ = 0, at which the motion has δ′ and δ″."""
         missing = self.displacement + lag * self.velocity
         later = -missing / (velocity + lag * acceleration)
-        place, pace = self.displacement + velocity * later, self.velocity + acceleration * later
-        return type(self)(self.phase + later, place, pace)
+        return type(self)(
+            phase=self.phase + later,
+            displacement=self.displacement + velocity * later,
+            velocity=self.velocity + acceleration * later,
+        )
 
     def flown(self, start, end, time, velocity, lag) -> Self:
         """The deviation at the event that ends a flight.
@@ -37,10 +40,16 @@ class Deviation(NamedTuple):
         ``start`` and ``end`` are the table's (X, Y) at both ends of the flight, ``time`` is its
         duration, ``velocity`` is δ′ at the event, and ``lag`` is κ.
         """
-        (x, y), (x1, y1) = start, end
-        fall = self.displacement + self.velocity * time + self.phase * (x - x1 - y * time)
-        pace = self.velocity + self.phase * (y1 - y)
-        return type(self)(self.phase, fall, pace).to_event(velocity, y1 - 1, lag)
+        x, y = start
+        x1, y1 = end
+        at_end = type(self)(
+            phase=self.phase,
+            displacement=self.displacement
+            + self.velocity * time
+            + self.phase * (x - x1 - y * time),
+            velocity=self.velocity + self.phase * (y1 - y),
+        )
+        return at_end.to_event(velocity, y1 - 1, lag)
 
 
 class Jacobian(NamedTuple):
@@ -59,8 +68,7 @@ class Jacobian(NamedTuple):
     @classmethod
     def identity(cls, balls: int) -> Self:
         """The identity matrix for each of this number of balls."""
-        one, zero = np.ones(balls), np.zeros(balls)
-        return cls(one, zero, zero.copy(), one.copy())
+        return cls(np.ones(balls), np.zeros(balls), np.zeros(balls), np.ones(balls))
 
     def apply(self, phase: np.ndarray, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The image of a deviation (dφ, dδ′)."""
@@ -80,15 +88,18 @@ class Jacobian(NamedTuple):
         >>> float(Jacobian(*np.array([0.0, -0.25, 1.0, 0.0])).spectral_radius())
         0.5
         """
-        half, det = (self.a + self.d) / 2, self.a * self.d - self.b * self.c
-        root = half * half - det
-        real = np.abs(half) + np.sqrt(np.maximum(root, 0.0))
-        return np.where(root < 0, np.sqrt(np.maximum(det, 0.0)), real)
+        half_trace = (self.a + self.d) / 2
+        det = self.a * self.d - self.b * self.c
+        square = half_trace * half_trace - det
+        if_real = np.abs(half_trace) + np.sqrt(np.maximum(square, 0.0))
+        if_complex = np.sqrt(np.maximum(det, 0.0))
+        return np.where(square < 0, if_complex, if_real)
 
     def to_fixed_point(
         self, phase: np.ndarray, velocity: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
         """Newton's step to a fixed point: (I - M)⁻¹ applied to (φ₁ - φ, δ′₁ - δ′)."""
-        a, d = 1 - self.a, 1 - self.d
+        a = 1 - self.a
+        d = 1 - self.d
         det = a * d - self.b * self.c
         return (d * phase + self.b * velocity) / det, (self.c * phase + a * velocity) / det

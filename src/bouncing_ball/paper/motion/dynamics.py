@@ -13,10 +13,10 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError, require
 from bouncing_ball.numerics.arrays import BLOCK, Batch, blocks, pick
-from bouncing_ball.numerics.elementary import reduce_angle, table
+from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.contact.law import ContactLaw
 from bouncing_ball.paper.motion.deviations import Deviation, Jacobian
-from bouncing_ball.paper.motion.flight import Flight, land
+from bouncing_ball.paper.motion.flight import Flight, land, table
 from bouncing_ball.paper.motion.sequence import RECORDED, Cycle, ImpactSequence, Status
 
 # Rounding may give a ball at rest on the table a small upward velocity.

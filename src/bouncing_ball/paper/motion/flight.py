@@ -17,6 +17,18 @@ from bouncing_ball.numerics.elementary import sine_and_versine
 from bouncing_ball.numerics.first_zero import Motion, State, Zero, first_zero
 
 
+def table(phase: np.ndarray, amplitude: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
+    """Λ cos φ and Λ sin φ: the table's velocity and height, or minus its jerk and acceleration.
+
+    Examples
+    --------
+    >>> [float(x) for x in table(np.zeros(()), 2.0)]
+    [2.0, 0.0]
+    """
+    sine, versine = sine_and_versine(phase)
+    return amplitude * (1 - versine), amplitude * sine
+
+
 class Flight(Motion):
     """The motion y = -δ of balls in flight; its first upward zero is the landing.
 
@@ -31,32 +43,46 @@ class Flight(Motion):
     """
 
     def __init__(self, displacement, velocity, x, y, amplitude):
-        self.displacement, self.velocity = displacement, velocity
-        self.x, self.y, self.amplitude = x, y, amplitude
-        thrown = velocity + x
-        over = thrown * thrown + 2 * (displacement + (y - amplitude))
-        root = np.sqrt(np.maximum(over, 0.0))
+        self.displacement = displacement
+        self.velocity = velocity
+        self.x = x
+        self.y = y
+        self.amplitude = amplitude
+        absolute = velocity + x
+        square = absolute * absolute + 2 * (displacement + (y - amplitude))
+        root = np.sqrt(np.maximum(square, 0.0))
         # z > Λ between these two times; they are equal if z never exceeds Λ.
-        self.above, self.below = thrown - root, thrown + root
+        self.above = absolute - root
+        self.below = absolute + root
 
     def gap(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """δ, δ′, δ″ and δ‴ after a time of flight."""
         sine, versine = sine_and_versine(time)
-        x, y = self.x, self.y
-        late = time - sine
-        displacement = self.displacement + time * (self.velocity - 0.5 * time)
-        displacement = displacement + (y * versine + x * late)
-        rise = y * sine + x * versine
-        lift = y + (x * sine - y * versine)
-        push = x - rise
-        return displacement, (self.velocity - time) + rise, lift - 1, push
+        x = self.x
+        y = self.y
+        thrown = self.displacement + time * (self.velocity - 0.5 * time)
+        displacement = thrown + (y * versine + x * (time - sine))
+        # The table's velocity has fallen by this much from Λ cos φ_b.
+        slowing = y * sine + x * versine
+        rate = (self.velocity - time) + slowing
+        second = y + (x * sine - y * versine) - 1
+        return displacement, rate, second, x - slowing
 
     def __call__(self, time: np.ndarray) -> State:
         displacement, rate, second, third = self.gap(time)
         lam = self.amplitude
-        return State(-displacement, -rate, -second, -third, 1 + lam, lam, lam)
+        return State(
+            value=-displacement,
+            rate=-rate,
+            second=-second,
+            third=-third,
+            second_bound=1 + lam,
+            third_bound=lam,
+            fourth_bound=lam,
+        )
 
     def skip(self, time: np.ndarray, steps: int = 0) -> np.ndarray:
+        """The end of the time in which z > Λ, or the time itself if it is not within this time."""
         return np.where((time >= self.above) & (time < self.below), self.below, time)
 
     def room(self) -> np.ndarray:
@@ -75,11 +101,13 @@ class Flight(Motion):
         time = (self.velocity + np.sqrt(np.maximum(self.room(), 0.0))) / (1 + self.amplitude)
         if np.all(self.velocity):
             return time
-        x, top, excess = self.x, np.maximum(self.amplitude, 1.0), self.y - 1
-        rests = (self.velocity == 0) & (self.displacement == 0) & (excess >= 0)
-        lift = np.maximum(excess, 0.0)
-        steep = np.minimum(lift / np.maximum(np.abs(x), 1e-300), np.sqrt(3 * lift / top))
-        return np.where(rests, np.maximum(steep, 4 * x / top), time)
+        x = self.x
+        top = np.maximum(self.amplitude, 1.0)
+        rests = (self.velocity == 0) & (self.displacement == 0) & (self.y >= 1)
+        lift = np.maximum(self.y - 1, 0.0)
+        by_lift = np.minimum(lift / np.maximum(np.abs(x), 1e-300), np.sqrt(3 * lift / top))
+        by_jerk = 4 * x / top
+        return np.where(rests, np.maximum(by_lift, by_jerk), time)
 
 
 class Rise(Motion):
@@ -91,8 +119,16 @@ class Rise(Motion):
     def __call__(self, time: np.ndarray) -> State:
         displacement, rate, second, third = self.flight.gap(time)
         lam = self.flight.amplitude
-        ended = (rate <= 0) & (second <= 0)
-        return State(displacement, rate, second, third, 1 + lam, lam, lam, ended)
+        return State(
+            value=displacement,
+            rate=rate,
+            second=second,
+            third=third,
+            second_bound=1 + lam,
+            third_bound=lam,
+            fourth_bound=lam,
+            ended=(rate <= 0) & (second <= 0),
+        )
 
 
 class Fall(Motion):
@@ -105,7 +141,15 @@ class Fall(Motion):
         _, rate, second, third = self.flight.gap(time)
         lam = self.flight.amplitude
         # The fourth derivative of δ is minus that of the table: δ⁗ = -Λ sin τ = -(1 + δ″).
-        return State(-rate, -second, -third, second + 1, lam, lam, lam)
+        return State(
+            value=-rate,
+            rate=-second,
+            second=-third,
+            third=second + 1,
+            second_bound=lam,
+            third_bound=lam,
+            fourth_bound=lam,
+        )
 
 
 def emerge(flight: Flight) -> tuple[np.ndarray, np.ndarray]:
@@ -113,13 +157,15 @@ def emerge(flight: Flight) -> tuple[np.ndarray, np.ndarray]:
 
     The results are a time before which they have certainly not landed, and whether they rise.
     """
-    time, rising = flight.sure(), flight.velocity > 0
+    time = flight.sure()
+    rising = flight.velocity > 0
     unsure = np.flatnonzero(rising & (flight.room() <= 0))
     if unsure.size:
         part = flight.take(unsure)
+        start = np.zeros(unsure.size)
         # The ball is highest where it first stops rising, and no step can pass over this time.
-        top = part.gap(first_zero(Fall(part), np.zeros(unsure.size)).time)[0]
-        rise = first_zero(Rise(part), np.zeros(unsure.size))
+        top, *_ = part.gap(first_zero(Fall(part), start).time)
+        rise = first_zero(Rise(part), start)
         rising[unsure] = (top > 0) & ~(rise.ended | rise.undecided) & (rise.rate > 0)
         # Above the table's level the flight is bounded by that against the gravity 1 + Λ.
         time[unsure] = rise.time + 2 * rise.rate / (1 + part.amplitude)

@@ -28,13 +28,12 @@ from bouncing_ball.numerics.elementary import (
     exponential,
     sine_and_cosine,
     sine_and_versine,
-    table,
 )
 from bouncing_ball.numerics.first_zero import Motion, State, first_zero
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.motion.deviations import Deviation, Jacobian
 from bouncing_ball.paper.motion.dynamics import Departure, Impact
-from bouncing_ball.paper.motion.flight import Flight
+from bouncing_ball.paper.motion.flight import Flight, table
 from bouncing_ball.paper.motion.resumption import ResumingDynamics
 from bouncing_ball.paper.motion.sequence import Status
 

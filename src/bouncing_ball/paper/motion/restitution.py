@@ -1,14 +1,25 @@
-"""Impacts with a restitution coefficient: flight, impact, chattering, sticking.
+r"""Impacts with a restitution coefficient: impact, chattering, and the map from impact to impact.
 
-An impact turns δ′ into ``-r δ′`` (Eq. 5). While the relative gravity g = 1 - Λ sin τ is
-positive, infinitely many ever smaller bounces take a finite time T. Let v be δ′ after an impact,
-and ``g′ = -Λ cos τ`` the rate of change of g. Then ::
+Let v₀ be the ball's velocity just after an impact at the phase τ₀. The ball flies for a time s
+until it lands, and the impact turns its relative velocity δ′ into ``-r δ′`` (Eq. 2). With the
+flight of Eqs. 3 and 4, the map from (τ₀, v₀) to the phase τ₁ = τ₀ + s and the velocity v₁ just
+after the next impact is (Eq. 5) ::
+
+    Λ (sin τ₁ - sin τ₀) = s v₀ - s²/2
+    v₁ = -r (v₀ - s) + (1 + r) Λ cos τ₁
+
+Here the map is composed of the impact (:meth:`RestitutionDynamics.depart`) and of the flight up to
+the landing (:meth:`.Dynamics.fly`), and a state is (τ, δ′) just before an impact.
+
+While the relative gravity g = 1 - Λ sin τ is positive, infinitely many ever smaller bounces take a
+finite time T: the ball *chatters*. Let v be δ′ after an impact, and ``g′ = -Λ cos τ`` the rate of
+change of g. Then ::
 
     T = T₀ (1 - g′ T₀/(3g) + ...),    T₀ = 2v/(g (1 - r))
 
-This sum replaces the bounces once Λ T₀ and T₀ are below 10⁻⁵ g, where the
-next term is below 10⁻¹⁵. The ball then sticks to the table until it lifts off
-when Λ sin τ rises through 1; for Λ ≤ 1 it never lifts off.
+This sum replaces the bounces once Λ T₀ and T₀ are below 10⁻⁵ g, where the next term is below
+10⁻¹⁵. The ball then rests on the table until it lifts off
+(:mod:`bouncing_ball.paper.motion.sticking`).
 """
 
 from dataclasses import dataclass
@@ -18,10 +29,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import require
-from bouncing_ball.numerics.elementary import table
 from bouncing_ball.paper.motion.deviations import Deviation, Jacobian
 from bouncing_ball.paper.motion.dynamics import Departure, Dynamics, Impact
-from bouncing_ball.paper.motion.flight import Flight
+from bouncing_ball.paper.motion.flight import Flight, table
 from bouncing_ball.paper.motion.sticking import lifted, pressed, stay
 
 # Bound of Λ T₀/g and T₀/g below which chattering is summed up.
@@ -30,9 +40,60 @@ _CHATTER = 1e-5
 _INSTANT = np.finfo(float).eps
 
 
+def chattering(
+    velocity: np.ndarray,
+    restitution: np.ndarray,
+    x: np.ndarray,
+    y: np.ndarray,
+    amplitude: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Which balls come to rest on the table after an impact, and the time T of their chattering.
+
+    ``velocity`` is δ′ just after the impact, and ``x``, ``y`` are Λ cos τ and Λ sin τ. T is 0 for
+    balls that do not come to rest, because their bounces are not summed up.
+
+    Examples
+    --------
+    On a table at rest T is the geometric series 2v (1 + r + r² + ...):
+
+    >>> speed, zero = np.array([1e-6, 1e-6, 1.0]), np.zeros(3)
+    >>> sticks, time = chattering(speed, np.array([0.5, 0.9, 0.5]), zero, zero, zero)
+    >>> sticks.tolist(), time.round(12).tolist()
+    ([True, False, False], [4e-06, 0.0, 0.0])
+    """
+    gravity = 1 - y
+    down = pressed(x, y)
+    # T₀ has no meaning where the relative gravity is not positive, or for r = 1.
+    loss = gravity * (1 - restitution)
+    usable = down & (loss > 0)
+    first = np.where(usable, 2 * velocity, 0.0) / np.where(usable, loss, 1.0)
+    limit = np.maximum(_CHATTER * gravity / np.maximum(amplitude, 1.0), _INSTANT)
+    short = usable & (first <= limit)
+    sticks = short | (down & (velocity == 0))
+    if not sticks.any():
+        return sticks, np.zeros_like(x)
+    correction = np.where(short, x * first, 0.0) / np.where(short, 3 * gravity, 1.0)
+    return sticks, np.where(sticks, first * (1 + correction), 0.0)
+
+
 @dataclass(frozen=True, repr=False)
 class RestitutionDynamics(Dynamics):
-    """Impacts and flights of the restitution model; ``law`` holds numbers r."""
+    """Impacts and flights of the restitution model; ``law`` holds numbers r.
+
+    Examples
+    --------
+    The map satisfies both lines of Eq. 5. Here the first impact, at τ₀ = 0.3, turns δ′ = -2 into 1:
+
+    >>> r, amplitude, start = 0.5, 1.2, 0.3
+    >>> v = 1 + amplitude * np.cos(start)
+    >>> after = RestitutionDynamics.of(r, amplitude).next_impact(start, -2.0)
+    >>> s, end = after.time, start + after.time
+    >>> landing = amplitude * (np.sin(end) - np.sin(start)) - (s * v - s**2 / 2)
+    >>> bounced = -r * after.relative_velocity + amplitude * np.cos(end)
+    >>> expected = -r * (v - s) + (1 + r) * amplitude * np.cos(end)
+    >>> bool(abs(landing) < 1e-14), bool(abs(bounced - expected) < 1e-14)
+    (True, True)
+    """
 
     forgets: ClassVar[bool] = True
 
@@ -53,30 +114,27 @@ class RestitutionDynamics(Dynamics):
         """r and d(r v)/dv at impact speeds v > 0; for a constant r both are r."""
         return self.law, self.law
 
+    def _rebound_of(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
+        # A ball that rests on the table has no impact speed; its r has no effect.
+        return self.rebound(np.maximum(-impact.velocity, np.finfo(float).tiny))
+
     def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
-        """The flight after each impact, or the rest on the table after chattering."""
-        amplitude = self.amplitude
-        r = self._rebound_of(impact)[0]
+        """The flight after each impact (Eq. 2), or the rest on the table after chattering."""
+        r, _ = self._rebound_of(impact)
         velocity = -r * impact.velocity
-        x, y = table(impact.phase, amplitude)
-        gravity, down = 1 - y, pressed(x, y)
-        # T₀ has no meaning where the relative gravity is not positive, or for r = 1.
-        loss = gravity * (1 - r)
-        usable = down & (loss > 0)
-        total = np.where(usable, 2 * velocity, 0.0) / np.where(usable, loss, 1.0)
-        limit = np.maximum(_CHATTER * gravity / np.maximum(amplitude, 1.0), _INSTANT)
-        short = usable & (total <= limit)
-        sticks = short | (down & (velocity == 0))
+        x, y = table(impact.phase, self.amplitude)
         none = np.zeros_like(x)
-        flight = Flight(none, velocity, x, y, amplitude)
-        if not sticks.any():
-            departure = Departure(impact.phase, none, flight, none)
-            return lifted(departure, amplitude) if differentiate else departure
-        correction = np.where(short, x * total, 0.0) / np.where(short, 3 * gravity, 1.0)
-        settling = np.where(sticks, total * (1 + correction), 0.0)
-        settled = Departure(impact.phase + settling, settling, flight, none, settling)
-        departure = stay(settled, sticks, amplitude)
-        return lifted(departure, amplitude) if differentiate else departure
+        flight = Flight(none, velocity, x, y, self.amplitude)
+        sticks, settling = chattering(velocity, r, x, y, self.amplitude)
+        departure = Departure(
+            phase=impact.phase + settling,
+            duration=settling,
+            flight=flight,
+            status=none,
+            settling=settling,
+        )
+        departure = stay(departure, sticks, self.amplitude)
+        return lifted(departure, self.amplitude) if differentiate else departure
 
     def jacobian(
         self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
@@ -85,10 +143,9 @@ class RestitutionDynamics(Dynamics):
 
         It is zero if the ball sticks, because its later motion does not depend on the impact.
         """
-        slope = self._rebound_of(impact)[1]
-        none, free = np.zeros_like(passed), np.where(departure.sticks, 0.0, 1.0)
-        released = Deviation(free, none, none), Deviation(none, none, -slope * free)
-        return self.landed(released, departure, after, passed)
-
-    def _rebound_of(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
-        return self.rebound(np.maximum(-impact.velocity, np.finfo(float).tiny))
+        _, slope = self._rebound_of(impact)
+        none = np.zeros_like(passed)
+        free = np.where(departure.sticks, 0.0, 1.0)
+        by_phase = Deviation(free, none, none)
+        by_velocity = Deviation(none, none, -slope * free)
+        return self.landed((by_phase, by_velocity), departure, after, passed)

@@ -1,17 +1,17 @@
-"""Rest on the table, and the lift-off that ends it.
+"""Rest on the table, and the lift-off that ends it (Eq. 9).
 
 A ball rests on the table while the load g = 1 - Λ sin τ is positive. It leaves when Λ sin τ rises
 through 1, because the table's downward acceleration then exceeds gravity. If g ≤ 0 already, it
-leaves at once. For Λ ≤ 1 it never leaves.
+leaves at once. For Λ ≤ Λ_CR = 1 it never leaves: this is permanent contact (Eq. 9).
 """
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.numerics.arrays import pick
-from bouncing_ball.numerics.elementary import arctangent, reduce_angle, table
+from bouncing_ball.numerics.elementary import arctangent, reduce_angle
 from bouncing_ball.paper.motion.dynamics import Departure
-from bouncing_ball.paper.motion.flight import Flight
+from bouncing_ball.paper.motion.flight import Flight, table
 from bouncing_ball.paper.motion.sequence import Status
 
 
@@ -24,11 +24,13 @@ def lift_off_phase(amplitude: ArrayLike) -> np.ndarray:
     True
     """
     lam = np.asarray(amplitude, dtype=float)
-    return np.where(lam > 1, _lift(np.maximum(lam, 1.0)), np.nan)
+    cosine = _lift_off_velocity(np.maximum(lam, 1.0))
+    return np.where(lam > 1, arctangent(1.0, cosine), np.nan)
 
 
-def _lift(top: np.ndarray) -> np.ndarray:
-    return arctangent(1.0, np.sqrt((top - 1) * (top + 1)))
+def _lift_off_velocity(amplitude: np.ndarray) -> np.ndarray:
+    """The table's velocity √(Λ² - 1) at lift-off, for Λ ≥ 1."""
+    return np.sqrt((amplitude - 1) * (amplitude + 1))
 
 
 def pressed(x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -50,21 +52,28 @@ def stay(departure: Departure, rests: np.ndarray, amplitude: np.ndarray) -> Depa
     if not rests.any():
         return departure
     x, y = table(departure.phase, amplitude)
-    held, forever = pressed(x, y), rests & (amplitude <= 1)
-    top = np.maximum(amplitude, 1.0)
-    lift = _lift(top)
+    held = pressed(x, y)
+    forever = rests & (amplitude <= 1)
+    # At lift-off Λ sin τ = 1 exactly. For Λ ≤ 1 the values have no meaning and are not used.
+    velocity = _lift_off_velocity(np.maximum(amplitude, 1.0))
+    lift = arctangent(1.0, velocity)
     wait = np.where(held, np.mod(reduce_angle(lift - departure.phase), 2 * np.pi), 0.0)
     # Rounding must not postpone a lift-off at the present phase by a full turn.
     wait = np.where(wait > 2 * np.pi - 1e-9, 0.0, wait)
-    # At lift-off Λ sin τ = 1 exactly.
-    x, y = np.where(held, np.sqrt((top - 1) * (top + 1)), x), np.where(held, 1.0, y)
-    still, own = np.where(forever, np.nan, 0.0), departure.flight
-    state = (own.displacement, still), (own.velocity, still), (own.x, x), (own.y, y)
-    displacement, velocity, x, y = (np.where(rests, rest, left) for left, rest in state)
+    rest = np.where(forever, np.inf, wait)
+    level = np.where(forever, np.nan, 0.0)
+    before = departure.flight
+    flight = Flight(
+        displacement=np.where(rests, level, before.displacement),
+        velocity=np.where(rests, level, before.velocity),
+        x=np.where(rests, np.where(held, velocity, x), before.x),
+        y=np.where(rests, np.where(held, 1.0, y), before.y),
+        amplitude=amplitude,
+    )
     return departure._replace(
         phase=np.where(rests & held, lift, departure.phase),
-        duration=departure.duration + np.where(rests, np.where(forever, np.inf, wait), 0.0),
-        flight=Flight(displacement, velocity, x, y, amplitude),
+        duration=departure.duration + np.where(rests, rest, 0.0),
+        flight=flight,
         status=np.where(forever, Status.PERMANENT_CONTACT, Status.BOUNCING),
     )
 

@@ -16,16 +16,17 @@ finite is infinite.
 The comparison of two datasets, variable by variable: structure first, then numbers.
 """
 
+import csv
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from bouncing_ball.datasets.files import rows_beside
 from bouncing_ball.errors import printable
 from bouncing_ball.pipeline.diff.outcome import Outcome, Row
 from bouncing_ball.pipeline.diff.texts import compare_texts
@@ -67,7 +68,8 @@ levels by which a change of 1e-15 in the start moves these pictures."""
 ARTIFACTS: dict[str, dict[str, Budget]] = {}
 """Budgets of single artifacts, by variable; ``*`` stands for all variables that are not named."""
 
-for _row in rows_beside(__file__):
+_TABLE = Path(__file__).with_suffix(".csv").read_text(encoding="utf-8")
+for _row in csv.DictReader(_TABLE.splitlines()):
     _budget = Budget(float(_row["size"]), _row["scale"], _row["over"], float(_row["share"] or 0))
     for _name in _row["artifact"].split():
         ARTIFACTS.setdefault(_name, {}).update(dict.fromkeys(_row["variable"].split(), _budget))

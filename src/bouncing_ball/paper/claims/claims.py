@@ -1,4 +1,4 @@
-"""The last line of a run: the number of claims with each verdict."""
+"""The verdict on every claim of the paper, and the number of claims with each verdict."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -10,15 +10,11 @@ import xarray as xr
 
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.paper.claims import (
-    apparent_restitution,
     both_models,
     evidence,
-    introduction,
-    orbits,
+    impact_models,
     parameters,
-    permanent_contact,
-    restitution_model,
-    spring_damper_model,
+    periodic_orbits,
 )
 from bouncing_ball.paper.claims.claim import Claim, checked, defined_in, name_of, paragraphs
 from bouncing_ball.paper.claims.parameters import PaperData
@@ -70,11 +66,8 @@ VARIABLES = {
     ),
     "explanation_holds": Variable("whether the checks of the explanation hold"),
 }
-_SECTIONS = (
-    *(introduction, restitution_model, spring_damper_model, apparent_restitution),
-    *(orbits, permanent_contact, both_models),
-)
-CLAIMS: tuple[Claim, ...] = tuple(claim for section in _SECTIONS for claim in defined_in(section))
+_CHAPTERS = (impact_models, periodic_orbits, both_models)
+CLAIMS: tuple[Claim, ...] = tuple(claim for chapter in _CHAPTERS for claim in defined_in(chapter))
 """Every claim of the paper that can be decided, in the order of the paper."""
 
 
@@ -87,10 +80,14 @@ def _row(
     """The entries of the dataset for one claim; ``holding`` names the explanations that hold."""
     asked = PaperData(data, parameters)
     finding, reason = claim.verdict(asked)
-    why = name_of(claim.explanation) if claim.explanation else ""
-    said = ("item", "statement", "remark", "condition", "answer")
+    explained_by = name_of(claim.explanation) if claim.explanation else ""
+    needs_none = finding.verdict not in (Verdict.CLOSE, Verdict.CONTRADICTED)
     return {
-        **{key: getattr(claim, key) for key in said},
+        "item": claim.item,
+        "statement": claim.statement,
+        "remark": claim.remark,
+        "condition": claim.condition,
+        "answer": claim.answer,
         "group": "restatement" if claim.restates else claim.kind,
         "restates": claim.restates.id if claim.restates else "",
         "printed_text": claim.printed,
@@ -98,8 +95,8 @@ def _row(
         **asdict(finding),
         "reason": reason,
         "printed_table": "Table 1" if claim.item == "Table 1" and claim.printed else "",
-        "explained_by": why,
-        "explained": finding.verdict not in (Verdict.CLOSE, Verdict.CONTRADICTED) or why in holding,
+        "explained_by": explained_by,
+        "explained": needs_none or explained_by in holding,
     }
 
 
@@ -132,20 +129,21 @@ def assess(
     )
 
 
-def ledger(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
+def claims(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
     """The verdict on every claim of the paper, and the numbers that the article prints with them.
 
     Parameters
     ----------
     data : mapping of str to xarray.Dataset
-        The datasets that decide the claims, by name: those of ``parameters.yaml``.
+        The datasets that decide the claims, by name: those of
+        :data:`~bouncing_ball.paper.claims.parameters.PARAMETERS`.
 
     Returns
     -------
     xarray.Dataset
-        The dataset of :func:`assess`, and results of :mod:`bouncing_ball.paper.claims.evidence` under
-        the names of the functions. The attributes are the paper's limits and the bound within which
-        a number is close.
+        The dataset of :func:`assess`, and results of :mod:`~bouncing_ball.paper.claims.evidence`
+        under the names of the functions. The attributes are the paper's limits and the bound within
+        which a number is close.
 
     Raises
     ------
@@ -176,25 +174,25 @@ _WORDS = {
 }
 
 
-def tally(claims: xr.Dataset) -> str:
+def tally(decided: xr.Dataset) -> str:
     """The numbers of claims and of verdicts in one line, without restatements.
 
     Parameters
     ----------
-    claims : Dataset
+    decided : Dataset
         ``verdict``, ``group`` and ``explained`` over ``claim``.
 
     Examples
     --------
-    >>> claims = xr.Dataset({"verdict": ("claim", ["close", "close", "reproduced"]),
-    ...                      "group": ("claim", ["number", "restatement", "number"]),
-    ...                      "explained": ("claim", [True, True, True])})
-    >>> tally(claims)
+    >>> decided = xr.Dataset({"verdict": ("claim", ["close", "close", "reproduced"]),
+    ...                       "group": ("claim", ["number", "restatement", "number"]),
+    ...                       "explained": ("claim", [True, True, True])})
+    >>> tally(decided)
     '2 claims of the paper: 1 reproduced, 1 reproduced closely'
     """
-    verdicts = claims.verdict.values[claims.group.values != "restatement"]
+    verdicts = decided.verdict.values[decided.group.values != "restatement"]
     found = [one for one in Verdict if str(one) in verdicts]
     counts = [f"{np.sum(verdicts == str(one))} {_WORDS.get(one, one)}" for one in found]
-    unexplained = int(np.sum(~claims.explained.values.astype(bool)))
+    unexplained = int(np.sum(~decided.explained.values.astype(bool)))
     counts += [f"{unexplained} without explanation"] if unexplained else []
     return f"{verdicts.size} claims of the paper: {', '.join(counts)}"

@@ -1,0 +1,84 @@
+"""The frequency ratio at which a period doubling is lowest.
+
+With falling ϖ the period doubling first moves to smaller Λ, turns, and then moves to larger Λ. The
+paper says that it rises (Figs. 8 and 9, Table 1).
+"""
+
+import numpy as np
+import xarray as xr
+from scipy.optimize.elementwise import find_minimum
+
+from bouncing_ball.datasets.parameters import Family, LossyRestitution, Many, Parameters, Span
+from bouncing_ball.datasets.variables import described
+from bouncing_ball.paper.contact.damping import Release, damping_ratio
+from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+
+
+class FamiliesAlongRatio(Parameters):
+    """Several families, whose period doublings are followed along ϖ."""
+
+    n: Many[Family]
+    restitution: LossyRestitution
+    frequency_ratio: Span
+
+
+def lowest_along_ratio(
+    ratios: np.ndarray, amplitude: np.ndarray, zeta: float, release: Release, n: np.ndarray
+) -> np.ndarray:
+    """The ϖ at which the period doubling of each family is lowest, shape (n,).
+
+    Parameters
+    ----------
+    ratios : ndarray, shape (ϖ,)
+        Increasing grid.
+    amplitude : ndarray, shape (n, ϖ)
+        Λ of the period doublings on the grid; NaN where there is none.
+    zeta : float
+        The damping ratio ζ.
+    release : Release
+    n : ndarray, shape (n,)
+        The families.
+
+    Returns
+    -------
+    ndarray
+        NaN for a family whose period doubling is lowest at an end of the grid.
+    """
+
+    def doubling(log_ratio: np.ndarray, n: np.ndarray) -> np.ndarray:
+        model = SpringDamperModel(SpringDamper(np.exp(log_ratio), zeta, release))
+        return model.period_doubling(n).amplitude
+
+    lowest = np.argmin(np.where(np.isnan(amplitude), np.inf, amplitude), axis=-1)
+    inside = np.clip(lowest, 1, ratios.size - 2)
+    # Where the middle one of three samples is not the lowest they are no bracket, which
+    # find_minimum reports as a failure.
+    bracket = tuple(np.log(ratios[inside + k]) for k in (-1, 0, 1))
+    found = find_minimum(doubling, bracket, args=(n,))
+    return np.where(found.success, np.exp(found.x), np.nan)
+
+
+def lowest_period_doublings(parameters: FamiliesAlongRatio, release: Release) -> xr.Dataset:
+    """The ϖ at which the period doubling of each family is lowest, and its Λ there.
+
+    The dataset has ``period_doubling_turn``, a ϖ, and ``period_doubling_amplitude``, shape (n,);
+    NaN for a family whose period doubling is lowest at an end of the scan.
+    """
+    families = np.array(parameters.n)
+    ratios = parameters.frequency_ratio.grid()
+    zeta = float(damping_ratio(parameters.restitution))
+    scanned = SpringDamperModel(SpringDamper(ratios, zeta, release))
+    amplitude = scanned.period_doubling(families[:, np.newaxis]).amplitude
+    turns = lowest_along_ratio(ratios, amplitude, zeta, release, families)
+    known = np.isfinite(turns)
+    lowest = np.full(turns.shape, np.nan)
+    at_turns = SpringDamperModel(SpringDamper(turns[known], zeta, release))
+    lowest[known] = at_turns.period_doubling(families[known]).amplitude
+    return described(
+        {
+            "period_doubling_turn": ("n", turns),
+            "period_doubling_amplitude": ("n", lowest),
+        },
+        coords={"n": families},
+    )

@@ -1,0 +1,47 @@
+"""The frequency ratio at which a period doubling is lowest."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.paper.contact.damping import Release, damping_ratio
+from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.exhibits.lowest_period_doubling import (
+    lowest_along_ratio,
+    lowest_period_doublings,
+)
+from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.pipeline.configuration import typed
+
+PARAMETERS = {
+    "n": [1, 2],
+    "restitution": 0.85,
+    "frequency_ratio": {"min": 2.0, "max": 1e3, "samples": 21},
+}
+
+
+def test_the_lowest_period_doubling_is_that_of_a_fine_scan():
+    # That of the third family is lowest at the end of this scan, where nothing is said.
+    fine = np.geomspace(2.0, 40.0, 2001)
+    n = np.array([1, 2, 3])
+    model = SpringDamperModel(SpringDamper(fine, 0.0517))
+    amplitude = model.period_doubling(n[:, np.newaxis]).amplitude
+    coarse = slice(None, None, 100)
+    found = lowest_along_ratio(fine[coarse], amplitude[:, coarse], 0.0517, Release.DISPLACEMENT, n)
+    assert found == pytest.approx(fine[np.nanargmin(amplitude, axis=1)], rel=2e-3)
+
+
+def test_a_period_doubling_rises_on_both_sides_of_the_ratio_at_which_it_is_lowest(described):
+    data = described(typed(lowest_period_doublings)(PARAMETERS, "displacement"))
+    zeta = float(damping_ratio(0.85))
+    lowest = data.period_doubling_amplitude.values
+    for factor in (0.9, 1.1):
+        contact = SpringDamper(factor * data.period_doubling_turn.values, zeta)
+        beside = SpringDamperModel(contact).period_doubling(data.n.values).amplitude
+        assert np.all(beside > lowest)
+
+
+def test_a_family_whose_period_doubling_only_rises_has_no_lowest_one():
+    stiff = PARAMETERS | {"frequency_ratio": {"min": 2.0, "max": 5.0, "samples": 5}}
+    data = typed(lowest_period_doublings)(stiff, "displacement")
+    assert np.isnan(data.period_doubling_turn).all()
+    assert np.isnan(data.period_doubling_amplitude).all()

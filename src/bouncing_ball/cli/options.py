@@ -66,10 +66,13 @@ def meanings(call: Callable) -> dict[str, str]:
     {'restitution': 'Restitution coefficient r in (0, 1].'}
     """
     found: dict[str, str] = {}
-    entries = re.findall(
-        r"^(\w+(?:, \w+)*)(?: : .*)?\n((?: {4}.+\n?)+)", inspect.getdoc(call) or "", re.MULTILINE
+    section = re.search(
+        r"^Parameters\n-+\n(.*?)(?:\n\n\w+\n-+\n|\Z)",
+        inspect.getdoc(call) or "",
+        re.DOTALL | re.MULTILINE,
     )
-    for names, text in entries:
+    entry = r"^(\w+(?:, \w+)*)(?: : .*)?\n((?: {4}.+\n?)+)"
+    for names, text in re.findall(entry, section[1] if section else "", re.MULTILINE):
         found |= dict.fromkeys(names.split(", "), " ".join(text.split()))
     return found
 

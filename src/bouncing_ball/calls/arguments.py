@@ -9,7 +9,15 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
 
 import numpy as np
 
-from bouncing_ball.errors import ParameterError, Range, count
+from bouncing_ball.errors import (
+    AMPLITUDE,
+    FAMILY,
+    FREQUENCY_RATIO,
+    RESTITUTION,
+    ParameterError,
+    Range,
+    count,
+)
 
 if TYPE_CHECKING:
     from xarray import DataArray
@@ -21,16 +29,11 @@ Axis = Union[float, Sequence[float], np.ndarray, "DataArray"]
 WholeAxis = Union[int, Sequence[int], np.ndarray, "DataArray"]
 """A whole number, or an array of whole numbers, which is an axis of the result."""
 
-# Beyond these limits the squares of ϖ and Λ leave no digits.
-FREQUENCY_RATIO = Range(1e-8, 1e8, "[]")
-AMPLITUDE = Range(0, 1e8, "[]")
-AMPLITUDE_OF_ORBIT = Range(0, 1e8, "(]")
-RESTITUTION = Range(0, 1, "(]")
+AMPLITUDE_OF_ORBIT = AMPLITUDE._replace(ends="(]")
 DAMPING_RATIO = Range(0, 1, "[)")
 TOLERANCE = Range(0, 1)
 POSITIVE = Range(0)
 FINITE = Range()
-FAMILY = count(1000)
 # An impact takes a third of a millisecond, so that the largest number takes half a minute.
 IMPACTS = count(100_000)
 # Impacts of one ball, where many balls are computed together.

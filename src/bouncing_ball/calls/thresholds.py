@@ -129,7 +129,13 @@ def _on_grid(grid: Grid, quantities: list[str], release: Release) -> xr.Dataset:
     for level in np.unique(tolerance):
         here = tolerance == level
         found = search(
-            zeta[here], release, n[here], amplitude[here], RATIOS, float(level), quantities
+            zeta=zeta[here],
+            rule=release,
+            n=n[here],
+            amplitude=amplitude[here],
+            ratios=RATIOS,
+            tolerance=float(level),
+            quantities=quantities,
         )
         threshold[here] = np.moveaxis(found.threshold, -1, 0)
         status[here] = np.moveaxis(found.status, -1, 0)

@@ -38,13 +38,14 @@ $(VENV)/.installed: requirements-build.lock requirements.lock
 	$(PIP) --no-deps --no-build-isolation --editable .
 	@touch $@
 
-# Style, types, and the linter of Snakemake. One finding is ignored: the linter demands a software
-# environment in each rule, but all rules use the one of the lock file.
+# Style, types, the floors of the house, and the linter of Snakemake. One of its findings is ignored:
+# it demands a software environment in each rule, but all rules use the one of the lock file.
 lint: $(SETUP)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/snakefmt --check .
 	$(BIN)/mypy
+	$(BIN)/lint-imports --no-logo --no-cache
 	! $(BIN)/snakemake --lint 2>&1 | grep -E 'Error|^    \* ' | grep -v 'conda environment or container'
 
 # One worker for each processor; all workers share one run of the pipeline. Each worker has one
@@ -53,12 +54,12 @@ PYTEST := OMP_NUM_THREADS=1 $(BIN)/python -m pytest --numprocesses logical --max
 
 # The results of one run of the pipeline are compared with the record and are not computed again.
 test: $(SETUP)
-	$(PYTEST) --deselect tests/studies/test_against_the_record.py
+	$(PYTEST) --deselect tests/beyond/exhibits/test_against_the_record.py
 
 # The tests of the computations, without the pipeline, the comparison with the record, pictures and
 # tests that take seconds.
 quick: $(SETUP)
-	$(PYTEST) $(addprefix --ignore=tests/,workflow figures) -m "not long and not slow and not cluster and not engines and not docs"
+	$(PYTEST) $(addprefix --ignore=tests/,workflow drawing) -m "not long and not slow and not cluster and not engines and not docs"
 
 # The atlas with Slurm, which the test starts: it mostly waits, and is skipped without Slurm.
 test-cluster: $(SETUP)
@@ -78,7 +79,7 @@ setup-engines: $(SETUP)
 # Run the snippets of `design --engine` in the installed engines, in about ten minutes.
 # The dataset is results/config/engines.nc; `make accept ONLY=engines` accepts it.
 test-engines: $(SETUP)
-	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -m engines tests/engines
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -m engines tests/beyond/engines
 
 # The site from the docs, the docstrings, the article and the explorer: results/site/index.html.
 docs: $(SETUP) $(VENV)/.docs

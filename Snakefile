@@ -1,6 +1,7 @@
 # Carbonelli, Perret-Liaudet, Rigaud and Feki (2011), from the equations to the figures.
-# `snakemake --cores 2` makes everything, `snakemake --cores 2 fig08` one figure,
-# `snakemake --cores 1 accept` copies the results over the record.
+# `snakemake --cores 2` makes everything, `snakemake --cores 2 replication` the paper alone,
+# `snakemake --cores 2 fig08` one figure, `snakemake --cores 1 accept` copies the results over the
+# record.
 
 from snakemake.utils import min_version
 
@@ -11,15 +12,18 @@ configfile: "config/config.yaml"
 
 
 include: "workflow/rules/common.smk"
-# The stages of the paper with their names, figures and tables: from parameters to datasets.
-include: "workflow/rules/study.smk"
+# From parameters to datasets: what all stages have in common, and the stages of the two wings,
+# with the study, the drawing and the table of each artifact.
+include: "workflow/rules/stage.smk"
+include: "workflow/rules/paper.smk"
+include: "workflow/rules/beyond.smk"
 include: "workflow/rules/check.smk"
-# From datasets to figures, tables and text.
-include: "workflow/rules/figures.smk"
-include: "workflow/rules/tables.smk"
+# From datasets to figures, tables and the explorer.
+include: "workflow/rules/shown.smk"
+# From datasets and tables to the article.
 include: "workflow/rules/article.smk"
-# A target for each artifact, with its name, that includes the dataset.
-include: "workflow/rules/artifacts.smk"
+# A target for each artifact, with its name.
+include: "workflow/rules/targets.smk"
 
 
 rule all:
@@ -28,12 +32,21 @@ rule all:
     message:
         "All figures, tables and the paper are up to date"
     input:
-        artifacts=[files(name) for name in sorted({*STUDIES, *DRAWINGS})],
+        artifacts=sorted(file for each in TARGETS for file in each.files),
         paper=rules.paper.output,
     log:
         "results/logs/all.log",
     shell:
         "tee {log} < results/tally.txt"
+
+
+rule replication:
+    """The paper alone: Figures 1 to 16, Table 1, the thresholds and the claims."""
+    localrule: True
+    message:
+        "The figures, tables and claims of the paper are up to date"
+    input:
+        [file for each in TARGETS if each.wing == "paper" for file in each.files],
 
 
 # The accepted record in git, and the comparison of the results with it.

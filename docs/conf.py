@@ -9,6 +9,7 @@ import os
 import re
 from pathlib import Path
 
+import xarray as xr
 from docutils.nodes import SkipNode
 from docutils.utils.math.latex2mathml import tex2mathml
 
@@ -36,12 +37,10 @@ autodoc_member_order = "bysource"
 autodoc_typehints = "none"
 myst_enable_extensions = ["dollarmath", "html_image"]
 myst_heading_anchors = 3
-html_theme = "alabaster"
-html_theme_options = {
-    "page_width": "1280px",
-    "body_max_width": "none",
-    "description": "A ball on a vibrating table",
-}
+html_theme = "furo"
+html_title = "A ball on a vibrating table"
+html_static_path = ["site.css"]
+html_css_files = ["site.css"]
 html_extra_path = [f"../{EXPLORER}"]
 html_show_sourcelink = False
 html_copy_source = False
@@ -59,7 +58,7 @@ PARTS = {
         "docs/contact-laws",
         "docs/atlas",
     ],
-    "Theory": ["docs/impact-as-an-instant", "docs/error-law", "docs/closed-form"],
+    "Theory": ["docs/impact-as-an-instant", "docs/error-law", "docs/closed-form", "docs/proofs"],
     "Replication": [
         "paper",
         "supplement",
@@ -69,6 +68,12 @@ PARTS = {
     ],
     "Code": ["results/api/modules", "CONTRIBUTING", "CHANGELOG"],
 }
+
+
+def title_of(table):
+    """The title of a table of the record, which is that of its dataset."""
+    with xr.open_dataset(ROOT / f"{table}.nc") as data:
+        return data.attrs["title"]
 
 
 def prepare(app, name, text):
@@ -87,7 +92,7 @@ def prepare(app, name, text):
 
     text[0] = re.sub(r"(?<!!)\[([^]]*)\]\(([^):\s]+)\)", link, text[0])
     if not text[0].lstrip().startswith("#") and folder.name != "api":
-        text[0] = f"# Table: {Path(name).name.replace('_', ' ')}\n\n{text[0]}"
+        text[0] = f"# {title_of(name)}\n\n{text[0]}"
     if name == root_doc:
         for caption, pages in PARTS.items():
             glob = ":glob:\n" if any("*" in page for page in pages) else ""

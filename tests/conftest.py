@@ -10,7 +10,6 @@ import io
 import json
 import math
 import os
-import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -149,19 +148,6 @@ def declared():
             assert not found.keys() & own.keys(), (name, found.keys() & own.keys())
             found |= own
     return found
-
-
-@pytest.fixture(scope="session")
-def table():
-    """What the rules do not say about an artifact."""
-    return read_yaml(ROOT / "workflow" / "artifacts.yaml")
-
-
-@pytest.fixture(scope="session")
-def stages():
-    """The study of each artifact, as the rules of the stages list them."""
-    rules = (ROOT / "workflow" / "rules" / "study.smk").read_text(encoding="utf-8")
-    return dict(re.findall(r'(\w+)="((?:paper|beyond)[.\w]+)', rules))
 
 
 @pytest.fixture(scope="session")

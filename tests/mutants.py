@@ -32,11 +32,15 @@ from hypothesis import Phase, settings
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = Path("src/bouncing_ball")
-LAYERS = ["contacts", "continuation", "motion", "orbits", "attractors", "accuracy", "studies",
-          "claims", "engines", "calculator", "atlas", "compare"]  # fmt: skip
+# The modules that compute: both wings with what they stand on, and the comparison with the record,
+# but no pictures.
+COMPUTING = ("numerics", "paper", "beyond", "pipeline/diff")
+PICTURES = "*_figures.py"
+# Folders whose folders are tried one by one, because they have many tests.
+WINGS = ("paper", "beyond")
 QUICK = "not long and not slow and not cluster and not engines and not docs"
 # What this does not run: pictures, and runs of the pipeline.
-ELSEWHERE = {"tests/figures", "tests/speed", "tests/workflow"}
+ELSEWHERE = {"tests/drawing", "tests/speed", "tests/workflow"}
 # Imported once for all processes.
 LIBRARIES = ["matplotlib", "mpmath", "netCDF4", "pint", "pydantic", "scipy.optimize", "xarray"]
 # A test hangs that takes this many times as long as without a fault, and one second more.
@@ -157,14 +161,16 @@ def _with(source: str, node: ast.AST, wrong: ast.expr) -> str:
 
 
 def sample(count: int, seed: int, only: Sequence[str] = ("",)) -> list[tuple[Path, Fault]]:
-    """Faults drawn from all modules of the layers, each as likely as another.
+    """Faults drawn from all modules that compute, each as likely as another.
 
     The order is that of a checksum of the fault itself, so that an edit elsewhere leaves
     the sample as it is.
     """
     every = []
-    for layer in LAYERS:
-        for path in sorted((ROOT / PACKAGE / layer).rglob("*.py")):
+    for folder in COMPUTING:
+        for path in sorted((ROOT / PACKAGE / folder).rglob("*.py")):
+            if path.match(PICTURES):
+                continue
             # Equal faults of a module are told apart by their number, or they come together.
             seen: Counter[str] = Counter()
             for fault in faults(path.read_text()):
@@ -204,7 +210,8 @@ class Reach:
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_protocol(self, item: Any) -> Iterator[None]:
-        calls, start = set(), time.process_time()
+        calls: Functions = set()
+        start = time.process_time()
         self._note(calls)
         result = yield
         sys.settrace(None)
@@ -243,6 +250,17 @@ def passes(files: Iterable[str], plugin: Reach | Chosen) -> bool:
     return pytest.main([*options, *files], [plugin]) in (0, 5)
 
 
+def parts_of(tree: Path) -> list[str]:
+    """Folders and modules whose tests run in one process; each folder of a wing is one."""
+    found = []
+    for path in tree.iterdir():
+        if path.name in WINGS:
+            found += parts_of(path)
+        elif (path.is_dir() or path.suffix == ".py") and str(path) not in ELSEWHERE:
+            found.append(str(path))
+    return found
+
+
 def reached(part: str) -> dict[str, tuple[float, Functions]] | None:
     """What the tests of a folder reach; None if they fail."""
     reach = Reach()
@@ -257,10 +275,10 @@ def chosen(
     Near it are those of its module and of the folders beside it that reach it. The others are
     those elsewhere that reach it, and those beside it that do not: a cache may hide that they do.
     """
-    layer = path.relative_to(PACKAGE).parts[0]
-    own = str(path), f"tests/{layer}/test_{path.stem}.py"
+    folder = path.relative_to(PACKAGE).parent
+    own = str(path), f"tests/{folder}/test_{path.stem}.py"
     # The tests of all models and laws are in a folder of their own.
-    folders = f"tests/{layer}/", "tests/contracts/"
+    folders = f"tests/{folder}/", "tests/beyond/contracts/"
     reaching = {name for name, (_, calls) in tests.items() if (str(path), fault.function) in calls}
     beside = {name for name in tests if name.startswith((*own, *folders))}
     found = reaching & beside if near else reaching ^ beside
@@ -278,7 +296,8 @@ def chosen(
 def survives(work: tuple[Path, Fault, dict[str, float]]) -> bool:
     """Whether no test notices a fault."""
     path, fault, seconds = work
-    wrong, right = str(path.absolute()), SourceFileLoader.get_code
+    wrong = str(path.absolute())
+    right = SourceFileLoader.get_code
 
     def get_code(self: SourceFileLoader, name: str) -> CodeType | None:
         if self.path == wrong:
@@ -295,9 +314,12 @@ def reasons(tree: Path) -> dict[tuple[Path, int, str, str], str]:
     found = {}
     for each in yaml.safe_load((tree / "tests" / "equivalent_faults.yaml").read_text()):
         path = PACKAGE / each["module"]
-        for k, line in enumerate((tree / path).read_text().splitlines(), start=1):
-            if line.strip() == each["line"]:
-                found[path, k, *each["fault"].split(" → ")] = each["because"]
+        lines = (tree / path).read_text().splitlines() if (tree / path).is_file() else []
+        numbers = [k for k, line in enumerate(lines, start=1) if line.strip() == each["line"]]
+        if not numbers:
+            sys.exit(f"tests/equivalent_faults.yaml: {path} has no line {each['line']!r}")
+        for k in numbers:
+            found[path, k, *each["fault"].split(" → ")] = each["because"]
     return found
 
 
@@ -314,17 +336,19 @@ def main() -> None:
     os.environ["OMP_NUM_THREADS"] = "1"
     for name in LIBRARIES:
         importlib.import_module(name)
-    parts = [*PACKAGE.iterdir(), *Path("tests").iterdir()]
-    parts = {str(x) for x in parts if x.is_dir() or x.suffix == ".py"} - ELSEWHERE
+    parts = sorted(parts_of(PACKAGE) + parts_of(Path("tests")))
     context = multiprocessing.get_context("fork")
     with context.Pool(options.workers, maxtasksperchild=1) as pool:
         found = dict(zip(parts, pool.map(reached, parts, chunksize=1), strict=True))
         if failed := [part for part, tests in found.items() if tests is None]:
             sys.exit(f"{failed} fail without any fault: see make quick")
-        tests, known = dict(ChainMap(*found.values())), reasons(ROOT)
-        survived, equal = drawn, 0
+        tests = dict(ChainMap(*found.values()))
+        known = reasons(ROOT)
+        survived = drawn
+        equal = 0
         for near in (True, False):
-            tried, survived = survived, []
+            tried = survived
+            survived = []
             work = ((*each, chosen(*each, tests, near)) for each in tried)
             for (path, fault), lives in zip(tried, pool.imap(survives, work), strict=True):
                 why = known.get((path, fault.line, fault.before, fault.after), "") if lives else ""

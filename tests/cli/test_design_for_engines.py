@@ -37,7 +37,7 @@ def test_the_settings_are_in_the_answer(ask, table):
 def test_json_is_the_answer_of_the_call(ask):
     given = {"mass": 0.5, "stiffness": 1e5, "restitution": 0.75, "n": 1}
     found = design(**given, frequency=20, acceleration="0.8 g", engine="lammps")
-    expected = asdict(found) | {"engine": asdict(found.engine("lammps"))}
+    expected = asdict(found) | {"engine": asdict(found.engine_settings())}
     assert ask(*STIFF, *SHAKEN, "--engine", "lammps") == json.loads(json.dumps(expected))
 
 

@@ -20,7 +20,8 @@ from bouncing_ball.pipeline.diff.datasets import ARTIFACTS, IGNORED, compare_dat
 ROOT = Path(__file__).resolve().parents[2]
 RUN = read_yaml(ROOT / "config" / "config.yaml")
 # Sizes that become 2N - 1, and parameters that are moved; the others are labels or sought.
-SIZES, MOVED = ("samples", "points"), ("restitution", "amplitude", "amplitude_max")
+SIZES = ("samples", "points")
+MOVED = ("restitution", "amplitude", "amplitude_max")
 # More random orbits and more nodes are another sample; motions are sampled at their events and a
 # sweep at round ϖ, too; and openings are followed from ϖ to ϖ as far as Newton's method converges.
 NOT_NESTED = (

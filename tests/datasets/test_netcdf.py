@@ -16,10 +16,10 @@ def data():
             {
                 "phase": (("n", "point"), [[0.1, 0.2, np.nan], [0.3, 0.4, 1e-300]]),
                 "stable": (("n", "point"), [[True, False, True], [False, True, True]]),
-                "special_kind": ("special", ["saddle-node", "", "period doubling"]),
+                "kind": ("motion", ["saddle-node", "", "period doubling"]),
                 "saddle_node_amplitude": ((), 1 / 3),
             },
-            coords={"n": [1, 2], "end": ["unstable side", "stable side"]},
+            coords={"n": [1, 2], "bound": ["unstable side", "stable side"]},
         )
     ).assign_attrs({"title": "ϖ and Λ", "n": 1, "range__min": 0.5, "tolerances": [0.1, 0.01]})
 
@@ -31,7 +31,7 @@ def test_round_trip(data, tmp_path):
     xr.testing.assert_identical(again.drop_attrs(), data.drop_attrs())
     for name in data.variables:
         assert again[name].attrs == data[name].attrs, name
-        assert again[name].dtype.kind == data[name].dtype.kind or name in ("special_kind", "end")
+        assert again[name].dtype.kind == data[name].dtype.kind or name in ("kind", "bound")
     assert again.stable.dtype == bool
     assert again.attrs["title"] == "ϖ and Λ" and again.attrs["range__min"] == 0.5
     assert again.attrs["tolerances"].tolist() == [0.1, 0.01]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from bouncing_ball.datasets.variables import SHARED, describe
+from bouncing_ball.datasets.variables import SHARED, Variable, describe
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.diff.datasets import ARTIFACTS, budget_of
 
@@ -30,8 +30,8 @@ def test_the_budgets_name_what_there_is(declared):
             assert budget.over in ("", *declared) and budget.scale in ("", "1", *declared)
 
 
-def test_describe():
-    data = xr.Dataset({"phase": ("point", [0.5, 1.0]), "special_kind": ("special", ["fold"])})
+def test_each_variable_and_each_dimension_is_described():
+    data = xr.Dataset({"phase": ("point", [0.5, 1.0]), "kind": ("motion", ["fold"])})
     result = describe(data.assign_coords(frequency_ratio=2.0))
     assert result.phase.attrs == {
         "long_name": SHARED["phase"].long_name,
@@ -40,11 +40,17 @@ def test_describe():
         "equation": "Eqs. 6, 21",
     }
     # Coordinates and what is no number are described too.
-    for name in ("special_kind", "special", "frequency_ratio"):
+    for name in ("kind", "motion", "frequency_ratio"):
         assert result[name].attrs["long_name"] == SHARED[name].long_name
         assert result[name].attrs["units"] == "1"
     # The data stay, and so does the argument.
     assert np.array_equal(result.phase, data.phase) and data.phase.attrs == {}
+
+
+def test_a_study_describes_the_variables_that_only_it_writes():
+    own = {"depth": Variable("depth of the contact", symbol="d", budget=1e-9, scale="1")}
+    result = describe(xr.Dataset({"depth": ("point", [0.0])}), own)
+    assert result.depth.attrs["symbol"] == "d" and result.depth.attrs["budget"] == 1e-9
 
 
 def test_unknown_names_are_refused():

@@ -1,32 +1,34 @@
 """The figures are drawn from their datasets, and from all that they should show."""
 
 import operator
-import re
 from pathlib import Path
 
 import numpy as np
 import pytest
+from adapter import function
+from declared_artifacts import ARTIFACTS
 
 from bouncing_ball.drawing.files import save
 from bouncing_ball.drawing.style import COLOURS, LINES, style
 from bouncing_ball.paper.exhibits.continuation_of_orbits_figures import up_to_second_saddle_node
-from bouncing_ball.pipeline.configuration import load
 from bouncing_ball.pipeline.provenance import read_attributes
 
 pytestmark = pytest.mark.slow
 
-SCHEMATICS = {"fig01": "restitution_model", "fig04": "spring_damper_model"}
 ROOT = Path(__file__).resolve().parents[2]
-RULES = (ROOT / "workflow" / "rules" / "study.smk").read_text(encoding="utf-8")
-DRAWINGS = dict(re.findall(r'(\w+)="[.\w]+ -> ([.\w]+)"', RULES))
-DRAWINGS |= {name: f"schematics.{drawing}" for name, drawing in SCHEMATICS.items()}
+SCHEMATICS = ("fig01", "fig04")
 # A new one is drawn here as soon as its dataset is accepted.
-WITH_DATA = [name for name in DRAWINGS if (ROOT / "figures" / f"{name}.nc").exists()]
+WITH_DATA = [
+    name
+    for name, each in ARTIFACTS.items()
+    if each.drawing and (ROOT / "figures" / f"{name}.nc").exists()
+]
 
 
 def drawn(name, *data):
+    draw = function(ARTIFACTS[name].figures, ARTIFACTS[name].drawing)
     with style():
-        return load(f"figures.{DRAWINGS[name]}")(*data)
+        return draw(*data)
 
 
 def lines(figure):
@@ -37,7 +39,8 @@ def lines(figure):
 def test_a_figure_follows_its_data_and_names_its_axes(record, name):
     data = record[name]
     moved = data.map(lambda values: values * 1.5 + 0.1 if values.dtype.kind == "f" else values)
-    before, after = drawn(name, data), drawn(name, moved)
+    before = drawn(name, data)
+    after = drawn(name, moved)
     assert any(axes.get_xlabel() for axes in before.axes)
     assert any(axes.get_ylabel() or axes.get_yticklabels() for axes in before.axes)
     pairs = zip(lines(before), lines(after), strict=True)

@@ -18,7 +18,7 @@ class Circle:
         return 2 * y[..., np.newaxis, :]
 
 
-def test_converges_to_the_intersection_with_a_plane():
+def test_newton_converges_to_the_intersection_with_a_plane():
     # The line x = 2p meets the circle at p = 1/√5.
     normal = np.array([1.0, -2.0])
     found = newton(Circle(), np.array([1.0, 0.6]), plane(normal, np.zeros(2)))
@@ -40,7 +40,7 @@ def test_convergence_is_quadratic():
     assert residuals[3] < residuals[2] ** 2
 
 
-def test_many_guesses_at_once():
+def test_many_guesses_converge_together():
     angles = np.linspace(0.1, 6.0, 11)
     guess = 1.1 * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
     normals = np.stack([-np.sin(angles), np.cos(angles)], axis=-1)
@@ -49,7 +49,7 @@ def test_many_guesses_at_once():
     assert found.point == pytest.approx(guess / 1.1, abs=4 * EPS)
 
 
-def test_a_bad_guess_spoils_no_other():
+def test_a_guess_that_fails_leaves_the_others_alone():
     # One converges, one meets a singular matrix, and one misses the circle.
     guess = np.array([[1.0, 0.6], [0.0, 0.0], [1.0, 2.0]])
     normals = np.array([[1.0, -2.0], [1.0, -2.0], [0.0, 1.0]])
@@ -69,7 +69,7 @@ def test_no_step_is_longer_than_the_longest():
     assert found.step == pytest.approx(8 / 6 / 3.9, rel=1e-14)
 
 
-def test_singular_matrix():
+def test_a_singular_matrix_stops_the_iteration_at_the_guess():
     # ∇F = 0 at the centre.
     found = newton(Circle(), np.zeros(2), plane(np.array([1.0, 0.0]), np.zeros(2)))
     assert not found.converged

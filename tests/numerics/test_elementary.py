@@ -23,7 +23,7 @@ def exactly(function, x):
         return [function(mpmath.mpf(float(t))) for t in x]
 
 
-def test_sine_and_versine():
+def test_sine_and_versine_are_exact_to_a_few_roundings():
     sine, versine = elementary.sine_and_versine(ANGLES)
     small = np.minimum(np.abs(ANGLES), 1.0)
     # Some six roundings of half a unit each: of a small angle relative to it.
@@ -32,14 +32,14 @@ def test_sine_and_versine():
     assert errors(versine, exact, exact).max() < 5
 
 
-def test_many_turns():
+def test_a_million_turns_cost_no_digits():
     angle = RNG.uniform(-1e6, 1e6, 300)
     sine, cosine = elementary.sine_and_cosine(angle)
     assert errors(sine, exactly(mpmath.sin, angle), 1.0).max() < 4
     assert errors(cosine, exactly(mpmath.cos, angle), 1.0).max() < 5
 
 
-def test_exponential_and_logarithm():
+def test_exponential_and_logarithm_are_exact_to_two_roundings():
     x = RNG.uniform(-700, 1, 400)
     exact = exactly(mpmath.exp, x)
     assert errors(elementary.exponential(x), exact, exact).max() < 2
@@ -48,7 +48,7 @@ def test_exponential_and_logarithm():
     assert errors(elementary.logarithm(y), exact, np.abs(np.array(exact, float))).max() < 2
 
 
-def test_the_angle_of_a_point():
+def test_the_angle_of_a_point_is_exact_to_three_roundings():
     y, x = RNG.normal(size=(2, 400))
     with mpmath.workdps(40):
         exact = [mpmath.atan2(mpmath.mpf(float(a)), float(b)) for a, b in zip(y, x, strict=True)]
@@ -56,5 +56,5 @@ def test_the_angle_of_a_point():
 
 
 @pytest.mark.parametrize("point", [(0.0, 1.0), (0.0, -1.0), (-0.0, -1.0), (1.0, 0.0), (0.0, 0.0)])
-def test_the_axes_are_exact(point):
+def test_the_angles_of_the_axes_are_exact(point):
     assert elementary.arctangent(*point) == np.arctan2(*point)

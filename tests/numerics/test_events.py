@@ -1,9 +1,10 @@
-"""Location of events on a branch."""
+"""Location of events and of the limits of a domain on branches that are known exactly."""
 
 import numpy as np
 import pytest
 
-from bouncing_ball.numerics.events import Event, locate
+from bouncing_ball.numerics.continuation import continue_branch
+from bouncing_ball.numerics.events import Event, domain_limits, locate
 
 
 class Line:
@@ -47,6 +48,34 @@ def test_a_zero_beyond_the_bracket_is_not_the_one_that_was_announced(end, sign):
     ],
     ids=["jump", "pole"],
 )
-def test_what_changes_sign_without_a_zero(function):
+def test_a_change_of_sign_without_a_zero_is_not_located(function):
     event = Event("no zero", function)
     assert locate(Line(), event, np.array([0.0, 0.0]), np.array([1.0, 1.0])) is None
+
+
+# The limits of a domain.
+
+
+class Circle:
+    """The branch x² + p² = 1."""
+
+    def residual(self, y):
+        return np.sum(y * y, axis=-1, keepdims=True) - 1
+
+    def jacobian(self, y):
+        return 2 * y[..., np.newaxis, :]
+
+
+def test_the_limits_of_a_domain_are_found_to_the_last_digit():
+    # Round the circle once; admissible where x > 0.3 or p < -0.9.
+    branch = continue_branch(Circle(), np.array([1.0, 0.0]), increasing=True, max_points=60)
+
+    def admissible(y):
+        return (y[..., 0] > 0.3) | (y[..., 1] < -0.9)
+
+    found = np.array(domain_limits(Circle(), admissible, branch.points))
+    low = np.sqrt(1 - 0.81)
+    expected = [[0.3, np.sqrt(0.91)], [-low, -0.9]]
+    assert found[:2] == pytest.approx(np.array(expected), abs=4e-16)
+    # Each is the last admissible point on its side.
+    assert admissible(found).all()

@@ -4,14 +4,12 @@ import copy
 from pathlib import Path
 
 import pytest
+from adapter import function
+from declared_artifacts import ARTIFACTS
 from snakemake.utils import update_config
+from whole_configuration import configuration_type
 
-from bouncing_ball.pipeline.configuration import (
-    ConfigurationError,
-    check,
-    configuration_model,
-    read_yaml,
-)
+from bouncing_ball.pipeline.configuration import RENAMED, ConfigurationError, check, read_yaml
 from bouncing_ball.pipeline.configuration_docs import configuration_page, configuration_schema
 
 FOLDER = Path(__file__).resolve().parents[2] / "config"
@@ -20,8 +18,8 @@ REMOVED = object()
 
 
 @pytest.fixture(scope="module")
-def model(stages):
-    return configuration_model(stages, CONFIG)
+def model():
+    return configuration_type(ARTIFACTS.values())
 
 
 def changed(keys, value):
@@ -44,11 +42,11 @@ def test_finer_grids_of_the_whole_motion_are_accepted_and_are_finer(model):
     config, larger = copy.deepcopy(CONFIG), read_yaml(FOLDER / "motions-large.yaml")
     update_config(config, larger)
     check(model, config)
-    assert config["extensions"]["ext_locking"]["amplitude"]["min"] == 0.8
-    assert len(larger["extensions"]) == 5
+    assert config["beyond"]["ext_locking"]["amplitude"]["min"] == 0.8
+    assert len(larger["beyond"]) == 5
 
 
-FIG05, FIG08 = ("figures", "fig05"), ("figures", "fig08")
+FIG05, FIG08 = ("paper", "fig05"), ("paper", "fig08")
 SPAN = (*FIG05, "frequency_ratio")
 
 
@@ -56,36 +54,38 @@ SPAN = (*FIG05, "frequency_ratio")
     ("keys", "value", "message"),
     [
         # A type, a key, a limit.
-        ((*FIG08, "n"), 1.0, "figures.fig08.n = 1.0 must be a whole number (index n of the"),
-        ((*FIG08, "n"), True, "figures.fig08.n = True must be a whole number"),
-        ((*FIG08, "n"), 0, "figures.fig08.n = 0 must be at least 1"),
-        ((*FIG08, "n"), 21, "figures.fig08.n = 21 must be at most 20"),
-        ((*FIG08, "restitution"), REMOVED, "missing key figures.fig08.restitution: restitution"),
-        ((*FIG08, "resitution"), 1, "figures.fig08.resitution = 1, did you mean restitution?"),
-        (("figure",), {}, "unknown key figure = {}, did you mean figures? Allowed here: "),
-        (FIG08, 3, "figures.fig08 = 3 must be a mapping of the keys n, restitution, "),
-        (("figures",), {"fig2": 1}, "unknown key figures.fig2 = 1, did you mean fig"),
-        (("figures",), 3, "figures = 3 must be a mapping"),
-        (("extensions",), REMOVED, "missing key extensions"),
-        (("figures", "fig11"), 3, "frequency_ratio (The threshold of permanent contact of one"),
-        (FIG08, REMOVED, "fig08 has no parameters: add a key fig08 to one of figures, tables"),
+        ((*FIG08, "n"), 1.0, "paper.fig08.n = 1.0 must be a whole number (index n of the"),
+        ((*FIG08, "n"), True, "paper.fig08.n = True must be a whole number"),
+        ((*FIG08, "n"), 0, "paper.fig08.n = 0 must be at least 1"),
+        ((*FIG08, "n"), 21, "paper.fig08.n = 21 must be at most 20"),
+        ((*FIG08, "restitution"), REMOVED, "missing key paper.fig08.restitution: restitution"),
+        ((*FIG08, "resitution"), 1, "paper.fig08.resitution = 1, did you mean restitution?"),
+        (("papers",), {}, "unknown key papers = {}, did you mean paper? Allowed here: "),
+        (FIG08, 3, "paper.fig08 = 3 must be a mapping of the keys n, restitution, "),
+        (("paper",), {"fig2": 1}, "unknown key paper.fig2 = 1, did you mean fig"),
+        (("paper",), 3, "paper = 3 must be a mapping"),
+        (("beyond",), REMOVED, "missing key beyond"),
+        # An artifact of the other wing.
+        (("beyond", "fig08"), {}, "unknown key beyond.fig08 = {}. Allowed here: "),
+        (("paper", "fig11"), 3, "frequency_ratio (The threshold of permanent contact of one"),
+        (FIG08, REMOVED, "missing key paper.fig08: "),
         ((*FIG08, "restitution"), 1.2, "must be at most 0.999 (restitution coefficient r; at"),
-        ((*FIG08, "restitution"), 0.04, "figures.fig08.restitution = 0.04 must be at least 0.05"),
+        ((*FIG08, "restitution"), 0.04, "paper.fig08.restitution = 0.04 must be at least 0.05"),
         ((*FIG08, "frequency_ratio", 1), 0.09, "frequency_ratio[1] = 0.09 must be at least 0.1"),
         ((*FIG08, "frequency_ratio", 0), "1e4", "'1e4' must be a number (powers of ten are"),
         ((*FIG08, "frequency_ratio"), [], "fig08.frequency_ratio = [] must have at least 1"),
         ((*FIG08, "frequency_ratio"), [2, 2], "fig08.frequency_ratio = [2, 2] must not repeat"),
         ((*FIG08, "frequency_ratio"), 2.0, "fig08.frequency_ratio = 2.0 must be a list"),
-        ((*FIG08, "points"), 10, "figures.fig08.points = 10 must be at least 11"),
-        (("figures", "fig14", "tolerance"), 1, "fig14.tolerance = 1 must be less than 1"),
-        (("figures", "fig14", "tolerance"), 0.0, "fig14.tolerance = 0.0 must be greater than 0"),
-        (("figures", "fig10", "amplitude"), {"min": 1, "max": 2, "samples": 3}, "must be a list"),
+        ((*FIG08, "points"), 10, "paper.fig08.points = 10 must be at least 11"),
+        (("paper", "fig14", "tolerance"), 1, "fig14.tolerance = 1 must be less than 1"),
+        (("paper", "fig14", "tolerance"), 0.0, "fig14.tolerance = 0.0 must be greater than 0"),
+        (("paper", "fig10", "amplitude"), {"min": 1, "max": 2, "samples": 3}, "must be a list"),
         ((*FIG05, "cases", 2, "amplitude"), float("nan"), "amplitude = nan must be a finite"),
         ((*FIG05, "cases", 2, "amplitude"), float("inf"), "amplitude = inf must be a finite"),
-        ((*FIG05, "cases"), CONFIG["figures"]["fig05"]["cases"][:1] * 2, "must not repeat an item"),
-        ((*SPAN, "samples"), 1, "figures.fig05.frequency_ratio.samples = 1 must be at least 2"),
+        ((*FIG05, "cases"), CONFIG["paper"]["fig05"]["cases"][:1] * 2, "must not repeat an item"),
+        ((*SPAN, "samples"), 1, "paper.fig05.frequency_ratio.samples = 1 must be at least 2"),
         (("release",), "tension", "release = 'tension' must be 'displacement' or 'force'"),
-        (("tables", "thresholds", "quantities"), ["height"], "'height' must be 'max_height', "),
+        (("paper", "thresholds", "quantities"), ["height"], "'height' must be 'max_height', "),
         # What fits together.
         ((*SPAN, "max"), 1.0, "fig05.frequency_ratio: min = 1 must be less than max = 1"),
         (("continuation", "largest_step"), 0.01, "continuation.largest_step = 0.01 must be at lea"),
@@ -94,20 +94,18 @@ SPAN = (*FIG05, "frequency_ratio")
         ((*FIG05, "cases", 3, "amplitude"), 1.0, "cases[3] = "),
         ((*FIG05, "cases", 3, "amplitude"), 2.57, "must be at least 2.57039, the saddle-node of"),
         ((*FIG05, "cases", 3, "amplitude"), 2.5704, ""),
-        (("figures", "fig12", "amplitude"), 0.6663, "= 0.6663 must be at least 0.666398, the sadd"),
-        (("figures", "fig10", "amplitude", 2), 0.5, "must be at least 0.509447, the saddle-node"),
+        (("paper", "fig12", "amplitude"), 0.6663, "= 0.6663 must be at least 0.666398, the sadd"),
+        (("paper", "fig10", "amplitude", 2), 0.5, "must be at least 0.509447, the saddle-node"),
         ((*FIG08, "amplitude_max"), 0.25, "= 0.25 must be at least 0.254724, the saddle-node"),
         # Of several families the highest decides how far branches must reach.
-        (("figures", "fig03", "amplitude_max"), 1.27, "= 1.27 must be at least 1.27362, the sadd"),
-        (("tables", "table1", "amplitude_max"), 0.76, "at least 0.764171, the saddle-node"),
+        (("paper", "fig03", "amplitude_max"), 1.27, "= 1.27 must be at least 1.27362, the sadd"),
+        (("paper", "table1", "amplitude_max"), 0.76, "at least 0.764171, the saddle-node"),
     ],
 )
-def test_a_mistake_is_named_in_one_line(model, stages, keys, value, message):
+def test_a_mistake_is_named_in_one_line(model, keys, value, message):
     config = changed(keys, value)
     try:
-        remade = value is REMOVED or len(keys) == 1
-        types = configuration_model(stages, config) if remade else model
-        check(types, config)
+        check(model, config)
         said = ""
     except ConfigurationError as error:
         said = str(error)
@@ -115,20 +113,34 @@ def test_a_mistake_is_named_in_one_line(model, stages, keys, value, message):
     assert bool(message) == bool(said), said
 
 
-def test_a_study_that_is_not_there(refusal):
-    for study in ("paper.exhibits.nothing.here", "paper.exhibits.continuation_of_orbits.nothing"):
-        with refusal(ConfigurationError, study, "nothing"):
-            configuration_model({"fig08": study}, CONFIG)
+@pytest.mark.parametrize("section", RENAMED)
+def test_a_section_of_an_earlier_configuration_is_answered_with_its_new_name(
+    model, section, refusal
+):
+    with refusal(ConfigurationError, f"the section {section} is now {RENAMED[section]}: write"):
+        check(model, CONFIG | {section: {"fig08": {}}})
 
 
-def test_nothing_raw_in_a_refusal(model, one_line):
+@pytest.mark.parametrize(
+    ("module", "study"),
+    [
+        ("paper.exhibits.nothing", "here"),
+        ("paper.exhibits.continuation_of_orbits", "nothing"),
+    ],
+)
+def test_a_study_that_does_not_exist_is_named_in_one_line(refusal, module, study):
+    with refusal(ConfigurationError, f"{module}.{study}", "nothing"):
+        function(module, study)
+
+
+def test_a_refusal_is_printable(model, one_line):
     with pytest.raises(ConfigurationError) as error:
         check(model, CONFIG | {"n\x1b[31m\n\u202e": 1})
     assert str(error.value).isprintable()
     one_line(error, r"n\x1b[31m\n\u202e")
 
 
-def test_the_documentation_is_that_of_the_types(model):
+def test_the_page_and_the_schema_are_those_of_the_types(model):
     made = {
         "README.md": configuration_page(model, CONFIG),
         "schema.json": configuration_schema(model),

@@ -32,15 +32,10 @@ def test_a_failure_is_one_line(tmp_path, interruptible, one_line, error, said):
     assert "Traceback" in log.read_text(encoding="utf-8")
 
 
-def test_a_study_gives_every_variable_its_unit(tmp_path, interruptible, one_line, monkeypatch):
-    bare = xr.Dataset({"phase": 0.0})
-    monkeypatch.setattr("bouncing_ball.pipeline.jobs.load", lambda study: lambda: bare)
-    parts = SimpleNamespace(study="", arguments={}), SimpleNamespace(data=[], get={}.get)
-    names = {"rule": "stage", "wildcards": [], "log": [str(tmp_path / "log")]}
-    job = SimpleNamespace(params=parts[0], input=parts[1], **names)
-    with pytest.raises(SystemExit) as exit_:
-        make_dataset(job)
-    one_line(exit_, "stage: phase has no unit: the study ends with describe(dataset) (details")
+def test_a_variable_without_a_unit_is_refused(refusal):
+    job = SimpleNamespace(params=SimpleNamespace(arguments={}), input={})
+    with refusal(ModelError, "phase has no unit: the study ends with described(...)"):
+        make_dataset(job, lambda: xr.Dataset({"phase": 0.0}))
 
 
 def test_an_input_is_whole_or_its_command_is_named(tmp_path, refusal):

@@ -1,28 +1,35 @@
-"""The jobs that a change makes run again, as far as parameters and imports determine them.
+"""The jobs that a change makes run again, as far as parameters and contents determine them.
 
 That Snakemake follows them is tested in tests/workflow/test_reruns.py.
 """
 
 import ast
 import copy
+import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from declared_artifacts import ARTIFACTS, STUDIES
 
+from bouncing_ball.pipeline import sources as module
 from bouncing_ball.pipeline.configuration import arguments, read_yaml
-from bouncing_ball.pipeline.sources import imports, sources
+from bouncing_ball.pipeline.sources import digest, imports, keep_digest, keep_doubt, sources
 
 ROOT = Path(__file__).resolve().parents[2]
 CONFIG = read_yaml(ROOT / "config" / "config.yaml")
 
 
+def arguments_in(run):
+    return {x: arguments(study, ARTIFACTS[x].wing, x, run) for x, study in STUDIES.items()}
+
+
 @pytest.mark.parametrize(
     ("keys", "value", "expected"),
     [
-        (("figures", "fig08", "points"), 101, {"fig08"}),
-        (("studies", "formulas", "seed"), 1, {"formulas"}),
+        (("paper", "fig08", "points"), 101, {"fig08"}),
+        (("paper", "formulas", "seed"), 1, {"formulas"}),
         (
             ("continuation", "largest_step"),
             0.1,
@@ -30,14 +37,14 @@ CONFIG = read_yaml(ROOT / "config" / "config.yaml")
         ),
     ],
 )
-def test_a_changed_parameter(stages, keys, value, expected):
+def test_a_parameter_changes_the_arguments_of_its_studies_only(keys, value, expected):
     config = copy.deepcopy(CONFIG)
     section = config
     for key in keys[:-1]:
         section = section[key]
     section[keys[-1]] = value
-    given = [{x: arguments(stages[x], x, run) for x in stages} for run in (CONFIG, config)]
-    assert {name for name in stages if given[0][name] != given[1][name]} == expected
+    before, after = arguments_in(CONFIG), arguments_in(config)
+    assert {name for name in STUDIES if before[name] != after[name]} == expected
 
 
 @pytest.mark.parametrize(
@@ -47,29 +54,89 @@ def test_a_changed_parameter(stages, keys, value, expected):
         ("paper/claims/verdict.py", {"claims", "statements"}),
         ("paper/claims/witness.py", {"witness"}),
         ("drawing/style.py", set()),
+        ("drawing/matplotlibrc", set()),
         ("pipeline/configuration_docs.py", set()),
     ],
 )
-def test_a_changed_module(stages, file, expected):
+def test_a_module_belongs_to_the_studies_that_import_it(file, expected):
+    changed = ROOT / "src" / "bouncing_ball" / file
+    assert changed.is_file()
     users = {
-        name
-        for name, study in stages.items()
-        for path in sources(f"bouncing_ball.{study.rpartition('.')[0]}")
-        if path.endswith(f"/{file}")
+        name for name in STUDIES if changed in sources([f"bouncing_ball.{ARTIFACTS[name].module}"])
     }
     assert users == expected
 
 
-def test_the_modules_of_a_stage_are_those_it_imports():
-    """The modules found in the sources are those that Python really imports."""
+def test_the_modules_of_a_stage_are_those_that_python_imports():
     code = (
         "import sys, bouncing_ball.paper.exhibits.continuation_of_orbits\n"
         "print(*sorted(m.__file__ for n, m in sys.modules.items()"
         " if n.split('.')[0] == 'bouncing_ball'), sep='\\n')"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    found = sources("bouncing_ball.paper.exhibits.continuation_of_orbits")
-    assert [path for path in found if path.endswith(".py")] == done.stdout.splitlines()
+    found = sources(["bouncing_ball.paper.exhibits.continuation_of_orbits"])
+    assert [str(path) for path in found if path.suffix == ".py"] == done.stdout.splitlines()
+
+
+@pytest.mark.parametrize(
+    ("module", "data"),
+    [
+        ("bouncing_ball.drawing.style", "drawing/matplotlibrc"),
+        ("bouncing_ball.explorer.document", "explorer/model.js"),
+        ("bouncing_ball.beyond.engines.engine", "beyond/engines/snippets/generic.txt"),
+    ],
+)
+def test_the_data_that_a_module_reads_belong_to_its_code(module, data):
+    assert ROOT / "src" / "bouncing_ball" / data in sources([module])
+
+
+def test_the_modules_that_a_script_imports_belong_to_its_code():
+    script = ROOT / "workflow" / "scripts" / "table.py"
+    found = sources([], [script])
+    assert {script, ROOT / "src" / "bouncing_ball" / "drawing" / "tables.py"} <= {*found}
+
+
+def test_a_digest_follows_contents_and_names_and_not_times(tmp_path, monkeypatch):
+    monkeypatch.setattr(module, "_REPOSITORY", tmp_path)
+
+    def digest_of(name, text):
+        path = tmp_path / name
+        path.write_text(text, encoding="utf-8")
+        os.utime(path, (0, 0))
+        # As in another process, which has read nothing yet.
+        module._digest_of_file.cache_clear()
+        return digest([path])
+
+    first = digest_of("a.py", "r = 0.85")
+    assert first == digest_of("a.py", "r = 0.85")
+    assert first != digest_of("a.py", "r = 0.70")
+    assert first != digest_of("b.py", "r = 0.85")
+
+
+def test_the_file_of_a_digest_is_written_only_when_the_digest_changes(tmp_path):
+    path = tmp_path / "fig02"
+    keep_digest(path, "one")
+    os.utime(path, (0, 0))
+    keep_digest(path, "one")
+    assert path.stat().st_mtime == 0
+    keep_digest(path, "two")
+    assert path.read_text() == "two" and path.stat().st_mtime > 0
+
+
+@pytest.mark.parametrize(
+    ("digest_then", "output_time", "kept"),
+    [("one", 200, "one"), ("one", 50, "unknown"), ("other", 200, "unknown")],
+)
+def test_touch_keeps_a_digest_only_if_the_outputs_were_made_by_this_code(
+    tmp_path, digest_then, output_time, kept
+):
+    path, output = tmp_path / "code", tmp_path / "fig02.nc"
+    path.write_text(digest_then)
+    output.touch()
+    os.utime(path, (100, 100))
+    os.utime(output, (output_time, output_time))
+    keep_doubt(path, "one", [output, tmp_path / "missing.nc"])
+    assert path.read_text() == kept
 
 
 def test_no_import_statement_is_missed():

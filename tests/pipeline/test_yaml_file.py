@@ -25,7 +25,7 @@ MISTAKES = pytest.mark.parametrize(
 
 
 @MISTAKES
-def test_a_mistake_is_one_line(tmp_path, one_line, content, said):
+def test_a_file_that_cannot_be_read_gives_one_line(tmp_path, one_line, content, said):
     path = tmp_path / "a.yaml"
     if content is not None:
         path.write_bytes(content)
@@ -46,7 +46,7 @@ def test_a_mistake_is_one_line(tmp_path, one_line, content, said):
         ("a: 1\n---\nb: 1", "not YAML in line 2: "),
     ],
 )
-def test_what_is_said_twice_or_hidden(refusal, text, said):
+def test_a_duplicate_key_and_what_yaml_forbids_are_refused(refusal, text, said):
     with refusal(ConfigurationError, said):
         parse_yaml(text)
 
@@ -55,7 +55,7 @@ def test_an_alias_stands_for_what_it_names():
     assert parse_yaml("a: &a [1, 2]\nb: *a") == {"a": [1, 2], "b": [1, 2]}
 
 
-def test_every_file_of_the_project_is_read():
+def test_every_yaml_file_of_the_project_is_read_as_yaml_reads_it():
     files = [path for path in ROOT.glob("*/**/*.yaml") if ".venv" not in str(path)]
     assert len(files) >= 5
     for path in files:

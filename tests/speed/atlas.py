@@ -49,7 +49,7 @@ def measured(orbits: float) -> str:
         shard(plan, 0)
         times.append(time.process_time() - start)
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    return f"{plan.orbits:<13.3g} {plan.orbits / median(times) / 1e6:<18.2f} {peak:.0f}"
+    return f"{plan.orbit_count:<13.3g} {plan.orbit_count / median(times) / 1e6:<18.2f} {peak:.0f}"
 
 
 def main() -> None:

@@ -122,7 +122,7 @@ class Tree:
         path.write_text(text.replace(old, new), encoding="utf-8")
 
     def contents(self, folder: str = "") -> dict[str, bytes]:
-        """All files under a folder except logs, measurements and Snakemake's files.
+        """All files under a folder except logs, digests of code and Snakemake's files.
 
         Files that were being written when a run was killed have other names, and are left out as
         well.
@@ -130,7 +130,7 @@ class Tree:
         base = self.path / folder
         files = (path for path in sorted(base.rglob("*")) if path.is_file())
         names = {str(path.relative_to(base)): path for path in files}
-        skipped = ("logs/", "benchmarks/", ".snakemake/", ".git/", ".part.")
+        skipped = ("logs/", "code/", ".snakemake/", ".git/", ".part.")
         return {
             name: path.read_bytes()
             for name, path in names.items()
@@ -234,7 +234,7 @@ def cloned(shared, warm, coarse) -> Tree:
             text = text[:start] + fewer + text[end:]
         config.write_text(text, encoding="utf-8")
         # Who looks at pictures looks at those of `make`.
-        settings = "src/bouncing_ball/figures/matplotlibrc"
+        settings = "src/bouncing_ball/drawing/matplotlibrc"
         tree.rewrite(settings, "savefig.dpi: 300", "savefig.dpi: 50")
         tree.git("init", "--quiet")
         tree.commit("All")

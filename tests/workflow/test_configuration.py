@@ -9,7 +9,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 
 
-def test_the_workflow_stops_at_once_and_touches_nothing(complete):
+def test_a_wrong_configuration_stops_the_workflow_and_changes_no_file(complete):
     before = {k: (complete.path / k).stat().st_mtime_ns for k in complete.contents()}
     del before["config/config.yaml"]
     # Snakemake itself would take the last one without a word.

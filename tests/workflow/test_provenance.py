@@ -25,12 +25,12 @@ def test_another_configuration_is_named_and_its_command_gives_the_file(complete,
     monkeypatch.chdir(complete.path)
     before, commit = path.read_bytes(), read_provenance(path)["commit"]
     config = Path("results/mine.yaml")
-    config.write_text("figures:\n  fig11:\n    restitution: 0.7\n", encoding="utf-8")
+    config.write_text("paper:\n  fig11:\n    restitution: 0.7\n", encoding="utf-8")
     complete.run("--cores", "1", str(path), "--configfile", str(config))
     answer = explain(path)
     # The tree is clean: a commit and this configuration decide.
     assert (answer["commit"], answer["dirty"]) == (commit, "no")
-    assert answer["configuration"] == {"figures": {"fig11": {"restitution": 0.7}}}
+    assert answer["configuration"] == {"paper": {"fig11": {"restitution": 0.7}}}
     other = path.read_bytes()
     assert other != before
     path.unlink()

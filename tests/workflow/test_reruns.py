@@ -4,13 +4,18 @@ Which stages depend on a parameter or a module is tested in tests/pipeline/test_
 Here it is tested that Snakemake runs these, and all jobs that depend on them, and no others.
 """
 
+import os
+import shutil
+
+from bouncing_ball.datasets.files import read_dataset
+
 
 def test_a_commit_runs_nothing_again_and_a_change_what_it_decides(complete):
     for file in ("README.md", "requirements.lock"):
         (complete.path / file).write_text("Another text.\n", encoding="utf-8")
     complete.commit("Other words")
     (complete.path / "README.md").write_text("Not committed.\n", encoding="utf-8")
-    complete.configure("figures", "fig12", "amplitude", value=1.1)
+    complete.configure("paper", "fig12", "amplitude", value=1.1)
     # What checks the configuration only, and what only shows, run no science again.
     complete.edit("pipeline/configuration_docs.py")
     complete.edit("beyond/exhibits/cascades_figures.py")
@@ -31,3 +36,39 @@ def test_a_commit_runs_nothing_again_and_a_change_what_it_decides(complete):
         *("claims", "Setting claims", "Writing results/paper.md and results/supplement.md"),
         "statements",
     }
+
+
+def test_no_file_time_hides_a_change_of_the_code(complete):
+    equation_7 = "src/bouncing_ball/paper/orbits/restitution_branch.py"
+    formula = "np.asarray(n) * np.pi * (1 - r) / (1 + r)"
+    complete.rewrite(equation_7, f"return {formula}", f"return 1.001 * {formula}")
+    os.utime(complete.path / equation_7, (0, 0))
+    again = {"fig02", "Drawing fig02"}
+    assert complete.planned("fig02") == again
+    complete.run("--cores", "1", "--touch", "fig02")
+    assert complete.planned("fig02") == again
+    assert complete.planned("fig02", "--rerun-triggers", "mtime") == again
+    shutil.rmtree(complete.path / ".snakemake")
+    assert complete.planned("fig02") == again
+    dataset = complete.path / "results/figures/fig02.nc"
+    before = read_dataset(dataset)
+    complete.run("--cores", "1", "fig02")
+    after = read_dataset(dataset)
+    assert float(after.phase) != float(before.phase)
+    assert after.attrs["provenance_code"] != before.attrs["provenance_code"]
+    assert complete.planned("fig02") == set()
+
+
+def test_a_failing_study_prints_its_line_and_its_log_and_no_sources(fresh):
+    module = "src/bouncing_ball/paper/exhibits/restitution_model.py"
+    fresh.rewrite(
+        module,
+        '-> xr.Dataset:\n    """One cycle',
+        '-> xr.Dataset:\n    raise ValueError(\'no such orbit\')\n    """One cycle',
+    )
+    done = fresh.run("--cores", "1", "fig02", check=False)
+    said = done.stdout + done.stderr
+    log = "results/logs/stages/fig02.log"
+    assert done.returncode != 0
+    assert f"restitution_model/fig02: no such orbit (details in {log})" in said
+    assert (fresh.path / log).is_file() and ".py" not in said

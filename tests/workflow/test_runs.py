@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from declared_artifacts import ARTIFACTS
 
 from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.pipeline.diff.datasets import compare_datasets
@@ -15,21 +16,25 @@ from bouncing_ball.pipeline.diff.datasets import compare_datasets
 ROOT = Path(__file__).resolve().parents[2]
 
 
-def test_a_run_makes_every_figure_and_table(pristine, table, stages):
+def made_by_a_run():
+    """The names of the datasets that a run makes."""
+    return {name for name, each in ARTIFACTS.items() if each.study and not each.accepted}
+
+
+def test_a_run_makes_every_figure_and_table(pristine):
     made = set(pristine.contents("results"))
     drawn = {path.stem for path in (ROOT / "figures").glob("*.svg")}
     pictures = {f"figures/{name}.{kind}" for name in drawn for kind in ("png", "svg")}
-    data = {f"figures/{name}.nc" for name in stages if "accepted" not in table.get(name, {})}
+    data = {f"figures/{name}.nc" for name in made_by_a_run()}
     recorded = {path.stem for path in (ROOT / "figures").glob("*.csv")}
     texts = {f"figures/{name}.{kind}" for name in recorded for kind in ("csv", "md")}
     pages = {"figures/explorer.html", "paper.md", "supplement.md", "tally.txt"}
     assert made == pictures | data | texts | pages
 
 
-def test_a_run_gives_the_accepted_datasets(pristine, recorded, table, stages, coarse):
+def test_a_run_gives_the_accepted_datasets(pristine, recorded, coarse):
     # Statements on whole motions are about the maps at their whole size.
-    made = {name for name in stages if "accepted" not in table.get(name, {})}
-    whole = made - {name for name, _ in coarse} - {"statements"}
+    whole = made_by_a_run() - {name for name, _ in coarse} - {"statements"}
     made = {name: read_dataset(pristine.path / f"results/figures/{name}.nc") for name in whole}
     rows = {name: compare_datasets(name, recorded[name], data) for name, data in made.items()}
     assert [(name, row) for name in rows for row in rows[name] if not row.outcome.agrees] == []
@@ -41,7 +46,7 @@ def test_a_run_touches_no_tracked_file(pristine, cloned):
     assert after == before
 
 
-def test_a_killed_run_was_resumed(pristine):
+def test_a_killed_run_is_resumed_without_loss(pristine):
     resumed = json.loads(pristine.path.with_name("resumed.json").read_text(encoding="utf-8"))
     early, after = resumed["early"], pristine.checksums("results")
     assert 0 < len(early) < len(after)
@@ -59,7 +64,9 @@ def test_a_run_that_nothing_interrupts_gives_the_same_bytes(pristine, fresh):
 
 
 @pytest.mark.long
-def test_two_figures_by_name_interrupted_and_resumed_elsewhere(pristine, tmp_path):
+def test_two_figures_that_are_interrupted_and_resumed_elsewhere_have_the_same_bytes(
+    pristine, tmp_path
+):
     # In another folder, and few at once: the same bytes as those of a whole run.
     elsewhere = replace(pristine, path=tmp_path / "elsewhere", package=str(pristine.path / "src"))
     shutil.copytree(pristine.path / "config", elsewhere.path / "config")
@@ -77,10 +84,10 @@ def test_two_figures_by_name_interrupted_and_resumed_elsewhere(pristine, tmp_pat
     assert [name for made in found for name in made if made[name] != expected[name]] == []
 
 
-def test_report_shows_every_figure_offline(complete, table):
+def test_the_report_shows_every_figure_offline(complete):
     complete.run("--report", "results/report.html")
     page = (complete.path / "results" / "report.html").read_text(encoding="utf-8")
-    for name in [name for name, entry in table.items() if "drawing" in entry]:
+    for name in [name for name, each in ARTIFACTS.items() if each.drawing]:
         assert f"results/figures/{name}.png" in page
         assert not name.startswith("fig") or f"Figure {int(name[3:])}." in page
     loaded = re.findall(r"<(?:script|link|img)[^>]+(?:src|href)=[\"'](\w+:[^\"']*)", page)

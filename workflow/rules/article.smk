@@ -1,26 +1,53 @@
 # The replication article with its supplement, in which every number comes from a dataset, and the
-# tally of the claims.
+# page and the tally of the claims.
 
 ARTICLE = os.path.relpath(Path(ROOT, "workflow/report/paper"))
+TEMPLATES = sorted(map(str, Path(ARTICLE).glob("*.md.j2")))
+# The words before the table of the claims.
+WORDS = [f"{ARTICLE}/claims_head.md.j2", f"{ARTICLE}/claims_columns.md.j2"]
+
+
+rule set_claims:
+    message:
+        "Setting claims"
+    input:
+        code=lambda wildcards: code(
+            "set_claims",
+            "claims.py",
+            files=WORDS,
+            outputs=["results/figures/claims.csv", "results/figures/claims.md"],
+        ),
+        data="results/figures/claims.nc",
+    output:
+        csv="results/figures/claims.csv",
+        md="results/figures/claims.md",
+    params:
+        words=WORDS[0],
+    log:
+        "results/logs/tables/claims.log",
+    script:
+        "../scripts/claims.py"
 
 
 rule paper:
     message:
         "Writing results/paper.md and results/supplement.md"
     input:
-        templates=sorted(map(str, Path(ARTICLE).glob("*.md.j2"))),
-        atlas="config/atlas.nc",
-        references=[f"{ARTICLE}/references.yaml", f"{ARTICLE}/numbered.csl"],
-        data=map(dataset, STUDIES),
-        tables=expand("results/figures/{table}.md", table=TABLES),
-        source=modules(
-            *("pipeline.article", "beyond.atlas.figures", "paper.claims.tables"),
-            "paper.claims.claims",
+        code=lambda wildcards: code(
+            "paper",
+            "paper.py",
+            files=[*TEMPLATES, f"{ARTICLE}/references.yaml", f"{ARTICLE}/numbered.csl"],
+            outputs=["results/paper.md", "results/supplement.md", "results/tally.txt"],
         ),
+        atlas="config/atlas.nc",
+        data=[each.dataset for each in ARTIFACTS.values() if each.study],
+        tables=expand("results/figures/{table}.md", table=TABLES),
     output:
         paper="results/paper.md",
         supplement="results/supplement.md",
         tally="results/tally.txt",
+    params:
+        templates=ARTICLE,
     log:
         "results/logs/paper.log",
     script:
@@ -34,13 +61,19 @@ rule paper_pdf:
     message:
         "Setting results/paper.pdf and results/supplement.pdf"
     input:
+        code=lambda wildcards: code(
+            "paper_pdf",
+            "paper_pdf.py",
+            files=[f"{ARTICLE}/article.typ"],
+            outputs=["results/paper.pdf", "results/supplement.pdf"],
+        ),
         texts=[rules.paper.output.paper, rules.paper.output.supplement],
-        template=f"{ARTICLE}/article.typ",
-        figures=expand("results/figures/{figure}.svg", figure=DRAWINGS),
-        source=modules("pipeline.article", "datasets.files"),
+        figures=[f"results/figures/{each.name}.svg" for each in ARTIFACTS.values() if each.drawing],
     output:
         "results/paper.pdf",
         "results/supplement.pdf",
+    params:
+        template=f"{ARTICLE}/article.typ",
     log:
         "results/logs/paper_pdf.log",
     script:

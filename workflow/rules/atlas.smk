@@ -12,7 +12,9 @@ rule atlas_shard:
     message:
         "Atlas: shard {wildcards.shard}"
     input:
-        source=modules("beyond.atlas.shards", "beyond.atlas.jobs"),
+        code=lambda wildcards: code(
+            "atlas-shards", "atlas_shard.py", outputs=Path("results/atlas/shards").glob("*.nc")
+        ),
     output:
         data="results/atlas/shards/{shard}.nc",
     wildcard_constraints:
@@ -34,10 +36,10 @@ rule atlas_merge:
     message:
         "Atlas: one file from its shards"
     input:
+        code=lambda wildcards: code("atlas", "atlas_merge.py", outputs=["results/atlas/atlas.nc"]),
         parts=lambda wildcards: expand(
             rules.atlas_shard.output.data, shard=[*names(ATLAS), "limits"]
         ),
-        source=modules("beyond.atlas.shards", "beyond.atlas.jobs"),
     output:
         data="results/atlas/atlas.nc",
     params:
@@ -53,8 +55,10 @@ rule atlas:
     message:
         "Atlas: its summary, with charts"
     input:
+        code=lambda wildcards: code(
+            "atlas-summary", "atlas.py", outputs=Path("results/atlas").glob("*.[ps]*")
+        ),
         parts=[rules.atlas_merge.output.data],
-        source=modules("beyond.atlas.summary", "beyond.atlas.figures"),
     output:
         data="results/atlas/summary.nc",
         charts=expand("results/atlas/{chart}.png", chart=CHARTS),

@@ -27,48 +27,38 @@ if found.resolve() != HERE.resolve():
         f"bouncing_ball is imported from {found}, not from {HERE}: use this checkout's .venv (make setup)"
     )
 
-from bouncing_ball.pipeline.configuration import arguments
-from bouncing_ball.pipeline.configuration import ConfigurationError, read_yaml
-from bouncing_ball.pipeline.sources import sources
+from bouncing_ball.pipeline.artifacts import Artifact
+from bouncing_ball.pipeline.configuration import ConfigurationError, arguments
+from bouncing_ball.pipeline.sources import digest, keep_digest, keep_doubt, sources
+
+SCRIPTS = Path(ROOT, "workflow", "scripts")
+sys.path.append(str(SCRIPTS))
+
+from adapter import function
 
 # Snakemake writes these two lines before every job, and they do not name it.
 logger.addFilter(lambda record: not str(record.msg).startswith(("Select jobs", "Execute ")))
 
-# What the rules of the stages do not say about an artifact.
-TABLE = read_yaml(Path(ROOT, "workflow/artifacts.yaml"))
-# Datasets that are accepted by hand; a run reads them and does not make them.
-ACCEPTED = {name: entry["accepted"] for name, entry in TABLE.items() if "accepted" in entry}
+# All artifacts by name, as the stages of both wings list them.
+ARTIFACTS = {}
 
 
-# The functions of the artifacts, as the rules of the stages list them.
-STUDIES, DRAWINGS = {}, {}
-
-
-# The artifacts of a stage, each with "study -> drawing", or its study alone if it has no figure.
-def stage(**artifacts):
-    for name, functions in artifacts.items():
-        STUDIES[name], *drawing = functions.split(" -> ")
-        DRAWINGS.update((name, draw) for draw in drawing)
+# The artifacts of a stage: its module in the package, with the studies, and the module of its
+# figures and tables, which has the same name with `_figures`, unless another one is given. The
+# result is a pattern of their names.
+def stage(module, figures=None, **artifacts):
+    for name, given in artifacts.items():
+        ARTIFACTS[name] = Artifact(
+            name=name, module=module, figures=figures or f"{module}_figures", **given
+        )
     return "|".join(artifacts)
 
 
-# The dataset from which figures, claims and the article are made.
-def dataset(name):
-    return ACCEPTED.get(name, f"results/figures/{name}.nc")
-
-
-# Source files that a job uses: the named modules and all modules that they import. The paths are
-# relative, so that a folder may be moved without running all jobs again.
-def modules(*names):
-    files = sources("bouncing_ball.pipeline.jobs", *(f"bouncing_ball.{name}" for name in names))
-    return [os.path.relpath(file) for file in files]
-
-
-# Inputs of the text before a table: its templates, and the modules that render them.
-def words_before(wildcards):
-    templates = (f"{ARTICLE}/{wildcards.table}_{part}.md.j2" for part in ("head", "columns"))
-    needed = [*templates, *modules("pipeline.article")]
-    return needed if wildcards.table == "claims" else []
+# The values that a study takes from the configuration.
+def arguments_of(artifact):
+    return arguments(
+        function(artifact.module, artifact.study), artifact.wing, artifact.name, config
+    )
 
 
 # The shards that a study merges, if it has several. The dataset is that of one job, byte for byte,
@@ -76,7 +66,23 @@ def words_before(wildcards):
 def shards_of(wildcards):
     from bouncing_ball.datasets.shards import shard_names
 
-    given = arguments(STUDIES[wildcards.artifact], wildcards.artifact, config)
+    given = arguments_of(ARTIFACTS[wildcards.artifact])
     count = given.get("parameters", {}).get("shards", 1)
     names = shard_names(count) if count > 1 else []
     return expand(rules.shard.output.data, shard=names, **wildcards)
+
+
+# The one input that stands for the code of a job: a file with the digest of its script, of the
+# named modules, and of all modules and data that these import and read. It is written only if the
+# digest changes, and the job then runs again.
+def code(job, script, *modules, outputs=(), files=()):
+    path = Path("results", "code", job)
+    if not workflow.is_main_process and path.exists():
+        return str(path)
+    read = [Path(file).resolve() for file in (SCRIPTS / "adapter.py", SCRIPTS / script, *files)]
+    found = digest(sources([f"bouncing_ball.{module}" for module in modules], read))
+    if workflow.touch:
+        keep_doubt(path, found, map(Path, outputs))
+    else:
+        keep_digest(path, found)
+    return str(path)

@@ -22,9 +22,10 @@ with logged(snakemake) as lines:
     # Its page begins with words, which the supplement has already.
     tables["claims"] = to_markdown(*rows.claims(data["claims"]))
     tables["atlas"] = to_markdown(*shares(data["atlas"]))
+    claims = rows.Claims(data["claims"])
     for template, path in (("article", "paper"), ("supplement", "supplement")):
-        file = Path(snakemake.input.templates[0]).with_name(f"{template}.md.j2")
-        write_text(snakemake.output[path], render_article(file, data, tables, rows.Claims(data["claims"])))
+        file = Path(snakemake.params.templates, f"{template}.md.j2")
+        write_text(snakemake.output[path], render_article(file, data, tables, claims))
     last = tally(data["claims"])
     write_text(snakemake.output.tally, last + "\n")
     lines.append(last)

@@ -9,7 +9,7 @@ from bouncing_ball.pipeline.jobs import logged
 with logged(snakemake) as lines:
     for name, output in zip(snakemake.input.texts, snakemake.output, strict=True):
         text = Path(name).read_text(encoding="utf-8")
-        pdf = article_pdf(text, snakemake.input.template, Path(name).parent)
+        pdf = article_pdf(text, snakemake.params.template, Path(name).parent)
         with replacing(output) as temporary:
             temporary.write_bytes(pdf)
         lines.append(f"{output}: {len(pdf) / 1e6:.1f} MB")

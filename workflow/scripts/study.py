@@ -1,5 +1,9 @@
 """One dataset by the study of its stage."""
 
-from bouncing_ball.pipeline.jobs import make_dataset
+from adapter import function
 
-make_dataset(snakemake)
+from bouncing_ball.pipeline.jobs import logged, make_dataset
+
+with logged(snakemake) as lines:
+    study = function(snakemake.params.module, snakemake.params.study)
+    lines += make_dataset(snakemake, study)

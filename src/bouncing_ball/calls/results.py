@@ -22,6 +22,7 @@ from bouncing_ball.errors import ModelError, NoOrbitError, extra, require
 from bouncing_ball.numerics.continuation import ContinuationError
 from bouncing_ball.paper.motion.flight import Flight, land, table
 from bouncing_ball.paper.motion.sequence import ImpactSequence, Status
+from bouncing_ball.paper.orbits import observables
 from bouncing_ball.paper.orbits.branch import whole_branch
 from bouncing_ball.paper.orbits.model import ImpactModel
 from bouncing_ball.paper.orbits.observables import branch_columns, columns, joined, no_branch
@@ -139,7 +140,7 @@ def orbits_on_grid(ball: Ball, n: Any, amplitude: Any, side: Side) -> Orbits:
     grid = Grid(n=n, amplitude=amplitude, **ball.parameters)
     missing = _observables(RestitutionModel(1.0), 1, np.nan, Side.STABLE)
     rows = _each_place(grid, ball, ("n", "amplitude"), found, missing)
-    return grid.unfold(describe(rows), Orbits)
+    return grid.unfold(describe(rows, observables.VARIABLES), Orbits)
 
 
 def _observables(model: ImpactModel, n: Any, amplitude: Any, side: Side) -> dict[str, np.ndarray]:
@@ -165,7 +166,8 @@ def limits_on_grid(ball: Ball, n: Any) -> Limits:
         }
 
     grid = Grid(n=n, **ball.parameters)
-    return grid.unfold(describe(_each_place(grid, ball, ("n",), found, {})), Limits)
+    rows = _each_place(grid, ball, ("n",), found, {})
+    return grid.unfold(describe(rows, observables.VARIABLES), Limits)
 
 
 def permanent_contact_on_grid(ball: ModelBall) -> PermanentContact:
@@ -238,7 +240,7 @@ def branches_on_grid(ball: Ball, n: Any, amplitude_max: float | None, points: in
 
     grid = Grid(n=n, **ball.parameters)
     whole = _by_place(grid, ball, ("n",), found, partial(no_branch, points), joined)
-    branches = grid.unfold(describe(whole), Branches)
+    branches = grid.unfold(describe(whole, observables.VARIABLES), Branches)
     return branches if amplitude_max is None else branches.assign_attrs(amplitude_max=amplitude_max)
 
 

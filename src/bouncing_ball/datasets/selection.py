@@ -25,7 +25,8 @@ def index_of(values: xr.DataArray, name: str, wanted: Any) -> int:
     >>> index_of(xr.DataArray([5.0, 6.0], {"r": [0.1 + 0.2, 0.5]}), "r", 0.3)
     0
     """
-    labels, text = values[name].values, isinstance(wanted, str)
+    labels = values[name].values
+    text = isinstance(wanted, str)
     same = labels == wanted if text else np.isclose(labels, wanted, rtol=_MATCH, atol=0)
     if np.count_nonzero(same) != 1:
         raise ModelError(f"{name} = {wanted} is not among {', '.join(map(str, labels))}")

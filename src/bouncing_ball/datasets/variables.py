@@ -20,8 +20,8 @@ class Variable(NamedTuple):
     """What a dataset says of one of its variables.
 
     ``symbol`` and ``equation`` are empty if the paper has none for it. ``budget`` is the largest
-    change from the accepted record, as a share of ``scale``: of 1, of another variable, or, if it is
-    empty, of the range of the values; without a budget only rounding may change the variable.
+    change from the accepted record, as a share of ``scale``: of 1, of another variable, or, if it
+    is empty, of the range of the values; without a budget only rounding may change the variable.
     """
 
     long_name: str
@@ -45,20 +45,26 @@ class Variable(NamedTuple):
 
 
 SHARED = {
+    # Axes of datasets, and parameters.
     "n": Variable("index of the family of periodic orbits", symbol="n", equation="Eq. 6"),
     "case": Variable("parameter set"),
+    "case_restitution": Variable("restitution coefficient of a case", symbol="r"),
+    "case_amplitude": Variable("amplitude of a case", symbol="Λ"),
     "frequency_ratio": Variable(
         "frequency ratio of contact and table", symbol="ϖ", equation="Eq. 11"
     ),
-    "point": Variable("point along the branch, at equal steps of arclength"),
-    "sample": Variable("sample number"),
-    "bound": Variable("end of the stability range"),
-    "quantity": Variable("quantity compared between the two models"),
-    "tolerance": Variable("relative error tolerated", equation="Eqs. 37-38"),
-    "impact_map": Variable("map of the restitution model", equation="Eqs. 5, 8"),
     "restitution": Variable("restitution coefficient", symbol="r", equation="Eq. 2"),
     "damping_ratio": Variable("damping ratio of the contact", symbol="ζ", equation="Eq. 16"),
     "amplitude": Variable("excitation amplitude", symbol="Λ", equation="Eq. 4"),
+    "release": Variable("what ends a contact"),
+    "model": Variable("model of the impact"),
+    "simple": Variable("simple model with which the contact is compared"),
+    "impact_map": Variable("map of the restitution model", equation="Eqs. 5, 8"),
+    "reading": Variable("what is assumed, one reading of the paper each"),
+    "point": Variable("point along the branch, at equal steps of arclength"),
+    "sample": Variable("sample number"),
+    "height": Variable("height from which the ball falls", symbol="h"),
+    # n-T orbits.
     "phase": Variable(
         "phase of the table when the contact starts", symbol="φ", units="rad", equation="Eqs. 6, 21"
     ),
@@ -82,7 +88,12 @@ SHARED = {
         "whether both Floquet multipliers are inside the unit circle", symbol="|μ| < 1"
     ),
     "admissible": Variable("whether nothing else happens during the orbit"),
-    "absence": Variable("why there is no stable range"),
+    "restitution_phase": Variable(
+        "phase of impact, restitution model", symbol="φ_CR", units="rad", equation="Eq. 6"
+    ),
+    "contact_force": Variable("force of the table over the weight", symbol="F"),
+    # Bifurcations, and the ranges of stability between them.
+    "bound": Variable("end of the stability range"),
     "saddle_node_amplitude": Variable(
         "amplitude of the saddle-node", symbol="Λ_SN", equation="Eq. 7"
     ),
@@ -92,24 +103,23 @@ SHARED = {
     "period_doubling_amplitude": Variable(
         "amplitude of the period doubling", symbol="Λ_PD", equation="Eq. 8"
     ),
-    "period_doubling_turn": Variable(
-        "frequency ratio at which the period doubling is lowest", symbol="ϖ", budget=1e-05
-    ),
     "period_doubling_phase": Variable(
         "phase at the period doubling", symbol="φ_PD", units="rad", equation="Eq. 6"
     ),
+    "period_doubling_turn": Variable(
+        "frequency ratio at which the period doubling is lowest", symbol="ϖ", budget=1e-05
+    ),
+    "computed": Variable("end of the stability range, this replication", symbol="Λ"),
+    "printed": Variable("end of the stability range, as printed", symbol="Λ", equation="Table 1"),
+    # Ball and table over time.
     "time": Variable("time since the first impact", symbol="τ"),
     "ball": Variable("height of the ball", symbol="z", equation="Eqs. 4, 12, 14"),
     "ball_velocity": Variable("velocity of the ball", symbol="z′", equation="Eqs. 4, 13, 15"),
     "table": Variable("height of the table", symbol="w", equation="Eq. 4"),
-    "restitution_phase": Variable(
-        "phase of impact, restitution model", symbol="φ_CR", units="rad", equation="Eq. 6"
-    ),
-    "threshold_amplitude": Variable(
-        "threshold of permanent contact",
-        symbol="Λ_SD, or Λ_F for the force release",
-        equation="Eq. 33",
-    ),
+    "contact": Variable("whether the ball touches the table"),
+    # Errors and thresholds.
+    "quantity": Variable("quantity compared between the two models"),
+    "tolerance": Variable("relative error tolerated", equation="Eqs. 37-38"),
     "relative_error": Variable("relative error of the restitution model", equation="Eqs. 37-38"),
     "error_threshold": Variable(
         "frequency ratio above which the relative error stays below the tolerance",
@@ -118,8 +128,31 @@ SHARED = {
         budget=1e-10,
     ),
     "threshold_status": Variable("whether the threshold lies within the range scanned"),
+    "threshold_amplitude": Variable(
+        "threshold of permanent contact",
+        symbol="Λ_SD, or Λ_F for the force release",
+        equation="Eq. 33",
+    ),
+    "needed_ratio": Variable(
+        "smallest of the frequency ratios tried from which on the error is known to be within the "
+        "tolerance",
+        symbol="ϖ",
+    ),
+    # Comparisons of two computations.
+    "disagreement": Variable("largest disagreement between two routes", budget=1.0, scale="budget"),
+    "budget": Variable("disagreement allowed"),
+    "orbits": Variable("number of orbits or bifurcations compared"),
+    # Motions on which balls end.
     "motion": Variable("motion on which a ball ends"),
+    "kind": Variable("kind of motion on which the ball ends"),
+    "reason": Variable("why a claim or a motion is undecided"),
+    "periods": Variable("periods of the table after which the motion repeats, 0 if it does not"),
+    "impacts": Variable("impacts until the motion repeats, 0 if it does not"),
     "start_phase": Variable("phase of the table at the first impact", symbol="φ", units="rad"),
+    "start_speed": Variable("relative speed at the first impact", symbol="-δ′"),
+    "end_phase": Variable(
+        "phase of the table at an impact of the motion on which the ball ends", units="rad"
+    ),
     "lyapunov_exponent": Variable(
         "largest Lyapunov exponent, per period of the table",
         symbol="λ",
@@ -127,40 +160,8 @@ SHARED = {
         scale="lyapunov_error",
     ),
     "lyapunov_error": Variable("standard error of the largest Lyapunov exponent", budget=0.5),
-    "release": Variable("what ends a contact"),
-    "reading": Variable("what is assumed, one reading of the paper each"),
-    "model": Variable("model of the impact"),
-    "contact_force": Variable("force of the table over the weight", symbol="F"),
-    "disagreement": Variable("largest disagreement between two routes", budget=1.0, scale="budget"),
-    "budget": Variable("disagreement allowed"),
-    "digits_lost": Variable(
-        "decimal digits of the start that the motion has lost on the way", budget=math.inf
-    ),
-    "computed": Variable("end of the stability range, this replication", symbol="Λ"),
-    "printed": Variable("end of the stability range, as printed", symbol="Λ", equation="Table 1"),
-    "height": Variable("height from which the ball falls", symbol="h"),
-    "periods": Variable("periods of the table after which the motion repeats, 0 if it does not"),
-    "impacts": Variable("impacts until the motion repeats, 0 if it does not"),
-    "end_velocity": Variable("velocity of the ball before that impact"),
-    "start": Variable("start of a ball at one amplitude"),
-    "impact": Variable("impact of the motion on which the ball ends"),
-    "impact_phase": Variable(
-        "phase of the table at an impact of the motion on which the ball ends",
-        symbol="φ",
-        units="rad",
-    ),
-    "impact_speed": Variable(
-        "speed of the ball towards the table at an impact of the motion on which it ends"
-    ),
-    "motion_kind": Variable("kind of one of the motions on which balls end"),
-    "motion_periods": Variable("periods of the table after which one of the motions repeats"),
-    "motion_impacts": Variable("impacts until one of the motions repeats"),
-    "share_error": Variable("standard error of a share"),
-    "simple": Variable("simple model with which the contact is compared"),
-    "needed_ratio": Variable(
-        "smallest of the frequency ratios tried from which on the error is known to be within the tolerance",
-        symbol="ϖ",
-    ),
+    "destination": Variable("motion on which a start ends, index of the motion", budget=math.inf),
+    "share": Variable("share of nodes"),
     "shift": Variable("change of the amplitude"),
     "uncertainty_exponent": Variable(
         "exponent of the share that a change of this size moves", symbol="α"
@@ -171,42 +172,8 @@ SHARED = {
     "uncertainty_exponent_high": Variable(
         "upper limit of the confidence interval of the exponent of uncertainty"
     ),
-    "case_restitution": Variable("restitution coefficient of a case", symbol="r"),
-    "case_amplitude": Variable("amplitude of a case", symbol="Λ"),
-    "kind": Variable("kind of motion on which the ball ends"),
-    "orbits": Variable("number of orbits or bifurcations compared"),
-    "contact": Variable("whether the ball touches the table"),
-    "residual": Variable(
-        "largest defect of the orbit equations", equation="Eqs. 21-26", budget=1e-12, scale="1"
-    ),
-    "destination": Variable("motion on which a start ends, index of the motion", budget=math.inf),
-    "item": Variable("figure, table or equation of the paper"),
-    "special_kind": Variable("kind of special point"),
-    "special_amplitude": Variable("excitation amplitude at the special point", symbol="Λ"),
-    "special_phase": Variable(
-        "phase at the special point", symbol="φ", units="rad", equation="Eq. 21"
-    ),
-    "special_contact_duration": Variable(
-        "contact duration at the special point", symbol="τ_b", equation="Eq. 23", budget=1e-12
-    ),
-    "special_residual": Variable(
-        "residual of the extended system at the special point", budget=1e-12, scale="1"
-    ),
-    "multiplier_real": Variable("real part of the Floquet multiplier", symbol="Re μ"),
-    "multiplier_imag": Variable("imaginary part of the Floquet multiplier", symbol="Im μ"),
-    "end_reason": Variable("why the branch ends there"),
-    "special": Variable("special point of the branch, in order of arclength"),
-    "end": Variable("end of the branch"),
-    "multiplier": Variable("Floquet multiplier, the larger modulus first", symbol="μ"),
-    "share": Variable("share of nodes"),
-    "reason": Variable("why a claim or a motion is undecided"),
-    "end_phase": Variable(
-        "phase of the table at an impact of the motion on which the ball ends", units="rad"
-    ),
-    "start_speed": Variable("relative speed at the first impact", symbol="-δ′"),
-    "end_speed": Variable("speed of the ball towards the table at that impact", symbol="-δ′"),
 }
-"""The variables that datasets of several stages have; the others are declared beside their study."""
+"""The variables that several stages or calls write; the others are declared beside the one that does."""
 
 
 def describe(

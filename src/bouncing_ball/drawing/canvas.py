@@ -11,6 +11,7 @@ from matplotlib.figure import Figure, SubFigure
 from matplotlib.layout_engine import LayoutEngine
 from matplotlib.ticker import NullLocator
 
+from bouncing_ball.drawing.labels import QUANTITIES
 from bouncing_ball.drawing.style import COLOURS, LINES
 
 WIDTH = 3.4
@@ -105,7 +106,24 @@ def coloured(data: xr.Dataset, dim: str) -> Iterator[tuple[xr.Dataset, str]]:
 
 def draw_curve(axes: Axes, x: Any, y: Any, admissible: Any, **look: Any) -> None:
     """A curve of orbits with a given look, dotted where the orbits are inadmissible."""
-    x, y, shown = np.asarray(x), np.asarray(y), np.asarray(admissible, dtype=bool)
+    x = np.asarray(x)
+    y = np.asarray(y)
+    shown = np.asarray(admissible, dtype=bool)
     axes.plot(x, np.where(shown, y, np.nan), **look)
     if not np.all(shown):
         axes.plot(x, np.where(shown, np.nan, y), color=look["color"], **LINES["inadmissible"])
+
+
+def panels_by_quantity(
+    data: xr.Dataset, height: float, xlabel: str
+) -> tuple[Figure, dict[str, Axes]]:
+    """Two rows of three panels, one for the errors of each quantity, with labels at the outside."""
+    figure, slots = canvas(WIDE, height, 2, 3, sharex=True, sharey=True)
+    for axes in slots.flat:
+        axes.set(xlabel=xlabel, ylabel="relative error")
+        axes.label_outer()
+    quantities = map(str, data["quantity"].values)
+    panels = dict(zip(quantities, slots.flat, strict=False))
+    for quantity, axes in panels.items():
+        axes.set_title(QUANTITIES[quantity])
+    return figure, panels

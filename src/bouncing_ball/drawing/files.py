@@ -27,7 +27,8 @@ def save(figure: Figure, path: str | Path, metadata: Mapping[str, str]) -> None:
     OSError
         If the file cannot be written.
     """
-    kind, given = Path(path).suffix.removeprefix("."), dict(metadata)
+    kind = Path(path).suffix.removeprefix(".")
+    given = dict(metadata)
     # Without time and version, which matplotlib would write by default.
     options: dict[str, Any] = {"metadata": {"Software": None, **given}}
     if kind == "svg":

@@ -53,6 +53,9 @@ MODELS: dict[str, Look] = {
     "restitution": {"color": RESTITUTION, "linewidth": 1.0},
     "corrected": {"color": CORRECTED, "linewidth": 1.2, "linestyle": (0, (4, 1.5))},
 }
+LIMIT: Look = MODELS["restitution"] | {"linestyle": "--"}
+"""The value of the restitution model, to which that of the contact tends along ϖ."""
+
 # Contact laws differ by their dashes as well as by their colours.
 LAWS: dict[str, Look] = {
     "linear": {"color": COLOURS[0], "linestyle": "-"},

@@ -102,8 +102,8 @@ def text(name: str) -> Column:
     return lambda part: str(part[name].item())
 
 
-def quantity(part: xr.Dataset) -> str:
-    """The name of the quantity of a row."""
+def quantity_in_words(part: xr.Dataset) -> str:
+    """The column of the names of the quantities."""
     return words(part["quantity"].item())
 
 
@@ -115,3 +115,13 @@ def value(name: str, form: str, none: str = "–") -> Column:
 def at(column: Column, **where: Any) -> Column:
     """A column at one place along dimensions over which the rows do not run."""
     return lambda part: column(part.sel(where))
+
+
+def threshold(form: str, within: str, never: str) -> Column:
+    """A column of thresholds, with the given texts for thresholds outside the range scanned."""
+
+    def column(part: xr.Dataset) -> str:
+        outside = within if part.threshold_status.item() == "within" else never
+        return entry_of(part.error_threshold, form, outside)
+
+    return column

@@ -26,10 +26,9 @@ class ContinuationError(RuntimeError):
 class StepControl:
     """Adaptive step in arclength.
 
-    The step grows if the corrector needed fewer iterations than
-    ``target_iterations``, and shrinks if it needed more. It is also limited such that the
-    tangent turns by less than ``max_angle``, so that folds are
-    resolved and the continuation does not jump to another branch.
+    The step grows if the corrector needed fewer iterations than ``target_iterations``, and shrinks
+    if it needed more. It is also limited such that the tangent turns by less than ``max_angle``, so
+    that folds are resolved and the continuation does not jump to another branch.
 
     Parameters
     ----------

@@ -1,32 +1,25 @@
-"""Reading YAML files, with a message of one line for a mistake.
+"""The configuration of a run: how it is read, what each study takes from it, and its check.
 
-A duplicate key is an error, because otherwise the last value would be used without a warning.
-
-The studies that the rules name, and the arguments that each takes from a run.
-
-The signature of a study declares its arguments, for example ``study(parameters, release,
-continuation)``. ``parameters`` is a section of the configuration, such as ``figures.fig08``;
-``data`` holds the datasets that the rule names; ``part`` and ``found`` are those of
+The signature of a study declares what it takes, for example ``study(parameters, release,
+continuation)``. ``parameters`` are those of its artifact, such as ``paper.fig08``; ``data`` holds
+the datasets that the stage names; ``part`` and ``found`` are those of
 :mod:`bouncing_ball.datasets.shards`; and each further argument is the setting of the run with that
-name.
-
-The check of the configuration, with one line per mistake.
-
-The type of each section is that of the argument ``parameters`` of its study, so that the allowed
+name. The annotations of the arguments are the types of the configuration, so that the allowed
 values and the reasons for them are defined beside the study.
+
+Every mistake gives a message of one line. A duplicate key is a mistake, because otherwise the last
+value would be used without a warning.
 """
 
 import inspect
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from difflib import get_close_matches
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import yaml
 from pydantic import BaseModel, ConfigDict, ValidationError, create_model, validate_call
 
-from bouncing_ball.beyond.atlas.plan import Plan
 from bouncing_ball.datasets.parameters import Parameters
 from bouncing_ball.errors import ModelError, escaped, printable
 
@@ -99,29 +92,15 @@ def read_yaml(path: str | Path) -> Any:
         raise ConfigurationError("not UTF-8 text") from None
 
 
-_OF_JOB = ("data", "part", "found")
-SECTIONS = ("figures", "tables", "extensions", "studies")
-"""Sections of the configuration in which each key is an artifact."""
+_GIVEN_BY_THE_JOB = ("data", "part", "found")
 
-
-def load(study: str) -> Callable[..., Any]:
-    """The function with this dotted name in the package.
-
-    Raises
-    ------
-    ConfigurationError
-        If there is no such module or function.
-
-    Examples
-    --------
-    >>> load("paper.contact.damping.damping_ratio")(1.0).item()
-    0.0
-    """
-    module, _, function = study.rpartition(".")
-    try:
-        return getattr(import_module(f"bouncing_ball.{module}"), function)
-    except (ModuleNotFoundError, AttributeError) as error:
-        raise ConfigurationError(f"{study}: {error}") from None
+RENAMED = {
+    "figures": "paper",
+    "tables": "paper",
+    "studies": "paper",
+    "extensions": "beyond",
+}
+"""Sections of earlier configurations, and the sections that hold their artifacts now."""
 
 
 def typed(study: Callable[..., Any]) -> Callable[..., Any]:
@@ -131,71 +110,43 @@ def typed(study: Callable[..., Any]) -> Callable[..., Any]:
 
     Examples
     --------
-    >>> sweep = load("paper.exhibits.apparent_restitution.apparent_restitution")
-    >>> case = {"restitution": 0.5, "amplitude": 1.5}
-    >>> span = {"min": 10.0, "max": 1000.0, "samples": 3}
-    >>> parameters = {"n": 1, "cases": [case], "frequency_ratio": span}
-    >>> typed(sweep)(parameters, "displacement").frequency_ratio.values.tolist()
+    >>> from bouncing_ball.datasets.parameters import Span
+    >>> def study(parameters: Span):
+    ...     return parameters.grid().tolist()
+    >>> typed(study)({"min": 10.0, "max": 1000.0, "samples": 3})
     [10.0, 100.0, 1000.0]
     """
     return validate_call(config=ConfigDict(arbitrary_types_allowed=True))(study)
 
 
-def taken(study: str) -> dict[str, Any]:
+def taken(study: Callable[..., Any]) -> dict[str, Any]:
     """The arguments that a study takes from the configuration, with their types.
 
-    Raises
-    ------
-    ConfigurationError
-        If there is no such study.
-
     Examples
     --------
-    >>> list(taken("paper.exhibits.continuation_of_orbits.orbit_branches"))
-    ['parameters', 'release', 'continuation']
+    >>> def study(data, parameters: int, release: str):
+    ...     pass
+    >>> taken(study)
+    {'parameters': <class 'int'>, 'release': <class 'str'>}
     """
-    signature = inspect.signature(load(study)).parameters.items()
-    return {name: each.annotation for name, each in signature if name not in _OF_JOB}
+    signature = inspect.signature(study).parameters.items()
+    return {name: each.annotation for name, each in signature if name not in _GIVEN_BY_THE_JOB}
 
 
-def section(artifact: str, run: Mapping[str, Any]) -> str:
-    """Name of the section of the configuration that holds the parameters of an artifact.
-
-    Raises
-    ------
-    ConfigurationError
-        If no section has this key.
-
-    Examples
-    --------
-    >>> section("fig02", {"figures": {"fig02": {"n": 1}}})
-    'figures'
-    """
-    for name in SECTIONS:
-        if artifact in (run.get(name) or {}):
-            return name
-    raise ConfigurationError(
-        f"{artifact} has no parameters: add a key {artifact} to one of {', '.join(SECTIONS)}"
-    )
-
-
-def arguments(study: str, artifact: str, run: Mapping[str, Any]) -> dict[str, Any]:
+def arguments(
+    study: Callable[..., Any], section: str, artifact: str, run: Mapping[str, Any]
+) -> dict[str, Any]:
     """The arguments of a study for an artifact, in the form that the configuration has.
 
-    Raises
-    ------
-    ConfigurationError
-        If there is no such study, or no section with this artifact.
-
     Examples
     --------
-    >>> run = {"release": "force", "figures": {"fig05": {"n": 1}}}
-    >>> arguments("paper.exhibits.apparent_restitution.apparent_restitution", "fig05", run)
+    >>> def study(parameters, release):
+    ...     pass
+    >>> arguments(study, "paper", "fig05", {"release": "force", "paper": {"fig05": {"n": 1}}})
     {'parameters': {'n': 1}, 'release': 'force'}
     """
     return {
-        name: run[section(artifact, run)][artifact] if name == "parameters" else run[name]
-        for name in taken(study)
+        name: run[section][artifact] if name == "parameters" else run[name] for name in taken(study)
     }
 
 
@@ -203,42 +154,33 @@ class _Sections(Parameters, strict=False):
     """Base of the complete configuration; it converts values, because YAML has no release rules."""
 
 
-def configuration_model(studies: Mapping[str, str], config: Mapping[str, Any]) -> type[BaseModel]:
+def configuration_model(
+    studies: Mapping[str, Mapping[str, Callable[..., Any]]], others: Mapping[str, type]
+) -> type[BaseModel]:
     """The type of the complete configuration.
 
     Parameters
     ----------
     studies : mapping
-        The study of each artifact.
-    config : mapping
-        The configuration, from which follows the section of each artifact.
-
-    Raises
-    ------
-    ConfigurationError
-        If a study, or the parameters of an artifact, are missing, or if a key of the configuration
-        that is no section is wrong.
+        For each section, the study of each artifact in it.
+    others : mapping
+        The types of the sections that belong to no study.
     """
-    arguments = {artifact: taken(study) for artifact, study in sorted(studies.items())}
-    keys: dict[str, Any] = {"atlas": (Plan, ...)}
-    for each in arguments.values():
-        keys |= {name: (kind, ...) for name, kind in each.items() if name != "parameters"}
-    known: dict[str, Any] = dict.fromkeys(arguments, (Any, None))
-    keys |= {name: (create_model(name, __base__=Parameters, **known), ...) for name in SECTIONS}
-    # The section of an artifact is known only if all sections are there. A mistyped artifact is
-    # named here, before another one is found to be missing.
-    check(create_model("Configuration", __base__=_Sections, **keys), config)
-    places: dict[str, dict[str, Any]] = {name: {} for name in SECTIONS}
-    for artifact, each in arguments.items():
-        if "parameters" in each:
-            places[section(artifact, config)][artifact] = (each["parameters"], ...)
-    for name, fields in places.items():
-        keys[name] = (create_model(name, __base__=Parameters, **fields), ...)
+    keys: dict[str, Any] = {name: (kind, ...) for name, kind in others.items()}
+    for section, of_artifacts in studies.items():
+        fields: dict[str, Any] = {}
+        for artifact, study in of_artifacts.items():
+            for name, kind in taken(study).items():
+                if name == "parameters":
+                    fields[artifact] = (kind, ...)
+                else:
+                    keys[name] = (kind, ...)
+        keys[section] = (create_model(section, __base__=Parameters, **fields), ...)
     return create_model("Configuration", __base__=_Sections, **keys)
 
 
 def check_configuration(
-    files: Iterable[str], config: Mapping[str, Any], studies: Mapping[str, str]
+    files: Iterable[str], config: Mapping[str, Any], model: type[BaseModel]
 ) -> None:
     """Raise on the first mistake in the files of a run, or in the configuration read from them.
 
@@ -254,7 +196,7 @@ def check_configuration(
         except ConfigurationError as error:
             raise ConfigurationError(f"{where}: {error}") from None
     try:
-        check(configuration_model(studies, config), config)
+        check(model, config)
     except ConfigurationError as error:
         raise ConfigurationError(f"configuration: {error}") from None
 
@@ -289,8 +231,8 @@ def place(path: Sequence[str | int]) -> str:
 
     Examples
     --------
-    >>> place(("figures", "fig08", "frequency_ratio", 0))
-    'figures.fig08.frequency_ratio[0]'
+    >>> place(("paper", "fig08", "frequency_ratio", 0))
+    'paper.fig08.frequency_ratio[0]'
     """
     text = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in path)
     return text.removeprefix(".")
@@ -325,21 +267,40 @@ _WORDS = {
 }
 
 
+def _schemas(model: type[BaseModel], path: Sequence[str | int]) -> list[dict[str, Any]]:
+    """The schemas on the way from the whole configuration to a key, the key's own schema last."""
+    root = model.model_json_schema()
+    found = [resolved(root, root)]
+    for part in path:
+        if isinstance(part, int):
+            inner = found[-1].get("items", {})
+        else:
+            inner = found[-1].get("properties", {}).get(part, {})
+        found.append(resolved(inner, root))
+    return found
+
+
+def _unknown_key(given: str, path: Sequence[str | int], known: list[str]) -> str:
+    """The sentence for a key that is not allowed at its place."""
+    key = str(path[-1])
+    if len(path) == 1 and key in RENAMED:
+        return f"the section {key} is now {RENAMED[key]}: write its keys under {RENAMED[key]}"
+    close = get_close_matches(key, known, n=1)
+    meant = f", did you mean {close[0]}?" if close else "."
+    return f"unknown key {given}{meant} Allowed here: {', '.join(known)}"
+
+
 def _sentence(model: type[BaseModel], error: Any) -> str:
     """One sentence for an error: the place, the value, the allowed values, and the reason."""
-    root = model.model_json_schema()
-    schema = parent = resolved(root, root)
-    for part in error["loc"]:
-        parent, inner = schema, schema.get("items" if isinstance(part, int) else "properties", {})
-        schema = resolved(inner if isinstance(part, int) else inner.get(part, {}), root)
-    kind, name = error["type"], place(error["loc"])
+    path = error["loc"]
+    schemas = _schemas(model, path)
+    schema = schemas[-1]
+    kind = error["type"]
+    name = place(path)
     description = " ".join(schema.get("description", "").split())
     given = f"{name} = {printable(repr(error['input']), 60)}"
     if kind == "extra_forbidden":
-        known = list(parent["properties"])
-        close = get_close_matches(str(error["loc"][-1]), known, n=1)
-        meant = f", did you mean {close[0]}?" if close else "."
-        return f"unknown key {given}{meant} Allowed here: {', '.join(known)}"
+        return _unknown_key(given, path, list(schemas[-2]["properties"]))
     if kind == "missing":
         return f"missing key {name}: {description or schema.get('title')}"
     if kind == "value_error":

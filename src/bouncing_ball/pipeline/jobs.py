@@ -1,13 +1,4 @@
-"""The progress of a run, and its last sentence.
-
-A run notes the number of its jobs, and each job that ends adds a line. Snakemake also counts its
-steps, but with three lines for each.
-
-A run may end with exit status 1 although no job failed, for example because of a difference from
-the record, or because results were not accepted. For a failed job Snakemake prints ten lines, with
-a command that the user did not type; such a run ends with one sentence instead.
-
-The adapter between Snakemake and the package: the log of a job, one-line errors, files.
+"""A run of the workflow and its jobs: progress, logs, errors of one line, and datasets.
 
 The scripts of the workflow are a few lines that call this module; ``snakemake`` is the object that
 Snakemake provides for them.
@@ -17,7 +8,7 @@ import gc
 import signal
 import sys
 import traceback
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -33,10 +24,20 @@ from bouncing_ball.datasets.files import (
     write_text,
 )
 from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline.configuration import load, typed
-from bouncing_ball.pipeline.provenance import gather
+from bouncing_ball.pipeline.configuration import typed
+from bouncing_ball.pipeline.provenance import PREFIX, gather
 
-_NOTES, _CONCLUSION = Path(".snakemake/progress"), Path("results/logs/conclusion")
+REFERENCE = (
+    "Carbonelli, Perret-Liaudet, Rigaud and Feki, Investigation of restitution coefficient "
+    "and spring-damper models for the bouncing ball problem, DETC2011-47870 (2011)"
+)
+HISTORY = "computed from the equations; the attributes provenance_* say by what and from what"
+
+_NOTES = Path(".snakemake/progress")
+_CONCLUSION = Path("results/logs/conclusion")
+
+
+# The progress of a run. Snakemake also counts its steps, but with three lines for each.
 
 
 def begin(jobs: int) -> None:
@@ -56,6 +57,11 @@ def advance() -> str:
     return f"{len(ended)} of {jobs}, {100 * len(ended) // int(jobs)} %"
 
 
+# The last sentence of a run. It may end with exit status 1 although no job failed, for example
+# because of a difference from the record. For a failed job Snakemake prints ten lines, with a
+# command that the user did not type; such a run ends with one sentence instead.
+
+
 def conclude(sentence: str) -> None:
     """End the run with this sentence, which replaces an earlier one."""
     write_text(_CONCLUSION, sentence)
@@ -68,11 +74,7 @@ def concluded() -> str:
     return sentence
 
 
-REFERENCE = (
-    "Carbonelli, Perret-Liaudet, Rigaud and Feki, Investigation of restitution coefficient "
-    "and spring-damper models for the bouncing ball problem, DETC2011-47870 (2011)"
-)
-HISTORY = "computed from the equations; the attributes provenance_* say by what and from what"
+# One job.
 
 
 @contextmanager
@@ -136,47 +138,56 @@ def joined(shards: Sequence[xr.Dataset]) -> dict[str, np.ndarray]:
     >>> joined([xr.Dataset({"twice": ("place", [k, k])}) for k in range(2)])
     {'twice': array([0, 0, 1, 1])}
     """
-    whole = {str(x): np.concatenate([s[x].values for s in shards], axis=-1) for x in shards[0]}
-    # Texts read from a file have the type object.
-    return {x: y.astype(str) if y.dtype == object else y for x, y in whole.items()}
+    whole = {}
+    for name in shards[0]:
+        values = np.concatenate([shard[name].values for shard in shards], axis=-1)
+        # Texts read from a file have the type object.
+        whole[str(name)] = values.astype(str) if values.dtype == object else values
+    return whole
 
 
 def provenance(snakemake: Any) -> dict[str, str]:
-    """The provenance of the files that the job writes.
+    """The provenance of the files that the job writes, with the digest of its code.
 
     It is gathered when a file is written and is not a parameter of the job, because Snakemake
     would then run every job again after each commit.
     """
     # The scripts are in workflow/scripts of the repository; the run may be in another folder.
     repository = Path(snakemake.scriptdir).resolve().parents[1]
-    modules = set(snakemake.input.get("source", []))
-    inputs = [str(path) for path in snakemake.input if path not in modules]
-    return gather(str(snakemake.output[0]), inputs, repository, snakemake.config)
+    code = snakemake.input.code
+    inputs = [str(path) for path in snakemake.input if path != code]
+    gathered = gather(str(snakemake.output[0]), inputs, repository, snakemake.config)
+    return gathered | {f"{PREFIX}code": Path(code).read_text(encoding="ascii")}
 
 
-def make_dataset(snakemake: Any) -> None:
+def make_dataset(snakemake: Any, study: Callable[..., xr.Dataset]) -> list[str]:
     """Run the study of the job and write its dataset.
 
     The provenance becomes global attributes, and so do the parameters and the settings of the run,
     unless the study itself sets attributes.
+
+    Returns
+    -------
+    list of str
+        Lines for the log: the dimensions of the dataset, and where continuations ended.
     """
-    with logged(snakemake) as lines:
-        job = snakemake.params
-        data = {Path(path).stem: read_input(path) for path in snakemake.input.data}
-        given = dict(job.arguments)
-        others: dict[str, Any] = {"data": data} if data else {}
-        if shards := snakemake.input.get("shards"):
-            others["found"] = joined([read_input(path) for path in shards])
-        dataset = typed(load(job.study))(**given, **others)
-        if bare := [name for name, x in dataset.variables.items() if "units" not in x.attrs]:
-            raise ModelError(f"{bare[0]} has no unit: the study ends with describe(dataset)")
-        named = given.pop("parameters", {}) | given
-        parameters = dataset.attrs or parameter_attributes(named)
-        publish(snakemake, dataset, parameters)
-        sizes = ", ".join(f"{name} {size}" for name, size in dataset.sizes.items())
-        lines.append(f"{snakemake.output.data}: {sizes}")
-        if "end_reason" in dataset:
-            lines += [str(reason) for reason in dataset.end_reason.values.ravel()]
+    given = dict(snakemake.params.arguments)
+    from_other_jobs: dict[str, Any] = {}
+    if paths := snakemake.input.get("data"):
+        from_other_jobs["data"] = {Path(path).stem: read_input(path) for path in paths}
+    if paths := snakemake.input.get("shards"):
+        from_other_jobs["found"] = joined([read_input(path) for path in paths])
+    dataset = typed(study)(**given, **from_other_jobs)
+    for name, variable in dataset.variables.items():
+        if "units" not in variable.attrs:
+            raise ModelError(f"{name} has no unit: the study ends with described(...)")
+    named = given.pop("parameters", {}) | given
+    publish(snakemake, dataset, dataset.attrs or parameter_attributes(named))
+    sizes = ", ".join(f"{name} {size}" for name, size in dataset.sizes.items())
+    lines = [f"{snakemake.output.data}: {sizes}"]
+    if "end_reason" in dataset:
+        lines += [str(reason) for reason in dataset.end_reason.values.ravel()]
+    return lines
 
 
 def publish(

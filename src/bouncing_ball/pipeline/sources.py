@@ -1,16 +1,23 @@
-"""The source files that a stage uses.
+"""The code that a job uses, and a digest of its contents.
 
-Snakemake reruns a job when its script changes, but does not see the modules that the script
-imports. These modules are therefore inputs of the job. They are found by following the import
-statements, so that an edit reruns only the stages that use the module.
+Snakemake runs a job again when its script changes, but does not see the modules that the script
+imports, and it compares times, which an old file or ``--touch`` makes misleading. Each job
+therefore has one small file as its input, which holds the digest of all modules and data that the
+job uses. The file is written only when the digest changes, and is then newer than what the job has
+made.
 """
 
 import re
+from collections.abc import Iterable
 from functools import cache
+from hashlib import sha256
 from pathlib import Path
+
+from bouncing_ball.datasets.files import write_text
 
 _PACKAGE = "bouncing_ball"
 _ROOT = Path(__file__).resolve().parent.parent
+_REPOSITORY = _ROOT.parent.parent
 
 
 @cache
@@ -36,12 +43,51 @@ def imports(path: Path) -> frozenset[str]:
     found = set(_IMPORT.findall(text))
     for module, names in _FROM.findall(text):
         # `from package import name` may name a module or an object.
-        found |= {module, *(f"{module}.{name}" for name in re.findall(r"\w+", names))}
+        found.add(module)
+        found |= {f"{module}.{name}" for name in re.findall(r"\w+", names)}
     return frozenset(found)
 
 
-def sources(*modules: str) -> list[str]:
-    """The files that run when the modules are imported, with their tables and texts, sorted.
+@cache
+def _data_of_folder(folder: Path) -> tuple[Path, ...]:
+    """The files of a package that are not Python, also in its folders that are no packages."""
+    found = []
+    for path in folder.iterdir():
+        if path.is_dir():
+            if path.name != "__pycache__" and not (path / "__init__.py").exists():
+                found += _data_of_folder(path)
+        elif path.suffix not in (".py", ".pyc") and not path.name.startswith("."):
+            found.append(path)
+    return tuple(found)
+
+
+def data_beside(module: Path) -> list[Path]:
+    """The data files that a module may read.
+
+    Data with the name of a module belong to this module; other data belong to all modules of their
+    package.
+
+    Examples
+    --------
+    >>> "matplotlibrc" in [path.name for path in data_beside(_ROOT / "drawing" / "style.py")]
+    True
+    """
+    return [
+        path
+        for path in _data_of_folder(module.parent)
+        if path.stem == module.stem or not path.with_suffix(".py").exists()
+    ]
+
+
+def sources(modules: Iterable[str], files: Iterable[Path] = ()) -> list[Path]:
+    """The files that are read when modules are imported and scripts run, sorted.
+
+    Parameters
+    ----------
+    modules : iterable of str
+        Modules of this package with their full names.
+    files : iterable of Path
+        Scripts, whose imports are followed, and other files that the job reads.
 
     Raises
     ------
@@ -50,13 +96,18 @@ def sources(*modules: str) -> list[str]:
 
     Examples
     --------
-    >>> [Path(file).name for file in sources("bouncing_ball.paper.contact.damping")]
-    ['__init__.py', 'errors.py', '__init__.py', 'elementary.py', '__init__.py', '__init__.py', 'damping.py']
+    >>> found = sources(["bouncing_ball.paper.contact.damping"])
+    >>> [path.name for path in found if path.name != "__init__.py"]
+    ['errors.py', 'elementary.py', 'damping.py']
     """
     for module in modules:
         if module_file(module) is None:
             raise ModuleNotFoundError(f"no module {module}")
-    pending, seen = list(modules), set()
+    seen = set(files)
+    pending = list(modules)
+    for path in seen:
+        if path.suffix == ".py":
+            pending += imports(path)
     while pending:
         # A module's packages are imported with it.
         parts = pending.pop().split(".")
@@ -64,6 +115,39 @@ def sources(*modules: str) -> list[str]:
             path = module_file(".".join(parts[: k + 1]))
             if path is not None and path not in seen:
                 seen.add(path)
+                seen.update(data_beside(path))
                 pending.extend(imports(path))
-    beside = (path.with_suffix(x) for path in seen for x in (".csv", ".md", ".toml", ".yaml"))
-    return sorted(str(path) for path in [*seen, *filter(Path.is_file, beside)])
+    return sorted(seen)
+
+
+@cache
+def _digest_of_file(path: Path) -> bytes:
+    return sha256(path.read_bytes()).digest()
+
+
+def digest(paths: Iterable[Path]) -> str:
+    """A digest of the contents and the names of files, which does not depend on their folder."""
+    whole = sha256()
+    for path in paths:
+        name = path.relative_to(_REPOSITORY).as_posix()
+        whole.update(name.encode() + b"\0" + _digest_of_file(path))
+    return whole.hexdigest()
+
+
+def keep_digest(path: Path, found: str) -> None:
+    """Write a digest to a file if the file has another one."""
+    if not path.is_file() or path.read_text(encoding="ascii") != found:
+        write_text(path, found)
+
+
+def keep_doubt(path: Path, found: str, outputs: Iterable[Path]) -> None:
+    """What ``--touch`` does in place of :func:`keep_digest`.
+
+    Snakemake then makes all outputs newer than the file. If they were not made by the code with
+    this digest, the file must not have it, so that the next run writes it and makes them again.
+    """
+    if path.is_file() and path.read_text(encoding="ascii") == found:
+        written = path.stat().st_mtime_ns
+        if all(each.stat().st_mtime_ns >= written for each in outputs if each.exists()):
+            return
+    write_text(path, "unknown")

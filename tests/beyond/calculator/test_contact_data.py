@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from bouncing_ball.beyond.calculator.case import Case, Table
+from bouncing_ball.beyond.calculator.case import PhysicalCase, Table
 from bouncing_ball.beyond.calculator.contact_data import case_of, hertz
 from bouncing_ball.beyond.corrected.signature import free_impact
 from bouncing_ball.errors import ModelError
@@ -32,7 +32,7 @@ def found(release=Release.DISPLACEMENT, **given):
 def test_every_set_gives_the_contact_it_was_taken_from(release, k, zeta):
     c = 2 * zeta * math.sqrt(k * MASS)
     ratio = math.sqrt(k / MASS) / TABLE.angular_frequency
-    case = Case(MASS, TABLE, SpringDamper(ratio, zeta, release))
+    case = PhysicalCase(MASS, TABLE, SpringDamper(ratio, zeta, release))
     own, time = float(case.contact.restitution), case.in_si()["contact_time"]
     printed = math.exp(-math.pi * zeta / math.sqrt(1 - zeta**2))
     for loss in (

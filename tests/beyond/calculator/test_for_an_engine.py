@@ -16,12 +16,11 @@ STIFF = TABLE | {"stiffness": 1e6}
     [("mujoco", None, "force"), ("lammps", None, "displacement"), ("lammps", "force", "force")],
 )
 def test_a_restitution_that_is_asked_for_is_met_under_the_engines_release(name, release, has):
-    settings = design(**STIFF, restitution=0.75).engine(name, release)
+    asked = design(**STIFF, restitution=0.75, engine=name, release=release)
+    settings = asked.engine_settings()
     assert (settings.name, settings.release) == (name, has)
     assert settings.restitution == pytest.approx(0.75, rel=1e-12)
-    # It is what a design for this engine has, whose orbit is that of this contact.
-    asked = design(**STIFF, restitution=0.75, engine=name, release=release)
-    assert asked.engine(name) == settings
+    # The orbit is that of this contact.
     same = design(**STIFF, measured_restitution=0.75, release=has)
     assert asked.orbits == same.orbits and asked.measured_restitution == same.measured_restitution
     one = same.judged
@@ -32,7 +31,7 @@ def test_a_restitution_that_is_asked_for_is_met_under_the_engines_release(name, 
 
 def test_a_drop_test_and_a_contact_time_are_met():
     drop = {"contact_time": "2 ms", "drop_height": 1.0, "rebound_height": 0.49}
-    settings = design(**TABLE, **drop).engine("drake")
+    settings = design(**TABLE, **drop, engine="drake").engine_settings()
     assert settings.restitution == pytest.approx(0.7, rel=1e-9)
     assert settings.time_step * settings.steps == pytest.approx(2e-3, rel=1e-9)
 
@@ -40,7 +39,8 @@ def test_a_drop_test_and_a_contact_time_are_met():
 def test_hunt_and_crossleys_contact_is_written_for_drake():
     asked = {"contact_time": "2 ms", "restitution": 0.8, "law": "hunt-crossley"}
     found = design(**TABLE, **asked, engine="drake")
-    settings, law = found.engine("drake"), found.law
+    settings = found.engine_settings()
+    law = found.law
     assert law["name"] == "hunt-crossley-linear" and settings.restitution == pytest.approx(0.8)
     both = {"point_contact_stiffness": 2 * law["stiffness"]}
     both["hunt_crossley_dissipation"] = law["damping"]
@@ -55,9 +55,10 @@ def test_hunt_and_crossleys_contact_is_written_for_drake():
     got = again.measured_restitution, again.contact_time, again.judged.max_height
     assert got == pytest.approx((0.8, 2e-3, found.judged.max_height), rel=1e-10)
     # For another engine the linear contact of this speed is written.
-    assert again.engine("lammps").restitution == pytest.approx(0.8, rel=1e-10)
+    linear = design(**TABLE, **read, engine="lammps").engine_settings()
+    assert linear.restitution == pytest.approx(0.8, rel=1e-10)
     with pytest.raises(ModelError, match="from_engine drake needs a table"):
-        design(mass=0.5, **read).engine("lammps")
+        design(mass=0.5, **read, engine="lammps")
     with pytest.raises(ModelError, match="tsuji is not written for drake"):
         design(**TABLE, **asked | {"law": "tsuji"}, engine="drake")
 
@@ -71,7 +72,7 @@ def test_a_strongly_damped_contact_of_drake_has_the_saddle_node_of_its_restituti
 
 
 def test_a_damper_is_kept_and_its_restitution_is_the_engines():
-    settings = design(**STIFF, damping=100.0).engine("mujoco")
+    settings = design(**STIFF, damping=100.0, engine="mujoco").engine_settings()
     assert settings.parameters["solref"] == [-2e6, -200.0]
     own = design(**STIFF, damping=100.0)
     assert settings.restitution == pytest.approx(own.restitution["force"], rel=1e-10)
@@ -80,22 +81,21 @@ def test_a_damper_is_kept_and_its_restitution_is_the_engines():
 
 def test_a_contact_that_is_chosen_has_settings_too():
     chosen = design(**TABLE, restitution=0.75, tolerance="5 %", engine="lammps")
-    assert chosen.engine("lammps").parameters["kn"] == pytest.approx(chosen.stiffness, rel=1e-11)
+    settings = chosen.engine_settings()
+    assert settings.parameters["kn"] == pytest.approx(chosen.stiffness, rel=1e-11)
 
 
 def test_a_contact_without_a_table_is_that_of_one_with_it():
     asked = {"restitution": 0.75, "engine": "mujoco", "restitution_error": "1 %"}
     found = design(mass=0.5, stiffness=1e6, **asked)
-    alone, with_table = found.engine("mujoco"), design(**STIFF, **asked).engine("mujoco")
+    alone = found.engine_settings()
+    with_table = design(**STIFF, **asked).engine_settings()
     assert alone.parameters["solref"] == pytest.approx(with_table.parameters["solref"])
     assert alone.steps == with_table.steps
     assert alone.error == 0.01 and alone.max_height is None
     finer = design(mass=0.5, stiffness=1e6, **asked | {"restitution_error": 0.001})
-    assert finer.engine("mujoco").steps > 9 * alone.steps
+    assert finer.engine_settings().steps > 9 * alone.steps
     assert found.measured_restitution == pytest.approx(0.75)
-    # The same, if the engine is named later.
-    del asked["engine"]
-    assert design(mass=0.5, stiffness=1e6, **asked).engine("mujoco") == alone
 
 
 @pytest.mark.parametrize("table", [{}, TABLE])
@@ -103,8 +103,8 @@ def test_from_one_engine_to_another_of_another_release(table):
     given = {"mass": 0.5, "from_engine": "lammps", "parameters": {"kn": 1e5, "gamma_n": 20}}
     found = design(**table | given)
     assert found.question["release"] is None
-    assert found.engine("mujoco").parameters["solref"] == pytest.approx([-2e5, -20])
     written = design(**table | given, engine="mujoco")
+    assert written.engine_settings().parameters["solref"] == pytest.approx([-2e5, -20])
     before = design(**table | given).measured_restitution
     why = "because contacts end by displacement in lammps, and by force in mujoco"
     changed = f"r changes from {before:.4f} to {written.measured_restitution:.4f}, {why}"

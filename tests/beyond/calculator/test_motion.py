@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from bouncing_ball import design
-from bouncing_ball.beyond.calculator.motion import aside, height_and_power
-from bouncing_ball.beyond.calculator.results import Mean, Motion
-from bouncing_ball.beyond.calculator.verdict import judged_by_motion
+from bouncing_ball.beyond.calculator.motion import height_and_power
+from bouncing_ball.beyond.calculator.results import FinalMotion, Mean
+from bouncing_ball.beyond.calculator.verdict import aside, judged_by_motion
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.means import means as means_of
 from bouncing_ball.beyond.simulation import simulate
@@ -19,8 +19,8 @@ UNIT = {"mass": 1.0, "angular_frequency": 1.0, "gravity": 1.0, "restitution": 0.
 def test_an_elastic_ball_has_the_energy_that_the_table_gives_it(law):
     found = simulate(law, 1.7, 0.4, -4.0, 40)
     _, power = height_and_power(found, 3)
-    level, speed = 1.7 * np.sin(found.phase), found.impact_velocity
-    energy = speed**2 / 2 + level
+    level = 1.7 * np.sin(found.phase)
+    energy = found.impact_velocity**2 / 2 + level
     given = power * (found.time[-1] - found.time[3])
     # The nodes of a contact are right to rounding; so is the simulation.
     assert given == pytest.approx(energy[-1] - energy[3], rel=1e-9, abs=1e-9)
@@ -106,8 +106,8 @@ def test_a_verdict_on_an_orbit_says_that_it_leaves_out_a_ball_laid_on_the_table(
 def test_a_ball_laid_on_the_table_is_left_out_without_a_word_where_it_rests_in_both_models():
     # A ball with restitution alone rests up to Λ = 1.
     for laid, amplitude in (("permanent contact", 1.01), ("chaotic", 0.9)):
-        assert aside(Motion("orbit", 1, 1, laid), amplitude).endswith("and is not judged")
-    assert aside(Motion("orbit", 1, 1, "permanent contact"), 1.0) == ""
+        assert aside(FinalMotion("orbit", 1, 1, laid), amplitude).endswith("and is not judged")
+    assert aside(FinalMotion("orbit", 1, 1, "permanent contact"), 1.0) == ""
 
 
 def test_without_loss_a_ball_stays_beside_the_orbit(short_runs):
@@ -121,7 +121,15 @@ def test_without_loss_a_ball_stays_beside_the_orbit(short_runs):
 
 
 def motion(kind, other, **more):
-    return Motion(kind, 0, 0, None, other, 0, 0, **more)
+    return FinalMotion(
+        kind=kind,
+        periods=0,
+        impacts=0,
+        restitution_kind=other,
+        restitution_periods=0,
+        restitution_impacts=0,
+        **more,
+    )
 
 
 def means(height, width):

@@ -28,6 +28,7 @@ from bouncing_ball.beyond.engines.choice import ENGINES
 from bouncing_ball.beyond.engines.engine import ERROR, EngineSettings, Physical
 from bouncing_ball.beyond.engines.scheme import Scheme, steps_for
 from bouncing_ball.beyond.exhibits.engine_steps import (
+    VARIABLES,
     EngineOrbit,
     model_errors,
     step_errors,
@@ -47,7 +48,7 @@ from bouncing_ball.pipeline.provenance import CONFIGURATION, gather
 
 ROOT = Path(__file__).parents[3]
 WRITTEN = read_yaml(ROOT / CONFIGURATION)
-PARAMETERS = WRITTEN["extensions"]["ext_engines"]
+PARAMETERS = WRITTEN["beyond"]["ext_engines"]
 RADIUS = 1.0
 
 
@@ -305,7 +306,7 @@ def record():
     data["engine_version"] = ("engine", made)
     origin = gather("make test-engines", [], ROOT, WRITTEN)
     target = ROOT / "results" / "config" / "engines.nc"
-    write_dataset(describe(data).assign_attrs(origin), target)
+    write_dataset(describe(data, VARIABLES).assign_attrs(origin), target)
 
 
 @pytest.mark.engines

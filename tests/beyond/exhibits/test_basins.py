@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.beyond.exhibits.basins import MOTIONS, basins
-from bouncing_ball.beyond.exhibits.motion_samples import models
+from bouncing_ball.beyond.exhibits.motion_samples import three_models
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.pipeline.configuration import typed
 
@@ -18,7 +18,7 @@ def data():
 
 
 def test_a_stable_orbit_lies_in_its_basin(data):
-    for k, model in enumerate(models(np.array(0.5), 1e5, Release.DISPLACEMENT)):
+    for k, model in enumerate(three_models(np.array(0.5), 1e5, Release.DISPLACEMENT)):
         orbit = model.orbit(1, 1.3)
         place = {"start_phase": orbit.phase, "start_speed": -orbit.relative_impact_velocity}
         end = data.destination.isel(case=0, model=k).sel(place, method="nearest")

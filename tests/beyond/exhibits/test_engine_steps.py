@@ -15,7 +15,7 @@ from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.pipeline.configuration import read_yaml, typed
 
 CONFIG = Path(__file__).parents[3] / "config"
-PARAMETERS = read_yaml(CONFIG / "config.yaml")["extensions"]["ext_engines"]
+PARAMETERS = read_yaml(CONFIG / "config.yaml")["beyond"]["ext_engines"]
 RUNS = read_dataset(CONFIG / "engines.nc")
 FORCE = RUNS.sel(release="force")
 

@@ -8,7 +8,7 @@ from scipy.stats import norm
 
 from bouncing_ball.beyond.exhibits import locked_orbits as transients
 from bouncing_ball.beyond.exhibits.locked_orbits import correlation, locked_orbits, mean_life
-from bouncing_ball.beyond.exhibits.motion_samples import exponent
+from bouncing_ball.beyond.exhibits.motion_samples import uncertainty_exponent
 from bouncing_ball.beyond.long_run.lift_off import returns
 from bouncing_ball.beyond.long_run.motions import Kind
 from bouncing_ball.paper.contact.damping import Release
@@ -28,7 +28,7 @@ def test_limits_of_estimates():
     assert mean_life(np.ones(5), np.zeros(5, dtype=bool), 0.95)[::2] == (np.inf, np.inf)
     size = 10.0 ** -np.arange(1, 5)
     changes = random.uniform(size=(4000, 1)) < size**0.3
-    slope, low, high = exponent(changes, size, 0.95)
+    slope, low, high = uncertainty_exponent(changes, size, 0.95)
     assert low < 0.3 < high and high - low < 0.05 and low < slope < high
 
 
@@ -70,7 +70,7 @@ def test_a_ball_has_arrived_where_phase_and_velocity_agree(monkeypatch):
         return SimpleNamespace(end_phase=1.0, end_velocity=-4.0, kind=kind)
 
     model = SimpleNamespace(impact_law=None, shape=())
-    monkeypatch.setattr(transients, "models", lambda *_: (model,) * 3)
+    monkeypatch.setattr(transients, "three_models", lambda *_: (model,) * 3)
     monkeypatch.setattr(transients, "final_motions", final_motions)
     case = {"cases": [{"restitution": 0.5, "amplitude": 2.5}], "frequency_ratio": [10.0]}
     asked = transients.Transients(**case, balls=10, impacts=50, confidence=0.95, seed=1)

@@ -4,14 +4,16 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
+from adapter import function
+from declared_artifacts import ARTIFACTS, STUDIES
 
 from bouncing_ball.datasets.files import read_dataset, write_dataset
 from bouncing_ball.datasets.shards import part_of, shard_names
 from bouncing_ball.errors import ParameterError
-from bouncing_ball.pipeline.configuration import load, read_yaml, typed
+from bouncing_ball.pipeline.configuration import read_yaml, typed
 from bouncing_ball.pipeline.jobs import joined
 
-GIVEN = read_yaml(Path(__file__).parents[3] / "config/config.yaml")["extensions"]
+GIVEN = read_yaml(Path(__file__).parents[3] / "config/config.yaml")["beyond"]
 LOW = {"restitution": {"min": 0.1, "max": 0.2, "samples": 2}}
 GRID = LOW | {"amplitude": {"min": 0.8, "max": 1.6, "samples": 7}}
 HIGH = {"min": 1.5, "max": 2.0, "samples": 11}
@@ -27,10 +29,12 @@ PLACES = {
 
 
 @pytest.mark.parametrize("name", PLACES)
-def test_shards_give_the_dataset_of_one_job(name, table, stages, recorded, tmp_path, refusal):
-    places, study = map(typed, map(load, (table[name]["places"], stages[name])))
+def test_shards_give_the_dataset_of_one_job(name, recorded, tmp_path, refusal):
+    artifact = ARTIFACTS[name]
+    places = typed(function(artifact.module, artifact.places))
+    study = typed(STUDIES[name])
     given, parts = {"parameters": GIVEN[name] | PLACES[name], "release": "displacement"}, []
-    read = {"data": recorded} if "reads" in table[name] else {}
+    read = {"data": recorded} if artifact.reads else {}
     for shard in shard_names(3):
         found = places(**given, part=part_of(shard))
         part = {x: ([f"{x}_{k}" for k in range(y.ndim)], y) for x, y in found.items()}

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from declared_artifacts import ARTIFACTS
 
 from bouncing_ball.beyond.exhibits import statements as whole_motion
 from bouncing_ball.beyond.exhibits.statements import statements
@@ -31,8 +32,8 @@ CLAIMS = {one.id: one for one in defined_in(whole_motion)}
 
 
 @pytest.fixture(scope="module")
-def data(recorded, table):
-    return {name: recorded[name] for name in table["statements"]["reads"]}
+def data(recorded):
+    return {name: recorded[name] for name in ARTIFACTS["statements"].reads}
 
 
 def test_the_statements_on_the_accepted_datasets(data, described):

@@ -5,7 +5,7 @@ import xarray as xr
 from scipy.stats import norm
 
 from bouncing_ball.beyond.exhibits.locking import GROUPS, agreement, locking
-from bouncing_ball.beyond.exhibits.motion_samples import models
+from bouncing_ball.beyond.exhibits.motion_samples import three_models
 from bouncing_ball.beyond.exhibits.orbit_diagram import orbit_diagrams
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.paper.contact.damping import Release
@@ -24,7 +24,7 @@ def study(ratio, lam, r, **changed):
 
 def test_exponents_of_orbits_are_those_of_their_multipliers():
     data = study(100.0, (2.2, 2.4, 3), (0.2, 0.25, 2))
-    for model, name in zip(models(data.restitution.values[:, None], 100.0, Release.DISPLACEMENT),
+    for model, name in zip(three_models(data.restitution.values[:, None], 100.0, Release.DISPLACEMENT),
                            data["model"].values, strict=True):  # fmt: skip
         one = data.sel(model=name)
         orbit = model.orbit(1, data["amplitude"].values)
@@ -52,7 +52,7 @@ def test_diagrams_have_the_stable_orbit_with_its_phase_and_exponent():
     sizes = {"starts": 1, "samples": 10, "impacts": 200}
     data = typed(orbit_diagrams)(given | sizes, Release.DISPLACEMENT)
     assert np.allclose(data.phase_density.sum("bin_phase"), 1)
-    for k, model in enumerate(models(np.array(0.6), 100.0, Release.DISPLACEMENT)):
+    for k, model in enumerate(three_models(np.array(0.6), 100.0, Release.DISPLACEMENT)):
         one, orbit = data.isel(model=k), model.orbit(1, data["amplitude"].values)
         here = one.phase_density.sel(
             bin_phase=xr.DataArray(orbit.phase, dims="x"), method="nearest"

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.beyond.exhibits.motion_samples import models
+from bouncing_ball.beyond.exhibits.motion_samples import three_models
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.lift_off import returns
 from bouncing_ball.paper.contact.damping import Release
@@ -27,7 +27,7 @@ def test_the_sensitivity_is_the_corrected_models_to_first_order():
     found, late = returns(r, lam, 100), []
     for ratio in (1e4, 2e4):
         ends = []
-        for model in models(np.array(r), ratio, Release.DISPLACEMENT)[:2]:
+        for model in three_models(np.array(r), ratio, Release.DISPLACEMENT)[:2]:
             path = model.simulate(lam, *LYING, 20)
             # Bounce 14 of 25, which is followed by T = 2 r v/(g (1 - r)) of chattering.
             phase, speed = path.phase[14], -path.relative_velocity[14]
@@ -41,7 +41,7 @@ def test_a_contact_has_the_orbit_where_it_is_stiff_enough():
     """The case of which no stiffness up to 5120 was enough, far on both sides of S/w."""
     found = returns(0.6, 3.0, 100)
     wanted = float(found.sensitivity / found.wait)
-    contact = models(np.array(0.6), wanted * np.array([0.01, 10.0]), Release.DISPLACEMENT)[-1]
+    contact = three_models(np.array(0.6), wanted * np.array([0.01, 10.0]), Release.DISPLACEMENT)[-1]
     mapped = final_motions(contact.impact_law, 3.0, *LYING, impacts=400)
     assert wanted > 1e5 and mapped.periods[1] == found.periods != mapped.periods[0]
 

@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 
 from bouncing_ball.beyond.calculator.motion import height_and_power
-from bouncing_ball.beyond.exhibits.motion_samples import models
+from bouncing_ball.beyond.exhibits.motion_samples import three_models
+from bouncing_ball.beyond.laws.hertzian import LinearHuntCrossley
 from bouncing_ball.beyond.long_run import means as work
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.means import means
 from bouncing_ball.paper.contact.damping import Release
+from bouncing_ball.paper.contact.spring_damper import SpringDamper
 
 RELEASE = Release.DISPLACEMENT
 
@@ -25,7 +27,7 @@ def found_and_means(model, amplitude, samples=100):
 )
 def test_height_and_power_are_those_of_quadrature(r, amplitude, ratio, release, monkeypatch):
     """A chaotic motion and a locked one: closed forms against sums over collocation panels."""
-    for model in models(np.array(r), ratio, release)[::2]:
+    for model in three_models(np.array(r), ratio, release)[::2]:
         found, of = found_and_means(model, amplitude)
         monkeypatch.setattr(work, "has_closed_form", lambda law: False)
         impacts = (int(found.impacts) or 100) + 1
@@ -36,8 +38,8 @@ def test_height_and_power_are_those_of_quadrature(r, amplitude, ratio, release, 
 
 
 def test_on_a_locked_orbit_the_table_gives_what_impacts_dissipate():
-    found, of = found_and_means(models(np.array(0.6), 80.0, RELEASE)[0], 3.0)
-    sequence = models(np.array(0.6), 80.0, RELEASE)[0].simulate(
+    found, of = found_and_means(three_models(np.array(0.6), 80.0, RELEASE)[0], 3.0)
+    sequence = three_models(np.array(0.6), 80.0, RELEASE)[0].simulate(
         3.0, float(found.end_phase), float(found.end_velocity), int(found.impacts) + 1
     )
     lost = (1 - 0.6**2) / 2 * np.sum(sequence.relative_velocity[:-1] ** 2)
@@ -51,7 +53,8 @@ def test_errors_of_the_means_are_of_first_and_of_second_order():
     errors = []
     for ratio in (200.0, 400.0):
         simple, corrected, exact = (
-            np.array(found_and_means(x, 1.2)[1][1:3]) for x in models(np.array(0.5), ratio, RELEASE)
+            np.array(found_and_means(x, 1.2)[1][1:3])
+            for x in three_models(np.array(0.5), ratio, RELEASE)
         )
         errors.append([simple / exact - 1, corrected / exact - 1])
     order = np.log2(np.divide(*errors))
@@ -65,3 +68,12 @@ def test_the_exponent_is_the_mappers_and_a_ball_at_rest_has_no_means():
     of = means(law, np.array([2.0, 0.9]), found, 400)
     assert abs(of[3, 0] - found.exponent[0]) < 8 * found.exponent_error[0]
     assert found.kind[1] == "permanent contact" and np.isnan(of[:, 1]).all()
+
+
+def test_a_law_whose_contact_is_a_spring_has_the_means_of_the_linear_contact():
+    amplitude = np.array([0.7, 1.3])
+    spring = SpringDamper(20.0, 0.0, Release.FORCE)
+    found = final_motions(spring, amplitude, 0.5, -4.0, impacts=3)
+    linear = means(spring, amplitude, found, 5)
+    general = means(LinearHuntCrossley(400.0, 0.0), amplitude, found, 5)
+    assert np.allclose(general, linear, rtol=1e-9)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 import yaml
+from declared_artifacts import ARTIFACTS
 
 from bouncing_ball.beyond.exhibits import statements
 from bouncing_ball.datasets.files import parameter_attributes
@@ -18,10 +19,10 @@ CONFIG = yaml.safe_load((ROOT / "config" / "config.yaml").read_text(encoding="ut
 
 
 @pytest.fixture(scope="module")
-def data(recorded, table):
-    of_paper = table["claims"]["reads"]
+def data(recorded):
+    of_paper = ARTIFACTS["claims"].reads
     assert {*of_paper} == {*PARAMETERS}
-    assert {*table["statements"]["reads"]} == {*statements.PARAMETERS}
+    assert {*ARTIFACTS["statements"].reads} == {*statements.PARAMETERS}
     return {name: recorded[name] for name in of_paper}
 
 
@@ -75,10 +76,8 @@ def test_an_explanation_fails_with_its_checks(data):
 
 @pytest.mark.parametrize("name", [name for name, needed in PARAMETERS.items() if needed])
 def test_the_committed_parameters_are_the_papers(name):
-    parts = [CONFIG[part] for part in ("figures", "tables", "extensions", "studies")]
-    section = dict(next(part[name] for part in parts if name in part))
     needed = parameter_attributes(PARAMETERS[name])
-    given = parameter_attributes(section)
+    given = parameter_attributes(CONFIG["paper"][name])
     assert {key: np.ravel(given[key]).tolist() for key in needed} == {
         key: np.ravel(value).tolist() for key, value in needed.items()
     }

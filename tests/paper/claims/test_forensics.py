@@ -29,8 +29,10 @@ def study(described):
 
 def cycle(phase, u, orbit, reference, *, weight, rise):
     """One altered cycle, with its events located by Brent's method."""
-    omega, zeta = float(orbit.law.frequency_ratio), float(orbit.law.damping_ratio)
-    lam, duration = float(orbit.amplitude), float(orbit.contact_duration)
+    omega = float(orbit.law.frequency_ratio)
+    zeta = float(orbit.law.damping_ratio)
+    lam = float(orbit.amplitude)
+    duration = float(orbit.contact_duration)
     flight = float(orbit.flight_time)
 
     def state(s):
@@ -40,7 +42,8 @@ def cycle(phase, u, orbit, reference, *, weight, rise):
 
     s = brentq(lambda s: state(s)[0], 0.97 * duration, 1.03 * duration, xtol=1e-300, rtol=9e-16)
     d, v = state(s)
-    height, thrown = d + lam * np.sin(phase + s), v + lam * np.cos(phase + s)
+    height = d + lam * np.sin(phase + s)
+    thrown = v + lam * np.cos(phase + s)
     # High bounce: z′_b T - T²/2 keeps the value that it has on the orbit.
     closed = (float(orbit.bounce_velocity) - flight / 2) * flight
 
@@ -78,7 +81,8 @@ def test_orbit_and_monodromy_are_those_of_the_altered_return_map(
 
 
 def test_the_ends_of_an_unaltered_branch_are_those_of_the_model():
-    contact, n = SpringDamper(np.array([2.0, 10.0, 1e4]), ZETA), np.full(3, 2)
+    contact = SpringDamper(np.array([2.0, 10.0, 1e4]), ZETA)
+    n = np.full(3, 2)
     model = SpringDamperModel(contact)
     found = altered_ends(contact, n, SpringDamperOrbit.on_branch, SpringDamperOrbit.monodromy)
     expected = np.stack([model.saddle_node(n).amplitude, model.period_doubling(n).amplitude], -1)

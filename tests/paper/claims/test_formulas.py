@@ -128,13 +128,15 @@ def test_not_a_number_is_not_agreement(monkeypatch):
 
 
 def test_the_steady_amplitude_is_that_of_the_resonance_curve():
-    omega, zeta = np.array([0.7, 1.3, 9.0]), np.array([0.4, 0.2, 0.02])
+    omega = np.array([0.7, 1.3, 9.0])
+    zeta = np.array([0.4, 0.2, 0.02])
     expected = 1 / np.hypot(omega**2 - 1, 2 * zeta * omega)
     assert checks.steady_amplitude(omega, zeta) == pytest.approx(expected, rel=1e-12)
 
 
 def test_the_measured_restitution_without_and_with_gravity():
-    r, omega = np.array([0.85, 0.3]), np.array([5.0, 50.0])
+    r = np.array([0.85, 0.3])
+    omega = np.array([5.0, 50.0])
     assert measured_restitution(r, omega, WEIGHTLESS) == pytest.approx(r, abs=1e-14)
     # Heavy and undamped: the energy comes back whatever the stiffness.
     assert measured_restitution(1.0, 5.0, 2.0) == pytest.approx(1.0, abs=1e-13)
@@ -157,7 +159,8 @@ def test_the_static_error(checked, reference):
 
 
 def test_a_ball_that_its_weight_holds_has_no_static_error():
-    r, ratio = np.array([0.1, 0.9]), np.array([0.5, 100.0])
+    r = np.array([0.1, 0.9])
+    ratio = np.array([0.5, 100.0])
     found = measured_restitution(r, ratio, 0.1)
     # The stiff contact throws it off.
     assert np.isnan(found).tolist() == [True, False]

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from declared_artifacts import ARTIFACTS
 
-from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import ModelError
 from bouncing_ball.numerics.corrector import newton
 from bouncing_ball.numerics.elementary import reduce_angle
@@ -26,8 +26,8 @@ from bouncing_ball.paper.orbits.spring_damper_orbit import SpringDamperOrbit
 
 
 @pytest.fixture(scope="module")
-def result(recorded, described, table):
-    names = table["witness"]["reads"]
+def result(recorded, described):
+    names = ARTIFACTS["witness"].reads
     assert set(names) == set(" ".join(SHOWN.values()).split())
     return described(witness({name: recorded[name] for name in names}))
 
@@ -56,8 +56,10 @@ def test_all_routes_agree_on_all_that_is_shown(result, recorded):
 def test_the_multipliers_are_those_of_the_simulated_map(recorded, find, name):
     shown = next(find(recorded[name]))
     orbit = shown.orbit[shown.admissible.astype(bool)]
-    phase, speed = orbit.phase, orbit.relative_impact_velocity
-    step, matrix = 1e-6 * np.abs(speed), orbit.monodromy()
+    phase = orbit.phase
+    speed = orbit.relative_impact_velocity
+    step = 1e-6 * np.abs(speed)
+    matrix = orbit.monodromy()
     # Central differences: the rounding of a cycle's time over the step, which is small near
     # permanent contact, is above the truncation, 1e-12 times a third derivative.
     rounding = 100 * np.finfo(float).eps * 2 * np.pi * orbit.n / step
@@ -179,7 +181,7 @@ def test_the_other_rule_of_release(continuation_settings):
     }
     data = orbit_branches(Domains(**parameters), "force", continuation_settings)
     data.attrs = parameters | {"release": "force"}
-    result = witness({"fig08": describe(data)})
+    result = witness({"fig08": data})
     assert (result.disagreement <= result.budget).all()
     assert result.orbits.sel(artifact="fig08", comparison=FORMULA).item() == 82 + 7
     assert (result.orbits > 0).all()

@@ -28,13 +28,15 @@ def test_values_of_both_models():
     n, r, lam, omega = 2, 0.85, 1.0, 50.0
     exact = SpringDamperModel(SpringDamper.from_restitution(r, omega))
     zeta = -np.log(r) / np.hypot(np.pi, np.log(r))
-    half, fold = n * np.pi, n * np.pi * (1 - r) / (1 + r)
+    half = n * np.pi
+    fold = n * np.pi * (1 - r) / (1 + r)
     phi = np.arccos(fold / lam)
     flip = np.hypot(2 * (1 + r * r) / (1 + r) ** 2, fold)
     found = values(RestitutionModel(r), n, lam, Quantity)
     expected = [lam * np.sin(phi) + half**2 / 2, half, phi, r, fold, flip, 1.0]
     np.testing.assert_allclose(found, expected, rtol=1e-14)
-    orbit, of_contact = exact.orbit(n, lam), values(exact, n, lam, Quantity)
+    orbit = exact.orbit(n, lam)
+    of_contact = values(exact, n, lam, Quantity)
     np.testing.assert_array_equal(of_contact[:4], [getattr(orbit, q) for q in OF_ORBITS])
     assert of_contact[4] == exact.saddle_node(n).amplitude
     assert of_contact[5] == exact.period_doubling(n).amplitude
@@ -48,7 +50,8 @@ def test_values_of_both_models():
 @pytest.mark.parametrize("release", list(Release))
 def test_errors_are_those_of_the_models_one_by_one(release):
     contact = SpringDamper(np.array([[3.0], [30.0]]), np.array([0.05, 0.2]), release)
-    n, lam = np.array([1, 2]), np.array([0.9, 2.0])
+    n = np.array([1, 2])
+    lam = np.array([0.9, 2.0])
     found = errors(contact, n, lam, tuple(Quantity))
     assert found.shape == (len(SIMPLE), len(Quantity), 2, 2)
     for i, j in np.ndindex(2, 2):
@@ -64,7 +67,8 @@ def test_errors_are_those_of_the_models_one_by_one(release):
 def test_what_is_missing_is_not_right():
     # r = 0.0893: a soft contact has no saddle-node, and a stiff one has.
     contact = SpringDamper.from_restitution(0.0893, np.array([2.592, 100.0]))
-    exact, simple = SpringDamperModel(contact), [RestitutionModel(0.0893)]
+    exact = SpringDamperModel(contact)
+    simple = [RestitutionModel(0.0893)]
     ((error,),) = relative_errors(exact, simple, 1, 3.0, [Quantity.SADDLE_NODE])
     assert np.isnan(error[0]) and abs(error[1]) < 0.1
     assert modulus(error).tolist() == [np.inf, abs(error[1])]

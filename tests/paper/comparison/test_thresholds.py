@@ -3,11 +3,17 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.beyond.corrected.errors import errors, search
-from bouncing_ball.paper.comparison.errors import Quantity, modulus
-from bouncing_ball.paper.comparison.thresholds import ThresholdStatus, last_crossing, thresholds
+from bouncing_ball.paper.comparison.errors import Quantity, modulus, relative_errors
+from bouncing_ball.paper.comparison.thresholds import (
+    ThresholdStatus,
+    last_crossing,
+    restitution_thresholds,
+    thresholds,
+)
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
+from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 
 RATIOS = np.geomspace(1.0, 1e4, 41)
 FOUND, ALWAYS, NEVER = ThresholdStatus
@@ -64,29 +70,38 @@ def test_where_there_is_no_error_it_is_not_within_the_tolerance(absent):
 
 
 @pytest.mark.parametrize("release", list(Release))
-def test_the_thresholds_of_contacts_are_those_of_a_fine_scan(release):
-    zeta, n, lam, tolerance = np.array([0.136, 0.05]), np.array([1, 2]), np.array([1.0, 0.9]), 0.01
-    found = search(zeta, release, n, lam, RATIOS, tolerance, tuple(Quantity))
+def test_the_thresholds_of_the_restitution_model_are_those_of_a_fine_scan(release):
+    zeta = np.array([0.136, 0.05])
+    restitution = np.array([0.65, 0.85])
+    n = np.array([1, 2])
+    amplitude = np.array([1.0, 0.9])
+    tolerance = 0.01
+    found = restitution_thresholds(
+        zeta,
+        release,
+        restitution,
+        n,
+        amplitude,
+        ratios=RATIOS,
+        tolerances=[tolerance],
+        quantities=tuple(Quantity),
+    )
+
+    def errors(ratio):
+        exact = SpringDamperModel(SpringDamper(ratio, zeta, release))
+        simple = RestitutionModel(restitution)
+        return relative_errors(exact, [simple], n, amplitude, tuple(Quantity))[0]
+
     fine = np.geomspace(RATIOS[0], RATIOS[-1], 401)
-    contact = SpringDamper(fine[:, np.newaxis], zeta, release)
-    scanned = np.moveaxis(errors(contact, n, lam, Quantity), 2, -1)
-    outside = modulus(scanned) > tolerance
-    there = outside.any(axis=-1)
-    # All are within the tolerance at last: no contact is as stiff as 10⁴.
-    assert np.array_equal(found.status, np.where(there, FOUND, ALWAYS))
-    assert there.any() and not there.all()
-    assert np.array_equal(np.isnan(found.threshold), ~there)
-    # Each at its own thresholds.
-    at = np.where(there, found.threshold, 1.0)
-    own = errors(SpringDamper(at, zeta, release), n, lam, Quantity)
-    for index in zip(*np.nonzero(there), strict=True):
+    outside = modulus(np.moveaxis(errors(fine[:, np.newaxis]), 1, -1)) > tolerance
+    never = outside[..., -1]
+    there = outside.any(axis=-1) & ~never
+    expected = np.where(never, NEVER, np.where(there, FOUND, ALWAYS))
+    assert np.array_equal(found.status[..., 0], expected)
+    assert there.any() and np.array_equal(np.isnan(found.ratio[..., 0]), ~there)
+    for quantity, orbit in zip(*np.nonzero(there), strict=True):
+        ratio = found.ratio[quantity, orbit, 0]
         # A difference of numbers of order 1.
-        assert abs(float(own[*index[:2], *index])) == pytest.approx(tolerance, abs=1e-12)
-        last = np.flatnonzero(outside[index])[-1]
-        low, high = fine[last : last + 2]
-        assert low * (1 - 1e-12) <= found.threshold[index] <= high * (1 + 1e-12)
-    for index in np.ndindex(found.zero.shape):
-        signed, zero = scanned[0][index], found.zero[index]
-        turns = np.flatnonzero(signed[1:] * signed[:-1] < 0)
-        low, high = (fine[turns[-1] + k] if turns.size else np.nan for k in (0, 1))
-        assert (low <= zero <= high) if turns.size else np.isnan(zero)
+        assert abs(errors(ratio)[quantity, orbit]) == pytest.approx(tolerance, abs=1e-12)
+        last = np.flatnonzero(outside[quantity, orbit])[-1]
+        assert fine[last] * (1 - 1e-12) <= ratio <= fine[last + 1] * (1 + 1e-12)

@@ -41,13 +41,16 @@ def test_every_entry_is_an_orbit_of_its_parameters(described, reference, release
         enumerate(CASES["cases"]), data.frequency_ratio.values
     ):
         at = data.sel(case=i, frequency_ratio=ratio)
-        r, lam = float(at.restitution), float(at.amplitude)
+        r = float(at.restitution)
+        lam = float(at.amplitude)
         assert (r, lam) == tuple(case.values())
         if np.isnan(at.phase):
             assert not bool(at.stable)
             continue
-        phase, speed = float(at.phase), float(at.impact_velocity - lam * np.cos(at.phase))
-        duration, zeta = float(at.contact_duration), float(damping_ratio(r))
+        phase = float(at.phase)
+        speed = float(at.impact_velocity - lam * np.cos(at.phase))
+        duration = float(at.contact_duration)
+        zeta = float(damping_ratio(r))
         end = reference.cycle(phase, speed, 1, lam, ratio, zeta, duration, release == "force")
         # The roundings of the events, over a flight of some 2π.
         assert end == pytest.approx((phase + 2 * np.pi, speed), abs=1e-11)

@@ -3,13 +3,12 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.datasets import PERIOD_DOUBLING, SADDLE_NODE
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.paper.contact.damping import Release, damping_ratio
 from bouncing_ball.paper.contact.permanent_contact import permanent_contact_threshold
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.continuation_of_orbits import (
-    PERIOD_DOUBLING,
-    SADDLE_NODE,
     Branches,
     both_domains,
     first_limits,

@@ -56,7 +56,8 @@ def test_all_quantities(described):
     assert data["quantity"].values.tolist() == PARAMETERS["quantities"]
     # With the r and the ζ of Eq. 16, exact over restitution model.
     contact = SpringDamper(data.frequency_ratio.values, float(damping_ratio(0.65)))
-    exact, simple = SpringDamperModel(contact), RestitutionModel(0.65)
+    exact = SpringDamperModel(contact)
+    simple = RestitutionModel(0.65)
     expected = modulus(relative_errors(exact, [simple], 1, 1.0, tuple(Quantity))[0])
     np.testing.assert_allclose(data.relative_error, expected, rtol=1e-9)
     for k, tolerance in enumerate(PARAMETERS["tolerances"]):
@@ -85,7 +86,8 @@ def test_a_threshold_at_the_end_of_the_bifurcation():
     asked = {"quantities": ["saddle_node"], "tolerances": [0.5]}
     data = typed(error_thresholds)(one | asked, "displacement")
     assert data.threshold_status.item() == ThresholdStatus.FOUND
-    fine, threshold = np.geomspace(1.0, 10.0, 20001), data.error_threshold.item()
+    fine = np.geomspace(1.0, 10.0, 20001)
+    threshold = data.error_threshold.item()
     exact = SpringDamperModel(SpringDamper.from_restitution(0.0893, fine))
     there = np.isfinite(exact.saddle_node(1).amplitude)
     first = int(np.argmax(there))

@@ -13,7 +13,8 @@ PARAMETERS = {"restitution": 0.65, "frequency_ratio": {"min": 0.5, "max": 100.0,
 
 def test_threshold_and_minimum(described):
     data = described(permanent_contact(PARAMETERS, "displacement"))
-    zeta, omega = float(data.damping_ratio), data.frequency_ratio.values
+    zeta = float(data.damping_ratio)
+    omega = data.frequency_ratio.values
     assert zeta == pytest.approx(0.13585, abs=5e-6)
     gamma = (omega**2 - 1) ** 2 + (2 * zeta * omega) ** 2
     assert data.threshold_amplitude.values == pytest.approx(np.sqrt(gamma) / omega**2, rel=1e-13)

@@ -31,8 +31,10 @@ def test_domains(described):
         row = data.sel(n=n)
         # Every point is a fixed point of the exact map: lands after n periods
         # with the velocity it started with. Roundings of 2πn and (2πn)²/2.
-        s, v = 2 * np.pi * n, np.pi * n
-        phi, lam = row.phase.values, row.amplitude.values
+        s = 2 * np.pi * n
+        v = np.pi * n
+        phi = row.phase.values
+        lam = row.amplitude.values
         assert landing_gap(s, phi, v, lam) == pytest.approx(np.zeros(81), abs=1e-12)
         assert bounce(s, phi, v, lam, 0.85) == pytest.approx(np.full(81, v), abs=1e-13)
         assert row.amplitude.values[[0, -1]] == pytest.approx([2.0, 2.0], rel=1e-14)
@@ -44,7 +46,8 @@ def test_domains(described):
         assert float(row.saddle_node_phase) == 0.0
         for kind in ("exact", "holmes"):
             at = row.sel(impact_map=kind)
-            lam, phi = float(at.period_doubling_amplitude), float(at.period_doubling_phase)
+            lam = float(at.period_doubling_amplitude)
+            phi = float(at.period_doubling_phase)
             assert lam * np.cos(phi) == pytest.approx(float(row.saddle_node_amplitude), rel=1e-14)
     # The printed Table 1 (ϖ = 10⁴) is Holmes' map; the exact map is above it.
     holmes = data.period_doubling_amplitude.sel(impact_map="holmes").values
@@ -66,7 +69,8 @@ def test_admissible_points_fly_over_the_table():
         assert clear.mean() > 0.5
     # The grazing orbit divides the unstable side; where there is none, it is NaN.
     row = data.sel(n=1)
-    lam, phase = float(row.grazing_amplitude), float(row.grazing_phase)
+    lam = float(row.grazing_amplitude)
+    phase = float(row.grazing_phase)
     assert np.array_equal(row.admissible.values, row.phase.values > phase)
     s = np.linspace(0.3, 2 * np.pi - 0.3, 40001)
     # It touches the table: a minimum of zero, seen to (step)²/8 · Λ.

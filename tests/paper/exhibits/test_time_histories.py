@@ -34,10 +34,13 @@ def test_one_cycle_against_an_integration(described, n, release):
     assert touching.sum() == 50 and np.all(np.diff(touching.astype(int)) <= 0)
     assert float(data.time[49]) == float(data.time[50]) == float(data.contact_duration)
     assert float(data.time[-1]) == pytest.approx(2 * np.pi * n, rel=1e-15)
-    phase, zeta, omega = float(data.phase), float(damping_ratio(0.85)), 4.0
+    phase = float(data.phase)
+    zeta = float(damping_ratio(0.85))
+    omega = 4.0
 
     def field(t, y):
-        w, wdot = np.sin(t + phase), np.cos(t + phase)
+        w = np.sin(t + phase)
+        wdot = np.cos(t + phase)
         force = -2 * zeta * omega * (y[1] - wdot) - omega**2 * (y[0] - w)
         return [y[1], -1 + force * (t <= float(data.contact_duration))]
 
@@ -94,17 +97,16 @@ def test_both_models(described, n, lam):
 @pytest.mark.parametrize("release", ["displacement", "force"])
 def test_the_flights_meet_at_the_centroid_of_the_force(described, release):
     data = described(meeting_flights(ONE | {"restitution": 0.65, "samples": 4001}, release))
-    force, time = data.contact_force.values, data.time.values
+    force = data.contact_force.values
+    time = data.time.values
     centroid = np.sum(force * time) / np.sum(force)
     # The force starts with a jump, which a sum over samples sees to their distance.
     assert float(data.meeting_time) == pytest.approx(centroid, abs=2 * (time[1] - time[0]))
     height = np.interp(float(data.meeting_time), time, data.flight_after.values)
     assert float(data.meeting_height) == pytest.approx(height, abs=1e-5)
     # The ball is below the table while it touches, and above it before.
-    gap, inside = (
-        (data.ball - data.table).values,
-        (time > 0) & (time < data.contact_duration.item()),
-    )
+    gap = (data.ball - data.table).values
+    inside = (time > 0) & (time < data.contact_duration.item())
     assert np.all(gap[inside] < 0) and np.all(gap[time < 0] > 0)
     assert float(data.delay) == pytest.approx(float(data.meeting_time), rel=0.05)
 

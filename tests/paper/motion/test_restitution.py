@@ -34,7 +34,7 @@ def test_chattering_on_a_table_at_rest_is_a_geometric_series(r):
 
 
 @pytest.mark.parametrize("lam", [1.0001, 1.2, 2.0, 3.0])
-def test_lift_off(lam):
+def test_a_ball_at_rest_lifts_off_where_the_table_falls_with_gravity(lam):
     """A ball at rest on the table leaves it where Λ sin τ = 1 on the way up."""
     sequence = simulate(0.3, lam, -0.4, lam * np.cos(-0.4), 2)
     assert abs(float(sequence.release_phase[0]) - np.arcsin(1 / lam)) < 1e-14
@@ -56,7 +56,9 @@ def test_a_table_below_gravity_keeps_the_ball():
 def chattering(r, lam, phase, speed):
     """How long a ball bounces that leaves with a relative speed, bounce by bounce."""
     with mpmath.workdps(40):
-        tau, u, time = mpmath.mpf(phase), mpmath.mpf(speed), mpmath.mpf(0)
+        tau = mpmath.mpf(phase)
+        u = mpmath.mpf(speed)
+        time = mpmath.mpf(0)
         while u > 1e-18:
 
             def gap(s, tau=tau, u=u):
@@ -65,12 +67,14 @@ def chattering(r, lam, phase, speed):
 
             s = mpmath.findroot(gap, 2 * u / (1 - lam * mpmath.sin(tau)))
             falling = s - u + lam * (mpmath.cos(tau + s) - mpmath.cos(tau))
-            tau, u, time = tau + s, r * falling, time + s
+            tau += s
+            time += s
+            u = r * falling
         return float(time)
 
 
 @pytest.mark.parametrize(("r", "lam"), [(0.5, 0.8), (0.3, 1.4), (0.8, 0.0)])
-def test_the_sum_of_a_chattering_is_the_chattering(r, lam):
+def test_the_time_of_chattering_is_that_of_all_its_bounces(r, lam):
     phase, speed = -1.0, 0.2
     sequence = simulate(r, lam, phase, lam * np.cos(phase) - speed / r, 200)
     stuck = int(np.argmax(sequence.contact_duration > 0))
@@ -80,9 +84,10 @@ def test_the_sum_of_a_chattering_is_the_chattering(r, lam):
     assert settled == pytest.approx(chattering(r, lam, phase, speed), abs=1e-14)
 
 
-def test_ensembles_equal_single_runs_exactly():
+def test_many_balls_move_exactly_as_each_of_them_alone():
     rng = np.random.default_rng(5)
-    r, lam = rng.uniform(0.1, 1.0, 15), rng.uniform(0.0, 4.0, 15)
+    r = rng.uniform(0.1, 1.0, 15)
+    lam = rng.uniform(0.0, 4.0, 15)
     phase = rng.uniform(-3.0, 3.0, 15)
     velocity = lam * np.cos(phase) - rng.uniform(0.0, 5.0, 15)
     many = simulate(r, lam, phase, velocity, 40)
@@ -110,12 +115,12 @@ def test_the_ball_stays_above_the_table(r, lam, phase, speed):
     assert np.all(sequence.relative_velocity[1:][flown] <= 0)
 
 
-def test_no_balls_are_no_error():
+def test_an_array_without_balls_gives_arrays_without_balls():
     assert simulate(0.5, 1.0, np.zeros((0, 2)), -1.0, 3).time.shape == (3, 0, 2)
     assert next_impact(0.5, 1.0, np.zeros((0, 2)), -1.0).time.shape == (0, 2)
 
 
-def test_errors_are_one_line(refusal):
+def test_parameters_and_states_out_of_range_are_refused_in_one_line(refusal):
     for arguments, part in (
         ((0.0, 1.0, 0.0, 3.0, 2), "(0, 1]"),
         ((0.5, -1.0, 0.0, 3.0, 2), "amplitude"),

@@ -70,7 +70,8 @@ def test_areas_shrink_by_the_impact_and_by_nothing_else():
 
 
 def test_the_fixed_point_of_a_linear_map_is_one_step_away():
-    matrix, fixed = np.array([[0.5, -0.7], [0.4, 0.2]]), np.array([0.3, -1.1])
+    matrix = np.array([[0.5, -0.7], [0.4, 0.2]])
+    fixed = np.array([0.3, -1.1])
     state = np.array([2.0, 1.0])
     moved = matrix @ (state - fixed) + fixed - state
     jacobian = Jacobian(*(x[np.newaxis] for x in matrix.ravel()))

@@ -23,8 +23,10 @@ def landing_gap(s, phase, velocity, amplitude):
 
 def sampled(orbit):
     """Admissibility by its definition, on 2000 samples of contact and flight each."""
-    omega, zeta = orbit.law.frequency_ratio, orbit.law.damping_ratio
-    u, lam = orbit.relative_impact_velocity, orbit.amplitude
+    omega = orbit.law.frequency_ratio
+    zeta = orbit.law.damping_ratio
+    u = orbit.relative_impact_velocity
+    lam = orbit.amplitude
     flow = SpringDamper(omega, zeta).flow(SHARES * orbit.contact_duration, 0.0, u, orbit.phase, lam)
     time = orbit.contact_duration + SHARES * orbit.flight_time
     height, velocity = orbit.flight_path(time)
@@ -41,12 +43,13 @@ def sampled(orbit):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("release", Release)
-def test_random_orbits_against_samples(release):
+def test_admissible_orbits_are_those_without_an_earlier_event_in_dense_samples(release):
     # Contacts from short to as long as the cycle; samples can only miss events
     # between them, at orbits that nearly graze: none in this sample.
     rng = np.random.default_rng(0)
     size = 150
-    omega, zeta = 10 ** rng.uniform(0.05, 1.5, size), rng.uniform(0.01, 0.8, size)
+    omega = 10 ** rng.uniform(0.05, 1.5, size)
+    zeta = rng.uniform(0.01, 0.8, size)
     n = rng.integers(1, 4, size)
     longest = np.where(rng.random(size) < 0.5, 2 * np.pi * n, 4 / omega)
     duration = rng.uniform(0.1, 1.0, size) * longest
@@ -59,14 +62,13 @@ def test_random_orbits_against_samples(release):
     assert 0.2 < admissible.mean() < 0.8
 
 
-@pytest.mark.parametrize(("omega", "r_zeta", "release"), [(10.0, 0.05, r) for r in Release])
-def test_grazing_is_located(omega, r_zeta, release):
+@pytest.mark.parametrize("release", list(Release))
+def test_the_last_admissible_orbit_grazes_the_table(release):
     # On the unstable side the table rises into the flight from Λ ≈ 2.1 on.
-    system = SpringDamperModel(SpringDamper(omega, r_zeta, release)).system(1)
-    lam = np.linspace(1.9, 2.4, 6)
-    orbit = orbit_at(SpringDamper(omega, r_zeta, release), 1, lam, Side.UNSTABLE)
-    y = np.stack([orbit.phase, orbit.impact_velocity, omega * orbit.contact_duration, lam], axis=-1)
-    found = system.grazing(y)
+    contact = SpringDamper(10.0, 0.05, release)
+    system = SpringDamperModel(contact).system(1)
+    orbit = orbit_at(contact, 1, np.linspace(1.9, 2.4, 6), Side.UNSTABLE)
+    found = system.grazing(system.point(orbit))
     assert len(found) == 1
     at = system.orbit(found[0])
     start = float(at.contact_duration)
@@ -81,7 +83,7 @@ def test_grazing_is_located(omega, r_zeta, release):
     assert np.max(np.abs(system.residual(found[0]))) < 1e-12
 
 
-def test_restitution_orbits_graze():
+def test_unstable_restitution_orbits_are_admissible_until_they_graze():
     # r = 0.85, n = 1, unstable side: the ball meets the rising table beyond some Λ.
     lam = np.linspace(0.3, 4.0, 200)
     fold = np.pi * 0.15 / 1.85
@@ -94,7 +96,7 @@ def test_restitution_orbits_graze():
     assert np.array_equal(admissible, over.min(axis=0) > 0)
 
 
-def test_at_the_undamped_resonance_an_earlier_release_is_seen_too():
+def test_an_earlier_release_at_the_undamped_resonance_makes_an_orbit_inadmissible():
     # There the motion has no steady part, and the flow gives it, with certified steps. One
     # longer than the period of the contact's own oscillation opens on the way.
     duration = np.array([[3.5, 6.0, 9.0, 11.0]])
@@ -102,7 +104,7 @@ def test_at_the_undamped_resonance_an_earlier_release_is_seen_too():
     assert orbit.is_admissible().tolist() == [[True, True, False, False]]
 
 
-def test_what_misses_its_own_start_is_no_orbit():
+def test_an_orbit_that_does_not_return_to_its_start_is_inadmissible():
     # By less than what an event that was overlooked would do, and by more than rounding.
     model = RestitutionModel(0.85)
     phase = float(model.orbit(1, 1.0).phase)

@@ -33,7 +33,7 @@ def sample(seed: int, count: int, release: Release):
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("release", list(Release))
 @pytest.mark.parametrize(("count", "_"), SIZES)
-def test_none_is_false(release, kind, count, _):
+def test_every_bifurcation_found_has_a_multiplier_of_plus_or_minus_one(release, kind, count, _):
     contact, n = sample(7, count, release)
     orbit = getattr(SpringDamperModel(contact), kind)(n)
     orbit = orbit[orbit.exists]
@@ -63,11 +63,12 @@ def first_zero(contact: SpringDamper, n: int, kind: str, edges) -> tuple[float, 
 
 @pytest.mark.parametrize("release", list(Release))
 @pytest.mark.parametrize(("_", "count"), SIZES)
-def test_none_is_missing(release, _, count):
+def test_no_bifurcation_of_a_fine_grid_is_missing(release, _, count):
     contacts, families = sample(8, count, release)
     for contact, n in ((contacts[k], families[k]) for k in range(count)):
         model = SpringDamperModel(contact)
-        start, frequency = float(contact.free_angle), float(contact.damped_frequency)
+        start = float(contact.free_angle)
+        frequency = float(contact.damped_frequency)
         full = frequency * 2 * np.pi * n - start
         # Both time scales of the branch: the contact's and the fold's, 1/ϖ.
         near = np.geomspace(1e-7, 1, 1500) * min(1 / frequency, start / 2)

@@ -46,9 +46,11 @@ def holmes_map_jacobian(phase, velocity, amplitude, r):
 
 
 @given(families, coefficients, excesses, sides)
-def test_fixed_points_of_both_maps(n, r, excess, stable):
+def test_the_orbits_are_fixed_points_of_both_maps(n, r, excess, stable):
     lam = float(saddle_node(n, r)) + excess
-    phi, v, s = float(phase(n, r, lam, stable)), n * np.pi, 2 * np.pi * n
+    phi = float(phase(n, r, lam, stable))
+    v = n * np.pi
+    s = 2 * np.pi * n
     assert (phi >= 0) if stable else (phi <= 0)
     # The sine of a full turn is good to eps · 2πn, times Λ.
     scale = EPS * (1 + lam) * s
@@ -68,7 +70,7 @@ def floquet(kind, n, r, lam, phi):
 
 
 @given(families, coefficients)
-def test_bifurcations_are_where_they_are_said_to_be(n, r):
+def test_at_the_bifurcations_a_multiplier_is_plus_or_minus_one(n, r):
     node = float(saddle_node(n, r))
     for kind in ImpactMap:
         trace, det = floquet(kind, n, r, node, float(phase(n, r, node)))
@@ -85,14 +87,14 @@ def test_bifurcations_are_where_they_are_said_to_be(n, r):
         )
 
 
-def test_values():
+def test_the_bifurcations_for_one_half_are_those_worked_out_by_hand():
     # Eqs. 7 and 8 worked out by hand for r = 1/2: nπ/3 and 2(5/4)/(9/4) = 10/9.
     assert float(saddle_node(3, 0.5)) == pytest.approx(np.pi, rel=4 * EPS)
     assert float(period_doubling(3, 0.5)) == pytest.approx(np.hypot(10 / 9, np.pi), rel=4 * EPS)
 
 
 @pytest.mark.parametrize(("n", "r", "top"), [(1, 0.85, 2.0), (5, 0.85, 1.4), (2, 1.0, 1.5)])
-def test_whole_branch(n, r, top):
+def test_the_branch_has_equal_steps_of_the_lift_at_a_constant_cosine(n, r, top):
     amplitude, angle = branch(n, r, top, 41)
     assert amplitude[[0, -1]] == pytest.approx([top, top], rel=10 * EPS)
     # Every point solves Λ cos φ = Λ_SN, at equal steps of Λ sin φ.
@@ -104,13 +106,13 @@ def test_whole_branch(n, r, top):
     assert angle[0] == -angle[-1] < 0
 
 
-def test_no_branch_below_the_saddle_node(refusal):
+def test_a_branch_that_ends_below_the_saddle_node_is_refused(refusal):
     with refusal(NoOrbitError, "no 2-T orbit at Λ = 0.5", "saddle-node at Λ = 0.509447"):
         branch(2, 0.85, 0.5, 7)
 
 
 @pytest.mark.parametrize("r", [0.0, 1.01, np.nan])
-def test_restitution_outside_its_range(r, refusal):
+def test_a_restitution_coefficient_outside_its_range_is_refused(r, refusal):
     for call in (
         lambda: saddle_node(1, r),
         lambda: period_doubling(1, r),
@@ -122,7 +124,7 @@ def test_restitution_outside_its_range(r, refusal):
 
 
 @pytest.mark.parametrize("lam", [0.2, -1.0, np.nan, [1.0, 0.2]])
-def test_no_orbit_below_the_saddle_node(lam, refusal):
+def test_the_phase_of_an_orbit_below_the_saddle_node_is_refused(lam, refusal):
     # Of several Λ the first one without an orbit is named.
     with refusal(
         NoOrbitError, f"no 1-T orbit at Λ = {np.ravel(lam)[-1]:g}", "saddle-node at Λ = 0.254724"
@@ -130,6 +132,6 @@ def test_no_orbit_below_the_saddle_node(lam, refusal):
         phase(1, 0.85, lam)
 
 
-def test_of_both_sides_the_larger_phase_comes_first():
+def test_the_orbit_with_the_larger_phase_comes_first():
     phase = RestitutionModel(0.85).orbits(1, 1.0).phase
     assert phase[0] == -phase[1] > 0

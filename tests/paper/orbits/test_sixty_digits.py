@@ -25,12 +25,13 @@ def contacts(seed: int, count: int, low: float, high: float):
         yield SpringDamper.from_restitution(float(r), float(w), Release(rule)), int(n), random
 
 
-def test_the_branch_in_sixty_digits():
+def test_the_branch_agrees_with_sixty_digits():
     errors = []
     with mpmath.workdps(60):
         for contact, n, random in contacts(1, 200, 0, 6):
             excess = float(random.uniform(-1, 1)) / float(contact.frequency_ratio)
-            point, exact = branch_point(excess, contact, n), Exact(contact, n)
+            point = branch_point(excess, contact, n)
+            exact = Exact(contact, n)
             _, u, x, y = exact.orbit(excess)
             amplitude = mp.hypot(x, y)
             numbers = zip((point.u, point.x, point.y), (u, x, y), strict=True)
@@ -67,7 +68,9 @@ NAMED = [(0.794141, 0.170932, 19), (0.775496, 0.244529, 13), (0.32412, 0.255791,
 
 @pytest.mark.parametrize("kind", ["saddle_node", "period_doubling"])
 @pytest.mark.parametrize(("restitution", "omega", "n"), NAMED)
-def test_what_once_was_a_pole_or_a_grazing_orbit(restitution, omega, n, kind):
+def test_bifurcations_near_poles_and_grazing_orbits_are_those_of_sixty_digits(
+    restitution, omega, n, kind
+):
     # Reported at Λ = 6e17, at 1108 and at 7375: poles and one grazing orbit. The
     # zeros of the test functions have balls that rise at impact, and say so.
     contact = SpringDamper.from_restitution(restitution, omega)
@@ -79,7 +82,7 @@ def test_what_once_was_a_pole_or_a_grazing_orbit(restitution, omega, n, kind):
 
 
 @pytest.mark.parametrize("kind", ["saddle_node", "period_doubling"])
-def test_bifurcations_in_sixty_digits(kind):
+def test_random_bifurcations_agree_with_sixty_digits(kind):
     with mpmath.workdps(60):
         found = [check_bifurcation(c, n, kind) for c, n, _ in contacts(2, 20, -1, 5)]
     assert sum(found) > 15
@@ -88,10 +91,12 @@ def test_bifurcations_in_sixty_digits(kind):
 @pytest.mark.long
 @pytest.mark.parametrize("rule", list(Release))
 def test_no_bifurcation_of_the_whole_range_is_false(rule):
-    random, found = np.random.default_rng(60), 0
+    random = np.random.default_rng(60)
+    found = 0
     with mpmath.workdps(60):
         for _ in range(200):
-            omega, n = 10 ** random.uniform(-1, 4), int(200 ** random.uniform())
+            omega = 10 ** random.uniform(-1, 4)
+            n = int(200 ** random.uniform())
             contact = SpringDamper.from_restitution(random.uniform(0.05, 0.999), omega, rule)
             for kind in ("saddle_node", "period_doubling"):
                 # Of 723, a root was off by 3.5e-10 of itself at most, at n = 173 and ϖ = 0.3,

@@ -1,4 +1,4 @@
-"""The branch as an explicit curve."""
+"""The n-T branch as an explicit curve."""
 
 import numpy as np
 import pytest
@@ -49,7 +49,7 @@ def test_every_point_satisfies_the_papers_equations(log_omega, zeta, n, release,
 @pytest.mark.parametrize("release", list(Release))
 @pytest.mark.parametrize("zeta", [0.0, 0.0517, 0.4, 0.9])
 @pytest.mark.parametrize("omega", [0.7, 1.0, 2.0, 10.0, 1e4, 1e6])
-def test_derivatives_along_the_branch(release, zeta, omega):
+def test_the_derivatives_are_the_slopes_of_the_branch(release, zeta, omega):
     contact = SpringDamper(omega, zeta, release)
     # The branch turns within 1/ϖ of ε; in those units all is of order one. D
     # is kept away from zero, where Λ is infinite.
@@ -70,7 +70,7 @@ def test_derivatives_along_the_branch(release, zeta, omega):
 
 
 @pytest.mark.parametrize("zeta", [0.0, 0.05, 0.5, 0.95])
-def test_free_release_angles(zeta):
+def test_the_free_contact_ends_at_the_free_angle_and_not_before(zeta):
     # The free contact, thrown against the table with velocity -1: δ = -g.
     omega = 3.0
     omega_d = omega * np.sqrt(1 - zeta**2)
@@ -118,7 +118,7 @@ def test_permanent_contact_continues_into_a_stable_orbit(restitution, omega):
 
 
 @pytest.mark.parametrize(("omega", "zeta"), [(2.0, 0.05), (5.0, 0.1), (3.0, 0.4)])
-def test_a_contact_of_several_periods_opens_in_every_one(omega, zeta):
+def test_a_contact_of_several_periods_opens_in_each_of_them(omega, zeta):
     # As D → 2πn: one orbit of the ball for n = 1, none for n ≥ 2, whose contact
     # is over after one period, when δ becomes positive.
     contact = SpringDamper(omega, zeta)
@@ -134,7 +134,7 @@ def test_a_contact_of_several_periods_opens_in_every_one(omega, zeta):
         assert np.all(flow.displacement.max(axis=1) > 0)
 
 
-def test_long_arrays_are_the_same_as_single_points():
+def test_many_points_are_the_same_as_single_ones():
     # More than two blocks, with the short and resonant contacts among them.
     excess = np.linspace(-3.1, 3.0, 20_000)
     whole = branch_point(excess, SpringDamper(1.0, 0.0), 2)
@@ -154,11 +154,12 @@ def test_overdamped_contacts_are_refused(zeta, refusal):
 # The nearest point of the branch.
 
 
-def test_a_point_beside_the_branch():
+def test_the_nearest_point_is_the_foot_of_the_normal():
     contact = SpringDamper(10.0, 0.05)
     point = branch_point(0.02, contact, 1)
     # One step normal to the curve in the plane (Λ cos φ, Λ sin φ).
     normal = np.array([-point.d_y, point.d_x]) / np.hypot(point.d_x, point.d_y)
-    x, y = point.x + 1e-4 * normal[0], point.y + 1e-4 * normal[1]
+    x = point.x + 1e-4 * normal[0]
+    y = point.y + 1e-4 * normal[1]
     assert float(nearest_excess(contact, 1, x, y, np.array(0.021))) == pytest.approx(0.02, abs=1e-4)
     assert float(nearest_excess(contact, 1, x, y, np.array(0.02))) == pytest.approx(0.02, abs=1e-9)

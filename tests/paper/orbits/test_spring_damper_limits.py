@@ -21,13 +21,18 @@ every_release = pytest.mark.parametrize("release", list(Release))
 @pytest.fixture(scope="module", params=list(Release))
 def drawn(request):
     """Random contacts, the corners of their range among them; n, r and shares for Λ."""
-    rng, size = np.random.default_rng(11), 400
-    n, share = rng.integers(1, 6, size), rng.uniform(0.01, 0.99, size)
+    rng = np.random.default_rng(11)
+    size = 400
+    n = rng.integers(1, 6, size)
+    share = rng.uniform(0.01, 0.99, size)
     omega = np.exp(rng.uniform(*np.log([2.0, 1e4]), size))
-    # Below r = 0.35 a soft contact's branch may have no fold (see test_without_a_fold).
-    # Nearly elastic contacts have a test of their own.
+    # Below r = 0.35 the branch of a compliant contact may have no fold, see
+    # test_a_branch_without_a_fold_has_a_single_side. Nearly elastic contacts are tested below.
     r = rng.uniform(0.35, 0.9999, size)
-    omega[::10], omega[1::10], r[::7], r[1::7] = 2.0, 1e4, 0.35, 1.0
+    omega[::10] = 2.0
+    omega[1::10] = 1e4
+    r[::7] = 0.35
+    r[1::7] = 1.0
     return SpringDamper(omega, damping_ratio(r), request.param), n, r, share
 
 
@@ -59,7 +64,7 @@ def test_the_saddle_node_is_the_lowest_amplitude(drawn):
     assert np.all(np.abs(Bifurcation.SADDLE_NODE.test(trace, det)) <= 1e-10)
 
 
-def test_a_required_orbit_that_is_missing(refusal):
+def test_a_required_orbit_that_does_not_exist_is_refused_with_its_reason(refusal):
     contact = SpringDamper(10.0, float(damping_ratio(0.85)))
     # The saddle-node of the model notes' table, 0.2400.
     with refusal(
@@ -79,7 +84,7 @@ def test_a_required_orbit_that_is_missing(refusal):
         )
 
 
-def test_without_a_fold():
+def test_a_branch_without_a_fold_has_a_single_side():
     # Strong damping, soft contact: Λ falls all the way to permanent contact.
     contact = SpringDamper(2.592, float(damping_ratio(0.0893)))
     assert np.isnan(saddle_node(contact, 1))
@@ -92,7 +97,7 @@ def test_without_a_fold():
 @pytest.mark.parametrize(
     ("n", "r", "omega"), [(3, 0.9999700944704891, 6586.302158952978), (1, 0.99999, np.e)]
 )
-def test_saddle_node_of_a_nearly_elastic_contact_released_at_zero_force(n, r, omega):
+def test_the_saddle_node_of_a_nearly_elastic_contact_is_next_to_zero_amplitude(n, r, omega):
     # The fold is next to that of the displacement release, Λ → 0 as r → 1; the
     # derivative's roundings at vanishing contacts (Λ → ∞) are no fold.
     contact = SpringDamper(omega, float(damping_ratio(r)), Release.FORCE)
@@ -102,7 +107,7 @@ def test_saddle_node_of_a_nearly_elastic_contact_released_at_zero_force(n, r, om
 
 
 @pytest.mark.parametrize("omega", [0.18, 0.32])
-def test_the_unstable_side_of_a_very_soft_contact(omega):
+def test_the_unstable_side_of_a_very_compliant_contact_has_an_orbit_or_none(omega):
     # None or an orbit, and no numerical warning on the way.
     contact = SpringDamper(omega, float(damping_ratio(0.6)))
     orbit = orbit_at(contact, 1, 40.0, Side.UNSTABLE)
@@ -124,7 +129,7 @@ def test_just_above_the_fold_there_are_two_orbits_and_just_below_none(n, omega, 
     assert not below.exists
 
 
-def test_just_below_the_turn_of_the_unstable_side_its_first_orbit_is_found():
+def test_the_first_orbit_just_below_the_turn_of_the_unstable_side_is_found():
     # Two orbits next to the top of Λ, between two points of any grid; above it there is none.
     contact = SpringDamper(2.0, float(damping_ratio(0.85)))
     turn = minimize_scalar(
@@ -140,14 +145,14 @@ def test_just_below_the_turn_of_the_unstable_side_its_first_orbit_is_found():
     assert -1e-3 < excess - turn.x < 0
 
 
-def test_every_orbit_at_an_amplitude_comes_in_and_leaves():
+def test_all_orbits_at_an_amplitude_approach_the_table_and_leave_it():
     # Far up, half of the points of the branch have balls that rise at impact, or fall at release.
     found = SpringDamperModel(SpringDamper(3.3, 0.1)).orbits(1, 4.0)
     assert found.size == 2
     assert np.all(found.relative_impact_velocity < 0) and np.all(found.apparent_restitution > 0)
 
 
-def test_longer_contacts_are_not_found_by_chance():
+def test_contacts_beyond_the_searched_angles_are_never_found():
     # The angle beyond half an oscillation is searched in steps of 0.02, up to 200000 of them.
     contact = SpringDamper(781.3162393999957, 0.13815983841837418)
     orbits = orbits_at(contact, 2, 1.2720391140979281)

@@ -14,7 +14,7 @@ from bouncing_ball.paper.orbits.spring_damper_branch import branch_point
 from bouncing_ball.paper.orbits.spring_damper_orbit import SpringDamperOrbit
 
 
-def test_max_height_of_a_ball_released_downwards():
+def test_the_greatest_height_of_a_ball_released_downwards_is_in_contact():
     # A stable orbit of a soft contact: the ball turns round before release, so
     # its greatest height lies in the contact.
     r, omega, lam = 0.1546, 0.3691, 10.5378
@@ -27,7 +27,7 @@ def test_max_height_of_a_ball_released_downwards():
     assert float(orbit.max_height) == pytest.approx(orbit.contact_path(top)[0], abs=1e-13)
 
 
-def test_distance_is_the_largest_difference():
+def test_the_distance_of_orbits_is_their_largest_difference():
     contact = SpringDamper(10.0, 0.05)
     point = branch_point(0.02, contact, 1)
     base = {
@@ -48,7 +48,7 @@ def test_distance_is_the_largest_difference():
 
 
 @pytest.mark.parametrize("top", [0.0, 0.01, 0.5, 0.99, 1.0])
-def test_the_highest_point_of_a_contact_may_be_next_to_its_ends(top):
+def test_the_highest_point_of_a_contact_is_found_next_to_its_ends(top):
     contact = SimpleNamespace(
         shape=(), contact_duration=np.array(1.0), contact_path=lambda time: (-((time - top) ** 2),)
     )

@@ -58,7 +58,7 @@ def test_every_missing_orbit_has_its_reason(drawn):
     assert np.mean(~missing) > 1 / 2
 
 
-def test_newton_on_the_full_system_agrees(drawn):
+def test_newtons_method_on_the_full_system_returns_to_the_branch(drawn):
     every = drawn[-1]
     orbit = every[every.exists]
     system = SpringDamperModel(orbit.law).system(orbit.n)
@@ -76,7 +76,7 @@ def test_newton_on_the_full_system_agrees(drawn):
     assert np.max(np.abs(found.point - y) / scale) < 1e-11
 
 
-def test_the_simulation_returns_to_the_admissible_ones(drawn):
+def test_the_simulation_returns_to_every_admissible_orbit(drawn):
     every = drawn[-1]
     orbit = every[every.is_admissible()]
     assert orbit.size > every.size / 4

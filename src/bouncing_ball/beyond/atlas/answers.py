@@ -1,12 +1,10 @@
-"""The last ϖ at which an error exceeds each tolerance, from stiff contacts downwards.
+"""The answers that are stored for the orbits of a tile: thresholds and counts.
 
-The threshold of an error is the ϖ above which the error stays within a tolerance. It is the
-first crossing on a walk from the largest ϖ to the smallest. The threshold is interpolated
-within one step of the walk, in logarithms, because ln(error) is nearly a straight line in
-ln ϖ, or along the error itself if the error changes its sign. An excursion beyond the tolerance
-between two ϖ is detected by the parabola through the nearest three ϖ.
-
-The answers that are stored for the orbits of a tile: thresholds and counts.
+The threshold of an error is the ϖ above which the error stays within a tolerance. It is the first
+crossing on a walk from the largest ϖ to the smallest. The threshold is interpolated within one step
+of the walk, in logarithms, because ln(error) is nearly a straight line in ln ϖ, or along the error
+itself if the error changes its sign. An excursion beyond the tolerance between two ϖ is detected by
+the parabola through the nearest three ϖ.
 
 Nodes are walked in blocks. The thresholds of each node and its errors at the examined ϖ are kept
 until the tiles of the block are complete. The files contain the answers of tiles, which are maxima
@@ -14,6 +12,7 @@ and counts over the nodes, so that the size of the files does not grow with the 
 """
 
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -28,6 +27,11 @@ from bouncing_ball.paper.comparison.errors import OF_ORBITS
 # The error is bounded for the interpolation, because it is infinite where a model has no orbit.
 _LARGEST = 1e3
 _SMALLEST = 1e-300
+BLOCK = 1024
+"""Number of nodes walked at the same time: the arrays are long and still fit into the cache."""
+
+PER_DECADE = 10
+"""Number of bins per decade of ϖ in the histograms of thresholds."""
 
 
 def last_crossings(ratios: np.ndarray, errors: np.ndarray, tolerances: np.ndarray) -> np.ndarray:
@@ -56,25 +60,26 @@ def last_crossings(ratios: np.ndarray, errors: np.ndarray, tolerances: np.ndarra
     >>> found[:, 0].round(9).tolist()
     [3.0, 100.0, inf]
     """
-    x, errors = np.log(ratios), np.where(np.isnan(errors), np.inf, errors)
+    x = np.log(ratios)
+    errors = np.where(np.isnan(errors), np.inf, errors)
     # The running maximum from the largest ϖ downwards; this is four times as fast as accumulate.
     largest = np.abs(errors)
     for above, here in pairwise(largest):
         np.maximum(above, here, out=here)
-    step, entry, inside, height, top, curve = _peaks(x, errors)
+    peaks = _peaks(x, errors)
     found = np.full((len(tolerances), *errors.shape[1:]), x[-1])
     for one, tolerance in zip(found, tolerances, strict=True):
         # The index of the first ϖ at which the error exceeds the tolerance.
         first = np.count_nonzero(largest <= tolerance, axis=0)
         crosses = np.nonzero(first < len(x))
         one[crosses] = _crossing(x, errors, (first[crosses], *crosses), tolerance)
+        between = (peaks.middle <= tolerance) & (tolerance < peaks.height)
         # If there are several excursions before the crossing, the first is the threshold. It is
         # therefore written last.
-        seen = (inside <= tolerance) & (tolerance < height) & (step <= first[entry])
-        seen = np.flatnonzero(seen)[::-1]
-        width = np.sqrt((height[seen] - tolerance) / -curve[seen])
-        ends = np.minimum(top[seen] + width, x[step[seen] - 2])
-        one[tuple(index[seen] for index in entry)] = ends
+        seen = np.flatnonzero(between & (peaks.step <= first[peaks.entry]))[::-1]
+        width = np.sqrt((peaks.height[seen] - tolerance) / -peaks.curvature[seen])
+        ends = np.minimum(peaks.place[seen] + width, x[peaks.step[seen] - 2])
+        one[tuple(index[seen] for index in peaks.entry)] = ends
     return np.exp(found)
 
 
@@ -83,7 +88,8 @@ def _crossing(x: np.ndarray, errors: np.ndarray, at: tuple, tolerance: float) ->
     step, *entry = at
     # Beyond the largest ϖ no crossing can be located.
     start = step == 0
-    left, right = np.where(start, 1.0, errors[step - 1, *entry]), errors[at]
+    left = np.where(start, 1.0, errors[step - 1, *entry])
+    right = errors[at]
     turned = (left * right < 0) & np.isfinite(right)
     level = np.log(np.minimum(np.abs(right), _LARGEST) / tolerance)
     before = np.log(np.maximum(np.abs(left), _SMALLEST) / tolerance)
@@ -94,32 +100,49 @@ def _crossing(x: np.ndarray, errors: np.ndarray, at: tuple, tolerance: float) ->
     return np.where(start, np.inf, x[step] + share * (x[step - 1] - x[step]))
 
 
-def _peaks(x: np.ndarray, errors: np.ndarray) -> tuple:
-    """Parabolas through three neighbouring ϖ whose apex lies between them.
+class _Peaks(NamedTuple):
+    """Parabolas through the errors at three neighbouring ϖ, whose apices lie between them."""
 
-    Returns the indices of the last of the three ϖ and of the entries, the modulus of the error at
-    the middle ϖ and at the apex, ln ϖ of the apex, and half the second derivative.
-    """
-    e0, e1, e2 = errors[:-2], errors[1:-1], errors[2:]
+    # The index of the last of the three ϖ, and the indices of the entries.
+    step: np.ndarray
+    entry: tuple[np.ndarray, ...]
+    # The modulus of the error at the middle ϖ and at the apex.
+    middle: np.ndarray
+    height: np.ndarray
+    # ln ϖ of the apex, and half the second derivative.
+    place: np.ndarray
+    curvature: np.ndarray
+
+
+def _peaks(x: np.ndarray, errors: np.ndarray) -> _Peaks:
+    """The parabolas through errors that are largest at the middle of three ϖ; x is ln ϖ."""
+    before = errors[:-2]
+    here = errors[1:-1]
+    after = errors[2:]
     with np.errstate(invalid="ignore"):
-        highest = (e1 * (e1 - e0) >= 0) & (e1 * (e1 - e2) > 0)
-    found = np.nonzero(highest & np.isfinite(e0) & np.isfinite(e1) & np.isfinite(e2))
-    step = found[0]
-    sign = np.sign(e1[found])
-    f0, f1, f2 = (sign * e[found] for e in (e0, e1, e2))
-    x0, x1, x2 = x[step], x[step + 1], x[step + 2]
-    first, second = (f1 - f0) / (x1 - x0), (f2 - f1) / (x2 - x1)
-    bend = (second - first) / (x2 - x0)
-    slope = first + bend * (x1 - x0)
-    top, height = x1 - slope / (2 * bend), f1 - slope * slope / (4 * bend)
-    return step + 2, found[1:], f1, height, top, bend
-
-
-BLOCK = 1024
-"""Number of nodes walked at the same time: the arrays are long and still fit into the cache."""
-
-PER_DECADE = 10
-"""Number of bins per decade of ϖ in the histograms of thresholds."""
+        highest = (here * (here - before) >= 0) & (here * (here - after) > 0)
+    finite = np.isfinite(before) & np.isfinite(here) & np.isfinite(after)
+    found = np.nonzero(highest & finite)
+    step, *entry = found
+    sign = np.sign(here[found])
+    f0 = sign * before[found]
+    f1 = sign * here[found]
+    f2 = sign * after[found]
+    x0 = x[step]
+    x1 = x[step + 1]
+    x2 = x[step + 2]
+    first = (f1 - f0) / (x1 - x0)
+    second = (f2 - f1) / (x2 - x1)
+    curvature = (second - first) / (x2 - x0)
+    slope = first + curvature * (x1 - x0)
+    return _Peaks(
+        step=step + 2,
+        entry=tuple(entry),
+        middle=f1,
+        height=f1 - slope * slope / (4 * curvature),
+        place=x1 - slope / (2 * curvature),
+        curvature=curvature,
+    )
 
 
 def threshold_bins(ratios: np.ndarray) -> np.ndarray:
@@ -135,13 +158,15 @@ def threshold_bins(ratios: np.ndarray) -> np.ndarray:
     >>> threshold_bins(np.array([10.0, 12.0])).tolist()
     [0.0, 10.0, inf]
     """
-    low, high = (np.floor(PER_DECADE * np.log10(ratios[k]) + 1e-9) for k in (0, -1))
+    low = np.floor(PER_DECADE * np.log10(ratios[0]) + 1e-9)
+    high = np.floor(PER_DECADE * np.log10(ratios[-1]) + 1e-9)
     return np.array([0.0, *10 ** (np.arange(low, high + 1) / PER_DECADE), np.inf])
 
 
 def _of_nodes(plan: Plan, row: int, index: np.ndarray) -> xr.Dataset:
     """The answers of some nodes of a row, over ``node``."""
-    nodes, down = plan.nodes(row, index), plan.ratios[::-1]
+    nodes = plan.nodes(row, index)
+    down = plan.ratios[::-1]
     steps = list(walk(nodes, plan.ratios))
     error = np.concatenate([np.moveaxis(orbit_errors(step.orbit), 2, 0) for step in steps])
     stable = np.concatenate([step.stable for step in steps])
@@ -151,9 +176,8 @@ def _of_nodes(plan: Plan, row: int, index: np.ndarray) -> xr.Dataset:
     signature = Signature(nodes.contact(down[at, np.newaxis]))
     # One quantity after another, because the errors of all quantities do not fit into the cache.
     each = error.reshape(len(down), -1, len(index))
-    found = [
-        last_crossings(down, each[:, k], np.array(plan.tolerances)) for k in range(each.shape[1])
-    ]
+    tolerances = np.array(plan.tolerances)
+    found = [last_crossings(down, each[:, k], tolerances) for k in range(each.shape[1])]
     threshold = np.stack(found, axis=1).reshape(-1, *error.shape[1:])
     left = remainder(nodes.n, signature(), nodes.amplitude, examined[0], OF_ORBITS)
     ratio = "frequency_ratio"
@@ -183,7 +207,8 @@ def row_answers(plan: Plan, row: int) -> xr.Dataset:
 
 def _of_tiles(plan: Plan, row: int, nodes: np.ndarray) -> xr.Dataset:
     """The answers of some tiles of a row; during the computation each node takes 3 kB."""
-    starts, bins = range(0, len(nodes), BLOCK), threshold_bins(plan.ratios)
+    starts = range(0, len(nodes), BLOCK)
+    bins = threshold_bins(plan.ratios)
     blocks = [_of_nodes(plan, row, nodes[k : k + BLOCK]) for k in starts]
     tiles = xr.concat(blocks, "node").coarsen(node=plan.nodes_per_tile)
     each = tiles.construct(node=("position", "own"))

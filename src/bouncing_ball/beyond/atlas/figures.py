@@ -1,6 +1,5 @@
-"""The charts of the atlas: the ϖ above which each model is accurate.
-
-The table of the atlas: how often the rule of thumb holds, and the suprema of the errors.
+"""The charts of the atlas, the ϖ above which each model is accurate, and its table: how often the
+rule of thumb holds, and the suprema of the errors.
 """
 
 from collections.abc import Iterator
@@ -110,7 +109,8 @@ def over_range(data: xr.Dataset, quantity: str = "max_height", n: int = 1) -> Fi
 
 def _draw_simplest(axes: Axes, needed: xr.DataArray) -> None:
     """The regions of (r, ϖ) in which the restitution or the corrected model is accurate."""
-    r, low = needed.restitution.values, _SPAN[0]
+    r = needed.restitution.values
+    low, _ = _SPAN
     simple, corrected = (needed.sel(model=model).clip(*_SPAN).values for model in _BESIDE)
     axes.set_facecolor(_RIGHT)
     axes.fill_between(r, low, simple, color=_CORRECTED, linewidth=0)
@@ -138,7 +138,8 @@ def shares(data: xr.Dataset) -> Table:
     Shares refer to nodes, so that a limit of the families has no share; suprema refer to all
     orbits.
     """
-    rule, tolerance = float(data.rule_of_thumb), float(data.summary_tolerance)
+    rule = float(data.rule_of_thumb)
+    tolerance = float(data.summary_tolerance)
     header = [
         "release",
         "quantity",

@@ -25,5 +25,5 @@ def minutes(parameters: Mapping[str, Any]) -> int:
     from bouncing_ball.beyond.atlas.plan import Plan
 
     plan = Plan(**parameters)
-    seconds = plan.orbits / len(plan.shard_rows()) * _SECONDS_PER_ORBIT
+    seconds = plan.orbit_count / len(plan.shard_rows()) * _SECONDS_PER_ORBIT
     return _LEAST_MINUTES + math.ceil(seconds / 60)

@@ -58,14 +58,14 @@ class Nodes:
         return SpringDamper(frequency_ratio, self.damping_ratio, self.release)
 
 
-class Ranges(Parameters):
+class EqualRanges(Parameters):
     """Equal ranges, with equally spaced nodes in each."""
 
     tiles: Annotated[int, number("number of equal ranges", ge=1, le=2000)]
     samples: Annotated[int, number("number of evenly spaced nodes in each range", ge=1, le=10000)]
 
 
-class RestitutionRanges(Interval, Ranges):
+class RestitutionRanges(Interval, EqualRanges):
     """Equal ranges of r. A release rule has nodes only in the ranges that its contacts reach."""
 
     min: Annotated[Restitution, Field(description="smallest r, for rules that reach it")]
@@ -78,7 +78,7 @@ class Plan(Parameters):
     n: Many[Family]
     release: Many[Annotated[Release, Strict(False)]]
     restitution: RestitutionRanges
-    position: Ranges
+    position: EqualRanges
     frequency_ratio: Span
     tolerances: Many[Tolerance]
     examined: Annotated[Many[FrequencyRatio], Field(description="ϖ at which errors are described")]
@@ -98,7 +98,8 @@ class Plan(Parameters):
     @cached_property
     def ratios(self) -> np.ndarray:
         """All ϖ in increasing order: the grid merged with the examined ϖ."""
-        grid, examined = self.frequency_ratio.grid(), np.sort(self.examined)
+        grid = self.frequency_ratio.grid()
+        examined = np.sort(self.examined)
         apart = np.abs(np.log(grid[:, np.newaxis] / examined)) > _SAME
         return np.sort(np.concatenate([grid[np.all(apart, axis=1)], examined]))
 
@@ -133,7 +134,7 @@ class Plan(Parameters):
         return self.position.tiles * self.nodes_per_tile
 
     @property
-    def orbits(self) -> int:
+    def orbit_count(self) -> int:
         """Number of orbits evaluated: all nodes at all ϖ."""
         return len(self.rows) * self.nodes_per_row * len(self.ratios)
 
@@ -143,19 +144,22 @@ class Plan(Parameters):
         """
         count = self.position.tiles * self.position.samples
         p = _midpoints(0.0, 1.0, count).reshape(self.position.tiles, 1, -1)
-        each = np.broadcast_arrays(self.restitutions(row)[:, np.newaxis], p)
-        return self.placed(row, *(x.ravel()[index] for x in each))
+        every_r, every_p = np.broadcast_arrays(self.restitutions(row)[:, np.newaxis], p)
+        return self.placed(row, every_r.ravel()[index], every_p.ravel()[index])
 
     def restitutions(self, row: int) -> np.ndarray:
         """The values of r of the nodes of a row, shape (samples,)."""
-        low, high = self.edges[row % self.restitution.tiles :][:2]
-        return _midpoints(float(low), float(high), self.restitution.samples)
+        place = row % self.restitution.tiles
+        low = float(self.edges[place])
+        high = float(self.edges[place + 1])
+        return _midpoints(low, high, self.restitution.samples)
 
     def placed(self, row: int, r: np.ndarray, p: np.ndarray) -> Nodes:
         """Nodes with the rule and the n of a row, at given r and p, arrays of one shape."""
         rule, family, _ = np.unravel_index(row, self.shape)
         n = self.n[family]
-        low, high = restitution_orbit.saddle_node(n, r), restitution_orbit.period_doubling(n, r)
+        low = restitution_orbit.saddle_node(n, r)
+        high = restitution_orbit.period_doubling(n, r)
         return Nodes(self.release[rule], n, r, low + p * (high - low))
 
 

@@ -8,12 +8,34 @@ import xarray as xr
 
 from bouncing_ball.beyond.atlas.answers import last_crossings, row_answers, threshold_bins
 from bouncing_ball.beyond.atlas.plan import Plan
-from bouncing_ball.beyond.atlas.variables import VARIABLES
 from bouncing_ball.beyond.corrected.errors import SIMPLE, errors
-from bouncing_ball.datasets.variables import describe, described
+from bouncing_ball.datasets.variables import Variable, describe, described
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.comparison.errors import OF_LIMITS, OF_ORBITS
 
+VARIABLES = {
+    "row": Variable("row of tiles: a release rule, an index n and a range of r"),
+    "position": Variable(
+        "place in the stable range of the restitution model, from its saddle-node at 0 to its "
+        "period doubling at 1",
+        symbol="(Λ - Λ_SN)/(Λ_PD - Λ_SN)",
+    ),
+    "threshold_bin": Variable(
+        "lower end of a bin of thresholds; 0: at every ϖ scanned, infinity: at none", symbol="ϖ"
+    ),
+    "largest_threshold": Variable("ϖ from which the error of all nodes is tolerated", symbol="ϖ"),
+    "threshold_counts": Variable("number of nodes by the ϖ from which their error is tolerated"),
+    "holding": Variable("number of nodes whose error is tolerated from this ϖ on"),
+    "exceeding": Variable("number of nodes whose error exceeds the tolerance at this ϖ"),
+    "law_stated": Variable("number of nodes for which the error law is stated"),
+    "law_exceeding": Variable("number of these beyond the stated remainder"),
+    "unstable": Variable("number of nodes whose exact orbit is not stable"),
+    "sought": Variable("number of orbits that the walk did not reach, looked for directly"),
+    "limit_quantity": Variable("limit of the stable range, or of permanent contact"),
+    "limit_needed": Variable(
+        "ϖ from which the error of all limits of a range of r is tolerated", symbol="ϖ"
+    ),
+}
 _PLACE = ("release", "n", "restitution")
 """The dimensions into which ``row`` is unfolded."""
 
@@ -38,8 +60,8 @@ def limit_shard(plan: Plan) -> xr.Dataset:
     ``limit_needed`` (row, model, limit_quantity, tolerance) is the largest threshold among the r of
     a row; thresholds are interpolated like those of the orbits.
     """
-    down, shape = plan.ratios[::-1], (len(SIMPLE), len(OF_LIMITS), len(plan.tolerances))
-    needed = np.empty((len(plan.rows), *shape))
+    down = plan.ratios[::-1]
+    needed = np.empty((len(plan.rows), len(SIMPLE), len(OF_LIMITS), len(plan.tolerances)))
     for k, row in enumerate(plan.rows):
         # The limits do not depend on the position p.
         r = plan.restitutions(row)
@@ -70,7 +92,8 @@ def merge(plan: Plan, shards: Iterable[xr.Dataset], limits: xr.Dataset) -> xr.Da
     ModelError
         If the shards do not contain each row of the plan exactly once.
     """
-    seen, first = np.zeros(np.prod(plan.shape), dtype=int), None
+    seen = np.zeros(np.prod(plan.shape), dtype=int)
+    first = None
     whole: dict[str, tuple[tuple[Hashable, ...], np.ndarray]] = {}
     coords: dict[str, object] = {}
     # One shard at a time, so that memory holds only the result and one part.
@@ -88,11 +111,15 @@ def merge(plan: Plan, shards: Iterable[xr.Dataset], limits: xr.Dataset) -> xr.Da
     for row in plan.rows[seen[plan.rows] != 1]:
         raise ModelError(f"row {row} of the atlas is in {seen[row]} shards, not in one")
     data = {
-        name: (dims, rows.reshape(*plan.shape, *rows.shape[1:]))
+        name: (dims, rows.reshape(plan.shape + rows.shape[1:]))
         for name, (dims, rows) in whole.items()
     }
-    places = [str(rule) for rule in plan.release], list(plan.n), _middle(plan.edges)
-    coords |= dict(zip(_PLACE, places, strict=True)) | {"position": _middle(plan.positions)}
+    coords |= {
+        "release": [str(rule) for rule in plan.release],
+        "n": list(plan.n),
+        "restitution": _middle(plan.edges),
+        "position": _middle(plan.positions),
+    }
     return described(data, coords, variables=VARIABLES)
 
 

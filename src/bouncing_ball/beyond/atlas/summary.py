@@ -1,13 +1,12 @@
-"""Suprema of the errors over all orbits in the range of the atlas, including those between nodes.
-
-The modulus of an error is maximised over r and over the whole stable range, on a grid that is
-refined around its largest value. Next to the saddle-node, p = 0, where most errors are largest,
-they vary with √p; the grid is therefore even in √p.
-
-The summary of the atlas, which is small enough for the accepted record.
+"""The summary of the atlas, which is small enough for the accepted record.
 
 It contains the frequency ratio needed for one tolerance over r, Λ and n; the shares of the nodes
-for which a rule of thumb holds; the suprema of the errors; and the accuracy of the error law.
+for which a rule of thumb holds; the suprema of the errors over all orbits in the range of the
+atlas, including those between nodes; and the accuracy of the error law.
+
+For a supremum, the modulus of an error is maximised over r and over the whole stable range, on a
+grid that is refined around its largest value. Next to the saddle-node, p = 0, where most errors are
+largest, they vary with √p; the grid is therefore even in √p.
 """
 
 from collections.abc import Callable
@@ -17,20 +16,55 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.beyond.atlas.plan import Plan
-from bouncing_ball.beyond.atlas.variables import VARIABLES
+from bouncing_ball.beyond.atlas.shards import VARIABLES as OF_SHARDS
 from bouncing_ball.beyond.corrected.errors import SIMPLE, errors
 from bouncing_ball.beyond.error_law import coefficients
-from bouncing_ball.datasets.variables import described
+from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.paper.comparison.errors import OF_LIMITS, OF_ORBITS, Quantity, modulus
 from bouncing_ball.paper.comparison.thresholds import thresholds
 
+VARIABLES = {
+    "needed": Variable("ϖ from which the error of all nodes of a tile is tolerated", symbol="ϖ"),
+    "needed_quantile": Variable(
+        "ϖ from which the error of a share of nodes is tolerated", symbol="ϖ"
+    ),
+    "holding_share": Variable("share of nodes whose error is tolerated from this ϖ on"),
+    "exceeding_share": Variable("share of nodes whose error exceeds the tolerance at this ϖ"),
+    "failing_restitution": Variable(
+        "r below which the error of the greatest height exceeds the tolerance", symbol="r"
+    ),
+    "unstable_share": Variable("share of nodes whose exact orbit is not stable"),
+    "supremum": Variable("supremum of the relative error where the rule of thumb begins"),
+    "supremum_quantity": Variable("quantity of an orbit, or limit"),
+    "supremum_needed": Variable("ϖ from which the error of all orbits is tolerated", symbol="ϖ"),
+    "restitution_edge": Variable("ends of the ranges of r", symbol="r"),
+    "position_edge": Variable("ends of the ranges of positions"),
+    "law_coefficient": Variable(
+        "modulus of the error law's K in the middle of the tile", symbol="|K|"
+    ),
+    "sought_orbits": Variable("orbits that the walk did not reach, looked for directly"),
+    "resolution": Variable("largest relative step of ϖ: a threshold lies within one"),
+    "summary_tolerance": Variable("relative error tolerated in the summary"),
+    "rule_of_thumb": Variable("frequency ratio that is said to be enough", symbol="ϖ"),
+}
 # Number of points along r and √p, and of grids. Each grid divides the distance of the points by
 # four, so that the place of a maximum is known to 1/2000 of the range. The maximum itself is known
 # to the square of this, unless it lies at an end of the range, which is a point of every grid.
-_POINTS, _ROUNDS = 9, 5
-# Smallest √p, next to the saddle-node. The phase of the restitution model is 0 at the saddle-node,
-# so that its relative error grows as 1/√p; no other error of an existing orbit exceeds this bound.
-_NEAREST, _UNBOUNDED = 1e-6, 1e3
+_POINTS = 9
+_ROUNDS = 5
+# Smallest √p, next to the saddle-node.
+_NEAREST = 1e-6
+# The phase of the restitution model is 0 at the saddle-node, so that its relative error grows as
+# 1/√p. No other error of an existing orbit exceeds this bound.
+_UNBOUNDED = 1e3
+TOLERANCE = 0.01
+"""The tolerance of charts and tables."""
+
+RULE_OF_THUMB = 100.0
+"""The ϖ above which the paper regards the restitution model as accurate."""
+
+QUANTILES = (0.5, 0.9, 0.99)
+_TILES = ("restitution", "position")
 # Factor that keeps r below 1: at r = 1 the saddle-node is at Λ = 0, and its relative error is 0/0.
 _BELOW = 1 - 1e-9
 # Number of ϖ that are scanned for a crossing.
@@ -48,23 +82,28 @@ def largest(
     model, quantity = kind
     # The bifurcations and the permanent contact do not depend on p.
     first = 1.0 if quantity in OF_LIMITS else _NEAREST
-    start, end = np.array([(low, high or low), (first, 1.0)]).T
+    # The corners of the range of (r, √p).
+    start = np.array([low, first])
+    end = np.array([high or low, 1.0])
     for _ in range(_ROUNDS):
-        grid = (np.unique(part) for part in np.linspace(start, end, _POINTS).T)
-        r, root = (x.ravel() for x in np.meshgrid(*grid))
-        nodes = plan.placed(row, r, root**2)
+        along_r, along_root = np.linspace(start, end, _POINTS).T
+        r, root = np.meshgrid(np.unique(along_r), np.unique(along_root))
+        nodes = plan.placed(row, r.ravel(), root.ravel() ** 2)
         every = errors(nodes.contact(ratio), nodes.n, nodes.amplitude, [quantity])
         size = modulus(every[SIMPLE.index(model), 0])
         best = int(size.argmax())
-        place, step = np.array([r[best], root[best]]), (end - start) / (_POINTS - 1)
-        start, end = np.maximum(start, place - step), np.minimum(end, place + step)
+        place = np.array([r.ravel()[best], root.ravel()[best]])
+        step = (end - start) / (_POINTS - 1)
+        start = np.maximum(start, place - step)
+        end = np.minimum(end, place + step)
     return float(size[best]) if size[best] < _UNBOUNDED else np.inf
 
 
 def tolerated(error: Callable[[float], float], grid: np.ndarray, tolerance: float) -> float:
-    """The point of ``grid``'s range above which an error is within the tolerance, by
-    :func:`~bouncing_ball.paper.comparison.thresholds.thresholds`; NaN if the error is within the tolerance
-    at all points of the grid, or exceeds it at the last point.
+    """The point of ``grid``'s range above which an error is within the tolerance.
+
+    It is found by :func:`~bouncing_ball.paper.comparison.thresholds.thresholds`, and is NaN if the
+    error is within the tolerance at all points of the grid, or exceeds it at the last point.
 
     Examples
     --------
@@ -87,31 +126,28 @@ def suprema(plan: Plan, rule: float, tolerance: float) -> dict[str, tuple]:
     greatest height of the restitution model exceeds the tolerance below this r. The last two
     variables are computed by :func:`tolerated`.
     """
-    shape = *plan.shape[:2], len(SIMPLE), len(Quantity)
-    found, failing = np.empty((2, *shape)), np.empty(shape[:2])
+    rules, families, tiles = plan.shape
+    quantities = tuple(Quantity)
+    supremum = np.empty((rules, families, len(SIMPLE), len(quantities)))
+    needed = np.empty_like(supremum)
+    failing = np.empty((rules, families))
     scanned = np.geomspace(plan.ratios[0], plan.ratios[-1], _SCANNED)
-    for place in np.ndindex(shape):
-        tiles = np.ravel_multi_index((*place[:2], np.arange(plan.shape[2])), plan.shape)
-        edges = _BELOW * plan.edges[np.append(np.isin(tiles, plan.rows), True)]
-        error = partial(largest, plan, tiles[0], (SIMPLE[place[2]], tuple(Quantity)[place[3]]))
-        along_ratio = partial(error, low=edges[0], high=edges[-1])
-        found[0][place] = along_ratio(rule)
-        found[1][place] = tolerated(along_ratio, scanned, tolerance)
-        if place[2:] == (0, 0):
-            failing[place[:2]] = tolerated(partial(error, rule), edges, tolerance)
-    dims = "release", "n", "model", "supremum_quantity"
-    every = {"supremum": (dims, found[0]), "supremum_needed": (dims, found[1])}
-    return {**every, "failing_restitution": (dims[:2], failing)}
-
-
-TOLERANCE = 0.01
-"""The tolerance of charts and tables."""
-
-RULE_OF_THUMB = 100.0
-"""The ϖ above which the paper regards the restitution model as accurate."""
-
-QUANTILES = (0.5, 0.9, 0.99)
-_TILES = ("restitution", "position")
+    for place in np.ndindex(rules, families):
+        rows = np.ravel_multi_index((*place, np.arange(tiles)), plan.shape)
+        edges = _BELOW * plan.edges[np.append(np.isin(rows, plan.rows), True)]
+        for model, quantity in np.ndindex(supremum.shape[2:]):
+            error = partial(largest, plan, rows[0], (SIMPLE[model], quantities[quantity]))
+            along_ratio = partial(error, low=edges[0], high=edges[-1])
+            supremum[*place, model, quantity] = along_ratio(rule)
+            needed[*place, model, quantity] = tolerated(along_ratio, scanned, tolerance)
+        of_height = partial(largest, plan, rows[0], ("restitution", Quantity.MAX_HEIGHT))
+        failing[place] = tolerated(partial(of_height, rule), edges, tolerance)
+    dims = ("release", "n", "model", "supremum_quantity")
+    return {
+        "supremum": (dims, supremum),
+        "supremum_needed": (dims, needed),
+        "failing_restitution": (("release", "n"), failing),
+    }
 
 
 def summary(plan: Plan, atlas: xr.Dataset) -> xr.Dataset:
@@ -121,7 +157,8 @@ def summary(plan: Plan, atlas: xr.Dataset) -> xr.Dataset:
     :data:`TOLERANCE` and :data:`RULE_OF_THUMB`.
     """
     near = atlas.sel({"tolerance": TOLERANCE, "frequency_ratio": RULE_OF_THUMB}, method="nearest")
-    tolerance, rule = float(near.tolerance), float(near.frequency_ratio)
+    tolerance = float(near.tolerance)
+    rule = float(near.frequency_ratio)
     data = {
         "needed": atlas.largest_threshold.sel({"tolerance": tolerance}, drop=True).astype("f4"),
         "limit_needed": atlas.limit_needed,
@@ -132,7 +169,7 @@ def summary(plan: Plan, atlas: xr.Dataset) -> xr.Dataset:
         "law_stated": atlas.law_stated.sum(("n", *_TILES)),
         "law_exceeding": atlas.law_exceeding.sum(("n", *_TILES)),
         "law_coefficient": _law(plan),
-        "orbits": plan.orbits,
+        "orbits": plan.orbit_count,
         "sought_orbits": int(atlas.sought.sum()),
         "resolution": plan.resolution,
         "summary_tolerance": tolerance,
@@ -141,7 +178,9 @@ def summary(plan: Plan, atlas: xr.Dataset) -> xr.Dataset:
     }
     edges = {"restitution_edge": plan.edges, "position_edge": plan.positions}
     return described(
-        data, edges | {"supremum_quantity": list(map(str, Quantity))}, variables=VARIABLES
+        data,
+        edges | {"supremum_quantity": list(map(str, Quantity))},
+        variables=OF_SHARDS | VARIABLES,
     )
 
 
@@ -166,7 +205,8 @@ def _quantiles(atlas: xr.Dataset) -> xr.DataArray:
 
 def _law(plan: Plan) -> xr.Variable:
     """The modulus of K of the error law at the centres of the tiles, for the charts."""
-    middle_r, middle_p = ((edges[1:] + edges[:-1]) / 2 for edges in (plan.edges, plan.positions))
+    middle_r = (plan.edges[1:] + plan.edges[:-1]) / 2
+    middle_p = (plan.positions[1:] + plan.positions[:-1]) / 2
     law = np.full((*plan.shape, len(middle_p), len(OF_ORBITS)), np.nan, "f4")
     for row in plan.rows:
         place = np.unravel_index(row, plan.shape)

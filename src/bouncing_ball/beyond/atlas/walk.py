@@ -68,7 +68,8 @@ def stiff_start(nodes: Nodes) -> np.ndarray:
     >>> stiff_start(nodes).tolist()
     [0.0]
     """
-    r, zeta = nodes.restitution, nodes.damping_ratio
+    r = nodes.restitution
+    zeta = nodes.damping_ratio
     fold = restitution_orbit.saddle_node(nodes.n, r)
     lift = np.sqrt((nodes.amplitude - fold) * (nodes.amplitude + fold))
     root = np.sqrt((1 - zeta) * (1 + zeta))
@@ -98,7 +99,7 @@ def extrapolated(at: np.ndarray, past: np.ndarray, to: np.ndarray) -> np.ndarray
     weights = np.ones((len(to), len(at)))
     for i, j in permutations(places, 2):
         weights[:, i] *= (to - at[j]) / (at[i] - at[j])
-    each = weights.reshape(*weights.shape, *(1,) * (past.ndim - 1))
+    each = np.expand_dims(weights, tuple(range(2, past.ndim + 1)))
     # The rounding of a matrix product would depend on the number of nodes.
     return sum(each[:, i] * past[i] for i in places)
 
@@ -131,15 +132,18 @@ def walk(nodes: Nodes, ratios: np.ndarray) -> Iterator[Step]:
     """
     down = ratios[::-1]
     # The first step starts from the limit of t for ϖ → ∞.
-    at, past = np.log(down[:1]), stiff_start(nodes)[np.newaxis]
+    at = np.log(down[:1])
+    past = stiff_start(nodes)[np.newaxis]
     for k in range(0, len(down), TOGETHER):
         ratio = down[k : k + TOGETHER, np.newaxis]
-        contact, along = nodes.contact(ratio), np.log(ratio[:, 0])
+        contact = nodes.contact(ratio)
+        along = np.log(ratio[:, 0])
         excess = extrapolated(at, past, along) / ratio
         for _ in range(1 if k else _FIRST_CORRECTIONS):
             excess = excess + correction(branch_point(excess, contact, nodes.n), nodes.amplitude)
         point = branch_point(excess, contact, nodes.n)
-        at, past = along, excess * ratio
+        at = along
+        past = excess * ratio
         orbit = SpringDamperOrbit.from_branch(point, contact, nodes.n)
         stable = is_stable(point.trace, point.determinant)
         sought = ~(np.abs(point.amplitude / nodes.amplitude - 1) <= REACHED)

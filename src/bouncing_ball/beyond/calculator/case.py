@@ -54,20 +54,21 @@ class Table:
 
     @property
     def time(self) -> float:
-        """Unit of time, 1/Ω, in s."""
+        """SIParameter of time, 1/Ω, in s."""
         return 1 / self.angular_frequency
 
     @property
     def length(self) -> float:
-        """Unit of length, g/Ω², in m."""
+        """SIParameter of length, g/Ω², in m."""
         return self.gravity / self.angular_frequency**2
 
 
 @dataclass(frozen=True)
-class Case:
+class PhysicalCase:
     """A ball on a vibrating table with a contact between them, and the models of this contact.
 
-    The models are built on first use.
+    The models are built on first use. In units of 1/Ω, g/Ω² and m the case has the Λ of the table
+    and the ϖ, ζ and release rule of the contact.
 
     Parameters
     ----------
@@ -82,7 +83,7 @@ class Case:
 
     Examples
     --------
-    >>> case = Case(1.0, Table(1.0, 1.0, 1.0), SpringDamper(10.0, 0.1))
+    >>> case = PhysicalCase(1.0, Table(1.0, 1.0, 1.0), SpringDamper(10.0, 0.1))
     >>> case.in_si()["stiffness"], case.in_si()["damping"]
     (100.0, 2.0)
     """

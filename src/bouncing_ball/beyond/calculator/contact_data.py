@@ -1,4 +1,4 @@
-r"""A case from given data: a table, and a contact that two numbers determine.
+r"""The case that given data determine: a table, and a contact by its stiffness and its loss.
 
 A free impact ends at the angle π - 2α (:mod:`bouncing_ball.paper.contact.damping`), so that ::
 
@@ -11,9 +11,8 @@ determine it. For two elastic bodies, the ball and the table (Hertz), ::
 
     1/E* = (1 - ν₁²)/E₁ + (1 - ν₂²)/E₂
 
-All quantities are in SI units.
-
-Contacts that are given by the parameters of a physics engine.
+The parameters of a physics engine give a contact, too: :func:`read_engine` finds the stiffness k
+and the damping c that the engine computes with. All quantities are in SI units.
 """
 
 import math
@@ -23,8 +22,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.beyond.calculator.case import Case, Table
-from bouncing_ball.beyond.calculator.units import Unit, number
+from bouncing_ball.beyond.calculator.case import PhysicalCase, Table
+from bouncing_ball.beyond.calculator.units import SIParameter, number
 from bouncing_ball.beyond.corrected.signature import Signature, free_impact
 from bouncing_ball.beyond.engines.choice import engine_named
 from bouncing_ball.beyond.engines.engine import Engine, Physical
@@ -44,6 +43,8 @@ MATERIALS = ("youngs_modulus", "poissons_ratio", "table_youngs_modulus", "table_
 # Parameters that determine its loss; the height of a rebound needs that of the drop, too.
 LOSSY = ("damping", "damping_ratio", "restitution", "measured_restitution", "rebound_height")
 _PAIRS = {"rebound_height": "drop_height"}
+# Parameters of MuJoCo, which have arguments of their own because they are lists.
+_OF_MUJOCO = ("solref", "solimp")
 Given = Mapping[str, float]
 STANDARD_GRAVITY = 9.80665
 """Standard acceleration of gravity, in m/s²."""
@@ -90,17 +91,18 @@ def loss(given: Given, release: Release) -> float:
     if name != "rebound_height":
         rule = Release.DISPLACEMENT if name == "restitution" else release
         return float(damping_ratio(given[name], rule))
-    height, drop = given[name], given["drop_height"]
+    height = given["rebound_height"]
+    drop = given["drop_height"]
     if height > drop:
         raise ParameterError(f"{{rebound_height}} {height:g} m is above {{drop_height}} {drop:g} m")
     return float(damping_ratio(math.sqrt(height / drop), release))
 
 
 def _oscillating(zeta: float, release: Release, name: str) -> float:
-    # If the damper cannot pull, a ball rebounds from an overdamped contact as well.
-    pulls = release is Release.DISPLACEMENT
-    bounces = not pulls or (zeta < 1 and SpringDamper(1.0, zeta, release).restitution > 0)
-    if not bounces:
+    """ζ, or an error if a free impact with it does not end: a damper that pulls holds the ball."""
+    if release is not Release.DISPLACEMENT:
+        return zeta
+    if not (zeta < 1 and SpringDamper(1.0, zeta, release).restitution > 0):
         why = "near the critical damping 1 and above it the ball does not bounce"
         raise ParameterError(f"{name} = {zeta:.12g} is too large: {why}")
     return zeta
@@ -181,9 +183,16 @@ def table_of(given: Given) -> Table:
     rate = _one_of(given, fast, "the frequency of the table", "{frequency}, such as 50 Hz")
     ways = "{acceleration}, such as 2 g, or {table_amplitude}, such as 0.1 mm"
     far = _one_of(given, ("table_amplitude", "acceleration"), "the amplitude of the table", ways)
-    value, turn = given[rate], 2 * math.pi
-    omega = {"frequency": turn * value, "period": turn / value}.get(rate, value)
-    moved = given[far] if far == "table_amplitude" else given["acceleration"] / omega**2
+    if rate == "frequency":
+        omega = 2 * math.pi * given["frequency"]
+    elif rate == "period":
+        omega = 2 * math.pi / given["period"]
+    else:
+        omega = given["angular_frequency"]
+    if far == "table_amplitude":
+        moved = given["table_amplitude"]
+    else:
+        moved = given["acceleration"] / omega**2
     return Table(omega, moved, given.get("gravity", STANDARD_GRAVITY))
 
 
@@ -203,25 +212,28 @@ def meant(asked: Sequence[int], restitution: float | np.ndarray, amplitude: floa
     return asked[int(np.argmax(orbits.exists & orbits.is_stable()))]
 
 
-def with_law(case: Case, law: ContactLaw, asked: Sequence[int]) -> Case:
+def with_law(case: PhysicalCase, law: ContactLaw, asked: Sequence[int]) -> PhysicalCase:
     """The case with a law, and with the linear contact of its r and duration at the impact speed.
 
     This speed v = 2πn/(1 + r(v)) is that of the first stable family of the restitution model.
 
     Examples
     --------
-    >>> case = Case(1.0, Table(1.0, 1.0, 1.0), SpringDamper(1.0, 0.0))
+    >>> case = PhysicalCase(1.0, Table(1.0, 1.0, 1.0), SpringDamper(1.0, 0.0))
     >>> found = with_law(case, Tsuji(50.0, tsuji_damping(0.8)), [1])
     >>> round(float(found.contact.restitution), 12)
     0.8
     """
-    signature, r = Signature(law), np.ones(len(asked))
+    signature = Signature(law)
+    r = np.ones(len(asked))
     # A contraction: where r falls like 1/v at most, each step at least halves the error.
     for _ in range(np.finfo(float).nmant):
         r = signature(rigid_speed(asked, r)).restitution
-    n, rule = meant(asked, r, case.table.amplitude), case.contact.release
+    n = meant(asked, r, case.table.amplitude)
     impact = free_impact(law, float(rigid_speed(n, r[asked.index(n)])))
-    unit = SpringDamper.from_restitution(float(impact.restitution), 1.0, rule, measured=True)
+    unit = SpringDamper.from_restitution(
+        float(impact.restitution), 1.0, case.contact.release, measured=True
+    )
     ratio = float(unit.free_duration / impact.duration)
     return replace(case, contact=replace(unit, frequency_ratio=ratio), law=law)
 
@@ -232,7 +244,7 @@ def case_of(
     release: Release,
     asked: Sequence[int],
     kind: type[ContactLaw] | None = None,
-) -> Case | None:
+) -> PhysicalCase | None:
     """The case with the contact that is given; None if no parameter gives a stiffness.
 
     Parameters
@@ -262,32 +274,41 @@ def case_of(
             raise ParameterError(f"{{{first}}} and {{{second}}} are needed together")
     if "mass" not in given:
         raise ParameterError("the mass is missing: give {mass}, such as 20 g")
-    stiff, mass = _one_of(given, STIFF, "the stiffness of the contact"), given["mass"]
+    stiff = _one_of(given, STIFF, "the stiffness of the contact")
     modulus = reduced_modulus(given)
     if not stiff:
         return None
     if stiff == "stiffness":
-        omega = math.sqrt(given["stiffness"] / mass)
-        if _one_of(given, LOSSY, "the loss of the contact") == "damping":
-            zeta = given["damping"] / (2 * mass * omega)
-            zeta = _oscillating(zeta, release, "damping ratio ζ of the contact")
-        else:
-            zeta = loss(given, release)
-        return Case(mass, table, SpringDamper(omega / table.angular_frequency, zeta, release))
+        return _of_stiffness(given, table, release)
     # A contact with ω = 1; its free duration over the given one is ϖ.
     unit = SpringDamper(1.0, loss(given, release), release)
     if modulus is not None and release is not Release.DISPLACEMENT:
         raise ModelError("a Hertz contact with Tsuji's damping has the displacement release only")
-    of_unit, r = float(unit.free_duration), float(unit.restitution)
+    r = float(unit.restitution)
     speed = rigid_speed(meant(asked, r, table.amplitude), r)
-    law: ContactLaw | None
-    if modulus is None:
-        duration = given["contact_time"] / table.time
-        law = None if kind is None else law_of_impact(kind, r, duration, speed)
-    else:
-        law = hertz(mass, modulus, given["radius"], r, table)
+    law: ContactLaw | None = None
+    if modulus is not None:
+        law = hertz(given["mass"], modulus, given["radius"], r, table)
         duration = float(free_impact(law, speed).duration)
-    return Case(mass, table, SpringDamper(of_unit / duration, unit.damping_ratio, release), law)
+    else:
+        duration = given["contact_time"] / table.time
+        if kind is not None:
+            law = law_of_impact(kind, r, duration, speed)
+    contact = replace(unit, frequency_ratio=float(unit.free_duration) / duration)
+    return PhysicalCase(given["mass"], table, contact, law)
+
+
+def _of_stiffness(given: Given, table: Table, release: Release) -> PhysicalCase:
+    """The case of a linear contact whose stiffness is given, with its loss."""
+    mass = given["mass"]
+    omega = math.sqrt(given["stiffness"] / mass)
+    if _one_of(given, LOSSY, "the loss of the contact") == "damping":
+        zeta = given["damping"] / (2 * mass * omega)
+        zeta = _oscillating(zeta, release, "damping ratio ζ of the contact")
+    else:
+        zeta = loss(given, release)
+    contact = SpringDamper(omega / table.angular_frequency, zeta, release)
+    return PhysicalCase(mass, table, contact)
 
 
 class Source(NamedTuple):
@@ -297,7 +318,7 @@ class Source(NamedTuple):
     parameters: dict[str, Any]
     contact: Physical
 
-    def case(self, case: Case, asked: Sequence[int], written: bool) -> Case:
+    def case(self, case: PhysicalCase, asked: Sequence[int], written: bool) -> PhysicalCase:
         """The case with the law of this contact, or with its linear contact if this is written."""
         law = self.engine.law(self.parameters, case.mass, case.table.time, case.table.length)
         if law is not None and self.engine.needs_speed:
@@ -308,11 +329,14 @@ class Source(NamedTuple):
         """Sentences on how the contact differs from a spring and a damper, and on how r changes if
         it is written for the engine with this name and release.
         """
-        found, ends = self.engine.remarks(self.parameters), (self.engine.release(), release)
-        if written is None or ends[0] is ends[1] or not 0 < self.contact.damping_ratio < 1:
+        found = self.engine.remarks(self.parameters)
+        own_release = self.engine.release()
+        same = written is None or own_release is release
+        if same or not 0 < self.contact.damping_ratio < 1:
             return found
-        before, after = (f"{self.contact.restitution(rule):.4f}" for rule in ends)
-        why = f"contacts end by {ends[0]} in {self.engine.name}, and by {release} in {written}"
+        before = f"{self.contact.restitution(own_release):.4f}"
+        after = f"{self.contact.restitution(release):.4f}"
+        why = f"contacts end by {own_release} in {self.engine.name}, and by {release} in {written}"
         return (*found, f"r changes from {before} to {after}, because {why}")
 
 
@@ -321,22 +345,31 @@ def read_engine(said: Mapping[str, Any]) -> tuple[Source | None, dict[str, Any]]
 
     Without such an engine, None and the arguments unchanged.
     """
-    names, name = ("solref", "solimp"), said.get("from_engine")
-    values = {**{x: said.get(x) for x in names}, **(said.get("parameters") or {})}
-    values = {x: value for x, value in values.items() if value is not None}
+    values = _engine_values(said)
+    name = said.get("from_engine")
     if name is None:
         if values:
             first = next(iter(values))
-            what = f"{{{first}}}" if first in names else f"{{parameters}} {first}"
+            what = f"{{{first}}}" if first in _OF_MUJOCO else f"{{parameters}} {first}"
             raise ParameterError(f"{what} needs {{from_engine}}, the name of the engine")
         return None, dict(said)
     engine = engine_named(name).reader(values)
     for other in (*STIFF, *LOSSY, "law"):
         if said.get(other) is not None:
             raise ParameterError(f"{{{other}}} is not allowed with {{from_engine}}")
-    mass, rule = said.get("mass"), said.get("release")
-    mass = None if mass is None else number("mass", mass, Unit("kg", "20 g"))
+    mass = said.get("mass")
+    if mass is not None:
+        mass = number("mass", mass, SIParameter("kg", "20 g"))
     source = Source(engine, values, engine.contact(values, mass))
+    rule = said.get("release")
     # Written for another engine, the contact ends as there; otherwise as here, or as a law's.
-    rule = rule if said.get("engine") or engine.needs_speed else str(engine.release(rule))
+    if not said.get("engine") and not engine.needs_speed:
+        rule = str(engine.release(rule))
     return source, {**said, **source.contact._asdict(), "mass": mass, "release": rule}
+
+
+def _engine_values(said: Mapping[str, Any]) -> dict[str, Any]:
+    """The parameters of an engine that are given, by name."""
+    values = {name: said.get(name) for name in _OF_MUJOCO}
+    values |= said.get("parameters") or {}
+    return {name: value for name, value in values.items() if value is not None}

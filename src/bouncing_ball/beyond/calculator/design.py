@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Annotated, Any, get_args
 
-from bouncing_ball.beyond.calculator.case import Case, Table
+from bouncing_ball.beyond.calculator.case import PhysicalCase, Table
 from bouncing_ball.beyond.calculator.contact_data import (
     STANDARD_GRAVITY,
     case_of,
@@ -14,10 +14,17 @@ from bouncing_ball.beyond.calculator.contact_data import (
     table_of,
 )
 from bouncing_ball.beyond.calculator.families import RATIOS, families, finite, needed
-from bouncing_ball.beyond.calculator.motion import aside, headline, of_family
+from bouncing_ball.beyond.calculator.motion import of_family
 from bouncing_ball.beyond.calculator.results import Contact, Corrected, Design, Needed, TimeStep
-from bouncing_ball.beyond.calculator.units import Index, Rule, Unit, number, percent
-from bouncing_ball.beyond.calculator.verdict import assessed, chosen, judged_by_motion, notes
+from bouncing_ball.beyond.calculator.units import Index, Rule, SIParameter, number, percent
+from bouncing_ball.beyond.calculator.verdict import (
+    aside,
+    assessed,
+    chosen,
+    headline,
+    judged_by_motion,
+    notes,
+)
 from bouncing_ball.beyond.engines.choice import engine_named
 from bouncing_ball.beyond.engines.engine import ERROR, Physical
 from bouncing_ball.beyond.laws.registry import law_named
@@ -39,41 +46,41 @@ _FAMILIES = range(1, 9)
 _LARGEST = 1e8
 # Parameters of which each implies that there is a table.
 _TABLE = {"frequency", "angular_frequency", "period", "table_amplitude", "acceleration"}
-_LOSS = Unit("", "0.85", Range(0, 1, "(]"))
-_POISSON = Unit("", "0.3", Range(-1, 0.5, "(]"))
+_LOSS = SIParameter("", "0.85", Range(0, 1, "(]"))
+_POISSON = SIParameter("", "0.3", Range(-1, 0.5, "(]"))
 _NONE_TOO = Range(0, 1e40, "[]")
 
 
 def design(
     *,
-    mass: Annotated[Any, Unit("kg", "20 g")] = None,
-    frequency: Annotated[Any, Unit("Hz", "50 Hz")] = None,
-    angular_frequency: Annotated[Any, Unit("rad/s", "314 rad/s")] = None,
-    period: Annotated[Any, Unit("s", "20 ms")] = None,
-    table_amplitude: Annotated[Any, Unit("m", "0.1 mm")] = None,
-    acceleration: Annotated[Any, Unit("m/s^2", "2 g")] = None,
-    gravity: Annotated[Any, Unit("m/s^2", "9.81 m/s^2")] = None,
-    stiffness: Annotated[Any, Unit("N/m", "1e6 N/m")] = None,
-    contact_time: Annotated[Any, Unit("s", "50 us")] = None,
-    reduced_modulus: Annotated[Any, Unit("Pa", "115 GPa")] = None,
-    youngs_modulus: Annotated[Any, Unit("Pa", "210 GPa")] = None,
+    mass: Annotated[Any, SIParameter("kg", "20 g")] = None,
+    frequency: Annotated[Any, SIParameter("Hz", "50 Hz")] = None,
+    angular_frequency: Annotated[Any, SIParameter("rad/s", "314 rad/s")] = None,
+    period: Annotated[Any, SIParameter("s", "20 ms")] = None,
+    table_amplitude: Annotated[Any, SIParameter("m", "0.1 mm")] = None,
+    acceleration: Annotated[Any, SIParameter("m/s^2", "2 g")] = None,
+    gravity: Annotated[Any, SIParameter("m/s^2", "9.81 m/s^2")] = None,
+    stiffness: Annotated[Any, SIParameter("N/m", "1e6 N/m")] = None,
+    contact_time: Annotated[Any, SIParameter("s", "50 us")] = None,
+    reduced_modulus: Annotated[Any, SIParameter("Pa", "115 GPa")] = None,
+    youngs_modulus: Annotated[Any, SIParameter("Pa", "210 GPa")] = None,
     poissons_ratio: Annotated[Any, _POISSON] = None,
-    table_youngs_modulus: Annotated[Any, Unit("Pa", "210 GPa")] = None,
+    table_youngs_modulus: Annotated[Any, SIParameter("Pa", "210 GPa")] = None,
     table_poissons_ratio: Annotated[Any, _POISSON] = None,
-    radius: Annotated[Any, Unit("m", "5 mm")] = None,
-    damping: Annotated[Any, Unit("N*s/m", "10 N s/m", _NONE_TOO)] = None,
-    damping_ratio: Annotated[Any, Unit("", "0.05", _NONE_TOO)] = None,
+    radius: Annotated[Any, SIParameter("m", "5 mm")] = None,
+    damping: Annotated[Any, SIParameter("N*s/m", "10 N s/m", _NONE_TOO)] = None,
+    damping_ratio: Annotated[Any, SIParameter("", "0.05", _NONE_TOO)] = None,
     restitution: Annotated[Any, _LOSS] = None,
     measured_restitution: Annotated[Any, _LOSS] = None,
-    drop_height: Annotated[Any, Unit("m", "1 m")] = None,
-    rebound_height: Annotated[Any, Unit("m", "70 cm")] = None,
+    drop_height: Annotated[Any, SIParameter("m", "1 m")] = None,
+    rebound_height: Annotated[Any, SIParameter("m", "70 cm")] = None,
     n: Index | None = None,
     release: Rule | None = None,
     law: str | None = None,
     quantity: Annotated[str, Quantity] = "max_height",
-    tolerance: Annotated[Any, Unit("", "1 %", Range(0, 1))] = 0.01,
+    tolerance: Annotated[Any, SIParameter("", "1 %", Range(0, 1))] = 0.01,
     engine: str | None = None,
-    restitution_error: Annotated[Any, Unit("", "0.001", Range(0, 1))] = ERROR,
+    restitution_error: Annotated[Any, SIParameter("", "0.001", Range(0, 1))] = ERROR,
     from_engine: str | None = None,
     solref: str | Sequence[float] | None = None,
     solimp: str | Sequence[float] | None = None,
@@ -181,25 +188,31 @@ def design(
     ...                stiffness="1e7 N/m", restitution=0.85)
     >>> round(found.frequency_ratio, 3), found.orbits[0].is_stable, found.is_good_enough
     (71.176, True, False)
-    >>> found = design(mass=0.5, stiffness="50 kN/m", restitution=0.75).engine("mujoco")
-    >>> round(found.restitution, 6), found.release
+
+    A contact written for an engine:
+
+    >>> found = design(mass=0.5, stiffness="50 kN/m", restitution=0.75, engine="mujoco")
+    >>> settings = found.engine_settings()
+    >>> round(settings.restitution, 6), settings.release
     (0.75, 'force')
     """
     call = locals()
     source, said = read_engine(call)
-    given = _read(said)
-    question, kind = call | _read(call), _of_law(law, engine, said["release"], given)
-    rule = _under(engine, said["release"], given)
+    given = _in_si(said)
+    question = call | _in_si(call)
+    kind = _law_type(law, engine, said["release"], given)
+    rule = _release_rule(engine, said["release"], given)
     one_of("quantity", quantity, {str(each): each for each in QUANTITIES})
     if n is not None and (n != int(n) or n < 1):
         raise ModelError(f"index of the family n = {n} is not a positive integer")
-    known, remarks = given.keys(), source.remarks(engine, rule) if source else ()
-    if n is None and not known & _TABLE and (engine or known & {"stiffness", "contact_time"}):
+    remarks = source.remarks(engine, rule) if source else ()
+    names_stiffness = "stiffness" in given or "contact_time" in given
+    if n is None and not given.keys() & _TABLE and (engine or names_stiffness):
         needs_speed = kind is not None or (source is not None and source.engine.needs_speed)
-        return _contact(given, rule, needs_speed, question, remarks)
+        return _without_table(given, rule, needs_speed, question, remarks)
     table = table_of(given)
-    lam, asked = table.amplitude, _FAMILIES if n is None else [n]
-    require(lam < _LARGEST, lam, "Λ", f"below {_LARGEST:g}")
+    require(table.amplitude < _LARGEST, table.amplitude, "Λ", f"below {_LARGEST:g}")
+    asked = _FAMILIES if n is None else [n]
     case = need = None
     try:
         case = case_of(given, table, rule, asked, kind)
@@ -215,7 +228,7 @@ def design(
             raise NoOrbitError(f"{error}; did you mean {bare} g?") from None
         if n is not None or case is None:
             raise
-        return _design(case, None, asked, question, remarks, str(error))
+        return _design(case, None, asked, question, remarks, no_orbit=str(error))
 
 
 def _chosen(
@@ -224,24 +237,26 @@ def _chosen(
     rule: Release,
     asked: Sequence[int],
     question: Mapping[str, Any],
-) -> tuple[Case, Needed]:
+) -> tuple[PhysicalCase, Needed]:
     """The case with the most compliant contact within the tolerance, and the ϖ needed for it."""
-    contact, quantity = SpringDamper(1.0, loss(given, rule), rule), question["quantity"]
+    quantity = question["quantity"]
+    # A contact with the ζ of the given loss, whose ϖ is still to be found.
+    contact = SpringDamper(1.0, loss(given, rule), rule)
     r = float(contact.restitution)
-    index = meant(asked, r, table.amplitude)
+    n = meant(asked, r, table.amplitude)
     if quantity in OF_ORBITS:
-        RestitutionModel(r).require_orbit(index, table.amplitude)
-    need = needed(quantity, question["tolerance"], contact, index, table.amplitude)
+        RestitutionModel(r).require_orbit(n, table.amplitude)
+    need = needed(quantity, question["tolerance"], contact, n, table.amplitude)
     if need.status == ThresholdStatus.NEVER_WITHIN:
         raise NoOrbitError(
             f"no contact up to ϖ = {RATIOS[-1]:g} has its {QUANTITIES[Quantity(quantity)]} within "
             f"{percent(need.tolerance)} of the restitution model with r = {r:.4g}"
         )
     stiff = replace(contact, frequency_ratio=need.frequency_ratio or float(RATIOS[0]))
-    return Case(given["mass"], table, stiff), need
+    return PhysicalCase(given["mass"], table, stiff), need
 
 
-def _contact(
+def _without_table(
     given: dict[str, float],
     rule: Release,
     needs_speed: bool,
@@ -257,18 +272,28 @@ def _contact(
         what = "law" if question["law"] else "from_engine"
         needs = "a table, such as {frequency} and {acceleration}"
         raise ParameterError(f"{{{what}}} {question[what]} needs {needs}: r depends on the speed")
-    zeta, omega = float(case.contact.damping_ratio), float(case.contact.frequency_ratio)
-    stiffness = given.get("stiffness", case.mass * omega**2)
-    damping = given.get("damping", 2 * zeta * case.mass * omega)
-    if needs_speed:
-        known = case.mass, stiffness, None, None, omega, None, str(rule), None
-        return Contact(*known, remarks, question)
-    physical = Physical(case.mass, stiffness, damping)
-    time, r = physical.contact_time(rule), physical.restitution(rule)
-    return Contact(*physical, zeta, omega, time, str(rule), r, remarks, question)
+    zeta = float(case.contact.damping_ratio)
+    omega = float(case.contact.frequency_ratio)
+    physical = Physical(
+        mass=case.mass,
+        stiffness=given.get("stiffness", case.mass * omega**2),
+        damping=given.get("damping", 2 * zeta * case.mass * omega),
+    )
+    return Contact(
+        mass=physical.mass,
+        stiffness=physical.stiffness,
+        damping=None if needs_speed else physical.damping,
+        damping_ratio=None if needs_speed else zeta,
+        natural_frequency=omega,
+        contact_time=None if needs_speed else physical.contact_time(rule),
+        release=str(rule),
+        measured_restitution=None if needs_speed else physical.restitution(rule),
+        notes=remarks,
+        question=question,
+    )
 
 
-def _of_law(
+def _law_type(
     name: str | None, engine: str | None, release: str | None, given: dict[str, float]
 ) -> type[ContactLaw] | None:
     """The type of the contact law that is named; None for the linear contact.
@@ -298,7 +323,7 @@ def _of_law(
     return kind
 
 
-def _under(engine: str | None, release: str | None, given: dict[str, float]) -> Release:
+def _release_rule(engine: str | None, release: str | None, given: dict[str, float]) -> Release:
     """The release rule of a contact.
 
     With an engine, a given restitution counts as measured under the release of this engine.
@@ -313,33 +338,43 @@ def _under(engine: str | None, release: str | None, given: dict[str, float]) -> 
     return rule
 
 
-def quantities() -> dict[str, Unit]:
+def quantities() -> dict[str, SIParameter]:
     """The parameters of :func:`design` that have a unit, by name."""
-    hints = {name: get_args(hint)[1:] for name, hint in design.__annotations__.items()}
-    return {name: what[0] for name, what in hints.items() if what and isinstance(what[0], Unit)}
+    found = {}
+    for name, hint in design.__annotations__.items():
+        for each in get_args(hint)[1:]:
+            if isinstance(each, SIParameter):
+                found[name] = each
+    return found
 
 
-def _read(parameters: Mapping[str, Any]) -> dict[str, float]:
+def _in_si(parameters: Mapping[str, Any]) -> dict[str, float]:
     """The quantities that are given, in SI units, after a check of their ranges."""
     given = {}
     for name, kind in quantities().items():
         if parameters.get(name) is not None:
-            given[name] = value = number(name, parameters[name], kind)
+            value = number(name, parameters[name], kind)
             if value not in kind.allowed:
-                said = f"{{{name}}} = {value:g} {kind.name}".rstrip()
-                # A share above 1 was probably meant in percent.
-                share = kind.allowed.high == 1 <= value < 100 and "%" not in str(parameters[name])
-                meant = f": did you mean {value:g} %?" if share else ""
-                raise ParameterError(f"{said} is not {kind.allowed}{meant}")
+                raise _out_of_range(name, parameters[name], value, kind)
+            given[name] = value
     return given
 
 
+def _out_of_range(name: str, text: Any, value: float, kind: SIParameter) -> ParameterError:
+    said = f"{{{name}}} = {value:g} {kind.name}".rstrip()
+    # A share above 1 was probably meant in percent.
+    is_share = kind.allowed.high == 1 <= value < 100 and "%" not in str(text)
+    meant = f": did you mean {value:g} %?" if is_share else ""
+    return ParameterError(f"{said} is not {kind.allowed}{meant}")
+
+
 def _design(
-    case: Case,
+    case: PhysicalCase,
     need: Needed | None,
     asked: Sequence[int],
     question: dict[str, Any],
     remarks: tuple[str, ...],
+    *,
     no_orbit: str = "",
 ) -> Design:
     """The answer about a contact that is given or, with ``need``, was chosen for a tolerance.
@@ -347,58 +382,72 @@ def _design(
     If no model has an orbit, ``no_orbit`` gives the reason, and the answer is about a ball that is
     laid on the table.
     """
-    contact, table = case.contact, case.table
+    contact = case.contact
+    amplitude = case.table.amplitude
+    ratio = float(contact.frequency_ratio)
     only = "below 1: on a vibrating table only underdamped contacts are computed"
     require(contact.damping_ratio < 1, contact.damping_ratio, "damping ratio ζ", only)
-    ratio, found = float(contact.frequency_ratio), families(case, asked, bool(no_orbit))
+    found = families(case, asked, bool(no_orbit))
     require(1 / _LARGEST < ratio < _LARGEST, ratio, "ϖ", f"between {1 / _LARGEST:g} and 1e8")
     # The verdict is about the first family whose orbit is stable and admissible, or else exists.
     one = max(found, key=lambda one: (one.exists, one.is_stable and one.is_admissible))
     if need is None:
-        quantity, tolerance, before = question["quantity"], question["tolerance"], ""
-        need = needed(quantity, tolerance, contact, one.n, table.amplitude)
+        need = needed(question["quantity"], question["tolerance"], contact, one.n, amplitude)
         verdict = assessed(one, need, ratio)
+        before = ""
     else:
-        index = meant(asked, float(contact.restitution), table.amplitude)
-        one = next((each for each in found if each.n == index), one)
-        verdict = chosen(case.in_si(), need, index)
+        n = meant(asked, float(contact.restitution), amplitude)
+        one = next((each for each in found if each.n == n), one)
+        verdict = chosen(case.in_si(), need, n)
         before = f"{verdict.verdict} "
     motion = of_family(case, one, need.tolerance)
     # A threshold, such as that of permanent contact, is not a property of one orbit.
-    if motion.restitution_kind is not None and need.quantity in OF_ORBITS:
-        end = judged_by_motion(motion, need.tolerance, one.n)
-        verdict = end._replace(verdict=before + end.verdict, reason=no_orbit or end.reason)
-    elif need.quantity in OF_ORBITS:
-        said = f"{verdict.verdict[:-1]}{aside(motion, table.amplitude)}."
-        verdict = verdict._replace(verdict=said)
-    si: dict[str, Any] = case.in_si()
-    delay, r, load = map(float, case.instant(one.n)[:3])
+    if need.quantity in OF_ORBITS:
+        if motion.restitution_kind is None:
+            said = f"{verdict.verdict[:-1]}{aside(motion, amplitude)}."
+            verdict = verdict._replace(verdict=said)
+        else:
+            end = judged_by_motion(motion, need.tolerance, one.n)
+            verdict = end._replace(verdict=before + end.verdict, reason=no_orbit or end.reason)
+    si = case.in_si()
+    signature = case.instant(one.n)
     answer = Design(
         frequency_ratio=ratio,
         damping_ratio=float(contact.damping_ratio),
-        amplitude=table.amplitude,
-        **si,
+        amplitude=amplitude,
+        stiffness=si["stiffness"],
+        damping=si["damping"],
+        contact_time=si["contact_time"],
         time_step=TimeStep(si["contact_time"] / STEPS, STEP_RULE),
+        static_deflection=si["static_deflection"],
         restitution={
             str(rule): float(replace(contact, release=rule).restitution) for rule in Release
         },
         measured_restitution=float(contact.restitution),
         permanent_contact=finite(case.permanent_contact),
         law=case.law_in_si,
-        corrected=Corrected(delay * table.time, r, load * table.time),
+        corrected=Corrected(
+            delay=float(signature.delay) * case.table.time,
+            restitution=float(signature.restitution),
+            load=float(signature.load) * case.table.time,
+        ),
         orbits=found,
         needed=need,
         motion=motion,
         headline=headline(motion, one),
-        **verdict._asdict(),
+        is_good_enough=verdict.is_good_enough,
+        verdict=verdict.verdict,
+        reason=verdict.reason,
         notes=remarks + notes(case, one, motion),
         case=case,
         n=one.n,
         question=question,
     )
-    if question["engine"]:
-        # The only time step given is that of the engine.
-        settings = answer.engine_settings()
-        why = f"r of a free impact in {settings.name} is within {settings.error:g}"
-        answer = replace(answer, time_step=TimeStep(settings.time_step, why))
-    return answer
+    return _with_time_step_of_engine(answer) if question["engine"] else answer
+
+
+def _with_time_step_of_engine(answer: Design) -> Design:
+    """The answer with the time step of its engine as the only one."""
+    settings = answer.engine_settings()
+    rule = f"r of a free impact in {settings.name} is within {settings.error:g}"
+    return replace(answer, time_step=TimeStep(settings.time_step, rule))

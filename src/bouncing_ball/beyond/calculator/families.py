@@ -1,6 +1,7 @@
 """The n-T families of a case: orbits, margins, loads and errors in every model.
 
-The stiffness that a tolerance needs, from a root of the exact error over ϖ.
+:func:`needed` gives the frequency ratio ϖ that a tolerance needs, from a root of the exact error
+over ϖ.
 """
 
 import math
@@ -10,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball.beyond import error_law
-from bouncing_ball.beyond.calculator.case import Case
+from bouncing_ball.beyond.calculator.case import PhysicalCase
 from bouncing_ball.beyond.calculator.results import Errors, Family, Needed, Standing
 from bouncing_ball.beyond.corrected.errors import search
 from bouncing_ball.beyond.error_law import law_thresholds
@@ -18,13 +19,15 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.paper.comparison.errors import OF_IMPACTS, OF_ORBITS, Quantity, relative
 from bouncing_ball.paper.contact.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.orbits.model import ImpactModel
 from bouncing_ball.paper.orbits.orbit import Orbit
 
 # Samples of a contact, and further samples for each radian of the table's motion, because a long
 # contact has several maxima. The two steps around the greatest sample are sampled again. A step is
 # then 2·10⁻⁶ of the contact, so that a parabola exceeds its samples by less than 10⁻¹¹ of its
 # height.
-_SAMPLES, _IN_A_RADIAN = 1001, 16
+_SAMPLES = 1001
+_IN_A_RADIAN = 16
 
 
 def finite(value: float | np.ndarray) -> float | None:
@@ -51,11 +54,13 @@ def _loads(orbit: Any) -> tuple[float, float]:
     times = np.linspace(0.0, duration, _SAMPLES + int(_IN_A_RADIAN * duration))
     tops = loads(times).argmax(axis=1)
     low, high = times[np.clip([tops - 1, tops + 1], 0, times.size - 1)]
-    (depth, _), (_, force) = map(loads, np.linspace(low, high, _SAMPLES, axis=1))
+    around_depth, around_force = np.linspace(low, high, _SAMPLES, axis=1)
+    depth, _ = loads(around_depth)
+    _, force = loads(around_force)
     return float(np.max(depth)), float(np.max(force))
 
 
-def by_error_law(case: Case, n: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def by_error_law(case: PhysicalCase, n: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The restitution model's errors that the error law predicts, shape (quantity, n), and whether
     it holds, shape (n,).
 
@@ -65,19 +70,21 @@ def by_error_law(case: Case, n: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     --------
     >>> from bouncing_ball.beyond.calculator.case import Table
     >>> from bouncing_ball.paper.contact.spring_damper import SpringDamper
-    >>> case = Case(1.0, Table(1.0, 1.0, 1.0), SpringDamper(10.0, 0.0))
+    >>> case = PhysicalCase(1.0, Table(1.0, 1.0, 1.0), SpringDamper(10.0, 0.0))
     >>> by_error_law(case, np.array([1]))[0][-1].tolist()
     [-0.01]
     """
-    lam, contact = case.table.amplitude, case.contact
-    predicted, holds = np.full((len(Quantity), n.size), np.nan), np.zeros(n.size, dtype=bool)
+    lam = case.table.amplitude
+    contact = case.contact
+    predicted = np.full((len(Quantity), n.size), np.nan)
+    holds = np.zeros(n.size, dtype=bool)
     there = case.models["restitution"].orbit(n, lam).exists
-    orbits = n[there], case.instant(n[there]), lam
-    predicted[: len(OF_IMPACTS), there] = [*error_law.first_order(*orbits).values()]
+    instant = case.instant(n[there])
+    predicted[: len(OF_IMPACTS), there] = [*error_law.first_order(n[there], instant, lam).values()]
+    is_small = error_law.small_parameter(n[there], instant, lam) < error_law.STATED
     # If the r of a contact law depends on the speed, it equals the r of the restitution model at
     # one speed only.
-    holds[there] = case.has_its_restitution(n[there])
-    holds[there] &= error_law.small_parameter(*orbits) < error_law.STATED
+    holds[there] = is_small & case.has_its_restitution(n[there])
     if case.law is None:
         second = error_law.permanent_contact_coefficient(contact.damping_ratio, contact.release)
         predicted[-1] = second / contact.frequency_ratio**2
@@ -98,7 +105,9 @@ def _standing(orbit: Orbit, values: np.ndarray, amplitude: float) -> Standing:
     )
 
 
-def families(case: Case, asked: Sequence[int], or_first: bool = False) -> tuple[Family, ...]:
+def families(
+    case: PhysicalCase, asked: Sequence[int], or_first: bool = False
+) -> tuple[Family, ...]:
     """The families ``asked`` in which at least one model has an orbit.
 
     If there is no such family, the result is the first of ``asked`` with ``or_first``, and
@@ -113,47 +122,82 @@ def families(case: Case, asked: Sequence[int], or_first: bool = False) -> tuple[
     --------
     >>> from bouncing_ball.beyond.calculator.case import Table
     >>> from bouncing_ball.paper.contact.spring_damper import SpringDamper
-    >>> case = Case(1.0, Table(1.0, 0.5, 1.0), SpringDamper(10.0, 0.1))
+    >>> case = PhysicalCase(1.0, Table(1.0, 0.5, 1.0), SpringDamper(10.0, 0.1))
     >>> [family.n for family in families(case, [1, 2, 3])]
     [1]
     """
-    n, lam = np.array(asked), case.table.amplitude
+    n = np.array(asked)
     orbits: list[Orbit] = []
     found: list[list[np.ndarray]] = []
     for model in case.models.values():
-        still = np.full(n.shape, RESTITUTION_THRESHOLD if found else case.permanent_contact)
-        node = model.saddle_node(n).amplitude
-        limits = node, model.period_doubling(n).amplitude, still
-        # Below its saddle-node a model has no orbit, so that none is searched for.
-        orbits.append(model.orbit(n, np.where(lam < node, np.nan, lam)))
-        found.append([*(getattr(orbits[-1], quantity) for quantity in OF_ORBITS), *limits])
+        is_exact = not orbits
+        orbit, quantities = _in_model(
+            model,
+            n,
+            case.table.amplitude,
+            case.permanent_contact if is_exact else RESTITUTION_THRESHOLD,
+        )
+        orbits.append(orbit)
+        found.append(quantities)
     values = np.array(found)
     there = np.any([orbit.exists for orbit in orbits], axis=0)
     there[0] |= or_first and not there.any()
     if not there.any():
-        # The restitution model's where that of a strongly damped law was not found.
-        lowest = next(node for node in values[:, len(OF_ORBITS), 0] if node == node)
-        which = f"{asked[0]}-T orbit" if len(asked) == 1 else "n-T orbit"
-        laid = lam <= case.permanent_contact
-        rests = ", and a ball laid on the table stays at rest" if laid else ""
-        raise NoOrbitError(
-            f"no {which} in any model{rests}: the table's acceleration is Λ = {lam:.4g} times "
-            f"gravity, and the {asked[0]}-T orbit needs {lowest:.4g}"
-        )
+        raise _no_orbit(case, asked, values[:, len(OF_ORBITS), 0])
     by_law, holds = by_error_law(case, n)
     return tuple(
-        _family(case, asked[k], [x[k] for x in orbits], values[:, :, k], by_law[:, k], holds[k])
+        _family(
+            case,
+            asked[k],
+            orbits=[orbit[k] for orbit in orbits],
+            values=values[:, :, k],
+            by_law=by_law[:, k],
+            holds=bool(holds[k]),
+        )
         for k in np.flatnonzero(there).tolist()
     )
 
 
+def _in_model(
+    model: ImpactModel, n: np.ndarray, amplitude: float, permanent_contact: float
+) -> tuple[Orbit, list[np.ndarray]]:
+    """The n-T orbits of one model and the values of all quantities, in the order of Quantity."""
+    node = model.saddle_node(n).amplitude
+    doubling = model.period_doubling(n).amplitude
+    # Below its saddle-node a model has no orbit, so that none is searched for.
+    orbit = model.orbit(n, np.where(amplitude < node, np.nan, amplitude))
+    of_orbits = [getattr(orbit, quantity) for quantity in OF_ORBITS]
+    return orbit, [*of_orbits, node, doubling, np.full(n.shape, permanent_contact)]
+
+
+def _no_orbit(case: PhysicalCase, asked: Sequence[int], saddle_nodes: np.ndarray) -> NoOrbitError:
+    """The error that no model has an orbit, from the saddle-nodes of the first family asked."""
+    amplitude = case.table.amplitude
+    # The restitution model's where that of a strongly damped law was not found.
+    lowest = saddle_nodes[~np.isnan(saddle_nodes)][0]
+    which = f"{asked[0]}-T orbit" if len(asked) == 1 else "n-T orbit"
+    laid = amplitude <= case.permanent_contact
+    rests = ", and a ball laid on the table stays at rest" if laid else ""
+    return NoOrbitError(
+        f"no {which} in any model{rests}: the table's acceleration is Λ = {amplitude:.4g} times "
+        f"gravity, and the {asked[0]}-T orbit needs {lowest:.4g}"
+    )
+
+
 def _family(
-    case: Case, n: int, orbits: Sequence[Any], values: np.ndarray, by_law: np.ndarray, holds: bool
+    case: PhysicalCase,
+    n: int,
+    *,
+    orbits: Sequence[Any],
+    values: np.ndarray,
+    by_law: np.ndarray,
+    holds: bool,
 ) -> Family:
     """A family from its orbits in all models, the ``values`` of the quantities, shape
     (model, quantity), and the result of the error law.
     """
-    unit, orbit = case.table, orbits[0]
+    unit = case.table
+    orbit = orbits[0]
     standing = [_standing(*each, unit.amplitude) for each in zip(orbits, values, strict=True)]
     depth, force = _loads(orbit)
     restitution, corrected = map(_moduli, relative(values[0], values[1:]))
@@ -172,7 +216,7 @@ def _family(
         errors=restitution,
         corrected_errors=corrected,
         law_errors=_moduli(by_law),
-        law_holds=bool(holds),
+        law_holds=holds,
     )
 
 
@@ -207,14 +251,40 @@ def needed(
     >>> round(found.frequency_ratio, 12), round(found.by_law, 12)
     (10.0, 10.0)
     """
-    zeta, rule = contact.damping_ratio, contact.release
+    zeta = contact.damping_ratio
+    rule = contact.release
     # The error law of a limit does not depend on Λ. A Λ too small for an orbit is therefore
     # replaced by nπ, which is above the saddle-node.
     there = amplitude if quantity in OF_ORBITS else max(amplitude, n * np.pi)
     try:
         by_law = finite(law_thresholds(n, zeta, there, rule, tolerance)[Quantity(quantity)])
     except NoOrbitError:
-        return Needed(quantity, tolerance, None, None, None, NO_ORBIT, NO_ORBIT)
-    found = search(zeta, rule, n, amplitude, RATIOS, tolerance, (quantity,))
-    ratio, corrected = map(finite, found.threshold[:, 0, 0])
-    return Needed(quantity, tolerance, ratio, by_law, corrected, *map(str, found.status[:, 0, 0]))
+        return Needed(
+            quantity=quantity,
+            tolerance=tolerance,
+            frequency_ratio=None,
+            by_law=None,
+            corrected=None,
+            status=NO_ORBIT,
+            corrected_status=NO_ORBIT,
+        )
+    found = search(
+        zeta,
+        rule,
+        n=n,
+        amplitude=amplitude,
+        ratios=RATIOS,
+        tolerance=tolerance,
+        quantities=(quantity,),
+    )
+    simple, corrected = found.threshold[:, 0, 0]
+    status, corrected_status = found.status[:, 0, 0]
+    return Needed(
+        quantity=quantity,
+        tolerance=tolerance,
+        frequency_ratio=finite(simple),
+        by_law=by_law,
+        corrected=finite(corrected),
+        status=str(status),
+        corrected_status=str(corrected_status),
+    )

@@ -13,18 +13,17 @@ factor of √2 if these are equal. Balls are added until the difference is known
 beyond the tolerance, up to a number of balls that takes about three seconds.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.beyond.calculator.case import Case
-from bouncing_ball.beyond.calculator.results import Family, Mean, Motion
+from bouncing_ball.beyond.calculator.case import PhysicalCase
+from bouncing_ball.beyond.calculator.results import Family, FinalMotion, Mean
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.means import over_steps
 from bouncing_ball.beyond.long_run.motions import Kind
 from bouncing_ball.paper.comparison.errors import relative
-from bouncing_ball.paper.contact.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.paper.motion.sequence import ImpactSequence, Status
 
 # Relative change of an orbit's impact velocity for a start beside the orbit.
@@ -32,11 +31,22 @@ _BESIDE = 1e-3
 # Number of impacts after which the search for a repetition ends.
 _IMPACTS = 600
 # Balls in a round, the largest number of rounds, impacts of each ball, and the number of first
-# impacts left out of the means: for a linear contact, and for a contact law, of which a step takes
-# much longer, though hardly longer for many balls than for a few.
-_SAMPLES, _SAMPLES_OF_LAW = (256, 6, 500, 100), (128, 2, 80, 40)
+# impacts left out of the means. A step of a contact law takes much longer than one of a linear
+# contact, though hardly longer for many balls than for a few.
+_SAMPLES = (256, 6, 500, 100)
+_SAMPLES_OF_LAW = (128, 2, 80, 40)
+# Quantities of which means over time are compared.
+_MEANS = ("height", "power")
 # Quantile of Student's distribution for a confidence interval of 95 % with 128 balls or more.
 _STUDENT = 1.98
+
+
+class _Kind(NamedTuple):
+    """The kind of a motion, with the periods and impacts after which it repeats, or 0."""
+
+    kind: str
+    periods: int
+    impacts: int
 
 
 class _Start(NamedTuple):
@@ -46,51 +56,86 @@ class _Start(NamedTuple):
     velocity: float
 
 
-def of_family(case: Case, family: Family, tolerance: float) -> Motion:
+def of_family(case: PhysicalCase, family: Family, tolerance: float) -> FinalMotion:
     """The motion of a ball that starts on the orbit of a family, or beside an unstable orbit.
 
     Balls are added to the means over time until these decide about the tolerance.
     """
-    lam = case.table.amplitude
-    exact, simple = list(case.models)[:2]
     if family.exists and family.is_stable and family.is_admissible:
-        return Motion(str(Kind.ORBIT), family.n, 1, _laid(case, family))
-    orbits = (case.models[name].orbit(family.n, lam) for name in (exact, simple, "corrected"))
-    orbit = next((orbit for orbit in orbits if orbit.exists), None)
-    lossless = float(case.contact.restitution) == 1 and family.exists and family.is_admissible
-    if orbit is not None and lossless and abs(float(orbit.trace_and_determinant()[0])) < 2:
-        return Motion(str(Kind.UNDECIDED), 0, 0)
-    # If no model has an orbit, a ball laid on the table at the phase where the table moves down
-    # fastest.
-    start = _Start(np.pi, -lam)
-    if orbit is not None:
-        start = _Start(float(orbit.phase), float(orbit.impact_velocity) * (1 + _BESIDE))
+        return FinalMotion(str(Kind.ORBIT), family.n, 1, laid=_laid(case, family))
+    orbit = _first_orbit(case, family.n)
+    if orbit is not None and _is_elliptic(case, family, orbit):
+        return FinalMotion(str(Kind.UNDECIDED), 0, 0)
+    start = _start(case, orbit)
+    # The exact model and the restitution model.
     found = {
-        name: final_motions(_law(case, name), lam, start.phase, start.velocity, impacts=_IMPACTS)
-        for name in (exact, simple)
+        name: final_motions(
+            _law(case, name), case.table.amplitude, start.phase, start.velocity, impacts=_IMPACTS
+        )
+        for name in list(case.models)[:2]
     }
-    kinds = [(str(x.kind), int(x.periods), int(x.impacts)) for x in found.values()]
-    ideal = family.standing[simple]
+    kinds = {
+        name: _Kind(str(motion.kind), int(motion.periods), int(motion.impacts))
+        for name, motion in found.items()
+    }
+    ideal = family.standing["restitution"]
     if ideal.exists and ideal.is_stable and ideal.is_admissible:
         # If the orbit is weakly stable, the mapper may not recognise that the motion repeats.
-        kinds[1] = str(Kind.ORBIT), family.n, 1
+        kinds["restitution"] = _Kind(str(Kind.ORBIT), family.n, 1)
+    exact, simple = kinds.values()
     values: dict[str, Any] = {}
-    if kinds[0] == kinds[1] and kinds[0][1] and kinds[0][0] != Kind.PERMANENT_CONTACT:
+    rests = Kind.PERMANENT_CONTACT in (exact.kind, simple.kind)
+    if exact == simple and exact.periods > 0 and not rests:
         values["greatest"] = {name: _greatest(case, name, start, x) for name, x in found.items()}
-    elif Kind.PERMANENT_CONTACT not in (kinds[0][0], kinds[1][0]):
-        lengths = {name: kind[2] for name, kind in zip(found, kinds, strict=True)}
+    elif not rests:
+        lengths = {name: kind.impacts for name, kind in kinds.items()}
         values = _compared(case, lengths, start, tolerance)
-    return Motion(*kinds[0], None, *kinds[1], **values)
+    return FinalMotion(
+        kind=exact.kind,
+        periods=exact.periods,
+        impacts=exact.impacts,
+        restitution_kind=simple.kind,
+        restitution_periods=simple.periods,
+        restitution_impacts=simple.impacts,
+        **values,
+    )
 
 
-def _law(case: Case, name: str) -> Any:
+def _first_orbit(case: PhysicalCase, n: int) -> Any | None:
+    """The n-T orbit of the first model that has one: exact, restitution or corrected."""
+    for model in case.models.values():
+        orbit = model.orbit(n, case.table.amplitude)
+        if orbit.exists:
+            return orbit
+    return None
+
+
+def _is_elliptic(case: PhysicalCase, family: Family, orbit: Any) -> bool:
+    """Whether a ball stays near the orbit without being attracted, as the contact has no loss."""
+    lossless = float(case.contact.restitution) == 1
+    if not (lossless and family.exists and family.is_admissible):
+        return False
+    trace, _ = orbit.trace_and_determinant()
+    return abs(float(trace)) < 2
+
+
+def _start(case: PhysicalCase, orbit: Any | None) -> _Start:
+    """An impact beside the orbit, or without one that of a ball laid on the table at the phase
+    where the table moves down fastest.
+    """
+    if orbit is None:
+        return _Start(np.pi, -case.table.amplitude)
+    return _Start(float(orbit.phase), float(orbit.impact_velocity) * (1 + _BESIDE))
+
+
+def _law(case: PhysicalCase, name: str) -> Any:
     model: Any = case.models[name]
     if name == "restitution":
         return model.restitution
     return case.contact if case.law is None else case.law
 
 
-def _laid(case: Case, family: Family) -> str | None:
+def _laid(case: PhysicalCase, family: Family) -> str | None:
     """Kind of the motion of a ball that is laid on the table; None if it ends on the orbit."""
     lam = case.table.amplitude
     if lam <= case.permanent_contact:
@@ -107,7 +152,7 @@ def _tops(sequence: ImpactSequence) -> np.ndarray:
     return sequence.release_displacement + lift + rise * rise / 2
 
 
-def _greatest(case: Case, name: str, start: _Start, motion: Any) -> float:
+def _greatest(case: PhysicalCase, name: str, start: _Start, motion: Any) -> float:
     """Greatest height of a motion that repeats, in m."""
     impacts = int(motion.followed) + 2 * max(int(motion.impacts), 1)
     model = case.models[name]
@@ -117,7 +162,7 @@ def _greatest(case: Case, name: str, start: _Start, motion: Any) -> float:
 
 
 def _compared(
-    case: Case, lengths: Mapping[str, int], start: _Start, tolerance: float
+    case: PhysicalCase, lengths: Mapping[str, int], start: _Start, tolerance: float
 ) -> dict[str, Any]:
     """Means of both models over balls that start alike, in m and W, and their relative errors.
 
@@ -126,33 +171,51 @@ def _compared(
     error of a part of a repetition would not show in their scatter.
     """
     balls, rounds, impacts, before = _SAMPLES if case.law is None else _SAMPLES_OF_LAW
-    table, means = case.table, np.zeros((2, 2, 0))
-    velocity = start.velocity * (1 + _BESIDE * np.arange(1, rounds * balls + 1) / balls)
-    for one in np.split(velocity, rounds):
+    beside = 1 + _BESIDE * np.arange(1, rounds * balls + 1) / balls
+    # Means of height and power for the balls so far, shape (model, quantity, ball).
+    means = np.zeros((2, 2, 0))
+    for velocity in np.split(start.velocity * beside, rounds):
         found = []
         for name, length in lengths.items():
-            length = max(length, 1)
-            whole = max((impacts - 1 - before) // length, 1) * length
-            run = case.models[name].simulate(table.amplitude, start.phase, one, before + whole + 1)
+            repeats = max(length, 1)
+            counted = max((impacts - 1 - before) // repeats, 1) * repeats
+            run = case.models[name].simulate(
+                case.table.amplitude, start.phase, velocity, before + counted + 1
+            )
             if np.any(run.status != Status.BOUNCING):
                 # Some balls come to rest, so that the means do not exist.
                 return {"mean_height": dict.fromkeys(lengths), "mean_power": dict.fromkeys(lengths)}
             found.append(height_and_power(run, before))
         means = np.concatenate([means, np.array(found)], axis=-1)
-        exact, simple = means
-        off = relative(exact.mean(axis=-1), simple.mean(axis=-1))[:, np.newaxis]
-        apart = (exact - (1 + off) * simple) / simple.mean(axis=-1, keepdims=True)
-        off, margin = np.abs(off[:, 0]), _half_width(apart)
-        if np.all(off + margin <= tolerance) or np.any(off - margin > tolerance):
+        error, margin = _error_of_means(*means)
+        if np.all(error + margin <= tolerance) or np.any(error - margin > tolerance):
             break
-    units = table.length, case.mass * table.gravity**2 / table.angular_frequency
-    values: dict[str, Any] = {"mean_error": {}}
-    for k, (name, unit) in enumerate(zip(("height", "power"), units, strict=True)):
-        middle, width = means[:, k].mean(axis=-1) * unit, _half_width(means[:, k]) * unit
-        pairs = map(Mean, middle.tolist(), width.tolist())
-        values[f"mean_{name}"] = dict(zip(lengths, pairs, strict=True))
-        values["mean_error"][name] = Mean(float(off[k]), float(margin[k]))
-    return values
+    table = case.table
+    watt = case.mass * table.gravity**2 / table.angular_frequency
+    return {
+        "mean_height": _in_si(means[:, 0], table.length, lengths),
+        "mean_power": _in_si(means[:, 1], watt, lengths),
+        "mean_error": {
+            name: Mean(float(error[k]), float(margin[k])) for k, name in enumerate(_MEANS)
+        },
+    }
+
+
+def _error_of_means(exact: np.ndarray, simple: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Moduli of the relative errors of the simple model's means, with their half-widths.
+
+    The arguments have the shape (quantity, ball); equal balls of both models start alike.
+    """
+    error = relative(exact.mean(axis=-1), simple.mean(axis=-1))[:, np.newaxis]
+    differences = (exact - (1 + error) * simple) / simple.mean(axis=-1, keepdims=True)
+    return np.abs(error[:, 0]), _half_width(differences)
+
+
+def _in_si(samples: np.ndarray, unit: float, models: Iterable[str]) -> dict[str, Mean]:
+    """The mean over the balls with its half-width for each model, from shape (model, ball)."""
+    middle = (samples.mean(axis=-1) * unit).tolist()
+    width = (_half_width(samples) * unit).tolist()
+    return {name: Mean(*pair) for name, *pair in zip(models, middle, width, strict=True)}
 
 
 def _half_width(samples: np.ndarray) -> np.ndarray:
@@ -176,52 +239,18 @@ def height_and_power(sequence: ImpactSequence, before: int = 0) -> tuple[np.ndar
     >>> round(float(height), 12), round(float(power), 12)
     (1.333333333333, 0.0)
     """
-    part, law, time = slice(before, -1), sequence.contact, sequence.time
-    duration, phase = sequence.contact_duration[part], sequence.phase[part]
-    gap = np.array([sequence.displacement, sequence.release_displacement])[:, part]
-    rate = np.array([sequence.relative_velocity, sequence.relative_bounce_velocity])[:, part]
-    ends, flown = np.array([phase, phase + duration]), np.diff(time[before:], axis=0) - duration
-    sums = over_steps(law, sequence.amplitude, duration, ends, gap, rate, flown)
-    height, power = (np.sum(x, axis=0) / (time[-1] - time[before]) for x in sums)
+    counted = slice(before, -1)
+    time = sequence.time
+    duration = sequence.contact_duration[counted]
+    phase = sequence.phase[counted]
+    sums = over_steps(
+        sequence.contact,
+        sequence.amplitude,
+        duration,
+        phase=np.array([phase, phase + duration]),
+        gap=np.array([sequence.displacement, sequence.release_displacement])[:, counted],
+        rate=np.array([sequence.relative_velocity, sequence.relative_bounce_velocity])[:, counted],
+        flown=np.diff(time[before:], axis=0) - duration,
+    )
+    height, power = (np.sum(each, axis=0) / (time[-1] - time[before]) for each in sums)
     return height, power
-
-
-def aside(motion: Motion, amplitude: float) -> str:
-    """A clause that follows the verdict on the orbit if a ball laid on the table ends elsewhere."""
-    rests = motion.laid == Kind.PERMANENT_CONTACT and amplitude <= RESTITUTION_THRESHOLD
-    if motion.laid is None or rests:
-        return ""
-    return f"; a ball laid on the table {_LAID[motion.laid]}, and is not judged"
-
-
-def headline(motion: Motion, family: Family) -> str:
-    """The motion of the ball, in one sentence."""
-    orbit = f"{family.n}-T orbit"
-    if motion.kind == Kind.ORBIT and motion.restitution_kind is None:
-        said = f"The {orbit} is stable: a ball on it stays on it."
-        if motion.laid is None:
-            return said
-        return f"{said} A ball laid on the table {_LAID[motion.laid]}."
-    if motion.restitution_kind is None:
-        return f"A ball near the {orbit} stays near it, because the contact loses no energy."
-    none = not any(each.exists for each in family.standing.values())
-    does = (_LAID if none else _DOES)[motion.kind]
-    if motion.periods > 1 and motion.kind != Kind.PERMANENT_CONTACT:
-        does += f" after {motion.periods} periods of the table and {motion.impacts} impacts"
-    why = "not stable" if family.is_admissible else "not admissible"
-    if none:
-        return f"No model has an n-T orbit. A ball laid on the table {does}."
-    if not family.exists:
-        return f"The contact has no {orbit}. A ball that starts as on such an orbit {does}."
-    return f"The {orbit} is {why}. A ball that starts near it {does}."
-
-
-_DOES: Mapping[str, str] = {
-    Kind.ORBIT: "settles on a periodic orbit, which repeats",
-    Kind.SUBHARMONIC: "settles on a doubled orbit, which repeats",
-    Kind.LOCKED: "settles on a locked motion, which sticks to the table and repeats",
-    Kind.PERMANENT_CONTACT: "comes to rest on the table",
-    Kind.CHAOTIC: "ends in chaotic motion",
-    Kind.UNDECIDED: "shows no periodic motion and is not known to be chaotic",
-}
-_LAID = {**_DOES, Kind.PERMANENT_CONTACT: "stays at rest"}

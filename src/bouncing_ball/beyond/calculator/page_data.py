@@ -24,15 +24,25 @@ def page(design: Design) -> xr.Dataset:
     The dataset has ``needed`` (simple, restitution), the ϖ needed; ``table`` (time,) and ``ball``
     (model, time); and ``gap`` (model, since). Values are NaN where there is no orbit or threshold.
     """
-    table, rule = design.case.table, design.case.contact.release
+    table = design.case.table
+    rule = design.case.contact.release
     # The smallest r is that at which Λ is the saddle-node, unless the r of the contact is smaller.
-    half, lam = design.n * np.pi, table.amplitude
+    half = design.n * np.pi
+    lam = table.amplitude
     least = (half - lam) / (half + lam)
     least = min(max(least, _LEAST[rule]), design.corrected.restitution)
     chart = np.linspace(least, 1.0, _CHART)
     asked = design.needed
     zeta = damping_ratio(chart, rule)
-    found = search(zeta, rule, design.n, lam, RATIOS, asked.tolerance, (asked.quantity,))
+    found = search(
+        zeta,
+        rule,
+        n=design.n,
+        amplitude=lam,
+        ratios=RATIOS,
+        tolerance=asked.tolerance,
+        quantities=(asked.quantity,),
+    )
     always = found.status == ThresholdStatus.ALWAYS_WITHIN
     from_there_on = np.where(always, RATIOS[0], found.threshold)[:, 0]
     # One cycle from phase 0 of the table, and a quarter of a period more.

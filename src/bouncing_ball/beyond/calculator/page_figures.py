@@ -38,10 +38,11 @@ def draw(design: Mapping[str, Any], data: xr.Dataset, values: Sequence[tuple[str
     )  # fmt: skip
     _chart(figure.add_subplot(grid[0, 0]), design, data)
     _errors(figure.add_subplot(grid[0, 1]), design)
-    motion, contact = figure.add_subplot(grid[1, :]), figure.add_subplot(grid[2, 0])
+    motion = figure.add_subplot(grid[1, :])
     _curves(motion, data.time, data.ball, f"the {design['n']}-T orbit")
     motion.plot(data.time, data.table, color=TABLE, label="table")
     motion.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=4)
+    contact = figure.add_subplot(grid[2, 0])
     _curves(contact, data.since, data.gap, "one contact: height above the table")
     contact.axhline(0.0, color=TABLE, linewidth=0.8)
     _numbers(figure.add_subplot(grid[2, 1]), values)

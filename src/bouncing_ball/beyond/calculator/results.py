@@ -1,13 +1,14 @@
 """The results of the calculator; each is defined once, with its description and its unit.
 
-JSON has all results under their names; the text and the page list those with a description.
+A result is a field of a dataclass, in SI units. JSON has all fields under their names. The text and
+the page list those that are annotated with a :class:`Listed`, in the order of their definition, by
+:func:`rows`.
 """
 
-from abc import ABC, abstractmethod
 from dataclasses import dataclass, is_dataclass, replace
 from typing import Annotated, Any, NamedTuple, get_type_hints
 
-from bouncing_ball.beyond.calculator.case import Case
+from bouncing_ball.beyond.calculator.case import PhysicalCase
 from bouncing_ball.beyond.calculator.units import shown
 from bouncing_ball.beyond.engines.choice import engine_named
 from bouncing_ball.beyond.engines.engine import EngineSettings, Physical
@@ -18,7 +19,7 @@ Errors = dict[str, float | None]
 zero."""
 
 
-class Row(NamedTuple):
+class Listed(NamedTuple):
     """How a result is listed: its description, and its unit for :func:`~.units.shown`."""
 
     words: str
@@ -27,6 +28,18 @@ class Row(NamedTuple):
 
 def rows(result: Any) -> list[tuple[str, str]]:
     """Description and value, as texts, of each result that is listed, including nested results.
+
+    A field that holds a dict has one description for each of its values.
+
+    Parameters
+    ----------
+    result : dataclass instance
+        Such as a :class:`Design`, a :class:`Contact`, a :class:`Family` or a :class:`Standing`.
+
+    Returns
+    -------
+    list of (str, str)
+        Numbers have four digits and a prefix of their unit (:func:`~.units.shown`).
 
     Examples
     --------
@@ -37,11 +50,17 @@ def rows(result: Any) -> list[tuple[str, str]]:
     for name, hint in get_type_hints(type(result), include_extras=True).items():
         value = getattr(result, name)
         values = value.values() if isinstance(value, dict) else [value]
-        for row, each in zip(getattr(hint, "__metadata__", ()), values, strict=False):
-            text = ("no", "yes")[each] if isinstance(each, bool) else shown(each, row.unit)
-            found.append((row.words, text))
-        found += rows(value) if is_dataclass(value) else []
+        for listed, each in zip(getattr(hint, "__metadata__", ()), values, strict=False):
+            found.append((listed.words, _text(each, listed.unit)))
+        if is_dataclass(value):
+            found += rows(value)
     return found
+
+
+def _text(value: float | bool | None, unit: str) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return shown(value, unit)
 
 
 @dataclass(frozen=True)
@@ -53,13 +72,13 @@ class Standing:
     up to the period doubling. They are None if there is no such bifurcation.
     """
 
-    exists: Annotated[bool, Row("exists")]
-    is_stable: Annotated[bool, Row("stable")]
+    exists: Annotated[bool, Listed("exists")]
+    is_stable: Annotated[bool, Listed("stable")]
     is_admissible: bool
-    saddle_node: Annotated[float | None, Row(f"{Bifurcation.SADDLE_NODE} at Λ")]
-    saddle_node_margin: Annotated[float | None, Row("  Λ may fall by", "%")]
-    period_doubling: Annotated[float | None, Row(f"{Bifurcation.PERIOD_DOUBLING} at Λ")]
-    period_doubling_margin: Annotated[float | None, Row("  Λ may rise by", "%")]
+    saddle_node: Annotated[float | None, Listed(f"{Bifurcation.SADDLE_NODE} at Λ")]
+    saddle_node_margin: Annotated[float | None, Listed("  Λ may fall by", "%")]
+    period_doubling: Annotated[float | None, Listed(f"{Bifurcation.PERIOD_DOUBLING} at Λ")]
+    period_doubling_margin: Annotated[float | None, Listed("  Λ may rise by", "%")]
 
 
 @dataclass(frozen=True)
@@ -78,12 +97,12 @@ class Family:
     is_stable: bool
     is_admissible: bool
     standing: dict[str, Standing]
-    max_height: Annotated[float | None, Row("greatest height", "m")]
-    impact_speed: Annotated[float | None, Row("impact speed", "m/s")]
-    contact_duration: Annotated[float | None, Row("duration of contact", "s")]
-    greatest_compression: Annotated[float | None, Row("greatest compression", "m")]
-    peak_force: Annotated[float | None, Row("peak force", "N")]
-    peak_force_over_weight: Annotated[float | None, Row("peak force over weight")]
+    max_height: Annotated[float | None, Listed("greatest height", "m")]
+    impact_speed: Annotated[float | None, Listed("impact speed", "m/s")]
+    contact_duration: Annotated[float | None, Listed("duration of contact", "s")]
+    greatest_compression: Annotated[float | None, Listed("greatest compression", "m")]
+    peak_force: Annotated[float | None, Listed("peak force", "N")]
+    peak_force_over_weight: Annotated[float | None, Listed("peak force over weight")]
     errors: Errors
     corrected_errors: Errors
     law_errors: Errors
@@ -99,7 +118,7 @@ class Mean:
 
 
 @dataclass(frozen=True)
-class Motion:
+class FinalMotion:
     """The motion on which a ball ends that starts on the orbit of the verdict, or beside it.
 
     ``kind`` is the kind of this motion in the exact model: "orbit", "subharmonic", "locked",
@@ -148,7 +167,7 @@ class Needed:
 class TimeStep:
     """The largest time step that resolves the contact, in s, and the rule that it follows from."""
 
-    largest: Annotated[float, Row("largest time step", "s")]
+    largest: Annotated[float, Listed("largest time step", "s")]
     rule: str
 
 
@@ -161,74 +180,49 @@ class Corrected:
     presses the ball to the table and v the impact speed.
     """
 
-    delay: Annotated[float, Row("corrected model, delay t_c", "s")]
-    restitution: Annotated[float, Row("corrected model, restitution r")]
-    load: Annotated[float, Row("corrected model, load σ", "s")]
+    delay: Annotated[float, Listed("corrected model, delay t_c", "s")]
+    restitution: Annotated[float, Listed("corrected model, restitution r")]
+    load: Annotated[float, Listed("corrected model, load σ", "s")]
 
 
-class _ForEngines(ABC):
-    """An answer of the calculator that can be repeated for a physics engine."""
-
-    question: dict[str, Any]
-
-    def engine(self, name: str, release: str | None = None) -> EngineSettings:
-        """The settings to write into an engine, see :mod:`bouncing_ball.beyond.engines.choice`, and their effect.
-
-        A restitution that was given holds under the release of the engine, even if the release of
-        this answer is different.
-
-        Raises
-        ------
-        ModelError
-            If there is no such engine, or the engine does not have this release or this contact.
-        NoOrbitError
-            If no model has an orbit with the contact of the engine.
-        """
-        # Imported here, because that module imports this one.
-        from bouncing_ball.beyond.calculator.design import design
-
-        asked = {"engine": name} | ({"release": release} if release else {})
-        found = self if self.question.items() >= asked.items() else design(**self.question | asked)
-        return found.engine_settings()
-
-    @abstractmethod
-    def engine_settings(self) -> EngineSettings:
-        """The settings of the engine for which this design was made."""
-
-    def _settings(
-        self, contact: Physical, release: str, law: dict[str, Any] | None = None
-    ) -> EngineSettings:
-        engine, error = engine_named(self.question["engine"]), self.question["restitution_error"]
-        return (engine.with_law(law) if law else engine).settings(contact, release, error)
+def _settings(
+    question: dict[str, Any], contact: Physical, release: str, law: dict[str, Any] | None = None
+) -> EngineSettings:
+    """The settings of the engine in the arguments of the call, for a contact or its law."""
+    engine = engine_named(question["engine"])
+    if law is not None:
+        engine = engine.with_law(law)
+    return engine.settings(contact, release, question["restitution_error"])
 
 
 @dataclass(frozen=True)
-class Contact(_ForEngines):
+class Contact:
     """A contact without a table, in SI units.
 
     ``natural_frequency`` is ω = √(k/m) in rad/s: on a table that moves with Ω it gives ϖ = ω/Ω.
     ``question`` holds the arguments of the call. What depends on the impact speed is None.
     """
 
-    mass: Annotated[float, Row("mass in kg")]
-    stiffness: Annotated[float, Row("stiffness", "N/m")]
-    damping: Annotated[float | None, Row("damping", "N s/m")]
-    damping_ratio: Annotated[float | None, Row("damping ratio ζ")]
-    natural_frequency: Annotated[float, Row("natural frequency ω = ϖΩ", "rad/s")]
-    contact_time: Annotated[float | None, Row("contact time", "s")]
+    mass: Annotated[float, Listed("mass in kg")]
+    stiffness: Annotated[float, Listed("stiffness", "N/m")]
+    damping: Annotated[float | None, Listed("damping", "N s/m")]
+    damping_ratio: Annotated[float | None, Listed("damping ratio ζ")]
+    natural_frequency: Annotated[float, Listed("natural frequency ω = ϖΩ", "rad/s")]
+    contact_time: Annotated[float | None, Listed("contact time", "s")]
     release: str
-    measured_restitution: Annotated[float | None, Row("restitution of a free impact")]
+    measured_restitution: Annotated[float | None, Listed("restitution of a free impact")]
     notes: tuple[str, ...]
     question: dict[str, Any]
 
     def engine_settings(self) -> EngineSettings:
+        """The settings to write into the engine that was named, and their effect."""
         # A contact whose damping depends on the speed has no settings.
         contact = Physical(self.mass, self.stiffness, self.damping or 0.0)
-        return self._settings(contact, self.release)
+        return _settings(self.question, contact, self.release)
 
 
 @dataclass(frozen=True)
-class Design(_ForEngines):
+class Design:
     """The answer of the calculator about a contact; times are in s, lengths in m, forces in N.
 
     ``frequency_ratio``, ``damping_ratio`` and ``amplitude`` are ϖ, ζ and Λ. ``restitution`` has the
@@ -239,42 +233,45 @@ class Design(_ForEngines):
     of kg, m and s.
     """
 
-    frequency_ratio: Annotated[float, Row("frequency ratio ϖ")]
-    damping_ratio: Annotated[float, Row("damping ratio ζ")]
-    amplitude: Annotated[float, Row("excitation amplitude Λ")]
-    stiffness: Annotated[float, Row("stiffness", "N/m")]
-    damping: Annotated[float, Row("damping", "N s/m")]
-    contact_time: Annotated[float, Row("contact time", "s")]
+    frequency_ratio: Annotated[float, Listed("frequency ratio ϖ")]
+    damping_ratio: Annotated[float, Listed("damping ratio ζ")]
+    amplitude: Annotated[float, Listed("excitation amplitude Λ")]
+    stiffness: Annotated[float, Listed("stiffness", "N/m")]
+    damping: Annotated[float, Listed("damping", "N s/m")]
+    contact_time: Annotated[float, Listed("contact time", "s")]
     time_step: TimeStep
-    static_deflection: Annotated[float, Row("static deflection", "m")]
+    static_deflection: Annotated[float, Listed("static deflection", "m")]
     restitution: Annotated[
         dict[str, float],
-        Row("restitution, released at δ = 0"),
-        Row("restitution, released without force"),
+        Listed("restitution, released at δ = 0"),
+        Listed("restitution, released without force"),
     ]
     measured_restitution: float
-    permanent_contact: Annotated[float | None, Row("permanent contact up to Λ")]
+    permanent_contact: Annotated[float | None, Listed("permanent contact up to Λ")]
     law: dict[str, Any] | None
     corrected: Corrected
     orbits: tuple[Family, ...]
     needed: Needed
-    motion: Motion
+    motion: FinalMotion
     headline: str
     is_good_enough: bool
     verdict: str
     reason: str
     notes: tuple[str, ...]
-    case: Case
+    case: PhysicalCase
     n: int
     question: dict[str, Any]
 
     def engine_settings(self) -> EngineSettings:
-        contact, one = Physical(self.case.mass, self.stiffness, self.damping), self.judged
+        """The settings to write into the engine that was named, and the orbit of the verdict, which
+        the engine will show.
+        """
+        contact = Physical(self.case.mass, self.stiffness, self.damping)
         return replace(
-            self._settings(contact, self.case.contact.release, self.law),
-            max_height=one.max_height,
-            contact_duration=one.contact_duration,
-            penetration=one.greatest_compression,
+            _settings(self.question, contact, self.case.contact.release, self.law),
+            max_height=self.judged.max_height,
+            contact_duration=self.judged.contact_duration,
+            penetration=self.judged.greatest_compression,
         )
 
     @property

@@ -27,7 +27,7 @@ _POWER = re.compile(r"(?<=[^\W\d_])(?=\d(?!\d))")
 _UNIT = re.compile(r"(?:[^\W\d]|[ ·*/%°²³¹⁻]|\^-?\d(?![\d^])|_0|1(?= */)){1,40}")
 
 
-class Unit(NamedTuple):
+class SIParameter(NamedTuple):
     """The annotation of a parameter: its SI unit, an example, and the range allowed.
 
     Products and powers of a few numbers in the default range neither overflow nor underflow.
@@ -50,7 +50,7 @@ def _registry() -> Any:
     return registry
 
 
-def number(name: str, value: Any, kind: Unit) -> float:
+def number(name: str, value: Any, kind: SIParameter) -> float:
     """The value of a parameter in SI units.
 
     Parameters
@@ -59,7 +59,7 @@ def number(name: str, value: Any, kind: Unit) -> float:
         The name of the parameter in an error.
     value : float, str or pint.Quantity
         The value; a plain number is in SI units.
-    kind : Unit
+    kind : SIParameter
         The unit of the parameter and an example. The range is not checked here.
 
     Raises
@@ -69,7 +69,7 @@ def number(name: str, value: Any, kind: Unit) -> float:
 
     Examples
     --------
-    >>> stiffness, frequency = Unit("N/m", "1e6 N/m"), Unit("Hz", "50 Hz")
+    >>> stiffness, frequency = SIParameter("N/m", "1e6 N/m"), SIParameter("Hz", "50 Hz")
     >>> number("stiffness", 2e6, stiffness), number("stiffness", "2 kN/mm", stiffness)
     (2000000.0, 2000000.0)
     >>> number("frequency", "3000 rpm", frequency)
@@ -81,7 +81,8 @@ def number(name: str, value: Any, kind: Unit) -> float:
 write it as '50 Hz'
     """
     short = textwrap.shorten(str(value), 60, placeholder="…")
-    unit, example = "", f"write it as {kind.example!r}"
+    unit = ""
+    example = f"write it as {kind.example!r}"
 
     def wrong(why: str, said: str = short) -> ParameterError:
         return ParameterError(f"{{{name}}} = {{}} {why}", said)
@@ -92,7 +93,8 @@ write it as '50 Hz'
             raise wrong(f"does not begin with a number: {example}", repr(short))
         value, unit = found.groups()
     elif hasattr(value, "magnitude") and hasattr(value, "units"):
-        value, unit = value.magnitude, str(value.units).replace("dimensionless", "")
+        unit = str(value.units).replace("dimensionless", "")
+        value = value.magnitude
     try:
         plain = float(value)
     except (TypeError, ValueError):
@@ -105,12 +107,13 @@ write it as '50 Hz'
     return found_value
 
 
-def _converted(value: float, unit: str, kind: Unit) -> tuple[float, str]:
+def _converted(value: float, unit: str, kind: SIParameter) -> tuple[float, str]:
     """A value in SI units and an empty text, or NaN and the reason why it cannot be converted.
 
     For an acceleration the unit g means standard gravity and not the gram.
     """
-    registry, why = _registry(), "has an unknown unit"
+    registry = _registry()
+    why = "has an unknown unit"
     if (kind.name, unit) == ("m/s^2", "g"):
         unit = "standard_gravity"
     # Pint also raises the errors of its tokenizer, which are of many types.
@@ -155,12 +158,15 @@ def shown(value: float | None, unit: str = "", least: float = 1e-5) -> str:
     if value is None:
         return "none"
     if unit == "%":
-        if 0 < value < (least := min(least, 1e-5)):
-            return f"less than {percent(least)}"
+        bound = min(least, 1e-5)
+        if 0 < value < bound:
+            return f"less than {percent(bound)}"
         return f"{100 * value:.2g} %" if value < 0.995 else f"{100 * value:.0f} %"
     if value == 0 or not unit:
         return f"{value:.4g} {unit}".rstrip()
-    power = min(9, max(-9, 3 * math.floor(math.log10(abs(float(f"{value:.4g}"))) / 3)))
+    rounded = abs(float(f"{value:.4g}"))
+    thousands = math.floor(math.log10(rounded) / 3)
+    power = min(9, max(-9, 3 * thousands))
     return f"{value / 10**power:.4g} {_PREFIXES[power]}{unit}"
 
 

@@ -1,4 +1,6 @@
-"""The verdict on the restitution model in one sentence, with the reason and further notes."""
+"""What a design says in sentences: the motion of the ball, the verdict on the restitution model with
+its reason, and further notes.
+"""
 
 import math
 from collections.abc import Mapping
@@ -6,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.beyond.calculator.case import Case
+from bouncing_ball.beyond.calculator.case import PhysicalCase
 from bouncing_ball.beyond.calculator.families import NO_ORBIT
-from bouncing_ball.beyond.calculator.results import Family, Motion, Needed
+from bouncing_ball.beyond.calculator.results import Family, FinalMotion, Mean, Needed
 from bouncing_ball.beyond.calculator.units import percent, shown
 from bouncing_ball.beyond.laws.hertzian import Tsuji
 from bouncing_ball.beyond.laws.impedance import Impedance
@@ -16,10 +18,24 @@ from bouncing_ball.beyond.long_run.motions import Kind
 from bouncing_ball.paper.comparison.errors import QUANTITIES, Quantity, modulus, relative
 from bouncing_ball.paper.comparison.thresholds import ThresholdStatus
 from bouncing_ball.paper.contact.damping import Release
+from bouncing_ball.paper.contact.law import ContactLaw
+from bouncing_ball.paper.contact.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 
+# What a ball does that starts near an orbit, by the kind of the motion on which it ends.
+_DOES: Mapping[str, str] = {
+    Kind.ORBIT: "settles on a periodic orbit, which repeats",
+    Kind.SUBHARMONIC: "settles on a doubled orbit, which repeats",
+    Kind.LOCKED: "settles on a locked motion, which sticks to the table and repeats",
+    Kind.PERMANENT_CONTACT: "comes to rest on the table",
+    Kind.CHAOTIC: "ends in chaotic motion",
+    Kind.UNDECIDED: "shows no periodic motion and is not known to be chaotic",
+}
+# The same for a ball that is laid on the table.
+_LAID = {**_DOES, Kind.PERMANENT_CONTACT: "stays at rest"}
 
-class Verdict(NamedTuple):
+
+class Assessment(NamedTuple):
     """Whether the restitution model is good enough, this verdict as a sentence, and the reason."""
 
     is_good_enough: bool
@@ -43,62 +59,80 @@ def _disagreement(family: Family) -> str | None:
     """The first qualitative disagreement between the restitution model's orbit and the exact one:
     in existence, admissibility or stability. None if they agree.
     """
-    simple, orbit = family.standing["restitution"], f"{family.n}-T orbit"
+    simple = family.standing["restitution"]
+    orbit = f"{family.n}-T orbit"
     if family.exists != simple.exists:
         missed = f"it misses the {orbit}, which the contact has"
         return missed if family.exists else f"it has the {orbit}, which the contact has not"
-    for name, word in (("is_admissible", "free of other impacts"), ("is_stable", "stable")):
-        if getattr(family, name) != getattr(simple, name):
-            own, other = ("is", "is not") if getattr(simple, name) else ("is not", "is")
-            return f"its {orbit} {own} {word}, and the contact's {other}"
+    if family.is_admissible != simple.is_admissible:
+        return _opposite(orbit, "free of other impacts", simple.is_admissible)
+    if family.is_stable != simple.is_stable:
+        return _opposite(orbit, "stable", simple.is_stable)
     return None
 
 
-def assessed(family: Family, needed: Needed, frequency_ratio: float) -> Verdict:
+def _opposite(orbit: str, word: str, of_model: bool) -> str:
+    """A clause that the orbit of only one of the two, the model and the contact, is ``word``."""
+    if of_model:
+        return f"its {orbit} is {word}, and the contact's is not"
+    return f"its {orbit} is not {word}, and the contact's is"
+
+
+def assessed(family: Family, needed: Needed, frequency_ratio: float) -> Assessment:
     """The verdict on a given contact.
 
     The model is good enough if its orbit agrees with the exact one in existence, admissibility and
     stability, and if the error is within the tolerance.
     """
-    tolerance, subject = percent(needed.tolerance), _subject(needed.quantity, family.n)
-    error, wrong = family.errors[needed.quantity], _disagreement(family)
+    tolerance = percent(needed.tolerance)
+    error = family.errors[needed.quantity]
+    wrong = _disagreement(family)
     if wrong is None and error is None:
         name = QUANTITIES[Quantity(needed.quantity)]
         sentence = f"Whether the restitution model is good enough in the {name} is not known."
-        return Verdict(False, sentence, "the contact or the model has no value to compare")
+        return Assessment(False, sentence, "the contact or the model has no value to compare")
     good = wrong is None and error is not None and error <= needed.tolerance
-    found, place = shown(error, "%", needed.tolerance), "within" if good else "beyond"
-    off = f"{subject} is {found} off, {place} {tolerance}"
-    instead = _instead(family, needed)
-    found = f"good enough: {off}" if good else f"not good enough: {wrong or off}{instead}"
+    subject = _subject(needed.quantity, family.n)
+    size = shown(error, "%", needed.tolerance)
     reason = _reason(needed, frequency_ratio, good, tolerance)
-    return Verdict(good, f"The restitution model is {found}.", reason)
+    if good:
+        sentence = (
+            f"The restitution model is good enough: {subject} is {size} off, within {tolerance}."
+        )
+        return Assessment(True, sentence, reason)
+    why = wrong or f"{subject} is {size} off, beyond {tolerance}"
+    instead = _instead(family, needed)
+    return Assessment(False, f"The restitution model is not good enough: {why}{instead}.", reason)
 
 
-def judged_by_motion(motion: Motion, tolerance: float, n: int) -> Verdict:
+def judged_by_motion(motion: FinalMotion, tolerance: float, n: int) -> Assessment:
     """The verdict on the motion on which a ball ends, if the orbit is not stable."""
     about = f"no ball stays on the {n}-T orbit, so that its errors are not judged"
-    kinds = motion.kind, motion.restitution_kind
-    if kinds == (Kind.PERMANENT_CONTACT,) * 2:
+    exact = motion.kind
+    simple = motion.restitution_kind
+    if exact == simple == Kind.PERMANENT_CONTACT:
         sentence = "The restitution model is good enough: the ball rests in both models."
-        return Verdict(True, sentence, about)
+        return Assessment(True, sentence, about)
     # Locked and chaotic motions may be alike in the mean, but other kinds that differ are not. An
     # undecided motion may be of any kind, but is not the n-T orbit, on which no ball stays.
-    on_orbit = kinds[1] == Kind.ORBIT and motion.restitution_periods == n
-    different = len({*kinds}) > 1 and (on_orbit or Kind.UNDECIDED not in kinds)
-    if different and {*kinds} & {Kind.PERMANENT_CONTACT, Kind.ORBIT, Kind.SUBHARMONIC}:
-        sentence = f"its motion is {_named(kinds[1])}, and the contact's is {_named(kinds[0])}"
-        return Verdict(False, f"The restitution model is not good enough: {sentence}.", about)
+    on_orbit = simple == Kind.ORBIT and motion.restitution_periods == n
+    known = on_orbit or Kind.UNDECIDED not in (exact, simple)
+    distinct = {Kind.PERMANENT_CONTACT, Kind.ORBIT, Kind.SUBHARMONIC}
+    if exact != simple and known and {exact, simple} & distinct:
+        sentence = f"its motion is {_named(simple)}, and the contact's is {_named(exact)}"
+        return Assessment(False, f"The restitution model is not good enough: {sentence}.", about)
     if motion.greatest is not None:
         error = float(modulus(relative(*motion.greatest.values())))
         found = f"the greatest height of this motion is {shown(error, '%')} off"
         return _within(error, error, tolerance, found, about)
     if motion.mean_error is None:
         sentence = "Whether the restitution model is good enough for this motion is not known."
-        return Verdict(False, sentence, f"{about}; nor are means, as some balls come to rest")
-    errors = [(one.value, one.half_width, name) for name, one in motion.mean_error.items()]
-    found = " and ".join(f"the mean {x} is {_between(e, h)} off" for e, h, x in errors)
-    least, most = (max(e + sign * h for e, h, _ in errors) for sign in (-1, 1))
+        return Assessment(False, sentence, f"{about}; nor are means, as some balls come to rest")
+    found = " and ".join(
+        f"the mean {name} is {_between(error)} off" for name, error in motion.mean_error.items()
+    )
+    least = max(error.value - error.half_width for error in motion.mean_error.values())
+    most = max(error.value + error.half_width for error in motion.mean_error.values())
     return _within(least, most, tolerance, found, f"{about}; means over time are compared")
 
 
@@ -107,25 +141,31 @@ def _named(kind: str | None) -> str:
     return words.get(kind, str(kind))
 
 
-def _between(e: float, h: float) -> str:
-    return f"at most {shown(e + h, '%')}" if h > e else f"{shown(e, '%')} ± {shown(h, '%')}"
+def _between(error: Mean) -> str:
+    """A positive error with its interval, or its upper end where the interval contains zero."""
+    if error.half_width > error.value:
+        return f"at most {shown(error.value + error.half_width, '%')}"
+    return f"{shown(error.value, '%')} ± {shown(error.half_width, '%')}"
 
 
-def _within(least: float, most: float, tolerance: float, found: str, why: str) -> Verdict:
+def _within(least: float, most: float, tolerance: float, found: str, why: str) -> Assessment:
     """The verdict on a largest error between two bounds, against a tolerance."""
     asked = percent(tolerance)
     if most <= tolerance:
-        return Verdict(True, f"The restitution model is good enough: {found}, within {asked}.", why)
+        return Assessment(
+            True, f"The restitution model is good enough: {found}, within {asked}.", why
+        )
     if least > tolerance:
         sentence = f"The restitution model is not good enough: {found}, beyond {asked}."
-        return Verdict(False, sentence, why)
+        return Assessment(False, sentence, why)
     sentence = f"Whether the restitution model is good enough is not decided at {asked}: {found}."
-    return Verdict(False, sentence, f"{why}; the sample is too small to decide")
+    return Assessment(False, sentence, f"{why}; the sample is too small to decide")
 
 
 def _instead(family: Family, needed: Needed) -> str:
     """A clause on whether the corrected model is good enough instead."""
-    error, corrected = family.corrected_errors[needed.quantity], family.standing["corrected"]
+    error = family.corrected_errors[needed.quantity]
+    corrected = family.standing["corrected"]
     same = (family.exists, family.is_stable) == (corrected.exists, corrected.is_stable)
     if same and error is not None and error <= needed.tolerance:
         size = shown(error, "%", needed.tolerance)
@@ -147,7 +187,7 @@ def _reason(needed: Needed, frequency_ratio: float, good: bool, tolerance: str) 
     return text
 
 
-def chosen(si: Mapping[str, float], needed: Needed, n: int) -> Verdict:
+def chosen(si: Mapping[str, float], needed: Needed, n: int) -> Assessment:
     """The verdict on the most compliant contact within the tolerance."""
     tolerance = percent(needed.tolerance)
     sentence = (
@@ -157,12 +197,12 @@ def chosen(si: Mapping[str, float], needed: Needed, n: int) -> Verdict:
         f"then within {tolerance} of the restitution model's."
     )
     if needed.frequency_ratio is None:
-        return Verdict(True, sentence, _NO_CROSSING[needed.status])
+        return Assessment(True, sentence, _NO_CROSSING[needed.status])
     where = f"at the frequency ratio ϖ = {needed.frequency_ratio:.4g}"
-    return Verdict(True, sentence, f"the error crosses {tolerance} for the last time {where}")
+    return Assessment(True, sentence, f"the error crosses {tolerance} for the last time {where}")
 
 
-def _cost_of(law: Impedance, case: Case, family: Family) -> str:
+def _cost_of(law: Impedance, case: PhysicalCase, family: Family) -> str:
     """A sentence on the change of the greatest height that an impedance causes."""
     about = "stiffness, damping, ϖ and ζ are those of the spring and damper of this solref"
     spring = SpringDamperModel(case.contact).orbit(family.n, case.table.amplitude)
@@ -177,26 +217,32 @@ def _cost_of(law: Impedance, case: Case, family: Family) -> str:
     )
 
 
-def notes(case: Case, family: Family, motion: Motion) -> tuple[str, ...]:
-    """Sentences that a user should read in addition to the verdict."""
-    found, contact, orbit = [], case.contact, f"{family.n}-T orbit"
+def _notes_on_law(law: ContactLaw, case: PhysicalCase, family: Family) -> list[str]:
+    """Sentences on how the numbers of a linear contact are those of a case with another law."""
     # The contact of a solref has the ϖ of its impedance, unlike one that was found for an impact.
-    if isinstance(case.law, Impedance) and math.isclose(
-        case.law.frequency_ratio, contact.frequency_ratio
+    if isinstance(law, Impedance) and math.isclose(
+        law.frequency_ratio, case.contact.frequency_ratio
     ):
-        found.append(_cost_of(case.law, case, family))
-    elif case.law is not None:
-        hertz = isinstance(case.law, Tsuji)
-        name = "Hertz contact with Tsuji's damping" if hertz else f"{case.law.name} contact"
+        return [_cost_of(law, case, family)]
+    hertz = isinstance(law, Tsuji)
+    name = "Hertz contact with Tsuji's damping" if hertz else f"{law.name} contact"
+    found = [
+        "stiffness, damping, ϖ and ζ, and the ϖ that is needed, are those of a linear contact: "
+        f"it has the r of the {name}, and its duration at the impact"
+    ]
+    if not np.all(case.has_its_restitution([family.n, family.n + 1])):
         found.append(
-            "stiffness, damping, ϖ and ζ, and the ϖ that is needed, are those of a linear contact: "
-            f"it has the r of the {name}, and its duration at the impact"
+            "the restitution of this law depends on the speed: it is r at the speed of the "
+            "restitution model's lowest stable orbit"
         )
-        if not np.all(case.has_its_restitution([family.n, family.n + 1])):
-            found.append(
-                "the restitution of this law depends on the speed: it is r at the speed of the "
-                "restitution model's lowest stable orbit"
-            )
+    return found
+
+
+def notes(case: PhysicalCase, family: Family, motion: FinalMotion) -> tuple[str, ...]:
+    """Sentences that a user should read in addition to the verdict."""
+    contact = case.contact
+    orbit = f"{family.n}-T orbit"
+    found = [] if case.law is None else _notes_on_law(case.law, case, family)
     if math.isnan(case.permanent_contact):
         found.append(
             "no threshold of permanent contact was found, because the contact is weakly damped"
@@ -214,3 +260,33 @@ def notes(case: Case, family: Family, motion: Motion) -> tuple[str, ...]:
             "has the r of a release without force"
         )
     return tuple(found)
+
+
+def aside(motion: FinalMotion, amplitude: float) -> str:
+    """A clause that follows the verdict on the orbit if a ball laid on the table ends elsewhere."""
+    rests = motion.laid == Kind.PERMANENT_CONTACT and amplitude <= RESTITUTION_THRESHOLD
+    if motion.laid is None or rests:
+        return ""
+    return f"; a ball laid on the table {_LAID[motion.laid]}, and is not judged"
+
+
+def headline(motion: FinalMotion, family: Family) -> str:
+    """The motion of the ball, in one sentence."""
+    orbit = f"{family.n}-T orbit"
+    if motion.kind == Kind.ORBIT and motion.restitution_kind is None:
+        said = f"The {orbit} is stable: a ball on it stays on it."
+        if motion.laid is None:
+            return said
+        return f"{said} A ball laid on the table {_LAID[motion.laid]}."
+    if motion.restitution_kind is None:
+        return f"A ball near the {orbit} stays near it, because the contact loses no energy."
+    none = not any(each.exists for each in family.standing.values())
+    does = (_LAID if none else _DOES)[motion.kind]
+    if motion.periods > 1 and motion.kind != Kind.PERMANENT_CONTACT:
+        does += f" after {motion.periods} periods of the table and {motion.impacts} impacts"
+    why = "not stable" if family.is_admissible else "not admissible"
+    if none:
+        return f"No model has an n-T orbit. A ball laid on the table {does}."
+    if not family.exists:
+        return f"The contact has no {orbit}. A ball that starts as on such an orbit {does}."
+    return f"The {orbit} is {why}. A ball that starts near it {does}."

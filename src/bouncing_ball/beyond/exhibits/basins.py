@@ -1,6 +1,5 @@
 """The motions on which balls with many starts end, in the three models (beyond the paper)."""
 
-from functools import partial
 from typing import Annotated
 
 import numpy as np
@@ -11,9 +10,9 @@ from bouncing_ball.beyond.exhibits.motion_samples import (
     MODELS,
     Confidence,
     Impacts,
-    exponent,
-    models,
-    share,
+    share_with_limits,
+    three_models,
+    uncertainty_exponent,
     with_limits,
 )
 from bouncing_ball.beyond.long_run.destination import final_motions
@@ -47,7 +46,7 @@ MOTIONS = ("permanent contact", "1-T orbit", "other orbits", "locked", "no repet
 longer than an oscillation."""
 
 
-class Case(Place):
+class BasinCase(Place):
     """One contact and one Λ."""
 
     frequency_ratio: FrequencyRatio
@@ -56,7 +55,7 @@ class Case(Place):
 class Basins(Sharded):
     """Starts on an even grid for the picture, and random ones for shares and exponents."""
 
-    cases: Many[Case]
+    cases: Many[BasinCase]
     velocity_max: Annotated[
         float, number("largest relative speed of the first impact", ge=0.1, le=100)
     ]
@@ -73,13 +72,19 @@ class Basins(Sharded):
         return np.stack([2 * np.pi * middle - np.pi, self.velocity_max * middle])
 
 
-def _destination(found: Motions) -> np.ndarray:
+def _index_of_motion(found: Motions) -> np.ndarray:
     """Indices of motions in :data:`MOTIONS`."""
     kind = found.kind
-    first = (kind == Kind.ORBIT) & (found.periods == 1) & (found.impacts == 1)
-    others = (kind == Kind.ORBIT) | (kind == Kind.SUBHARMONIC)
-    where = [kind == Kind.PERMANENT_CONTACT, first, others, kind == Kind.LOCKED]
-    return np.select(where, range(len(where)), len(where))
+    first_orbit = (kind == Kind.ORBIT) & (found.periods == 1) & (found.impacts == 1)
+    # np.select takes the first condition that holds, so that these are the remaining orbits.
+    other_orbits = (kind == Kind.ORBIT) | (kind == Kind.SUBHARMONIC)
+    conditions = [
+        kind == Kind.PERMANENT_CONTACT,
+        first_orbit,
+        other_orbits,
+        kind == Kind.LOCKED,
+    ]
+    return np.select(conditions, range(len(conditions)), MOTIONS.index("no repetition"))
 
 
 def destinations(parameters: Basins, release: Release, part: Part = np.asarray) -> Arrays:
@@ -92,20 +97,30 @@ def destinations(parameters: Basins, release: Release, part: Part = np.asarray) 
         picture, row by row of one speed, are followed by the random starts, first without a change
         of their phases and then with each of the changes.
     """
-    random = np.random.default_rng(parameters.seed)
-    drawn = random.uniform(-np.pi, np.pi, parameters.random)
-    fast = random.uniform(0, parameters.velocity_max, parameters.random)
-    beside = drawn + np.array([[0.0], *np.array(parameters.shifts)[:, np.newaxis]])
-    sample = np.stack([beside, fast + 0 * beside]).reshape(2, -1)
-    image = np.reshape(np.meshgrid(*parameters.grid()), (2, -1))
-    start, towards = part(np.concatenate([image, sample], axis=1))
+    starts = np.concatenate([_picture_starts(parameters), _random_starts(parameters)], axis=1)
+    phase, speed = part(starts)
     r, lam, ratio = columns(parameters.cases)[..., np.newaxis]
+    velocity = lam * np.cos(phase) - speed
     ends = []
-    for model in models(r, ratio, release):
-        velocity = lam * np.cos(start) - towards
-        found = final_motions(model.impact_law, lam, start, velocity, impacts=parameters.impacts)
-        ends.append(_destination(found))
+    for model in three_models(r, ratio, release):
+        found = final_motions(model.impact_law, lam, phase, velocity, impacts=parameters.impacts)
+        ends.append(_index_of_motion(found))
     return {"destination": np.stack(ends, axis=1).astype(np.int8)}
+
+
+def _picture_starts(parameters: Basins) -> np.ndarray:
+    """Phases and speeds of the picture, row by row of one speed, shape (2, starts)."""
+    return np.reshape(np.meshgrid(*parameters.grid()), (2, -1))
+
+
+def _random_starts(parameters: Basins) -> np.ndarray:
+    """Random phases and speeds, without a change of the phases and with each, shape (2, starts)."""
+    random = np.random.default_rng(parameters.seed)
+    phase = random.uniform(-np.pi, np.pi, parameters.random)
+    speed = random.uniform(0, parameters.velocity_max, parameters.random)
+    shifts = np.array([0.0, *parameters.shifts])[:, np.newaxis]
+    shifted = phase + shifts
+    return np.stack([shifted.ravel(), np.broadcast_to(speed, shifted.shape).ravel()])
 
 
 def basins(parameters: Basins, release: Release, found: Found = None) -> xr.Dataset:
@@ -118,22 +133,27 @@ def basins(parameters: Basins, release: Release, found: Found = None) -> xr.Data
     (case, model) is the exponent of this share. Each has limits, ``_low`` and ``_high``.
     ``case_restitution``, ``case_ratio`` and ``case_amplitude`` are over the case.
     """
-    (r, lam, ratio), (phase, speed) = columns(parameters.cases), parameters.grid()
-    count, level, shifts = parameters.starts, parameters.confidence, np.array(parameters.shifts)
-    ends = (found or destinations(parameters, release))["destination"]
-    shape = lam.size, len(MODELS)
-    image, sample = np.split(ends, [count * count], axis=-1)
-    first, *others = np.moveaxis(sample.reshape(*shape, -1, parameters.random), 2, 0)
-    changed = np.stack([x != first for x in others], axis=2)
-    kinds, dims = np.arange(len(MOTIONS))[:, np.newaxis], ("case", "model")
-    shares = partial(np.apply_along_axis, lambda x: share(x, level)[1:], -1)
-    exponents = [[exponent(x.T, shifts, level) for x in case] for case in changed]
+    r, lam, ratio = columns(parameters.cases)
+    phase, speed = parameters.grid()
+    level = parameters.confidence
+    shifts = np.array(parameters.shifts)
+    found = found or destinations(parameters, release)
+    shape = (lam.size, len(MODELS))
+    count = parameters.starts
+    image, sample = np.split(found["destination"], [count * count], axis=-1)
+    image = image.reshape((*shape, count, count))
+    sample = sample.reshape((*shape, shifts.size + 1, parameters.random))
+    unshifted = sample[:, :, :1]
+    # Over the case, the model, the motion or the shift, and the start.
+    ends_there = unshifted == np.arange(len(MOTIONS))[:, np.newaxis]
+    changed = sample[:, :, 1:] != unshifted
+    exponents = [[uncertainty_exponent(x.T, shifts, level) for x in case] for case in changed]
+    dims = ("case", "model")
     estimates: dict[str, tuple] = {
-        "basin_share": ((*dims, "motion"), shares(first[:, :, np.newaxis] == kinds)),
-        "uncertain_share": ((*dims, "shift"), shares(changed)),
+        "basin_share": ((*dims, "motion"), _shares(ends_there, level)),
+        "uncertain_share": ((*dims, "shift"), _shares(changed, level)),
         "uncertainty_exponent": (dims, exponents),
     }
-    image = image.reshape(*shape, count, count)
     return described(
         {
             "destination": ((*dims, "start_speed", "start_phase"), image),
@@ -151,3 +171,8 @@ def basins(parameters: Basins, release: Release, found: Found = None) -> xr.Data
         },
         variables=VARIABLES,
     )
+
+
+def _shares(chosen: np.ndarray, confidence: float) -> np.ndarray:
+    """Shares of truth values along the last axis, and their limits, shape (..., 3)."""
+    return np.apply_along_axis(share_with_limits, -1, chosen, confidence)

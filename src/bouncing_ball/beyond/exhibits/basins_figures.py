@@ -19,21 +19,25 @@ def basins(data: xr.Dataset) -> Figure:
 
     In the panel of a model each start has the colour of the motion on which the ball ends.
     """
-    cases, models = data.sizes["case"], data["model"].values
+    cases = data.sizes["case"]
+    models = data["model"].values
     size: Look = {"rows": cases, "columns": len(models), "sharex": True, "sharey": True}
     figure, rows = canvas(WIDE, 0.6 + 2.5 * cases, **size, squeeze=False)
     extent = -1.0, 1.0, 0.0, data.attrs["velocity_max"]
     look: Look = {"cmap": ListedColormap(_FILLS), "vmin": -0.5, "vmax": len(_FILLS) - 0.5}
     for case, model in np.ndindex(rows.shape):
-        axes, one = rows[case, model], data.isel(case=case, model=model)
+        axes = rows[case, model]
+        one = data.isel(case=case, model=model)
         image(axes, one.destination, extent, **look)
-        ends = (float(one[f"uncertainty_exponent{x}"]) for x in ("", "_low", "_high"))
-        alpha, low, high = map("{:.2f}".format, ends)
+        alpha = f"{float(one.uncertainty_exponent):.2f}"
+        low = f"{float(one.uncertainty_exponent_low):.2f}"
+        high = f"{float(one.uncertainty_exponent_high):.2f}"
         axes.set_title(rf"{models[model]}; $\alpha={alpha}$ ({low} to {high})", fontsize=8)
     for row, case in zip(rows, data.case.values, strict=True):
         place = data.sel(case=case)
-        of = (place[f"case_{x}"] for x in ("restitution", "ratio", "amplitude"))
-        r, ratio, lam = (number(float(x)) for x in of)
+        r = number(float(place.case_restitution))
+        ratio = number(float(place.case_ratio))
+        lam = number(float(place.case_amplitude))
         name = rf"$r={r}$, $\varpi={ratio}$, $\Lambda={lam}$"
         row[0].set_ylabel(f"{name}\nspeed of impact $-\\delta′$")
     for axes in rows[-1]:

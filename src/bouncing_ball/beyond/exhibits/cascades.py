@@ -1,9 +1,9 @@
-"""The cascade of flights of the T-periodic orbits into which permanent contact continues.
+"""Two cascades on contacts of finite stiffness (beyond the paper).
 
-The shift of cascades of period doublings by a contact of finite stiffness (beyond the paper).
-
-Errors are relative to the simple model as in Eqs. 37-38, with their sign: (Λ_SD - Λ)/Λ, with Λ of
-the restitution model, or of the corrected one, at the same doubling.
+The T-periodic orbits into which permanent contact continues get one flight after another as Λ
+grows. Along the n-T orbits the period doubles again and again, at values of Λ that the contact
+shifts. The errors of these values are relative to the simple model as in Eqs. 37-38, with their
+sign: (Λ_SD - Λ)/Λ, with Λ of the restitution model, or of the corrected one, at the same doubling.
 """
 
 from typing import Annotated
@@ -87,23 +87,28 @@ def cascade_of_flights(parameters: Flights, release: Release) -> xr.Dataset:
     orbit was found. ``stiff_opening`` (restitution, flights) is the limit of E = ϖ²(Λ - Λ_SD) for
     stiff contacts. All except the first are NaN unless the release is the displacement release.
     """
-    restitution, ratio = np.array(parameters.restitution), parameters.frequency_ratio.grid()
-    zeta, most = damping_ratio(restitution), parameters.flights
+    restitution = np.array(parameters.restitution)
+    ratio = parameters.frequency_ratio.grid()
+    zeta = damping_ratio(restitution)
+    most = parameters.flights
     law = SpringDamper(ratio, zeta[:, np.newaxis], release)
-    found = np.full((2, zeta.size, most, ratio.size), np.nan)
+    amplitude = np.full((zeta.size, most, ratio.size), np.nan)
+    multiplier = np.full((zeta.size, most, ratio.size), np.nan)
     stiff = np.full((zeta.size, most), np.nan)
     if release is Release.DISPLACEMENT:
-        found = np.array(openings(zeta, ratio, most))
-        found = np.where(found[1] < 1, found, np.nan)
+        found = openings(zeta, ratio, most)
+        stable = found.multiplier < 1
+        amplitude = np.where(stable, found.amplitude, np.nan)
+        multiplier = np.where(stable, found.multiplier, np.nan)
         stiff = np.stack([stiff_openings(z, most) for z in zeta])
     dims = ("restitution", "flights", "frequency_ratio")
-    held = SpringDamperModel(law).permanent_contact_threshold()
+    threshold = SpringDamperModel(law).permanent_contact_threshold()
     return described(
         {
-            "threshold_amplitude": (("restitution", "frequency_ratio"), held),
-            "opening_amplitude": (dims, found[0]),
-            "opening_multiplier": (dims, found[1]),
-            "stiff_opening": (dims[:2], stiff),
+            "threshold_amplitude": (("restitution", "frequency_ratio"), threshold),
+            "opening_amplitude": (dims, amplitude),
+            "opening_multiplier": (dims, multiplier),
+            "stiff_opening": (("restitution", "flights"), stiff),
         },
         coords={
             "restitution": restitution,
@@ -161,33 +166,43 @@ def cascades(parameters: Cascades, release: Release) -> xr.Dataset:
     eliminated (Richardson). Values are NaN where a doubling was not found. ``measured_cascade``
     (doubling,) is Λ of a measurement.
     """
-    r, ratios = np.array(parameters.restitution), parameters.frequency_ratio.grid()
-    known = np.array(parameters.measured.amplitudes) / _GRAVITY
-    known *= (2 * np.pi * parameters.measured.frequency) ** 2
-    measured = np.pad(known, (0, parameters.doublings - known.size), constant_values=np.nan)
-    along = np.concatenate([ratios, _STIFF])
-    contact = SpringDamper.from_restitution(r[:, np.newaxis], along, release)
+    r = np.array(parameters.restitution)
+    ratios = parameters.frequency_ratio.grid()
+    with_stiff = np.concatenate([ratios, _STIFF])
+    contact = SpringDamper.from_restitution(r[:, np.newaxis], with_stiff, release)
+    exact_model, _, corrected_model = models(contact)
     # The restitution model has the r of a free impact on the contact and does not depend on ϖ.
-    of_models = models(contact[:, :1])[1], models(contact)[2], models(contact)[0]
+    _, restitution_model, _ = models(contact[:, :1])
+    # Arrays over (doubling, restitution, ϖ).
     simple, corrected, exact = (
-        cascade(model.period_doubling(parameters.n), parameters.doublings) for model in of_models
+        cascade(model.period_doubling(parameters.n), parameters.doublings)
+        for model in (restitution_model, corrected_model, exact_model)
     )
-    errors = np.stack([exact.amplitude / x.amplitude - 1 for x in (simple, corrected)])
-    once, twice = np.moveaxis(
-        errors[..., -2:] * _STIFF ** np.array([1, 2]).reshape(2, 1, 1, 1), -1, 0
-    )
-    first, second = (2 * twice - once).swapaxes(1, 2)
-    error = errors[..., : ratios.size].swapaxes(1, 2)
-    of_contact = exact.ratios()[..., : ratios.size].swapaxes(0, 1)
+    simple_error = exact.amplitude / simple.amplitude - 1
+    corrected_error = exact.amplitude / corrected.amplitude - 1
+    errors = np.stack([simple_error, corrected_error])[..., : ratios.size]
+    of_contact = exact.ratios()[..., : ratios.size]
     return described(
         {
             "restitution_cascade": (("restitution", "doubling"), simple.amplitude[..., 0].T),
-            "measured_cascade": ("doubling", measured),
+            "measured_cascade": ("doubling", _measured(parameters)),
             "cascade_ratio": (("restitution", "step"), simple.ratios()[..., 0].T),
-            "contact_cascade_ratio": (("restitution", "step", "frequency_ratio"), of_contact),
-            "cascade_error": (("model", "restitution", "doubling", "frequency_ratio"), error),
-            "cascade_coefficient": (("restitution", "doubling"), first),
-            "cascade_second_order": (("restitution", "doubling"), second),
+            "contact_cascade_ratio": (
+                ("restitution", "step", "frequency_ratio"),
+                of_contact.swapaxes(0, 1),
+            ),
+            "cascade_error": (
+                ("model", "restitution", "doubling", "frequency_ratio"),
+                errors.swapaxes(1, 2),
+            ),
+            "cascade_coefficient": (
+                ("restitution", "doubling"),
+                _stiff_coefficient(simple_error, order=1).T,
+            ),
+            "cascade_second_order": (
+                ("restitution", "doubling"),
+                _stiff_coefficient(corrected_error, order=2).T,
+            ),
         },
         coords={
             "model": ["restitution", "corrected"],
@@ -198,3 +213,16 @@ def cascades(parameters: Cascades, release: Release) -> xr.Dataset:
         },
         variables=VARIABLES,
     )
+
+
+def _measured(parameters: Cascades) -> np.ndarray:
+    """Λ = aΩ²/g of the measured doublings, NaN for further doublings, shape (doublings,)."""
+    known = np.array(parameters.measured.amplitudes) / _GRAVITY
+    known *= (2 * np.pi * parameters.measured.frequency) ** 2
+    return np.pad(known, (0, parameters.doublings - known.size), constant_values=np.nan)
+
+
+def _stiff_coefficient(error: np.ndarray, order: int) -> np.ndarray:
+    """The limit of the error times ϖ to the order, from the last two ϖ, :data:`_STIFF`."""
+    once, twice = np.moveaxis(error[..., -2:] * _STIFF**order, -1, 0)
+    return 2 * twice - once

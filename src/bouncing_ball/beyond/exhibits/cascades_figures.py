@@ -1,7 +1,5 @@
-"""The cascade of flights: openings of the long contact over ϖ, and their limits.
-
-The shift of cascades of period doublings by the contact, and the errors of both simple
-models.
+"""The openings of the long contact in the cascade of flights, and the shift of the cascades of
+period doublings by the contact, with the errors of both simple models.
 """
 
 import numpy as np
@@ -20,7 +18,8 @@ _RATIO = r"frequency ratio $\varpi$"
 def cascade_of_flights(data: xr.Dataset) -> Figure:
     """ext_flights: E of the openings over ϖ for the first r, and their limits for all r."""
     figure, (left, right) = canvas(WIDE, 3.2, columns=2)
-    shown, ratio = data.isel(restitution=0), data.frequency_ratio.values
+    shown = data.isel(restitution=0)
+    ratio = data.frequency_ratio.values
     excess = ratio**2 * (shown.opening_amplitude - shown.threshold_amplitude)
     for one, line, colour in zip(each(shown, "flights"), excess, COLOURS, strict=False):
         k = int(one.flights)
@@ -32,7 +31,8 @@ def cascade_of_flights(data: xr.Dataset) -> Figure:
     logarithmic(left, xlabel=_RATIO, yscale="log", ylabel=ylabel, title=title)
     left.legend(loc="upper left")
     for one, colour in coloured(data.sortby("restitution"), "restitution"):
-        r, limits = float(one.restitution), one.stiff_opening.values
+        r = float(one.restitution)
+        limits = one.stiff_opening.values
         right.plot(data.flights, limits, "o-", color=colour, markersize=3, label=number(r))
         right.plot(data.flights, limits[-1] * r ** (2 * (data.flights[-1] - data.flights)), **GUIDE)
     right.set(yscale="log", xlabel="opening $k$", ylabel=r"$E_k$ for $\varpi\to\infty$")

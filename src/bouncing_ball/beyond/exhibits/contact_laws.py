@@ -157,26 +157,41 @@ def _errors(name: str, parameters: LawErrors) -> tuple[np.ndarray, float]:
     The errors are moduli, shape (model, quantity, ratio); the threshold is the π/(D + κ) from which
     on the error of the restitution model's greatest height is tolerable.
     """
-    n, lam = parameters.n, parameters.amplitude
-    rigid, asked = RestitutionModel(parameters.restitution), (n, lam, QUANTITIES)
+    n = parameters.n
+    lam = parameters.amplitude
+    rigid = RestitutionModel(parameters.restitution)
 
-    def both(exact: Any) -> np.ndarray:
-        wanted, constant = values(exact, *asked), values(rigid, *asked)[:, np.newaxis]
-        repaired = corrected_values(exact, *asked)
-        return np.abs([relative(wanted, x) for x in (constant, repaired)])
+    def of_both_models(exact: Any) -> np.ndarray:
+        wanted = values(exact, n, lam, QUANTITIES)
+        constant = values(rigid, n, lam, QUANTITIES)[:, np.newaxis]
+        corrected = corrected_values(exact, n, lam, QUANTITIES)
+        return np.abs([relative(wanted, constant), relative(wanted, corrected)])
 
-    errors, ratios = along(name, parameters, both), parameters.frequency_ratio.grid()
-    outside = np.flatnonzero(errors[0, 0] > parameters.tolerance)
+    errors = along(name, parameters, of_both_models)
+    return errors, _threshold(name, parameters, errors[0, 0], rigid)
+
+
+def _threshold(
+    name: str, parameters: LawErrors, error: np.ndarray, rigid: RestitutionModel
+) -> float:
+    """The π/(D + κ) at which the error of the greatest height is the tolerance, NaN if none.
+
+    ``error`` is that of the restitution model along π/(D + κ).
+    """
+    ratios = parameters.frequency_ratio.grid()
+    outside = np.flatnonzero(error > parameters.tolerance)
     if not outside.size or outside[-1] == ratios.size - 1:
-        return errors, np.nan
+        return np.nan
     # ln(error/tolerance) is nearly a straight line in ln ϖ. Its zero is first interpolated between
     # two nodes, and then by the polynomial through nearby orbits, which is exact to rounding.
     sides = outside[-1] + np.arange(2)
-    guess = np.interp(0, -np.log(errors[0, 0, sides] / parameters.tolerance), np.log(ratios[sides]))
-    exact = own_models(name, parameters, np.exp(guess + _BESIDE)).orbit(n, lam)
-    error = np.abs(relative(exact.max_height, rigid.orbit(n, lam).max_height))
-    line = Polynomial.fit(np.log(error / parameters.tolerance), _BESIDE, _BESIDE.size - 1)
-    return errors, float(np.exp(guess + line(0.0)))
+    guess = np.interp(0, -np.log(error[sides] / parameters.tolerance), np.log(ratios[sides]))
+    nearby = own_models(name, parameters, np.exp(guess + _BESIDE))
+    exact_height = nearby.orbit(parameters.n, parameters.amplitude).max_height
+    simple_height = rigid.orbit(parameters.n, parameters.amplitude).max_height
+    near_error = np.abs(relative(exact_height, simple_height))
+    line = Polynomial.fit(np.log(near_error / parameters.tolerance), _BESIDE, _BESIDE.size - 1)
+    return float(np.exp(guess + line(0.0)))
 
 
 def law_errors(parameters: LawErrors) -> xr.Dataset:
@@ -191,11 +206,13 @@ def law_errors(parameters: LawErrors) -> xr.Dataset:
     NoOrbitError
         If a law has the orbit at no π/(D + κ).
     """
-    errors, threshold = zip(*(_errors(name, parameters) for name in NAMES), strict=True)
+    found = [_errors(name, parameters) for name in NAMES]
+    errors = np.array([error for error, _ in found])
+    thresholds = [threshold for _, threshold in found]
     return described(
         {
-            "relative_error": (("law", "model", "quantity", "centroid_ratio"), np.array(errors)),
-            "error_threshold": ("law", list(threshold)),
+            "relative_error": (("law", "model", "quantity", "centroid_ratio"), errors),
+            "error_threshold": ("law", thresholds),
         },
         coords={
             "law": list(NAMES),

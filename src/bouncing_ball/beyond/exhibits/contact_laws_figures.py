@@ -3,20 +3,29 @@
 import xarray as xr
 from matplotlib.figure import Figure
 
-from bouncing_ball.beyond.exhibits.engine_steps_figures import _by_quantity
 from bouncing_ball.datasets.selection import each
+from bouncing_ball.drawing.canvas import panels_by_quantity
 from bouncing_ball.drawing.labels import parameters
 from bouncing_ball.drawing.style import GUIDE, LAWS
-from bouncing_ball.drawing.tables import Columns, Table, at, entry_of, quantity, table, text, value
+from bouncing_ball.drawing.tables import (
+    Columns,
+    Table,
+    at,
+    entry_of,
+    quantity_in_words,
+    table,
+    text,
+    value,
+)
 
 
 def contact_laws(data: xr.Dataset) -> Figure:
     """ext_laws: errors of both models for five laws, over D + κ as a share of the cycle."""
-    figure, axes_of = _by_quantity(data, 5.0, r"share of the cycle, $(D+\kappa)/(2\pi n)$")
+    figure, axes_of = panels_by_quantity(data, 5.0, r"share of the cycle, $(D+\kappa)/(2\pi n)$")
     share = 1 / (2 * data.attrs["n"] * data.centroid_ratio.values)
-    for quantity, axes in axes_of.items():
+    for name, axes in axes_of.items():
         for law in data["law"].values:
-            errors = data.relative_error.sel(law=law, quantity=quantity)
+            errors = data.relative_error.sel(law=law, quantity=name)
             axes.plot(share, errors.transpose(..., "model"), linewidth=1.1, **LAWS[law])
         for slope in (1, 2):
             axes.plot(share[[0, -1]], share[[0, -1]] ** slope, **GUIDE)
@@ -40,12 +49,17 @@ def ext_laws(data: xr.Dataset) -> Table:
     the threshold of the height.
     """
     grid = data.centroid_ratio.values
-    columns: Columns = {"quantity": quantity, "law": text("law")}
+    columns: Columns = {"quantity": quantity_in_words, "law": text("law")}
     for model in data.model.values:
         for ratio in grid[[0, round((len(grid) - 1) / 2), -1]]:
             error = at(value("relative_error", ".2g"), model=model, centroid_ratio=ratio)
             columns[f"{model}, π/(D + κ) = {ratio:.3g}"] = error
-    columns[f"π/(D + κ) for {100 * data.attrs['tolerance']:g} %"] = lambda part: (
-        entry_of(part.error_threshold, ".4g") if part["quantity"] == "max_height" else "–"
-    )
+    columns[f"π/(D + κ) for {100 * data.attrs['tolerance']:g} %"] = _threshold
     return table(each(data, "quantity", "law"), columns)
+
+
+def _threshold(part: xr.Dataset) -> str:
+    """The threshold of the greatest height; the other quantities have none."""
+    if part["quantity"] == "max_height":
+        return entry_of(part.error_threshold, ".4g")
+    return "–"

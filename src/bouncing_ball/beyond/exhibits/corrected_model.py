@@ -1,8 +1,8 @@
-"""Random orbits of the stable range of the restitution model.
+"""The corrected restitution model against the exact contact (beyond the paper).
 
-The corrected restitution model against the exact contact (beyond the paper).
-
-Errors are relative to the simple model as in Eqs. 37-38, ``|q_SD - q|/|q|`` with q of the
+On one orbit, the flights before and after a contact are continued until they meet, and errors are
+computed along ϖ. Random orbits show their orders in 1/ϖ and the remainder of the error law. Errors
+are relative to the simple model as in Eqs. 37-38, ``|q_SD - q|/|q|`` with q of the
 corrected model, or of the restitution model with the r that the contact really has, which
 differs from the r of Eq. 16 for the force release. The first-order law is that of
 :mod:`bouncing_ball.beyond.error_law`.
@@ -74,13 +74,15 @@ def meeting_flights(parameters: ContactHistory, release: Release) -> xr.Dataset:
     NoOrbitError
         If the orbit does not exist.
     """
-    r, ratio = parameters.restitution, parameters.frequency_ratio
-    contact = SpringDamper.from_restitution(r, ratio, release)
+    contact = SpringDamper.from_restitution(
+        parameters.restitution, parameters.frequency_ratio, release
+    )
     orbit = SpringDamperModel(contact).require_orbit(parameters.n, parameters.amplitude)
     end = float(orbit.contact_duration)
     time = np.linspace(-0.6 * end, 1.6 * end, parameters.samples)
     start, velocity = orbit.contact_path(np.zeros(()))
-    before, (after, _) = start + (velocity - time / 2) * time, orbit.flight_path(time)
+    before = start + (velocity - time / 2) * time
+    after, _ = orbit.flight_path(time)
     force = contact.force(*-np.array(orbit.contact_motion(np.clip(time, 0, end))))
     # The meeting point of the two parabolas, exactly; the signature's is the delay.
     jump = float(orbit.bounce_velocity + end - orbit.impact_velocity)
@@ -124,22 +126,25 @@ def _second_order(zeta: float, rule: Release, n, amplitude) -> np.ndarray:
     It is measured at two stiff contacts, and the third order is eliminated (Richardson).
     """
     ratios = np.array([_STIFF, 2 * _STIFF])
-    once, twice = (errors(SpringDamper(ratios, zeta, rule), n, amplitude)[1] * ratios**2).T
+    _, corrected = errors(SpringDamper(ratios, zeta, rule), n, amplitude)
+    once, twice = (corrected * ratios**2).T
     return 2 * twice - once
 
 
 def _of_random_orbits(sample: Orders, release: Release) -> dict[str, tuple]:
     """Orders of both models, and the remainder of the restitution model's errors from the law."""
     n, zeta, lam, _ = random_orbits(sample.samples, sample.seed, release, (0.2, 0.95))
-    once, twice = np.moveaxis(np.abs(errors(SpringDamper(_TWO_STIFF, zeta, release), n, lam)), 2, 0)
+    stiff = errors(SpringDamper(_TWO_STIFF, zeta, release), n, lam)
+    once, twice = np.moveaxis(np.abs(stiff), 2, 0)
     n, zeta, lam, rng = random_orbits(sample.law_samples, sample.seed + 1, release)
     span = sample.frequency_ratio
-    omega = np.exp(rng.uniform(*np.log([span.min, span.max]), sample.law_samples))
+    omega = np.exp(rng.uniform(np.log(span.min), np.log(span.max), sample.law_samples))
     contact = SpringDamper(omega, zeta, release)
-    left = error_law.remainder(n, Signature(contact)(), lam, errors(contact, n, lam)[0])
+    of_restitution_model, _ = errors(contact, n, lam)
+    remainder = error_law.remainder(n, Signature(contact)(), lam, of_restitution_model)
     return {
         "order": (("model", "quantity", "sample"), np.log2(once / twice)),
-        "law_remainder": (("quantity", "law_sample"), left.factor),
+        "law_remainder": (("quantity", "law_sample"), remainder.factor),
     }
 
 
@@ -157,12 +162,22 @@ def orders(parameters: Orders, release: Release) -> xr.Dataset:
     ``law_remainder`` (quantity, law_sample), which is |error - K/ϖ|/(S δ) and at most M by the law.
     M was fitted to other orbits (:data:`~bouncing_ball.beyond.error_law.REMAINDER`).
     """
-    n, lam, tolerance = parameters.n, parameters.amplitude, parameters.tolerance
+    n = parameters.n
+    lam = parameters.amplitude
+    tolerance = parameters.tolerance
     # ζ by Eq. 16; the restitution model has the r that a contact with this ζ really has.
     zeta = float(damping_ratio(parameters.restitution))
     ratios = parameters.frequency_ratio.grid()
     curves = np.abs(errors(SpringDamper(ratios, zeta, release), n, lam))
-    found = search(zeta, release, n, lam, ratios, tolerance, tuple(Quantity))
+    found = search(
+        zeta,
+        release,
+        n,
+        lam,
+        ratios=ratios,
+        tolerance=tolerance,
+        quantities=tuple(Quantity),
+    )
     k = error_law.coefficients(n, zeta, lam, release)
     *law, still = error_law.law_thresholds(n, zeta, lam, release, tolerance).values()
     return described(

@@ -3,13 +3,20 @@
 import xarray as xr
 from matplotlib.figure import Figure
 
-from bouncing_ball.beyond.exhibits.engine_steps_figures import _by_quantity
 from bouncing_ball.datasets.selection import each
-from bouncing_ball.drawing.canvas import canvas, legend_below, logarithmic
+from bouncing_ball.drawing.canvas import canvas, legend_below, logarithmic, panels_by_quantity
 from bouncing_ball.drawing.labels import note, parameters
 from bouncing_ball.drawing.style import COLOURS, CONTACT, GUIDE, MODELS, TABLE, Look
-from bouncing_ball.drawing.tables import Columns, Table, at, entry_of, quantity, table, value
-from bouncing_ball.paper.exhibits.error_thresholds_figures import _threshold
+from bouncing_ball.drawing.tables import (
+    Columns,
+    Table,
+    at,
+    entry_of,
+    quantity_in_words,
+    table,
+    threshold,
+    value,
+)
 
 
 def meeting_flights(data: xr.Dataset) -> Figure:
@@ -18,8 +25,10 @@ def meeting_flights(data: xr.Dataset) -> Figure:
     The continued flights meet at the centroid of the force.
     """
     figure, (top, below) = canvas(4.2, 3.6, rows=2, sharex=True, height_ratios=(2.2, 1.0))
-    time, end = data.time.values, float(data.contact_duration)
-    touching, near = (time >= 0) & (time <= end), (time > -0.15 * end) & (time < 1.15 * end)
+    time = data.time.values
+    end = float(data.contact_duration)
+    touching = (time >= 0) & (time <= end)
+    near = (time > -0.15 * end) & (time < 1.15 * end)
     flights = (("before", COLOURS[2], time >= 0), ("after", COLOURS[3], time <= end))
     for name, colour, continued in flights:
         flight = data[f"flight_{name}"].where(continued & near)
@@ -28,7 +37,8 @@ def meeting_flights(data: xr.Dataset) -> Figure:
     top.plot(time, data.table, color=TABLE, label="table")
     top.plot(time, data.ball, color=CONTACT, label="ball")
     top.plot(time[touching], data.ball.values[touching], color=CONTACT, linewidth=2.6)
-    meeting, low = float(data.meeting_time), float(data.meeting_height)
+    meeting = float(data.meeting_time)
+    low = float(data.meeting_height)
     top.plot(meeting, low, "o", color="black", markersize=5, zorder=5)
     force = data.contact_force.values[touching]
     below.fill_between(time[touching], force, facecolor="#bfdbec", edgecolor=CONTACT)
@@ -46,18 +56,19 @@ def meeting_flights(data: xr.Dataset) -> Figure:
 
 def orders(data: xr.Dataset) -> Figure:
     """ext_orders: errors of both models along ϖ, with the slopes 1 and 2."""
-    figure, axes_of = _by_quantity(data, 4.2, r"frequency ratio $\varpi$")
+    figure, axes_of = panels_by_quantity(data, 4.2, r"frequency ratio $\varpi$")
     ratio = data.frequency_ratio.values
-    for quantity, axes in axes_of.items():
+    for name, axes in axes_of.items():
         for order, model in enumerate(data["model"].values, 1):
-            part, look = data.sel(model=model, quantity=quantity), MODELS[model]
+            part = data.sel(model=model, quantity=name)
+            look = MODELS[model]
             error = part.relative_error.values
             axes.plot(ratio, error, label=model, **look)
             # A guide with this slope through the last point.
             axes.plot(ratio, error[-1] * (ratio[-1] / ratio) ** order, **GUIDE)
-            name = f"order {float(part.order.median()):.2f}"
+            measured = f"order {float(part.order.median()):.2f}"
             place: Look = {"transform": axes.transAxes, "ha": "right", "va": "top"}
-            axes.text(0.97, 1.04 - 0.11 * order, name, color=look["color"], fontsize=8, **place)
+            axes.text(0.97, 1.04 - 0.11 * order, measured, color=look["color"], fontsize=8, **place)
         logarithmic(axes, yscale="log", xlim=(ratio[0], ratio[-1]), ylim=(1e-9, 3.0))
     figure.suptitle(
         f"{parameters(data, 'n', 'restitution', 'amplitude')}; orders of "
@@ -73,9 +84,9 @@ def ext_orders(data: xr.Dataset) -> Table:
     C is the corrected model's error times ϖ²; the last column is the ϖ at which
     the restitution model's error changes its sign.
     """
-    found = _threshold(".4g", "all", "none")
+    found = threshold(".4g", "all", "none")
     columns: Columns = {
-        "quantity": quantity,
+        "quantity": quantity_in_words,
         "K": value("coefficient", ".4f"),
         "C": value("second_order", ".4f"),
         "law": value("law_threshold", ".4g"),
@@ -83,6 +94,8 @@ def ext_orders(data: xr.Dataset) -> Table:
         "error zero at": value("error_zero", ".3g"),
     }
     header, body = table(each(data, "quantity"), columns)
-    k, law, exact = (data[f"permanent_{name}"] for name in ("coefficient", "law", "threshold"))
-    numbers = [entry_of(k, ".4f"), "–", entry_of(law, ".4g"), entry_of(exact, ".4g"), "–", "–"]
+    coefficient = entry_of(data.permanent_coefficient, ".4f")
+    law = entry_of(data.permanent_law, ".4g")
+    exact = entry_of(data.permanent_threshold, ".4g")
+    numbers = [coefficient, "–", law, exact, "–", "–"]
     return header, [*body, ["permanent contact, second order", *numbers]]

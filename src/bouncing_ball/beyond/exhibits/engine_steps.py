@@ -1,12 +1,11 @@
-r"""Errors due to the time steps of physics engines, compared with those of the models (beyond the
-paper).
+r"""Errors due to the time steps of physics engines, and errors of the models (beyond the paper).
 
 A contact that an engine resolves by N time steps has the restitution r_N of its scheme, which
-depends on the fraction of a step at which the contact begins (:mod:`bouncing_ball.beyond.engines.scheme`).
-The ball is therefore simulated here from event to event with the exact contact that has this r,
-which changes from impact to impact. Errors of heights are relative to the height of the engine, or
-of the model, as in Eq. 37. The results of the engines are read from the accepted dataset of their
-runs.
+depends on the fraction of a step at which the contact begins
+(:mod:`bouncing_ball.beyond.engines.scheme`). The ball is therefore simulated here from event to
+event with the exact contact that has this r, which changes from impact to impact. Errors of heights
+are relative to the height of the engine, or of the model, as in Eq. 37. The results of the engines
+are read from the accepted dataset of their runs.
 """
 
 from collections.abc import Mapping
@@ -45,7 +44,8 @@ VARIABLES = {
         "standard deviation of the relative errors of the greatest heights", budget=1e-12, scale="1"
     ),
     "step_scatter": Variable(
-        "root mean square of the relative errors of the greatest heights, simulated with contacts at random fractions of a time step",
+        "root mean square of the relative errors of the greatest heights, simulated with "
+        "contacts at random fractions of a time step",
         budget=1e-11,
     ),
     "bounce_time": Variable(
@@ -73,7 +73,8 @@ VARIABLES = {
     "scheme": Variable("time stepping of engines"),
     "steps": Variable("time steps in a contact", symbol="N"),
     "step_error": Variable(
-        "root mean square of the relative errors of the greatest heights, simulated with the r of N steps",
+        "root mean square of the relative errors of the greatest heights, simulated with the "
+        "r of N steps",
         budget=1e-11,
     ),
     "steps_in_bounce": Variable("time steps in a period of the orbit"),
@@ -121,14 +122,17 @@ def greatest_heights(orbit: Orbit, restitution: np.ndarray) -> np.ndarray:
     >>> bool(np.all(abs(tops / orbit.max_height - 1) < 1e-12))
     True
     """
-    contact, lam, tops = orbit.law, orbit.amplitude, []
-    phase, speed = orbit.phase, orbit.relative_impact_velocity
+    contact = orbit.law
+    lam = orbit.amplitude
+    phase = orbit.phase
+    relative_velocity = orbit.relative_impact_velocity
+    heights = []
     for zeta in damping_ratio(restitution, contact.release):
         law = SpringDamper(contact.frequency_ratio, zeta, contact.release)
-        phase, speed, *_ = next_impact(law, lam, phase, speed)
-        velocity = lam * np.cos(phase) + speed
-        tops.append(lam * np.sin(phase) + velocity * velocity / 2)
-    return np.array(tops)
+        phase, relative_velocity, *_ = next_impact(law, lam, phase, relative_velocity)
+        velocity = lam * np.cos(phase) + relative_velocity
+        heights.append(lam * np.sin(phase) + velocity * velocity / 2)
+    return np.array(heights)
 
 
 def step_errors(orbit: Orbit, parameters: EngineOrbit) -> np.ndarray:
@@ -137,18 +141,24 @@ def step_errors(orbit: Orbit, parameters: EngineOrbit) -> np.ndarray:
     Each impact begins at a random fraction of a time step; the fractions are the same in all
     simulations.
     """
-    p, zeta = parameters, float(np.ravel(orbit.law.damping_ratio)[0])
+    p = parameters
+    zeta = float(np.ravel(orbit.law.damping_ratio)[0])
+    # r over (scheme, steps, fraction of a step at which the contact begins).
     tables = np.array(
-        [[restitution_in_steps(x, zeta, p.release, k) for k in p.steps] for x in Scheme]
+        [
+            [restitution_in_steps(scheme, zeta, p.release, steps) for steps in p.steps]
+            for scheme in Scheme
+        ]
     )
     rng = np.random.default_rng(p.seed)
-    places = rng.integers(tables.shape[-1], size=(p.transient + p.impacts, p.balls))
-    # (impact, scheme, orbit, steps, ball)
-    drawn = np.moveaxis(tables[..., places], 2, 0)[:, :, np.newaxis]
-    drawn = np.broadcast_to(drawn, (*drawn.shape[:2], orbit.size, *drawn.shape[3:]))
+    impacts = p.transient + p.impacts
+    fractions = rng.integers(tables.shape[-1], size=(impacts, p.balls))
+    # r over (impact, scheme, 1, steps, ball), and then over all orbits.
+    drawn = np.moveaxis(tables[..., fractions], 2, 0)[:, :, np.newaxis]
+    drawn = np.broadcast_to(drawn, (impacts, len(Scheme), orbit.size, len(p.steps), p.balls))
     every = orbit[:, np.newaxis, np.newaxis]
-    tops = greatest_heights(every, drawn)[p.transient :]
-    return np.sqrt(np.mean(relative(every.max_height, tops) ** 2, axis=(0, -1)))
+    heights = greatest_heights(every, drawn)[p.transient :]
+    return np.sqrt(np.mean(relative(every.max_height, heights) ** 2, axis=(0, -1)))
 
 
 def model_errors(orbit: Orbit, impacts: int) -> np.ndarray:
@@ -156,10 +166,11 @@ def model_errors(orbit: Orbit, impacts: int) -> np.ndarray:
 
     The simulation runs from event to event; its error is the largest over ``impacts`` impacts.
     """
-    off = errors(orbit.law, orbit.n, orbit.amplitude, ["max_height"])[:, 0]
-    own = np.broadcast_to(orbit.law.restitution, (impacts, *orbit.amplitude.shape))
-    tops = greatest_heights(orbit, own)
-    return np.array([*off, np.max(np.abs(relative(orbit.max_height, tops)), axis=0)])
+    of_simple = errors(orbit.law, orbit.n, orbit.amplitude, ["max_height"])[:, 0]
+    restitution = np.broadcast_to(orbit.law.restitution, (impacts, *orbit.amplitude.shape))
+    heights = greatest_heights(orbit, restitution)
+    of_simulation = np.max(np.abs(relative(orbit.max_height, heights)), axis=0)
+    return np.array([*of_simple, of_simulation])
 
 
 def steps_of(steps: np.ndarray, errors: np.ndarray, error: float) -> float:
@@ -182,8 +193,8 @@ def steps_of(steps: np.ndarray, errors: np.ndarray, error: float) -> float:
     >>> round(steps_of(np.array([10, 100]), np.array([0.1, 0.01]), 0.02), 12)
     50.0
     """
-    log = -np.log(error), -np.log(errors), np.log(steps)
-    return float(np.exp(np.interp(*log, left=np.nan, right=np.nan)))
+    log_steps = np.interp(-np.log(error), -np.log(errors), np.log(steps), left=np.nan, right=np.nan)
+    return float(np.exp(log_steps))
 
 
 def conformance(data: Mapping[str, xr.Dataset], parameters: EngineOrbit) -> xr.Dataset:
@@ -218,23 +229,28 @@ def conformance(data: Mapping[str, xr.Dataset], parameters: EngineOrbit) -> xr.D
     r, n, ratio = (runs[name].values for name in along)
     place = [index_of(runs[name], name, getattr(parameters, name)) for name in along[:2]]
     shown = index_of(runs.release, "release", parameters.release)
-    off, per_step, orbits = [], [], []
+    orbits = []
+    model_error = []
+    contacts_in_bounce = []
     for rule in map(Release.of, runs.release.values):
         contact = SpringDamper(ratio, damping_ratio(r[:, np.newaxis, np.newaxis], rule), rule)
         lam = runs.amplitude.sel(release=rule).transpose(*along).values
-        orbits.append(SpringDamperModel(contact).orbit(n[:, np.newaxis], lam))
-        off.append(model_errors(orbits[-1], parameters.transient + parameters.impacts))
-        per_step.append(2 * np.pi * n[:, np.newaxis] / contact.free_duration)
-    off, per_step = np.array(off), np.array(per_step)
+        orbit = SpringDamperModel(contact).orbit(n[:, np.newaxis], lam)
+        orbits.append(orbit)
+        model_error.append(model_errors(orbit, parameters.transient + parameters.impacts))
+        contacts_in_bounce.append(2 * np.pi * n[:, np.newaxis] / contact.free_duration)
+    per_contact = xr.DataArray(np.array(contacts_in_bounce), dims=("release", *along))
+    shown_per_contact = contacts_in_bounce[shown][*place]
     simulated = step_errors(orbits[shown][*place], parameters)
-    corrected = np.abs(off[shown, SIMPLE.index("corrected")][*place])
-    in_bounce = per_step[shown][*place, :, np.newaxis] * parameters.steps
-    equal = [list(map(steps_of, in_bounce, each, corrected)) for each in simulated]
+    corrected = np.abs(model_error[shown][SIMPLE.index("corrected")][*place])
+    in_bounce = shown_per_contact[:, np.newaxis] * parameters.steps
+    equal = [list(map(steps_of, in_bounce, of_scheme, corrected)) for of_scheme in simulated]
     found = {
-        "bounce_steps": runs.contact_steps * xr.DataArray(per_step, dims=("release", *along)),
+        "bounce_steps": runs.contact_steps * per_contact,
         "bounce_error": np.hypot(runs.height_error, runs.height_scatter),
-        "single_bounce": runs.single_steps * xr.DataArray(per_step[shown][*place], dims=along[2]),
-        "model_error": (("release", "model", *along), off),
+        "single_bounce": runs.single_steps
+        * xr.DataArray(shown_per_contact, dims="frequency_ratio"),
+        "model_error": (("release", "model", *along), np.array(model_error)),
         "step_error": (("scheme", "frequency_ratio", "steps"), simulated),
         "steps_in_bounce": (("frequency_ratio", "steps"), in_bounce),
         "equal_steps": (("scheme", "frequency_ratio"), equal),

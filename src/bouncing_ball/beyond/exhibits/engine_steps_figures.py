@@ -1,8 +1,4 @@
-"""Errors of the restitution and of the corrected model, quantity by quantity.
-
-The errors are drawn for linear contacts (ext_orders), for contacts of other laws (ext_laws) and
-together with those of physics engines (ext_engines).
-"""
+"""Errors of physics engines over their time steps, beside those of the models (ext_engines)."""
 
 import numpy as np
 import xarray as xr
@@ -11,7 +7,7 @@ from matplotlib.figure import Figure
 
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.drawing.canvas import WIDE, canvas, legend_below
-from bouncing_ball.drawing.labels import QUANTITIES, number, parameters
+from bouncing_ball.drawing.labels import number, parameters
 from bouncing_ball.drawing.style import COLOURS, MODELS, Look
 from bouncing_ball.drawing.tables import Columns, Table, at, entry_of, table, text, value
 
@@ -66,26 +62,16 @@ def engines(data: xr.Dataset) -> Figure:
 def _draw_steps(axes: Axes, part: xr.Dataset, scheme: str) -> None:
     """The error of a scheme over its steps, with a mark where it equals the corrected model's."""
     axes.plot(part.steps_in_bounce, part.step_error, label=scheme, **_SCHEMES[scheme])
-    end, level = float(part.equal_steps), abs(float(part.model_error.sel(model="corrected")))
+    end = float(part.equal_steps)
+    level = abs(float(part.model_error.sel(model="corrected")))
     axes.plot(end, level, marker="|", markersize=9, color="black")
     if scheme == "semi-implicit Euler":
         name = f"${number(float(f'{end:.2g}'))}$ times fewer steps"
         axes.text(0.04, 0.06, f"corrected: {name}", transform=axes.transAxes, fontsize=8)
 
 
-def _by_quantity(data: xr.Dataset, height: float, xlabel: str) -> tuple[Figure, dict[str, Axes]]:
-    """Two rows of three panels, one for the errors of each quantity, with labels at the outside."""
-    figure, slots = canvas(WIDE, height, 2, 3, sharex=True, sharey=True)
-    for axes in slots.flat:
-        axes.set(xlabel=xlabel, ylabel="relative error")
-        axes.label_outer()
-    by_quantity = dict(zip(map(str, data["quantity"].values), slots.flat, strict=False))
-    for quantity, axes in by_quantity.items():
-        axes.set_title(QUANTITIES[quantity])
-    return figure, by_quantity
-
-
-_OF_ENGINES = "free_steps measured_restitution contact_steps height_scatter".split()
+# Columns that the models do not have.
+_OF_ENGINES = ("free_steps", "measured_restitution", "contact_steps", "height_scatter")
 
 
 def ext_engines(data: xr.Dataset) -> Table:
@@ -117,10 +103,13 @@ def ext_engines(data: xr.Dataset) -> Table:
     for case in each(shown, "release", "restitution", "n"):
         parts += [one for one in each(case, "engine") if np.isfinite(one.free_steps)]
         for one in each(case, "model"):
-            name, error = f"{one.model.item()} model", one.model_error
-            own = {"engine": name, "height_error": error, "bounce_time": one.model_time}
+            of_model = {
+                "engine": f"{one.model.item()} model",
+                "height_error": one.model_error,
+                "bounce_time": one.model_time,
+            }
             blank = dict.fromkeys(_OF_ENGINES, np.nan)
-            parts.append(one.isel(engine=0, drop=True).assign(blank | own))
+            parts.append(one.isel(engine=0, drop=True).assign(blank | of_model))
     return table(parts, columns)
 
 
@@ -131,7 +120,8 @@ def _listed(values: xr.DataArray, form: str) -> str:
 
 def _error(part: xr.Dataset) -> str:
     """The mean error of a height and its scatter, in per cent."""
-    error, scatter = 100 * float(part.height_error), 100 * float(part.height_scatter)
+    error = 100 * float(part.height_error)
+    scatter = 100 * float(part.height_scatter)
     if not np.isfinite(error):
         return "–"
     # Adding 0.0 removes the sign of a zero that results from rounding.

@@ -3,13 +3,15 @@
 The page of the explorer computes them again in the reader's browser.
 """
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
 from bouncing_ball.beyond.corrected.errors import models
 from bouncing_ball.beyond.exhibits.random_orbits import random_orbits
 from bouncing_ball.beyond.long_run.destination import final_motions
-from bouncing_ball.beyond.simulation import simulate
+from bouncing_ball.beyond.simulation import Law, simulate
 from bouncing_ball.datasets.parameters import Parameters, Seed, Span
 from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball.paper.contact.damping import Release, restitution_coefficient
@@ -17,6 +19,7 @@ from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.orbit import OBSERVABLES
 
 VARIABLES = {
+    "end_speed": Variable("speed of the ball towards the table at that impact", symbol="-δ′"),
     "trace": Variable("trace of the monodromy", symbol="tr"),
     "determinant": Variable("determinant of the monodromy", symbol="det"),
     "restitution_trace": Variable("trace of the monodromy, restitution model", symbol="tr"),
@@ -50,7 +53,6 @@ _PLACES = (0.02, 1.2)
 # near chaos, where the results of two computers differ.
 _GIVEN = ("ball_restitution", "ball_frequency_ratio", "ball_amplitude", "start_phase", "velocity")
 _BALLS = np.broadcast_arrays(0.5, 80.0, [0.6, 1.2, 1.6, 2.5], 1.0, -3.0)
-_ENDS = ("periods", "impacts", "end_impact", "end_phase", "end_speed", "end_time")
 
 
 class References(Parameters):
@@ -81,29 +83,46 @@ def reference_orbits(parameters: References) -> xr.Dataset:
 
 
 def _followed() -> xr.Dataset:
+    """The balls, and the motions on which they end, over (model, motion)."""
     r, omega, lam, phase, velocity = _BALLS
-    ends = []
-    for law in (r, SpringDamper.from_restitution(r, omega, Release.DISPLACEMENT)):
-        found, run = (
-            final_motions(law, lam, phase, velocity),
-            simulate(law, lam, phase, velocity, 100),
-        )
-        last = run.impacts - 1, np.arange(r.size)
-        at = run.phase, -run.relative_velocity, run.time + run.settling
-        ends.append([found.periods, found.impacts, last[0], *(values[last] for values in at)])
+    contact = SpringDamper.from_restitution(r, omega, Release.DISPLACEMENT)
     given = {name: ("motion", values) for name, values in zip(_GIVEN, _BALLS, strict=True)}
-    results = zip(_ENDS, np.swapaxes(ends, 0, 1), strict=True)
-    of_models = {name: (("model", "motion"), values) for name, values in results}
-    return xr.Dataset(given | of_models, {"model": ["restitution", "spring-damper"]})
+    start = xr.Dataset(given)
+    of_models = [
+        xr.Dataset({name: ("motion", values.astype(float)) for name, values in ends.items()})
+        for ends in (_ends(r, lam, phase, velocity), _ends(contact, lam, phase, velocity))
+    ]
+    models = xr.Variable("model", ["restitution", "spring-damper"])
+    return start.merge(xr.concat(of_models, models))
+
+
+def _ends(law: Law, lam: np.ndarray, phase: np.ndarray, velocity: np.ndarray) -> dict[str, Any]:
+    """The motions of balls, and their states at the last of 100 impacts or before they rest."""
+    found = final_motions(law, lam, phase, velocity)
+    run = simulate(law, lam, phase, velocity, 100)
+    last = run.impacts - 1
+    at_last = last, np.arange(last.size)
+    return {
+        "periods": found.periods,
+        "impacts": found.impacts,
+        "end_impact": last,
+        "end_phase": run.phase[at_last],
+        "end_speed": -run.relative_velocity[at_last],
+        "end_time": (run.time + run.settling)[at_last],
+    }
 
 
 def _under(rule: Release, omega: np.ndarray, seed: int) -> xr.Dataset:
+    """One random orbit for each ϖ under a release rule, over ``sample``."""
     n, zeta, lam, _ = random_orbits(omega.size, seed, rule, _PLACES)
     r = restitution_coefficient(zeta)
     exact, simple, corrected = models(SpringDamper.from_restitution(r, omega, rule))
     orbit = exact.orbit(n, lam)
     trace, determinant = orbit.trace_and_determinant()
-    by_r, repaired = simple.orbit(n, lam), corrected.orbit(n, lam)
+    simple_orbit = simple.orbit(n, lam)
+    simple_trace, _ = simple_orbit.trace_and_determinant()
+    corrected_orbit = corrected.orbit(n, lam)
+    corrected_trace, _ = corrected_orbit.trace_and_determinant()
     middle = orbit.contact_duration / 2
     values = {
         "n": n,
@@ -117,12 +136,12 @@ def _under(rule: Release, omega: np.ndarray, seed: int) -> xr.Dataset:
         "period_doubling_amplitude": exact.period_doubling(n).amplitude,
         "ball": orbit.contact_path(middle)[0],
         "contact_force": exact.contact.force(*-np.array(orbit.contact_motion(middle))),
-        "restitution_phase": by_r.phase,
-        "restitution_trace": by_r.trace_and_determinant()[0],
+        "restitution_phase": simple_orbit.phase,
+        "restitution_trace": simple_trace,
         "restitution_period_doubling": simple.period_doubling(n).amplitude,
-        "corrected_phase": repaired.phase,
-        "corrected_max_height": repaired.max_height,
-        "corrected_trace": repaired.trace_and_determinant()[0],
+        "corrected_phase": corrected_orbit.phase,
+        "corrected_max_height": corrected_orbit.max_height,
+        "corrected_trace": corrected_trace,
         "corrected_saddle_node": corrected.saddle_node(n).amplitude,
         "corrected_period_doubling": corrected.period_doubling(n).amplitude,
     }

@@ -1,10 +1,9 @@
-"""How long balls wander before they lock, in the restitution model and in contacts.
-
-At which ϖ a contact has the locked orbit of the restitution model (beyond the paper).
+"""Locked orbits (beyond the paper): how long balls wander before they lock, in the restitution
+model and on contacts, and the ϖ above which a contact has the restitution model's locked orbit.
 """
 
 from collections.abc import Mapping, Sequence
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
@@ -12,10 +11,10 @@ from scipy.stats import CensoredData, chi2, ecdf, norm, spearmanr
 
 from bouncing_ball.beyond.exhibits.motion_samples import (
     Confidence,
-    Grid,
-    exponent,
-    models,
-    share,
+    ParameterPlane,
+    share_with_limits,
+    three_models,
+    uncertainty_exponent,
     with_limits,
 )
 from bouncing_ball.beyond.long_run.destination import final_motions
@@ -100,6 +99,8 @@ VARIABLES = {
 _NEAR = 1e-3
 # Number of times at which the survival is given.
 _TIMES = 60
+# Smallest and largest speed of balls at the start.
+_SPEEDS = (1.0, 9.0)
 
 
 class Place(Parameters):
@@ -150,11 +151,13 @@ def mean_life(time: np.ndarray, ends: np.ndarray, confidence: float) -> tuple[fl
     >>> float(mean_life(np.array([1.0, 3.0]), np.array([True, False]), 0.95)[0])
     4.0
     """
-    total, count = time.sum(), ends.sum()
+    total = time.sum()
+    count = ends.sum()
     low = 2 * total / chi2.ppf((1 + confidence) / 2, 2 * count + 2)
     if not count:
         return np.inf, low, np.inf
-    return total / count, low, 2 * total / chi2.ppf((1 - confidence) / 2, 2 * count)
+    high = 2 * total / chi2.ppf((1 - confidence) / 2, 2 * count)
+    return total / count, low, high
 
 
 def lives(parameters: Transients, release: Release, part: Part = np.asarray) -> Arrays:
@@ -167,23 +170,42 @@ def lives(parameters: Transients, release: Release, part: Part = np.asarray) -> 
         and ``life_kind``, shape (case, life_ratio, ball). The restitution model is the last along
         ``life_ratio``.
     """
-    random, balls = np.random.default_rng(parameters.seed), parameters.balls
-    phase, speed = random.uniform(-np.pi, np.pi, balls), random.uniform(1.0, 9.0, balls)
-    phase, speed = part(np.stack([phase, speed]))
-    r, table = columns(parameters.cases)[..., np.newaxis, np.newaxis]
-    start = table, phase, table * np.cos(phase) - speed
-    times, kinds = [], []
-    simple, _, contact = models(r, np.array(parameters.frequency_ratio)[:, np.newaxis], release)
-    for model in (contact, simple):
-        shape = np.broadcast_shapes(model.shape, table.shape, phase.shape)
-        passed, at, velocity = path = np.full((3, parameters.impacts, *shape), np.nan)
-        found = final_motions(model.impact_law, *start, impacts=parameters.impacts, path=path)
-        apart = np.abs(reduce_angle(at - found.end_phase))
-        apart = np.maximum(apart, np.abs(velocity - found.end_velocity))
-        kinds.append(found.kind)
-        last = np.where(found.kind == Kind.LOCKED, (apart < _NEAR).argmax(axis=0), len(at) - 1)
-        times.append(np.take_along_axis(passed, last[np.newaxis], axis=0)[0] / (2 * np.pi))
+    random = np.random.default_rng(parameters.seed)
+    phases = random.uniform(-np.pi, np.pi, parameters.balls)
+    speeds = random.uniform(*_SPEEDS, parameters.balls)
+    phase, speed = part(np.stack([phases, speeds]))
+    # Arrays over the case, ϖ and the ball.
+    r, lam = columns(parameters.cases)[..., np.newaxis, np.newaxis]
+    ratios = np.array(parameters.frequency_ratio)[:, np.newaxis]
+    models = three_models(r, ratios, release)
+    times = []
+    kinds = []
+    for model in (models.contact, models.restitution):
+        time, kind = _time_to_the_end(model, lam, phase, speed, parameters.impacts)
+        times.append(time)
+        kinds.append(kind)
     return {"life": np.concatenate(times, axis=1), "life_kind": np.concatenate(kinds, axis=1)}
+
+
+def _time_to_the_end(
+    model: Any, lam: np.ndarray, phase: np.ndarray, speed: np.ndarray, impacts: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Periods of the table until balls reach their locked orbits, and the kinds of their motions.
+
+    For a ball that does not lock it is the time of the last impact.
+    """
+    velocity = lam * np.cos(phase) - speed
+    shape = np.broadcast_shapes(model.shape, lam.shape, phase.shape)
+    path = np.full((3, impacts, *shape), np.nan)
+    found = final_motions(model.impact_law, lam, phase, velocity, impacts=impacts, path=path)
+    times, phases, velocities = path
+    from_end = np.maximum(
+        np.abs(reduce_angle(phases - found.end_phase)), np.abs(velocities - found.end_velocity)
+    )
+    arrival = (from_end < _NEAR).argmax(axis=0)
+    last = np.where(found.kind == Kind.LOCKED, arrival, impacts - 1)
+    time = np.take_along_axis(times, last[np.newaxis], axis=0)[0]
+    return time / (2 * np.pi), found.kind
 
 
 def transients(parameters: Transients, release: Release, found: Found = None) -> xr.Dataset:
@@ -197,29 +219,38 @@ def transients(parameters: Transients, release: Release, found: Found = None) ->
     ``chaotic_share`` (case, life_ratio) is their share of all. The restitution model has ϖ = ∞.
     ``case_restitution`` and ``case_amplitude`` are over the case.
     """
-    found, (r, lam) = found or lives(parameters, release), columns(parameters.cases)
-    time, kind = found["life"], found["life_kind"]
-    end, other = kind == Kind.LOCKED, (kind == Kind.ORBIT) | (kind == Kind.SUBHARMONIC)
+    found = found or lives(parameters, release)
+    r, lam = columns(parameters.cases)
+    time = found["life"]
+    kind = found["life_kind"]
+    locks = kind == Kind.LOCKED
     chaotic = kind == Kind.CHAOTIC
-    apart = chaotic & end.any(axis=-1, keepdims=True)
-    grid, level = np.geomspace(1, parameters.impacts, _TIMES), parameters.confidence
+    may_lock = (kind != Kind.ORBIT) & (kind != Kind.SUBHARMONIC)
+    on_another_attractor = chaotic & locks.any(axis=-1, keepdims=True)
+    transient = may_lock & ~on_another_attractor
+    times = np.geomspace(1, parameters.impacts, _TIMES)
     shape = time.shape[:-1]
-    survival, (life, lasting) = np.empty((*shape, _TIMES)), np.empty((2, *shape, 3))
+    survival = np.empty((*shape, _TIMES))
+    mean_lives = np.empty((*shape, 3))
+    chaotic_shares = np.empty((*shape, 3))
     for k in np.ndindex(shape):
-        own, locks = time[k][~other[k]], end[k][~other[k]]
-        survival[k] = ecdf(CensoredData.right_censored(own, ~locks)).sf.evaluate(grid)
-        stays = ~(other | apart)[k]
-        life[k] = mean_life(time[k][stays], end[k][stays], level)
-        lasting[k] = share(chaotic[k], level)[1:]
+        lives_so_far = CensoredData.right_censored(time[k][may_lock[k]], ~locks[k][may_lock[k]])
+        survival[k] = ecdf(lives_so_far).sf.evaluate(times)
+        mean_lives[k] = mean_life(
+            time[k][transient[k]], locks[k][transient[k]], parameters.confidence
+        )
+        chaotic_shares[k] = share_with_limits(chaotic[k], parameters.confidence)
     dims = ("case", "life_ratio")
     return described(
         {
             "survival": ((*dims, "life"), survival),
-            **with_limits({"mean_life": (dims, life), "chaotic_share": (dims, lasting)}),
+            **with_limits(
+                {"mean_life": (dims, mean_lives), "chaotic_share": (dims, chaotic_shares)}
+            ),
             "case_restitution": ("case", r),
             "case_amplitude": ("case", lam),
         },
-        coords={"life_ratio": [*parameters.frequency_ratio, np.inf], "life": grid},
+        coords={"life_ratio": [*parameters.frequency_ratio, np.inf], "life": times},
         variables=VARIABLES,
     )
 
@@ -229,7 +260,7 @@ _EDGES = np.geomspace(1e-4, 1e4, 17)
 PREDICTORS = ("S/w", "periods")
 
 
-class LockedOrbits(Grid):
+class LockedOrbits(ParameterPlane):
     """Random places in a range of (Λ, r), and places at which transients are followed."""
 
     nodes: Annotated[int, number("random places", ge=10, le=100000)]
@@ -237,8 +268,10 @@ class LockedOrbits(Grid):
     seed: Seed
 
     def places(self) -> np.ndarray:
-        random, of = np.random.default_rng(self.seed), (self.restitution, self.amplitude)
-        return np.array([random.uniform(x.min, x.max, self.nodes) for x in of])
+        random = np.random.default_rng(self.seed)
+        r = random.uniform(self.restitution.min, self.restitution.max, self.nodes)
+        lam = random.uniform(self.amplitude.min, self.amplitude.max, self.nodes)
+        return np.array([r, lam])
 
 
 def correlation(one: np.ndarray, other: np.ndarray, confidence: float) -> np.ndarray:
@@ -258,7 +291,8 @@ def correlation(one: np.ndarray, other: np.ndarray, confidence: float) -> np.nda
     """
     rho = spearmanr(one, other).statistic
     width = norm.ppf((1 + confidence) / 2) * np.sqrt((1 + rho**2 / 2) / (one.size - 3))
-    return np.array([rho, *np.tanh(np.arctanh(rho) + width * np.array([-1, 1]))])
+    low, high = np.tanh(np.arctanh(rho) + width * np.array([-1, 1]))
+    return np.array([rho, low, high])
 
 
 def returns_at_places(
@@ -269,14 +303,15 @@ def returns_at_places(
     Returns
     -------
     dict of array
-        The fields of :class:`~bouncing_ball.beyond.long_run.lift_off.Return`, shape (change, place),
-        first without a change of Λ and then with each change; and ``same``, shape (ϖ, place),
-        whether the contact has a locked orbit of the same period.
+        The fields of :class:`~bouncing_ball.beyond.long_run.lift_off.Return`, shape (change,
+        place), first without a change of Λ and then with each change; and ``same``, shape (ϖ,
+        place), whether the contact has a locked orbit of the same period.
     """
     r, lam = part(parameters.places())
-    ratios, shifts = (np.array([x]).T for x in (parameters.frequency_ratio, parameters.shifts))
-    found = returns(r, lam + np.concatenate([[[0.0]], shifts]), parameters.impacts)
-    contact = models(r, ratios, release)[-1].impact_law
+    ratios = np.array(parameters.frequency_ratio)[:, np.newaxis]
+    changes = np.array([0.0, *parameters.shifts])[:, np.newaxis]
+    found = returns(r, lam + changes, parameters.impacts)
+    contact = three_models(r, ratios, release).contact.impact_law
     motion = final_motions(contact, lam, -np.pi / 2, 0.0, impacts=parameters.impacts)
     same = (motion.kind == Kind.LOCKED) & (motion.periods == found.periods[0])
     return {**found._asdict(), "same": same}
@@ -301,28 +336,42 @@ def locked_orbits(
     Each has a lower and an upper limit, ``_low`` and ``_high``. The variables of
     :func:`bouncing_ball.beyond.exhibits.locked_orbits.transients`, ``ext_lives``, are added.
     """
-    found, level = found or returns_at_places(parameters, release), parameters.confidence
-    ratios, shifts = (np.array(x) for x in (parameters.frequency_ratio, parameters.shifts))
-    (r, lam), (period, *moved), same = parameters.places(), found["periods"], found["same"]
-    s, wait = found["sensitivity"][0], found["wait"][0]
-    sticks, changed = period > 0, np.array(moved) != period
-    right = np.logical_and.accumulate(same[::-1])[::-1]
-    least = np.where(right.any(axis=0), ratios[np.argmax(right, axis=0)], np.inf)
-    place = np.digitize(ratios[:, np.newaxis] * wait / s, _EDGES) - 1
-    by_place = [share(same[(place == k) & sticks], level)[1:] for k in range(_EDGES.size - 1)]
-    same, changed = same[:, sticks], changed[:, sticks]
-    correlations = [correlation(x[sticks], least[sticks], level) for x in (s / wait, period)]
-    nodes = {"restitution": r, "amplitude": lam, "periods": period, "sensitivity": s}
-    nodes |= {"wait": wait, "needed_ratio": np.where(sticks, least, np.nan)}
-    limited = {
-        "same": ("frequency_ratio", [share(x, level)[1:] for x in same]),
-        "same_by_prediction": ("predicted", by_place),
+    found = found or returns_at_places(parameters, release)
+    level = parameters.confidence
+    ratios = np.array(parameters.frequency_ratio)
+    shifts = np.array(parameters.shifts)
+    r, lam = parameters.places()
+    period, *periods_beside = found["periods"]
+    sensitivity = found["sensitivity"][0]
+    wait = found["wait"][0]
+    sticks = period > 0
+    same = found["same"]
+    changed = np.array(periods_beside) != period
+    needed = _needed_ratio(ratios, same)
+    correlations = [
+        correlation(predictor[sticks], needed[sticks], level)
+        for predictor in (sensitivity / wait, period)
+    ]
+    nodes = {
+        "restitution": r,
+        "amplitude": lam,
+        "periods": period,
+        "sensitivity": sensitivity,
+        "wait": wait,
+        "needed_ratio": np.where(sticks, needed, np.nan),
+    }
+    by_prediction = _shares_by_prediction(
+        ratios[:, np.newaxis] * wait / sensitivity, same, sticks, level
+    )
+    estimates = {
+        "same": ("frequency_ratio", [share_with_limits(x[sticks], level) for x in same]),
+        "same_by_prediction": ("predicted", by_prediction),
         "rank_correlation": ("predictor", correlations),
-        "jump_share": ("shift", [share(x, level)[1:] for x in changed]),
-        "uncertainty_exponent": ((), exponent(changed.T, shifts, level)),
+        "jump_share": ("shift", [share_with_limits(x[sticks], level) for x in changed]),
+        "uncertainty_exponent": ((), uncertainty_exponent(changed[:, sticks].T, shifts, level)),
     }
     orbits = described(
-        {name: ("node", values) for name, values in nodes.items()} | with_limits(limited),
+        {name: ("node", values) for name, values in nodes.items()} | with_limits(estimates),
         coords={
             "frequency_ratio": ratios,
             "predicted": np.sqrt(_EDGES[1:] * _EDGES[:-1]),
@@ -332,3 +381,26 @@ def locked_orbits(
         variables=VARIABLES,
     )
     return orbits.merge(data["ext_lives"])
+
+
+def _needed_ratio(ratios: np.ndarray, same: np.ndarray) -> np.ndarray:
+    """The smallest ϖ above which the contact has the same period, infinite if there is none.
+
+    ``same`` (ϖ, place) is whether it has the same period at each ϖ.
+    """
+    from_here_on = np.logical_and.accumulate(same[::-1])[::-1]
+    return np.where(from_here_on.any(axis=0), ratios[np.argmax(from_here_on, axis=0)], np.inf)
+
+
+def _shares_by_prediction(
+    predicted: np.ndarray, same: np.ndarray, sticks: np.ndarray, confidence: float
+) -> list[tuple[float, float, float]]:
+    """The shares with the same period, and their limits, in each range of ϖ w/S.
+
+    ``predicted`` is ϖ w/S and ``same`` whether the period is the same, shape (ϖ, place); places at
+    which the ball does not stick again are left out.
+    """
+    place = np.digitize(predicted, _EDGES) - 1
+    return [
+        share_with_limits(same[(place == k) & sticks], confidence) for k in range(_EDGES.size - 1)
+    ]

@@ -2,6 +2,7 @@
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bouncing_ball.beyond.exhibits.motion_maps import bars
@@ -11,6 +12,7 @@ from bouncing_ball.drawing.style import COLOURS, GUIDE, Look
 
 _DASHES = ("-", (0, (4, 1.5)), (0, (1, 1.2)), (0, (6, 1.5, 1, 1.5)))
 _BEYOND = 1e15
+_LOOK: Look = {"color": COLOURS[1], "marker": "o"}
 
 
 def locked_orbits(data: xr.Dataset) -> Figure:
@@ -18,8 +20,15 @@ def locked_orbits(data: xr.Dataset) -> Figure:
     survival of transients.
     """
     figure, ((by_place, by_ratio), (jumps, lives)) = canvas(WIDE, 5.4, rows=2, columns=2)
-    look: Look = {"color": COLOURS[1], "marker": "o"}
-    bars(by_place, data.predicted.values, data, "same_by_prediction", **look)
+    _draw_predictions(by_place, by_ratio, data)
+    _draw_jumps(jumps, data)
+    _draw_survival(lives, data)
+    return figure
+
+
+def _draw_predictions(by_place: Axes, by_ratio: Axes, data: xr.Dataset) -> None:
+    """The share with the same period, by the prediction for all ϖ together and by ϖ."""
+    bars(by_place, data.predicted.values, data, "same_by_prediction", **_LOOK)
     by_place.axvline(1.0, **GUIDE)
     logarithmic(by_place, xlabel=r"$\varpi\,W/S$", ylim=(0, 1.03))
     by_place.set_ylabel("share with the same\nlocked period")
@@ -27,16 +36,24 @@ def locked_orbits(data: xr.Dataset) -> Figure:
     wanted = np.sort((data.sensitivity / data.wait).dropna("node").values)
     share = np.arange(1, wanted.size + 1) / wanted.size
     by_ratio.plot(wanted, share, color=COLOURS[3], label=r"predicted: $\varpi\geq S/W$")
-    bars(by_ratio, data.frequency_ratio.values, data, "same", label="contact", **look, ls="none")
+    bars(by_ratio, data.frequency_ratio.values, data, "same", label="contact", **_LOOK, ls="none")
     by_ratio.set(
         xlabel=r"frequency ratio $\varpi$", ylim=(0, 1.03), xlim=(1, _BEYOND), xscale="log"
     )
     by_ratio.set_title("by frequency ratio")
     by_ratio.legend(loc="lower right")
-    bars(jumps, data["shift"].values, data, "jump_share", **look)
+
+
+def _draw_jumps(jumps: Axes, data: xr.Dataset) -> None:
+    """The share with another period after a change of Λ, over the change."""
+    bars(jumps, data["shift"].values, data, "jump_share", **_LOOK)
     jumps.set(xlabel=r"change of $\Lambda$", xscale="log", yscale="log")
     jumps.yaxis.set_minor_formatter("{x:g}")
     jumps.set(title="next to a discontinuity", ylabel="share with another\nlocked period")
+
+
+def _draw_survival(lives: Axes, data: xr.Dataset) -> None:
+    """The share of the balls that are not locked yet, over time."""
     for one, colour in coloured(data, "case"):
         r, lam = (number(float(one[f"case_{x}"])) for x in ("restitution", "amplitude"))
         lives.plot([], [], color=colour, label=rf"$r={r}$, $\Lambda={lam}$")
@@ -48,4 +65,3 @@ def locked_orbits(data: xr.Dataset) -> Figure:
     lives.set(xlabel="table periods", ylabel="share of balls not locked", title="transients")
     lives.set(xscale="log", yscale="log", ylim=(0.01, 6))
     lives.legend(fontsize=6, ncols=2, loc="upper right")
-    return figure

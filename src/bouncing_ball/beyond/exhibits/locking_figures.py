@@ -6,17 +6,18 @@ from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 
-from bouncing_ball.beyond.exhibits.means_figures import _HIGHEST, _LOWEST
 from bouncing_ball.beyond.exhibits.motion_maps import (
-    _DOTS,
-    _LOCKED,
-    _LOOKS,
-    _OTHERS,
-    _PERIODS,
-    _RATES,
-    _draw_shares,
-    _key,
-    _node_map,
+    DOTS,
+    GROUP_LOOKS,
+    HIGHEST_RATE,
+    LOCKED,
+    LOWEST_RATE,
+    OTHER_COLOURS,
+    PERIODS,
+    RATES,
+    draw_shares,
+    legend_of_kinds,
+    node_map,
 )
 from bouncing_ball.drawing.canvas import legend_below, stacked
 from bouncing_ball.drawing.labels import number
@@ -31,12 +32,12 @@ def locking(data: xr.Dataset) -> Figure:
     kinds = maps.subplots(1, data.sizes["model"], sharex=True, sharey=True)
     rates = exponents.subplots(1, data.sizes["model"], sharex=True, sharey=True)
     ratio = number(float(data.frequency_ratio[0]))
-    look: Look = {"cmap": _RATES, "vmin": _LOWEST, "vmax": _HIGHEST}
+    look: Look = {"cmap": RATES, "vmin": LOWEST_RATE, "vmax": HIGHEST_RATE}
     for model, upper, lower in zip(data["model"].values, kinds, rates, strict=True):
         one = data.sel(model=model)
         _draw_kinds(upper, one)
-        rate = one.lyapunov_exponent.values.clip(_LOWEST)
-        shown = _node_map(lower, one, rate, ["permanent contact"], **look)
+        rate = one.lyapunov_exponent.values.clip(LOWEST_RATE)
+        shown = node_map(lower, one, rate, ["permanent contact"], **look)
         upper.set_title(model if model == "restitution" else rf"{model}, $\varpi={ratio}$")
         lower.set_xlabel(r"amplitude $\Lambda$")
     kinds[0].set_ylabel("restitution coefficient $r$")
@@ -44,16 +45,16 @@ def locking(data: xr.Dataset) -> Figure:
     bar: Look = {"location": "bottom", "aspect": 60, "shrink": 0.6, "extend": "both"}
     label = r"largest Lyapunov exponent $\lambda$ per period of the table"
     exponents.colorbar(shown, ax=list(rates), label=label, **bar)
-    legend_below(maps, _key(data), ncols=7, fontsize=7)
+    legend_below(maps, legend_of_kinds(data), ncols=7, fontsize=7)
     title = "contact against the {} model"
-    _draw_shares(below, data, "agreement", "motion_group", _LOOKS, title)
+    draw_shares(below, data, "agreement", "motion_group", GROUP_LOOKS, title)
     below.axes[0].set_ylabel("share of nodes with the\nsame kind and period")
     return figure
 
 
 def _draw_kinds(axes: Axes, one: xr.Dataset) -> None:
-    place = np.searchsorted(_PERIODS, one.periods.values, side="right") - 1
-    for k, kind in enumerate(_OTHERS, len(_PERIODS)):
+    place = np.searchsorted(PERIODS, one.periods.values, side="right") - 1
+    for k, kind in enumerate(OTHER_COLOURS, len(PERIODS)):
         place[(one.kind == kind).values] = k
-    colours = ListedColormap([*_LOCKED, *_OTHERS.values()])
-    _node_map(axes, one, place, _DOTS, cmap=colours, vmin=-0.5, vmax=colours.N - 0.5)
+    colours = ListedColormap([*LOCKED, *OTHER_COLOURS.values()])
+    node_map(axes, one, place, DOTS, cmap=colours, vmin=-0.5, vmax=colours.N - 0.5)

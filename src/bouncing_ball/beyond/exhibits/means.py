@@ -1,5 +1,4 @@
-"""The ϖ above which a simple model has accurate means over a motion, over (Λ, r) (beyond the
-paper)."""
+"""The ϖ above which a simple model has accurate means over a motion (beyond the paper)."""
 
 from typing import Annotated
 
@@ -7,7 +6,7 @@ import numpy as np
 import xarray as xr
 from scipy.stats import t as student
 
-from bouncing_ball.beyond.exhibits.motion_samples import LIMITS, SIMPLE, Grid, models, share
+from bouncing_ball.beyond.exhibits.motion_samples import SIMPLE, ParameterPlane, share, three_models
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.means import means
 from bouncing_ball.datasets.parameters import Seed, Tolerance, number
@@ -37,10 +36,10 @@ MEANS = ("power", "height", "flights", "exponent")
 _FASTEST = 4.0
 # Lower bound of half the width of an interval: a motion that repeats is found within 1e-6 of its
 # state.
-_KNOWN = 1e-6
+_LEAST_MARGIN = 1e-6
 
 
-class MeanMotions(Grid):
+class MeanMotions(ParameterPlane):
     """A grid over (Λ, r) with several balls for each node, which start alike in all models."""
 
     starts: Annotated[int, number("balls for each node, which make the interval", ge=3, le=10000)]
@@ -66,14 +65,25 @@ def needed(error: np.ndarray, margin: np.ndarray, tolerance: float) -> tuple[np.
     >>> [x.tolist() for x in needed(error, np.full((3, 1), 0.005), 0.01)]
     [[2], [0]]
     """
-    size, last = np.abs(error), len(error)
+    size = np.abs(error)
+    ratios = len(error)
     # From the largest ϖ down to the first ϖ at which the error is not known to be small.
     within = (size + margin <= tolerance)[::-1]
-    right = np.argmin(np.concatenate([within, within[:1] & False]), axis=0)
-    at = np.minimum(right, last - 1)[np.newaxis]
-    beyond = np.take_along_axis((size - margin > tolerance)[::-1], at, axis=0)[0]
-    decision = np.where(beyond | (right == last), np.where(right > 0, 0, 1), 2)
-    return last - right, np.where(np.isnan(error).any(axis=0), 3, decision)
+    none_within = np.zeros_like(within[:1])
+    accurate = np.argmin(np.concatenate([within, none_within]), axis=0)
+    first_other = np.minimum(accurate, ratios - 1)[np.newaxis]
+    exceeds = (size - margin > tolerance)[::-1]
+    known = np.take_along_axis(exceeds, first_other, axis=0)[0] | (accurate == ratios)
+    decision = np.select(
+        [np.isnan(error).any(axis=0), known & (accurate > 0), known],
+        [
+            DECISIONS.index("no number"),
+            DECISIONS.index("from this on"),
+            DECISIONS.index("not at any"),
+        ],
+        DECISIONS.index("undecided"),
+    )
+    return ratios - accurate, decision
 
 
 def _errors(simple: np.ndarray, contact: np.ndarray, confidence: float) -> np.ndarray:
@@ -83,10 +93,12 @@ def _errors(simple: np.ndarray, contact: np.ndarray, confidence: float) -> np.nd
     balls = contact.shape[-1]
     width = student.ppf((1 + confidence) / 2, balls - 1) / np.sqrt(balls)
     with np.errstate(invalid="ignore"):
-        apart, scale = contact - simple, np.abs(simple.mean(axis=-1))
-        found = np.stack([apart.mean(axis=-1), width * apart.std(axis=-1, ddof=1)]) / scale
-    found[1] = np.maximum(found[1], _KNOWN)
-    return np.where(np.isfinite(found[0]), found, np.nan)
+        difference = contact - simple
+        scale = np.abs(simple.mean(axis=-1))
+        error = difference.mean(axis=-1) / scale
+        margin = width * difference.std(axis=-1, ddof=1) / scale
+    margin = np.maximum(margin, _LEAST_MARGIN)
+    return np.where(np.isfinite(error), [error, margin], np.nan)
 
 
 def errors_at_nodes(parameters: MeanMotions, release: Release, part: Part = np.asarray) -> Arrays:
@@ -97,22 +109,28 @@ def errors_at_nodes(parameters: MeanMotions, release: Release, part: Part = np.a
     dict of array
         ``mean_error`` and ``mean_margin`` of :func:`mean_motions`, shape (simple, mean, ϖ, node).
     """
-    random, balls = np.random.default_rng(parameters.seed), parameters.starts
-    phase, speed = random.uniform(-np.pi, np.pi, balls), random.uniform(0.0, _FASTEST, balls)
+    random = np.random.default_rng(parameters.seed)
+    balls = parameters.starts
+    phase = random.uniform(-np.pi, np.pi, balls)
+    speed = random.uniform(0.0, _FASTEST, balls)
+    # Arrays over ϖ, the node and the ball.
     r, lam = part(parameters.places())[..., np.newaxis]
     ratios = np.array(parameters.frequency_ratio)[:, np.newaxis, np.newaxis]
-    velocity, values = lam * (np.cos(phase) - speed), []
-    for model in models(r, ratios, release):
+    velocity = lam * (np.cos(phase) - speed)
+    of_models = []
+    for model in three_models(r, ratios, release):
         law = model.impact_law
         found = final_motions(law, lam, phase, velocity, impacts=parameters.impacts)
         flights, height, power, exponent = means(law, lam, found, parameters.samples)
         exponent = np.where(found.periods > 0, found.exponent, exponent)
-        of = np.stack([power, height, flights, exponent])
-        # Over the mean, ϖ, the node and the ball; the restitution model has one ϖ.
-        values.append(of.reshape(len(MEANS), -1, lam.size, balls))
-    *simple, contact = values
-    errors = np.stack([_errors(x, contact, parameters.confidence) for x in simple], axis=1)
-    return {"mean_error": errors[0], "mean_margin": errors[1]}
+        values = np.stack([power, height, flights, exponent])
+        # The restitution model has one ϖ.
+        of_models.append(values.reshape((len(MEANS), -1, lam.size, balls)))
+    restitution, corrected, contact = of_models
+    restitution_errors = _errors(restitution, contact, parameters.confidence)
+    corrected_errors = _errors(corrected, contact, parameters.confidence)
+    errors, margins = np.stack([restitution_errors, corrected_errors], axis=1)
+    return {"mean_error": errors, "mean_margin": margins}
 
 
 def mean_motions(parameters: MeanMotions, release: Release, found: Found = None) -> xr.Dataset:
@@ -132,23 +150,32 @@ def mean_motions(parameters: MeanMotions, release: Release, found: Found = None)
     """
     ratios = np.array(parameters.frequency_ratio)
     found = found or errors_at_nodes(parameters, release)
-    along = {x: parameters.unfolded(y) for x, y in found.items()}
-    error, margin = (np.moveaxis(x, 2, 0) for x in along.values())
-    place, known = needed(error, margin, parameters.tolerance)
-    least = np.where(known == 0, ratios[np.minimum(place, ratios.size - 1)], np.nan)
-    right = np.stack([(known == 0) & (place <= k) for k in range(ratios.size)], axis=2)
-    counted = known != DECISIONS.index("no number")
+    error = parameters.unfolded(found["mean_error"])
+    margin = parameters.unfolded(found["mean_margin"])
+    place, decision = needed(
+        np.moveaxis(error, 2, 0), np.moveaxis(margin, 2, 0), parameters.tolerance
+    )
+    known = decision == DECISIONS.index("from this on")
+    least = np.where(known, ratios[np.minimum(place, ratios.size - 1)], np.nan)
+    right = np.stack([known & (place <= k) for k in range(ratios.size)], axis=2)
+    counted = decision != DECISIONS.index("no number")
     shares = np.empty((*right.shape[:3], 4))
-    for k in np.ndindex(right.shape[:3]):
-        shares[k] = share(right[k][counted[k[:2]]], parameters.confidence)
-    dims, nodes = ("simple", "mean"), ("restitution", "amplitude")
-    names = ("right_nodes", *(f"right{x}" for x in LIMITS))
+    for simple, mean, ratio in np.ndindex(right.shape[:3]):
+        chosen = right[simple, mean, ratio][counted[simple, mean]]
+        shares[simple, mean, ratio] = share(chosen, parameters.confidence)
+    dims = ("simple", "mean")
+    nodes = ("restitution", "amplitude")
+    along = (*dims, "frequency_ratio")
     return described(
         {
-            **{x: ((*dims, "frequency_ratio", *nodes), y) for x, y in along.items()},
+            "mean_error": ((*along, *nodes), error),
+            "mean_margin": ((*along, *nodes), margin),
             "needed_ratio": ((*dims, *nodes), least),
-            "decision": ((*dims, *nodes), np.array(DECISIONS)[known]),
-            **{x: ((*dims, "frequency_ratio"), shares[..., k]) for k, x in enumerate(names)},
+            "decision": ((*dims, *nodes), np.array(DECISIONS)[decision]),
+            "right_nodes": (along, shares[..., 0]),
+            "right": (along, shares[..., 1]),
+            "right_low": (along, shares[..., 2]),
+            "right_high": (along, shares[..., 3]),
         },
         coords={
             "simple": list(SIMPLE),

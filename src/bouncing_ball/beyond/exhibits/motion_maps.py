@@ -1,6 +1,7 @@
 """Maps of motions over restitution and amplitude: what several figures share."""
 
 from collections.abc import Iterable, Mapping
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -14,9 +15,9 @@ from bouncing_ball.drawing.canvas import image, legend_below, logarithmic
 from bouncing_ball.drawing.style import COLOURS, Look
 
 # The lowest period of each colour for locked motions.
-_PERIODS = (1, 2, 3, 4, 5, 9, 17, 33)
-_LOCKED = colormaps["viridis_r"](np.linspace(0.08, 1, len(_PERIODS)))
-_OTHERS = {
+PERIODS = (1, 2, 3, 4, 5, 9, 17, 33)
+LOCKED = colormaps["viridis_r"](np.linspace(0.08, 1, len(PERIODS)))
+OTHER_COLOURS = {
     "orbit": "#ffffff",
     "subharmonic": "#d9d9d9",
     "permanent contact": "#8c8c8c",
@@ -25,7 +26,7 @@ _OTHERS = {
 }
 # Marks that also distinguish areas in greyscale: dots for motions that do not repeat, crosses for
 # unknown motions, and strokes for other areas whose grey level is that of a period.
-_DOTS: dict[str, Look] = {
+DOTS: dict[str, Look] = {
     "chaotic": {"marker": ".", "markersize": 1.3, "color": "#AA3A00", "markeredgewidth": 0},
     "undecided": {"marker": "x", "markersize": 1.6, "color": "#000000", "markeredgewidth": 0.3},
     "permanent contact": {"marker": "_", "markersize": 2.5, "markeredgewidth": 0.4},
@@ -33,72 +34,81 @@ _DOTS: dict[str, Look] = {
 }
 # Largest number of restitution coefficients at which nodes are marked.
 _MARKED = 43
-_UNKNOWN = {"not at any": "#000000", "undecided": "#ffffff", "no number": "#c8c8c8"}
+UNKNOWN = {"not at any": "#000000", "undecided": "#ffffff", "no number": "#c8c8c8"}
 _HATCHES = {"chaotic": "......", "undecided": "xxxx", "subharmonic": "||||||"}
 _HATCHES |= dict.fromkeys(("permanent contact", "no number"), "------")
-# Exponents outside of this range are drawn as its ends.
-
-
+LOWEST_RATE = -1.5
+HIGHEST_RATE = 1.5
+"""Exponents outside of this range are drawn as its ends."""
 # Colours that become lighter throughout, from blue below 0 to yellow above 0.
 _FALLING = colormaps["Blues_r"](np.linspace(0, 0.65, 128))
 _GROWING = colormaps["YlOrBr_r"](np.linspace(0.5, 1, 128))
-_RATES = ListedColormap([*_FALLING, *_GROWING]).with_extremes(bad=_OTHERS["permanent contact"])
-_LOOKS = {"all": ("all nodes", COLOURS[0], "o"), "orbit": ("n-T orbits", COLOURS[4], "s"),
+RATES = ListedColormap([*_FALLING, *_GROWING]).with_extremes(bad=OTHER_COLOURS["permanent contact"])
+GROUP_LOOKS = {"all": ("all nodes", COLOURS[0], "o"), "orbit": ("n-T orbits", COLOURS[4], "s"),
           "locked, 1 to 4 T": ("locked, 1 to 4 T", COLOURS[2], "^"),
           "locked": ("locked", COLOURS[1], "D"),
           "locked, above 10 T": ("locked, above 10 T", COLOURS[3], "v")}  # fmt: skip
 
 
-def _node_map(
+def node_map(
     axes: Axes, one: xr.Dataset, values: np.ndarray, kinds: Iterable[str], **look: Any
 ) -> Any:
     """Values at the nodes, with marks for some kinds of motion, and with the saddle-node (solid)
     and period doubling (dashed) of the 1-T orbit over r.
     """
-    drawn = _map(axes, one, values, **look)
+    drawn = plane_map(axes, one, values, **look)
     for kind in kinds:
-        _dot(axes, one, one.kind == kind, _DOTS[kind])
-    limits = axes.get_xlim(), axes.get_ylim()
+        mark_nodes(axes, one, one.kind == kind, DOTS[kind])
+    xlim = axes.get_xlim()
+    ylim = axes.get_ylim()
     for name, dashes in (("saddle_node", "-"), ("period_doubling", (0, (3, 1.5)))):
         lam = one[f"{name}_amplitude"]
         axes.plot(lam, one.restitution, color="#000000", linewidth=0.9, linestyle=dashes)
-    axes.set(xlim=limits[0], ylim=limits[1])
+    axes.set(xlim=xlim, ylim=ylim)
     return drawn
 
 
-def _dot(axes: Axes, one: xr.Dataset, chosen: xr.DataArray, look: Look) -> None:
+def mark_nodes(axes: Axes, one: xr.Dataset, chosen: xr.DataArray, look: Look) -> None:
+    """Mark the chosen nodes of the plane."""
     # On a finer grid only some nodes have marks, which would cover the colours.
     skip = -(-chosen.restitution.size // _MARKED)
     r, lam = skip * np.array(np.nonzero(chosen.values[::skip, ::skip]))
-    place = one.amplitude.values[lam], one.restitution.values[r]
     drawn: Look = {"color": "#000000", "linestyle": "none", **look}
-    axes.plot(*place, **drawn)
+    axes.plot(one.amplitude.values[lam], one.restitution.values[r], **drawn)
 
 
-def _map(axes: Axes, one: xr.Dataset, values: np.ndarray, **look: Any) -> Any:
-    nodes = one.amplitude.values, one.restitution.values
-    (left, right), (low, high) = (1.5 * x[[0, -1]] - 0.5 * x[[1, -2]] for x in nodes)
+def plane_map(axes: Axes, one: xr.Dataset, values: np.ndarray, **look: Any) -> Any:
+    """Values at the nodes of the plane as an image; the middles of its pixels are the nodes."""
+    left, right = _outer_edges(one.amplitude.values)
+    low, high = _outer_edges(one.restitution.values)
     return image(axes, values, (left, right, low, high), **look)
 
 
-def _key(data: xr.Dataset) -> list:
-    ends = [*(low - 1 for low in _PERIODS[1:]), None]
-    names = [
-        f"from {low} T" if end is None else f"{low} T" if low == end else f"{low} to {end} T"
-        for low, end in zip(_PERIODS, ends, strict=True)
-    ]
-    others = [(kind, fill) for kind, fill in _OTHERS.items() if kind in data.kind.values]
+def _outer_edges(nodes: np.ndarray) -> np.ndarray:
+    """The ends of a range whose first and last cells have their middles at the outer nodes."""
+    return 1.5 * nodes[[0, -1]] - 0.5 * nodes[[1, -2]]
+
+
+def legend_of_kinds(data: xr.Dataset) -> list:
+    """Entries of a legend for the periods of locked motions, and for the other kinds that occur."""
+    names = [_range_of_periods(low, high - 1) for low, high in pairwise(PERIODS)]
+    names.append(f"from {PERIODS[-1]} T")
     names[0] = f"locked, {names[0]}"
-    return _patches([*zip(names, _LOCKED, strict=True), *others])
+    others = [(kind, fill) for kind, fill in OTHER_COLOURS.items() if kind in data.kind.values]
+    return patches([*zip(names, LOCKED, strict=True), *others])
 
 
-def _patches(fills: Iterable[tuple[str, Any]]) -> list[Patch]:
+def _range_of_periods(low: int, high: int) -> str:
+    return f"{low} T" if low == high else f"{low} to {high} T"
+
+
+def patches(fills: Iterable[tuple[str, Any]]) -> list[Patch]:
     """Entries of a legend for areas, hatched where the areas have dots."""
     look: Look = {"edgecolor": "#000000", "linewidth": 0.4}
     return [Patch(facecolor=x, label=name, hatch=_HATCHES.get(name), **look) for name, x in fills]
 
 
-def _draw_shares(
+def draw_shares(
     part: Any, data: xr.Dataset, name: str, dim: str, looks: Mapping, title: str
 ) -> None:
     """Shares along ϖ with confidence intervals, side by side for the places along a dimension.

@@ -1,22 +1,25 @@
-"""The motions on which balls end in the three models: over (Λ, r), and over Λ (beyond the paper).
+"""Samples of the motions on which balls end: what several stages share.
+
+These are the types of their parameters, the three models that they compare, and estimates with
+confidence intervals from samples of balls or of places in the plane of (Λ, r).
 
 If a motion is chaotic, or lies next to the boundary of a basin, rounding errors decide its course
-after some tens of impacts. Datasets therefore contain the kinds of motions, and means over many
-impacts.
-
-The share of starts, or of parameters, whose result changes if they are changed by ε.
-
-For a boundary of dimension D in a plane this share is proportional to ε^α, where α = 2 - D is the
-uncertainty exponent (C. Grebogi, S. W. McDonald, E. Ott and J. A. Yorke, 1983).
+after some tens of impacts. Datasets therefore contain kinds of motions, and means over many
+impacts, but no single impacts. How fine the boundaries are is measured by the uncertainty exponent:
+the share of starts, or of parameters, whose result changes if they are changed by ε is proportional
+to ε^α, where α = 2 - D for a boundary of dimension D in a plane (C. Grebogi, S. W. McDonald, E. Ott
+and J. A. Yorke, 1983).
 """
 
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from pydantic import Field
 from scipy.stats import binomtest
 
-from bouncing_ball.beyond.corrected.errors import models as of_contact
+from bouncing_ball.beyond.corrected.errors import SIMPLE
+from bouncing_ball.beyond.corrected.errors import models as models_of_contact
+from bouncing_ball.beyond.corrected.orbits import CorrectedModel
 from bouncing_ball.datasets.parameters import (
     Amplitude,
     AmplitudeMax,
@@ -29,6 +32,8 @@ from bouncing_ball.datasets.parameters import (
 )
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
+from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 
 Confidence = Annotated[float, number("level of the confidence intervals", gt=0.5, lt=1)]
 Impacts = Annotated[
@@ -66,8 +71,8 @@ class Restitutions(Even):
     max: Annotated[LossyRestitution, Field(description="largest r, above min")]
 
 
-class Grid(Sharded):
-    """A grid over (Λ, r), and contacts at several ϖ."""
+class ParameterPlane(Sharded):
+    """A grid over the plane of (Λ, r), and contacts at several ϖ."""
 
     amplitude: Amplitudes
     restitution: Restitutions
@@ -77,22 +82,35 @@ class Grid(Sharded):
 
     def places(self) -> np.ndarray:
         """r and Λ of all nodes, those with one r after each other, shape (2, nodes)."""
-        axes = np.meshgrid(self.restitution.grid(), self.amplitude.grid(), indexing="ij")
-        return np.reshape(axes, (2, -1))
+        r, lam = np.meshgrid(self.restitution.grid(), self.amplitude.grid(), indexing="ij")
+        return np.stack([r.ravel(), lam.ravel()])
 
     def unfolded(self, values: np.ndarray) -> np.ndarray:
         """Values over all nodes, their last axis, over (restitution, amplitude)."""
-        shape = self.restitution.samples, self.amplitude.samples
-        return values.reshape(*values.shape[:-1], *shape)
+        leading = values.shape[:-1]
+        return values.reshape((*leading, self.restitution.samples, self.amplitude.samples))
 
 
-SIMPLE = ("restitution", "corrected")
 MODELS = (*SIMPLE, "spring-damper")
+LEAST_ERROR = 1e-5
+"""Smallest error of a Lyapunov exponent that is stated. A motion repeats within 1e-6 of its state,
+so that the error of its multipliers is about 1e-6 times the curvature of the map, which is of order
+one to ten."""
 LIMITS = ("", "_low", "_high")
 """Suffixes of the names of an estimate and of the two limits of its interval."""
 
 
-def models(restitution: np.ndarray, ratio: float | np.ndarray, release: Release) -> tuple:
+class ThreeModels(NamedTuple):
+    """The models of one contact, in the order of :data:`MODELS`."""
+
+    restitution: RestitutionModel
+    corrected: CorrectedModel
+    contact: SpringDamperModel
+
+
+def three_models(
+    restitution: np.ndarray, ratio: float | np.ndarray, release: Release
+) -> ThreeModels:
     """Restitution, corrected and spring-damper model with the r of a free impact on the contact.
 
     Parameters
@@ -104,12 +122,13 @@ def models(restitution: np.ndarray, ratio: float | np.ndarray, release: Release)
 
     Returns
     -------
-    tuple of ImpactModel
-        In the order of :data:`MODELS`. The restitution model has the shape of r, the others that to
+    ThreeModels
+        The restitution model has the shape of r, the others that to
         which r and ϖ broadcast.
     """
-    exact, *simple = of_contact(SpringDamper.from_restitution(restitution, ratio, release))
-    return *simple, exact
+    contact = SpringDamper.from_restitution(restitution, ratio, release)
+    exact, simple, corrected = models_of_contact(contact)
+    return ThreeModels(restitution=simple, corrected=corrected, contact=exact)
 
 
 def share(chosen: np.ndarray, confidence: float) -> tuple[float, float, float, float]:
@@ -138,7 +157,14 @@ def share(chosen: np.ndarray, confidence: float) -> tuple[float, float, float, f
     if not chosen.size:
         return 0, np.nan, np.nan, np.nan
     tested = binomtest(int(chosen.sum()), chosen.size)
-    return chosen.size, tested.statistic, *tested.proportion_ci(confidence, "wilson")
+    low, high = tested.proportion_ci(confidence, "wilson")
+    return chosen.size, tested.statistic, low, high
+
+
+def share_with_limits(chosen: np.ndarray, confidence: float) -> tuple[float, float, float]:
+    """The share of the truth values that are true, and its limits, see :func:`share`."""
+    _, found, low, high = share(chosen, confidence)
+    return found, low, high
 
 
 def with_limits(estimates: dict[str, tuple]) -> dict[str, tuple]:
@@ -160,10 +186,12 @@ def with_limits(estimates: dict[str, tuple]) -> dict[str, tuple]:
     }
 
 
-_RESAMPLED, _SEED = 400, 1
+# Number of samples of the bootstrap, and the seed of its random numbers.
+_RESAMPLED = 400
+_SEED = 1
 
 
-def exponent(changes: np.ndarray, size: np.ndarray, confidence: float) -> np.ndarray:
+def uncertainty_exponent(changes: np.ndarray, size: np.ndarray, confidence: float) -> np.ndarray:
     """α with its lower and upper limit, from independent results that change or do not change.
 
     α is the slope of the least-squares line of the logarithm of the share over ln ε, weighted with
@@ -187,12 +215,15 @@ def exponent(changes: np.ndarray, size: np.ndarray, confidence: float) -> np.nda
     Examples
     --------
     >>> changes = np.arange(1000)[:, np.newaxis] < [100, 10]
-    >>> round(float(exponent(changes, np.array([1e-2, 1e-4]), 0.95)[0]), 9)
+    >>> alpha, low, high = uncertainty_exponent(changes, np.array([1e-2, 1e-4]), 0.95)
+    >>> round(float(alpha), 9)
     0.5
     """
     count = len(changes)
     drawn = np.random.default_rng(_SEED).integers(count, size=(_RESAMPLED, count))
+    # The first sample is the original one.
     drawn[0] = np.arange(count)
-    share = np.maximum(changes[drawn].mean(axis=1), 0.5 / count)
-    slope = np.polyfit(np.log(size), np.log(share).T, 1, w=np.sqrt(share[0]))[0]
-    return np.array([slope[0], *np.quantile(slope, [(1 - confidence) / 2, (1 + confidence) / 2])])
+    shares = np.maximum(changes[drawn].mean(axis=1), 0.5 / count)
+    slopes, _ = np.polyfit(np.log(size), np.log(shares).T, 1, w=np.sqrt(shares[0]))
+    low, high = np.quantile(slopes, [(1 - confidence) / 2, (1 + confidence) / 2])
+    return np.array([slopes[0], low, high])

@@ -5,8 +5,13 @@ from typing import Annotated
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.beyond.exhibits.locking import _KNOWN
-from bouncing_ball.beyond.exhibits.motion_samples import MODELS, Amplitudes, Impacts, models
+from bouncing_ball.beyond.exhibits.motion_samples import (
+    LEAST_ERROR,
+    MODELS,
+    Amplitudes,
+    Impacts,
+    three_models,
+)
 from bouncing_ball.beyond.long_run.grids import REACH, diagram
 from bouncing_ball.datasets.parameters import FrequencyRatio, LossyRestitution, Sharded, number
 from bouncing_ball.datasets.shards import Arrays, Found, Part
@@ -30,6 +35,10 @@ class Diagram(Sharded):
     impacts: Impacts
     bins: Annotated[int, number("equal ranges of the phase of impact", ge=10, le=2000)]
 
+    def edges(self) -> np.ndarray:
+        """The bounds of the ranges of the phase, shape (bins + 1,)."""
+        return np.linspace(-np.pi, np.pi, self.bins + 1)
+
 
 def phases_of_impacts(parameters: Diagram, release: Release, part: Part = np.asarray) -> Arrays:
     """The densities of the impacts' phases and the exponents, in each model along Λ.
@@ -45,30 +54,48 @@ def phases_of_impacts(parameters: Diagram, release: Release, part: Part = np.asa
     ModelError
         If there are more balls than fit into memory.
     """
-    lam, bins = parameters.amplitude.grid(), parameters.bins
-    own = part(np.arange(lam.size))
+    lam = parameters.amplitude.grid()
+    chosen = part(np.arange(lam.size))
     # Balls start again from the ends of balls at neighbouring Λ.
-    near = np.arange(max(own[0] - REACH, 0), min(own[-1] + REACH + 1, lam.size))
-    edges = np.linspace(-np.pi, np.pi, bins + 1)
-    columns = []
-    for model in models(np.array(parameters.restitution), parameters.frequency_ratio, release):
+    first = max(chosen[0] - REACH, 0)
+    near = np.arange(first, min(chosen[-1] + REACH + 1, lam.size))
+    densities = []
+    exponents = []
+    errors = []
+    models = three_models(np.array(parameters.restitution), parameters.frequency_ratio, release)
+    for model in models:
         found = diagram(model, lam[near], parameters.starts, parameters.samples, parameters.impacts)
-        found = found.isel(amplitude=own - near[0])
-        phase = found.impact_phase.values
-        at = np.isfinite(phase)
-        weight = 1 / np.maximum(at.sum(axis=-1, keepdims=True), 1)
-        known = at.any(axis=-1).sum(axis=1)
-        place = np.broadcast_to(np.arange(own.size)[:, np.newaxis, np.newaxis], phase.shape)[at]
-        density, *_ = np.histogram2d(
-            *(phase[at], place),
-            bins=(edges, np.arange(own.size + 1) - 0.5),
-            weights=np.broadcast_to(weight, phase.shape)[at],
-        )
-        best = found.isel(start=found.lyapunov_exponent.fillna(-np.inf).argmax("start"))
-        exponent, error = best.lyapunov_exponent.fillna(-np.inf), best.lyapunov_error
-        columns.append((density / np.maximum(known, 1), exponent, np.fmax(error, _KNOWN)))
-    density, exponent, error = (np.stack(x) for x in zip(*columns, strict=True))
-    return {"phase_density": density, "lyapunov_exponent": exponent, "lyapunov_error": error}
+        found = found.isel(amplitude=chosen - first)
+        densities.append(_phase_density(found.impact_phase.values, parameters.edges()))
+        largest = found.lyapunov_exponent.fillna(-np.inf).argmax("start")
+        best = found.isel(start=largest)
+        exponents.append(best.lyapunov_exponent.fillna(-np.inf))
+        errors.append(np.fmax(best.lyapunov_error, LEAST_ERROR))
+    return {
+        "phase_density": np.stack(densities),
+        "lyapunov_exponent": np.stack(exponents),
+        "lyapunov_error": np.stack(errors),
+    }
+
+
+def _phase_density(phase: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """Shares of the impacts in ranges of the phase, shape (range, amplitude).
+
+    ``phase`` are the phases of the impacts on each motion, shape (amplitude, start, impact), NaN
+    beyond its impacts. All motions at one Λ have equal weights.
+    """
+    seen = np.isfinite(phase)
+    weight = 1 / np.maximum(seen.sum(axis=-1, keepdims=True), 1)
+    motions = seen.any(axis=-1).sum(axis=1)
+    amplitudes = len(phase)
+    place = np.broadcast_to(np.arange(amplitudes)[:, np.newaxis, np.newaxis], phase.shape)
+    density, _, _ = np.histogram2d(
+        phase[seen],
+        place[seen],
+        bins=(edges, np.arange(amplitudes + 1) - 0.5),
+        weights=np.broadcast_to(weight, phase.shape)[seen],
+    )
+    return density / np.maximum(motions, 1)
 
 
 def orbit_diagrams(parameters: Diagram, release: Release, found: Found = None) -> xr.Dataset:
@@ -81,10 +108,13 @@ def orbit_diagrams(parameters: Diagram, release: Release, found: Found = None) -
     ``lyapunov_error`` its standard error, which is at least 1e-5.
     """
     found = found or phases_of_impacts(parameters, release)
-    edges = np.linspace(-np.pi, np.pi, parameters.bins + 1)
-    dims = ("model", "bin_phase", "amplitude")
+    edges = parameters.edges()
     return described(
-        {x: (dims if y.ndim == 3 else dims[::2], y) for x, y in found.items()},
+        {
+            "phase_density": (("model", "bin_phase", "amplitude"), found["phase_density"]),
+            "lyapunov_exponent": (("model", "amplitude"), found["lyapunov_exponent"]),
+            "lyapunov_error": (("model", "amplitude"), found["lyapunov_error"]),
+        },
         coords={
             "model": list(MODELS),
             "amplitude": parameters.amplitude.grid(),

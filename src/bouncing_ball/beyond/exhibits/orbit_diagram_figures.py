@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from bouncing_ball.beyond.exhibits.means_figures import _HIGHEST, _LOWEST
+from bouncing_ball.beyond.exhibits.motion_maps import HIGHEST_RATE, LOWEST_RATE
 from bouncing_ball.drawing.canvas import WIDE, canvas, image, legend_below
 from bouncing_ball.drawing.labels import parameters
 from bouncing_ball.drawing.style import GUIDE, MODELS, Look
@@ -26,7 +26,7 @@ def orbit_diagrams(data: xr.Dataset) -> Figure:
         axes.set_ylabel(r"phase of impact $\varphi/\pi$")
         shown = ["restitution"] if model == "restitution" else ["restitution", "frequency_ratio"]
         axes.set_title(f"{model} model; {parameters(data, *shown)}")
-        exponent = one.lyapunov_exponent.values.clip(_LOWEST, _HIGHEST)
+        exponent = one.lyapunov_exponent.values.clip(LOWEST_RATE, HIGHEST_RATE)
         # A line through the exponents of chaotic and locked motions in turn would hide them.
         look: Look = MODELS[model] | {"linestyle": "none", "markersize": 2.5}
         panels[-1].plot(lam, exponent, sign, mew=0.6, label=f"{model} model", **look)

@@ -125,11 +125,11 @@ def thresholds(parameters: Thresholds, digits: int) -> Iterator[Row]:
     except ProofError as error:
         yield Row("ϖ of permanent contact", None, 0, str(error), "6")
     else:
-        what = "the largest root of Eq. 34, in closed form"
+        what = "root of Eq. 34"
         yield Row("ϖ of permanent contact", found.frequency_ratio, found.bits, what, "6")
     problem = Problem(Fraction(10), restitution=r)
     least = permanent_contact_minimum(problem, digits)
-    yield Row("least Λ of permanent contact", least, 0, "2ζ√(1 - ζ²), Eq. 36")
+    yield Row("least Λ of permanent contact", least, 0, "Eq. 36")
 
 
 def _threshold(
@@ -151,7 +151,7 @@ def _threshold(
         except ProofError as error:
             reason = str(error)
             continue
-        what = "the box contains exactly one solution of the orbit's and the error's equations"
+        what = "exactly one solution"
         return Row(name, found.frequency_ratio, found.bits, what, printed)
     return Row(name, None, 0, reason, printed)
 

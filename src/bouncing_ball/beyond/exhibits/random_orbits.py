@@ -40,8 +40,10 @@ def random_orbits(
     rng = np.random.default_rng(seed)
     lowest = 0.15 if release is Release.FORCE else 0.05
     r = rng.uniform(lowest, 0.98, size)
-    n, model = rng.integers(1, 6, size), RestitutionModel(r)
-    low, high = model.saddle_node(n).amplitude, model.period_doubling(n).amplitude
+    n = rng.integers(1, 6, size)
+    model = RestitutionModel(r)
+    low = model.saddle_node(n).amplitude
+    high = model.period_doubling(n).amplitude
     lam = low + rng.uniform(*places, size) * (high - low)
     zeta = SpringDamper.from_restitution(r, 1.0, release, measured=True).damping_ratio
     return n, zeta, lam, rng

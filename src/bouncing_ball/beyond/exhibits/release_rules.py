@@ -1,16 +1,15 @@
 """The influence of the rule that ends a contact (beyond the paper).
 
-The paper ends a contact at δ = 0, where a damped contact pulls; a dry contact
-ends where its force vanishes. Three things are compared along ϖ:
+The paper ends a contact at δ = 0, where a damped contact pulls; a dry contact ends where its force
+vanishes. Three things are compared along ϖ:
 
 * the bifurcations of Table 1 under both rules;
 * the 1 % thresholds of the restitution model with the r of Eq. 16;
 * the same with the restitution coefficient that the force release really has.
 
-A free impact of a spring-damper contact, by the damping ratio (beyond the paper).
-
-Without gravity the impact depends on k, c and m only through ω = √(k/m) and ζ = c/(2√(km)), which
-users of physics engines need to know. Times are ωt, which are the times of a contact with ϖ = 1.
+Under both rules, r and the duration of a free impact are computed over the damping ratio. Without
+gravity the impact depends on k, c and m only through ω = √(k/m) and ζ = c/(2√(km)), which users of
+physics engines need to know. Times are ωt, which are the times of a contact with ϖ = 1.
 """
 
 import numpy as np
@@ -29,7 +28,8 @@ from bouncing_ball.datasets.variables import Variable, describe, described
 from bouncing_ball.paper.contact.damping import Release, damping_ratio, restitution_coefficient
 from bouncing_ball.paper.contact.oscillator import responses
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.exhibits.error_thresholds import ErrorsAlongRatio, thresholds_along
+from bouncing_ball.paper.exhibits.error_thresholds import ErrorsAlongRatio
+from bouncing_ball.paper.exhibits.errors_along_ratio import errors_along_ratio
 from bouncing_ball.paper.exhibits.lowest_period_doubling import lowest_along_ratio
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.orbits.stability import Bifurcation
@@ -64,11 +64,14 @@ class ReleaseRules(Parameters):
 
 def _bifurcations(parameters: ReleaseRules, rule: Release) -> xr.Dataset:
     """Both bifurcations along ϖ under a rule, and the ϖ of the lowest period doubling."""
-    families, ratios = np.array(parameters.n), parameters.frequency_ratio.grid()
+    families = np.array(parameters.n)
+    ratios = parameters.frequency_ratio.grid()
     zeta = float(damping_ratio(parameters.restitution))
-    model, n = SpringDamperModel(SpringDamper(ratios, zeta, rule)), families[:, np.newaxis]
-    ends = np.stack([model.saddle_node(n).amplitude, model.period_doubling(n).amplitude], axis=-1)
-    turns = lowest_along_ratio(ratios, ends[..., 1], zeta, rule, families)
+    model = SpringDamperModel(SpringDamper(ratios, zeta, rule))
+    saddle_nodes = model.saddle_node(families[:, np.newaxis]).amplitude
+    doublings = model.period_doubling(families[:, np.newaxis]).amplitude
+    ends = np.stack([saddle_nodes, doublings], axis=-1)
+    turns = lowest_along_ratio(ratios, doublings, zeta, rule, families)
     return xr.Dataset(
         {
             "bifurcation_amplitude": (("n", "frequency_ratio", "bound"), ends),
@@ -93,7 +96,16 @@ def _thresholds(wanted: RuleThresholds) -> xr.Dataset:
         "force release, its own r": (Release.FORCE, own),
     }
     found = [
-        thresholds_along(wanted, rule, wanted.quantities, [wanted.tolerance], simple)
+        errors_along_ratio(
+            r,
+            rule,
+            n=wanted.n,
+            amplitude=wanted.amplitude,
+            ratios=wanted.frequency_ratio.grid(),
+            quantities=wanted.quantities,
+            tolerances=[wanted.tolerance],
+            compared_restitution=simple,
+        )
         .isel(tolerance=0, drop=True)
         .drop_dims("frequency_ratio")
         .assign_coords(reading=reading)
@@ -133,18 +145,20 @@ def free_impacts(parameters: FreeImpacts) -> xr.Dataset:
     ends that contact, and ``end_restitution``, over ``release``.
     """
     zeta = np.linspace(0.0, damping_ratio(parameters.restitution_min), parameters.samples)
-    shown = float(damping_ratio(parameters.restitution))
-    along, ones = ([SpringDamper(1.0, z, rule) for rule in Release] for z in (zeta, shown))
-    time = np.linspace(0.0, float(ones[0].free_duration), parameters.samples)
-    penetration, rate = responses(time, 1.0, shown).impulse
+    along = [SpringDamper(1.0, zeta, rule) for rule in Release]
+    shown_zeta = float(damping_ratio(parameters.restitution))
+    shown = [SpringDamper(1.0, shown_zeta, rule) for rule in Release]
+    paper_release = SpringDamper(1.0, shown_zeta, Release.DISPLACEMENT)
+    time = np.linspace(0.0, float(paper_release.free_duration), parameters.samples)
+    penetration, rate = responses(time, 1.0, shown_zeta).impulse
     dims = ("release", "damping_ratio")
     return described(
         {
-            "restitution": (dims, [one.restitution for one in along]),
-            "contact_duration": (dims, [one.free_duration for one in along]),
-            "free_force": ("time", ones[0].force(penetration, rate)),
-            "contact_end": ("release", [float(one.free_duration) for one in ones]),
-            "end_restitution": ("release", [float(one.restitution) for one in ones]),
+            "restitution": (dims, [contact.restitution for contact in along]),
+            "contact_duration": (dims, [contact.free_duration for contact in along]),
+            "free_force": ("time", paper_release.force(penetration, rate)),
+            "contact_end": ("release", [float(contact.free_duration) for contact in shown]),
+            "end_restitution": ("release", [float(contact.restitution) for contact in shown]),
         },
         coords={"release": [str(rule) for rule in Release], "damping_ratio": zeta, "time": time},
         variables=VARIABLES,

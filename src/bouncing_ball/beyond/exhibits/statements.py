@@ -205,8 +205,9 @@ def longer_transients(data):
     their intervals that are closest to each other
     """
     lives = data["ext_lives"].sel(case=2)
-    contact, simple = (limits(lives, "mean_life", life_ratio=x) for x in (1e4, np.inf))
-    return decided(contact / simple[[0, 2, 1]], above=10)
+    contact = limits(lives, "mean_life", life_ratio=1e4)
+    simple, simple_low, simple_high = limits(lives, "mean_life", life_ratio=np.inf)
+    return decided(contact / np.array([simple, simple_high, simple_low]), above=10)
 
 
 def statements(data: Mapping[str, xr.Dataset]) -> xr.Dataset:

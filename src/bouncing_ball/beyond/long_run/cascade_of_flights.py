@@ -181,12 +181,12 @@ class _StiffContact:
         swing = complex(start, -(speed + aside + zeta * start) / root.imag)
         return cls(excess, aside, root, swing)
 
-    def height(self, t: ArrayLike) -> Any:
+    def height(self, t: Any) -> Any:
         """x at times t since the start."""
         oscillation = np.real(self.swing * np.exp(self.root * t))
         return self.excess - (self.aside + t) ** 2 / 2 + oscillation
 
-    def rate(self, t: ArrayLike) -> Any:
+    def rate(self, t: Any) -> Any:
         """x′ at times t since the start."""
         return -self.aside - t + np.real(self.root * self.swing * np.exp(self.root * t))
 
@@ -377,7 +377,8 @@ def _followed(
     origin = np.zeros((*threshold.shape, size))
     origin[..., 0] = np.pi / 2
     origin[..., 1] = threshold
-    # The powers of 1/ϖ by which φ, Λ, the times and the speeds differ from the origin.
+    # The powers of 1/ϖ by which φ, Λ, the times and the speeds are scaled. The first speed is
+    # scaled like a time, which only changes the guesses for it.
     power = np.repeat([1.0, 2.0, 1.0, 3.0], [1, 1, legs + 1, legs - 1])
     unit = omega[:, np.newaxis] ** -power
 

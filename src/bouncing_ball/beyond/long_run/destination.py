@@ -230,7 +230,8 @@ def _follow(
             after, passed = now.fly(departure)
             change = now.jacobian(impact, departure, after, passed)
             _advance(balls, change, passed, departure.sticks)
-            going = _not_repeating(balls, *now.section(after), impacts, found)
+            phase, velocity = now.section(after)
+            going = _not_repeating(balls, phase, velocity, impacts, found)
             impact = after
             if going.size < balls.lane.size:
                 _store_last_impacts(found, balls, impact, going)

@@ -3,6 +3,7 @@
 All quantities are dimensionless, and phases are in radians.
 """
 
+import math
 from typing import Any
 
 import numpy as np
@@ -12,18 +13,39 @@ from bouncing_ball.beyond.corrected.instant import instant_of
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.motions import Kind, Motions
 from bouncing_ball.datasets import CASE
-from bouncing_ball.datasets.variables import described
+from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.errors import ParameterError
+
+VARIABLES = {
+    "digits_lost": Variable(
+        "decimal digits of the start that the motion has lost on the way", budget=math.inf
+    ),
+    "end_velocity": Variable("velocity of the ball before that impact"),
+    "start": Variable("start of a ball at one amplitude"),
+    "impact": Variable("impact of the motion on which the ball ends"),
+    "impact_phase": Variable(
+        "phase of the table at an impact of the motion on which the ball ends",
+        symbol="φ",
+        units="rad",
+    ),
+    "impact_speed": Variable(
+        "speed of the ball towards the table at an impact of the motion on which it ends"
+    ),
+    "motion_kind": Variable("kind of one of the motions on which balls end"),
+    "motion_periods": Variable("periods of the table after which one of the motions repeats"),
+    "motion_impacts": Variable("impacts until one of the motions repeats"),
+    "share_error": Variable("standard error of a share"),
+}
 
 MOST_BALLS = 20_000_000
 """Largest number of balls that are followed at the same time; they take some gigabytes."""
-# Balls start again from the ends of balls that are this many amplitudes away. The fractional parts
-# of multiples of the two numbers in _EVEN cover a square evenly.
+# Balls start again from the ends of balls that are this many amplitudes away.
 _FURTHER = (1, 4)
 # Families of orbits beside which balls start, and the difference between their phases.
-_FAMILIES, _BESIDE = (1, 2, 3), 1e-3
+_FAMILIES = (1, 2, 3)
+_BESIDE = 1e-3
+# The fractional parts of multiples of these two numbers cover a square evenly.
 _EVEN = np.array([0.7548776662466927, 0.5698402909980532])
-_SEEN = ("impact_phase", "impact_speed")
 REACH = max(_FURTHER)
 """The motions at one Λ depend on at most this number of amplitudes on each side."""
 
@@ -45,12 +67,6 @@ def require_memory(balls: int, what: str) -> None:
         )
 
 
-def _columns(found: Motions, dims: tuple[str, ...]) -> dict[str, Any]:
-    names = {"exponent": "lyapunov_exponent", "exponent_error": "lyapunov_error"}
-    shown = {name: value for name, value in vars(found).items() if name != "followed"}
-    return {names.get(name, name): (dims, value) for name, value in shown.items()}
-
-
 def motions(
     model: Any, amplitude: np.ndarray, phase: np.ndarray, velocity: np.ndarray, impacts: int
 ) -> xr.Dataset:
@@ -66,7 +82,17 @@ def motions(
     """
     require_memory(amplitude.size, "a grid of starts")
     found = final_motions(model.impact_law, amplitude, phase, velocity, impacts=impacts)
-    return described(_columns(found, (CASE,)))
+    return described(_variables(found, (CASE,)), variables=VARIABLES)
+
+
+def _variables(found: Motions, dims: tuple[str, ...]) -> dict[str, Any]:
+    """The fields of motions as the variables of a dataset over these dimensions."""
+    renamed = {"exponent": "lyapunov_exponent", "exponent_error": "lyapunov_error"}
+    return {
+        renamed.get(name, name): (dims, values)
+        for name, values in vars(found).items()
+        if name != "followed"
+    }
 
 
 def fastest(model: Any, amplitude: Any) -> np.ndarray:
@@ -104,24 +130,54 @@ def diagram(
     balls = starts + len(_FAMILIES) + 2 * len(_FURTHER)
     require_memory(amplitude.size * balls * samples, "amplitudes, starts and samples")
     lam = amplitude[:, np.newaxis]
+    phase, speed = _first_starts(model, lam, starts)
+    found = _ends(model, lam, phase, speed, impacts)
+    phase, speed = _starts_from_neighbours(found, amplitude)
+    swept = _ends(model, lam, phase, speed, impacts)
+    found = _beside(found, swept)
+    impact_phase, impact_speed = _impacts(model, lam, found, samples)
+    dims = ("amplitude", "start")
+    data = {
+        **_variables(found, dims),
+        "impact_phase": ((*dims, "impact"), impact_phase),
+        "impact_speed": ((*dims, "impact"), impact_speed),
+    }
+    return described(data, {"amplitude": amplitude}, VARIABLES)
+
+
+def _first_starts(model: Any, lam: np.ndarray, starts: int) -> tuple[np.ndarray, np.ndarray]:
+    """Phases and speeds of impacts that cover their ranges evenly, and beside n-T orbits.
+
+    Λ has the shape (amplitudes, 1), and the results the shape (amplitudes, balls).
+    """
     even = np.mod(0.5 + np.arange(1, starts + 1)[:, np.newaxis] * _EVEN, 1.0)
+    even_phase = 2 * np.pi * even[:, 0] - np.pi + 0 * lam
+    even_speed = even[:, 1] * fastest(model, lam)
     # More balls start beside the orbits with one impact, which may attract few of the other balls.
     orbit = model.orbit(np.array(_FAMILIES), np.where(lam > 0, lam, np.nan))
-    phase = 2 * np.pi * even[:, 0] - np.pi + 0 * lam, orbit.phase + _BESIDE
-    speed = even[:, 1] * fastest(model, lam), -orbit.relative_impact_velocity
-    found = _ends(model, lam, np.concatenate(phase, 1), np.concatenate(speed, 1), impacts)
-    # The ends of the first ball at two lower and at two higher Λ.
-    place = np.arange(amplitude.size)[:, np.newaxis] + np.multiply.outer([-1, 1], _FURTHER).ravel()
+    phase = np.concatenate([even_phase, orbit.phase + _BESIDE], axis=1)
+    speed = np.concatenate([even_speed, -orbit.relative_impact_velocity], axis=1)
+    return phase, speed
+
+
+def _starts_from_neighbours(found: Motions, amplitude: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Phases and speeds of the ends of the first balls at two lower and at two higher Λ."""
+    steps = np.multiply.outer([-1, 1], _FURTHER).ravel()
+    place = np.arange(amplitude.size)[:, np.newaxis] + steps
     place = np.clip(place, 0, amplitude.size - 1)
-    phase, velocity = found.end_phase[place, 0], found.end_velocity[place, 0]
-    speed = amplitude[place] * np.cos(phase) - velocity
-    swept = _ends(model, lam, phase, speed, impacts)
-    both = zip(vars(found).values(), vars(swept).values(), strict=True)
-    found = Motions(*(np.concatenate(x, 1) for x in both))
-    seen = _impacts(model, lam, found, samples)
-    dims = ("amplitude", "start")
-    data = {name: ((*dims, "impact"), x) for name, x in zip(_SEEN, seen, strict=True)}
-    return described(_columns(found, dims) | data, {"amplitude": amplitude})
+    phase = found.end_phase[place, 0]
+    velocity = found.end_velocity[place, 0]
+    return phase, amplitude[place] * np.cos(phase) - velocity
+
+
+def _beside(found: Motions, more: Motions) -> Motions:
+    """Two groups of motions side by side, along their second axis."""
+    return Motions(
+        **{
+            name: np.concatenate([values, getattr(more, name)], axis=1)
+            for name, values in vars(found).items()
+        }
+    )
 
 
 def _ends(
@@ -131,9 +187,10 @@ def _ends(
 
     If the speed is not positive, for example for a ball on the table, the ball starts with speed 1.
     """
-    phase, speed = np.nan_to_num(phase), np.where(speed > 0, speed, 1.0)
-    return final_motions(model.impact_law, amplitude, phase, amplitude * np.cos(phase) - speed,
-                 impacts=impacts)  # fmt: skip
+    phase = np.nan_to_num(phase)
+    speed = np.where(speed > 0, speed, 1.0)
+    velocity = amplitude * np.cos(phase) - speed
+    return final_motions(model.impact_law, amplitude, phase, velocity, impacts=impacts)
 
 
 def _impacts(model: Any, amplitude: np.ndarray, found: Motions, samples: int) -> np.ndarray:
@@ -147,8 +204,8 @@ def _impacts(model: Any, amplitude: np.ndarray, found: Motions, samples: int) ->
         )
         seen[:, :, falls] = sequence.phase, -sequence.relative_velocity
     length = np.where(found.impacts > 0, found.impacts, samples)
-    late = np.arange(samples).reshape(-1, *(1,) * length.ndim) >= length
-    return np.moveaxis(np.where(late, np.nan, seen), 1, -1)
+    number = np.expand_dims(np.arange(samples), tuple(range(1, length.ndim + 1)))
+    return np.moveaxis(np.where(number >= length, np.nan, seen), 1, -1)
 
 
 def basins(
@@ -167,27 +224,25 @@ def basins(
     """
     require_memory(starts * starts, "a grid of starts")
     middle = (np.arange(starts) + 0.5) / starts
-    top = float(fastest(model, amplitude)) if fast is None else fast
-    phase, speed = 2 * np.pi * middle - np.pi, top * middle
-    phi, towards = np.meshgrid(phase, speed)
-    law = model.impact_law
-    found = final_motions(law, amplitude, phi, amplitude * np.cos(phi) - towards, impacts=impacts)
-    names = np.array(list(Kind))
-    number = np.argmax(found.kind[..., np.newaxis] == names, axis=-1)
-    key = np.stack([number, found.periods, found.impacts], axis=-1).reshape(-1, 3)
-    known, which, count = np.unique(key, axis=0, return_inverse=True, return_counts=True)
-    share, dims = count / which.size, ("start_speed", "start_phase")
-    of_motions = {
-        "motion_kind": names[known[:, 0]],
-        "motion_periods": known[:, 1],
-        "motion_impacts": known[:, 2],
-        "share": share,
-        "share_error": np.sqrt(share * (1 - share) / which.size),
-    }
+    phase = 2 * np.pi * middle - np.pi
+    speed = (float(fastest(model, amplitude)) if fast is None else fast) * middle
+    start_phase, start_speed = np.meshgrid(phase, speed)
+    velocity = amplitude * np.cos(start_phase) - start_speed
+    found = final_motions(model.impact_law, amplitude, start_phase, velocity, impacts=impacts)
+    kinds = np.array(list(Kind))
+    kind_number = np.argmax(found.kind[..., np.newaxis] == kinds, axis=-1)
+    keys = np.stack([kind_number, found.periods, found.impacts], axis=-1).reshape(-1, 3)
+    known, which, count = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
+    share = count / which.size
+    dims = ("start_speed", "start_phase")
     data = {
         "destination": (dims, which.reshape(found.shape)),
         "lyapunov_exponent": (dims, found.exponent),
-        **{name: ("motion", values) for name, values in of_motions.items()},
+        "motion_kind": ("motion", kinds[known[:, 0]]),
+        "motion_periods": ("motion", known[:, 1]),
+        "motion_impacts": ("motion", known[:, 2]),
+        "share": ("motion", share),
+        "share_error": ("motion", np.sqrt(share * (1 - share) / which.size)),
     }
     coords = {"start_phase": phase, "start_speed": speed}
-    return described(data, coords)
+    return described(data, coords, VARIABLES)

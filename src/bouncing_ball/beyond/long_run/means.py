@@ -1,6 +1,7 @@
-"""Integrals of a ball's height and of the power it receives, over contacts and flights.
+"""Means over the motions of balls: flights, height, received power, growth of deviations.
 
-The work of the table w = Λ sin τ on a ball is, per unit of mass, ::
+The means of height and power follow from integrals over contacts and flights. The work of the table
+w = Λ sin τ on a ball is, per unit of mass, ::
 
     ∫ (z″ + 1) w′ dτ = [z′ w′ + w] + ∫ z′ w dτ
 
@@ -11,11 +12,9 @@ gives ::
     (ϖ² - 1) I + l J = [w²/2 - w - δ′ w′ - δ w - l δ w′],                 I = ∫ δ w′ dτ
     (ϖ² - 1) J - l I = Λ² D/2 + [w′ - w w′/2 - δ′ w + δ w′ - l δ w],      J = ∫ δ w dτ
 
-The table does no work in a flight. Over a long time its mean work equals the mean dissipation of
-the contacts. At an instantaneous impact the work is the impulse times w′, and while a ball rests on
-the table it is the integral of (1 - w) w′.
-
-Means over time of the flights, height, received power and growth of deviations of balls.
+The table does no work in a flight. At an instantaneous impact its work is the impulse times w′, and
+while a ball rests on the table it is the integral of (1 - w) w′. Over a long time the mean work
+equals the mean dissipation of the contacts.
 """
 
 from typing import Any
@@ -26,14 +25,15 @@ from numpy.typing import ArrayLike
 from bouncing_ball.beyond.laws.collocation import integrals
 from bouncing_ball.beyond.long_run.motions import Motions
 from bouncing_ball.beyond.simulation import Law, dynamics_of
+from bouncing_ball.paper.contact.law import ContactLaw
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.motion.dynamics import Departure, Dynamics, Impact
 from bouncing_ball.paper.motion.flight import table
-from bouncing_ball.paper.motion.linear_contact import LinearContactDynamics, has_closed_form
+from bouncing_ball.paper.motion.linear_contact import has_closed_form
 from bouncing_ball.paper.motion.sequence import Status
 
 
-def change(values: np.ndarray) -> np.ndarray:
+def _change(values: np.ndarray) -> np.ndarray:
     """The value at the end of a contact minus the value at its start."""
     return values[1] - values[0]
 
@@ -62,15 +62,19 @@ def over_contact(
     >>> [float(x[0]) for x in over_contact(law, 0.0, 2.0, (still, still), gap, rate)]
     [-1.0, 0.0]
     """
-    (w_rate, w), stiffness = level, law.frequency_ratio**2
+    w_rate, w = level
+    stiffness = law.frequency_ratio**2
     loss = 2 * law.damping_ratio * law.frequency_ratio
-    of_rate = change(w * w / 2 - w - rate * w_rate - gap * w - loss * gap * w_rate)
-    of_level = change(w_rate - w * w_rate / 2 - rate * w + gap * w_rate - loss * gap * w)
+    # The right-hand sides of the equations for I and J, which are then solved for I.
+    of_rate = _change(w * w / 2 - w - rate * w_rate - gap * w - loss * gap * w_rate)
+    of_level = _change(w_rate - w * w_rate / 2 - rate * w + gap * w_rate - loss * gap * w)
     of_level = of_level + np.square(amplitude) * duration / 2
     s = stiffness - 1
-    by_rate = (s * of_rate - loss * of_level) / (s * s + loss * loss)
-    sunk = -(change(w_rate + rate + loss * gap) + duration) / stiffness
-    return sunk - change(w_rate), change(gap * w + w * w / 2) - by_rate
+    integral_of_rate = (s * of_rate - loss * of_level) / (s * s + loss * loss)
+    integral_of_gap = -(_change(w_rate + rate + loss * gap) + duration) / stiffness
+    height = integral_of_gap - _change(w_rate)
+    work = _change(gap * w + w * w / 2) - integral_of_rate
+    return height, work
 
 
 def over_steps(
@@ -107,14 +111,17 @@ def over_steps(
     if isinstance(law, SpringDamper) and has_closed_form(law):
         held, moved = over_contact(law, amplitude, duration, (w_rate, w), gap, rate)
     else:
-        held, moved = -change(w_rate), change(w * w) / 2
+        held = -_change(w_rate)
+        moved = _change(w * w) / 2
         if law is not None:
-            held, moved = (held, moved) - integrals(
-                law, duration, -gap[0], -rate[0], phase[0], amplitude
-            )
-    low, velocity = (gap + w)[1], rate + w_rate
-    height = held + (low + (velocity[1] / 2 - flown / 6) * flown) * flown
-    return height, change(velocity * w_rate + w) + moved
+            sunk, sunk_moved = integrals(law, duration, -gap[0], -rate[0], phase[0], amplitude)
+            held = held - sunk
+            moved = moved - sunk_moved
+    release_height = gap[1] + w[1]
+    velocity = rate + w_rate
+    height = held + (release_height + (velocity[1] / 2 - flown / 6) * flown) * flown
+    work = _change(velocity * w_rate + w) + moved
+    return height, work
 
 
 def means(law: Law, amplitude: ArrayLike, found: Motions, samples: int) -> np.ndarray:
@@ -140,27 +147,34 @@ def means(law: Law, amplitude: ArrayLike, found: Motions, samples: int) -> np.nd
     (1.0, True)
     """
     lam, phase, velocity = np.broadcast_arrays(amplitude, found.end_phase, found.end_velocity)
+    # A ball that stays on the table has no impacts; its state here is that of a ball at rest.
     falls = np.isfinite(phase)
-    # A ball that stays on the table is not followed.
-    state = np.where(falls, [phase, velocity], [0 * lam, lam])
-    dynamics, start, relative, shape = dynamics_of(law, lam).first_impacts(*state)
-    left = np.where(found.impacts > 0, found.impacts, samples).ravel() * falls.ravel()
-    total = np.full((5, left.size), np.nan)
-    _add_up(dynamics, dynamics.start(start, relative), left, total)
+    phase = np.where(falls, phase, 0 * lam)
+    velocity = np.where(falls, velocity, lam)
+    dynamics, start, relative, shape = dynamics_of(law, lam).first_impacts(phase, velocity)
+    impacts = np.where(found.impacts > 0, found.impacts, samples).ravel() * falls.ravel()
+    total = np.full((5, impacts.size), np.nan)
+    _add_up(dynamics, dynamics.start(start, relative), impacts, total)
     time, flights, height, work, growth = total.reshape(5, *shape)
     turns = time / (2 * np.pi)
     return np.stack([flights / turns, height / time, work / time, growth / turns])
 
 
-def _add_up(dynamics: Dynamics, impact: Impact, left: np.ndarray, total: np.ndarray) -> None:
-    """Add up times, flights, heights, works and logarithms in ``total``, over ``left`` impacts."""
-    ball = np.arange(left.size)
-    along, across, done = np.ones(left.size), np.zeros(left.size), 0
-    total[:, left > 0] = 0.0
+def _add_up(dynamics: Dynamics, impact: Impact, impacts: np.ndarray, total: np.ndarray) -> None:
+    """Add up times, flights, heights, works and logarithms in ``total``, shape (5, balls).
+
+    ``impacts`` are the numbers of impacts over which they are added up.
+    """
+    ball = np.arange(impacts.size)
+    along = np.ones(impacts.size)
+    across = np.zeros(impacts.size)
+    done = 0
+    total[:, impacts > 0] = 0.0
     while True:
         departure = dynamics.depart(impact, differentiate=True)
-        total[:, ball[departure.status != Status.BOUNCING]] = np.nan
-        going = np.flatnonzero((left[ball] > done) & (departure.status == Status.BOUNCING))
+        bounces = departure.status == Status.BOUNCING
+        total[:, ball[~bounces]] = np.nan
+        going = np.flatnonzero((impacts[ball] > done) & bounces)
         if going.size < ball.size:
             rows = impact, departure, ball, along, across
             dynamics, impact, departure, ball, along, across = dynamics.kept(going, *rows)
@@ -168,15 +182,21 @@ def _add_up(dynamics: Dynamics, impact: Impact, left: np.ndarray, total: np.ndar
             return
         after, passed = dynamics.fly(departure)
         change = dynamics.jacobian(impact, departure, after, passed)
-        along, across = change.apply(along, across)
-        length = np.hypot(along, across)
-        # After a ball of a simple model has stuck, the deviation is zero.
-        along, length = np.where(length > 0, along, 1.0), np.where(length > 0, length, 1.0)
-        along, across = along / length, across / length
+        along, across, growth = _grown(*change.apply(along, across))
         flights = np.where(departure.settling > 0, np.inf, 1.0)
         height, work = _step(dynamics, impact, departure, after, passed)
-        total[:, ball] += np.stack([passed, flights + 0 * passed, height, work, np.log(length)])
-        impact, done = after, done + 1
+        total[:, ball] += np.stack([passed, flights + 0 * passed, height, work, growth])
+        impact = after
+        done += 1
+
+
+def _grown(along: np.ndarray, across: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Deviations normalised to length 1, and the logarithms of their lengths."""
+    length = np.hypot(along, across)
+    # After a ball of a simple model has stuck, the deviation is zero.
+    along = np.where(length > 0, along, 1.0)
+    length = np.where(length > 0, length, 1.0)
+    return along / length, across / length, np.log(length)
 
 
 def _step(
@@ -185,15 +205,46 @@ def _step(
     """∫ z dτ and the work from one impact to the next, or from one instant to the next in the
     corrected model.
     """
-    lam, flight, hit = dynamics.amplitude, departure.flight, impact.known
-    start, end = impact[:3], (departure.phase, flight.displacement, flight.velocity)
-    duration = departure.duration
-    if hit is not None:
-        (x, y), sticks = table(hit.phase, lam), departure.sticks
-        start, thrown = ((hit.phase, hit.height - y, v - x) for v in (hit.arrival, hit.velocity))
-        end = tuple(np.where(sticks, *pair) for pair in zip(end, thrown, strict=True))
-        begin, late = hit.instant.delay, after.known.instant.delay
-        duration, passed = np.where(sticks, duration - begin, 0.0), passed - begin + late
-    law = dynamics.law if isinstance(dynamics, LinearContactDynamics) else None
-    phase, gap, rate = map(np.array, zip(start, end, strict=True))
-    return over_steps(law, lam, duration, phase, gap, rate, passed - duration)
+    lam = dynamics.amplitude
+    if impact.known is not None:
+        return _step_of_instants(lam, impact.known, departure, after.known, passed)
+    law = dynamics.law if isinstance(dynamics.law, ContactLaw) else None
+    flight = departure.flight
+    return over_steps(
+        law,
+        lam,
+        departure.duration,
+        phase=np.array([impact.phase, departure.phase]),
+        gap=np.array([impact.displacement, flight.displacement]),
+        rate=np.array([impact.velocity, flight.velocity]),
+        flown=passed - departure.duration,
+    )
+
+
+def _step_of_instants(
+    lam: np.ndarray, hit: Any, departure: Departure, next_hit: Any, passed: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """∫ z dτ and the work from one instant of the corrected model to the next.
+
+    A ball that sticks rests on the table after the instant. ``passed`` is the time between the
+    starts of the two contacts.
+    """
+    x, y = table(hit.phase, lam)
+    displacement = hit.height - y
+    sticks = departure.sticks
+    flight = departure.flight
+    delay = hit.instant.delay
+    duration = np.where(sticks, departure.duration - delay, 0.0)
+    between = passed - delay + next_hit.instant.delay
+    end_phase = np.where(sticks, departure.phase, hit.phase)
+    end_displacement = np.where(sticks, flight.displacement, displacement)
+    end_velocity = np.where(sticks, flight.velocity, hit.velocity - x)
+    return over_steps(
+        None,
+        lam,
+        duration,
+        phase=np.array([hit.phase, end_phase]),
+        gap=np.array([displacement, end_displacement]),
+        rate=np.array([hit.arrival - x, end_velocity]),
+        flown=between - duration,
+    )

@@ -29,14 +29,19 @@ FEIGENBAUM = 4.669201609102990
 # Step of the central differences; it affects only the convergence of Newton's method.
 _DIFFERENCE = 1e-6
 _SETTINGS = NewtonSettings(max_iterations=25, longest=0.3)
-# The doubled orbit is computed at _SHARE of the estimated distance in Λ to its next doubling. The
-# first estimate is _FIRST sin φ, because Λ cos φ is constant along a family (Eq. 6) and doublings
-# occur at nearly the same Λ sin φ for all n, so that dΛ = sin φ d(Λ sin φ); the later estimates
-# follow from Feigenbaum's number. Nearly elastic impacts nearly preserve areas; the ratio then
-# tends to 8.72 first (J. M. Greene et al., 1981), so that the share must be below 4.67/8.72 = 0.54.
-# The map starts beside the old orbit, at _ASIDE times the square root of the distance in Λ, and is
-# iterated over _IMPACTS impacts, and at least _TURNS turns.
-_SHARE, _FIRST, _ASIDE, _IMPACTS, _TURNS = 0.4, 0.15, 0.2, 48, 20
+# The doubled orbit is computed at this share of the estimated distance in Λ to its next doubling.
+# Nearly elastic impacts nearly preserve areas; the ratio of distances then tends to 8.72 first
+# (J. M. Greene et al., 1981), so that the share must be below 4.67/8.72 = 0.54.
+_SHARE = 0.4
+# The first estimate of the distance is this number times sin φ, because Λ cos φ is constant along a
+# family (Eq. 6) and doublings occur at nearly the same Λ sin φ for all n, so that
+# dΛ = sin φ d(Λ sin φ). The later estimates follow from Feigenbaum's number.
+_FIRST = 0.15
+# The map starts beside the old orbit, at this number times the square root of the distance in Λ.
+_ASIDE = 0.2
+# The map is iterated over this number of impacts, and at least this number of turns.
+_IMPACTS = 48
+_TURNS = 20
 MOST = 8
 """Largest number of doublings that double precision resolves."""
 
@@ -86,8 +91,10 @@ class Turns:
         dynamics = dynamics_of(self.law, np.abs(amplitude))
         dynamics, (phase, velocity), shape = dynamics.in_a_row(phase, velocity)
         impact = dynamics.at_section(phase, velocity)
-        change, time = Jacobian.identity(phase.size), np.zeros(phase.size)
-        moving, found = np.arange(phase.size), np.full((7, phase.size), np.nan)
+        change = Jacobian.identity(phase.size)
+        time = np.zeros(phase.size)
+        moving = np.arange(phase.size)
+        found = np.full((7, phase.size), np.nan)
         for _ in range(self.impacts):
             departure = dynamics.depart(impact, differentiate=differentiate)
             going = np.flatnonzero(departure.status == Status.BOUNCING)
@@ -98,12 +105,13 @@ class Turns:
             if differentiate:
                 change = dynamics.jacobian(impact, departure, after, passed).after(change)
             # The time between two instants differs from the time between two contacts.
-            (start, _), (end, velocity) = dynamics.section(impact), dynamics.section(after)
-            time += passed + reduce_angle(end - start - passed)
+            start_phase, _ = dynamics.section(impact)
+            end_phase, end_velocity = dynamics.section(after)
+            time += passed + reduce_angle(end_phase - start_phase - passed)
             impact = after
-        found[:, moving] = end, velocity, time, *change
-        end, velocity, time, *entries = found.reshape(7, *shape)
-        return end, velocity, time, Jacobian(*entries)
+        found[:, moving] = end_phase, end_velocity, time, *change
+        phase, velocity, time, *entries = found.reshape(7, *shape)
+        return phase, velocity, time, Jacobian(*entries)
 
     def system(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The differences in time and velocity between Pᵐ(s) and s, and 1 + tr M + det M, shape
@@ -111,13 +119,14 @@ class Turns:
         from M.
         """
         steps = _DIFFERENCE * np.concatenate([np.zeros((1, 3)), np.eye(3), -np.eye(3)])
-        moved = y + steps.reshape(7, *(1,) * (y.ndim - 1), 3)
+        leading_axes = tuple(range(1, y.ndim))
+        moved = y + np.expand_dims(steps, leading_axes)
         _, velocity, time, m = self.after(moved)
         late = time - 2 * np.pi * np.asarray(self.n) * self.impacts
-        double = 1 + m.a + m.d + m.a * m.d - m.b * m.c
-        values = np.stack([late, velocity - moved[..., 1], double], axis=-1)
+        doubling = 1 + m.a + m.d + m.a * m.d - m.b * m.c
+        values = np.stack([late, velocity - moved[..., 1], doubling], axis=-1)
         matrix = np.moveaxis(values[1:4] - values[4:], 0, -1) / (2 * _DIFFERENCE)
-        by_state = np.stack([x[0] for x in m], axis=-1).reshape(*y.shape[:-1], 2, 2)
+        by_state = np.stack([entry[0] for entry in m], axis=-1).reshape(*y.shape[:-1], 2, 2)
         matrix[..., :2, :2] = by_state - np.eye(2)
         return values[0], matrix
 
@@ -145,11 +154,11 @@ def cascade(orbit: Orbit, doublings: int) -> Cascade:
     ([1.526824, 1.667131, 1.696781, 1.703181], [4.73, 4.63])
     """
     require(1 <= doublings <= MOST, doublings, "number of period doublings", f"from 1 to {MOST}")
-    whole = orbit.flat(orbit.shape)
-    there = np.flatnonzero(np.broadcast_to(orbit.exists, orbit.shape))
+    existing = np.flatnonzero(np.broadcast_to(orbit.exists, orbit.shape))
     found = np.full((doublings, orbit.size, 3), np.nan)
-    if there.size:
-        found[:, there] = _followed(whole.take(there), doublings)
+    if existing.size:
+        row = orbit.flat(orbit.shape).take(existing)
+        found[:, existing] = _followed(row, doublings)
     phase, velocity, amplitude = np.moveaxis(found, -1, 0).reshape(3, doublings, *orbit.shape)
     return Cascade(amplitude, reduce_angle(phase), velocity)
 
@@ -158,29 +167,36 @@ def _followed(row: Orbit, doublings: int) -> np.ndarray:
     """Points y at the doublings of a one-dimensional array of orbits, (doublings, orbits, 3)."""
     dynamics = dynamics_of(row.law, row.amplitude)
     dynamics, start, _ = dynamics.in_a_row(row.phase, row.relative_impact_velocity)
-    first = dynamics.section(dynamics.start(*start))
-    y = np.stack(np.broadcast_arrays(*first, row.amplitude), axis=-1)
+    phase, velocity = dynamics.section(dynamics.start(*start))
+    y = np.stack(np.broadcast_arrays(phase, velocity, row.amplitude), axis=-1)
     found = np.full((doublings, *y.shape), np.nan)
-    found[0], gap, which = y, _FIRST * np.abs(np.sin(y[:, 0])), np.arange(len(y))
+    found[0] = y
+    gap = _FIRST * np.abs(np.sin(phase))
+    which = np.arange(len(y))
     for k in range(1, doublings):
-        old, turns = (Turns(row.law, row.n, 2**m) for m in (k - 1, k))
+        old = Turns(row.law, row.n, 2 ** (k - 1))
+        turns = Turns(row.law, row.n, 2**k)
         solved = solve(turns.system, _doubled(old, turns, y, _SHARE * gap), _SETTINGS)
         step = solved.point[:, -1] - y[:, -1]
         # Λ rises along a cascade; a doubling at or below the previous Λ is that of the old orbit.
         # Feigenbaum's number underestimates a distance by a factor of at most 1.8 in all cascades
         # that were tried; a doubling farther away is that of another orbit.
         good = np.flatnonzero(solved.converged & (step > 0) & ((k == 1) | (step < 2 * gap)))
-        row, which, y = row.take(good), which[good], solved.point[good]
-        found[k, which], gap = y, step[good] / FEIGENBAUM
+        row = row.take(good)
+        which = which[good]
+        y = solved.point[good]
+        found[k, which] = y
+        gap = step[good] / FEIGENBAUM
     return found
 
 
 def _doubled(old: Turns, turns: Turns, y: np.ndarray, above: np.ndarray) -> np.ndarray:
     """Points of the attracting orbits of twice the period, at Λ a little above the doubling."""
-    change = old.after(y)[-1]
+    _, _, _, change = old.after(y)
     # The eigenvector of an eigenvalue μ is (μ - d, c), here with μ = -1.
     along = np.stack([-1 - change.d, change.c], axis=-1)
-    aside = _ASIDE * np.sqrt(above) / np.hypot(*np.moveaxis(along, -1, 0))
+    length = np.hypot(along[..., 0], along[..., 1])
+    aside = _ASIDE * np.sqrt(above) / length
     y = y + np.concatenate([along * aside[:, np.newaxis], above[:, np.newaxis]], axis=-1)
     for _ in range(max(_TURNS, _IMPACTS // turns.impacts)):
         phase, velocity, _, _ = turns.after(y, differentiate=False)

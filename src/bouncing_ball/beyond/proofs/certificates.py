@@ -24,9 +24,10 @@ from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits import spring_damper_bifurcations as double
 from bouncing_ball.paper.orbits.stability import Side
 
-# Bits beyond the digits that are asked for: cancellation on stiff contacts costs about log2(ϖ²),
-# and the ball of the proof is wider than the last Newton step.
-_GUARD = 64
+# Bits beyond the digits that are asked for and those that stiff contacts cost by cancellation, about
+# log2(ϖ²). With so many the ball is far narrower than the last decimal digit, so that the decimal
+# number and its error are the same whatever the double precision of the start.
+_GUARD = 160
 # Largest number of Newton steps with long numbers: each doubles the digits of the start.
 _STEPS = 12
 # The ball of the proof is the last Newton step times these factors, tried in turn.
@@ -42,13 +43,13 @@ class ProofError(ModelError):
 class Proved(StrEnum):
     """What a certificate proves."""
 
-    UNIQUE = "the ball contains exactly one solution"
-    FOLD = "Λ has a quadratic minimum or maximum along the branch"
-    CROSSING = "a multiplier crosses -1 with non-zero speed along Λ"
-    INSIDE = "the other multiplier lies inside the unit circle"
-    SUPERCRITICAL = "the period doubling is supercritical"
-    SUBCRITICAL = "the period doubling is subcritical"
-    ADMISSIBLE = "no earlier release and no earlier impact occurs"
+    UNIQUE = "exactly one solution"
+    FOLD = "quadratic fold"
+    CROSSING = "multiplier crosses -1"
+    INSIDE = "other multiplier inside the unit circle"
+    SUPERCRITICAL = "supercritical"
+    SUBCRITICAL = "subcritical"
+    ADMISSIBLE = "admissible"
 
 
 @dataclass(frozen=True)

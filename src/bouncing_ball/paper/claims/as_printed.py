@@ -103,13 +103,19 @@ def contact(time, frequency_ratio, damping_ratio, amplitude, phase, a, b):
     >>> float(height), float(velocity)
     (-0.25, 0.0)
     """
-    omega, zeta = frequency_ratio, damping_ratio
-    loss, stiffness = 2 * zeta * omega, omega**2
+    omega = frequency_ratio
+    zeta = damping_ratio
+    loss = 2 * zeta * omega
+    stiffness = omega**2
     damped = omega * np.sqrt(1 - zeta**2)
     gamma = (stiffness - 1) ** 2 + loss**2
-    beta, chi = -loss / gamma, (loss**2 + stiffness * (stiffness - 1)) / gamma
-    decay, cosine, sine = np.exp(-zeta * omega * time), np.cos(damped * time), np.sin(damped * time)
-    table_cosine, table_sine = amplitude * np.cos(time + phase), amplitude * np.sin(time + phase)
+    beta = -loss / gamma
+    chi = (loss**2 + stiffness * (stiffness - 1)) / gamma
+    decay = np.exp(-zeta * omega * time)
+    cosine = np.cos(damped * time)
+    sine = np.sin(damped * time)
+    table_cosine = amplitude * np.cos(time + phase)
+    table_sine = amplitude * np.sin(time + phase)
     height = decay * (a * cosine + b * sine) - 1 / stiffness + beta * table_cosine
     velocity = decay * (
         (-zeta * omega * a + damped * b) * cosine - (damped * a + zeta * omega * b) * sine
@@ -161,7 +167,8 @@ def steady_displacement(time, frequency_ratio, damping_ratio, amplitude):
     >>> float(steady_displacement(0.0, 2.0, 0.0, 1.0))
     -0.25
     """
-    detuning, loss = frequency_ratio**2 - 1, 2 * damping_ratio * frequency_ratio
+    detuning = frequency_ratio**2 - 1
+    loss = 2 * damping_ratio * frequency_ratio
     gamma = detuning**2 + loss**2
     swing = amplitude / gamma * (detuning * np.sin(time) - loss * np.cos(time))
     return -1 / frequency_ratio**2 + swing

@@ -21,6 +21,7 @@ from bouncing_ball.paper.claims.parameters import PaperData
 from bouncing_ball.paper.claims.verdict import CLOSE_UNITS, Verdict
 
 VARIABLES = {
+    "item": Variable("figure, table or equation of the paper"),
     "orbit": Variable("orbit along the frequency ratio, curve of a figure"),
     "measure": Variable("quantity compared along these orbits"),
     "stiff_orbit_error": Variable(

@@ -23,12 +23,18 @@ def curves(data: Data, *names: str) -> xr.Dataset:
     """The sweeps of figures along ϖ with all their curves; dimensions ``orbit``,
     ``frequency_ratio``.
     """
-    read = ["apparent_restitution", "bounce_velocity", "max_height", "phase"]
-    axes = ["restitution", "amplitude"]
+    read = [
+        "restitution",
+        "amplitude",
+        "apparent_restitution",
+        "bounce_velocity",
+        "max_height",
+        "phase",
+    ]
     parts = []
     for name in names:
-        sweep = data[name].reset_coords()[read + axes].rename(case="orbit")
-        pairs = zip(*(sweep[axis].values for axis in axes), strict=True)
+        sweep = data[name].reset_coords()[read].rename(case="orbit")
+        pairs = zip(sweep.restitution.values, sweep.amplitude.values, strict=True)
         # Rounding does not change six digits, and six digits distinguish the curves.
         labels = [f"{name} r={r:.6g} Λ={lam:.6g}" for r, lam in pairs]
         parts.append(sweep.assign(n=data[name].attrs["n"]).assign_coords(orbit=labels))
@@ -50,7 +56,8 @@ def worst_when_stiff(values: xr.DataArray) -> xr.DataArray:
 def rebound(data: Data) -> xr.DataArray:
     """Largest increase of |r_a - r| above its value at a more compliant contact, by ``orbit``."""
     error = abs(apparent(data)).transpose("orbit", "frequency_ratio")
-    return (error - np.fmin.accumulate(error.values, axis=1)).max("frequency_ratio")
+    smallest_so_far = np.fmin.accumulate(error.values, axis=1)
+    return (error - smallest_so_far).max("frequency_ratio")
 
 
 def dip(data: Data, amplitude: float) -> xr.DataArray:
@@ -78,7 +85,9 @@ def stiff_orbit_error(data: Data) -> xr.DataArray:
     origin of the phase, so that the error is also given as a share of a cycle.
     """
     sweep = curves(data, "fig05", "fig06", "fig10")
-    n, r, lam = sweep.n, sweep.restitution, sweep.amplitude
+    n = sweep.n
+    r = sweep.restitution
+    lam = sweep.amplitude
     phase, velocity = printed.fixed_point(n, r, lam)
     errors = {
         "max_height": sweep.max_height / (lam * np.sin(phase) + velocity**2 / 2) - 1,
@@ -93,7 +102,8 @@ def stiff_orbit_error(data: Data) -> xr.DataArray:
 
 def amplitude_matters_below(data: Data) -> float:
     """Fig. 10: the interpolated ϖ below which the curves differ by more than 1 % of nπ."""
-    sweep, ratio = data["fig10"], data["fig10"].frequency_ratio.values
+    sweep = data["fig10"]
+    ratio = data["fig10"].frequency_ratio.values
     apart = sweep.bounce_velocity.max("case") - sweep.bounce_velocity.min("case")
     share = np.ravel(apart / sweep.restitution_bounce_velocity)
     last = int(np.flatnonzero(share > TOLERANCE).max(initial=0))
@@ -132,7 +142,8 @@ def range_error(data: Data) -> xr.DataArray:
     the order of the branch, which ends on the stable side.
     """
     both = data["fig15"].isel(frequency_ratio=0)
-    kinds, lam = both.special_kind.values, both.special_amplitude.values
+    kinds = both.special_kind.values
+    lam = both.special_amplitude.values
     ends = [[np.nan, *lam[kinds == kind]][-1] for kind in BOUNDS]
     rigid = np.array([both.saddle_node_amplitude, both.period_doubling_amplitude], dtype=float)
     return xr.DataArray(np.abs(ends / rigid - 1), {"bound": list(BOUNDS)})

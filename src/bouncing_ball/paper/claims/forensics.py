@@ -61,7 +61,8 @@ class WeightlessOrbit(SpringDamperOrbit):
         return orbit(*np.moveaxis(solved, -1, 0))
 
     def contact_flow(self, time: np.ndarray):
-        flow, sag = super().contact_flow(time), self.law.flow(time, 0.0, 0.0, 0.0, 0.0)
+        flow = super().contact_flow(time)
+        sag = self.law.flow(time, 0.0, 0.0, 0.0, 0.0)
         jacobian = flow.jacobian.copy()
         jacobian[..., 0] -= sag.jacobian[..., 0]
         return type(flow)(*(x - y for x, y in zip(flow[:3], sag[:3], strict=True)), jacobian)
@@ -112,7 +113,8 @@ def altered_ends(
         trace = np.trace(matrix, axis1=-2, axis2=-1)
         return Bifurcation.PERIOD_DOUBLING.test(trace, np.linalg.det(matrix))
 
-    every, sample = np.arange(n.size), np.arange(_SAMPLES)[:, np.newaxis]
+    every = np.arange(n.size)
+    sample = np.arange(_SAMPLES)[:, np.newaxis]
     reach = np.minimum(_REACH / contact.frequency_ratio, 0.9 * contact.free_angle)
     grid = np.linspace(-reach, reach, _SAMPLES)
     lowest = np.nanargmin(amplitude(grid, every), axis=0)
@@ -167,7 +169,8 @@ def forensics() -> xr.Dataset:
         entries over (reading, rows); and ``unreachable`` over reading, the number of printed
         saddle-nodes that lie below the fold by more than rounding, where no orbit exists.
     """
-    found, printed = readings(), printed_table()
+    found = readings()
+    printed = printed_table()
     axes = {"reading": list(found), **printed.coords}
     computed = xr.DataArray(np.array(list(found.values())), axes, ("reading", *printed.dims))
     difference = (computed - printed) / LAST_DIGIT

@@ -89,7 +89,8 @@ def restitution_model(rng, samples) -> Checks:
     ``rng`` is the random generator and ``samples`` the number of parameter sets, also in the other
     functions of this module.
     """
-    r, lam = rng.uniform(0.1, 0.95, samples), rng.uniform(0.1, 3, samples)
+    r = rng.uniform(0.1, 0.95, samples)
+    lam = rng.uniform(0.1, 3, samples)
     phase = rng.uniform(-np.pi, np.pi, samples)
     velocity = lam + rng.uniform(0.5, 6, samples)
     landing, rebound, time = impact_cycle(phase, velocity, r, lam)
@@ -101,7 +102,8 @@ def restitution_model(rng, samples) -> Checks:
     bounced = printed.bounced_velocity(phase, velocity, time, lam, r)
 
     n = rng.integers(1, 6, samples).astype(float)
-    along, model = n * np.pi * (1 - r) / (1 + r), RestitutionModel(r)
+    along = n * np.pi * (1 - r) / (1 + r)
+    model = RestitutionModel(r)
     above = along * rng.uniform(1.01, 3, samples)
     phi, launch = printed.fixed_point(n, r, above)
     back_phase, back_velocity, _ = impact_cycle(phi, launch, r, above)
@@ -166,9 +168,11 @@ def measured_restitution(r, frequency_ratio, velocity):
 
 def damping(rng, samples) -> Checks:
     """Checks of Eq. 16 and its limits r = 1 and r → 0."""
-    r, omega = rng.uniform(0.1, 0.99, samples), np.exp(rng.uniform(0, 5, samples))
+    r = rng.uniform(0.1, 0.99, samples)
+    omega = np.exp(rng.uniform(0, 5, samples))
     # For r → 0, 1 - ζ tends to π²/(2 ln² r), but slowly; the budget is twice this value.
-    slow, faint = np.pi**2 / np.log(_FAINT) ** 2, 1 - printed.damping_ratio(_FAINT)
+    slow = np.pi**2 / np.log(_FAINT) ** 2
+    faint = 1 - printed.damping_ratio(_FAINT)
     impact = measured_restitution(r, omega, WEIGHTLESS) - r
     return {
         "Eq. 16": check("simulated impact, table at rest, no gravity", impact),
@@ -188,13 +192,16 @@ def static_error() -> xr.DataArray:
 
 def contact_orbits(rng, samples) -> Checks:
     """Checks of the definition of ϖ, and of Eqs. 12 to 15 and 21 to 27 on orbits that repeat."""
-    omega, zeta = np.exp(rng.uniform(0.7, 5, samples)), rng.uniform(0.01, 0.5, samples)
+    omega = np.exp(rng.uniform(0.7, 5, samples))
+    zeta = rng.uniform(0.01, 0.5, samples)
     n = rng.integers(1, 4, samples)
     contact = SpringDamper(omega, zeta)
     model = SpringDamperModel(contact)
     lam = model.saddle_node(n).amplitude + rng.uniform(0.05, 0.5, samples)
     orbit = model.orbit(n, lam)
-    phase, impact, end = orbit.phase, orbit.impact_velocity, orbit.contact_duration
+    phase = orbit.phase
+    impact = orbit.impact_velocity
+    end = orbit.contact_duration
     u = orbit.relative_impact_velocity
     again = orbit.cycle(phase, u)
     repeated = reduce_angle(again.phase - phase), again.relative_velocity - u
@@ -208,8 +215,10 @@ def contact_orbits(rng, samples) -> Checks:
     rise, rate, *held = simulated(time)
     off = printed_contact(time, omega, zeta, lam, phase, impact) - held
     # Eq. 10 in metres and seconds, for a contact whose frequency is ϖ times that of the table.
-    gravity, table = 9.81, rng.uniform(20, 60, samples)
-    length, speed = gravity / table**2, gravity / table
+    gravity = 9.81
+    table = rng.uniform(20, 60, samples)
+    length = gravity / table**2
+    speed = gravity / table
     physical = acceleration(rise * length, rate * speed, omega * table, zeta, gravity) / gravity
 
     def scaled(ratio):
@@ -247,8 +256,10 @@ def permanent_contact(rng, samples) -> Checks:
     """Checks of Eqs. 31 to 36 on permanent contact: the steady motion, Λ_SD, its inverse and
     minimum.
     """
-    omega, zeta = np.exp(rng.uniform(-0.5, 2, samples)), rng.uniform(0.02, 0.5, samples)
-    lam, begin = rng.uniform(0.1, 2, samples), rng.uniform(-np.pi, np.pi, samples)
+    omega = np.exp(rng.uniform(-0.5, 2, samples))
+    zeta = rng.uniform(0.02, 0.5, samples)
+    lam = rng.uniform(0.1, 2, samples)
+    begin = rng.uniform(-np.pi, np.pi, samples)
     end = begin + rng.uniform(0.5, 6, samples)
 
     def steady(time):

@@ -128,7 +128,8 @@ def stable_between(data):
     """
     orbits = data["fig03"]
     doubling = orbits.period_doubling_amplitude.sel(impact_map="exact")
-    node, lam = orbits.saddle_node_amplitude, orbits.amplitude
+    node = orbits.saddle_node_amplitude
+    lam = orbits.amplitude
     between = (orbits.phase > 0) & (lam > node) & (lam < doubling)
     # At a bifurcation itself rounding decides.
     beside = (abs(lam / node - 1) > GRID) & (abs(lam / doubling - 1) > GRID)

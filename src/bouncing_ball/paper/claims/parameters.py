@@ -117,7 +117,8 @@ class PaperData(dict[str, xr.Dataset]):
         self.used: dict[str, None] = {}
 
     def __getitem__(self, name: str) -> xr.Dataset:
-        data, release = super().__getitem__(name), {"release": "displacement"}
+        data = super().__getitem__(name)
+        release = {"release": "displacement"}
         given: dict[str, Any] = release | data.attrs
         for key, paper in (release | parameter_attributes(self.parameters[name])).items():
             # netCDF stores an attribute that is a list of one number as this number.

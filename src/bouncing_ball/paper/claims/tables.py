@@ -58,7 +58,8 @@ def witness(data: xr.Dataset) -> Table:
     """
 
     def entry(part: xr.Dataset) -> str:
-        found, allowed = float(part.disagreement), float(part.budget)
+        found = float(part.disagreement)
+        allowed = float(part.budget)
         text = f"≤ {allowed:.0e}" if found <= allowed else f"{found:.1e}"
         return f"{text} ({int(part.orbits)})" if part.orbits else "–"
 
@@ -98,7 +99,8 @@ def found_text(claim: xr.Dataset) -> str:
 
 def deviation_text(claim: xr.Dataset) -> str:
     """The deviation in units of the last printed digit, and in per cent."""
-    units, share = float(claim.deviation_units), float(claim.deviation)
+    units = float(claim.deviation_units)
+    share = float(claim.deviation)
     return "" if np.isnan(units) else f"{units:+.2f} ({100 * share:+.3g} %)"
 
 

@@ -126,7 +126,8 @@ def at_most(values, bound) -> Finding:
     >>> [str(at_most(x, 0.01).verdict) for x in (0.009, 0.01, [0.009, 0.011])]
     ['reproduced', 'reproduced', 'contradicted']
     """
-    value, limit = largest(values), smallest(bound)
+    value = largest(values)
+    limit = smallest(bound)
     return _condition(value, "≤", limit, value <= limit + _ROUNDING * abs(limit))
 
 
@@ -140,7 +141,8 @@ def at_least(values, bound) -> Finding:
     >>> [str(at_least(x, 2).verdict) for x in (3, 2, [3, 1])]
     ['reproduced', 'reproduced', 'contradicted']
     """
-    value, limit = smallest(values), largest(bound)
+    value = smallest(values)
+    limit = largest(bound)
     return _condition(value, "≥", limit, value >= limit - _ROUNDING * abs(limit))
 
 
@@ -152,7 +154,8 @@ def below(values, bound) -> Finding:
     >>> [str(below(x, 2).verdict) for x in (1, 2)]
     ['reproduced', 'contradicted']
     """
-    value, limit = largest(values), smallest(bound)
+    value = largest(values)
+    limit = smallest(bound)
     return _condition(value, "<", limit, value < limit)
 
 
@@ -164,7 +167,8 @@ def above(values, bound) -> Finding:
     >>> [str(above(x, 2).verdict) for x in (3, 2)]
     ['reproduced', 'contradicted']
     """
-    value, limit = smallest(values), largest(bound)
+    value = smallest(values)
+    limit = largest(bound)
     return _condition(value, ">", limit, value > limit)
 
 
@@ -182,7 +186,8 @@ def against_print(value: float, printed: str) -> Finding:
     >>> [str(against_print(*pair).verdict) for pair in pairs]
     ['reproduced', 'close', 'contradicted']
     """
-    value, wanted = largest(value), float(printed)
+    value = largest(value)
+    wanted = float(printed)
     units = (value - wanted) * 10.0 ** len(printed.partition(".")[2])
     if abs(units) <= 0.5 + _ROUNDING:
         verdict = Verdict.REPRODUCED

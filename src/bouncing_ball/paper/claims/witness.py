@@ -126,7 +126,8 @@ def _by_equations(shown: Shown, near: Orbit) -> Orbit:
     normal to its branch. This is well conditioned at a fold, too, where Λ determines only half of
     the digits.
     """
-    system, kind = shown.model.system(near.n), shown.bifurcation
+    system = shown.model.system(near.n)
+    kind = shown.bifurcation
     y = system.point(near)
     if kind:
         condition = vanishing(next(one.function for one in system.events() if one.name == kind))
@@ -146,11 +147,13 @@ def formula_and_equations(shown: Shown) -> np.ndarray:
     For a bifurcation it is the distance in Λ and φ, which the dataset has. The result has shape
     (orbits,) and is relative to the larger of Λ and n.
     """
-    orbit, near = shown.orbit, shown.model.nearest(shown.orbit)
+    orbit = shown.orbit
+    near = shown.model.nearest(shown.orbit)
     found = _by_equations(shown, near)
     if not shown.bifurcation:
         return np.maximum(orbit.distance(near), orbit.distance(found)) / _size(orbit)
-    lam, turn = orbit.amplitude - found.amplitude, reduce_angle(orbit.phase - found.phase)
+    lam = orbit.amplitude - found.amplitude
+    turn = reduce_angle(orbit.phase - found.phase)
     return np.max(np.abs([lam, turn, near.distance(found)]), axis=0) / _size(orbit)
 
 
@@ -165,9 +168,11 @@ def simulation_returns(orbit: Orbit) -> np.ndarray:
     The distance is the largest difference in φ, δ′ and the period, relative to the larger of Λ and
     n.
     """
-    phase, speed = orbit.phase, orbit.relative_impact_velocity
+    phase = orbit.phase
+    speed = orbit.relative_impact_velocity
     cycle = orbit.cycle(phase, speed)
-    turned, faster = reduce_angle(cycle.phase - phase), cycle.relative_velocity - speed
+    turned = reduce_angle(cycle.phase - phase)
+    faster = cycle.relative_velocity - speed
     return np.max(np.abs([cycle.time - 2 * np.pi * orbit.n, turned, faster]), axis=0) / _size(orbit)
 
 

@@ -1,5 +1,4 @@
 """Errors of one model of the impact against another, and their thresholds (Eqs. 37-38).
 
-Errors are signed, relative and thus dimensionless; arrays of them have a leading axis for each
-model and each quantity.
+Errors are signed, relative and thus dimensionless.
 """

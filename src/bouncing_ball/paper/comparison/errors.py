@@ -1,7 +1,8 @@
-r"""The quantities by which models are compared, and the errors of the simple models (Eqs. 37-38).
+r"""The quantities by which models are compared, and the errors of simple models (Eqs. 37-38).
 
-The error of a quantity is ``(q_SD - q)/q``, where q is the value in a simple model: the
-restitution model or the corrected model. The error is signed; the paper uses its modulus.
+The error of a quantity is ``(q_SD - q)/q``, where q is the value in a simple model, which is the
+restitution model in the paper. The paper compares the greatest height (Eq. 37) and the threshold of
+permanent contact (Eq. 38), and uses the modulus of the error; here the error is signed.
 """
 
 from collections.abc import Iterable, Sequence
@@ -95,9 +96,9 @@ def relative(exact: ArrayLike, simple: ArrayLike) -> np.ndarray:
     >>> relative([1.5, 1.0], [1.0, 0.0]).tolist()
     [0.5, inf]
     """
-    exact, simple = np.asarray(exact, dtype=float), np.asarray(simple, dtype=float)
+    reference = np.asarray(simple, dtype=float)
     with np.errstate(divide="ignore", invalid="ignore"):
-        return (exact - simple) / simple
+        return (np.asarray(exact, dtype=float) - reference) / reference
 
 
 def modulus(error: ArrayLike) -> np.ndarray:
@@ -145,6 +146,10 @@ def relative_errors(
     [[[-0.25]]]
     """
     shape = np.broadcast_shapes(exact.shape, np.shape(n), np.shape(amplitude))
-    wanted, *found = (values(model, n, amplitude, quantities) for model in (exact, *simple))
-    pairs = ([relative(*pair) for pair in zip(wanted, each, strict=True)] for each in found)
-    return np.stack([[np.broadcast_to(error, shape) for error in each] for each in pairs])
+    wanted = values(exact, n, amplitude, quantities)
+    errors = np.empty((len(simple), len(quantities), *shape))
+    for k, model in enumerate(simple):
+        found = values(model, n, amplitude, quantities)
+        for q in range(len(quantities)):
+            errors[k, q] = relative(wanted[q], found[q])
+    return errors

@@ -1,7 +1,13 @@
-"""The frequency ratio ϖ above which an error stays within a tolerance.
+r"""The frequency ratio ϖ above which an error stays within a tolerance (Eqs. 37-38).
 
-The threshold is the largest ϖ in the scanned range at which the modulus of the error
-crosses the tolerance. Where a model lacks the quantity, the error is infinite.
+The paper calls the errors of the greatest height h and of the threshold of permanent contact PC
+
+    |h_SD(ϖ) - h_CR| / h_CR    (Eq. 37),        |Λ_SD(ϖ) - Λ_CR| / Λ_CR    (Eq. 38),
+
+and ϖ_h,1% and ϖ_PC,1% the values of ϖ at which they are 1 %. Here the threshold of any quantity is
+the largest ϖ in a scanned range at which the modulus of its error crosses the tolerance. Where a
+model lacks the quantity, the error is infinite. :func:`restitution_thresholds` gives the thresholds
+of the restitution model; the other functions find the thresholds of any errors.
 """
 
 from collections.abc import Callable, Sequence
@@ -12,7 +18,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize.elementwise import find_root
 
-from bouncing_ball.paper.comparison.errors import OF_ORBITS, modulus
+from bouncing_ball.paper.comparison.errors import (
+    OF_IMPACTS,
+    OF_ORBITS,
+    modulus,
+    relative_errors,
+)
+from bouncing_ball.paper.contact.damping import Release
+from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
+from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 
 Numbered = Callable[[np.ndarray, np.ndarray], np.ndarray]
 """Values, at ratios ϖ, of the functions with given numbers; all three arrays have one shape."""
@@ -77,7 +92,7 @@ def last_crossing(function: Numbered, ratios: np.ndarray, scanned: np.ndarray) -
     last = turns.shape[1] - 1 - np.argmax(turns[which, ::-1], axis=1)
     found = np.full(len(scanned), np.nan)
     if which.size:
-        bracket = np.log(ratios[last]), np.log(ratios[last + 1])
+        bracket = (np.log(ratios[last]), np.log(ratios[last + 1]))
         with np.errstate(invalid="ignore"):  # from an interpolation that find_root rejects
             root = find_root(
                 lambda x, k: function(np.exp(x), k.astype(int)),
@@ -114,7 +129,8 @@ def thresholds(
     array([[100.,  nan]])
     """
     level = np.atleast_1d(np.asarray(tolerances, dtype=float))
-    size, tolerance = modulus(scanned)[:, np.newaxis], level[:, np.newaxis]
+    size = modulus(scanned)[:, np.newaxis]
+    tolerance = level[:, np.newaxis]
 
     def excess(error: np.ndarray, tolerance: np.ndarray) -> np.ndarray:
         # ln(error/tolerance) is nearly a straight line in ln ϖ.
@@ -127,7 +143,8 @@ def thresholds(
     outside = size > tolerance
     rows = excess(size, tolerance).reshape(-1, ratios.size)
     found = last_crossing(crossing, ratios, rows).reshape(outside.shape[:2])
-    never, always = outside[..., -1], ~outside.any(axis=-1)
+    never = outside[..., -1]
+    always = ~outside.any(axis=-1)
     within = np.where(always, ThresholdStatus.ALWAYS_WITHIN, ThresholdStatus.FOUND)
     status = np.where(never, ThresholdStatus.NEVER_WITHIN, within)
     return Thresholds(np.where(never, np.nan, found), status)
@@ -154,3 +171,74 @@ def by_quantity(errors: Errors, quantities: Sequence[str], rows: int) -> Numbere
         return found
 
     return numbered
+
+
+class RestitutionThresholds(NamedTuple):
+    """Errors of the restitution model along ϖ, and the ϖ above which they are tolerable."""
+
+    error: np.ndarray
+    """Signed relative errors on the grid, shape (quantity, orbit, ϖ)."""
+    ratio: np.ndarray
+    """ϖ, shape (quantity, orbit, tolerance); NaN where the status is not ``FOUND``."""
+    status: np.ndarray
+    """:class:`ThresholdStatus`, shape (quantity, orbit, tolerance)."""
+
+
+def restitution_thresholds(
+    damping_ratio: ArrayLike,
+    release: Release,
+    restitution: ArrayLike,
+    n: ArrayLike,
+    amplitude: ArrayLike,
+    *,
+    ratios: np.ndarray,
+    tolerances: ArrayLike,
+    quantities: Sequence[str] = OF_IMPACTS,
+) -> RestitutionThresholds:
+    """The ϖ above which the restitution model is accurate, for several orbits.
+
+    Parameters
+    ----------
+    damping_ratio : array_like
+        ζ of the contact of each orbit. This and the following arrays broadcast to shape (orbit,).
+    release : Release
+    restitution : array_like
+        r of the restitution model with which the contact is compared; Eq. 16 gives the r of ζ.
+    n, amplitude : array_like
+        Index of the family and Λ of each orbit.
+    ratios : ndarray, shape (N,)
+        Increasing grid of ϖ.
+    tolerances : array_like
+        Tolerated relative errors.
+    quantities : sequence of str
+
+    Examples
+    --------
+    Without damping, Λ_SD = 1 - 1/ϖ² (Eq. 38):
+
+    >>> found = restitution_thresholds(
+    ...     0.0, Release.DISPLACEMENT, 1.0, 1, 1.0,
+    ...     ratios=np.geomspace(1.0, 1e3, 31), tolerances=[0.01], quantities=["permanent_contact"]
+    ... )
+    >>> found.ratio.round(9).tolist()
+    [[[10.0]]]
+    """
+    of_orbits = np.broadcast_arrays(damping_ratio, restitution, n, amplitude)
+    zeta, r, family, lam = (np.atleast_1d(values) for values in of_orbits)
+
+    def errors(ratio: np.ndarray, orbit: np.ndarray, asked: Sequence[str]) -> np.ndarray:
+        exact = SpringDamperModel(SpringDamper(ratio, zeta[orbit], release))
+        simple = RestitutionModel(r[orbit])
+        return relative_errors(exact, [simple], family[orbit], lam[orbit], asked)[0]
+
+    # All orbits at all ϖ, one orbit after another.
+    orbit, place = np.divmod(np.arange(lam.size * ratios.size), ratios.size)
+    scanned = errors(ratios[place], orbit, quantities).reshape(-1, ratios.size)
+    numbered = by_quantity(errors, quantities, lam.size)
+    found = thresholds(numbered, ratios, scanned, tolerances)
+    shape = (len(quantities), lam.size, -1)
+    return RestitutionThresholds(
+        error=scanned.reshape(shape),
+        ratio=found.ratio.reshape(shape),
+        status=found.status.reshape(shape),
+    )

@@ -13,5 +13,7 @@ Table 1       :mod:`.continuation_of_orbits`
 ============= ==========================================
 
 A stage is a function ``study(parameters, …)`` that returns a dataset; the function of the same
-stage in the module ``…_figures`` draws it and computes nothing.
+stage in the module ``…_figures`` draws it and computes nothing. Two stages have no picture and
+decide claims in words: :mod:`.lowest_period_doubling` and :mod:`.kinds_of_motion`. Stages share
+:mod:`.orbit_parameters`, :mod:`.errors_along_ratio` and :mod:`.printed_table1`.
 """

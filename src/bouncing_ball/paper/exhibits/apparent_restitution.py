@@ -81,7 +81,8 @@ def with_round_values(ratios: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     ([1.0, 2.0, 4.0, 5.0, 10.0], [True, True, False, True, True])
     """
     values = np.array([0.1, 1.0, 2.0, 5.0, *10.0 ** np.arange(1, 7)])
-    low, high = ratios[0] * (1 - _ROUNDING), ratios[-1] * (1 + _ROUNDING)
+    low = ratios[0] * (1 - _ROUNDING)
+    high = ratios[-1] * (1 + _ROUNDING)
     shown = values[(values >= low) & (values <= high)]
     same = np.abs(ratios[:, np.newaxis] / shown - 1) <= _ROUNDING
     merged = np.union1d(ratios[~same.any(axis=1)], shown)
@@ -114,11 +115,11 @@ def apparent_restitution(parameters: Cases, release: Release) -> xr.Dataset:
     ``max_height``, ``stable`` and ``admissible``, shape (case, ϖ), NaN where there is no orbit;
     ``restitution`` and ``amplitude``, shape (case,). Phases are in rad.
     """
-    r, lam = zip(*((case.restitution, case.amplitude) for case in parameters.cases), strict=True)
-    return describe(
-        _sweep(parameters.n, r, lam, parameters.frequency_ratio.grid(), release),
-        variables=VARIABLES,
-    )
+    restitution = [case.restitution for case in parameters.cases]
+    amplitude = [case.amplitude for case in parameters.cases]
+    ratios = parameters.frequency_ratio.grid()
+    dataset = _sweep(parameters.n, restitution, amplitude, ratios, release)
+    return describe(dataset, variables=VARIABLES)
 
 
 def frequency_sweep(parameters: Sweep, release: Release) -> xr.Dataset:
@@ -127,13 +128,15 @@ def frequency_sweep(parameters: Sweep, release: Release) -> xr.Dataset:
     The dataset has the variables of :func:`apparent_restitution`; ``restitution_phase`` (case,) in
     rad, and the numbers ``restitution_bounce_velocity`` = nπ and ``restitution_impact_velocity``.
     """
-    return describe(
-        _with_limits(parameters, parameters.frequency_ratio.grid(), release), variables=VARIABLES
-    )
+    dataset = _with_limits(parameters, parameters.frequency_ratio.grid(), release)
+    return describe(dataset, variables=VARIABLES)
 
 
 def _with_limits(parameters: Sweep, ratios: np.ndarray, release: Release) -> xr.Dataset:
-    n, r, lam = parameters.n, parameters.restitution, np.array(parameters.amplitude)
+    """Orbits along ϖ, and the phase and velocities to which they tend (Eq. 6)."""
+    n = parameters.n
+    r = parameters.restitution
+    lam = np.array(parameters.amplitude)
     return _sweep(n, r, lam, ratios, release).assign(
         restitution_phase=("case", RestitutionModel(r).orbit(n, lam).phase),
         restitution_bounce_velocity=n * np.pi,

@@ -46,17 +46,19 @@ def poincare_map(data: xr.Dataset) -> Figure:
     Each curve is parametrised by ϖ, and a few values of ϖ are marked.
     """
     figure, axes = canvas(4.4, 4.0)
-    for k, (curve, colour) in enumerate(zip(each(data, "case"), cycle(COLOURS[1:]))):
-        end = (curve.release_phase, curve.bounce_velocity, data.restitution_bounce_velocity)
-        start = (curve.phase, curve.impact_velocity, data.restitution_impact_velocity)
-        for (phase, velocity, limit), name, dashes, face in (
-            (end, r"end of contact, $(\varphi+\tau_b,\,z′_b)$", "-", colour),
-            (start, r"start of contact, $(\varphi,\,z′_i)$", (0, (4, 1.5)), "white"),
-        ):
-            look: Look = {"color": colour, "linestyle": dashes, "markerfacecolor": face}
-            # The legend names the curves of the first case only.
-            _draw_trace(axes, curve, phase, velocity, name if k == 0 else None, look)
-            axes.plot(curve.restitution_phase / np.pi, limit / np.pi, "*", **_LIMIT)
+    end_label: str | None = r"end of contact, $(\varphi+\tau_b,\,z′_b)$"
+    start_label: str | None = r"start of contact, $(\varphi,\,z′_i)$"
+    for curve, colour in zip(each(data, "case"), cycle(COLOURS[1:])):
+        limit_phase = curve.restitution_phase / np.pi
+        look: Look = {"color": colour, "linestyle": "-", "markerfacecolor": colour}
+        _draw_trace(axes, curve, curve.release_phase, curve.bounce_velocity, end_label, look)
+        axes.plot(limit_phase, data.restitution_bounce_velocity / np.pi, "*", **_LIMIT)
+        look = {"color": colour, "linestyle": (0, (4, 1.5)), "markerfacecolor": "white"}
+        _draw_trace(axes, curve, curve.phase, curve.impact_velocity, start_label, look)
+        axes.plot(limit_phase, data.restitution_impact_velocity / np.pi, "*", **_LIMIT)
+        # The legend names the curves of the first case only.
+        end_label = None
+        start_label = None
     axes.plot([], [], "*", label="restitution model", **_LIMIT)
     axes.set(xlabel=r"phase of the table over $\pi$", ylabel=r"velocity of the ball, $z′/\pi$")
     axes.margins(x=0.14)
@@ -69,26 +71,38 @@ def poincare_map(data: xr.Dataset) -> Figure:
 def _draw_cases(axes: Axes, data: xr.Dataset, name: str, ylabel: str) -> None:
     """One curve of a variable for each case, named by its r and Λ."""
     for (one, colour), dashes in zip(coloured(data, "case"), cycle(_DASHES), strict=False):
-        r, lam = (number(float(one[parameter])) for parameter in ("restitution", "amplitude"))
+        r = number(float(one["restitution"]))
+        lam = number(float(one["amplitude"]))
         label = rf"$r={r}$, $\Lambda={lam}$"
         look: Look = {"color": colour, "linestyle": dashes, "label": label}
         draw_curve(axes, one.frequency_ratio, one[name], one.admissible, **look)
     logarithmic(axes, data.frequency_ratio, ylabel=ylabel)
 
 
-def _draw_trace(axes: Axes, curve: xr.Dataset, phase, velocity, label, look: Look) -> None:
+def _draw_trace(
+    axes: Axes,
+    curve: xr.Dataset,
+    phase: xr.DataArray,
+    velocity: xr.DataArray,
+    label: str | None,
+    look: Look,
+) -> None:
     """Phase and velocity over π as ϖ varies; round values of ϖ are marked.
 
     Small values are named on curves with a label only, because names on all curves would overlap.
     """
-    x, y = phase.values / np.pi, velocity.values / np.pi
+    x = phase.values / np.pi
+    y = velocity.values / np.pi
     marked = np.flatnonzero(curve.labelled.values)
-    look |= {"label": label, "marker": "o", "markersize": 4, "markevery": marked.tolist()}
-    draw_curve(axes, x, y, curve.admissible, **look)
+    marks: Look = {"marker": "o", "markersize": 4, "markevery": marked.tolist()}
+    draw_curve(axes, x, y, curve.admissible, label=label, **look, **marks)
     for k, at in enumerate(marked):
         ratio = float(curve.frequency_ratio[at])
         if label and ratio <= _NAMED_UP_TO:
             # The names of neighbours are on different sides of the curve.
-            offset, side = ((5, 4), "left") if k % 2 == 0 else ((-5, -4), "right")
-            name, point = rf"$\varpi={number(ratio)}$", (x[at], y[at])
-            note(axes, name, point, offset, ha=side, va="center", fontsize=8)
+            if k % 2 == 0:
+                offset, side = (5, 4), "left"
+            else:
+                offset, side = (-5, -4), "right"
+            name = rf"$\varpi={number(ratio)}$"
+            note(axes, name, (x[at], y[at]), offset, ha=side, va="center", fontsize=8)

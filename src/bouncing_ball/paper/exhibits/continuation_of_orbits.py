@@ -20,6 +20,7 @@ from bouncing_ball.paper.contact.damping import Release, damping_ratio
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.orbit_parameters import BranchEnd, Points
 from bouncing_ball.paper.exhibits.printed_table1 import printed_table
+from bouncing_ball.paper.orbits import observables
 from bouncing_ball.paper.orbits import restitution_branch as restitution_orbits
 from bouncing_ball.paper.orbits.branch import whole_branch
 from bouncing_ball.paper.orbits.equations import OrbitSystem
@@ -29,6 +30,7 @@ from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.orbits.stability import Bifurcation
 
 VARIABLES = {
+    "absence": Variable("why there is no stable range"),
     "restitution_admissible": Variable(
         "whether nothing else happens during the restitution model's orbit"
     ),
@@ -36,6 +38,8 @@ VARIABLES = {
     "restitution_stable": Variable("whether the restitution model's orbit is stable"),
     "restitution_range": Variable("end of the stability range, restitution model", symbol="Λ"),
 }
+# The variables of branches are declared beside the function that writes them.
+_VARIABLES = VARIABLES | observables.VARIABLES
 
 
 class Continuation(Parameters):
@@ -103,22 +107,19 @@ def _branch(
 def orbit_branches(parameters: Domains, release: Release, continuation: Continuation) -> xr.Dataset:
     """Branches along Λ for one n and several ϖ (Figs. 8 and 9).
 
-    The dataset has the number ``damping_ratio`` ζ;
-    ``amplitude``, the observables of the orbits with phases in rad, ``stable``,
+    The dataset has ``amplitude``, the observables of the orbits with phases in rad, ``stable``,
     ``admissible`` and ``residual`` (ϖ, point), at equal steps of arclength from the unstable to the
     stable side; ``multiplier_real`` and ``multiplier_imag`` (ϖ, point, multiplier);
     ``special_kind`` and further ``special_…`` variables of the saddle-nodes, period doublings and
-    grazing orbits (ϖ, special); and ``end_reason`` (ϖ, end), why the branch ends. Where a branch
-    cannot be followed its values are NaN and ``end_reason`` is the error.
+    grazing orbits (ϖ, special); ``end_reason`` (ϖ, end), why the branch ends; and the number
+    ``damping_ratio`` ζ. Where a branch cannot be followed its values are NaN and ``end_reason`` is
+    the error.
     """
     ratios = parameters.frequency_ratio
     rows = [_branch(ratio, parameters, release, continuation) for ratio in ratios]
     zeta = float(damping_ratio(parameters.restitution))
     branches = joined(rows, "frequency_ratio").assign(damping_ratio=zeta)
-    return describe(branches, variables=VARIABLES)
-
-
-SADDLE_NODE, PERIOD_DOUBLING = Bifurcation
+    return describe(branches, variables=_VARIABLES)
 
 
 class BothDomains(Branches):
@@ -132,7 +133,7 @@ def both_domains(
 ) -> xr.Dataset:
     """The branch of one ϖ, and that of the restitution model (Fig. 15).
 
-    The dataset has the variables of :func:`~.orbit_branches.orbit_branches` with one ϖ. The
+    The dataset has the variables of :func:`orbit_branches` with one ϖ. The
     restitution model has ``restitution_amplitude``, ``restitution_phase`` in rad,
     ``restitution_stable`` and ``restitution_admissible`` (point,), and numbers for Λ and φ of its
     two bifurcations.
@@ -142,20 +143,25 @@ def both_domains(
     NoOrbitError
         If the restitution model has no orbit up to ``amplitude_max``.
     """
-    n, r, top = parameters.n, parameters.restitution, parameters.amplitude_max
+    n = parameters.n
+    r = parameters.restitution
+    top = parameters.amplitude_max
     one = dict(parameters) | {"frequency_ratio": (parameters.frequency_ratio,)}
     contact = orbit_branches(Domains(**one), release, continuation)
     model = RestitutionModel(r)
     rigid = model.orbit_of(n, *restitution_orbits.branch(n, r, top, parameters.points))
     along = columns(rigid, "amplitude", "phase")
-    limits = {"saddle_node": model.saddle_node(n), "period_doubling": model.period_doubling(n)}
-    return describe(
-        contact.assign(
-            {f"restitution_{name}": ("point", values) for name, values in along.items()}
-            | {f"{kind}_{x}": getattr(limits[kind], x) for kind in limits for x in PLACE[:2]}
-        ),
-        variables=VARIABLES,
+    fold = model.saddle_node(n)
+    doubling = model.period_doubling(n)
+    both = contact.assign(
+        {f"restitution_{name}": ("point", values) for name, values in along.items()}
+    ).assign(
+        saddle_node_amplitude=fold.amplitude,
+        saddle_node_phase=fold.phase,
+        period_doubling_amplitude=doubling.amplitude,
+        period_doubling_phase=doubling.phase,
     )
+    return describe(both, variables=_VARIABLES)
 
 
 def first_limits(branch: Branch) -> np.ndarray:
@@ -169,13 +175,16 @@ def first_limits(branch: Branch) -> np.ndarray:
     NoOrbitError
         If the branch lacks one of them.
     """
-    folds = [k for k, special in enumerate(branch.special) if special.name == SADDLE_NODE]
+    folds = [
+        k for k, special in enumerate(branch.special) if special.name == Bifurcation.SADDLE_NODE
+    ]
     beyond = branch.special[folds[-1] :] if folds else ()
-    flips = [special for special in beyond if special.name == PERIOD_DOUBLING]
+    flips = [special for special in beyond if special.name == Bifurcation.PERIOD_DOUBLING]
     if not flips:
+        missing = Bifurcation.PERIOD_DOUBLING if folds else Bifurcation.SADDLE_NODE
         raise NoOrbitError(
-            f"the branch from {str(branch.start)!r} to {str(branch.end)!r} has no "
-            f"{PERIOD_DOUBLING if folds else SADDLE_NODE} to bound its stable range"
+            f"the branch from {str(branch.start)!r} to {str(branch.end)!r} has no {missing} to "
+            "bound its stable range"
         )
     return np.array([beyond[0].point, flips[0].point])
 
@@ -191,39 +200,70 @@ def stability_ranges(
     orbit has no such range, and ``absence`` (ϖ, n), which exists only then, says why; ``printed``
     is NaN where the paper has no entry.
     """
-    families, ratios = parameters.n, parameters.frequency_ratio
-    shape = len(ratios), len(families)
-    found, absence = np.full((*shape, 2, len(PLACE)), np.nan), np.full(shape, "", dtype=object)
+    families = np.array(parameters.n)
+    ratios = np.array(parameters.frequency_ratio)
+    shape = (ratios.size, families.size)
+    found = np.full((*shape, len(Bifurcation), len(PLACE)), np.nan)
+    absence = np.full(shape, "", dtype=object)
     for at in np.ndindex(shape):
-        n, ratio = families[at[1]], ratios[at[0]]
         try:
-            contact = SpringDamper.from_restitution(parameters.restitution, ratio, release)
-            model, step = SpringDamperModel(contact), continuation.largest_step
-            branch = whole_branch(model, n, parameters.amplitude_max, step, Bifurcation)
-            limits = model.system(n).orbit(first_limits(branch))
-            found[at] = np.stack([getattr(limits, name) for name in PLACE], axis=-1)
+            found[at] = _stability_range(
+                parameters.n[at[1]],
+                parameters.frequency_ratio[at[0]],
+                parameters,
+                release,
+                continuation,
+            )
         except (NoOrbitError, ContinuationError) as error:
             absence[at] = str(error)
-    r, maps = parameters.restitution, restitution_orbits.ImpactMap
-    rigid = RestitutionModel(r).saddle_node(np.array(families))
-    doublings = [restitution_orbits.period_doubling(np.array(families), r, kind) for kind in maps]
-    rigid_ranges = np.array([np.stack([rigid.amplitude, each], axis=-1) for each in doublings])
+    maps = list(restitution_orbits.ImpactMap)
     dims = ("frequency_ratio", "n", "bound")
-    names = ("computed", "special_phase", "special_contact_duration")
     dataset = xr.Dataset(
         {
-            **{name: (dims, found[..., k]) for k, name in enumerate(names)},
+            "computed": (dims, found[..., PLACE.index("amplitude")]),
+            "special_phase": (dims, found[..., PLACE.index("phase")]),
+            "special_contact_duration": (dims, found[..., PLACE.index("contact_duration")]),
             # Entries that the paper does not have become NaN.
-            "printed": printed_table().reindex(frequency_ratio=list(ratios), n=list(families)),
-            "restitution_range": (("impact_map", "n", "bound"), rigid_ranges),
+            "printed": printed_table().reindex(frequency_ratio=ratios, n=families),
+            "restitution_range": (
+                ("impact_map", "n", "bound"),
+                _restitution_ranges(families, parameters.restitution, maps),
+            ),
         },
         coords={
-            "frequency_ratio": np.array(ratios),
-            "n": np.array(families),
-            "bound": [SADDLE_NODE, PERIOD_DOUBLING],
+            "frequency_ratio": ratios,
+            "n": families,
+            "bound": list(Bifurcation),
             "impact_map": [str(kind) for kind in maps],
         },
     )
     if np.any(absence != ""):
-        dataset["absence"] = (dims[:2], absence.astype(str))
-    return describe(dataset, variables=VARIABLES)
+        dataset["absence"] = (("frequency_ratio", "n"), absence.astype(str))
+    return describe(dataset, variables=_VARIABLES)
+
+
+def _stability_range(
+    n: int, ratio: float, given: Ranges, release: Release, continuation: Continuation
+) -> np.ndarray:
+    """Λ, φ and τ_b of both ends of a stability range, shape (bound, 3).
+
+    Raises
+    ------
+    NoOrbitError, ContinuationError
+        As :func:`~bouncing_ball.paper.orbits.branch.whole_branch` and :func:`first_limits`.
+    """
+    model = SpringDamperModel(SpringDamper.from_restitution(given.restitution, ratio, release))
+    branch = whole_branch(
+        model, n, given.amplitude_max, continuation.largest_step, ends=list(Bifurcation)
+    )
+    limits = model.system(n).orbit(first_limits(branch))
+    return np.stack([getattr(limits, name) for name in PLACE], axis=-1)
+
+
+def _restitution_ranges(
+    n: np.ndarray, restitution: float, maps: list[restitution_orbits.ImpactMap]
+) -> np.ndarray:
+    """The stability ranges of the restitution model, shape (map, n, bound)."""
+    fold = RestitutionModel(restitution).saddle_node(n).amplitude
+    doublings = [restitution_orbits.period_doubling(n, restitution, kind) for kind in maps]
+    return np.array([np.stack([fold, doubling], axis=-1) for doubling in doublings])

@@ -1,10 +1,6 @@
-"""Branches of n-T orbits with stability and bifurcations: phase of the table against Λ.
+"""The branches of Figs. 8, 9 and 15, and Table 1."""
 
-Lines are solid for stable, dashed for unstable and dotted for inadmissible orbits (Figs. 3, 8, 9,
-15).
-"""
-
-from itertools import cycle, pairwise
+from itertools import cycle
 
 import numpy as np
 import xarray as xr
@@ -13,9 +9,15 @@ from matplotlib.figure import Figure
 
 from bouncing_ball.datasets import CASE, SADDLE_NODE
 from bouncing_ball.datasets.selection import each
+from bouncing_ball.drawing.branches import (
+    draw_branch,
+    label_branch_axes,
+    mark_named_orbits,
+    mark_orbits,
+)
 from bouncing_ball.drawing.canvas import WIDE, canvas, coloured, legend_below
 from bouncing_ball.drawing.labels import in_a_row, parameters, title
-from bouncing_ball.drawing.style import COLOURS, LINES, MARKS
+from bouncing_ball.drawing.style import COLOURS, MARKS
 from bouncing_ball.drawing.tables import Columns, Table, entry_of, table, text, value
 
 
@@ -32,6 +34,7 @@ def over_amplitude(data: xr.Dataset) -> Figure:
     figure, axes = canvas(WIDE, 4.2)
     rows, names = in_a_row(data, "point", "special", "multiplier", "end")
     _name_curves(axes, [name for name in names if name])
+    # Both phases of a curve have its colour.
     for curve, colour in coloured(rows, CASE):
         _draw_spring_damper(axes, up_to_second_saddle_node(curve), colour, colour)
     touching = bool((rows.contact_duration > 0).any())
@@ -47,16 +50,20 @@ def both_domains(data: xr.Dataset) -> Figure:
     figure, axes = canvas(5.6, 3.4)
     of_branch = ("amplitude", "phase", "stable", "admissible")
     rigid = xr.Dataset({name: data[f"restitution_{name}"] for name in of_branch})
-    contact = (r"spring-damper, $\varphi$", r"spring-damper, $\varphi+\tau_b$")
-    _name_curves(axes, [r"restitution, $\varphi$", *contact])
-    _draw_branch(axes, rigid, rigid.phase, COLOURS[0])
-    _draw_named_points(axes, data, COLOURS[0])
+    names = [
+        r"restitution, $\varphi$",
+        r"spring-damper, $\varphi$",
+        r"spring-damper, $\varphi+\tau_b$",
+    ]
+    _name_curves(axes, names)
+    draw_branch(axes, rigid, rigid.phase, COLOURS[0])
+    mark_named_orbits(axes, data, COLOURS[0])
     curve = data.squeeze("frequency_ratio")
     _draw_spring_damper(axes, curve, COLOURS[1], COLOURS[2])
     # If the contact has no such branch, all its values are NaN.
     lowest = float(curve.amplitude.fillna(data.saddle_node_amplitude).min())
     title = parameters(data, "n", "restitution", "frequency_ratio")
-    _name_axes(axes, data, r"phase of the table over $\pi$", title, left=0.9 * lowest)
+    label_branch_axes(axes, data, r"phase of the table over $\pi$", title, left=0.9 * lowest)
     legend_below(figure, ncols=4)
     return figure
 
@@ -77,51 +84,27 @@ def up_to_second_saddle_node(curve: xr.Dataset) -> xr.Dataset:
     )
 
 
-def _name_axes(axes: Axes, data: xr.Dataset, ylabel: str, title: str, left: float = 0.0) -> None:
-    axes.set(xlabel=r"amplitude $\Lambda$", ylabel=ylabel, title=title)
-    axes.set_xlim(left, data.attrs["amplitude_max"])
-
-
 def _name_curves(axes: Axes, names: list[str]) -> None:
     """Entries of the legend, in the order of the colours."""
     for name, colour in zip(names, cycle(COLOURS), strict=False):
         axes.plot([], [], color=colour, label=name)
 
 
-def _draw_branch(axes: Axes, curve: xr.Dataset, phase: xr.DataArray, colour: str) -> None:
-    """A branch in pieces of one look, each extended to the first point of the next piece."""
-    x, y = curve.amplitude.values, phase.values / np.pi
-    kinds = np.where(curve.admissible, np.where(curve.stable, "stable", "unstable"), "inadmissible")
-    edges = [0, *(np.flatnonzero(kinds[1:] != kinds[:-1]) + 1), len(kinds)]
-    for start, stop in pairwise(edges):
-        run = slice(start, stop + 1)
-        axes.plot(x[run], y[run], color=colour, label=kinds[start], **LINES[kinds[start]])
-
-
-def _draw_named_points(axes: Axes, data: xr.Dataset, colour: str) -> None:
-    """The bifurcations and grazing orbits of the restitution model, where the dataset has them."""
-    for kind in MARKS:
-        name = kind.replace("-", "_").replace(" ", "_")
-        if f"{name}_phase" in data:
-            _mark(axes, kind, data[f"{name}_amplitude"], data[f"{name}_phase"], colour)
-
-
 def _draw_spring_damper(axes: Axes, curve: xr.Dataset, start: str, end: str) -> None:
     """The phases at the start and at the end of contact, with the special points."""
-    for phase, place, colour in (
-        (curve.phase, curve.special_phase, start),
-        (curve.release_phase, curve.special_phase + curve.special_contact_duration, end),
-    ):
-        _draw_branch(axes, curve, phase, colour)
-        for kind in MARKS:
-            there = place.where(curve.special_kind == kind)
-            _mark(axes, kind, curve.special_amplitude, there, colour)
+    _draw_phase(axes, curve, curve.phase, curve.special_phase, start)
+    special_release = curve.special_phase + curve.special_contact_duration
+    _draw_phase(axes, curve, curve.release_phase, special_release, end)
 
 
-def _mark(axes: Axes, kind: str, x: xr.DataArray, phase: xr.DataArray, colour: str) -> None:
-    """The special points of a kind, if there are any."""
-    if phase.notnull().any():
-        axes.plot(x, phase / np.pi, color=colour, zorder=4, label=kind, **MARKS[kind])
+def _draw_phase(
+    axes: Axes, curve: xr.Dataset, phase: xr.DataArray, special: xr.DataArray, colour: str
+) -> None:
+    """One phase along a branch, and the same phase of its special points."""
+    draw_branch(axes, curve, phase, colour)
+    for kind in MARKS:
+        there = special.where(curve.special_kind == kind)
+        mark_orbits(axes, kind, curve.special_amplitude, there, colour)
 
 
 def table1(data: xr.Dataset) -> Table:

@@ -11,8 +11,7 @@ from bouncing_ball.paper.contact.permanent_contact import (
     permanent_contact_minimum,
     permanent_contact_threshold,
 )
-from bouncing_ball.paper.exhibits.error_thresholds import thresholds_along
-from bouncing_ball.paper.exhibits.orbit_parameters import OrbitsAlongRatio
+from bouncing_ball.paper.exhibits.errors_along_ratio import errors_along_ratio
 
 VARIABLES = {
     "minimum_threshold": Variable(
@@ -75,7 +74,7 @@ class PermanentContactError(PermanentContact):
 def permanent_contact_error(parameters: PermanentContactError, release: Release) -> xr.Dataset:
     """Permanent contact along ϖ in both models, and ϖ_PC for the tolerance (Eq. 38, Fig. 16).
 
-    The dataset has the variables of :func:`error_thresholds` for the one quantity, and those of
+    The dataset has the variables of :func:`~.errors_along_ratio.errors_along_ratio` for the one quantity, and those of
     :func:`~bouncing_ball.paper.exhibits.permanent_contact.permanent_contact`.
 
     Raises
@@ -83,8 +82,14 @@ def permanent_contact_error(parameters: PermanentContactError, release: Release)
     ModelError
         If the damping is too strong for a minimum of the threshold to exist.
     """
-    # n and Λ have no influence, because the threshold of permanent contact depends on neither.
-    nowhere = OrbitsAlongRatio.model_construct(n=1, amplitude=1.0, **dict(parameters))
-    asked = [Quantity.PERMANENT_CONTACT]
-    dataset = thresholds_along(nowhere, release, asked, [parameters.tolerance])
+    dataset = errors_along_ratio(
+        parameters.restitution,
+        release,
+        # The threshold of permanent contact depends neither on n nor on Λ.
+        n=1,
+        amplitude=1.0,
+        ratios=parameters.frequency_ratio.grid(),
+        quantities=[Quantity.PERMANENT_CONTACT],
+        tolerances=[parameters.tolerance],
+    )
     return describe(dataset.merge(permanent_contact(parameters, release)), variables=VARIABLES)

@@ -1,14 +1,13 @@
 """Figures 11 and 16: thresholds of permanent contact."""
 
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bouncing_ball.drawing.canvas import canvas
-from bouncing_ball.paper.exhibits.error_thresholds_figures import (
-    _RIGID,
-    _draw_error,
-    _draw_threshold,
-)
+from bouncing_ball.drawing.canvas import canvas, logarithmic
+from bouncing_ball.drawing.labels import note, parameters
+from bouncing_ball.drawing.style import CONTACT, GUIDE, LIMIT
+from bouncing_ball.drawing.thresholds import draw_relative_error
 
 
 def permanent_contact(data: xr.Dataset) -> Figure:
@@ -25,8 +24,24 @@ def permanent_contact_error(data: xr.Dataset) -> Figure:
     figure, (axes, below) = canvas(height=4.2, rows=2, sharex=True)
     _draw_threshold(axes, data)
     limit = float(data.restitution_threshold)
-    axes.axhline(limit, label=r"restitution, $\Lambda_{CR}$", **_RIGID)
+    axes.axhline(limit, label=r"restitution, $\Lambda_{CR}$", **LIMIT)
     axes.set(xlabel="", ylabel=r"threshold amplitude $\Lambda$")
     axes.legend(loc="upper right")
-    _draw_error(below, data, "PC", digits=2)
+    draw_relative_error(below, data, "PC", digits=2)
     return figure
+
+
+def _draw_threshold(axes: Axes, data: xr.Dataset) -> None:
+    """Λ_SD, or Λ_F of the force release, with its minimum."""
+    high = float(data.frequency_ratio[-1])
+    minimum = float(data.minimum_threshold)
+    force = data.attrs.get("release") == "force"
+    symbol = r"$\Lambda_{F}$" if force else r"$\Lambda_{SD}$"
+    name = f"spring-damper, {symbol}"
+    axes.plot(data.frequency_ratio, data.threshold_amplitude, color=CONTACT, label=name)
+    axes.axhline(minimum, **GUIDE)
+    name = "minimum" if force else r"$2\zeta\sqrt{1-\zeta^2}$"
+    note(axes, name, (high, minimum), (0, 3), ha="right", fontsize=8)
+    ylabel = f"threshold amplitude {symbol}"
+    title = rf"{parameters(data, 'restitution')}, $\zeta={float(data.damping_ratio):.4f}$"
+    logarithmic(axes, data.frequency_ratio, ylabel=ylabel, ylim=(0, 2), title=title)

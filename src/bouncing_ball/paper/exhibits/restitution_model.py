@@ -33,7 +33,10 @@ def _grazing(orbits: RestitutionOrbit) -> np.ndarray:
     """φ and Λ at which the unstable orbits of one family graze the table; NaN if they do not."""
     system = RestitutionModel(orbits.law).system(int(orbits.n[0]))
     found = system.grazing(system.point(orbits))
-    return found[0, [0, -1]] if len(found) else np.full(2, np.nan)
+    if not len(found):
+        return np.full(2, np.nan)
+    # A solution is (φ, …, Λ).
+    return found[0, [0, -1]]
 
 
 def restitution_orbits(parameters: FamilyBranches) -> xr.Dataset:
@@ -49,7 +52,8 @@ def restitution_orbits(parameters: FamilyBranches) -> xr.Dataset:
         If a family does not exist up to ``amplitude_max``.
     """
     n = np.array(parameters.n)
-    r, top = parameters.restitution, parameters.amplitude_max
+    r = parameters.restitution
+    top = parameters.amplitude_max
     fold = orbits.saddle_node(n, r)
     amplitude, phase = orbits.branch(n, r, top, parameters.points)
     shown = RestitutionOrbit.of(n[:, np.newaxis], r, amplitude, phase)
@@ -86,7 +90,8 @@ def restitution_history(parameters: RestitutionHistory) -> xr.Dataset:
     NoOrbitError
         If Λ lies below the saddle-node.
     """
-    n, lam = parameters.n, parameters.amplitude
+    n = parameters.n
+    lam = parameters.amplitude
     orbit = RestitutionModel(parameters.restitution).require_orbit(n, lam)
     time = np.linspace(0.0, parameters.periods * 2 * np.pi * n, parameters.samples)
     height, velocity = orbit.path(time)

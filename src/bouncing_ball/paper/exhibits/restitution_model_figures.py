@@ -1,17 +1,13 @@
-"""Schematics of the two models (Figs. 1 and 4)."""
+"""The restitution model over time and along its branches (Figs. 2 and 3)."""
 
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from bouncing_ball.drawing.branches import draw_branch, label_branch_axes, mark_named_orbits
 from bouncing_ball.drawing.canvas import canvas, coloured, legend_below
 from bouncing_ball.drawing.labels import parameters
 from bouncing_ball.drawing.style import COLOURS, TABLE
-from bouncing_ball.paper.exhibits.continuation_of_orbits_figures import (
-    _draw_branch,
-    _draw_named_points,
-    _name_axes,
-)
 
 
 def restitution_history(data: xr.Dataset) -> Figure:
@@ -31,12 +27,13 @@ def restitution_families(data: xr.Dataset) -> Figure:
     """Fig. 3: the restitution model's branch for each family."""
     figure, axes = canvas(4.6, height=3.6)
     for family, colour in coloured(data, "n"):
-        _draw_branch(axes, family, family.phase, colour)
-        _draw_named_points(axes, family.sel(impact_map="exact"), colour)
+        draw_branch(axes, family, family.phase, colour)
+        mark_named_orbits(axes, family.sel(impact_map="exact"), colour)
         # The name is beside the branch, because five colours cannot be distinguished in grey.
         top = family.isel(point=family.phase.fillna(-np.inf).argmax("point"))
-        end, name = (top.amplitude, top.phase / np.pi), f"$n={family.n.item()}$"
+        end = (top.amplitude, top.phase / np.pi)
+        name = f"$n={family.n.item()}$"
         axes.annotate(name, end, (3, 0), textcoords="offset points", va="center", color=colour)
-    _name_axes(axes, data, r"phase $\varphi/\pi$", parameters(data, "restitution"))
+    label_branch_axes(axes, data, r"phase $\varphi/\pi$", parameters(data, "restitution"))
     legend_below(figure, ncols=4)
     return figure

@@ -1,4 +1,4 @@
-"""Time histories of orbits of the spring-damper model (Figs. 7 and 12), and continued flights."""
+"""Time histories of orbits of the spring-damper model (Figs. 7 and 12)."""
 
 import numpy as np
 import xarray as xr
@@ -41,7 +41,9 @@ def _cycle(parameters: ContactHistory | Histories, ratio: float, release: Releas
     Half the samples fall in either part, and τ_b is a sample in both, because the
     contact may last a hundredth of the cycle and must still be resolved.
     """
-    n, lam, half = parameters.n, parameters.amplitude, parameters.samples // 2
+    n = parameters.n
+    lam = parameters.amplitude
+    half = parameters.samples // 2
     contact = SpringDamper.from_restitution(parameters.restitution, ratio, release)
     orbit = SpringDamperModel(contact).require_admissible(n, lam)
     during = np.linspace(0.0, orbit.contact_duration, half)
@@ -93,7 +95,8 @@ def both_histories(parameters: Histories, release: Release) -> xr.Dataset:
     """
     cycles = [_cycle(parameters, ratio, release) for ratio in sorted(parameters.frequency_ratio)]
     dataset = xr.concat([x.set_coords("frequency_ratio") for x in cycles], "frequency_ratio")
-    n, lam = parameters.n, parameters.amplitude
+    n = parameters.n
+    lam = parameters.amplitude
     rigid = RestitutionModel(parameters.restitution).require_orbit(n, lam)
     time = np.linspace(0.0, 2 * np.pi * n, parameters.samples)
     height, _ = rigid.path(time)

@@ -1,4 +1,4 @@
-"""Motion of ball and table over time (Figs. 2, 7 and 12, and ext_instant)."""
+"""Orbits of the spring-damper model over time (Figs. 7 and 12)."""
 
 from itertools import cycle
 
@@ -19,30 +19,28 @@ _RIGID = "#b3b3b3"
 def contact_history(data: xr.Dataset) -> Figure:
     """Fig. 7: one cycle with the instants and velocities of the paper's equations."""
     figure, axes = canvas(5.0, 3.0)
-    time, ball, table = data.time.values, data.ball.values, data.table.values
-    touching, end = data.contact.values.astype(bool), float(time[-1])
+    time = data.time.values
+    ball = data.ball.values
+    table = data.table.values
+    touching = data.contact.values.astype(bool)
+    end = float(time[-1])
     axes.plot(time, table, color=TABLE)
     axes.plot(time[~touching], ball[~touching], color=CONTACT)
     axes.plot(time[touching], ball[touching], color=CONTACT, linewidth=2.6)
     low = table.min() - 0.16 * (ball.max() - table.min())
-    duration, reach = float(data.contact_duration), 0.12 * end
-    before, after = float(data.impact_velocity), float(data.bounce_velocity)
-    for instant, height, velocity, name, symbol in (
-        (0.0, ball[0], before, r"$\tau_i=0$", r"$z′_i$"),
-        (duration, ball[touching][-1], after, r"$\tau_b$", r"$z′_b$"),
-        (end, ball[-1], before, r"$\tau_2=\tau_i+2\pi n$", r"$z′_2$"),
-    ):
-        axes.plot([instant, instant], [low, height], **GUIDE)
-        axes.plot(instant, height, "o", color="black", markersize=3.5, zorder=5)
-        # The tangent before the impact, or after the release, with a fixed length in τ.
-        side = np.copysign(reach, velocity)
-        here, far = (instant, height), (instant + side, height + side * velocity)
-        head, tail = (here, far) if velocity < 0 else (far, here)
-        axes.annotate("", xy=head, xytext=tail, arrowprops=ARROW)
-        offset, ha = ((4, 1), "left") if velocity < 0 else ((-4, 1), "right")
-        note(axes, symbol, far, offset, ha=ha, va="center")
-        note(axes, name, (instant, low), (0, -2), ha="center", va="top")
-    top, dip = int(np.argmax(ball)), int(np.argmin(table))
+    duration = float(data.contact_duration)
+    reach = 0.12 * end
+    before = float(data.impact_velocity)
+    after = float(data.bounce_velocity)
+    _draw_velocity(axes, 0.0, ball[0], before, reach, r"$z′_i$")
+    _draw_instant(axes, 0.0, ball[0], low, r"$\tau_i=0$")
+    release = ball[touching][-1]
+    _draw_velocity(axes, duration, release, after, reach, r"$z′_b$")
+    _draw_instant(axes, duration, release, low, r"$\tau_b$")
+    _draw_velocity(axes, end, ball[-1], before, reach, r"$z′_2$")
+    _draw_instant(axes, end, ball[-1], low, r"$\tau_2=\tau_i+2\pi n$")
+    top = int(np.argmax(ball))
+    dip = int(np.argmin(table))
     note(axes, "ball $z$", (time[top], ball[top]), (0, 5), ha="center", color=CONTACT)
     note(axes, "table $w$", (time[dip], table[dip]), (0, 4), ha="center", color="#5f5f5f")
     middle = (duration / 2, ball[touching].min())
@@ -55,10 +53,33 @@ def contact_history(data: xr.Dataset) -> Figure:
     return figure
 
 
+def _draw_instant(axes: Axes, instant: float, height: float, low: float, name: str) -> None:
+    """A start or an end of contact, with its name at the foot of a guide."""
+    axes.plot([instant, instant], [low, height], **GUIDE)
+    axes.plot(instant, height, "o", color="black", markersize=3.5, zorder=5)
+    note(axes, name, (instant, low), (0, -2), ha="center", va="top")
+
+
+def _draw_velocity(
+    axes: Axes, instant: float, height: float, velocity: float, reach: float, symbol: str
+) -> None:
+    """The tangent before an impact, or after a release, with a fixed length in τ."""
+    side = np.copysign(reach, velocity)
+    here = (instant, height)
+    far = (instant + side, height + side * velocity)
+    if velocity < 0:
+        axes.annotate("", xy=here, xytext=far, arrowprops=ARROW)
+        note(axes, symbol, far, (4, 1), ha="left", va="center")
+    else:
+        axes.annotate("", xy=far, xytext=here, arrowprops=ARROW)
+        note(axes, symbol, far, (-4, 1), ha="right", va="center")
+
+
 def both_histories(data: xr.Dataset) -> Figure:
     """Fig. 12: height over τ, with the table Λ sin τ of all curves; on the right the apex."""
     figure, (axes, summit) = canvas(WIDE, 3.4, columns=2, width_ratios=(2.4, 1.0))
-    n, amplitude = data.attrs["n"], data.attrs["amplitude"]
+    n = data.attrs["n"]
+    amplitude = data.attrs["amplitude"]
     period = 2 * np.pi * n
     time = np.linspace(-0.1 * 2 * np.pi, period + 0.35 * 2 * np.pi, 400)
     axes.plot(time, amplitude * np.sin(time), color=TABLE, label="table")
@@ -68,15 +89,21 @@ def both_histories(data: xr.Dataset) -> Figure:
     axes.set_xticks(np.pi * halves, ["0", r"$\pi$", *(rf"${k}\pi$" for k in halves[2:])])
     title = parameters(data, "n", "restitution", "amplitude")
     axes.set(xlabel=r"time $\tau$", ylabel="$z$, $w$", xlim=(time[0], time[-1]), title=title)
-    # The enlargement separates the stiffest contact from the restitution model.
+    _enlarge_summit(summit, data)
+    legend_below(figure, ncols=data.sizes["frequency_ratio"] + 2, columnspacing=1.2)
+    return figure
+
+
+def _enlarge_summit(summit: Axes, data: xr.Dataset) -> None:
+    """Limits that separate the stiffest contact from the restitution model at the summit."""
     ball = data.restitution_ball.values
-    top, at = float(ball.max()), float(data.time[int(ball.argmax())] + data.restitution_phase)
-    below = max(3 * (top - float(data.ball.isel(frequency_ratio=-1).max())), 0.02 * top)
+    top = float(ball.max())
+    at = float(data.time[int(ball.argmax())] + data.restitution_phase)
+    stiffest = float(data.ball.isel(frequency_ratio=-1).max())
+    below = max(3 * (top - stiffest), 0.02 * top)
     reach = np.sqrt(2 * below)  # of a free flight
     summit.set(xlabel=r"time $\tau$", title="the summit, enlarged")
     summit.set(xlim=(at - reach, at + reach), ylim=(top - below, top + 0.15 * below))
-    legend_below(figure, ncols=data.sizes["frequency_ratio"] + 2, columnspacing=1.2)
-    return figure
 
 
 def _draw_both_models(axes: Axes, data: xr.Dataset, period: float) -> None:

@@ -1,10 +1,9 @@
 """Growth of small deviations of a ball from one impact to the next.
 
 A deviation (dφ, dδ, dδ′) is mapped by the linearised flow of a flight or of a contact, and then
-along the motion to the next event, ``δ + κ δ′ = 0``. For κ = 0 the event is a landing; for κ equal
-to the lag of a contact it is the release or the resumption of this contact; and for κ = -dh/dv it
-is the instant of the corrected model at the depth h(v). On such a section ``dδ = -κ dδ′``, so that
-the two numbers (dφ, dδ′) remain.
+along the motion to the next event, ``δ + κ δ′ = 0``. For κ = 0 the event is a landing, and for κ
+equal to the lag of a contact it is the release or the resumption of this contact. On such a section
+``dδ = -κ dδ′``, so that the two numbers (dφ, dδ′) remain.
 
 The derivative of the flow of a flight depends only on the table's state at the two ends. With
 X = Λ cos φ, Y = Λ sin φ, and the index 1 for the end after a time T::

@@ -41,11 +41,11 @@ class Departure(NamedTuple):
     """Ends of contact: the table's phase, the duration of the contact, the flight that follows and
     the :class:`~bouncing_ball.paper.motion.sequence.Status`.
 
-    ``settling`` is the part of the duration in which the ball still bounces. ``aloft`` is a time
-    of flight before which the ball has not landed; it is used if it exceeds
-    :meth:`Flight.sure <bouncing_ball.paper.motion.flight.Flight.sure>`. ``by`` has the derivatives of
-    the contact's end, if they are computed together with it. ``sticks`` marks the balls that stay
-    until the table's downward acceleration exceeds gravity, and is None without derivatives.
+    ``settling`` is the part of the duration in which the ball still bounces. ``aloft`` is a time of
+    flight before which the ball has not landed; it is used if it exceeds :meth:`.Flight.sure`.
+    ``by`` has the derivatives of the contact's end, if they are computed together with it.
+    ``sticks`` marks the balls that stay until the table's downward acceleration exceeds gravity;
+    it is None without derivatives.
     """
 
     phase: np.ndarray
@@ -138,9 +138,11 @@ class Dynamics(Batch, ABC):
 
         The flight ends where δ + κ δ′ = 0, with κ = ``lag``.
         """
-        flight, end = departure.flight, table(after.phase, self.amplitude)
+        flight = departure.flight
+        start = flight.x, flight.y
+        end = table(after.phase, self.amplitude)
         time = passed - departure.duration
-        columns = (x.flown((flight.x, flight.y), end, time, after.velocity, lag) for x in released)
+        columns = (each.flown(start, end, time, after.velocity, lag) for each in released)
         return Jacobian.of_columns(*columns)
 
     def in_a_row(self, *states: ArrayLike) -> tuple[Self, list[np.ndarray], tuple[int, ...]]:
@@ -177,9 +179,10 @@ class Dynamics(Batch, ABC):
         rows = {name: np.full((impacts, start.size), np.nan) for name in RECORDED}
         status = np.zeros(start.size, dtype=np.int8)
         for part in blocks(start.size, self.block):
-            own = [values[:, part] for values in rows.values()]
-            here = flat.take(part)
-            here._run(here.start(start[part], relative[part]), own, status[part])
+            of_block = {name: values[:, part] for name, values in rows.items()}
+            dynamics = flat.take(part)
+            first = dynamics.start(start[part], relative[part])
+            dynamics._follow(first, of_block, status[part])
         return ImpactSequence(
             amplitude=np.broadcast_to(self.amplitude, shape),
             contact=self.law if isinstance(self.law, ContactLaw) else None,
@@ -187,22 +190,23 @@ class Dynamics(Batch, ABC):
             **{name: values.reshape(impacts, *shape) for name, values in rows.items()},
         )
 
-    def _run(self, impact: Impact, rows: list[np.ndarray], status: np.ndarray) -> None:
-        """Fill the rows and the status of one block of balls, impact by impact."""
+    def _follow(self, impact: Impact, rows: dict[str, np.ndarray], status: np.ndarray) -> None:
+        """Fill the rows, shape (impacts, balls), and the status of one block of balls.
+
+        Balls that do not bounce any more are left out of the arrays, and their rows remain NaN.
+        """
         dynamics = self
         time = np.zeros_like(impact.phase)
-        alive: Any = slice(None)
-        impacts = len(rows[0])
+        bouncing: Any = slice(None)
+        impacts = len(rows["time"])
         for row in range(impacts):
             departure = dynamics.depart(impact)
-            flight = departure.flight
-            values = (time, *impact[:3], departure.duration, flight.displacement, flight.velocity)
-            for column, value in zip(rows, (*values, departure.settling), strict=True):
-                column[row, alive] = value
+            for name, values in _recorded(time, impact, departure).items():
+                rows[name][row, bouncing] = values
             if np.any(departure.status):
-                status[alive] = departure.status
+                status[bouncing] = departure.status
                 going = np.flatnonzero(departure.status == Status.BOUNCING)
-                alive = np.arange(len(status))[alive][going]
+                bouncing = np.arange(len(status))[bouncing][going]
                 dynamics, departure, time = dynamics.kept(going, departure, time)
             if row == impacts - 1 or not len(time):
                 break
@@ -218,12 +222,34 @@ class Dynamics(Batch, ABC):
             If a flight is too long for floating-point numbers.
         """
         flat, (start, velocity), shape = self.in_a_row(phase, relative_velocity)
-        out = np.full((len(Cycle._fields), start.size), np.nan)
-        out[-1] = np.inf
+        cycle = Cycle(
+            phase=np.full(start.size, np.nan),
+            relative_velocity=np.full(start.size, np.nan),
+            displacement=np.full(start.size, np.nan),
+            time=np.full(start.size, np.inf),
+        )
         for part in blocks(start.size, self.block):
-            here = flat.take(part)
-            departure = here.depart(here.start(start[part], velocity[part]))
+            dynamics = flat.take(part)
+            departure = dynamics.depart(dynamics.start(start[part], velocity[part]))
             going = np.flatnonzero(departure.status == Status.BOUNCING)
-            landed, passed = here.take(going).fly(pick(departure, going))
-            out[:, part.start + going] = landed.phase, landed.velocity, landed.displacement, passed
-        return Cycle(*out.reshape(len(Cycle._fields), *shape))
+            landed, passed = dynamics.take(going).fly(pick(departure, going))
+            balls = part.start + going
+            cycle.phase[balls] = landed.phase
+            cycle.relative_velocity[balls] = landed.velocity
+            cycle.displacement[balls] = landed.displacement
+            cycle.time[balls] = passed
+        return Cycle(*(values.reshape(shape) for values in cycle))
+
+
+def _recorded(time: np.ndarray, impact: Impact, departure: Departure) -> dict[str, Any]:
+    """The values of :data:`.RECORDED` for impacts at these times since the first ones."""
+    return {
+        "time": time,
+        "phase": impact.phase,
+        "displacement": impact.displacement,
+        "relative_velocity": impact.velocity,
+        "contact_duration": departure.duration,
+        "release_displacement": departure.flight.displacement,
+        "relative_bounce_velocity": departure.flight.velocity,
+        "settling": departure.settling,
+    }

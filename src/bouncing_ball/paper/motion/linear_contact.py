@@ -64,7 +64,7 @@ def has_closed_form(contact: SpringDamper) -> bool:
 
 
 class ContactMotion(Motion):
-    """The motion y = δ + κ δ′ of balls in contact, away from the resonance.
+    """The motion y = δ + κ δ′ of balls in contact.
 
     Parameters
     ----------
@@ -79,82 +79,23 @@ class ContactMotion(Motion):
     """
 
     def __init__(self, contact: SpringDamper, amplitude, displacement, velocity, x, y):
-        omega, zeta, lag = contact.frequency_ratio, contact.damping_ratio, contact.lag
-        self.omega, self.stiffness, self.decay, self.lag = omega, omega * omega, zeta * omega, lag
+        self.omega = contact.frequency_ratio
+        self.zeta = contact.damping_ratio
+        self.lag = contact.lag
         self.damped = contact.damped_frequency
-        self.forcing = amplitude * np.sqrt(1 + lag * lag)
-        # The forcing Λ sin φ + κ Λ cos φ at the start.
-        self.push = y + lag * x
-        self.start, self.start_rate = self._observed(displacement, velocity, y)
-        self._split(contact, amplitude, x, y)
-
-    def _split(self, contact: SpringDamper, amplitude, x, y) -> None:
-        detuning, loss = _resistance(contact)
-        gamma, lag = detuning * detuning + loss * loss, self.lag
-        # Coefficients of Λ sin τ and Λ cos τ in the steady response to Λ sin τ + κ Λ cos τ.
-        in_phase, quadrature = (detuning + lag * loss) / gamma, (lag * detuning - loss) / gamma
-        self.steady = amplitude * np.sqrt(in_phase * in_phase + quadrature * quadrature)
-        self.sine, self.cosine = in_phase * x - quadrature * y, in_phase * y + quadrature * x
-        self.a = self.start + (1 / self.stiffness - self.cosine)
-        self.b = (self.start_rate - self.sine + self.decay * self.a) / self.damped
-        self.envelope = np.sqrt(self.a * self.a + self.b * self.b)
-
-    def _observed(self, displacement, velocity, y):
-        """y and y′ from δ and δ′."""
+        self.stiffness = self.omega * self.omega
+        self.decay = self.zeta * self.omega
+        # The amplitude of the forcing Λ sin τ + κ Λ cos τ of y, and its value at the start.
+        self.forcing = amplitude * np.sqrt(1 + self.lag * self.lag)
+        self.push = y + self.lag * x
         acceleration = (y - 1) - 2 * self.decay * velocity - self.stiffness * displacement
-        return displacement + self.lag * velocity, velocity + self.lag * acceleration
+        self.start = displacement + self.lag * velocity
+        self.start_rate = velocity + self.lag * acceleration
 
-    def state(self, displacement_rate, y):
+    def release(self, rate, y):
         """δ and δ′ at a release with the rate y′, where ``y`` is the table's height Λ sin τ."""
-        lag = self.lag
-        velocity = displacement_rate - lag * (y - 1)
-        return -lag * velocity, velocity
-
-    def __call__(self, time: np.ndarray) -> State:
-        angles = np.array([self.damped * time, time])
-        (sine, slow_sine), (cosine, slow_cosine) = sine_and_cosine(angles)
-        decay = exponential(-self.decay * time)
-        a, b = self.a * decay, self.b * decay
-        free = a * cosine + b * sine
-        free_rate = self.damped * (b * cosine - a * sine) - self.decay * free
-        free_second = -2 * self.decay * free_rate - self.stiffness * free
-        free_third = -2 * self.decay * free_second - self.stiffness * free_rate
-        forced = self.sine * slow_sine + self.cosine * slow_cosine
-        forced_rate = self.sine * slow_cosine - self.cosine * slow_sine
-        level = 1 / self.stiffness
-        envelope = self.envelope * decay
-        bound = self.stiffness * envelope
-        return State(
-            (free - level) + forced,
-            free_rate + forced_rate,
-            free_second - forced,
-            free_third - forced_rate,
-            bound + self.steady,
-            self.omega * bound + self.steady,
-            self.stiffness * bound + self.steady,
-            envelope + (self.steady - level) <= _ROUNDING * level,
-        )
-
-    def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
-        """A time up to which y is negative, because its bound by the transient's envelope is.
-
-        The bound is negative until the steady part rises through 1/ϖ² - R e^{-as}. Without it
-        a stiff, weakly damped contact would need steps over about ϖ oscillations.
-        """
-        if steps < _PATIENCE:
-            return time
-        level = 1 / self.stiffness - self.envelope * exponential(-self.decay * time)
-        ratio = level / np.maximum(self.steady, 1e-300)
-        inside = np.abs(ratio) < 1
-        ratio = np.where(inside, ratio, 0.0)
-        rising = arctangent(ratio, np.sqrt((1 - ratio) * (1 + ratio)))
-        now = time + arctangent(self.cosine, self.sine)
-        below = inside & (sine_and_cosine(now)[0] < ratio)
-        # The result precedes the crossing by more than the rounding error of the crossing.
-        wait = np.mod(rising - now, 2 * np.pi) - 1e-9
-        # Rounding must not postpone a crossing at the present time by a full turn.
-        wait = np.where(wait > 2 * np.pi - 1e-6, 0.0, wait)
-        return time + np.where(below, np.maximum(wait, 0.0), 0.0)
+        velocity = rate - self.lag * (y - 1)
+        return -self.lag * velocity, velocity
 
     def sure(self) -> np.ndarray:
         """A time before which the contact has certainly not ended, within half a period.
@@ -183,6 +124,71 @@ class ContactMotion(Motion):
         return angle / self.damped
 
 
+class ClosedFormMotion(ContactMotion):
+    """The motion y away from the resonance, as the sum of the transient and the steady part."""
+
+    def __init__(self, contact: SpringDamper, amplitude, displacement, velocity, x, y):
+        super().__init__(contact, amplitude, displacement, velocity, x, y)
+        detuning, loss = _resistance(contact)
+        gamma = detuning * detuning + loss * loss
+        # Coefficients of Λ sin τ and Λ cos τ in the steady response to Λ sin τ + κ Λ cos τ.
+        in_phase = (detuning + self.lag * loss) / gamma
+        quadrature = (self.lag * detuning - loss) / gamma
+        self.steady = amplitude * np.sqrt(in_phase * in_phase + quadrature * quadrature)
+        self.sine = in_phase * x - quadrature * y
+        self.cosine = in_phase * y + quadrature * x
+        self.a = self.start + (1 / self.stiffness - self.cosine)
+        self.b = (self.start_rate - self.sine + self.decay * self.a) / self.damped
+        self.envelope = np.sqrt(self.a * self.a + self.b * self.b)
+
+    def __call__(self, time: np.ndarray) -> State:
+        angles = np.array([self.damped * time, time])
+        (sine, slow_sine), (cosine, slow_cosine) = sine_and_cosine(angles)
+        decay = exponential(-self.decay * time)
+        a = self.a * decay
+        b = self.b * decay
+        free = a * cosine + b * sine
+        free_rate = self.damped * (b * cosine - a * sine) - self.decay * free
+        free_second = -2 * self.decay * free_rate - self.stiffness * free
+        free_third = -2 * self.decay * free_second - self.stiffness * free_rate
+        forced = self.sine * slow_sine + self.cosine * slow_cosine
+        forced_rate = self.sine * slow_cosine - self.cosine * slow_sine
+        level = 1 / self.stiffness
+        envelope = self.envelope * decay
+        bound = self.stiffness * envelope
+        return State(
+            value=(free - level) + forced,
+            rate=free_rate + forced_rate,
+            second=free_second - forced,
+            third=free_third - forced_rate,
+            second_bound=bound + self.steady,
+            third_bound=self.omega * bound + self.steady,
+            fourth_bound=self.stiffness * bound + self.steady,
+            ended=envelope + (self.steady - level) <= _ROUNDING * level,
+        )
+
+    def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
+        """A time up to which y is negative, because its bound by the transient's envelope is.
+
+        The bound is negative until the steady part rises through 1/ϖ² - R e^{-as}. Without it
+        a stiff, weakly damped contact would need steps over about ϖ oscillations.
+        """
+        if steps < _PATIENCE:
+            return time
+        level = 1 / self.stiffness - self.envelope * exponential(-self.decay * time)
+        ratio = level / np.maximum(self.steady, 1e-300)
+        inside = np.abs(ratio) < 1
+        ratio = np.where(inside, ratio, 0.0)
+        rising = arctangent(ratio, np.sqrt((1 - ratio) * (1 + ratio)))
+        now = time + arctangent(self.cosine, self.sine)
+        below = inside & (sine_and_cosine(now)[0] < ratio)
+        # The result precedes the crossing by more than the rounding error of the crossing.
+        wait = np.mod(rising - now, 2 * np.pi) - 1e-9
+        # Rounding must not postpone a crossing at the present time by a full turn.
+        wait = np.where(wait > 2 * np.pi - 1e-6, 0.0, wait)
+        return time + np.where(below, np.maximum(wait, 0.0), 0.0)
+
+
 class ResonantMotion(ContactMotion):
     """The motion y of balls whose contact is at the undamped resonance, or near it.
 
@@ -190,14 +196,23 @@ class ResonantMotion(ContactMotion):
     no step is longer.
     """
 
-    def _split(self, contact: SpringDamper, amplitude, x, y) -> None:
-        self.zeta, self.phase = contact.damping_ratio, np.arctan2(self.push, x - self.lag * y)
+    def __init__(self, contact: SpringDamper, amplitude, displacement, velocity, x, y):
+        super().__init__(contact, amplitude, displacement, velocity, x, y)
+        # The phase of the forcing Λ sin τ + κ Λ cos τ at the start.
+        self.phase = np.arctan2(self.push, x - self.lag * y)
 
     def __call__(self, time: np.ndarray) -> State:
-        start = self.start, self.start_rate, self.phase, self.forcing
-        value, rate, second, _ = SpringDamper(self.omega, self.zeta).flow(time, *start)
-        loss, stiffness, forcing = 2 * self.decay, self.stiffness, self.forcing
+        flow = SpringDamper(self.omega, self.zeta).flow(
+            time, self.start, self.start_rate, self.phase, self.forcing
+        )
+        value = flow.displacement
+        rate = flow.velocity
+        second = flow.acceleration
+        loss = 2 * self.decay
+        stiffness = self.stiffness
+        forcing = self.forcing
         third = table(self.phase + time, forcing)[0] - loss * second - stiffness * rate
+        # e, and the bound of |y′| within a time 1.
         moved = np.sqrt(rate * rate + (self.omega * value + 1 / self.omega) ** 2)
         fast = moved + forcing
         by_second = forcing + (loss + self.omega) * fast
@@ -206,12 +221,17 @@ class ResonantMotion(ContactMotion):
         by_second = np.maximum(by_second, -2 * (value + rate))
         by_third = np.maximum(by_third, 3 * np.abs(second))
         by_fourth = np.maximum(by_fourth, 12 * (by_second + np.abs(second)))
-        # Without forcing, a free oscillation of at most this size never ends the contact.
-        ended = (forcing == 0) & (moved * self.omega <= 1)
-        return State(value, rate, second, third, by_second, by_third, by_fourth, ended)
-
-    def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
-        return time
+        return State(
+            value=value,
+            rate=rate,
+            second=second,
+            third=third,
+            second_bound=by_second,
+            third_bound=by_third,
+            fourth_bound=by_fourth,
+            # Without forcing, a free oscillation of at most this size never ends the contact.
+            ended=(forcing == 0) & (moved * self.omega <= 1),
+        )
 
 
 @dataclass(frozen=True, repr=False)
@@ -223,49 +243,70 @@ class LinearContactDynamics(ResumingDynamics):
     def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
         """The end of each contact, or permanent contact if it is proved never to end."""
         x, y = table(impact.phase, self.amplitude)
-        state = impact.displacement, impact.velocity
-        kind = ContactMotion if has_closed_form(self.law) else ResonantMotion
-        motion = kind(self.law, self.amplitude, *state, x, y)
-        # Where the search ended without a release, the contact is permanent.
+        kind = ClosedFormMotion if has_closed_form(self.law) else ResonantMotion
+        motion = kind(self.law, self.amplitude, impact.displacement, impact.velocity, x, y)
         end = first_zero(motion, motion.sure())
-        phase = impact.phase + end.time
-        x, y = table(phase, self.amplitude)
-        # If the ball just reaches the table's level, rounding may give it a downward velocity.
-        displacement, velocity = motion.state(np.maximum(end.rate, 0.0), y)
+        # Where the search ended without a release, the contact is permanent.
         status = np.where(end.ended, Status.PERMANENT_CONTACT, Status.BOUNCING)
         status[end.undecided] = Status.UNDECIDED
         forever = status != Status.BOUNCING
-        displacement[forever] = velocity[forever] = np.nan
-        end.time[forever] = np.inf
-        flight = Flight(displacement, velocity, x, y, self.amplitude)
+        duration = np.where(forever, np.inf, end.time)
+        phase = impact.phase + end.time
+        x, y = table(phase, self.amplitude)
+        # If the ball just reaches the table's level, rounding may give it a downward velocity.
+        displacement, velocity = motion.release(np.maximum(end.rate, 0.0), y)
+        flight = Flight(
+            displacement=np.where(forever, np.nan, displacement),
+            velocity=np.where(forever, np.nan, velocity),
+            x=x,
+            y=y,
+            amplitude=self.amplitude,
+        )
         # An undamped contact that starts at zero speed under a constant load lasts exactly one
         # oscillation. A longer contact therefore ends because the load changes.
-        sticks = end.time * self.law.damped_frequency > 2 * np.pi
-        return Departure(phase, end.time, flight, status, sticks=sticks)
+        sticks = duration * self.law.damped_frequency > 2 * np.pi
+        return Departure(phase, duration, flight, status, sticks=sticks)
 
     def jacobian(
         self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
     ) -> Jacobian:
         """Derivative of the map over contact and flight, in closed form."""
-        contact, flight, duration = self.law, departure.flight, departure.duration
-        omega, damped, lag = contact.frequency_ratio, contact.damped_frequency, contact.lag
-        stiffness, loss = omega**2, 2 * contact.damping_ratio * omega
-        sine, versine = sine_and_versine(damped * duration)
-        decay = exponential(-loss / 2 * duration)
-        impulse = decay * sine / damped
+        contact = self.law
+        flight = departure.flight
+        omega = contact.frequency_ratio
+        stiffness = omega**2
+        loss = 2 * contact.damping_ratio * omega
+        # The impulse response g, g′, and g′ + 2ζϖ g, the response to a unit displacement.
+        sine, versine = sine_and_versine(contact.damped_frequency * departure.duration)
+        decay = exponential(-loss / 2 * departure.duration)
+        impulse = decay * sine / contact.damped_frequency
         impulse_rate = decay * (1 - versine) - loss / 2 * impulse
         level = impulse_rate + loss * impulse
-        depth, rate = impact.displacement, impact.velocity
+
+        def acceleration(displacement, velocity, y):
+            return (y - 1) - loss * velocity - stiffness * displacement
+
         _, y = table(impact.phase, self.amplitude)
-        first = (y - 1) - loss * rate - stiffness * depth
-        left, speed = flight.displacement, flight.velocity
-        last = (flight.y - 1) - loss * speed - stiffness * left
-        # A deviation along the motion changes only the time.
-        fall = speed - level * rate - impulse * first
-        pull = last + stiffness * impulse * rate - impulse_rate * first
-        before, held = (np.where(x < 0, lag, 0.0) for x in (depth, after.displacement))
-        by_rate = impulse - before * level, impulse_rate + before * stiffness * impulse
+        rate = impact.velocity
+        speed = flight.velocity
+        first = acceleration(impact.displacement, rate, y)
+        last = acceleration(flight.displacement, speed, flight.y)
+        # A contact that resumes starts, and the flight before it ends, at δ + κ δ′ = 0.
+        lag_before = np.where(impact.displacement < 0, contact.lag, 0.0)
+        lag_after = np.where(after.displacement < 0, contact.lag, 0.0)
         one = np.ones_like(passed)
-        moved = Deviation(one, fall, pull), Deviation(0 * one, *by_rate)
-        released = (x.to_event(speed, last, lag) for x in moved)
-        return self.landed(released, departure, after, passed, held)
+        # A deviation along the motion changes only the time. (1, 0, 0) is therefore (1, δ′, δ″),
+        # which becomes (1, δ′, δ″) at the release, less (0, δ′, δ″).
+        by_phase = Deviation(
+            phase=one,
+            displacement=speed - level * rate - impulse * first,
+            velocity=last + stiffness * impulse * rate - impulse_rate * first,
+        )
+        by_velocity = Deviation(
+            phase=0 * one,
+            displacement=impulse - lag_before * level,
+            velocity=impulse_rate + lag_before * stiffness * impulse,
+        )
+        moved = (by_phase, by_velocity)
+        released = (each.to_event(speed, last, contact.lag) for each in moved)
+        return self.landed(released, departure, after, passed, lag_after)

@@ -1,4 +1,4 @@
-"""Sequences of impacts of many balls, as arrays."""
+"""Simulated impacts of many balls as arrays, and how the motion of each ball goes on."""
 
 from dataclasses import dataclass, replace
 from enum import IntEnum
@@ -11,8 +11,14 @@ from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.contact.law import ContactLaw
 
 RECORDED = (
-    *("time", "phase", "displacement", "relative_velocity", "contact_duration"),
-    *("release_displacement", "relative_bounce_velocity", "settling"),
+    "time",
+    "phase",
+    "displacement",
+    "relative_velocity",
+    "contact_duration",
+    "release_displacement",
+    "relative_bounce_velocity",
+    "settling",
 )
 """The arrays of an :class:`ImpactSequence` with a row for each impact, in order."""
 
@@ -87,7 +93,8 @@ class ImpactSequence:
 
     def __repr__(self) -> str:
         balls = f" of each of {self.status.size} balls" if self.status.ndim else ""
-        least, most = np.min(self.impacts), np.max(self.impacts)
+        least = np.min(self.impacts)
+        most = np.max(self.impacts)
         count = f"{least}" if least == most else f"{least} to {most}"
         doing = (Status(int(k)).name.lower().replace("_", " ") for k in np.unique(self.status))
         head = f"ImpactSequence: {count} impacts{balls}, then {' or '.join(doing)}"
@@ -104,10 +111,13 @@ class ImpactSequence:
         >>> simulate(1.0, 0.0, 0.0, [-1.0, -2.0], 2)[1].time.tolist()
         [0.0, 4.0]
         """
-        found = {name: value[:, balls] for name, value in vars(self).items() if name in RECORDED}
-        of_all = {"amplitude": self.amplitude[balls], "status": self.status[balls]}
-        law = None if self.contact is None else self.contact.take(balls)
-        return replace(self, contact=law, **of_all, **found)
+        return replace(
+            self,
+            amplitude=self.amplitude[balls],
+            contact=None if self.contact is None else self.contact.take(balls),
+            status=self.status[balls],
+            **{name: getattr(self, name)[:, balls] for name in RECORDED},
+        )
 
     @property
     def shape(self) -> tuple[int, ...]:

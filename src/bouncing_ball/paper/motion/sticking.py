@@ -82,7 +82,8 @@ def lifted(departure: Departure, amplitude: np.ndarray) -> Departure:
     """The departures with those marked as sticking that leave by lift-off, a state that does not
     depend on their earlier motion.
     """
-    rests = (departure.flight.velocity == 0) & (departure.flight.displacement == 0)
-    which = rests.nonzero()[0]
-    rests[which] = departure.phase[which] == lift_off_phase(pick(amplitude, which))
-    return departure._replace(sticks=rests)
+    at_rest = (departure.flight.velocity == 0) & (departure.flight.displacement == 0)
+    (balls,) = at_rest.nonzero()
+    sticks = at_rest
+    sticks[balls] = departure.phase[balls] == lift_off_phase(pick(amplitude, balls))
+    return departure._replace(sticks=sticks)

@@ -3,8 +3,7 @@
 If a contact is determined by its start, the unknowns are (φ, z′_i), the phase and the velocity
 at the impact, and the parameter is Λ. The contact then gives its duration and the state at its
 end, and two equations remain, for the velocity and the height of the flight that follows
-(Eqs. 24-25). Both are of order one however short the contact is. In the corrected model the only
-unknown is the phase of the instant.
+(Eqs. 24-25). Both are of order one however short the contact is.
 
 A linear contact may also pass the release and end at a later one, as on some orbits that are not
 admissible. Its duration is therefore a third unknown, ϖ τ_b, and its release (Eq. 23) a third
@@ -26,15 +25,6 @@ from bouncing_ball.paper.orbits.stability import Bifurcation
 # permanent contact. The equations are singular there, and rounding errors of 1e-16 are divided
 # by each of the two: the margin limits each of them to about 1e-12.
 _MARGIN = 1e-4
-# The ends of a branch: name, reason, and the function of an orbit that is positive before the end.
-_ENDS: tuple[tuple[str, str, Callable[[Any], np.ndarray]], ...] = (
-    ("contact lost", "the ball no longer closes in on the table at impact",
-     lambda orbit: -orbit.relative_impact_velocity - _MARGIN),
-    ("release lost", "the ball no longer leaves the table as the contact ends",
-     lambda orbit: orbit.relative_bounce_velocity),
-    ("flight lost", "the contact fills the whole cycle",
-     lambda orbit: orbit.flight_time - _MARGIN),
-)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -110,7 +100,25 @@ class OrbitSystem:
             reason = f"{name}: {why}"
             return Event(name, lambda y: left(self.orbit(y)), terminal=True, reason=reason)
 
-        return (*map(bifurcation, Bifurcation), *(end(*each) for each in _ENDS))
+        return (
+            bifurcation(Bifurcation.SADDLE_NODE),
+            bifurcation(Bifurcation.PERIOD_DOUBLING),
+            end(
+                "contact lost",
+                "the ball no longer closes in on the table at impact",
+                lambda orbit: -orbit.relative_impact_velocity - _MARGIN,
+            ),
+            end(
+                "release lost",
+                "the ball no longer leaves the table as the contact ends",
+                lambda orbit: orbit.relative_bounce_velocity,
+            ),
+            end(
+                "flight lost",
+                "the contact fills the whole cycle",
+                lambda orbit: orbit.flight_time - _MARGIN,
+            ),
+        )
 
     def grazing(self, y: np.ndarray) -> np.ndarray:
         """The last admissible points along a branch, one for each change of admissibility.

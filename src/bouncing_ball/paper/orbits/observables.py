@@ -1,10 +1,16 @@
-"""TODO docstring of paper.orbits.observables."""
+"""Quantities of orbits, and of branches with their special orbits and ends, as datasets have them.
+
+The variables of a branch are the observables along it, over the dimension ``point``, and the place
+of each special orbit, over ``special``: its bifurcations, and the grazing orbits, at which the
+orbits become inadmissible.
+"""
 
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.datasets.variables import Variable
 from bouncing_ball.numerics.continuation import Branch, resample
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.equations import OrbitSystem
@@ -12,14 +18,44 @@ from bouncing_ball.paper.orbits.orbit import Orbit
 from bouncing_ball.paper.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.paper.orbits.stability import Bifurcation
 
+VARIABLES = {
+    "special": Variable("special point of the branch, in order of arclength"),
+    "special_kind": Variable("kind of special point"),
+    "special_amplitude": Variable("excitation amplitude at the special point", symbol="Λ"),
+    "special_phase": Variable(
+        "phase at the special point", symbol="φ", units="rad", equation="Eq. 21"
+    ),
+    "special_contact_duration": Variable(
+        "contact duration at the special point", symbol="τ_b", equation="Eq. 23", budget=1e-12
+    ),
+    "special_residual": Variable(
+        "residual of the extended system at the special point", budget=1e-12, scale="1"
+    ),
+    "multiplier": Variable("Floquet multiplier, the larger modulus first", symbol="μ"),
+    "multiplier_real": Variable("real part of the Floquet multiplier", symbol="Re μ"),
+    "multiplier_imag": Variable("imaginary part of the Floquet multiplier", symbol="Im μ"),
+    "residual": Variable(
+        "largest defect of the orbit equations", equation="Eqs. 21-26", budget=1e-12, scale="1"
+    ),
+    "end": Variable("end of the branch"),
+    "end_reason": Variable("why the branch ends there"),
+}
+
 OBSERVED = (
-    *("phase", "contact_duration", "release_phase"),
-    *("impact_velocity", "bounce_velocity", "apparent_restitution"),
+    "phase",
+    "contact_duration",
+    "release_phase",
+    "impact_velocity",
+    "bounce_velocity",
+    "apparent_restitution",
 )
+"""The quantities of orbits along a branch or along ϖ."""
+
 PLACE = ("amplitude", "phase", "contact_duration")
 """The quantities of special orbits that the datasets contain."""
 
 GRAZING = "grazing"
+"""The kind of the special orbits that graze the table."""
 
 
 def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:
@@ -50,12 +86,18 @@ def branch_columns(system: OrbitSystem, branch: Branch, count: int) -> xr.Datase
         If the steps along the branch were too long for it to be resampled.
     """
     y = resample(system, branch, count)
-    chosen = [s for s in branch.special if s.name in list(Bifurcation)]
-    grazing = system.grazing(y)
-    points = np.array([*(s.point for s in chosen), *grazing]).reshape(-1, y.shape[-1])
-    kinds = [*(str(s.name) for s in chosen), *[GRAZING] * len(grazing)]
+    points = []
+    kinds = []
+    for special in branch.special:
+        if special.name in list(Bifurcation):
+            points.append(special.point)
+            kinds.append(str(special.name))
+    for point in system.grazing(y):
+        points.append(point)
+        kinds.append(GRAZING)
+    special_orbits = system.orbit(np.array(points).reshape(-1, y.shape[-1]))
     ends = [str(branch.start), str(branch.end)]
-    return orbits_in_columns(system.orbit(y), system.orbit(points), kinds, ends)
+    return orbits_in_columns(system.orbit(y), special_orbits, kinds, ends)
 
 
 def orbits_in_columns(
@@ -68,17 +110,19 @@ def orbits_in_columns(
     multiplier), ``special_…`` over ``special``, and ``end_reason`` over ``end``, where the end of
     the unstable side comes first.
     """
-    floquet = orbit.multipliers()
     along = columns(orbit, "amplitude", *OBSERVED) | {"residual": orbit.defect()}
-    places = {name: getattr(special, name) for name in PLACE} | {"residual": special.defect()}
     data: dict[str, Any] = {name: ("point", values) for name, values in along.items()}
-    for part in ("real", "imag"):
-        data[f"multiplier_{part}"] = ("point", "multiplier"), getattr(floquet, part)
+    floquet = orbit.multipliers()
+    data["multiplier_real"] = ("point", "multiplier"), floquet.real
+    data["multiplier_imag"] = ("point", "multiplier"), floquet.imag
     data["special_kind"] = "special", np.array(kinds, dtype=object)
-    data |= {f"special_{name}": ("special", values) for name, values in places.items()}
+    for name in PLACE:
+        data[f"special_{name}"] = "special", getattr(special, name)
+    data["special_residual"] = "special", special.defect()
+    data["end_reason"] = "end", ends
     # Numbers, so that branches with different numbers of special points are aligned.
     coords = {"special": np.arange(len(kinds)), "end": ["unstable side", "stable side"]}
-    return xr.Dataset(data | {"end_reason": ("end", ends)}, coords)
+    return xr.Dataset(data, coords)
 
 
 def no_branch(count: int, error: Exception) -> xr.Dataset:

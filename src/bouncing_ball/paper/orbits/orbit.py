@@ -23,8 +23,13 @@ from bouncing_ball.paper.motion.sequence import Cycle
 from bouncing_ball.paper.orbits import stability
 
 OBSERVABLES = (
-    *("amplitude", "phase", "contact_duration", "impact_velocity", "bounce_velocity"),
-    *("apparent_restitution", "max_height"),
+    "amplitude",
+    "phase",
+    "contact_duration",
+    "impact_velocity",
+    "bounce_velocity",
+    "apparent_restitution",
+    "max_height",
 )
 """The seven observables of an orbit, with their names in datasets and on the command line."""
 # An earlier impact or release that the equations do not model shifts the next impact by a
@@ -34,7 +39,8 @@ _SAME = 1e-6
 # The highest point of a contact is searched among this many samples. New samples are then taken
 # between the neighbours of the highest sample. The last steps are 16⁻⁵ of the first, and the error
 # of the height is of the order of the square of the last step.
-_SAMPLES, _REFINEMENTS = 33, 6
+_SAMPLES = 33
+_REFINEMENTS = 6
 # Number of orbits whose samples are in memory at the same time.
 _BLOCK = 1024
 
@@ -133,9 +139,10 @@ class Orbit(Batch, ABC):
 
     def contact_path(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Height z and velocity z′ at times 0 ≤ τ ≤ τ_b in contact, of the shape of the times."""
-        angle, (displacement, velocity) = self.phase + time, self.contact_motion(time)
-        lift, pace = self.amplitude * np.sin(angle), self.amplitude * np.cos(angle)
-        return displacement + lift, velocity + pace
+        displacement, velocity = self.contact_motion(time)
+        table_phase = self.phase + time
+        height = displacement + self.amplitude * np.sin(table_phase)
+        return height, velocity + self.amplitude * np.cos(table_phase)
 
     @abstractmethod
     def residual(self) -> np.ndarray:
@@ -174,10 +181,13 @@ class Orbit(Batch, ABC):
         They are ``δ′_b + Λ cos(φ + D) - z′_b`` and
         ``δ_b + Λ sin(φ + D) - Λ sin φ + (z′_b - T/2) T``, with z′_b = z′_i + T and T = 2πn - D.
         """
-        lam, end, bounce = self.amplitude, self.release_phase, self.bounce_velocity
-        rise = lam * (np.sin(end) - np.sin(self.phase)) + displacement
-        fall = (bounce - self.flight_time / 2) * self.flight_time
-        return velocity + lam * np.cos(end) - bounce, rise + fall
+        lam = self.amplitude
+        end = self.release_phase
+        bounce = self.bounce_velocity
+        # From the table's level at the impact to the ball at its release, and then to the landing.
+        at_release = lam * (np.sin(end) - np.sin(self.phase)) + displacement
+        flown = (bounce - self.flight_time / 2) * self.flight_time
+        return velocity + lam * np.cos(end) - bounce, at_release + flown
 
     @property
     def exists(self) -> np.ndarray:
@@ -233,7 +243,8 @@ class Orbit(Batch, ABC):
         contact.
         """
         rising = np.maximum(self.bounce_velocity, 0.0)
-        top = np.array(np.broadcast_to(self.bounce_height + rising * rising / 2, self.shape))
+        apex = self.bounce_height + rising * rising / 2
+        top = np.array(np.broadcast_to(apex, self.shape))
         low = np.flatnonzero((top < self.amplitude) & (self.contact_duration > 0))
         # The samples of all orbits at once would take gigabytes.
         for part in blocks(low.size, _BLOCK):
@@ -244,7 +255,8 @@ class Orbit(Batch, ABC):
     def _contact_top(self) -> np.ndarray:
         """Greatest height in contact, from samples that are refined around the highest sample."""
         steps = np.arange(_SAMPLES).reshape(-1, *(1,) * len(self.shape))
-        low, step = 0.0 * self.contact_duration, self.contact_duration / (_SAMPLES - 1)
+        low = 0.0 * self.contact_duration
+        step = self.contact_duration / (_SAMPLES - 1)
         for _ in range(_REFINEMENTS):
             height = self.contact_path(low + step * steps)[0]
             highest = np.argmax(np.where(np.isnan(height), -np.inf, height), axis=0)
@@ -269,7 +281,8 @@ class Orbit(Batch, ABC):
         touching = s < self.contact_duration
         inside = self.contact_path(np.where(touching, s, 0.0))
         outside = self.flight_path(np.where(touching, self.contact_duration, s))
-        height, velocity = (np.where(touching, a, b) for a, b in zip(inside, outside, strict=True))
+        height = np.where(touching, inside[0], outside[0])
+        velocity = np.where(touching, inside[1], outside[1])
         return height, velocity
 
     def flight_jacobian(
@@ -280,14 +293,18 @@ class Orbit(Batch, ABC):
         ``start`` holds the derivatives of (φ, z′_i, Λ) at the start of contact, ``contact`` those
         of (τ_b, δ_b, δ′_b) at its end.
         """
-        (d_phase, d_impact, d_lam), (d_duration, d_displacement, d_velocity) = start, contact
+        d_phase, d_impact, d_lam = start
+        d_duration, d_displacement, d_velocity = contact
         lam, phase, end = as_columns(self.amplitude, self.phase, self.release_phase)
         bounce, flight = as_columns(self.bounce_velocity, self.flight_time)
-        d_end, d_bounce = d_phase + d_duration, d_impact - d_duration
+        # The release is at φ + τ_b, the velocity there is z′_b = z′_i + T, and T = 2πn - τ_b.
+        d_end = d_phase + d_duration
+        d_bounce = d_impact - d_duration
         velocity = d_velocity + np.cos(end) * d_lam - lam * np.sin(end) * d_end - d_bounce
         rise = (np.sin(end) - np.sin(phase)) * d_lam
         rise = rise + lam * (np.cos(end) * d_end - np.cos(phase) * d_phase)
-        return velocity, d_displacement + rise + flight * d_bounce - (bounce - flight) * d_duration
+        landing = d_displacement + rise + flight * d_bounce - (bounce - flight) * d_duration
+        return velocity, landing
 
     def jacobian(self) -> np.ndarray:
         """Jacobian of the flight's two defects in (φ, z′_i, Λ), shape (..., 2, 3).
@@ -313,6 +330,7 @@ class Orbit(Batch, ABC):
         the flight time to the table changes by s. Here ``u s = -(dH + T dV)``, where u is the
         relative impact velocity. The next start is therefore moved by (dφ + s, dz′_i + dV - s).
         """
+        # The rows of the two defects; the columns of φ and z′_i.
         d_velocity, d_height = np.moveaxis(self.jacobian()[..., :2], -2, 0)
         flight, speed = as_columns(self.flight_time, self.relative_impact_velocity)
         later = -(d_height + flight * d_velocity) / speed
@@ -345,8 +363,8 @@ class Orbit(Batch, ABC):
         the next impact of the simulation, whose events are certified, is that of the orbit. The
         result is False where there is no orbit.
         """
-        falls, lasts = self.relative_impact_velocity < 0, self.contact_duration >= 0
-        possible = falls & lasts & (self.flight_time > 0)
+        approaches = self.relative_impact_velocity < 0
+        possible = approaches & (self.contact_duration >= 0) & (self.flight_time > 0)
         admissible = np.zeros(self.shape, dtype=bool)
         if np.any(possible):
             part = self[possible] if self.shape else self
@@ -368,5 +386,6 @@ class Orbit(Batch, ABC):
         turned = reduce_angle(self.phase - other.phase)
         longer = (self.contact_duration - other.contact_duration) * self.clock
         faster = self.impact_velocity - other.impact_velocity
-        every = np.broadcast_arrays(self.amplitude - other.amplitude, turned, longer, faster)
-        return np.max(np.abs(every), axis=0)
+        larger = self.amplitude - other.amplitude
+        differences = np.broadcast_arrays(larger, turned, longer, faster)
+        return np.max(np.abs(differences), axis=0)

@@ -141,7 +141,8 @@ def phase(
     >>> round(float(phase(1, 1.0, 0.5)) / np.pi, 15)
     0.5
     """
-    fold, lam = saddle_node(n, restitution), np.asarray(amplitude, dtype=float)
+    fold = saddle_node(n, restitution)
+    lam = np.asarray(amplitude, dtype=float)
     below = ~(lam >= fold)
     if np.any(below):
         least, where, family = (np.broadcast_to(x, below.shape)[below][0] for x in (fold, lam, n))

@@ -1,4 +1,4 @@
-"""Models in which an impact is an instant at the table's level, and their n-T orbits."""
+"""The restitution model, whose impacts are instants at the table's level, and its n-T orbits."""
 
 from __future__ import annotations
 
@@ -109,12 +109,13 @@ class RestitutionModel(ImpactModel):
 
         Arguments, shape and errors are those of :meth:`.ImpactModel.orbit`.
         """
-        fold, lam = formulas.saddle_node(n, self.restitution), np.asarray(amplitude, dtype=float)
-        there = lam >= fold
-        phase = formulas.phase(
-            n, self.restitution, np.where(there, lam, fold), Side(side) is Side.STABLE
-        )
-        return self.orbit_of(n, lam, np.where(there, phase, np.nan))
+        lam = np.asarray(amplitude, dtype=float)
+        fold = formulas.saddle_node(n, self.restitution)
+        exists = lam >= fold
+        on_stable_side = Side(side) is Side.STABLE
+        at = np.where(exists, lam, fold)
+        phase = formulas.phase(n, self.restitution, at, on_stable_side)
+        return self.orbit_of(n, lam, np.where(exists, phase, np.nan))
 
     def saddle_node(self, n: ArrayLike) -> RestitutionOrbit:
         """The orbits at the saddle-node (Eq. 7), where φ = 0, with the shape of n and the model."""

@@ -1,8 +1,8 @@
 """Saddle-node, period doubling and orbits at a given Λ, on the explicit branch.
 
-These are roots of functions of one variable along the branch of
-:mod:`bouncing_ball.paper.orbits.spring_damper_branch`, computed for arrays of contacts at the same time.
-A scan brackets the first root next to the fold, and Chandrupatla's method
+These are roots of functions of one variable, the excess angle ε, along the branch of
+:mod:`bouncing_ball.paper.orbits.spring_damper_branch`, computed for arrays of contacts at the same
+time. A scan brackets the first root next to the fold, and Chandrupatla's method
 (:func:`scipy.optimize.elementwise.find_root`) reduces the bracket to the last digit.
 
 The branch comes from Λ → ∞ at short contacts. From there Λ falls as the contact
@@ -12,7 +12,6 @@ fold. Entries for which the quantity does not exist are NaN.
 
 from collections.abc import Callable
 from dataclasses import replace
-from operator import attrgetter
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -40,11 +39,20 @@ _BLOCK = 1024
 # table's, because Λ(ε) oscillates with both; and the largest number of steps.
 _FINE = 0.02
 _MOST = 200_000
-_saddle, _fold = attrgetter("saddle_node"), attrgetter("fold")
+
+
+# Functions of points of the branch, whose zeros are searched for. The first two vanish at the
+# bifurcations, the third where Λ turns, and the last at a given Λ.
+def _saddle(point: BranchPoint) -> np.ndarray:
+    return point.saddle_node
 
 
 def _doubling(point: BranchPoint) -> np.ndarray:
     return Bifurcation.PERIOD_DOUBLING.test(point.trace, point.determinant)
+
+
+def _fold(point: BranchPoint) -> np.ndarray:
+    return point.fold
 
 
 def _deficit(point: BranchPoint, amplitude: np.ndarray) -> np.ndarray:
@@ -80,23 +88,31 @@ class _Curves(NamedTuple):
         return np.minimum(np.concatenate([down, np.zeros((1, *low.shape)), up]), high)
 
     def root(
-        self, of: Callable, grid: np.ndarray, at: np.ndarray, found: Any, *more: np.ndarray
+        self,
+        function: Callable,
+        grid: np.ndarray,
+        interval: np.ndarray,
+        found: np.ndarray,
+        *more: np.ndarray,
     ) -> np.ndarray:
-        """Roots of a function of points of the branch, in the intervals ``at`` of the grid.
+        """Roots of a function of points of the branch, each in one interval of the grid.
 
-        The root is NaN where ``found`` is False.
+        ``interval`` holds the index of the interval for each contact, and ``more`` further
+        arguments of the function. The root is NaN where ``found`` is False.
         """
 
-        def function(excess, which, *more):
-            return of(self.take(which).point(excess), *more)
+        def at_excess(excess, which, *more):
+            return function(self.take(which).point(excess), *more)
 
-        result, which = np.full(at.shape, np.nan), np.flatnonzero(found)
+        root = np.full(interval.shape, np.nan)
+        which = np.flatnonzero(found)
         if which.size:
-            bracket = grid[at[which], which], grid[at[which] + 1, which]
+            left = interval[which]
+            bracket = grid[left, which], grid[left + 1, which]
             # The default tolerance is four units in the last place of the root.
             args = (which, *(x[which] for x in more))
-            result[which] = find_root(function, bracket, args=args).x
-        return result
+            root[which] = find_root(at_excess, bracket, args=args).x
+        return root
 
     def zero(self, test: Callable, grid: np.ndarray, values: np.ndarray) -> np.ndarray:
         """First zero of a test function with known values along a grid, or NaN.
@@ -105,18 +121,20 @@ class _Curves(NamedTuple):
         in it grows beyond the values at both ends, whereas it becomes smaller at a zero. The two
         are therefore distinguished without a tolerance.
         """
-        row = np.arange(self.n.size)
-        at, found = _bracket(values)
-        root = self.root(test, grid, at, found)
-        smallest = np.minimum(np.abs(values[at, row]), np.abs(values[at + 1, row]))
-        return np.where(np.abs(test(self.point(root))) <= smallest, root, np.nan)
+        interval, found = _bracket(values)
+        root = self.root(test, grid, interval, found)
+        contacts = np.arange(self.n.size)
+        left = np.abs(values[interval, contacts])
+        right = np.abs(values[interval + 1, contacts])
+        is_zero = np.abs(test(self.point(root))) <= np.minimum(left, right)
+        return np.where(is_zero, root, np.nan)
 
     def fold(self) -> np.ndarray:
         """ε of the saddle-node."""
         grid = self.scan()
         return self.zero(_saddle, grid, _saddle(self.point(grid)))
 
-    def stable_side(self, of: Callable, *more: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def stable_side(self, function: Callable, *more: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The grid of the scan up to the fold, and the values of a function on it.
 
         The function is negative at the shortest contacts. If it is positive again at the last
@@ -124,17 +142,21 @@ class _Curves(NamedTuple):
         itself is not computed. Grid points beyond the end are replaced by the end. Without a fold
         Λ falls along the whole branch, and the whole branch is the stable side.
         """
-        grid, row = self.scan(), np.arange(self.n.size)
+        grid = self.scan()
         points = self.point(grid)
-        values, saddle = of(points, *more), _saddle(points)
-        at, found = _bracket(saddle)
+        values = function(points, *more)
+        saddle = _saddle(points)
+        before_fold, has_fold = _bracket(saddle)
+        contacts = np.arange(self.n.size)
         # Λ has a minimum in the interval, and not a pole.
-        least = (points.fold[at, row] < 0) & (points.fold[at + 1, row] >= 0)
-        end = np.where(found, grid[at, row], grid[-1])
-        near = np.flatnonzero(found & ~(least & (values[at, row] >= 0)))
+        falls = points.fold[before_fold, contacts] < 0
+        rises = points.fold[before_fold + 1, contacts] >= 0
+        positive = values[before_fold, contacts] >= 0
+        end = np.where(has_fold, grid[before_fold, contacts], grid[-1])
+        near = np.flatnonzero(has_fold & ~(falls & rises & positive))
         fold = self.take(near).zero(_saddle, grid[:, near], saddle[:, near])
         end[near] = np.where(np.isnan(fold), grid[-1, near], fold)
-        values = np.where(grid < end, values, of(self.point(end), *more))
+        values = np.where(grid < end, values, function(self.point(end), *more))
         return np.minimum(grid, end), values
 
 
@@ -143,17 +165,21 @@ def _bracket(values):
 
     A change next to NaN does not count.
     """
-    left, right = values[:-1], values[1:]
+    left = values[:-1]
+    right = values[1:]
     change = ((left < 0) & (right >= 0)) | ((left >= 0) & (right < 0))
     return np.argmax(change, axis=0), np.any(change, axis=0)
 
 
-def _searched(search: Callable, contact: SpringDamper, n: ArrayLike, *more: ArrayLike):
+def _searched(
+    search: Callable, contact: SpringDamper, n: ArrayLike, *more: ArrayLike
+) -> np.ndarray:
     """The results of a search for many contacts, in blocks, because each scan has 121 points."""
     check_index(n)
     columns = np.broadcast_arrays(contact.frequency_ratio, contact.damping_ratio, n, *more)
     omega, zeta, n, *rest = (np.ravel(column).astype(float) for column in columns)
-    curves, found = _Curves(SpringDamper(omega, zeta, contact.release), n), np.empty(omega.size)
+    curves = _Curves(SpringDamper(omega, zeta, contact.release), n)
+    found = np.empty(omega.size)
     for part in blocks(found.size, _BLOCK):
         found[part] = search(curves.take(part), *(column[part] for column in rest))
     return found.reshape(columns[0].shape)
@@ -218,12 +244,14 @@ def period_doubling(contact: SpringDamper, n: ArrayLike) -> np.ndarray:
 def _stable_side(curves: _Curves, lam: np.ndarray) -> np.ndarray:
     """ε of the orbit at Λ between short contacts and the saddle-node, where Λ falls with ε."""
     grid, deficit = curves.stable_side(_deficit, lam)
-    return curves.root(_deficit, grid, *_bracket(deficit), lam)
+    interval, found = _bracket(deficit)
+    return curves.root(_deficit, grid, interval, found, lam)
 
 
 def _unstable_side(curves: _Curves, lam: np.ndarray) -> np.ndarray:
     """ε of the orbit at Λ that is nearest to the saddle-node on its unstable side."""
-    fold, (_, high) = curves.fold(), curves.ends()
+    fold = curves.fold()
+    _, high = curves.ends()
     scale = _SCAN_START / curves.contact.frequency_ratio
     steps = np.linspace(0, 1, _SCAN).reshape(-1, 1)
     outward = fold + scale * np.maximum((high - fold) / scale, 1.0) ** steps
@@ -233,7 +261,8 @@ def _unstable_side(curves: _Curves, lam: np.ndarray) -> np.ndarray:
     turn, turns = _bracket(curves.point(grid[1:]).fold)
     summit = curves.root(_fold, grid[1:], turn, turns)
     grid = np.sort(np.concatenate([grid, np.where(turns, summit, high)[np.newaxis]]), axis=0)
-    return curves.root(_deficit, grid, *_bracket(-_deficit(curves.point(grid), lam)), lam)
+    interval, found = _bracket(-_deficit(curves.point(grid), lam))
+    return curves.root(_deficit, grid, interval, found, lam)
 
 
 def orbit_at(
@@ -269,7 +298,8 @@ def orbit_at(
     1.0
     """
     search = _stable_side if side is Side.STABLE else _unstable_side
-    return SpringDamperOrbit.on_branch(_searched(search, contact, n, amplitude), contact, n)
+    excess = _searched(search, contact, n, amplitude)
+    return SpringDamperOrbit.on_branch(excess, contact, n)
 
 
 def orbits_at(contact: SpringDamper, n: int, amplitude: float) -> SpringDamperOrbit:
@@ -294,21 +324,34 @@ def orbits_at(contact: SpringDamper, n: int, amplitude: float) -> SpringDamperOr
     """
     check_index(n)
     omega = np.atleast_1d(contact.frequency_ratio)
-    one = _Curves(replace(contact, frequency_ratio=omega), np.array([float(n)]))
-    low, high = (float(x[0]) for x in one.ends())
-    step = _FINE * min(1.0, float(contact.damped_frequency))
-    fine = np.arange(low, min(high, low + _MOST * step), step)
-    scan = one.scan()[:, 0]
-    grid = np.unique(np.concatenate([fine, scan[scan <= fine[-1] + step]]))
-
-    def roots(of: Callable, grid: np.ndarray, *more: float) -> np.ndarray:
-        values = of(one.point(grid), *more)
-        at = np.flatnonzero((values[:-1] < 0) != (values[1:] < 0))
-        first, rest = np.zeros_like(at), (np.full(at.shape, x) for x in more)
-        return one.take(first).root(of, np.stack([grid[at], grid[at + 1]]), first, at >= 0, *rest)
-
-    grid = np.sort(np.concatenate([grid, roots(_fold, grid)]))
-    found = SpringDamperOrbit.on_branch(roots(_deficit, grid, amplitude), contact, n)
+    curve = _Curves(replace(contact, frequency_ratio=omega), np.array([float(n)]))
+    grid = _fine_grid(curve, float(contact.damped_frequency))
+    turns = _all_roots(curve, _fold, grid)
+    grid = np.sort(np.concatenate([grid, turns]))
+    found = SpringDamperOrbit.on_branch(_all_roots(curve, _deficit, grid, amplitude), contact, n)
     # A sign change at a pole of the branch is not a root.
-    real = np.abs(found.amplitude - amplitude) <= 1e-6 * amplitude
-    return found[real & (found.relative_impact_velocity < 0) & (found.relative_bounce_velocity > 0)]
+    at_amplitude = np.abs(found.amplitude - amplitude) <= 1e-6 * amplitude
+    approaches = found.relative_impact_velocity < 0
+    leaves = found.relative_bounce_velocity > 0
+    return found[at_amplitude & approaches & leaves]
+
+
+def _fine_grid(curve: _Curves, damped_frequency: float) -> np.ndarray:
+    """Values of ε of one contact in small steps, with those of the scan."""
+    low, high = (float(end[0]) for end in curve.ends())
+    step = _FINE * min(1.0, damped_frequency)
+    fine = np.arange(low, min(high, low + _MOST * step), step)
+    scan = curve.scan()[:, 0]
+    return np.unique(np.concatenate([fine, scan[scan <= fine[-1] + step]]))
+
+
+def _all_roots(curve: _Curves, function: Callable, grid: np.ndarray, *more: float) -> np.ndarray:
+    """The roots of a function of points of one branch between neighbouring points of the grid."""
+    values = function(curve.point(grid), *more)
+    at = np.flatnonzero((values[:-1] < 0) != (values[1:] < 0))
+    # The same contact for each root, with a grid of two points.
+    contact = np.zeros_like(at)
+    brackets = np.stack([grid[at], grid[at + 1]])
+    numbers = (np.full(at.shape, x) for x in more)
+    found = np.ones(at.shape, dtype=bool)
+    return curve.take(contact).root(function, brackets, contact, found, *numbers)

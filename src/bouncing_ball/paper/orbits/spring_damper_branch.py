@@ -39,7 +39,7 @@ All quantities are dimensionless; all functions broadcast.
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -95,16 +95,86 @@ class BranchPoint(NamedTuple):
         return self.x * self.d_x + self.y * self.d_y
 
 
-def _responses(duration, sin_angle, cos_angle, sin_d, cos_d, decay, omega, zeta, root):
-    """g, g′, G, Q = Re h and P = Im h at time D, from the sine and cosine of ϖ_d D and of D.
+class _ContactEnd(NamedTuple):
+    """The contact at its end, at the time D: its responses and their derivatives.
 
-    These are the quotients of :mod:`bouncing_ball.paper.contact.oscillator` in real arithmetic. In short
-    or resonant contacts the quotients lose digits, and the values come from that module instead.
+    ``g``, ``gravity`` and ``q``, ``p`` are g, G, Q = Re h and P = Im h at D, and d… and dd… the
+    first and second derivatives. ``push`` is ϖ (g + κ g′), the coefficient of u in the release
+    condition, and ``d_push`` its derivative. The table turns by the angle D in contact;
+    ``cos_less_one`` is cos D - 1. ``decay`` is e^{-ζϖD}.
     """
-    stiffness, loss = omega * omega, 2 * zeta * omega
-    g = decay * sin_angle / (omega * root)
-    g_rate = decay * (cos_angle - zeta / root * sin_angle)
-    rest = g_rate + loss * g
+
+    g: np.ndarray
+    dg: np.ndarray
+    ddg: np.ndarray
+    gravity: np.ndarray
+    q: np.ndarray
+    dq: np.ndarray
+    ddq: np.ndarray
+    p: np.ndarray
+    ddp: np.ndarray
+    push: np.ndarray
+    d_push: np.ndarray
+    sin_d: np.ndarray
+    cos_d: np.ndarray
+    cos_less_one: np.ndarray
+    decay: np.ndarray
+
+    @classmethod
+    def of(cls, eps, duration, omega, zeta, sine, root) -> "_ContactEnd":
+        """The contact with the excess angle ε and D; ``root`` is √(1 - ζ²)."""
+        loss = 2 * zeta * omega
+        stiffness = omega * omega
+        sin_eps = np.sin(eps)
+        cos_eps = np.cos(eps)
+        # ϖ_d D = θ₀ + ε with θ₀ = π - 2α, where the sine and cosine of 2α are exact.
+        sin_2a = 2 * sine * np.sqrt((1 - sine) * (1 + sine))
+        cos_2a = 1 - 2 * sine * sine
+        sin_angle = sin_2a * cos_eps - cos_2a * sin_eps
+        cos_angle = -cos_2a * cos_eps - sin_2a * sin_eps
+        sin_half = np.sin(duration / 2)
+        cos_half = np.cos(duration / 2)
+        sin_d = 2 * sin_half * cos_half
+        cos_less_one = -2 * sin_half * sin_half
+        cos_d = 1 + cos_less_one
+        decay = np.exp(-zeta * omega * duration)
+        g = decay * sin_angle / (omega * root)
+        dg = decay * (cos_angle - zeta / root * sin_angle)
+        gravity, q, p = _forced_responses(
+            duration, omega, zeta, g=g, dg=dg, sin_d=sin_d, cos_d=cos_d
+        )
+        # From the oscillator's equation, and from h′ = i h + g, so that P′ = Q and Q′ = g - P.
+        ddg = -loss * dg - stiffness * g
+        dq = g - p
+        return cls(
+            g=g,
+            dg=dg,
+            ddg=ddg,
+            gravity=gravity,
+            q=q,
+            dq=dq,
+            ddq=dg - q,
+            p=p,
+            ddp=dq,
+            push=-decay / root * sin_eps,
+            d_push=decay / root * (zeta * omega * sin_eps - omega * root * cos_eps),
+            sin_d=sin_d,
+            cos_d=cos_d,
+            cos_less_one=cos_less_one,
+            decay=decay,
+        )
+
+
+def _forced_responses(duration, omega, zeta, *, g, dg, sin_d, cos_d):
+    """G, Q = Re h and P = Im h at time D, from g and g′ and from the sine and cosine of D.
+
+    These are the quotients of :mod:`bouncing_ball.paper.contact.oscillator` in real arithmetic. In
+    short or resonant contacts the quotients lose digits, and the values come from that module
+    instead.
+    """
+    stiffness = omega * omega
+    loss = 2 * zeta * omega
+    rest = dg + loss * g
     detuning = stiffness - 1
     gamma = detuning * detuning + loss * loss
     square = duration * duration
@@ -115,7 +185,8 @@ def _responses(duration, sin_angle, cos_angle, sin_d, cos_d, decay, omega, zeta,
         gamma = np.where(delicate, 1.0, gamma)
     gravity = (1 - rest) / stiffness
     # h = (e^{iD} - g′ - (i + 2ζϖ) g)/(ϖ² - 1 + 2iζϖ)
-    real, imaginary = cos_d - rest, sin_d - g
+    real = cos_d - rest
+    imaginary = sin_d - g
     q = (real * detuning + imaginary * loss) / gamma
     p = (imaginary * detuning - real * loss) / gamma
     if troubled:
@@ -123,12 +194,57 @@ def _responses(duration, sin_angle, cos_angle, sin_d, cos_d, decay, omega, zeta,
         exact = responses(*(x[delicate] for x in arrays[:3]))
         gravity, q, p = (np.array(np.broadcast_to(x, delicate.shape)) for x in (gravity, q, p))
         gravity[delicate] = exact.gravity.value
-        q[delicate], p[delicate] = exact.table.value.real, exact.table.value.imag
-    return g, g_rate, gravity, q, p
+        q[delicate] = exact.table.value.real
+        p[delicate] = exact.table.value.imag
+    return gravity, q, p
 
 
-def _solve(rows, right):
-    """Solution of 3×3 systems by Cramer's rule, a solver for further right sides, and det A."""
+class _Equation(NamedTuple):
+    """A linear equation for (u, X, Y): coefficients and right side, and their derivatives by D."""
+
+    row: tuple[Any, Any, Any]
+    right: Any
+    d_row: tuple[Any, Any, Any]
+    d_right: Any
+
+    def change(self, u, x, y):
+        """The right side of the equation for the derivatives of (u, X, Y) by D."""
+        return self.d_right - (self.d_row[0] * u + self.d_row[1] * x + self.d_row[2] * y)
+
+
+def _equations(end: _ContactEnd, flight, omega, sine) -> tuple[_Equation, _Equation, _Equation]:
+    """The three equations of an orbit: release, velocity and landing."""
+    twice = 2 * sine
+    lag = 2 * sine / omega
+    # ϖ (δ_b + κ δ′_b) = 0
+    release = _Equation(
+        row=(end.push, omega * end.p + twice * end.q, omega * end.q + twice * end.dq),
+        right=omega * end.gravity + twice * end.g,
+        d_row=(end.d_push, omega * end.q + twice * end.ddp, omega * end.dq + twice * end.ddq),
+        d_right=omega * end.g + twice * end.dg,
+    )
+    velocity = _Equation(
+        row=(end.dg - 1, end.q + end.cos_less_one, end.dq - end.sin_d),
+        right=end.g + flight,
+        d_row=(end.ddg, end.ddp - end.sin_d, end.ddq - end.cos_d),
+        d_right=end.dg - 1,
+    )
+    # δ_b = -κ δ′_b, which is exactly 0 for the displacement release.
+    landing = _Equation(
+        row=(
+            flight - lag * end.dg,
+            flight + end.sin_d - lag * end.q,
+            end.cos_less_one - lag * end.dq,
+        ),
+        right=-flight * flight / 2 - lag * end.g,
+        d_row=(-1 - lag * end.ddg, end.cos_less_one - lag * end.ddp, -end.sin_d - lag * end.ddq),
+        d_right=flight - lag * end.dg,
+    )
+    return release, velocity, landing
+
+
+def _cramer(rows):
+    """A solver of 3×3 systems with these rows by Cramer's rule, and their determinants."""
     (a1, a2, a3), (b1, b2, b3), (c1, c2, c3) = rows
     bc = b2 * c3 - b3 * c2, b3 * c1 - b1 * c3, b1 * c2 - b2 * c1
     ca = c2 * a3 - c3 * a2, c3 * a1 - c1 * a3, c1 * a2 - c2 * a1
@@ -142,7 +258,7 @@ def _solve(rows, right):
     def solve(s, t, v):
         return tuple((s * bc[k] + t * ca[k] + v * ab[k]) * inverse for k in range(3))
 
-    return solve(*right), solve, determinant
+    return solve, determinant
 
 
 def branch_point(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> BranchPoint:
@@ -199,51 +315,27 @@ def _branch_point(eps, omega, zeta, sine, n) -> BranchPoint:
     per_angle = 1 / (omega * root)
     duration = (2 * np.arccos(sine) + eps) * per_angle
     flight = 2 * np.pi * n - duration
-    loss, stiffness = 2 * zeta * omega, omega * omega
-    twice, lag = 2 * sine, 2 * sine / omega
-
-    # θ₀ = π - 2α: the sine and cosine of 2α are exact.
-    sin_eps, cos_eps = np.sin(eps), np.cos(eps)
-    sin_2a, cos_2a = twice * np.sqrt((1 - sine) * (1 + sine)), 1 - twice * sine
-    sin_angle = sin_2a * cos_eps - cos_2a * sin_eps
-    cos_angle = -cos_2a * cos_eps - sin_2a * sin_eps
-    sin_half, cos_half = np.sin(duration / 2), np.cos(duration / 2)
-    sin_d, versine = 2 * sin_half * cos_half, -2 * sin_half * sin_half
-    cos_d = 1 + versine
-    decay = np.exp(-zeta * omega * duration)
-    g, dg, gravity, q, p = _responses(
-        duration, sin_angle, cos_angle, sin_d, cos_d, decay, omega, zeta, root
-    )
-    # Accelerations from the oscillator's equation; h′ = i h + g, so that P′ = Q
-    # and Q′ = g - P.
-    ddg = -loss * dg - stiffness * g
-    dq, ddq, ddp = g - p, dg - q, g - p
-    push = -decay / root * sin_eps
-    d_push = decay / root * (zeta * omega * sin_eps - omega * root * cos_eps)
-    # Coefficients of (u, X, Y) and their derivatives along D: ϖ (δ + κ δ′) = 0.
-    release = push, omega * p + twice * q, omega * q + twice * dq
-    d_release = d_push, omega * q + twice * ddp, omega * dq + twice * ddq
-    weight, d_weight = omega * gravity + twice * g, omega * g + twice * dg
-    # δ_b = -κ δ′_b, which is exactly 0 for the displacement release.
-    landing = flight - lag * dg, flight + sin_d - lag * q, versine - lag * dq
-    d_landing = -1 - lag * ddg, versine - lag * ddp, -sin_d - lag * ddq
-    fall, d_fall = -flight * flight / 2 - lag * g, flight - lag * dg
-    velocity = dg - 1, q + versine, dq - sin_d
-    d_velocity = ddg, ddp - sin_d, ddq - cos_d
-
-    equations = release, velocity, landing
-    (u, x, y), solve, matrix = _solve(equations, (weight, g + flight, fall))
-    along = [
-        db - (row[0] * u + row[1] * x + row[2] * y)
-        for db, row in ((d_weight, d_release), (dg - 1, d_velocity), (d_fall, d_landing))
-    ]
-    _, d_x, d_y = solve(*along)
+    end = _ContactEnd.of(eps, duration, omega, zeta, sine, root)
+    equations = _equations(end, flight, omega, sine)
+    solve, determinant = _cramer([equation.row for equation in equations])
+    u, x, y = solve(*(equation.right for equation in equations))
+    changes = [equation.change(u, x, y) for equation in equations]
+    _, d_x, d_y = solve(*changes)
     # Infinite or not a number where the ball grazes at impact or at release.
     with np.errstate(divide="ignore", invalid="ignore"):
-        saddle = matrix * (x * d_x + y * d_y) / (u * along[0])
-    # Both broadcast to the shape of the other fields.
-    duration, determinant = duration + 0 * u, decay * decay + 0 * u
-    return BranchPoint(duration, x, y, u, d_x * per_angle, d_y * per_angle, saddle, determinant)
+        saddle_node = determinant * (x * d_x + y * d_y) / (u * changes[0])
+    # The duration and the decay may have fewer axes than the other fields.
+    none = 0 * u
+    return BranchPoint(
+        contact_duration=duration + none,
+        x=x,
+        y=y,
+        u=u,
+        d_x=d_x * per_angle,
+        d_y=d_y * per_angle,
+        saddle_node=saddle_node,
+        determinant=end.decay * end.decay + none,
+    )
 
 
 # Number of Gauss-Newton steps. The start is exact up to the rounding of D, so that few suffice.
@@ -281,10 +373,10 @@ def nearest_excess(
     >>> round(float(nearest_excess(contact, 1, point.x, point.y, np.array(0.25))), 12)
     0.25
     """
-    own = excess
+    nearest = excess
     for _ in range(_ITERATIONS):
-        point = branch_point(excess, contact, n)
+        point = branch_point(nearest, contact, n)
         along = (x - point.x) * point.d_x + (y - point.y) * point.d_y
         square = point.d_x * point.d_x + point.d_y * point.d_y
-        excess = excess + (along + own - excess) / (square + 1)
-    return excess
+        nearest = nearest + (along + excess - nearest) / (square + 1)
+    return nearest

@@ -96,10 +96,12 @@ class SpringDamperModel(ImpactModel):
         """The points of the branch that are nearest to given orbits in (Λ cos φ, Λ sin φ, ε), of
         the shape of these orbits.
         """
-        contact, n = orbit.law, orbit.n
-        duration = orbit.contact_duration * contact.damped_frequency - contact.free_angle
-        x, y = orbit.amplitude * np.cos(orbit.phase), orbit.amplitude * np.sin(orbit.phase)
-        return SpringDamperOrbit.on_branch(nearest_excess(contact, n, x, y, duration), contact, n)
+        contact = orbit.law
+        excess = orbit.contact_duration * contact.damped_frequency - contact.free_angle
+        x = orbit.amplitude * np.cos(orbit.phase)
+        y = orbit.amplitude * np.sin(orbit.phase)
+        nearest = nearest_excess(contact, orbit.n, x, y, excess)
+        return SpringDamperOrbit.on_branch(nearest, contact, orbit.n)
 
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ up to which the ball stays on the table, of the model's shape.

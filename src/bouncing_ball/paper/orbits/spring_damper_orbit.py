@@ -29,7 +29,12 @@ class SpringDamperOrbit(Orbit):
     def from_branch(cls, point: BranchPoint, contact: SpringDamper, n: ArrayLike) -> Self:
         """The orbits at points of the closed-form branch."""
         return cls(
-            n, contact, point.amplitude, point.phase, point.contact_duration, point.u + point.x
+            n=n,
+            law=contact,
+            amplitude=point.amplitude,
+            phase=point.phase,
+            contact_duration=point.contact_duration,
+            impact_velocity=point.u + point.x,
         )
 
     @classmethod
@@ -62,7 +67,7 @@ class SpringDamperOrbit(Orbit):
         return self.law.frequency_ratio
 
     def contact_flow(self, time: np.ndarray) -> Any:
-        """The :class:`~bouncing_ball.paper.contact.spring_damper.ContactFlow` at times 0 ≤ τ ≤ τ_b."""
+        """The :class:`.ContactFlow` at times 0 ≤ τ ≤ τ_b."""
         u = self.relative_impact_velocity
         return self.law.flow(time, 0.0, u, self.phase, self.amplitude)
 
@@ -81,10 +86,12 @@ class SpringDamperOrbit(Orbit):
         The release defect is ϖ (δ_b + κ δ′_b). Like the second defect, it is of the order of a
         velocity.
         """
-        flow, contact = self._end, self.law
+        flow = self._end
+        contact = self.law
         release = contact.frequency_ratio * flow.displacement
         release = release + 2 * contact.release_sine * flow.velocity
-        return np.stack([release, *self.flight_defects(flow.displacement, flow.velocity)], axis=-1)
+        velocity, landing = self.flight_defects(flow.displacement, flow.velocity)
+        return np.stack([release, velocity, landing], axis=-1)
 
     def contact_jacobian(self) -> np.ndarray:
         """Jacobian of (τ_b, δ_b, δ′_b) in (τ, δ′, Λ) at the impact, shape (..., 3, 3).
@@ -93,7 +100,8 @@ class SpringDamperOrbit(Orbit):
         """
         # Rows δ, δ′; columns (τ, δ′, Λ) of the start. The last array is the derivative in time.
         jacobian = self._end.jacobian
-        state, by_time = jacobian[..., [3, 2, 4]], jacobian[..., 0]
+        state = jacobian[..., [3, 2, 4]]
+        by_time = jacobian[..., 0]
         lag = np.asarray(self.law.lag)
         released = state[..., 0, :] + lag[..., np.newaxis] * state[..., 1, :]
         pace = by_time[..., 0] + lag * by_time[..., 1]
@@ -104,14 +112,25 @@ class SpringDamperOrbit(Orbit):
     def system_jacobian(self) -> np.ndarray:
         """Exact derivatives of the three residuals by (φ, z′_i, ϖ τ_b, Λ), shape (..., 3, 4)."""
         by_time, _, by_rate, by_phase, by_lam = np.moveaxis(self._end.jacobian, -1, 0)
-        given = self.law.frequency_ratio, self.law.release_sine, np.cos(self.phase)
-        omega, sine, cosine, fall = as_columns(*given, self.amplitude * np.sin(self.phase))
+        omega, sine, cosine, fall = as_columns(
+            self.law.frequency_ratio,
+            self.law.release_sine,
+            np.cos(self.phase),
+            self.amplitude * np.sin(self.phase),
+        )
         # The flow depends on z′_i, φ and Λ through δ′ = z′_i - Λ cos φ, too.
-        by = by_phase + fall * by_rate, by_rate, by_time / omega, by_lam - cosine * by_rate
-        ends, (phase, impact, angle, lam) = np.moveaxis(np.stack(by, axis=-1), -2, 0), np.eye(4)
-        release = omega * ends[0] + 2 * sine * ends[1]
-        contact = angle / omega, *ends
-        return np.stack([release, *self.flight_jacobian((phase, impact, lam), contact)], axis=-2)
+        columns = (
+            by_phase + fall * by_rate,
+            by_rate,
+            by_time / omega,
+            by_lam - cosine * by_rate,
+        )
+        displacement, velocity = np.moveaxis(np.stack(columns, axis=-1), -2, 0)
+        phase, impact, angle, lam = np.eye(4)
+        release = omega * displacement + 2 * sine * velocity
+        contact = angle / omega, displacement, velocity
+        flight = self.flight_jacobian((phase, impact, lam), contact)
+        return np.stack([release, *flight], axis=-2)
 
     def determinant(self) -> np.ndarray:
         """exp(-2ζϖ τ_b), exactly, because areas contract only in contact, at the rate 2ζϖ."""

@@ -16,7 +16,7 @@ from bouncing_ball.numerics.continuation import (
 from bouncing_ball.numerics.events import Event, parameter_bound
 
 # Newton's last step is below 1e-12 and converges quadratically, so points are
-# exact to a few roundings; the brief's 1e-12 has a wide margin.
+# exact to a few roundings; 1e-12 has a wide margin.
 EXACT = 1e-12
 
 
@@ -24,13 +24,15 @@ class Scalar:
     """One equation f(x, p) = 0 with its derivatives."""
 
     def __init__(self, f, f_x, f_p):
-        self.f, self.parts = f, (f_x, f_p)
+        self.f = f
+        self.parts = (f_x, f_p)
 
     def residual(self, y):
         return self.f(y[..., 0], y[..., 1])[..., np.newaxis]
 
     def jacobian(self, y):
-        x, p = y[..., 0], y[..., 1]
+        x = y[..., 0]
+        p = y[..., 1]
         parts = [np.broadcast_to(part(x, p), x.shape) for part in self.parts]
         return np.stack(parts, axis=-1)[..., np.newaxis, :]
 
@@ -53,7 +55,7 @@ def along(problem, *start, **given):
     return continue_branch(problem, np.array(start), increasing=True, **given)
 
 
-def test_circle_goes_round_and_stops_at_the_limit():
+def test_a_closed_branch_is_followed_round_until_the_limit_of_points():
     branch = along(CIRCLE, 1.0, 0.0, events=[fold(CIRCLE)], max_points=120)
     assert str(branch.start) == "starting point"
     assert str(branch.end) == "reached the limit of 120 points"
@@ -69,7 +71,7 @@ def test_circle_goes_round_and_stops_at_the_limit():
     assert np.array(named(branch, "fold")) == pytest.approx(expected, abs=EXACT)
 
 
-def test_steps_obey_the_control():
+def test_no_step_turns_the_tangent_by_more_than_the_largest_angle():
     control = StepControl(initial=0.01, largest=0.15, max_angle=0.1)
     branch = along(CIRCLE, 1.0, 0.0, control=control, max_points=80)
     assert np.hypot(*(branch.points[1] - branch.points[0])) == pytest.approx(0.01, rel=1e-3)
@@ -82,7 +84,7 @@ def test_steps_obey_the_control():
     assert branch.tangents == pytest.approx(normal, abs=EXACT)
 
 
-def test_both_folds_of_a_cubic():
+def test_both_folds_of_a_cubic_are_located_in_the_order_of_the_branch():
     # p = x - x³ has its extrema at x = ±1/√3.
     events = [
         fold(CUBIC),
@@ -117,7 +119,7 @@ def test_both_folds_of_a_cubic():
     ]
 
 
-def test_straight_line_leaves_its_window():
+def test_a_branch_ends_exactly_at_the_bound_of_its_parameter():
     events = [parameter_bound(1.0, True, "window")]
     branch = along(LINE, 0.0, 0.0, events=events)
     assert str(branch.end) == "window"
@@ -145,7 +147,7 @@ def test_events_of_one_step_come_in_order_and_none_after_the_end():
     assert len(branch.points) == 2
 
 
-def test_event_on_a_point_of_the_branch_is_found_once():
+def test_an_event_on_a_point_of_the_branch_is_found_once():
     # Steps of exactly 0.25 in p: the zero at 0.5 is hit exactly.
     step = 0.25 * np.sqrt(5)
     control = StepControl(initial=step, largest=step)
@@ -156,7 +158,7 @@ def test_event_on_a_point_of_the_branch_is_found_once():
         assert np.array(named(branch, "half")) == pytest.approx(np.array([[1.0, 0.5]]), abs=EXACT)
 
 
-def test_corrector_failure_ends_the_branch():
+def test_the_branch_ends_where_the_corrector_fails_with_the_smallest_step():
     # x = p, undefined beyond p = 1.
     problem = Scalar(
         lambda x, p: np.where(p > 1, np.nan, x - p), lambda x, p: 1.0, lambda x, p: -1.0
@@ -226,7 +228,7 @@ def test_an_event_that_cannot_be_located_gives_way_to_the_end():
     assert branch.points[-1] == pytest.approx(np.array([0.58, 0.29]), abs=EXACT)
 
 
-def test_no_start(refusal):
+def test_a_start_without_a_solution_nearby_is_refused(refusal):
     with refusal(
         ContinuationError,
         "no solution near the starting guess [1. 2.]",
@@ -238,7 +240,7 @@ def test_no_start(refusal):
         along(CIRCLE, 1.0, 2.0)
 
 
-def test_a_start_beyond_a_terminal_event(refusal):
+def test_a_start_beyond_a_terminal_event_is_refused(refusal):
     for bound, upper in ((0.5, True), (0.7, False)):
         events = [parameter_bound(bound, upper, "the window")]
         with refusal(
@@ -247,7 +249,7 @@ def test_a_start_beyond_a_terminal_event(refusal):
             along(CIRCLE, 0.8, 0.6, events=events)
 
 
-def test_start_is_corrected_at_its_own_parameter():
+def test_the_start_is_corrected_at_a_fixed_parameter():
     assert solve_at(CIRCLE, np.array([0.9, 0.6])) == pytest.approx([0.8, 0.6], abs=EXACT)
     branch = along(CIRCLE, 0.9, 0.6, max_points=3)
     assert branch.points[0] == pytest.approx(np.array([0.8, 0.6]), abs=EXACT)
@@ -258,7 +260,8 @@ def circle_arc(control):
     return along(CIRCLE, 1.0, 0.0, events=[event], control=control)
 
 
-COARSE, FINE = StepControl(), StepControl(initial=0.003, largest=0.03, max_angle=0.05)
+COARSE = StepControl()
+FINE = StepControl(initial=0.003, largest=0.03, max_angle=0.05)
 
 
 @pytest.mark.parametrize("count", [2, 17, 400])
@@ -281,9 +284,38 @@ def test_resampled_points_do_not_depend_on_the_step_control():
         assert angle == pytest.approx(expected, abs=1e-10)
 
 
-def test_resampling_where_there_is_no_solution(refusal):
+def test_resampling_where_there_is_no_solution_is_refused(refusal):
     # The planes across this chord miss the circle.
-    ends, along = np.array([[1.0, 0.0], [3.0, 0.0]]), np.array([[1.0, 0.0], [1.0, 0.0]])
-    branch = Branch(ends, along, (), STARTED, STARTED)
+    ends = np.array([[1.0, 0.0], [3.0, 0.0]])
+    tangents = np.array([[1.0, 0.0], [1.0, 0.0]])
+    branch = Branch(ends, tangents, (), STARTED, STARTED)
     with refusal(ContinuationError, "resampling to 5 points failed with residual"):
         resample(CIRCLE, branch, 5)
+
+
+# The step after an accepted step.
+
+STEPS = StepControl(initial=0.02, smallest=1e-3, largest=1.0, target_iterations=4, max_angle=0.2)
+
+
+@pytest.mark.parametrize(
+    ("iterations", "factor"),
+    # √2 per iteration, within [1/4, 2].
+    [(4, 1.0), (3, 2**0.5), (2, 2.0), (1, 2.0), (5, 2**-0.5), (6, 0.5), (8, 0.25), (12, 0.25)],
+)
+def test_the_step_changes_by_the_root_of_two_for_each_iteration(iterations, factor):
+    assert STEPS.after(0.1, iterations, 0.0) == pytest.approx(0.1 * factor, rel=1e-15)
+
+
+def test_the_step_is_bounded_by_the_angle_of_the_tangents():
+    # Turning 0.3 in one step: the next is to turn 0.9 · 0.2.
+    assert STEPS.after(0.1, 2, 0.3) == pytest.approx(0.1 * 0.6, rel=1e-15)
+    # A small angle leaves the iterations to decide.
+    assert STEPS.after(0.1, 3, 1e-6) == pytest.approx(0.1 * 2**0.5, rel=1e-15)
+    # Never below a quarter at once.
+    assert STEPS.after(0.1, 2, 100.0) == pytest.approx(0.025, rel=1e-15)
+
+
+def test_the_step_stays_between_the_smallest_and_the_largest():
+    assert STEPS.after(0.9, 1, 0.0) == 1.0
+    assert STEPS.after(2e-3, 12, 0.0) == 1e-3

@@ -1,0 +1,47 @@
+"""The artifacts that the rules of both wings list, read without a run of Snakemake."""
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from adapter import function
+
+from bouncing_ball.pipeline.artifacts import Artifact
+
+RULES = Path(__file__).resolve().parents[1] / "workflow" / "rules"
+
+
+def calls_of_stage(text: str) -> Iterator[str]:
+    """Each call ``stage(…)`` in the text of rules."""
+    for call in re.finditer(r"\bstage\(", text):
+        for end in re.finditer(r"\)", text[call.start() :]):
+            found = text[call.start() : call.start() + end.end()]
+            try:
+                ast.parse(found)
+            except SyntaxError:
+                continue
+            yield found
+            break
+
+
+def declared() -> dict[str, Artifact]:
+    """All artifacts by name."""
+    artifacts = {}
+
+    def stage(module, figures=None, **given):
+        for name, each in given.items():
+            shown = figures or f"{module}_figures"
+            artifacts[name] = Artifact(name=name, module=module, figures=shown, **each)
+
+    for wing in ("paper", "beyond"):
+        for call in calls_of_stage((RULES / f"{wing}.smk").read_text(encoding="utf-8")):
+            eval(call, {"stage": stage})
+    return artifacts
+
+
+ARTIFACTS = declared()
+STUDIES = {
+    each.name: function(each.module, each.study) for each in ARTIFACTS.values() if each.study
+}
+"""The study of each artifact that has one."""

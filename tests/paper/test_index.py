@@ -1,0 +1,37 @@
+"""The indexes of equations and of figures lead to modules that exist."""
+
+import importlib
+import re
+from importlib.util import find_spec
+
+import pytest
+
+import bouncing_ball.paper
+import bouncing_ball.paper.exhibits
+
+
+@pytest.mark.parametrize("package", [bouncing_ball.paper, bouncing_ball.paper.exhibits])
+def test_each_module_of_an_index_exists(package):
+    named = re.findall(r":mod:`(\.[\w.]+)`", package.__doc__)
+    missing = [name for name in named if find_spec(name, package.__name__) is None]
+    assert len(named) > 8 and not missing
+
+
+def test_the_index_of_figures_has_every_figure_and_the_table():
+    index = bouncing_ball.paper.exhibits.__doc__
+    rows = re.findall(r"^Fig\. ([\d, ]+?)  *:mod:", index, flags=re.M)
+    figures = sorted(int(number) for row in rows for number in row.split(","))
+    assert figures == list(range(1, 17)) and "Table 1" in index
+
+
+def test_the_index_of_figures_leads_to_the_stage_that_makes_each_figure(stages):
+    index = bouncing_ball.paper.exhibits.__doc__
+    for row, module in re.findall(r"^Fig\. ([\d, ]+?)  *:mod:`\.(\w+)`", index, flags=re.M):
+        for number in row.split(","):
+            study = stages.get(f"fig{int(number):02d}")
+            if study is None:
+                # The schematics have no study.
+                assert module == "schematics_figures"
+            else:
+                assert study.startswith(f"paper.exhibits.{module}.")
+                assert importlib.import_module(f"bouncing_ball.paper.exhibits.{module}_figures")

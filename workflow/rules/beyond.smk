@@ -1,0 +1,227 @@
+# The stages beyond the paper, in the same form as those of the paper. `places`, if a study can be
+# divided into shards, is the function that computes the arrays of some of its places. A dataset
+# with `accepted` is not part of a run: figures and texts read this file, and
+# `snakemake results/figures/NAME.nc` makes it again if it has a study.
+
+# Datasets that no study makes: what physics engines computed (`make test-engines`), and the summary
+# of the atlas (workflow/rules/atlas.smk).
+stage(
+    "beyond.engines",
+    engines=dict(title="Orbits that physics engines ran", accepted="config/engines.nc"),
+)
+stage(
+    "beyond.atlas",
+    figures="beyond.atlas.figures",
+    ext_atlas=dict(
+        title="How stiff a contact must be, over the whole range of orbits",
+        drawing="over_range",
+        accepted="config/atlas.nc",
+    ),
+)
+
+
+use rule study as corrected_model with:
+    """The corrected restitution model, and how fast its errors fall along the frequency ratio."""
+    wildcard_constraints:
+        artifact=stage(
+            "beyond.exhibits.corrected_model",
+            ext_instant=dict(
+                title="Flights before and after a contact meet at the centroid of its force",
+                study="meeting_flights",
+                drawing="meeting_flights",
+            ),
+            ext_orders=dict(
+                title="Order of convergence of the restitution model and of the corrected one",
+                study="orders",
+                drawing="orders",
+                table="ext_orders",
+            ),
+        ),
+
+
+use rule study as release_rules with:
+    """Contacts with another release rule."""
+    wildcard_constraints:
+        artifact=stage(
+            "beyond.exhibits.release_rules",
+            ext_release=dict(
+                title="Bifurcations and thresholds under both release rules",
+                study="release_rules",
+            ),
+            ext_impact=dict(
+                title="Restitution and duration of a free impact, by damping and release rule",
+                study="free_impacts",
+                drawing="free_impacts",
+            ),
+        ),
+
+
+use rule study as contact_laws with:
+    """Contacts with other laws."""
+    wildcard_constraints:
+        artifact=stage(
+            "beyond.exhibits.contact_laws",
+            ext_laws=dict(
+                title="Errors of the restitution model and of the corrected one on the contacts of engineers",
+                study="law_errors",
+                drawing="contact_laws",
+                table="ext_laws",
+            ),
+        ),
+
+
+use rule study as cascades with:
+    """Flights in a period, and cascades of period doublings."""
+    wildcard_constraints:
+        artifact=stage(
+            "beyond.exhibits.cascades",
+            ext_flights=dict(
+                title="From permanent contact to chattering: the cascade of flights in a period",
+                study="cascade_of_flights",
+                drawing="cascade_of_flights",
+            ),
+            ext_cascades=dict(
+                title="Cascades of period doublings, and how a contact of finite stiffness shifts them",
+                study="cascades",
+                drawing="cascades",
+            ),
+        ),
+
+
+use rule study as orbit_diagram with:
+    """Orbit diagrams over the amplitude."""
+    wildcard_constraints:
+        artifact=stage(
+            "beyond.exhibits.orbit_diagram",
+            ext_diagram=dict(
+                title="Orbit diagrams over the amplitude, and the largest Lyapunov exponents",
+                study="orbit_diagrams",
+                places="phases_of_impacts",
+                drawing="orbit_diagrams",
+            ),
+        ),
+
+
+use rule study as locking with:
+    """The motions on which balls lock, over restitution and amplitude."""
+    wildcard_constraints:
+        artifact=stage(
+            "beyond.exhibits.locking",
+            ext_locking=dict(
+                title="What balls end on over restitution and amplitude, and where the models agree on it",
+                study="locking",
+                places="motions_at_nodes",
+                drawing="locking",
+            ),
+        ),
+
+
+use rule study as locked_orbits with:
+    """How long balls take to lock, and what predicts a locked orbit."""
+    wildcard_constraints:
+        artifact=stage(
+            "beyond.exhibits.locked_orbits",
+            ext_lives=dict(
+                title="How long balls take to reach the motion on which they lock",
+                study="transients",
+                places="lives",
+                accepted="config/ext_lives.nc",
+            ),
+            ext_locked=dict(
+                title="What predicts the frequency ratio at which a contact has a locked orbit, and transients before it",
+                study="locked_orbits",
+                places="returns_at_places",
+                drawing="locked_orbits",
+                reads=("ext_lives",),
+            ),
+        ),
+
+
+use rule study as basins with:
+    """Basins of motions that coexist."""
+    wildcard_constraints:
+        artifact=stage(
+            "beyond.exhibits.basins",
+            ext_basins=dict(
+                title="Basins of coexisting motions in three models, and their exponents of uncertainty",
+                study="basins",
+                places="destinations",
+                drawing="basins",
+            ),
+        ),
+
+
+use rule study as means with:
+    """Means over whole motions, such as the power and the height."""
+    wildcard_constraints:
+        artifact=stage(
+            "beyond.exhibits.means",
+            ext_means=dict(
+                title="From which frequency ratio on the means over a motion are right, over restitution and amplitude",
+                study="mean_motions",
+                places="errors_at_nodes",
+                drawing="mean_motions",
+                accepted="config/ext_means.nc",
+            ),
+        ),
+
+
+use rule study as engine_steps with:
+    """Time steps of physics engines."""
+    wildcard_constraints:
+        artifact=stage(
+            "beyond.exhibits.engine_steps",
+            ext_engines=dict(
+                title="What the time steps of physics engines cost, beside the models",
+                study="conformance",
+                drawing="engines",
+                table="ext_engines",
+                reads=("engines",),
+            ),
+        ),
+
+
+use rule study as explorer_orbits with:
+    """Orbits with which the page of the explorer compares its results."""
+    wildcard_constraints:
+        artifact=stage(
+            "beyond.exhibits.explorer_orbits",
+            explorer=dict(
+                title="A page to explore the models, and the orbits that it checks itself against",
+                study="reference_orbits",
+                page=True,
+            ),
+        ),
+
+
+use rule study as proofs with:
+    """Numbers of the paper with intervals that certainly contain them."""
+    wildcard_constraints:
+        artifact=stage(
+            "beyond.exhibits.proofs",
+            ext_proofs=dict(
+                title="Table 1 and the thresholds, certified by ball arithmetic",
+                study="proofs",
+                table="ext_proofs",
+            ),
+        ),
+
+
+use rule study as statements_study with:
+    """Verdicts on our statements about the whole motion."""
+    wildcard_constraints:
+        artifact=stage(
+            "beyond.exhibits.statements",
+            statements=dict(
+                title="Verdicts on our statements about the whole motion",
+                study="statements",
+                reads=(
+                    "ext_locking",
+                    "ext_locked",
+                    "ext_lives",
+                    "ext_cascades",
+                    "ext_means",
+                    "ext_basins",
+                ),
+            ),
+        ),

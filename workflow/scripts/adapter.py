@@ -1,0 +1,21 @@
+"""The functions that the stages name: the only place of the workflow that imports by a name."""
+
+from collections.abc import Callable
+from importlib import import_module
+from typing import Any
+
+from bouncing_ball.pipeline.configuration import ConfigurationError
+
+
+def function(module: str, name: str) -> Callable[..., Any]:
+    """The function with this name in a module of the package.
+
+    Raises
+    ------
+    ConfigurationError
+        If there is no such module or function.
+    """
+    try:
+        return getattr(import_module(f"bouncing_ball.{module}"), name)
+    except (ModuleNotFoundError, AttributeError) as error:
+        raise ConfigurationError(f"{module}.{name}: {error}") from None

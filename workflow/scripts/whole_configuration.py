@@ -1,0 +1,25 @@
+"""The type of the whole configuration, from the studies of all artifacts and the atlas."""
+
+from collections.abc import Iterable
+
+from adapter import function
+from pydantic import BaseModel
+
+from bouncing_ball.beyond.atlas.plan import Plan
+from bouncing_ball.pipeline.artifacts import Artifact
+from bouncing_ball.pipeline.configuration import configuration_model
+
+
+def configuration_type(artifacts: Iterable[Artifact]) -> type[BaseModel]:
+    """The type of the configuration: a section for each wing, the atlas, and settings of the run.
+
+    Raises
+    ------
+    ConfigurationError
+        If there is no function with the name of a study.
+    """
+    studies: dict = {"paper": {}, "beyond": {}}
+    for each in artifacts:
+        if each.study:
+            studies[each.wing][each.name] = function(each.module, each.study)
+    return configuration_model(studies, {"atlas": Plan})

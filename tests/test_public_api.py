@@ -1,6 +1,8 @@
 """The names that users import from the package, as README and docs/python.md show them."""
 
+import dataclasses
 import doctest
+import inspect
 import pickle
 import pydoc
 from pathlib import Path
@@ -9,8 +11,16 @@ import numpy as np
 import pytest
 
 import bouncing_ball
+from bouncing_ball import contact_law, corrected, orbit, orbits, rigid, simulate, spring_damper
+from bouncing_ball.beyond.laws.hertzian import Tsuji
+from bouncing_ball.beyond.laws.orbits import LawModel
+from bouncing_ball.calls.balls import ModelBall
+from bouncing_ball.paper.orbits.stability import Side
 
 ROOT = Path(__file__).parents[1]
+CONTACT = spring_damper(restitution=0.85, frequency_ratio=10.0)
+RIGID = rigid(restitution=0.85)
+TSUJI = contact_law("tsuji", stiffness=900.0, damping=0.1)
 
 
 @pytest.mark.parametrize(("page", "least"), [("README.md", 3), ("docs/python.md", 14)])
@@ -26,133 +36,250 @@ def test_every_public_name_is_there_and_documented():
     assert set(bouncing_ball.__all__) <= set(dir(bouncing_ball))
 
 
+def test_every_public_name_that_editors_see_is_one_that_is_imported():
+    source = inspect.getsource(bouncing_ball)
+    for name in bouncing_ball.__all__:
+        # In __all__, in the imports for type checkers, and in the function that imports.
+        assert source.count(f'"{name}"') == 2 and f"{name}" in source.partition("__version__")[0]
+    with pytest.raises(AttributeError, match="no attribute 'model'"):
+        bouncing_ball.model  # noqa: B018
+
+
 def test_help_shows_the_way_in():
     text = pydoc.render_doc(bouncing_ball, renderer=pydoc.plaintext)
     for call in ("bouncing_ball.orbit(", "bouncing_ball.limits(", "bouncing_ball.simulate("):
         assert call in text
 
 
-@pytest.mark.parametrize("impacts", [0, -1, 2.5])
-def test_what_the_command_line_refuses_is_refused(impacts, refusal):
-    with refusal(
-        bouncing_ball.ModelError, f"impacts = {impacts} is not a whole number from 1 to 100000"
-    ):
-        bouncing_ball.simulate(1.0, restitution=0.85, impacts=impacts)
+@pytest.mark.parametrize("impacts", [0, -1, 2.5, True, "3", None])
+def test_a_number_of_impacts_is_a_whole_number(impacts, refusal):
+    why = "is missing" if impacts is None else f"= {impacts!r} is not a whole number from 1 to"
+    with refusal(bouncing_ball.ModelError, f"impacts {why}"):
+        simulate(RIGID, amplitude=1.0, impacts=impacts)
 
 
-CONTACT = {"restitution": 0.85, "frequency_ratio": 10.0}
-
-
-def test_a_scalar_in_is_a_float_out():
-    one = bouncing_ball.orbit(1, np.float64(0.9), **CONTACT)
-    ends = bouncing_ball.limits(1, restitution=0.85)
+def test_a_single_number_in_is_a_python_number_out():
+    one = orbit(CONTACT, 1, amplitude=np.float64(0.9))
+    ends = bouncing_ball.limits(RIGID)
     numbers = (one.phase, one.max_height, one.law.damping_ratio, ends.saddle_node.amplitude)
     assert {type(x) for x in (*numbers, *one.path(1.0))} == {float}
     assert type(one.is_stable()) is type(one.is_admissible()) is bool
-    assert pickle.loads(pickle.dumps(one)).phase == one.phase
+    assert type(one.n) is int
+    assert type(bouncing_ball.permanent_contact(CONTACT)) is float
 
 
-@pytest.mark.parametrize(
-    "given",
-    [
-        {"restitution": 0.85},
-        CONTACT,
-        CONTACT | {"model": "corrected"},
-        {"law": "tsuji", "parameters": {"stiffness": 900.0, "damping": 0.1}},
-    ],
-)
-def test_every_model_answers_single_numbers_with_single_numbers(given):
-    model = bouncing_ball.model(**given)
-    orbit, ball = model.orbit(1, 0.9), model.simulate(0.9, 0.0, -3.0, 2)
-    found = [x for end in (model.saddle_node(1), model.period_doubling(1)) for x in end.unknowns]
-    found += [orbit.phase, orbit.amplitude, *model.cycle(0.9, 0.1, -3.0), ball.amplitude]
-    assert {type(x) for x in (*found, model.permanent_contact_threshold())} == {float}
-    assert type(orbit.is_stable()) is bool and type(ball.impacts) is int
+def test_equal_orbits_compare_equal_and_can_be_replaced_and_pickled():
+    one = orbit(CONTACT, amplitude=0.9)
+    assert one == orbit(CONTACT, amplitude=0.9)
+    assert one != orbit(CONTACT, amplitude=0.9, side="unstable")
+    assert hash(one) == hash(orbit(CONTACT, amplitude=0.9))
+    assert pickle.loads(pickle.dumps(one)) == one
+    # What follows from the fields follows from the new ones.
+    moved = dataclasses.replace(one, impact_velocity=-3.5)
+    assert moved.bounce_velocity == -3.5 + one.flight_time
+    assert moved.defect() > 0.1 > 1e-12 > one.defect()
+    assert dataclasses.replace(moved, impact_velocity=one.impact_velocity) == one
+
+
+@pytest.mark.parametrize("ball", [RIGID, CONTACT, corrected(CONTACT), TSUJI])
+def test_a_call_answers_with_the_orbit_of_the_model(ball):
+    model = ball.model
+    exact = model.orbit(1, 0.9)
+    found = orbit(ball, amplitude=0.9)
+    for name in ("phase", "contact_duration", "max_height", "bounce_velocity", "flight_time"):
+        assert getattr(found, name) == float(getattr(exact, name))
+    assert found.is_stable() == exact.is_stable()
+    assert found.multipliers().tolist() == exact.multipliers().tolist()
+    assert repr(found).splitlines()[1:] == repr(exact).splitlines()[1:]
+    # Arrays have the same numbers but for rounding in products of matrices.
+    row = orbit(ball, n=[1, 1], amplitude=0.9)
+    assert row.phase.dims == ("n",) and abs(row.phase[1] - found.phase) < 1e-14
     assert model.absence(1, 0.01) == "below the saddle-node"
-    # And arrays with arrays, of the same numbers but for rounding in products of matrices.
-    row = model.orbit([1, 1], 0.9)
-    assert row.phase.shape == (2,) and abs(row.phase[1] - orbit.phase) < 1e-14
-    assert repr(bouncing_ball.orbit(1, 0.9, **given)) == repr(orbit)
 
 
-@pytest.mark.parametrize(
-    ("name", "given"),
-    [
-        ("history", {"amplitude": 1.0, "periods": 1.0}),
-        ("drop", {"height": [5.0, 8.0], "periods": 1.0}),
-        ("branch", {"n": [1, 2], "points": 20}),
-        ("motion_of", {"amplitude": [1.0, 1.1]}),
-        ("lyapunov_exponent", {"amplitude": 1.0, "phase": 1.1}),
-        ("orbit_diagram", {"amplitudes": [1.0, 1.1], "impacts": 50, "samples": 4}),
-        ("basins", {"amplitude": 1.0, "starts": 4}),
-    ],
-)
-def test_a_model_has_the_calls_as_methods(name, given, refusal):
-    call, model = getattr(bouncing_ball, name), bouncing_ball.model(0.85)
-    assert getattr(model, name)(**given).equals(call(**given, restitution=0.85))
-    with refusal(bouncing_ball.ModelError, "restitution is not allowed with model, which has its"):
-        call(**given, restitution=0.85, model=model)
-    with refusal(bouncing_ball.ModelError, "several models have no labels"):
-        getattr(bouncing_ball.model([0.5, 0.85]), name)(**given)
+@pytest.mark.parametrize("ball", [RIGID, CONTACT, corrected(CONTACT), TSUJI])
+def test_a_ball_whose_law_is_known_is_itself_at_every_speed(ball):
+    assert ball.at_speed(3.0) is ball.at_orbit(1, 1.0) is ball.at_limits(1) is ball
+
+
+def test_a_law_by_its_free_impact_has_a_model_at_a_speed():
+    ball = contact_law("hunt-crossley", restitution=0.8, duration=0.2)
+    stable = ball.at_orbit(1, 1.0)
+    assert stable.model.law == ball.at_orbit(1, 1.0, Side.STABLE).model.law
+    speed = -orbit(ball, amplitude=1.0).relative_impact_velocity
+    at_speed = ball.at_speed(speed).model.law
+    assert at_speed.stiffness == pytest.approx(stable.model.law.stiffness, rel=1e-9)
+    known = contact_law("hunt-crossley", restitution=0.8, duration=0.2, speed=speed)
+    assert known.model.law == at_speed
+
+
+def test_the_name_of_a_side_means_the_side():
+    ball = contact_law("hunt-crossley", restitution=0.8, duration=0.2)
+    for side in Side:
+        by_name = ball.at_orbit(1, 0.9, side.value).model
+        assert by_name.law == ball.at_orbit(1, 0.9, side).model.law
+        assert by_name.orbit(1, 0.9, side.value).phase == by_name.orbit(1, 0.9, side).phase
+    assert ball.at_orbit(1, 0.9).model.law != ball.at_orbit(1, 0.9, "unstable").model.law
+
+
+def test_a_law_or_a_model_of_ones_own_is_a_ball():
+    law = Tsuji(900.0, 0.1)
+    for ball in (contact_law(law), ModelBall(LawModel(law))):
+        assert orbit(ball, amplitude=0.9) == orbit(TSUJI, amplitude=0.9)
+
+
+def test_parameters_of_a_law_may_be_arrays():
+    stiffness = [500.0, 900.0]
+    found = orbit(contact_law("tsuji", stiffness=stiffness, damping=0.1), amplitude=0.9)
+    assert found.phase.dims == ("stiffness",)
+    assert float(found.phase[1]) == pytest.approx(orbit(TSUJI, amplitude=0.9).phase, rel=1e-12)
+
+
+def test_all_orbits_at_an_amplitude_are_in_order_of_their_contacts():
+    found = orbits(spring_damper(restitution=0.85, frequency_ratio=2.0), amplitude=0.9)
+    durations = [each.contact_duration for each in found]
+    assert durations == sorted(durations) and len(durations) == 3
+    assert [each.is_stable() for each in found] == [True, False, True]
 
 
 def test_a_sequence_counts_the_impacts_that_it_has():
-    stuck = bouncing_ball.simulate(0.6, restitution=0.2, impacts=50)
-    assert type(stuck.impacts) is int and stuck.impacts < 50
+    stuck = rigid(restitution=0.2).model.simulate(0.6, 0.0, -np.pi, 50)
+    assert stuck.impacts < 50
     assert repr(stuck).startswith(f"ImpactSequence: {stuck.impacts} impacts, then permanent")
-    both = bouncing_ball.simulate(0.6, restitution=[0.2, 0.8], impacts=50)
+    both = rigid(restitution=[0.2, 0.8]).model.simulate(0.6, 0.0, -np.pi, 50)
     assert f"{stuck.impacts} to 50 impacts of each of 2 balls" in repr(both)
+    found = simulate(rigid(restitution=[0.2, 0.8]), amplitude=0.6, impacts=50)
+    assert found.time.count("impact").values.tolist() == [stuck.impacts, 50]
+    assert found.status.values.tolist() == ["permanent contact", "bouncing"]
+
+
+@pytest.mark.parametrize("ball", [RIGID, CONTACT, corrected(CONTACT)])
+def test_a_simulation_over_arrays_is_a_grid_of_single_ones(ball):
+    found = simulate(ball, amplitude=1.0, phase=[2.0, 0.1], velocity=[-3.0], impacts=4)
+    assert dict(found.time.sizes) == {"phase": 2, "velocity": 1, "impact": 4}
+    for k, phase in enumerate((2.0, 0.1)):
+        one = ball.model.simulate(1.0, phase, -3.0, 4)
+        each = found.isel(phase=k, velocity=0)
+        np.testing.assert_array_equal(each.time, one.time)
+        np.testing.assert_array_equal(each.impact_phase, one.phase)
+        np.testing.assert_array_equal(each.bounce_velocity, one.bounce_velocity)
 
 
 @pytest.mark.parametrize(
-    "given",
+    "ball",
     [
         CONTACT,
-        {"restitution": 0.85},
-        pytest.param(
-            {"restitution": 0.85, "law": "tsuji", "duration": 0.1}, marks=pytest.mark.long
-        ),
+        RIGID,
+        pytest.param(contact_law("tsuji", restitution=0.85, duration=0.1), marks=pytest.mark.long),
     ],
 )
-def test_arrays_give_labelled_orbits_and_limits(given):
-    orbits = bouncing_ball.orbit([1, 2], [0.2, 1.0], **given)
-    assert orbits.phase.dims == ("n", "amplitude")
+def test_arrays_give_labelled_orbits_and_limits(ball):
+    found = orbit(ball, [1, 2], amplitude=[0.2, 1.0])
+    assert found.phase.dims == ("n", "amplitude")
     # Below the saddle-node of both families.
-    assert orbits.phase.sel(amplitude=0.2).isnull().all()
-    assert not orbits.stable.sel(amplitude=0.2).any()
-    ends = bouncing_ball.limits([1, 2], **given)
-    one = bouncing_ball.orbit(2, 1.0, **given)
+    assert found.phase.sel(amplitude=0.2).isnull().all()
+    assert not found.stable.sel(amplitude=0.2).any()
+    ends = bouncing_ball.limits(ball, [1, 2])
+    one = orbit(ball, 2, amplitude=1.0)
     for name in ("phase", "max_height", "contact_duration"):
-        assert orbits[name].sel(n=2, amplitude=1.0) == pytest.approx(getattr(one, name), 1e-12)
-    node = bouncing_ball.limits(2, **given).saddle_node
+        assert found[name].sel(n=2, amplitude=1.0) == pytest.approx(getattr(one, name), 1e-12)
+    node = bouncing_ball.limits(ball, 2).saddle_node
     assert ends.saddle_node_amplitude.sel(n=2) == pytest.approx(node.amplitude, rel=1e-9)
+
+
+def test_a_threshold_of_permanent_contact_is_a_number_or_has_named_axes():
+    found = bouncing_ball.permanent_contact(
+        spring_damper(damping_ratio=[0.0, 0.1], frequency_ratio=[2.0, 4.0, 8.0])
+    )
+    assert dict(found.threshold_amplitude.sizes) == {"damping_ratio": 2, "frequency_ratio": 3}
+    assert float(found.threshold_amplitude[0, 1]) == 1 - 1 / 16
+    assert bouncing_ball.permanent_contact(RIGID) == 1.0
+
+
+def test_error_thresholds_are_those_of_the_errors_of_the_models():
+    ball = rigid(restitution=[0.65, 0.85])
+    found = bouncing_ball.error_thresholds(
+        ball, amplitude=1.0, tolerance=[0.01, 0.05], quantities=["max_height", "phase"]
+    )
+    assert dict(found.error_threshold.sizes) == {
+        "tolerance": 2, "restitution": 2, "simple": 2, "quantity": 2
+    }  # fmt: skip
+    at = found.isel(tolerance=1).sel(restitution=0.85, simple="restitution")
+    ratio = float(at.error_threshold.sel(quantity="max_height"))
+    exact = orbit(spring_damper(restitution=0.85, frequency_ratio=ratio), amplitude=1.0)
+    simple = orbit(RIGID, amplitude=1.0)
+    assert abs(exact.max_height / simple.max_height - 1) == pytest.approx(0.05, rel=1e-9)
+
+
+def test_a_misspelt_parameter_is_named_with_its_function():
+    with pytest.raises(TypeError, match=r"^orbit\(\) got an unexpected keyword .*'amplitud'"):
+        orbit(RIGID, amplitud=1.0)
+    with pytest.raises(TypeError, match=r"^spring_damper\(\) missing .*'frequency_ratio'"):
+        spring_damper(restitution=0.5)
 
 
 @pytest.mark.parametrize(
     ("call", "says"),
     [
+        (lambda: orbits(CONTACT, amplitude=[0.5, 1.0]), "amplitude must be a single number"),
+        (lambda: orbit(CONTACT, amplitude=1.0, side="up"), "'up' is not one of stable, unstable"),
+        (lambda: RIGID.model.orbit(1, 1.0, "up"), "one of stable, unstable"),
+        (lambda: orbit(RIGID, n="1", amplitude=1.0), "n = '1' is not a whole number from 1 to 10"),
+        (lambda: orbit(RIGID, n=True, amplitude=1.0), "n = True is not a whole number"),
+        (lambda: orbit(RIGID, n=[1, 2.5], amplitude=1.0), "n = 2.5 is not a whole number"),
+        (lambda: orbit(RIGID, n=np.array([True]), amplitude=1.0), "n = True is not a whole"),
+        (lambda: orbit(0.85, amplitude=1.0), "the ball = 0.85 is not made by rigid, spring_damp"),
+        (lambda: rigid(restitution="x"), "restitution = 'x' is not a number in (0, 1]"),
+        (lambda: rigid(restitution=[[0.5]]), "restitution has several axes without names"),
+        (lambda: rigid(restitution=np.array([0.5, np.nan])), "restitution = nan is not a number"),
         (
-            lambda: bouncing_ball.orbit(1, [0.5, 1.0], index=1, **CONTACT),
-            "is for one orbit and does not",
-        ),
-        (lambda: bouncing_ball.orbit(1, [0.5, 1.0], side="all", **CONTACT), "side all is for one"),
-        (lambda: bouncing_ball.orbit(1, 1.0, side="up", **CONTACT), "one of stable, unstable, all"),
-        (lambda: bouncing_ball.model(0.85).orbit(1, 1.0, "up"), "one of stable, unstable"),
-        (
-            lambda: bouncing_ball.model(0.85, 10.0, "glue"),
-            "'glue' is not one of displacement, force",
+            lambda: spring_damper(restitution=0.85, frequency_ratio=10.0, release="glue"),
+            "release = 'glue' is not one of displacement, force",
         ),
         (
-            lambda: bouncing_ball.model(0.85, model="rigid"),
-            "one of restitution, spring-damper, corr",
+            lambda: spring_damper(frequency_ratio=10.0),
+            "one of the arguments restitution damping_ratio measured_restitution is required",
         ),
-        (lambda: bouncing_ball.orbit(1, "a", restitution=0.85), "amplitude = 'a' is not a number"),
+        (
+            lambda: spring_damper(frequency_ratio=1.0, restitution=0.5, damping_ratio=0.1),
+            "argument damping_ratio: not allowed with argument restitution",
+        ),
+        (lambda: spring_damper(frequency_ratio=1.0, damping_ratio=2), "damping_ratio = 2 is not"),
+        (
+            lambda: spring_damper(frequency_ratio=None, damping_ratio=0),
+            "frequency_ratio is missing",
+        ),
+        (lambda: corrected(RIGID), "restitution impacts have no contact"),
+        (lambda: orbit(RIGID, amplitude="a"), "amplitude = 'a' is not a number in (0, 1e+08]"),
         # A text of the user is shown as it is, and is no placeholder of a message.
-        (lambda: bouncing_ball.orbit(1, "{law} {}", restitution=0.85), "= '{law} {}' is not a num"),
-        (lambda: bouncing_ball.orbit(1, 1.0, **{"{n}": 1}), "unknown parameter '{n}': choose from"),
+        (lambda: orbit(RIGID, amplitude="{law} {}"), "amplitude = '{law} {}' is not a num"),
+        (lambda: contact_law("tsuji", **{"{x}": 1.0}), "unknown parameter '{x}' of tsuji"),
+        (lambda: contact_law("tsuji", stifness=1.0), "its parameters are stiffness, damping"),
+        (lambda: contact_law("tsuji", stiffness=1.0), "tsuji also needs damping=NUMBER"),
+        (lambda: contact_law("tsuji"), "needs stiffness=NUMBER, damping=NUMBER, or restitution"),
+        (lambda: contact_law("rubber"), "unknown contact law 'rubber': one of hunt-crossley"),
+        (lambda: contact_law(["tsuji"]), "unknown contact law"),
         (
-            lambda: bouncing_ball.model(law="tsuji", parameters={"{x}": 1.0}),
-            "unknown parameter '{x}' of tsuji",
+            lambda: contact_law("tsuji", restitution=0.5, duration="long"),
+            "duration = 'long' is not a finite number > 0",
+        ),
+        (
+            lambda: bouncing_ball.permanent_contact(
+                contact_law("tsuji", restitution=0.5, duration=0.1)
+            ),
+            "duration needs speed",
+        ),
+        (
+            lambda: corrected(contact_law("tsuji", stiffness=[9.0, 8.0], damping=1.0)),
+            "is tabulated for one law",
+        ),
+        (
+            lambda: bouncing_ball.error_thresholds(CONTACT, amplitude=1.0),
+            "error_thresholds needs a ball made by rigid",
+        ),
+        (
+            lambda: bouncing_ball.error_thresholds(RIGID, amplitude=1.0, quantities=["mass"]),
+            "quantities = 'mass' is not one of max_height",
         ),
         (lambda: bouncing_ball.design(frequency="{mass} Hz"), "frequency = '{mass} Hz' does not"),
     ],
@@ -160,3 +287,11 @@ def test_arrays_give_labelled_orbits_and_limits(given):
 def test_wrong_values_are_refused_with_the_allowed_ones(call, says, refusal):
     with refusal(bouncing_ball.ModelError, says):
         call()
+
+
+@pytest.mark.parametrize("uses", ["orbit", "saddle_node", "period_doubling", "simulate"])
+def test_what_needs_an_underdamped_contact_says_so(uses, refusal):
+    model = bouncing_ball.SpringDamperModel(bouncing_ball.SpringDamper(10.0, 2.0))
+    arguments = {"orbit": (1, 1.0), "simulate": (1.0, 0.0, -3.0, 2)}.get(uses, (1,))
+    with refusal(bouncing_ball.ModelError, "damping ratio ζ = 2.0 is not below 1"):
+        getattr(model, uses)(*arguments)

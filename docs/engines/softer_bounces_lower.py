@@ -11,14 +11,12 @@ RESTITUTIONS = np.array([0.5, 0.7, 0.9])
 print("k in N/m " + "".join(f"  r = {r:<13}" for r in RESTITUTIONS).rstrip())
 for stiffness in (5e4, 5e5, 5e6):
     # The table rests: its angular frequency is only a unit of time, here 1 rad/s.
-    motion = bouncing_ball.simulate(
-        0.0,
-        restitution=RESTITUTIONS,
-        frequency_ratio=np.sqrt(stiffness / MASS),
-        velocity=-np.sqrt(2 * GRAVITY * HEIGHT) / GRAVITY,
-        impacts=4,
+    balls = bouncing_ball.spring_damper(
+        restitution=RESTITUTIONS, frequency_ratio=np.sqrt(stiffness / MASS)
     )
-    speed = motion.impact_velocity
+    fall = np.sqrt(2 * GRAVITY * HEIGHT) / GRAVITY
+    motion = bouncing_ball.simulate(balls, amplitude=0.0, velocity=-fall, impacts=4)
+    speed = motion.impact_velocity.values.T
     rigid = RESTITUTIONS ** np.arange(1, 4)[:, None]
     apexes = (speed[1:] / speed[0] / rigid) ** 2
     print(f"{stiffness:.0e}    " + "".join(f"  {x:.3f} {y:.3f} {z:.3f}" for x, y, z in apexes.T))

@@ -2,4 +2,5 @@
 
 import bouncing_ball
 
-bouncing_ball.basins(0.95, restitution=0.85, starts=120).plot("basin.png")
+ball = bouncing_ball.rigid(restitution=0.85)
+bouncing_ball.basins(ball, amplitude=0.95, starts=120).plot("basin.png")

@@ -2,5 +2,5 @@
 
 import bouncing_ball
 
-found = bouncing_ball.branch(1, restitution=0.85, frequency_ratio=[2.0, 10.0, 100.0])
-found.plot("branch_for_three_stiffnesses.png")
+balls = bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=[2.0, 10.0, 100.0])
+bouncing_ball.branch(balls, n=1).plot("branch_for_three_stiffnesses.png")

@@ -5,8 +5,10 @@ import numpy as np
 
 import bouncing_ball
 
-found = bouncing_ball.drop(8.0, 0.6, restitution=0.7, periods=5.0, samples=4000)
-periods, gap = found.time / (2 * np.pi), found.ball - found.table
+ball = bouncing_ball.rigid(restitution=0.7)
+found = bouncing_ball.drop(ball, height=8.0, amplitude=0.6, periods=5.0, samples=4000)
+periods = found.time / (2 * np.pi)
+gap = found.ball - found.table
 figure, (above, below) = plt.subplots(2, sharex=True, layout="constrained")
 above.plot(periods, found.ball, label="ball")
 above.plot(periods, found.table, color="grey", label="table")

@@ -6,10 +6,10 @@ import numpy as np
 import bouncing_ball
 
 ratios = np.geomspace(3, 300, 100)
-contact = {"restitution": 0.85, "frequency_ratio": ratios}
-exact = bouncing_ball.model(**contact).orbit(1, 1.0).max_height
-simple = bouncing_ball.model(restitution=0.85).orbit(1, 1.0).max_height
-corrected = bouncing_ball.model(**contact, model="corrected").orbit(1, 1.0).max_height
+balls = bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=ratios)
+exact = bouncing_ball.orbit(balls, amplitude=1.0).max_height
+corrected = bouncing_ball.orbit(bouncing_ball.corrected(balls), amplitude=1.0).max_height
+simple = bouncing_ball.orbit(bouncing_ball.rigid(restitution=0.85), amplitude=1.0).max_height
 figure, axes = plt.subplots(layout="constrained")
 axes.loglog(ratios, abs(exact / simple - 1), label="restitution model")
 axes.loglog(ratios, abs(exact / corrected - 1), "--", label="corrected model")

@@ -6,12 +6,12 @@ import numpy as np
 import bouncing_ball
 
 amplitudes = np.linspace(1.48, 1.76, 400)
-doubling = bouncing_ball.limits(1, restitution=0.5).period_doubling
-start = {"phase": doubling.phase + 0.01, "velocity": -np.pi, "restitution": 0.5}
-impacts = bouncing_ball.motion_of(amplitudes, **start).impacts
-balls = bouncing_ball.simulate(amplitudes, **start, impacts=600)
+ball = bouncing_ball.rigid(restitution=0.5)
+beside = bouncing_ball.limits(ball).period_doubling.phase + 0.01
+impacts = bouncing_ball.motion_of(ball, amplitude=amplitudes, phase=beside).impacts
+found = bouncing_ball.simulate(ball, amplitude=amplitudes, phase=beside, impacts=600)
 figure, axes = plt.subplots(figsize=(8, 4.5), layout="constrained")
-axes.plot(amplitudes, balls.phase[-64:].T / np.pi, ",", color="black")
+axes.plot(amplitudes, found.impact_phase[:, -64:] / np.pi, ",", color="black")
 for number in (2, 4, 8):
     first = float(impacts.amplitude[impacts == number].min())
     axes.axvline(first, color="grey", linewidth=0.8)

@@ -7,8 +7,10 @@ import numpy as np
 
 import bouncing_ball
 
-found = bouncing_ball.drop(8.0, restitution=0.85, frequency_ratio=20.0, periods=3.5, samples=5000)
-height, time = found.ball.values, found.time.values
+ball = bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=20.0)
+found = bouncing_ball.drop(ball, height=8.0, periods=3.5, samples=5000)
+height = found.ball.values
+time = found.time.values
 tops = np.flatnonzero((height[1:-1] > height[:-2]) & (height[1:-1] > height[2:])) + 1
 tops = np.append(0, tops[~found.contact.values[tops]])[:4]
 figure, axes = plt.subplots(layout="constrained")

@@ -4,5 +4,6 @@ import numpy as np
 
 import bouncing_ball
 
-found = bouncing_ball.orbit_diagram(np.linspace(0.4, 2.0, 200), restitution=0.7)
+ball = bouncing_ball.rigid(restitution=0.7)
+found = bouncing_ball.orbit_diagram(ball, amplitudes=np.linspace(0.4, 2.0, 200))
 found.plot("orbit_diagram.png")

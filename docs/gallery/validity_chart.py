@@ -8,12 +8,14 @@ import bouncing_ball
 ours = bouncing_ball.design(
     mass="20 g", frequency="50 Hz", acceleration="0.8 g", stiffness="1e7 N/m", restitution=0.85
 )
-r, ratio = np.linspace(0.6, 1.0, 81)[:, np.newaxis], np.geomspace(5, 1000, 80)
-exact = bouncing_ball.model(restitution=r, frequency_ratio=ratio).orbit(1, ours.amplitude)
-simple = bouncing_ball.model(restitution=r).orbit(1, ours.amplitude)
+r = np.linspace(0.6, 1.0, 81)
+ratio = np.geomspace(5, 1000, 80)
+balls = bouncing_ball.spring_damper(restitution=r, frequency_ratio=ratio)
+exact = bouncing_ball.orbit(balls, amplitude=ours.amplitude)
+simple = bouncing_ball.orbit(bouncing_ball.rigid(restitution=r), amplitude=ours.amplitude)
 percent = 100 * abs(exact.max_height / simple.max_height - 1)
 figure, axes = plt.subplots(layout="constrained")
-lines = axes.contour(r[:, 0], ratio, percent.T, levels=[0.1, 1, 10], colors="black")
+lines = axes.contour(r, ratio, percent.T, levels=[0.1, 1, 10], colors="black")
 axes.clabel(lines, fmt="%g %%")
 axes.plot(ours.restitution["displacement"], ours.frequency_ratio, "*", markersize=15)
 axes.set(xlabel="restitution coefficient r", ylabel="frequency ratio ϖ", yscale="log")

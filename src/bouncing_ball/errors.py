@@ -179,3 +179,10 @@ class Range(NamedTuple):
 def count(high: int, low: int = 1) -> Range:
     """The range of the whole numbers from ``low`` to ``high``."""
     return Range(low, high, "[]", whole=True)
+
+
+# The ranges of calls. Beyond these limits the squares of ϖ and Λ leave no digits.
+FREQUENCY_RATIO = Range(1e-8, 1e8, "[]")
+AMPLITUDE = Range(0, 1e8, "[]")
+RESTITUTION = Range(0, 1, "(]")
+FAMILY = count(1000)

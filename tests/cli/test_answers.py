@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import bouncing_ball
+from bouncing_ball import corrected, rigid, spring_damper
 from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.beyond.laws.hertzian import HuntCrossley, tsuji_damping
 from bouncing_ball.beyond.laws.orbits import LawModel
@@ -23,27 +24,27 @@ FORCE = ("--frequency-ratio", "10", "--release", "force")
 COMPLIANT = ("--restitution", "0.85", "--amplitude", "0.9", "--frequency-ratio", "2")
 HERTZ = ("--law", "hunt-crossley", "--set", "stiffness=1000", "--set", "damping=0.08")
 FREE = ("--law", "tsuji", "--restitution", "0.65", "--duration", "0.1")
+RIGID = rigid(restitution=0.85)
+AT_FORCE = spring_damper(restitution=0.85, frequency_ratio=10.0, release="force")
 FIELDS = [*OBSERVABLES[1:], "multipliers", "is_stable", "is_admissible", "residual"]
 
 
 @pytest.mark.parametrize("side", ["stable", "unstable"])
 @pytest.mark.parametrize(
-    ("options", "given"),
+    ("options", "ball"),
     [
-        ((), {}),
-        (FORCE[:2], {"frequency_ratio": 10.0}),
-        (
-            (*FORCE, "--model", "corrected"),
-            {"frequency_ratio": 10.0, "release": "force", "model": "corrected"},
-        ),
+        ((), RIGID),
+        (FORCE[:2], spring_damper(restitution=0.85, frequency_ratio=10.0)),
+        ((*FORCE, "--model", "corrected"), corrected(AT_FORCE)),
     ],
 )
-def test_an_orbit_in_full_precision(ask, side, options, given):
+def test_an_orbit_is_that_of_the_call_in_full_precision(ask, side, options, ball):
     answer = ask(*ORBIT, *options, "--side", side)
-    assert list(answer) == FIELDS + (["measured_restitution", "damping_ratio"] if given else [])
-    orbit = bouncing_ball.orbit(1, 1.0, restitution=0.85, side=side, **given)
+    of_contact = ["measured_restitution", "damping_ratio"] if options else []
+    assert list(answer) == FIELDS + of_contact
+    orbit = bouncing_ball.orbit(ball, amplitude=1.0, side=side)
     for name in OBSERVABLES[1:]:
-        assert answer[name] == float(getattr(orbit, name))
+        assert answer[name] == getattr(orbit, name)
     multipliers = orbit.multipliers()
     assert [complex(*pair) for pair in answer["multipliers"]] == multipliers.tolist()
     assert answer["is_stable"] is (side == "stable") is bool(np.all(np.abs(multipliers) < 1))
@@ -51,7 +52,7 @@ def test_an_orbit_in_full_precision(ask, side, options, given):
     assert answer["is_admissible"] is True and answer["residual"] < 1e-13
 
 
-def test_three_ways_to_say_how_much_is_lost(ask):
+def test_the_loss_has_three_names_of_one_meaning(ask):
     zeta = repr(float(damping_ratio(0.85)))
     call = ("orbit", "--amplitude", "1", *FORCE)
     by_eq_16 = ask(*call, "--restitution", "0.85")
@@ -77,22 +78,23 @@ def test_every_orbit_can_be_reached(ask, refused, said):
     assert "orbit 3" in said(*call, "--side", "all")
 
 
-def test_limits(ask, refused):
-    for options, more in (((), {}), (("--frequency-ratio", "10"), {"frequency_ratio": 10.0})):
+def test_limits_are_those_of_the_call(ask, refused):
+    contact = spring_damper(restitution=0.85, frequency_ratio=10.0)
+    for options, ball in (((), RIGID), (FORCE[:2], contact)):
         answer = ask("limits", "--n", "2", "--restitution", "0.85", *options)
-        expected = bouncing_ball.limits(2, restitution=0.85, **more)
+        expected = bouncing_ball.limits(ball, 2)
         for name, orbit in expected._asdict().items():
             assert answer[name] == {
-                "amplitude": float(orbit.amplitude),
-                "phase": float(orbit.phase),
-                "contact_duration": float(orbit.contact_duration),
-                "is_admissible": bool(orbit.is_admissible()),
+                "amplitude": orbit.amplitude,
+                "phase": orbit.phase,
+                "contact_duration": orbit.contact_duration,
+                "is_admissible": orbit.is_admissible(),
             }
     status, line = refused("limits", "--frequency-ratio", "0.7071", "--damping-ratio", "0.2155")
     assert status == 1 and "no saddle-node was found on the branch of 1-T orbits" in line
 
 
-def test_permanent_contact(ask):
+def test_the_threshold_of_permanent_contact_is_that_of_the_model(ask):
     call = ("permanent-contact", "--restitution", "0.65", "--frequency-ratio")
     for release in ("displacement", "force"):
         answer = ask(*call, "6", "--release", release)
@@ -118,10 +120,11 @@ def test_the_error_law_is_about_the_contacts_own_r(ask):
     assert found["second_order"]["permanent_contact"] == 1.0
 
 
-def test_a_simulation(ask, said):
-    orbit = ask(*ORBIT, *FORCE[:2])
+def test_a_ball_that_starts_on_a_stable_orbit_stays_on_it(ask, said):
+    contact = (*ORBIT[3:], *FORCE[:2])
+    orbit = ask("orbit", *contact)
     start = ("--phase", repr(orbit["phase"]), "--velocity", repr(orbit["impact_velocity"]))
-    answer = ask("simulate", *ORBIT[3:], *FORCE[:2], *start, "--impacts", "30")
+    answer = ask("simulate", *(contact + start), "--impacts", "30")
     assert answer["status"] == "bouncing" and len(answer["sequence"]["time"]) == 30
     # Rounding stays rounding on a stable orbit.
     assert np.ptp(answer["sequence"]["impact_velocity"]) < 1e-12
@@ -132,7 +135,7 @@ def test_a_simulation(ask, said):
     assert said(*call, "--velocity", "-1").splitlines()[-1].split().count("never") == 2
 
 
-def test_an_orbit_on_a_contact_law(ask):
+def test_an_orbit_on_a_contact_law_is_that_of_its_model(ask):
     answer = ask("orbit", *HERTZ, "--amplitude", "1")
     assert set(FIELDS) <= set(answer)
     orbit = LawModel(HuntCrossley(1000.0, 0.08)).orbit(1, 1.0)
@@ -143,7 +146,7 @@ def test_an_orbit_on_a_contact_law(ask):
     assert corrected["max_height"] == pytest.approx(answer["max_height"], rel=1e-3)
 
 
-def test_a_law_by_its_free_impact_at_the_orbits_own_speed(ask):
+def test_a_law_by_its_free_impact_has_it_at_the_speed_in_question(ask):
     answer = ask("orbit", *FREE, "--amplitude", "1")
     assert answer["measured_restitution"] == pytest.approx(0.65, rel=1e-12)
     assert answer["free_duration"] == pytest.approx(0.1, rel=1e-12)
@@ -152,7 +155,8 @@ def test_a_law_by_its_free_impact_at_the_orbits_own_speed(ask):
     assert limits["at_impact_speed"] == pytest.approx(2 * math.pi / 1.65, rel=1e-12)
     assert limits["free_duration"] == pytest.approx(0.1, rel=1e-12)
     # The first impact, of a speed Λ cos φ - z′.
-    run = ask("simulate", *FREE, "--amplitude", "1", "--impacts", "3", "--velocity", "-2")
+    start = ("--amplitude", "1", "--velocity", "-2")
+    run = ask("simulate", *FREE, *start, "--impacts", "3")
     assert run["at_impact_speed"] == 3.0
     assert run["free_duration"] == pytest.approx(0.1, rel=1e-12)
 
@@ -164,7 +168,7 @@ class _OfItsParameters(HuntCrossley):
     of_scales = classmethod(ContactLaw.of_scales.__func__)
 
 
-def test_a_law_that_is_known_by_its_parameters_only(refused, monkeypatch):
+def test_a_law_that_is_not_scaled_is_given_by_its_parameters_only(refused, monkeypatch):
     monkeypatch.setitem(LAWS, "rubber", _OfItsParameters)
     call = ("--law", "rubber", "--restitution", "0.95", "--duration", "0.3", "--amplitude", "1")
     status, line = refused("orbit", *call)
@@ -238,7 +242,8 @@ def test_a_mistake_exits_2_with_one_line(refused, arguments, said):
     start = {"@": ORBIT, "law": ("orbit", "--amplitude", "1", "--law")}
     start["contact"] = ("orbit", "--amplitude", "9", "--frequency-ratio", "10")
     start["free"] = ("orbit", "--amplitude", "1", *FREE)
-    status, line = refused(*start.get(words[0], words[:1]) if words else (), *words[1:])
+    command = start.get(words[0], words[:1]) if words else ()
+    status, line = refused(*command, *words[1:])
     assert status == 2
     assert said in line
 

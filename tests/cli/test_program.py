@@ -1,5 +1,7 @@
 """The installed program: its help, its outputs, and streams that take no output."""
 
+import functools
+import importlib
 import inspect
 import json
 import os
@@ -13,8 +15,8 @@ import pytest
 
 import bouncing_ball
 from bouncing_ball.beyond.laws.registry import LAWS
-from bouncing_ball.calls.periodic import orbit
-from bouncing_ball.cli.help_texts import COMMANDS
+from bouncing_ball.calls.balls import spring_damper
+from bouncing_ball.cli.commands import COMMANDS
 from bouncing_ball.cli.options import meanings
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -28,8 +30,8 @@ def program(*arguments, **options):
 
 def test_the_help_says_what_the_docstrings_of_the_calls_say(said):
     shown = "".join(said("orbit", "--help").split()).replace("-", "")
-    texts = meanings(orbit)
-    for name in inspect.signature(orbit).parameters:
+    texts = meanings(spring_damper)
+    for name in inspect.signature(spring_damper).parameters:
         assert "".join(texts[name].split()).replace("-", "") in shown
     assert f"Laws: {', '.join(LAWS)}." in " ".join(said("design", "--help").split())
     assert "(default: -3.142)" in said("simulate", "--help")
@@ -104,7 +106,7 @@ def test_diff_for_nobody_who_reads(tmp_path):
             marks=pytest.mark.long if "--radius" in each else (),
         )
         for name, about in COMMANDS.items()
-        for each in about["examples"]
+        for each in about.examples
         # The comparison needs a run; its calls are tested with it.
         if name != "diff"
     ],
@@ -132,6 +134,14 @@ def test_every_command_is_explained_and_its_symbols_are(said):
     ],
 )
 def test_a_file_is_refused_before_its_contents_are_computed(refused, monkeypatch, call, computes):
-    monkeypatch.setattr(f"bouncing_ball.{computes}", None)
+    module, name = f"bouncing_ball.{computes}".rsplit(".", 1)
+    computation = getattr(importlib.import_module(module), name)
+
+    # The options of the command are made from the signature.
+    @functools.wraps(computation)
+    def computed(*given, **more):
+        pytest.fail("computed before the file was refused")
+
+    monkeypatch.setattr(f"bouncing_ball.{computes}", computed)
     status, line = refused(*call.split(), "/dev/null/a.svg")
     assert status == 2 and "/dev/null/a.svg cannot be written: /dev/null is no folder" in line

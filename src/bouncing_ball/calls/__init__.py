@@ -1,13 +1,13 @@
-"""The calls that most people need, each with the parameters of a model.
+"""The functions that users call, each with a ball as its first argument.
 
-With r alone the model is the restitution model. With r and ϖ it is a spring-damper contact whose
-damping follows from r by Eq. 16, and with a law it is a contact of that law
-(:func:`bouncing_ball.calls.balls.model`).
-The options of the command line come from the signatures of these calls.
+:mod:`~bouncing_ball.calls.balls` makes balls. :mod:`~bouncing_ball.calls.periodic` is about their
+n-T orbits, :mod:`~bouncing_ball.calls.over_time` follows them, :mod:`~bouncing_ball.calls.long_run`
+finds the motions on which they end, and :mod:`~bouncing_ball.calls.thresholds` the ϖ from which on
+a rigid ball stands for a contact.
 
 A list or an array in place of a number becomes an axis of the result, named after its parameter, so
 that two arrays make a grid. Two :class:`xarray.DataArray` that share an axis are taken in pairs.
-With an array the result is a labelled dataset. Histories, drops, branches and the motions on which
-balls end are always datasets. ``plot()`` draws a dataset, and ``plot("name.png")`` writes the
-figure to a file.
+With an array the result is a labelled dataset. ``orbit``, ``limits`` and ``permanent_contact``
+return Python floats for a single ball; all other results are always datasets. ``plot()`` draws a
+dataset, and ``plot("name.png")`` writes the figure to a file.
 """

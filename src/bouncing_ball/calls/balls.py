@@ -1,218 +1,511 @@
-"""The model of the impact that the parameters of a call describe."""
+"""Balls, which all calls take: a model of the impact with its parameters.
 
-import inspect
-from collections.abc import Callable, Mapping
-from typing import Annotated, Any, Literal
+:func:`rigid` makes a ball of the restitution model, :func:`spring_damper` one on a spring-damper
+contact, :func:`contact_law` one on a contact of another law, and :func:`corrected` one of the
+corrected restitution model of a contact. Parameters that are arrays make several balls.
 
-import numpy as np
+A contact law may be given by the r and D of a free impact. r and D may depend on the speed of the
+impact, so that such a ball has a model only at a speed: :meth:`Ball.at_orbit` and
+:meth:`Ball.at_speed` return the ball with its model, and a ball whose model is known returns
+itself.
+"""
 
-from bouncing_ball.beyond.calculator.units import Rule
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+from numpy.typing import ArrayLike
+
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
 from bouncing_ball.beyond.corrected.signature import Signature
 from bouncing_ball.beyond.laws.contact_law import ContactLaw
-from bouncing_ball.beyond.laws.law_of_impact import law_of_impact
-from bouncing_ball.beyond.laws.orbits import LawModel
+from bouncing_ball.beyond.laws.law_of_impact import law_of_impact, reference
+from bouncing_ball.beyond.laws.orbits import LawModel, law_at_orbit
 from bouncing_ball.beyond.laws.registry import law_named
-from bouncing_ball.calls.signatures import check
-from bouncing_ball.errors import ParameterError, Range
+from bouncing_ball.calls.arguments import (
+    DAMPING_RATIO,
+    FINITE,
+    FREQUENCY_RATIO,
+    POSITIVE,
+    RESTITUTION,
+    Axis,
+    DampingRatio,
+    FrequencyRatio,
+    Positive,
+    Restitution,
+    Rule,
+    checked,
+    checked_number,
+    chosen,
+    is_array,
+)
+from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.model import ImpactModel
 from bouncing_ball.paper.orbits.restitution_branch import rigid_speed
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
+from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.paper.orbits.stability import Side
 
-# Range of the frequency ratio and of the amplitude, beyond which their squares leave no digits.
-FrequencyRatio = Annotated[Any, Range(1e-8, 1e8, "[]")]
-AnyAmplitude = Annotated[Any, Range(0, 1e8, "[]")]
-Restitution = Annotated[Any, Range(0, 1, "(]")]
-DampingRatio = Annotated[Any, Range(0, 1, "[)")]
-Positive = Annotated[Any, Range(0)]
-LOSS = ("restitution", "damping_ratio", "measured_restitution")
+if TYPE_CHECKING:
+    from bouncing_ball.datasets.labelled import Grid
+
+LOSSES = ("restitution", "damping_ratio", "measured_restitution")
 """The parameters that determine the loss of an impact; exactly one of them is needed."""
 
-LawAt = Callable[[type[ContactLaw], float, float], ContactLaw]
-"""A function that returns the contact law of a type whose free impact has the given r and D at the
-impact speed of the call."""
+
+class Ball(ABC):
+    """One ball, or several if parameters are arrays, whose impacts obey one model."""
+
+    is_known: bool
+    """Whether the model is known without a speed."""
+
+    parameters: Mapping[str, Any]
+    """The parameters by name. They become axes and attributes of results."""
+
+    @abstractmethod
+    def at_speed(self, speed: ArrayLike) -> ModelBall:
+        """The ball with its model, where a law that is given by the r and D of a free impact has
+        them at this impact speed.
+        """
+
+    @abstractmethod
+    def at_orbit(self, n: int, amplitude: float, side: str = "stable") -> ModelBall:
+        """The ball with its model, where a law that is given by the r and D of a free impact has
+        them at the impact speed of this n-T orbit.
+
+        Raises
+        ------
+        NoOrbitError
+            If the law depends on the orbit and there is none.
+        """
+
+    @abstractmethod
+    def at_limits(self, n: ArrayLike) -> ModelBall:
+        """The ball with its model, where a law that is given by the r and D of a free impact has
+        them at the impact speed of the restitution model's n-T orbits, 2πn/(1 + r).
+        """
+
+    @abstractmethod
+    def corrected(self) -> Ball:
+        """The ball of the corrected restitution model of this contact."""
+
+    @abstractmethod
+    def row(self, grid: Grid) -> Ball:
+        """The balls at the places of a grid of which the parameters are arguments, one after
+        another.
+        """
+
+    @abstractmethod
+    def take(self, number: int) -> Ball:
+        """One ball of a row; a single ball is unchanged."""
 
 
-def model(
-    restitution: Restitution | None = None,
-    frequency_ratio: FrequencyRatio | None = None,
-    release: Rule | None = None,
-    *,
-    damping_ratio: DampingRatio | None = None,
-    measured_restitution: Restitution | None = None,
-    model: Literal["restitution", "spring-damper", "corrected"] | None = None,
-    law: str | None = None,
-    parameters: Mapping[str, float] | None = None,
-    duration: Positive | None = None,
-    speed: Positive | None = None,
-) -> ImpactModel:
-    """The model with these parameters.
+@dataclass(frozen=True, eq=False)
+class ModelBall(Ball):
+    """A ball whose model is known.
 
     Parameters
     ----------
-    restitution : array_like, optional
-        Restitution coefficient r in (0, 1]. A spring-damper contact then has the damping ratio
-        ζ with r = exp(-πζ/√(1 - ζ²)), Eq. 16 of the paper.
-    frequency_ratio : array_like, optional
-        Frequency ratio ϖ of a spring-damper contact; the restitution model has none.
-    release : str, optional
-        Where a contact ends: "displacement" at the table's level, as in the paper (default), or
-        "force" where the contact force vanishes.
-    damping_ratio : array_like, optional
-        Damping ratio ζ in [0, 1) of the contact, in place of the restitution coefficient.
-    measured_restitution : array_like, optional
-        Restitution coefficient of a free impact under the given release, in place of the
-        parameter restitution, which always refers to the displacement release.
-    model : str, optional
-        "restitution", "spring-damper" or "corrected". By default "spring-damper" if ϖ is
-        given, and otherwise "restitution".
-    law : str, optional
-        Name of a contact law, in place of the linear spring and damper.
-    parameters : mapping, optional
-        Parameters of the contact law by name, such as stiffness=1000.
-    duration : float, optional
-        Duration D of a free impact. With the restitution coefficient it replaces the
-        parameters of the contact law.
-    speed : float, optional
-        Speed of this free impact. The default is the impact speed of the orbit; for limits, the
-        impact speed of the restitution model, 2πn/(1 + r); for a simulation, the first one.
+    model : ImpactModel
+        One model, or a row of models, one for each place of the grid of the parameters.
+    parameters : mapping
+        The parameters by name; empty for a model that was made without this module.
 
-    Returns
-    -------
-    ImpactModel
-        Has the shape to which the arrays broadcast.
+    Examples
+    --------
+    >>> ModelBall(RestitutionModel(0.5)).at_speed(3.0).model
+    RestitutionModel(restitution=0.5)
+    """
+
+    model: ImpactModel
+    parameters: Mapping[str, Any] = field(default_factory=dict)
+
+    is_known = True
+
+    def at_speed(self, speed: ArrayLike) -> ModelBall:
+        return self
+
+    def at_orbit(self, n: int, amplitude: float, side: str = "stable") -> ModelBall:
+        return self
+
+    def at_limits(self, n: ArrayLike) -> ModelBall:
+        return self
+
+    def corrected(self) -> ModelBall:
+        law = self.model.impact_law
+        if isinstance(self.model, SpringDamperModel):
+            model = CorrectedModel.of_contact(self.model.contact)
+        elif isinstance(law, ContactLaw):
+            model = CorrectedModel(Signature(law))
+        else:
+            raise ModelError(f"{self.model.name} impacts have no contact that could be corrected")
+        return ModelBall(model, {**self.parameters, "model": "corrected"})
+
+    def row(self, grid: Grid) -> ModelBall:
+        number = grid.numbers_of(self.parameters)
+        return replace(self, model=self.model.take(number))
+
+    def take(self, number: int) -> ModelBall:
+        return replace(self, model=self.model.take(number))
+
+
+@dataclass(frozen=True, eq=False)
+class FreeImpactBall(Ball):
+    """A ball on the contact of a law that is given by the r and D of a free impact.
+
+    Parameters
+    ----------
+    law : type of ContactLaw
+    restitution : float
+        r of the free impact.
+    duration : float or array
+        D of the free impact.
+    is_corrected : bool
+        Whether the ball obeys the corrected restitution model of the contact.
+    """
+
+    law: type[ContactLaw]
+    restitution: float
+    duration: Any
+    is_corrected: bool = False
+
+    is_known = False
+
+    @property
+    def parameters(self) -> Mapping[str, Any]:  # type: ignore[override]
+        found = {"law": self.law.name, "restitution": self.restitution, "duration": self.duration}
+        return found | ({"model": "corrected"} if self.is_corrected else {})
+
+    def at_speed(self, speed: ArrayLike) -> ModelBall:
+        return self._with(law_of_impact(self.law, self.restitution, self.duration, speed))
+
+    def at_orbit(self, n: int, amplitude: float, side: str = "stable") -> ModelBall:
+        return self._with(
+            law_at_orbit(self.law, self.restitution, self.duration, n, amplitude, Side(side))
+        )
+
+    def at_limits(self, n: ArrayLike) -> ModelBall:
+        return self.at_speed(rigid_speed(n, self.restitution))
+
+    def _with(self, law: ContactLaw) -> ModelBall:
+        ball = ModelBall(LawModel(law), self.parameters)
+        return ball.corrected() if self.is_corrected else ball
+
+    def corrected(self) -> FreeImpactBall:
+        return replace(self, is_corrected=True)
+
+    def row(self, grid: Grid) -> FreeImpactBall:
+        return replace(self, duration=grid.flat["duration"])
+
+    def take(self, number: int) -> FreeImpactBall:
+        if not is_array(self.duration):
+            return self
+        return replace(self, duration=float(self.duration[number]))
+
+
+def rigid(*, restitution: Restitution) -> ModelBall:
+    """A ball of the restitution model, whose impacts are instants (Eqs. 1-9).
+
+    Parameters
+    ----------
+    restitution : float or array
+        Restitution coefficient r in (0, 1].
 
     Raises
     ------
     ModelError
-        If a parameter is missing, out of range or contradicts another.
+        If r is no number in its range.
 
     Examples
     --------
-    >>> model(0.85)
+    >>> rigid(restitution=0.85).model
     RestitutionModel(restitution=0.85)
     """
-    return impact_model(locals(), None)
+    r = checked("restitution", restitution, RESTITUTION)
+    flat = _flat({"restitution": r})
+    return ModelBall(RestitutionModel(flat["restitution"]), {"restitution": r})
 
 
-def model_of_limits(n: int, **impact: Any) -> ImpactModel:
-    """The model for a call about limits.
+def spring_damper(
+    *,
+    frequency_ratio: FrequencyRatio,
+    restitution: Restitution | None = None,
+    damping_ratio: DampingRatio | None = None,
+    measured_restitution: Restitution | None = None,
+    release: Rule = "displacement",
+) -> ModelBall:
+    """A ball on a contact with a spring and a damper (Eqs. 10-27).
 
-    A contact law that is given by r and D has these values at the impact speed of the restitution
-    model's orbits.
+    Exactly one of the parameters restitution, damping_ratio and measured_restitution is needed.
+
+    Parameters
+    ----------
+    frequency_ratio : float or array
+        Frequency ratio ϖ of a spring-damper contact; the restitution model has none.
+    restitution : float or array, optional
+        Restitution coefficient r in (0, 1]. A spring-damper contact then has the damping ratio
+        ζ with r = exp(-πζ/√(1 - ζ²)), Eq. 16 of the paper.
+    damping_ratio : float or array, optional
+        Damping ratio ζ in [0, 1) of the contact, in place of the restitution coefficient.
+    measured_restitution : float or array, optional
+        Restitution coefficient of a free impact under the given release, in place of the
+        parameter restitution, which always refers to the displacement release.
+    release : str
+        Where a contact ends: "displacement" at the table's level, as in the paper (default), or
+        "force" where the contact force vanishes.
+
+    Raises
+    ------
+    ModelError
+        If a parameter is missing, of a wrong type or shape, out of range or contradicts another.
 
     Examples
     --------
-    >>> model_of_limits(1, restitution=0.85)
-    RestitutionModel(restitution=0.85)
+    >>> spring_damper(frequency_ratio=10.0, damping_ratio=0.1).model.contact
+    SpringDamper(frequency_ratio=10, damping_ratio=0.1, release='displacement')
     """
-    return impact_model(impact, lambda kind, r, d: law_of_impact(kind, r, d, rigid_speed(n, r)))
-
-
-def model_of_impact(amplitude: Any, phase: Any, velocity: Any, **impact: Any) -> ImpactModel:
-    """The model for a call that starts with an impact.
-
-    A contact law that is given by r and D has these values at the speed of this impact.
-    """
-    speed = np.asarray(amplitude) * np.cos(phase) - velocity
-    return impact_model(impact, lambda kind, r, d: law_of_impact(kind, r, d, speed))
-
-
-def impact_model(given: Mapping[str, Any], law_at: LawAt | None) -> ImpactModel:
-    """The model from those parameters that are not None."""
-    given = {name: value for name, value in given.items() if value is not None}
-    if isinstance(of := given.pop("model", None), ImpactModel):
-        _refuse(given, tuple(given), "is not allowed with {model}, which has its parameters")
-        return of
-    given |= {} if of is None else {"model": of}
-    known = inspect.signature(model).parameters
-    for name in given:
-        _demand(name in known, f"unknown parameter {{}}: choose from {', '.join(known)}", name)
-    check(model, given)
-    losses = [name for name in LOSS if name in given]
-    if len(losses) > 1:
-        raise ParameterError(f"argument {{{losses[1]}}}: not allowed with argument {{{losses[0]}}}")
-    kind = given.get("model") or ("spring-damper" if "frequency_ratio" in given else "restitution")
-    if "law" in given:
-        law = _law(given, law_at)
-        return CorrectedModel(Signature(law)) if kind == "corrected" else LawModel(law)
-    _refuse(given, ("parameters", "duration", "speed"), "needs {law}")
-    names = " ".join(f"{{{name}}}" for name in LOSS)
-    _demand(bool(losses), f"one of the arguments {names} is required")
-    if kind == "restitution":
-        instead = "needs {frequency_ratio}; {model} restitution takes {restitution}"
-        _refuse(given, ("damping_ratio",), instead)
-        meaning = "has no meaning for {model} restitution, which has no contact"
-        _refuse(given, ("frequency_ratio", "release"), meaning)
-        return RestitutionModel(given[losses[0]])
-    _demand("frequency_ratio" in given, f"{{model}} {kind} needs {{frequency_ratio}}")
-    ratio, rule = given["frequency_ratio"], Release.of(given.get("release", Release.DISPLACEMENT))
-    if "damping_ratio" in given:
-        contact = SpringDamper(ratio, given["damping_ratio"], rule)
+    chosen("release", release, [str(each) for each in Release])
+    loss = the_loss(restitution, damping_ratio, measured_restitution)
+    value = {
+        "restitution": restitution,
+        "damping_ratio": damping_ratio,
+        "measured_restitution": measured_restitution,
+    }[loss]
+    allowed = DAMPING_RATIO if loss == "damping_ratio" else RESTITUTION
+    parameters = {
+        loss: checked(loss, value, allowed),
+        "frequency_ratio": checked("frequency_ratio", frequency_ratio, FREQUENCY_RATIO),
+    }
+    flat = _flat(parameters)
+    ratio = flat["frequency_ratio"]
+    if loss == "damping_ratio":
+        contact = SpringDamper(ratio, flat[loss], Release.of(release))
     else:
-        measured = "measured_restitution" in given
-        contact = SpringDamper.from_restitution(given[losses[0]], ratio, rule, measured=measured)
-    if kind == "corrected":
-        return CorrectedModel.of_contact(contact)
-    # Imported here, because its limits need scipy.optimize, which the other models do not need.
-    from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
-
-    return SpringDamperModel(contact)
+        measured = loss == "measured_restitution"
+        contact = SpringDamper.from_restitution(flat[loss], ratio, release, measured=measured)
+    return ModelBall(SpringDamperModel(contact), {**parameters, "release": str(release)})
 
 
-def _law(given: Mapping[str, Any], law_at: LawAt | None) -> ContactLaw:
-    """The contact law, from its parameters or from the r and D of a free impact."""
-    kind, r, duration = law_named(given["law"]), given.get("restitution"), given.get("duration")
-    if given.get("model") in ("restitution", "spring-damper"):
-        why = f"{given['model']} has no {{law}}: give corrected, or no {{model}} for the law itself"
-        _refuse(given, ("model",), why)
-    instead = "{parameters}, or {restitution} and {duration}"
-    linear = ("frequency_ratio", "damping_ratio", "measured_restitution")
-    _refuse(given, linear, f"is not allowed with {{law}} {kind.name}: give {instead}")
-    needs = ", ".join(
-        f"{{parameters}} {name.replace('_', '-')}=NUMBER" for name in kind.parameter_names()
-    )
-    if "parameters" in given:
-        why = f"is not allowed with {{parameters}}: {needs} determine {kind.name}"
-        _refuse(given, ("restitution", "duration", "speed"), why)
-        return _law_of_parameters(kind, given)
-    if r is None or duration is None:
+def the_loss(
+    restitution: Axis | None, damping_ratio: Axis | None, measured_restitution: Axis | None
+) -> str:
+    """The name of the one of the :data:`LOSSES` that is given.
+
+    Raises
+    ------
+    ParameterError
+        If none of them is given, or several.
+    """
+    values = (restitution, damping_ratio, measured_restitution)
+    given = [name for name, value in zip(LOSSES, values, strict=True) if value is not None]
+    if not given:
+        names = " ".join(f"{{{name}}}" for name in LOSSES)
+        raise ParameterError(f"one of the arguments {names} is required")
+    if len(given) > 1:
+        raise ParameterError(f"argument {{{given[1]}}}: not allowed with argument {{{given[0]}}}")
+    return given[0]
+
+
+def contact_law(
+    law: str | ContactLaw,
+    *,
+    speed: Positive | None = None,
+    restitution: float | None = None,
+    duration: Positive | None = None,
+    release: Rule | None = None,
+    **parameters: Axis,
+) -> Ball:
+    """A ball on a contact of another law than the linear spring and damper.
+
+    The law is given by its parameters, such as ``stiffness=1000.0, damping=0.08``, or by the
+    restitution coefficient and the duration of a free impact.
+
+    Parameters
+    ----------
+    law : str or ContactLaw
+        Name of a contact law, in place of the linear spring and damper; or a law of your own, with
+        its parameters.
+    speed : float, optional
+        Speed of this free impact. The default is the impact speed of the orbit; for limits, the
+        impact speed of the restitution model, 2πn/(1 + r); for a simulation, the first one.
+    restitution : float, optional
+        Restitution coefficient r in (0, 1] of a free impact.
+    duration : float or array, optional
+        Duration D of a free impact. With the restitution coefficient it replaces the
+        parameters of the contact law.
+    release : str, optional
+        Where a contact of the linear law ends, "displacement" or "force"; other laws determine it.
+    **parameters : float or array
+        The parameters of the law.
+
+    Raises
+    ------
+    ModelError
+        If the law is unknown, or a parameter is missing, unknown, of a wrong type or shape, out of
+        range or contradicts another.
+
+    Examples
+    --------
+    >>> contact_law("hunt-crossley", stiffness=1000.0, damping=0.08).model
+    LawModel(law=HuntCrossley(stiffness=1000, damping=0.08))
+    >>> ball = contact_law("hunt-crossley", restitution=0.8, duration=0.2)
+    >>> ball.at_speed(3.0).model
+    LawModel(law=HuntCrossley(stiffness=641.257, damping=0.124382))
+    """
+    if isinstance(law, ContactLaw):
+        return ModelBall(LawModel(law), {"law": law.name} if law.shape == () else {})
+    kind = law_named(str(law))
+    if parameters:
+        _refuse_free_impact(kind, parameters, restitution, duration, speed)
+        return _law_of_parameters(kind, parameters, release)
+    if restitution is None or duration is None:
         raise ParameterError(
-            f"{{law}} {kind.name} needs {needs}, or {{restitution}} and {{duration}}"
+            f"{{law}} {kind.name} needs {_needs(kind)}, or {{restitution}} and {{duration}}"
         )
-    _refuse(given, ("release",), "is allowed with {parameters} of {law} linear only")
-    several = f"{{restitution}} must be a single number with {{law}} {kind.name}"
-    _demand(not np.ndim(r), several)
-    if "speed" in given:
-        return law_of_impact(kind, r, duration, given["speed"])
-    if law_at is None:
-        raise ParameterError("{duration} needs {speed}")
-    return law_at(kind, r, duration)
+    if release is not None:
+        raise ParameterError("{release} is allowed with {parameters} of {law} linear only")
+    if is_array(restitution):
+        raise ParameterError(f"{{restitution}} must be a single number with {{law}} {kind.name}")
+    ball = FreeImpactBall(
+        law=kind,
+        restitution=checked("restitution", restitution, RESTITUTION),
+        duration=checked("duration", duration, POSITIVE),
+    )
+    # An r that no contact of this law has is refused here.
+    reference(kind, ball.restitution)
+    if speed is None:
+        return ball
+    at = checked_number("speed", speed, POSITIVE)
+    known = replace(ball, duration=_flat({"duration": ball.duration})["duration"]).at_speed(at)
+    return replace(known, parameters={**ball.parameters, "speed": at})
 
 
-def _law_of_parameters(kind: type[ContactLaw], given: Mapping[str, Any]) -> ContactLaw:
-    named = {name.replace("-", "_"): value for name, value in given["parameters"].items()}
+def _needs(kind: type[ContactLaw]) -> str:
+    return ", ".join(f"{{{name}}}=NUMBER" for name in kind.parameter_names())
+
+
+def _refuse_free_impact(
+    kind: type[ContactLaw],
+    parameters: Mapping[str, Any],
+    restitution: float | None,
+    duration: Axis | None,
+    speed: Axis | None,
+) -> None:
+    """Raise an error if a law has both parameters and a free impact."""
+    free_impact = {"restitution": restitution, "duration": duration, "speed": speed}
+    for name, value in free_impact.items():
+        if value is not None:
+            first = next(iter(parameters))
+            raise ParameterError(
+                f"{{{name}}} is not allowed with {{{first}}}: {_needs(kind)} determine {kind.name}"
+            )
+
+
+def _law_of_parameters(
+    kind: type[ContactLaw], parameters: Mapping[str, Any], release: str | None
+) -> ModelBall:
     known = kind.parameter_names()
-    for name in named:
-        all_of = f"its parameters are {', '.join(known)}"
-        _demand(name in known, f"unknown parameter {{}} of {kind.name}: {all_of}", name)
+    for name in parameters:
+        if name not in known:
+            all_of = f"its parameters are {', '.join(known)}"
+            raise ParameterError(f"unknown parameter {{}} of {kind.name}: {all_of}", repr(name))
     for name in known:
-        _demand(name in named, f"{kind.name} also needs {{parameters}} {name}=NUMBER")
-    if "release" in given:
-        why = f"{{release}} is not allowed: {kind.name} determines where a contact ends"
-        _demand("release" in kind.__dataclass_fields__, why)
-        named["release"] = Release.of(given["release"])
-    return kind(**named)
+        if name not in parameters:
+            raise ParameterError(f"{kind.name} also needs {{{name}}}=NUMBER")
+    values = {name: checked(name, value, FINITE) for name, value in parameters.items()}
+    flat = _flat(values)
+    if release is None:
+        return ModelBall(LawModel(kind(**flat)), {"law": kind.name, **values})
+    if "release" not in kind.__dataclass_fields__:
+        raise ParameterError(
+            f"{{release}} is not allowed: {kind.name} determines where a contact ends"
+        )
+    rule = chosen("release", release, [str(each) for each in Release])
+    law = kind(**flat, **{"release": Release.of(rule)})
+    return ModelBall(LawModel(law), {"law": kind.name, **values, "release": rule})
 
 
-def _refuse(given: Mapping[str, Any], names: tuple[str, ...], why: str) -> None:
-    """Raise :class:`ParameterError` for the first of these parameters that is given."""
-    for name in names:
-        _demand(name not in given, f"{{{name}}} {why}")
+def corrected(ball: Ball) -> Ball:
+    """The ball whose impacts are instants at the centroid of the contact force of another ball.
+
+    Parameters
+    ----------
+    ball : Ball
+        A ball on a contact.
+
+    Raises
+    ------
+    ModelError
+        If the impacts of the ball have no contact, or the contacts of a law that is not linear
+        have arrays of parameters.
+
+    Examples
+    --------
+    >>> corrected(spring_damper(frequency_ratio=10.0, restitution=0.65)).model.label
+    'linear with frequency ratio 10, damping ratio 0.135851'
+    """
+    return a_ball(ball).corrected()
 
 
-def _demand(fulfilled: bool, text: str, *names: str) -> None:
-    if not fulfilled:
-        raise ParameterError(text, *map(repr, names))
+def a_ball(ball: Any) -> Ball:
+    """The first argument of a call, after a check of its type.
+
+    Raises
+    ------
+    ParameterError
+        If it is no ball.
+
+    Examples
+    --------
+    >>> a_ball(0.85)
+    Traceback (most recent call last):
+    bouncing_ball.errors.ParameterError: the ball = 0.85 is not made by rigid, spring_damper, \
+contact_law or corrected
+    """
+    if not isinstance(ball, Ball):
+        how = "rigid, spring_damper, contact_law or corrected"
+        raise ParameterError(f"the ball = {{}} is not made by {how}", repr(ball))
+    return ball
+
+
+def a_known_ball(ball: Any) -> ModelBall:
+    """The first argument of a call that needs a model but has no speed.
+
+    Raises
+    ------
+    ParameterError
+        If it is no ball, or its model is not known without a speed.
+    """
+    if not a_ball(ball).is_known:
+        raise ParameterError("{duration} needs {speed}")
+    return ball
+
+
+def a_single_ball(ball: Any) -> ModelBall:
+    """The first argument of a call that takes one ball, whose model must be known.
+
+    Raises
+    ------
+    ParameterError
+        If it is no ball, a parameter is an array, or the model is not known without a speed.
+    """
+    for name, value in a_ball(ball).parameters.items():
+        if is_array(value):
+            raise ParameterError(f"{{{name}}} must be a single number here")
+    return a_known_ball(ball)
+
+
+def _flat(parameters: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The parameters at all places of the grid that their arrays span, one after another."""
+    if not any(is_array(value) for value in parameters.values()):
+        return parameters
+    # Imported here, because a single ball needs no labels, and importing xarray takes longer than
+    # computing its orbit.
+    from bouncing_ball.datasets.labelled import Grid
+
+    return Grid(**parameters).flat

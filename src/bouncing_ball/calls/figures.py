@@ -1,9 +1,7 @@
-"""Figures of the motions on which balls end: over Λ, over another argument, and over starts.
+"""Figures of the results of calls; they compute nothing."""
 
-The datasets are those of :mod:`bouncing_ball.beyond.long_run.grids`.
-"""
-
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
 
 import numpy as np
 import xarray as xr
@@ -15,8 +13,9 @@ from matplotlib.patches import Patch
 
 from bouncing_ball.datasets import CASE, PERIOD_DOUBLING, SADDLE_NODE
 from bouncing_ball.drawing.canvas import WIDE, WIDTH, canvas, coloured, legend_below
-from bouncing_ball.drawing.labels import in_a_row, symbol, title
-from bouncing_ball.drawing.style import COLOURS, TABLE, Look
+from bouncing_ball.drawing.files import write
+from bouncing_ball.drawing.labels import QUANTITIES, in_a_row, symbol, title
+from bouncing_ball.drawing.style import COLOURS, TABLE, Look, style
 
 KINDS = ("orbit", "subharmonic", "locked", "permanent contact", "chaotic", "undecided")
 """The kinds of motion in the order of their colours."""
@@ -24,6 +23,25 @@ KINDS = ("orbit", "subharmonic", "locked", "permanent contact", "chaotic", "unde
 _HUES = dict(zip(KINDS, (*COLOURS[:4], "#9a9a9a", "#d9b8d9"), strict=True))
 # Basins are areas, coloured in order of their shares with light and dark colours in turn.
 _AREAS = ("#3F96CC", "#000000", "#E8B04A", "#AA3A00", "#B7DDF2", "#5B5B5B", "#F4E3B5", "#D9D9D9")
+
+
+def shown(
+    draw: Callable[[xr.Dataset], Figure], data: xr.Dataset, path: str | Path | None, name: str
+) -> Figure:
+    """A figure of a dataset in the common style, which is written to ``path`` if it is given.
+
+    ``name`` is that of the command or of the call, for the description of the file.
+
+    Raises
+    ------
+    ModelError
+        If the suffix of the path is not that of a picture, or the file cannot be written.
+    """
+    with style():
+        figure = draw(data)
+        if path is not None:
+            write(figure, Path(path), f"bouncing-ball {name}")
+    return figure
 
 
 def _kinds_legend(figure: Figure, found: set[str]) -> None:
@@ -46,7 +64,8 @@ def orbit_diagram(data: xr.Dataset) -> Figure:
             if here.any():
                 fills = kind in ("chaotic", "undecided")
                 look = {"marker": ","} if fills else {"marker": "o", "markersize": 0.9, "mew": 0}
-                x, y = lam[here].ravel(), data[name].values[here].ravel() / unit
+                x = lam[here].ravel()
+                y = data[name].values[here].ravel() / unit
                 axes.plot(x, y, color=_HUES[kind], linestyle="none", rasterized=True, **look)
     panels[0].set(ylabel=r"phase of impact $\varphi/\pi$", ylim=(-1, 1), title=title(data))
     panels[1].set(ylabel=r"speed of impact $-\delta'$", ylim=(0, None))
@@ -71,10 +90,12 @@ def exponent(data: xr.Dataset) -> Figure:
 def _over_argument(data: xr.Dataset, name: str, label: str, error: str | None = None) -> Figure:
     figure, axes = canvas(WIDTH, 2.6)
     rows, _ = in_a_row(data)
-    place, argument = np.arange(rows.sizes[CASE]), "number of the start"
+    place = np.arange(rows.sizes[CASE])
+    argument = "number of the start"
     if len(data.dims) == 1:
         (along,) = data.dims
-        place, argument = data[along].values, symbol(str(along))
+        place = data[along].values
+        argument = symbol(str(along))
     for kind in KINDS:
         here = (rows.kind == kind).values & np.isfinite(rows[name].values)
         if here.any():
@@ -93,9 +114,15 @@ def basins(data: xr.Dataset) -> Figure:
     shown = min(len(_AREAS), order.size)
     rank = np.empty(order.size, dtype=int)
     rank[order] = np.minimum(np.arange(order.size), shown - 1)
-    place = data.start_phase.values / np.pi, data.start_speed.values, rank[data.destination.values]
-    look: Look = {"cmap": ListedColormap(_AREAS[:shown]), "vmin": -0.5, "vmax": shown - 0.5}
-    axes.pcolormesh(*place, rasterized=True, **look)
+    axes.pcolormesh(
+        data.start_phase.values / np.pi,
+        data.start_speed.values,
+        rank[data.destination.values],
+        rasterized=True,
+        cmap=ListedColormap(_AREAS[:shown]),
+        vmin=-0.5,
+        vmax=shown - 0.5,
+    )
     axes.set(xlabel=r"phase of the first impact $\varphi/\pi$", title=title(data))
     axes.set_ylabel(r"speed of the first impact $-\delta'$")
     names = [_name(data.isel(motion=k)) for k in order[:shown]]
@@ -108,7 +135,8 @@ def basins(data: xr.Dataset) -> Figure:
 
 
 def _name(motion: xr.Dataset) -> str:
-    periods, impacts = int(motion.motion_periods), int(motion.motion_impacts)
+    periods = int(motion.motion_periods)
+    impacts = int(motion.motion_impacts)
     words = str(motion.motion_kind.values)
     if periods and impacts:
         words += f", {periods} T, {impacts} impact{'s' if impacts > 1 else ''}"
@@ -148,6 +176,35 @@ def limits(data: xr.Dataset) -> Figure:
     return figure
 
 
+def permanent_contact(data: xr.Dataset) -> Figure:
+    """The Λ up to which a ball stays on the table, over the last axis of a labelled dataset."""
+    figure, axes = canvas(WIDTH, 2.6)
+    axes.set(title=title(data))
+    for curve, place, look in _curves(data, [axes]):
+        axes.plot(place, curve.threshold_amplitude, **look)
+    axes.set(ylabel=r"amplitude $\Lambda$ that lifts the ball")
+    if data.threshold_amplitude.ndim > 1:
+        legend_below(figure, ncols=3)
+    return figure
+
+
+def error_thresholds(data: xr.Dataset) -> Figure:
+    """The ϖ from which on each error is tolerable; a ball that needs none has no mark."""
+    figure, axes = canvas(WIDE, 2.8)
+    rows, names = in_a_row(data, "simple", "quantity")
+    place = np.arange(data.quantity.size)
+    for (row, colour), name in zip(coloured(rows, CASE), names, strict=True):
+        for simple, marker in (("restitution", "o"), ("corrected", "D")):
+            values = row.error_threshold.sel(simple=simple)
+            label = ", ".join(x for x in (f"{simple} model", name) if x)
+            axes.semilogx(values, place, marker, color=colour, label=label, markersize=4)
+    axes.set(yticks=place, yticklabels=[QUANTITIES[str(x)] for x in data.quantity.values])
+    axes.set(xlabel=r"frequency ratio $\varpi$ of the contact", title=title(data))
+    axes.invert_yaxis()
+    legend_below(figure, ncols=2)
+    return figure
+
+
 def _curves(
     data: xr.Dataset, panels: Sequence[Axes]
 ) -> Iterator[tuple[xr.Dataset, np.ndarray, Look]]:
@@ -160,6 +217,22 @@ def _curves(
         axes.set(xlabel=symbol(along), xscale="log" if wide else "linear")
     for (curve, colour), name in zip(coloured(rows, CASE), names, strict=True):
         yield curve, place, {"color": colour, "label": name, "marker": ".", "markersize": 3}
+
+
+def impacts(data: xr.Dataset) -> Figure:
+    """Phase and velocity of the impacts of balls over time; each ball has a colour."""
+    figure, panels = canvas(WIDE, 4.0, rows=2, sharex=True)
+    balls, names = in_a_row(data, "impact")
+    for (ball, colour), name in zip(coloured(balls, CASE), names, strict=True):
+        periods = ball.time / (2 * np.pi)
+        look = {"color": colour, "linestyle": "none", "marker": "o", "markersize": 2.5}
+        panels[0].plot(periods, ball.impact_phase / np.pi, **look, label=name or None)
+        panels[1].plot(periods, ball.impact_velocity, **look)
+    panels[0].set(ylabel=r"phase of impact $\varphi/\pi$", ylim=(-1, 1), title=title(data))
+    panels[1].set(ylabel="velocity $z′_i$ at impact", xlabel=r"time $\tau/2\pi$")
+    if any(names):
+        legend_below(figure, ncols=5)
+    return figure
 
 
 def over_time(data: xr.Dataset) -> Figure:

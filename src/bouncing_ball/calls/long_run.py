@@ -1,76 +1,168 @@
 """Calls about the motions on which balls end: one ball, a range of Λ, or a grid of starts."""
 
+from __future__ import annotations
+
 import math
-from collections.abc import Mapping
-from typing import Annotated, Any
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bouncing_ball.beyond.long_run import grids as labelled
-from bouncing_ball.calls.balls import AnyAmplitude, Positive, impact_model, model_of_impact
-from bouncing_ball.calls.over_time import simulate
-from bouncing_ball.calls.signatures import check, takes
+from bouncing_ball.beyond.long_run import grids
+from bouncing_ball.calls.arguments import (
+    AMPLITUDE,
+    FINITE,
+    FOLLOWED,
+    POSITIVE,
+    SAMPLES,
+    Amplitude,
+    Finite,
+    Followed,
+    Samples,
+    checked,
+    checked_number,
+)
+from bouncing_ball.calls.balls import Ball, a_ball, a_single_ball
+from bouncing_ball.calls.results import model_of_starts
 from bouncing_ball.datasets.labelled import Grid, Labelled
-from bouncing_ball.errors import ParameterError, count
-from bouncing_ball.paper.orbits.model import ImpactModel
+from bouncing_ball.errors import ParameterError, extra
 
-# Number of impacts of one ball, and numbers of starts or samples.
-Followed = Annotated[int, count(10_000_000, low=10)]
-Many = Annotated[int, count(100_000)]
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
-@takes(simulate)
+class LongRun(Labelled):
+    """The motions on which balls end, over the axes of the arguments."""
+
+    __slots__ = ()
+
+    def plot(self, path: str | Path | None = None) -> Figure:  # type: ignore[override]
+        """Periods of the motions over an argument, as a figure, which is written to ``path`` if it
+        is given.
+
+        Raises
+        ------
+        ModelError
+            If the suffix of the path is not that of a picture, or the file cannot be written.
+        """
+        with extra("plot"):
+            from bouncing_ball.calls import figures
+        return figures.shown(figures.motions, self, path, "motion")
+
+
+class Exponents(Labelled):
+    """Largest Lyapunov exponents over the axes of the arguments."""
+
+    __slots__ = ()
+
+    def plot(self, path: str | Path | None = None) -> Figure:  # type: ignore[override]
+        """The exponents with their standard errors, as a figure; for the path see
+        :meth:`LongRun.plot`.
+        """
+        with extra("plot"):
+            from bouncing_ball.calls import figures
+        return figures.shown(figures.exponent, self, path, "exponent")
+
+
+class OrbitDiagram(Labelled):
+    """Attractors over Λ, with the impacts of each."""
+
+    __slots__ = ()
+
+    def plot(self, path: str | Path | None = None) -> Figure:  # type: ignore[override]
+        """Phase and speed of the impacts over Λ, as a figure; for the path see
+        :meth:`LongRun.plot`.
+        """
+        with extra("plot"):
+            from bouncing_ball.calls import figures
+        return figures.shown(figures.orbit_diagram, self, path, "diagram")
+
+
+class Basins(Labelled):
+    """The motions on which a grid of first impacts ends, with their shares."""
+
+    __slots__ = ()
+
+    def plot(self, path: str | Path | None = None) -> Figure:  # type: ignore[override]
+        """The motion of each start in a colour, as a figure; for the path see
+        :meth:`LongRun.plot`.
+        """
+        with extra("plot"):
+            from bouncing_ball.calls import figures
+        return figures.shown(figures.basins, self, path, "basins")
+
+
 def motion_of(
-    amplitude, *, phase=0.0, velocity=-math.pi, impacts: Followed = 4000, **impact: Any
-) -> Labelled:
+    ball: Ball,
+    *,
+    amplitude: Amplitude,
+    phase: Finite = 0.0,
+    velocity: Finite = -math.pi,
+    impacts: Followed = 4000,
+) -> LongRun:
     """The motion on which a ball ends, after a first impact as in
     :func:`bouncing_ball.simulate`.
 
     Parameters
     ----------
+    ball : Ball
+    amplitude : float or array
+        Excitation amplitude Λ.
+    phase : float or array
+        Phase of the table at the first impact.
+    velocity : float or array
+        Absolute velocity of the ball before the first impact.
     impacts : int
         Number of impacts after which the search for a repetition ends.
 
     Returns
     -------
-    Labelled
+    LongRun
         ``kind``, one of "orbit", "subharmonic", "locked", "permanent contact", "chaotic" and
-        "undecided" (:class:`bouncing_ball.beyond.long_run.motions.Kind`), the ``periods`` of the table
-        and the ``impacts`` until the motion repeats, its ``lyapunov_exponent`` per period of the
-        table with ``lyapunov_error``, the ``reason`` if it is undecided, and one of its impacts.
+        "undecided" (:class:`bouncing_ball.beyond.long_run.motions.Kind`), the ``periods`` of the
+        table and the ``impacts`` until the motion repeats, its ``lyapunov_exponent`` per period of
+        the table with ``lyapunov_error``, the ``reason`` if it is undecided, and one of its
+        impacts.
 
     Raises
     ------
     ModelError
-        If a parameter is missing, out of range or contradicts another.
+        If a parameter is missing, of a wrong type or shape, or out of range.
 
     Examples
     --------
     A ball that sticks to the table and is thrown off again, each time in the same way:
 
-    >>> found = motion_of(3.0, restitution=0.6)
+    >>> from bouncing_ball import rigid
+    >>> found = motion_of(rigid(restitution=0.6), amplitude=3.0)
     >>> found.kind.item(), found.periods.item()
     ('locked', 13)
     """
-    check(motion_of, locals())
-    grid = Grid(amplitude=amplitude, phase=phase, velocity=velocity, **impact)
-    return labelled.motions(grid, model_of_impact(**grid.flat), impacts)
+    lam = checked("amplitude", amplitude, AMPLITUDE)
+    phi = checked("phase", phase, FINITE)
+    before = checked("velocity", velocity, FINITE)
+    most = checked_number("impacts", impacts, FOLLOWED)
+    grid = Grid(amplitude=lam, phase=phi, velocity=before, **a_ball(ball).parameters)
+    model = model_of_starts(ball, grid)
+    start = (grid.row("amplitude"), grid.row("phase"), grid.row("velocity"))
+    return grid.unfold(grids.motions(model, *start, most), LongRun)
 
 
-@takes(motion_of)
-def lyapunov_exponent(amplitude: AnyAmplitude, **given: Any) -> Labelled:
+def lyapunov_exponent(
+    ball: Ball,
+    *,
+    amplitude: Amplitude,
+    phase: Finite = 0.0,
+    velocity: Finite = -math.pi,
+    impacts: Followed = 4000,
+) -> Exponents:
     """The largest Lyapunov exponent of the motion on which a ball ends, per period of the table.
 
-    Parameters
-    ----------
-    amplitude : array_like
-        Excitation amplitude Λ.
-    given
-        The parameters of :func:`motion_of`.
+    The parameters are those of :func:`motion_of`.
 
     Returns
     -------
-    Labelled
+    Exponents
         ``lyapunov_exponent`` with ``lyapunov_error``, its standard error, and the ``kind`` of the
         motion. For a periodic motion it follows from the larger multiplier, and is -∞ if the
         later motion does not depend on earlier impacts.
@@ -78,117 +170,136 @@ def lyapunov_exponent(amplitude: AnyAmplitude, **given: Any) -> Labelled:
     Raises
     ------
     ModelError
-        If a parameter is missing, out of range or contradicts another.
+        If a parameter is missing, of a wrong type or shape, or out of range.
 
     Examples
     --------
     The multipliers of the 1-T orbit are complex, of modulus r:
 
-    >>> found = lyapunov_exponent(1.0, restitution=0.85, phase=1.1)
+    >>> from bouncing_ball import rigid
+    >>> found = lyapunov_exponent(rigid(restitution=0.85), amplitude=1.0, phase=1.1)
     >>> abs(round(float(found.lyapunov_exponent) - math.log(0.85), 6))
     0.0
     """
-    found = motion_of(amplitude, **given)
-    return found[["lyapunov_exponent", "lyapunov_error", "kind"]].assign_attrs(kind="exponent")
+    found = motion_of(ball, amplitude=amplitude, phase=phase, velocity=velocity, impacts=impacts)
+    part = found[["lyapunov_exponent", "lyapunov_error", "kind"]]
+    return Exponents(part.data_vars, part.coords, part.attrs)
 
 
-@takes(motion_of, without=("amplitude", "phase", "velocity"))
 def orbit_diagram(
-    amplitudes: AnyAmplitude, *, starts: Many = 6, samples: Many = 64, impacts=1000, **impact: Any
-) -> Labelled:
+    ball: Ball,
+    *,
+    amplitudes: Amplitude,
+    starts: Samples = 6,
+    samples: Samples = 64,
+    impacts: Followed = 1000,
+) -> OrbitDiagram:
     """The attractors over Λ, reached from several starts and by following balls in Λ.
-
-    ``impacts`` and the model are given as in :func:`motion_of`.
 
     Parameters
     ----------
-    amplitudes : array_like
+    ball : Ball
+        A single ball.
+    amplitudes : float or array
         Excitation amplitudes Λ in rising order.
     starts : int
         Number of balls at each amplitude, spread evenly over phases and speeds. Further balls
         start near the n-T orbits up to n = 3.
     samples : int
         Largest number of impacts recorded of each motion.
+    impacts : int
+        Number of impacts after which the search for a repetition ends.
 
     Returns
     -------
-    Labelled
+    OrbitDiagram
         As for :func:`motion_of`, for each ``start`` and for two balls that are followed upwards
         and downwards in Λ; ``impact_phase`` and ``impact_speed`` of each ``impact`` recorded.
 
     Raises
     ------
     ModelError
-        If a parameter is missing, out of range or contradicts another, if there are no
-        amplitudes or if they do not rise, or if there are more balls than fit into memory.
+        If a parameter is missing, of a wrong type or shape, or out of range, if the amplitudes do
+        not rise, or if there are more balls than fit into memory.
 
     Examples
     --------
     Below and above the period doubling, for the ball that starts near the 1-T orbit:
 
-    >>> found = orbit_diagram([1.5, 1.6], restitution=0.5, impacts=200)
+    >>> from bouncing_ball import rigid
+    >>> found = orbit_diagram(rigid(restitution=0.5), amplitudes=[1.5, 1.6], impacts=200)
     >>> found.impacts.isel(start=6).values.tolist()
     [1, 2]
     """
-    check(orbit_diagram, locals())
-    values = np.atleast_1d(np.asarray(amplitudes, dtype=float))
-    if not values.size or values.ndim > 1 or np.any(np.diff(values) <= 0):
+    lam = np.atleast_1d(np.asarray(checked("amplitudes", amplitudes, AMPLITUDE)))
+    if lam.ndim > 1 or np.any(np.diff(lam) <= 0):
         raise ParameterError("{amplitudes} must be at least one Λ, in rising order")
-    of, grid = _single(impact)
-    return grid.unfold(labelled.diagram(of, values, starts, samples, impacts))
+    found = grids.diagram(
+        a_single_ball(ball).model,
+        lam,
+        starts=checked_number("starts", starts, SAMPLES),
+        samples=checked_number("samples", samples, SAMPLES),
+        impacts=checked_number("impacts", impacts, FOLLOWED),
+    )
+    return _parameters_of(ball).unfold(found, OrbitDiagram)
 
 
-@takes(motion_of, without=("phase", "velocity"))
 def basins(
-    amplitude,
+    ball: Ball,
     *,
-    starts: Many = 200,
-    velocity_max: Positive | None = None,
-    impacts=2000,
-    **impact: Any,
-) -> Labelled:
+    amplitude: float,
+    starts: Samples = 200,
+    velocity_max: float | None = None,
+    impacts: Followed = 2000,
+) -> Basins:
     """The motions on which balls end that start from a grid of first impacts, and their shares.
-
-    ``amplitude``, ``impacts`` and the model are given as in :func:`motion_of`.
 
     Parameters
     ----------
+    ball : Ball
+        A single ball.
+    amplitude : float
+        Excitation amplitude Λ.
     starts : int
         Number of starts along each axis, the phase of the table and the relative speed.
     velocity_max : float, optional
         Largest relative speed of the first impact; balls seldom exceed the default.
+    impacts : int
+        Number of impacts after which the search for a repetition ends.
 
     Returns
     -------
-    Labelled
+    Basins
         ``destination``, the number of a ``motion`` for each start; and the kind, the periods,
         the impacts and the ``share`` of each motion, with the standard error of the share.
 
     Raises
     ------
     ModelError
-        If a parameter is missing, out of range or contradicts another, or if there are more
+        If a parameter is missing, of a wrong type or shape, or out of range, or if there are more
         balls than fit into memory.
 
     Examples
     --------
-    >>> found = basins(1.2, restitution=0.5, starts=20)
+    >>> from bouncing_ball import rigid
+    >>> found = basins(rigid(restitution=0.5), amplitude=1.2, starts=20)
     >>> set(found.motion_kind.values.tolist()) == {"orbit", "locked"}, float(found.share.sum())
     (True, 1.0)
     """
-    check(basins, locals())
-    if np.ndim(amplitude):
-        raise ParameterError("{amplitude} must be a single Λ")
-    of, grid = _single(impact)
-    return grid.unfold(labelled.basins(of, float(amplitude), starts, velocity_max, impacts))
+    lam = checked_number("amplitude", amplitude, AMPLITUDE)
+    fastest = None
+    if velocity_max is not None:
+        fastest = checked_number("velocity_max", velocity_max, POSITIVE)
+    found = grids.basins(
+        a_single_ball(ball).model,
+        lam,
+        starts=checked_number("starts", starts, SAMPLES),
+        fast=fastest,
+        impacts=checked_number("impacts", impacts, FOLLOWED),
+    )
+    return _parameters_of(ball).unfold(found.assign_attrs(amplitude=lam), Basins)
 
 
-def _single(impact: Mapping[str, Any]) -> tuple[ImpactModel, Grid]:
-    """The model, and the grid that makes its parameters attributes of the results.
-
-    Each parameter must be a single number.
-    """
-    grid = Grid(**impact)
-    for name in grid.coords:
-        raise ParameterError(f"{{{name}}} must be a single number here")
-    return impact_model(impact, None), grid
+def _parameters_of(ball: Ball) -> Grid:
+    """A grid of one place, which makes the parameters of a single ball attributes of results."""
+    return Grid(**ball.parameters)

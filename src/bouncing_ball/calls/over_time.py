@@ -1,78 +1,106 @@
 """Calls that follow a ball from its first impact, or from the height at which it is dropped."""
 
+from __future__ import annotations
+
 import math
-from typing import Annotated, Any
+from typing import TYPE_CHECKING
 
-from bouncing_ball.calls.balls import AnyAmplitude, Positive, model, model_of_impact
-from bouncing_ball.calls.signatures import check, takes
-from bouncing_ball.errors import Range, count
-from bouncing_ball.paper.orbits.model import labelled
+from bouncing_ball.calls.arguments import (
+    AMPLITUDE,
+    FINITE,
+    IMPACTS,
+    PERIODS,
+    POSITIVE,
+    SAMPLES,
+    Amplitude,
+    Finite,
+    Impacts,
+    Periods,
+    Positive,
+    Samples,
+    checked,
+    checked_number,
+)
+from bouncing_ball.calls.balls import Ball, a_ball
 
-Finite = Annotated[Any, Range()]
-# One impact takes a third of a millisecond, so that the largest number takes half a minute.
-Impacts = Annotated[int, count(100_000)]
-Periods = Annotated[float, Range(0, 10_000, "(]")]
-Samples = Annotated[int, count(100_000)]
+if TYPE_CHECKING:
+    from bouncing_ball.calls.results import History, Simulation
 
 
-@takes(model)
 def simulate(
-    amplitude: AnyAmplitude,
+    ball: Ball,
     *,
+    amplitude: Amplitude,
     phase: Finite = 0.0,
     velocity: Finite = -math.pi,
     impacts: Impacts = 100,
-    **impact: Any,
-) -> Any:
+) -> Simulation:
     """The sequence of impacts that begins with a given first impact.
 
     Parameters
     ----------
-    amplitude : array_like
+    ball : Ball
+    amplitude : float or array
         Excitation amplitude Λ.
-    phase : array_like
+    phase : float or array
         Phase of the table at the first impact.
-    velocity : array_like
+    velocity : float or array
         Absolute velocity of the ball before the first impact.
     impacts : int
         Largest number of impacts.
-    impact
-        The parameters of :func:`bouncing_ball.model`.
 
     Returns
     -------
-    ImpactSequence
-        Arrays with one entry for each impact; of several balls shape (impact, ...).
+    Simulation
+        ``time``, ``impact_phase``, ``impact_velocity``, ``contact_duration`` and
+        ``bounce_velocity`` of each ``impact``, NaN after the last one; and the ``status`` of the
+        ball after it. The last axis is ``impact``; each argument that is an array has an axis
+        before it.
 
     Raises
     ------
     ModelError
-        If a parameter is missing, out of range or contradicts another.
+        If a parameter is missing, of a wrong type or shape, or out of range, or if the ball rises
+        from the table at first.
 
     Examples
     --------
-    >>> simulate(0.0, restitution=0.5, velocity=-4.0, impacts=3).time.tolist()
-    [0.0, 4.0, 6.0]
+    >>> from bouncing_ball import rigid
+    >>> found = simulate(rigid(restitution=0.5), amplitude=0.0, velocity=-4.0, impacts=3)
+    >>> found.time.values.tolist(), found.status.item()
+    ([0.0, 4.0, 6.0], 'bouncing')
     """
-    check(simulate, locals())
-    of = model_of_impact(amplitude, phase, velocity, **impact)
-    return of.simulate(amplitude, phase, velocity, impacts)
+    lam = checked("amplitude", amplitude, AMPLITUDE)
+    phi = checked("phase", phase, FINITE)
+    before = checked("velocity", velocity, FINITE)
+    count = checked_number("impacts", impacts, IMPACTS)
+    a_ball(ball)
+    # Imported here, because the command line needs no labels.
+    from bouncing_ball.calls.results import impacts_on_grid
+
+    return impacts_on_grid(ball, lam, phi, before, count)
 
 
-@takes(simulate, without=("impacts",))
 def history(
-    amplitude,
+    ball: Ball,
     *,
-    phase=0.0,
-    velocity=-math.pi,
+    amplitude: Amplitude,
+    phase: Finite = 0.0,
+    velocity: Finite = -math.pi,
     periods: Periods = 10.0,
     samples: Samples = 200,
-    **impact: Any,
-) -> Any:
+) -> History:
     """A ball over time, from a first impact as in :func:`simulate`.
 
     Parameters
     ----------
+    ball : Ball
+    amplitude : float or array
+        Excitation amplitude Λ.
+    phase : float or array
+        Phase of the table at the first impact.
+    velocity : float or array
+        Absolute velocity of the ball before the first impact.
     periods : float
         Number of periods 2π of the table.
     samples : int
@@ -80,60 +108,86 @@ def history(
 
     Returns
     -------
-    Labelled
+    History
         ``ball`` z, ``ball_velocity`` z′, ``table`` w and whether they are in ``contact``. The
         last axis is ``time``; each argument that is an array has an axis before it.
 
     Raises
     ------
     ModelError
-        If a parameter is missing, out of range or contradicts another.
+        If a parameter is missing, of a wrong type or shape, or out of range, or if a ball has too
+        many impacts in this time.
 
     Examples
     --------
-    >>> found = history(0.0, velocity=[-1.0, -2.0], restitution=1.0, periods=1.0, samples=4)
+    >>> from bouncing_ball import rigid
+    >>> elastic = rigid(restitution=1.0)
+    >>> found = history(elastic, amplitude=0.0, velocity=[-1.0, -2.0], periods=1.0, samples=4)
     >>> found.ball.dims, found.ball_velocity.isel(time=1).values + math.pi / 2
     (('velocity', 'time'), array([1., 2.]))
     """
-    check(history, locals())
-    grid = labelled().Grid(amplitude=amplitude, phase=phase, velocity=velocity, **impact)
-    return labelled().history(grid, model_of_impact, periods, samples)
+    lam = checked("amplitude", amplitude, AMPLITUDE)
+    phi = checked("phase", phase, FINITE)
+    before = checked("velocity", velocity, FINITE)
+    length = checked_number("periods", periods, PERIODS)
+    count = checked_number("samples", samples, SAMPLES)
+    a_ball(ball)
+    from bouncing_ball.calls.results import history_on_grid
+
+    return history_on_grid(ball, lam, phi, before, length, count)
 
 
-@takes(history, without=("velocity",))
 def drop(
-    height: Positive, amplitude=0.0, *, phase=0.0, periods=10.0, samples=200, **impact: Any
-) -> Any:
+    ball: Ball,
+    *,
+    height: Positive,
+    amplitude: Amplitude = 0.0,
+    phase: Finite = 0.0,
+    periods: Periods = 10.0,
+    samples: Samples = 200,
+) -> History:
     """A ball that is dropped at rest above a table, which does not move unless Λ is given.
-
-    The other parameters are those of :func:`history`.
 
     Parameters
     ----------
-    height : array_like
+    ball : Ball
+    height : float or array
         Height of the ball above the middle of the table's motion, in units of g/Ω².
-    phase : array_like
+    amplitude : float or array
+        Excitation amplitude Λ.
+    phase : float or array
         Phase of the table when the ball is dropped.
+    periods : float
+        Number of periods 2π of the table.
+    samples : int
+        Number of samples in each period.
 
     Returns
     -------
-    Labelled
+    History
         As for :func:`history`; the time begins when the ball is dropped.
 
     Raises
     ------
     ModelError
-        If a parameter is missing, out of range or contradicts another, or if the ball
-        would be dropped below the table.
+        If a parameter is missing, of a wrong type or shape, or out of range, if the ball would be
+        dropped below the table, or if it has too many impacts in this time.
 
     Examples
     --------
     From h a ball falls for √(2h), and rises to r²h:
 
-    >>> found = drop(8.0, restitution=0.5, periods=1.0, samples=1000)
+    >>> from bouncing_ball import rigid
+    >>> found = drop(rigid(restitution=0.5), height=8.0, periods=1.0, samples=1000)
     >>> round(float(found.ball.where(found.time > 4.0).max()), 4)
     2.0
     """
-    check(drop, locals())
-    grid = labelled().Grid(height=height, amplitude=amplitude, phase=phase, **impact)
-    return labelled().drop(grid, model_of_impact, periods, samples)
+    start = checked("height", height, POSITIVE)
+    lam = checked("amplitude", amplitude, AMPLITUDE)
+    phi = checked("phase", phase, FINITE)
+    length = checked_number("periods", periods, PERIODS)
+    count = checked_number("samples", samples, SAMPLES)
+    a_ball(ball)
+    from bouncing_ball.calls.results import drop_on_grid
+
+    return drop_on_grid(ball, start, lam, phi, length, count)

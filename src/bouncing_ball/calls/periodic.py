@@ -1,80 +1,203 @@
-"""Calls about the n-T orbits of a model: one orbit, the limits of a family, its branch over Λ."""
+"""Calls about the n-T orbits of a ball: an orbit, the limits of a family, its branch over Λ."""
 
-from collections.abc import Mapping
-from typing import Annotated, Any, Literal, NamedTuple
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from bouncing_ball.beyond.calculator.units import Index
-from bouncing_ball.beyond.laws.orbits import law_at_orbit
-from bouncing_ball.calls.balls import Positive, impact_model, model, model_of_limits
-from bouncing_ball.calls.signatures import check, takes
-from bouncing_ball.errors import NoOrbitError, ParameterError, Range, count
-from bouncing_ball.numerics.arrays import plain
-from bouncing_ball.paper.orbits.model import ImpactModel, labelled
-from bouncing_ball.paper.orbits.orbit import Orbit
+from bouncing_ball.calls.arguments import (
+    AMPLITUDE_OF_ORBIT,
+    FAMILY,
+    POINTS,
+    POSITIVE,
+    AmplitudeOfOrbit,
+    Family,
+    Points,
+    SideName,
+    checked,
+    checked_number,
+    chosen,
+    is_array,
+)
+from bouncing_ball.calls.balls import Ball, a_ball, a_known_ball, a_single_ball
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.numerics.arrays import in_words
+from bouncing_ball.paper.orbits.model import ImpactModel
+from bouncing_ball.paper.orbits.orbit import OBSERVABLES, Orbit
 from bouncing_ball.paper.orbits.stability import Side
 
-Amplitude = Annotated[Any, Range(0, 1e8, "(]")]
-Points = Annotated[int, count(10_000, low=10)]
+if TYPE_CHECKING:
+    from bouncing_ball.calls.results import Branches, Limits, Orbits, PermanentContact
 
 
-class Limits(NamedTuple):
-    """The two orbits that bound the stable range of a family; their values are NaN where the
+@dataclass(frozen=True, repr=False)
+class PeriodicOrbit:
+    """One n-T orbit, in Python numbers, which are NaN where there is no such orbit.
+
+    Parameters
+    ----------
+    n : int
+        Index of the family.
+    model : ImpactModel
+        The single model whose orbit this is.
+    amplitude, phase : float
+        Λ, and the table's phase φ at the start of contact.
+    contact_duration : float
+        D = τ_b, which is 0 for an instantaneous impact.
+    impact_velocity : float
+        Absolute velocity z′_i of the ball at the start of contact.
+    """
+
+    n: int
+    model: ImpactModel
+    amplitude: float
+    phase: float
+    contact_duration: float
+    impact_velocity: float
+
+    @classmethod
+    def of(cls, model: ImpactModel, orbit: Orbit) -> PeriodicOrbit:
+        """The single orbit of a single model."""
+        known = {each.name: getattr(orbit, each.name) for each in fields(Orbit)}
+        found = cls(
+            n=int(known["n"]),
+            model=model,
+            amplitude=float(known["amplitude"]),
+            phase=float(known["phase"]),
+            contact_duration=float(known["contact_duration"]),
+            impact_velocity=float(known["impact_velocity"]),
+        )
+        # The cached property below would compute the contact of this orbit again.
+        vars(found)["_orbit"] = orbit
+        return found
+
+    @cached_property
+    def _orbit(self) -> Orbit:
+        return self.model.orbit_of(
+            self.n, self.amplitude, self.phase, self.contact_duration, self.impact_velocity
+        )
+
+    def __repr__(self) -> str:
+        names = ("n", "law", *OBSERVABLES)
+        values = (f"  {name:<22}{in_words(getattr(self, name))}" for name in names)
+        return "\n".join([type(self).__name__, *values])
+
+    @property
+    def law(self) -> Any:
+        """The law of the impact: a contact law, its signature, or r."""
+        return self.model.impact_law
+
+    @property
+    def exists(self) -> bool:
+        """Whether there is such an orbit."""
+        return bool(self._orbit.exists)
+
+    @property
+    def bounce_velocity(self) -> float:
+        """Absolute velocity z′_b at release (Eq. 27)."""
+        return float(self._orbit.bounce_velocity)
+
+    @property
+    def apparent_restitution(self) -> float:
+        """r_a, the relative speed at release over that at impact (Eq. 17)."""
+        return float(self._orbit.apparent_restitution)
+
+    @property
+    def max_height(self) -> float:
+        """The greatest height of the ball over a period."""
+        return float(self._orbit.max_height)
+
+    @property
+    def release_phase(self) -> float:
+        """The table's phase φ + τ_b at release."""
+        return float(self._orbit.release_phase)
+
+    @property
+    def flight_time(self) -> float:
+        """2πn - τ_b (Eq. 19)."""
+        return float(self._orbit.flight_time)
+
+    @property
+    def relative_impact_velocity(self) -> float:
+        """δ′ at the start of contact, below 0."""
+        return float(self._orbit.relative_impact_velocity)
+
+    def multipliers(self) -> np.ndarray:
+        """The two Floquet multipliers, complex; that of larger modulus comes first."""
+        return self._orbit.multipliers()
+
+    def is_stable(self) -> bool:
+        """Whether both multipliers lie inside the unit circle."""
+        return bool(self._orbit.is_stable())
+
+    def is_admissible(self) -> bool:
+        """Whether a simulated ball follows the orbit, without an earlier release or landing."""
+        return bool(self._orbit.is_admissible())
+
+    def defect(self) -> float:
+        """Largest absolute value of the defects of the model's equations."""
+        return float(self._orbit.defect())
+
+    def path(self, time: ArrayLike) -> tuple[Any, Any]:
+        """Height and velocity at times τ since an impact: floats for a number, or arrays."""
+        height, velocity = self._orbit.path(time)
+        if np.ndim(time):
+            return height, velocity
+        return float(height), float(velocity)
+
+
+class TwoLimits(NamedTuple):
+    """The two orbits that bound the stable range of a family; their numbers are NaN where the
     bifurcation does not exist.
     """
 
-    saddle_node: Orbit
-    period_doubling: Orbit
+    saddle_node: PeriodicOrbit
+    period_doubling: PeriodicOrbit
 
     def __repr__(self) -> str:
         return f"saddle-node: {self.saddle_node!r}\nperiod doubling: {self.period_doubling!r}"
 
 
-@takes(model)
 def orbit(
-    n: Index,
-    amplitude: Amplitude,
-    *,
-    side: Literal["stable", "unstable", "all"] = "stable",
-    index: Index | None = None,
-    **impact: Any,
-) -> Any:
+    ball: Ball, n: Family = 1, *, amplitude: AmplitudeOfOrbit, side: SideName = "stable"
+) -> PeriodicOrbit | Orbits:
     """The n-T orbit at the excitation amplitude Λ.
 
     Parameters
     ----------
-    n : int or array_like of int
+    ball : Ball
+    n : int or array of int
         Index n of the family.
-    amplitude : array_like
+    amplitude : float or array
         Excitation amplitude Λ > 0.
     side : str
-        Side of the branch: "stable" or "unstable" next to the saddle-node, or "all" for every
-        orbit at this amplitude, in order of contact duration.
-    index : int, optional
-        Number, from 1, of one orbit in the list of side "all".
-    impact
-        The parameters of :func:`model`.
+        Side of the branch next to the saddle-node: "stable" or "unstable".
 
     Returns
     -------
-    Orbit or Labelled
+    PeriodicOrbit or Orbits
         One orbit, with Python floats. If a parameter is an array, a dataset of the observables
         of all orbits with an axis named after each array; NaN where there is no orbit.
 
     Raises
     ------
     NoOrbitError
-        If the orbit does not exist; the message gives the reason.
+        If the single orbit does not exist; the message gives the reason.
     ModelError
-        If a parameter is missing, out of range or contradicts another.
+        If a parameter is of a wrong type or shape, or out of range.
 
     Examples
     --------
-    >>> orbit(1, 1.0, restitution=0.85, frequency_ratio=10.0)  # doctest: +ELLIPSIS
-    SpringDamperOrbit
+    >>> from bouncing_ball import spring_damper
+    >>> orbit(spring_damper(restitution=0.85, frequency_ratio=10.0), amplitude=1.0)
+    PeriodicOrbit
       n                     1
-      law                   SpringDamper(frequency_ratio=10, damping_ratio=0.0516623, ...)
+      law                   SpringDamper(frequency_ratio=10, damping_ratio=0.0516623, \
+release='displacement')
       amplitude             1
       phase                 1.16848
       contact_duration      0.314782
@@ -83,100 +206,113 @@ def orbit(
       apparent_restitution  0.851132
       max_height            5.41098
     """
-    check(orbit, locals())
-    if _arrays(impact, n, amplitude):
-        if side == "all" or index is not None:
-            of_one = "{side} all" if side == "all" else "{index}"
-            raise ParameterError(f"{of_one} is for one orbit and does not accept arrays")
-        grid = labelled().Grid(n=n, amplitude=amplitude, **impact)
-        return labelled().orbits(grid, _model_of_orbit, Side(side))
-    branch = Side.STABLE if side == "all" else Side(side)
-    of = _model_of_orbit(n, amplitude, branch, **impact)
-    if side != "all" and index is None:
-        return of.require_orbit(n, amplitude, branch)
-    if side != "stable" and index is not None:
-        raise ParameterError("argument {index}: not allowed with argument {side}")
-    found = of.orbits(n, amplitude)
-    if not found.size:
-        raise NoOrbitError(f"no {n}-T orbit at Λ = {amplitude:g} for {of.label}")
-    if index is not None and index > found.size:
-        raise NoOrbitError(
-            f"no orbit {index}: {of.label} has {found.size} {n}-T orbits at Λ = {amplitude:g}"
-        )
-    return found if index is None else plain(found[index - 1])
+    family = checked("n", n, FAMILY)
+    lam = checked("amplitude", amplitude, AMPLITUDE_OF_ORBIT)
+    branch_side = Side(chosen("side", side, list(Side)))
+    if _is_grid(a_ball(ball), family, lam):
+        # Imported here, because a single orbit needs no labels, and importing xarray takes longer
+        # than computing the orbit.
+        from bouncing_ball.calls.results import orbits_on_grid
+
+        return orbits_on_grid(ball, family, lam, branch_side)
+    model = ball.at_orbit(family, lam, branch_side).model
+    return PeriodicOrbit.of(model, model.require_orbit(family, lam, branch_side))
 
 
-def _model_of_orbit(n: int, amplitude: float, side: Side, **impact: Any) -> ImpactModel:
-    """The model for a call about one orbit.
+def orbits(ball: Ball, n: int = 1, *, amplitude: float) -> list[PeriodicOrbit]:
+    """All n-T orbits at one excitation amplitude Λ, in order of contact duration.
 
-    A contact law that is given by r and D has these values at the impact speed of this orbit.
+    Parameters
+    ----------
+    ball : Ball
+        A single ball.
+    n : int
+        Index n of the family.
+    amplitude : float
+        Excitation amplitude Λ > 0.
+
+    Raises
+    ------
+    NoOrbitError
+        If there is none.
+    ModelError
+        If a parameter is an array, of a wrong type, or out of range.
+
+    Examples
+    --------
+    A compliant contact has a second stable orbit, of long contact:
+
+    >>> from bouncing_ball import spring_damper
+    >>> found = orbits(spring_damper(restitution=0.85, frequency_ratio=2.0), amplitude=0.9)
+    >>> [(round(each.contact_duration, 3), each.is_stable()) for each in found]
+    [(1.602, True), (2.249, False), (5.182, True)]
     """
-    return impact_model(impact, lambda kind, r, d: law_at_orbit(kind, r, d, n, amplitude, side))
+    family = checked_number("n", n, FAMILY)
+    lam = checked_number("amplitude", amplitude, AMPLITUDE_OF_ORBIT)
+    model = a_single_ball(a_ball(ball).at_orbit(family, lam)).model
+    found = model.orbits(family, lam)
+    if not found.size:
+        raise NoOrbitError(f"no {family}-T orbit at Λ = {lam:g} for {model.label}")
+    return [PeriodicOrbit.of(model, found[k]) for k in range(found.size)]
 
 
-def _arrays(impact: Mapping[str, Any], *given: Any) -> bool:
-    """Whether any argument is an array; ``parameters``, a mapping, is not considered."""
-    numbers = (value for name, value in impact.items() if name != "parameters")
-    return any(np.ndim(x) > 0 for x in (*given, *numbers))
-
-
-@takes(model)
-def limits(n: Index, **impact: Any) -> Any:
+def limits(ball: Ball, n: Family = 1) -> TwoLimits | Limits:
     """Saddle-node and period doubling of the n-T orbits; NaN where there is none.
 
     Parameters
     ----------
-    n : int or array_like of int
+    ball : Ball
+    n : int or array of int
         Index n of the family.
-    impact
-        The parameters of :func:`model`.
 
     Returns
     -------
-    Limits or Labelled
+    TwoLimits or Limits
         Two orbits. If a parameter is an array, a dataset of both amplitudes and phases with an
         axis named after each array.
 
     Raises
     ------
     ModelError
-        If a parameter is missing, out of range or contradicts another.
+        If n is no whole number in its range.
 
     Examples
     --------
-    >>> found = limits(1, restitution=0.85)
-    >>> found.saddle_node.amplitude < found.period_doubling.amplitude
-    True
-    >>> str(found).splitlines()[0]
-    'saddle-node: RestitutionOrbit'
+    >>> from bouncing_ball import rigid
+    >>> found = limits(rigid(restitution=0.85))
+    >>> round(found.saddle_node.amplitude, 6), round(found.period_doubling.amplitude, 6)
+    (0.254724, 1.038304)
     """
-    check(limits, locals())
-    if _arrays(impact, n):
-        return labelled().limits(labelled().Grid(n=n, **impact), model_of_limits)
-    of = model_of_limits(n, **impact)
-    return Limits(of.saddle_node(n), of.period_doubling(n))
+    family = checked("n", n, FAMILY)
+    if _is_grid(a_ball(ball), family):
+        from bouncing_ball.calls.results import limits_on_grid
+
+        return limits_on_grid(ball, family)
+    model = ball.at_limits(family).model
+    return TwoLimits(
+        saddle_node=PeriodicOrbit.of(model, model.saddle_node(family)),
+        period_doubling=PeriodicOrbit.of(model, model.period_doubling(family)),
+    )
 
 
-@takes(model)
 def branch(
-    n: Index, *, amplitude_max: Positive | None = None, points: Points = 300, **impact: Any
-) -> Any:
+    ball: Ball, n: Family = 1, *, amplitude_max: float | None = None, points: Points = 300
+) -> Branches:
     """The branch of n-T orbits over the amplitude Λ, on both sides of its saddle-node.
 
     Parameters
     ----------
-    n : array_like of int
+    ball : Ball
+    n : int or array of int
         Index n of the family.
     amplitude_max : float, optional
         Largest Λ of the branch; by default 1.4 times that of the period doubling.
     points : int
         Number of points along the branch, at equal steps of arclength.
-    impact
-        The parameters of :func:`bouncing_ball.model`.
 
     Returns
     -------
-    Labelled
+    Branches
         ``amplitude``, ``phase`` and the other observables of each ``point``, and whether the
         orbit is ``stable`` and ``admissible``; ``special_amplitude`` and others of the
         saddle-nodes, period doublings and grazing orbits. Where one of several branches does not
@@ -187,16 +323,61 @@ def branch(
     NoOrbitError
         If there is no branch up to this Λ, or if it cannot be followed.
     ModelError
-        If a parameter is missing, out of range or contradicts another.
+        If a parameter is of a wrong type or shape, or out of range.
 
     Examples
     --------
-    >>> found = branch(1, restitution=0.85, points=50)
+    >>> from bouncing_ball import rigid
+    >>> found = branch(rigid(restitution=0.85), points=50)
     >>> found.special_kind.values.tolist()
     ['saddle-node', 'period doubling']
     >>> round(float(found.special_amplitude[0]) / np.pi * 1.85 / 0.15, 12)
     1.0
     """
-    check(branch, locals())
-    grid = labelled().Grid(n=n, **impact)
-    return labelled().branches(grid, model_of_limits, amplitude_max, points)
+    family = checked("n", n, FAMILY)
+    count = checked_number("points", points, POINTS)
+    top = None
+    if amplitude_max is not None:
+        top = checked_number("amplitude_max", amplitude_max, POSITIVE)
+    a_ball(ball)
+    from bouncing_ball.calls.results import branches_on_grid
+
+    return branches_on_grid(ball, family, top, count)
+
+
+def permanent_contact(ball: Ball) -> float | PermanentContact:
+    """The Λ up to which a ball at rest stays on the table.
+
+    Parameters
+    ----------
+    ball : Ball
+        The threshold is 1 for a rigid ball (Eq. 9), and Λ_SD for a contact with a spring and a
+        damper (Eq. 33).
+
+    Returns
+    -------
+    float or PermanentContact
+        If a parameter of the ball is an array, a dataset with an axis named after each array.
+
+    Raises
+    ------
+    ModelError
+        If a contact law depends on a speed that is not given.
+
+    Examples
+    --------
+    >>> from bouncing_ball import spring_damper
+    >>> permanent_contact(spring_damper(frequency_ratio=2.0, damping_ratio=0.0))
+    0.75
+    """
+    known = a_known_ball(ball)
+    if _is_grid(known):
+        from bouncing_ball.calls.results import permanent_contact_on_grid
+
+        return permanent_contact_on_grid(known)
+    return float(known.model.permanent_contact_threshold())
+
+
+def _is_grid(ball: Ball, *arguments: Any) -> bool:
+    """Whether an argument or a parameter of the ball is an array."""
+    return any(is_array(value) for value in (*arguments, *ball.parameters.values()))

@@ -8,8 +8,7 @@ from bouncing_ball.beyond.calculator import design as calculator
 from bouncing_ball.beyond.calculator.results import Contact, Design, Family, rows
 from bouncing_ball.beyond.calculator.units import percent, shown
 from bouncing_ball.beyond.engines.engine import EngineSettings
-from bouncing_ball.calls.signatures import takes
-from bouncing_ball.cli.options import option
+from bouncing_ball.cli.options import Parser, add_file, add_parameters, option
 from bouncing_ball.datasets.files import PICTURES, require_writable
 from bouncing_ball.errors import NoOrbitError, ParameterError, extra
 from bouncing_ball.paper.comparison.errors import OF_IMPACTS, QUANTITIES, Quantity
@@ -25,16 +24,21 @@ class Answer(NamedTuple):
     whole: bool = True
 
 
-@takes(calculator.design)
-def design(*, plot: Path | None = None, all_families: bool = False, **given: Any) -> Answer:
-    """The calculator's answer; with ``plot`` the page to print is written as well.
+def add_options(parser: Parser) -> None:
+    """Add the options of :func:`design`."""
+    add_file(parser, "plot", "File for one page to print: .pdf, .png or .svg.")
+    each = "By default each family has one line, unless n is given."
+    parser.add_argument(
+        option("all_families"),
+        dest="all_families",
+        action="store_true",
+        help=f"Print all results for every family. {each}",
+    )
+    add_parameters(parser, calculator.design)
 
-    Parameters
-    ----------
-    plot
-        File for one page to print: .pdf, .png or .svg.
-    all_families
-        Print all results for every family. By default each family has one line, unless n is given.
+
+def design(*, plot: Path | None, all_families: bool, **given: Any) -> Answer:
+    """The calculator's answer; with ``plot`` the page to print is written as well.
 
     Raises
     ------
@@ -115,7 +119,8 @@ def _engine_lines(engine: EngineSettings) -> list[str]:
 
 def _short(found: Design) -> list[str]:
     """One line for each family, and a line on the options that print the other results."""
-    quantity, least = found.needed.quantity, found.needed.tolerance
+    quantity = found.needed.quantity
+    least = found.needed.tolerance
     error = f"{QUANTITIES[Quantity(quantity)]} off by"
     head = (
         f"{'orbit':<9}{'stable':<9}{'greatest height':<18}{'peak force':<13}{error:<40}corrected by"
@@ -143,7 +148,8 @@ def _whole(found: Design) -> list[str]:
 
 def _law_lines(found: Design) -> list[str]:
     """The parameters of a contact law, with their units."""
-    law, values = found.case.law, dict(found.law or {})
+    law = found.case.law
+    values = dict(found.law or {})
     name = values.pop("name", "")
     units = {} if law is None else law.units
     # With units, ϖ is the natural frequency ϖΩ.
@@ -165,7 +171,8 @@ def lines(given: Answer) -> list[str]:
         about = [_line(*row) for row in rows(found)]
         about += [_line("release", found.release), *(f"Note: {note}." for note in found.notes)]
         return about + engine
-    need, always = found.needed, ThresholdStatus.ALWAYS_WITHIN
+    need = found.needed
+    always = ThresholdStatus.ALWAYS_WITHIN
     asked = f"ϖ for {percent(need.tolerance)} in the {QUANTITIES[Quantity(need.quantity)]}"
     exact = "any" if need.status == always else shown(need.frequency_ratio)
     corrected = "any" if need.corrected_status == always else shown(need.corrected)

@@ -3,47 +3,65 @@
 import math
 from collections import Counter
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 
 from bouncing_ball.calls import long_run
-from bouncing_ball.calls.balls import AnyAmplitude
-from bouncing_ball.calls.signatures import takes
-from bouncing_ball.cli.output import lines as readable
+from bouncing_ball.calls.arguments import AMPLITUDE, FOLLOWED, SAMPLES
+from bouncing_ball.cli.impact import add_ball, ball_of
+from bouncing_ball.cli.options import Parser, add_file, add_interval, add_number, meanings
+from bouncing_ball.cli.periodic import Answer
+from bouncing_ball.cli.simulate import add_start
 from bouncing_ball.datasets.files import PICTURES, require_writable
-from bouncing_ball.datasets.labelled import Labelled
 from bouncing_ball.errors import ParameterError, count
 
-Answer = dict[str, Any]
 _MOTION = ("kind", "periods", "impacts", "reason")
-Interval = tuple[AnyAmplitude, AnyAmplitude]
-Points = Annotated[int, count(100_000, low=2)]
+_AMPLITUDES = count(100_000, low=2)
 
 
-@takes(long_run.motion_of)
-def motion(amplitude, **given: Any) -> Answer:
+def motion_options(parser: Parser) -> None:
+    """Add the options of :func:`motion`."""
+    add_start(parser, FOLLOWED, meanings(long_run.motion_of), impacts=4000)
+    add_ball(parser)
+
+
+def motion(
+    *, amplitude: float, phase: float, velocity: float, impacts: int, **impact: Any
+) -> Answer:
     """The motion on which the ball ends, with null for an exponent that is infinite or unknown."""
-    found = long_run.motion_of(amplitude, **given)
+    found = long_run.motion_of(
+        ball_of(**impact), amplitude=amplitude, phase=phase, velocity=velocity, impacts=impacts
+    )
     exponents = {name: float(found[name]) for name in ("lyapunov_exponent", "lyapunov_error")}
     answer: Answer = {name: x for name in _MOTION if (x := found[name].item()) != ""}
     return answer | {name: x if math.isfinite(x) else None for name, x in exponents.items()}
 
 
-@takes(long_run.orbit_diagram)
+def diagram_options(parser: Parser) -> None:
+    """Add the options of :func:`diagram`."""
+    texts = meanings(long_run.orbit_diagram)
+    add_interval(parser, "amplitudes", AMPLITUDE, "First and last excitation amplitude Λ.")
+    steps = "Number of amplitudes, at equal steps."
+    add_number(parser, "points", _AMPLITUDES, steps, default=300)
+    add_file(parser, "plot", "A figure: .pdf, .png or .svg.")
+    add_number(parser, "starts", SAMPLES, texts["starts"], default=6)
+    add_number(parser, "samples", SAMPLES, texts["samples"], default=64)
+    add_number(parser, "impacts", FOLLOWED, texts["impacts"], default=1000)
+    add_ball(parser)
+
+
 def diagram(
-    *, amplitudes: Interval, points: Points = 300, plot: Path | None = None, **given: Any
+    *,
+    amplitudes: tuple[float, float],
+    points: int,
+    plot: Path | None,
+    starts: int,
+    samples: int,
+    impacts: int,
+    **impact: Any,
 ) -> Answer:
     """The motions at each amplitude with their shares of the starts, and the figure.
-
-    Parameters
-    ----------
-    amplitudes
-        First and last excitation amplitude Λ.
-    points
-        Number of amplitudes, at equal steps.
-    plot
-        A figure: .pdf, .png or .svg.
 
     Raises
     ------
@@ -54,14 +72,20 @@ def diagram(
     low, high = amplitudes
     if not low < high:
         raise ParameterError(f"{{amplitudes}} {low:g} {high:g}: the second must be larger")
-    found = long_run.orbit_diagram(np.linspace(low, high, points), **given)
+    found = long_run.orbit_diagram(
+        ball_of(**impact),
+        amplitudes=np.linspace(low, high, points),
+        starts=starts,
+        samples=samples,
+        impacts=impacts,
+    )
     if plot is not None:
         found.plot(plot)
     at = (found.isel(amplitude=k) for k in range(points))
     return {"diagram": [{"amplitude": float(x.amplitude), "motions": _shares(x)} for x in at]}
 
 
-def _shares(at: Labelled) -> list[Answer]:
+def _shares(at: long_run.OrbitDiagram) -> list[Answer]:
     """The motions at one amplitude, the most frequent first, with the reason of each that is
     undecided.
     """
@@ -73,15 +97,13 @@ def _shares(at: Labelled) -> list[Answer]:
     ]
 
 
+def diagram_lines(answer: Answer) -> list[str]:
+    """A line for each amplitude: kind, periods/impacts and share of the starts."""
+    shown = ((at["amplitude"], ", ".join(map(_words, at["motions"]))) for at in answer["diagram"])
+    return [f"{amplitude:<12.8g}{motions}" for amplitude, motions in shown]
+
+
 def _words(motion: Answer) -> str:
     period = f" {motion['periods']}/{motion['impacts']}" if motion["periods"] else ""
     reason = f", because {motion['reason']}" if "reason" in motion else ""
     return f"{motion['kind']}{period} ({motion['share']:.0%}{reason})"
-
-
-def lines(answer: Answer) -> list[str]:
-    """The motion, or a line for each amplitude: kind, periods/impacts and share of the starts."""
-    if "diagram" not in answer:
-        return readable(answer)
-    shown = ((at["amplitude"], ", ".join(map(_words, at["motions"]))) for at in answer["diagram"])
-    return [f"{amplitude:<12.8g}{motions}" for amplitude, motions in shown]

@@ -2,28 +2,20 @@
 
 import json
 import sys
-from collections.abc import Callable
-from importlib import import_module
-from typing import Any
 
 from bouncing_ball import __version__
-from bouncing_ball.cli.help_texts import COMMANDS, explained
-from bouncing_ball.cli.options import Parser, add_options, option, positional
+from bouncing_ball.cli.commands import COMMANDS, Program
+from bouncing_ball.cli.options import Parser, option
 from bouncing_ball.cli.output import fail, say
 from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError, extra
 
 
-def _module(command: str) -> Any:
-    """The module of a subcommand. It has its call, and may have ``lines`` for readable text."""
+def _program(command: str) -> Program:
     try:
         with extra("pipeline"):
-            return import_module(f"bouncing_ball.{COMMANDS[command]['module']}")
+            return COMMANDS[command].program()
     except ModelError as error:
         fail(str(error), status=2)
-
-
-def _call(command: str) -> Callable[..., Any]:
-    return getattr(_module(command), command.replace("-", "_"))
 
 
 def parser(arguments: list[str]) -> Parser:
@@ -37,11 +29,12 @@ def parser(arguments: list[str]) -> Parser:
     top.add_argument("--version", action="version", version=f"{top.prog} {__version__}")
     commands = top.add_subparsers(dest="command", parser_class=Parser)
     for name, command in COMMANDS.items():
-        text = command["purpose"]
-        sub = commands.add_parser(name, help=text, description=text, epilog=explained(name))
+        text = command.purpose
+        sub = commands.add_parser(name, help=text, description=text, epilog=command.explanation())
         if name in arguments:
-            add_options(sub, _call(name))
-            if hasattr(_module(name), "lines"):
+            program = _program(name)
+            program.add_options(sub)
+            if program.lines is not None:
                 sub.add_argument("--json", action="store_true", help="one JSON object")
     return top
 
@@ -54,21 +47,20 @@ def main(arguments: list[str] | None = None) -> None:
     arguments = sys.argv[1:] if arguments is None else arguments
     top = parser(arguments)
     given = vars(top.parse_args(arguments))
-    command, as_json = given.pop("command"), given.pop("json", False)
+    command = given.pop("command")
+    as_json = given.pop("json", False)
     if command is None:
         top.error(f"a command is missing, one of {', '.join(COMMANDS)}")
-    call = _call(command)
-    places = [given.pop(name) for name in positional(call)]
+    program = _program(command)
     import numpy as np
 
     try:
         with np.errstate(all="ignore"):
-            answer, module = call(*places, **given), _module(command)
+            answer = program.answer(**given)
             if as_json:
-                found = module.document(answer) if hasattr(module, "document") else answer
-                text = json.dumps(found, allow_nan=False)
+                text = json.dumps(program.document(answer), allow_nan=False)
             else:
-                text = "\n".join(module.lines(answer))
+                text = "\n".join(program.lines(answer) if program.lines else [])
     except ValueError as error:
         text = error.shown(option) if isinstance(error, ParameterError) else str(error)
         if as_json:

@@ -1,4 +1,8 @@
-"""The options of a subcommand, made from the signature and the docstring of its call."""
+"""The options of subcommands.
+
+Their descriptions are those of the docstrings of the calls. Options that are parameters of one call
+are made from its signature.
+"""
 
 import argparse
 import builtins
@@ -10,7 +14,7 @@ import pathlib
 import re
 import sys
 import typing
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any, NoReturn
 
 from bouncing_ball.cli.output import say
@@ -55,19 +59,20 @@ def option(name: str) -> str:
 def meanings(call: Callable) -> dict[str, str]:
     """The description of each parameter from the docstring of a call.
 
-    Parameters that the call hands on are described by the docstring of the other call.
-
     Examples
     --------
-    >>> meanings(meanings)
-    {}
+    >>> from bouncing_ball.calls.balls import rigid
+    >>> meanings(rigid)
+    {'restitution': 'Restitution coefficient r in (0, 1].'}
     """
-    handed_on = getattr(call, "handed_on", None)
-    found = meanings(handed_on) if handed_on else {}
-    entries = re.findall(
-        r"^(\w+(?:, \w+)*)(?: : .*)?\n((?: {4}.+\n?)+)", inspect.getdoc(call) or "", re.MULTILINE
+    found: dict[str, str] = {}
+    section = re.search(
+        r"^Parameters\n-+\n(.*?)(?:\n\n\w+\n-+\n|\Z)",
+        inspect.getdoc(call) or "",
+        re.DOTALL | re.MULTILINE,
     )
-    for names, text in entries:
+    entry = r"^(\w+(?:, \w+)*)(?: : .*)?\n((?: {4}.+\n?)+)"
+    for names, text in re.findall(entry, section[1] if section else "", re.MULTILINE):
         found |= dict.fromkeys(names.split(", "), " ".join(text.split()))
     return found
 
@@ -110,6 +115,119 @@ def _within(allowed: Range) -> Callable[[str], Any]:
     return parse
 
 
+def add_number(
+    parser: argparse.ArgumentParser,
+    name: str,
+    allowed: Range,
+    text: str,
+    *,
+    required: bool = False,
+    default: float | None = None,
+) -> None:
+    """Add an option for a number in a range."""
+    parser.add_argument(
+        option(name),
+        dest=name,
+        type=_within(allowed),
+        metavar="N" if allowed.whole else "X",
+        required=required,
+        default=default,
+        help=_help(text, default),
+    )
+
+
+def add_choice(
+    parser: argparse.ArgumentParser,
+    name: str,
+    choices: Iterable[str],
+    text: str,
+    *,
+    default: str | None = None,
+) -> None:
+    """Add an option for one of several names."""
+    parser.add_argument(
+        option(name), dest=name, choices=list(choices), default=default, help=_help(text, default)
+    )
+
+
+def add_file(parser: argparse.ArgumentParser, name: str, text: str) -> None:
+    """Add an option for a file that is written."""
+    parser.add_argument(
+        option(name), dest=name, type=pathlib.Path, metavar="FILE", help=_help(text, None)
+    )
+
+
+def add_interval(parser: argparse.ArgumentParser, name: str, allowed: Range, text: str) -> None:
+    """Add a required option for two numbers in a range."""
+    parser.add_argument(
+        option(name),
+        dest=name,
+        type=_within(allowed),
+        nargs=2,
+        metavar=("FROM", "TO"),
+        required=True,
+        help=_help(text, None),
+    )
+
+
+def add_assignments(parser: argparse.ArgumentParser, name: str, text: str) -> None:
+    """Add an option for assignments such as stiffness=1000, which may be repeated."""
+    parser.add_argument(
+        option(name),
+        dest=name,
+        type=_assignment,
+        action=_Assignments,
+        metavar="NAME=NUMBER",
+        help=_help(text, None),
+    )
+
+
+def _help(text: str, default: Any) -> str:
+    if default not in (None, False):
+        shown = f"{default:.4g}" if isinstance(default, float) else default
+        text += f" (default: {shown})"
+    # argparse fills in what follows a percent sign.
+    return text.replace("%", "%%")
+
+
+def add_parameters(parser: argparse.ArgumentParser, call: Callable) -> None:
+    """Add one option for each parameter of a call, and an argument for each positional-only one."""
+    texts = meanings(call)
+    for name, parameter in inspect.signature(call).parameters.items():
+        if parameter.kind is parameter.POSITIONAL_ONLY:
+            _add_argument(parser, parameter, texts.get(name, ""))
+        else:
+            _add_option(parser, parameter, texts.get(name, ""))
+
+
+def _add_argument(parser: argparse.ArgumentParser, parameter: inspect.Parameter, text: str) -> None:
+    """Add an argument by position."""
+    reading = _reading(parameter.annotation)
+    if parameter.default is not parameter.empty:
+        # Without a default, argparse would list an optional list of arguments as required.
+        reading |= {"nargs": "*", "default": []}
+    reading["metavar"] = parameter.name.upper()
+    parser.add_argument(parameter.name, **reading, help=text)
+
+
+def _add_option(parser: argparse.ArgumentParser, parameter: inspect.Parameter, text: str) -> None:
+    required = parameter.default is parameter.empty
+    default = None if required else parameter.default
+    if parameter.name == "law":
+        text += laws()
+    reading = _reading(parameter.annotation)
+    reading |= {"default": default, "help": _help(text, default), "required": required}
+    parser.add_argument(option(parameter.name), dest=parameter.name, **reading)
+
+
+def laws() -> str:
+    """A sentence with the names of the contact laws."""
+    # Imported here, because the import needs numpy, which the general help does not need.
+    from bouncing_ball.beyond.laws.registry import LAWS
+
+    return f" Laws: {', '.join(LAWS)}."
+
+
 def _reading(annotation: Any) -> dict[str, Any]:
     """The arguments of ``add_argument`` for a parameter with this annotation."""
     kinds = typing.get_args(annotation)
@@ -123,8 +241,6 @@ def _reading(annotation: Any) -> dict[str, Any]:
             return {"choices": list(map(str, kinds[1].__members__.values()))}
         case typing.Literal:
             return {"choices": kinds}
-        case builtins.tuple if kinds[-1] is not ...:
-            return _reading(kinds[0]) | {"nargs": 2, "metavar": ("FROM", "TO")}
         case builtins.bool:
             return {"action": "store_true"}
         case collections.abc.Mapping:
@@ -133,33 +249,3 @@ def _reading(annotation: Any) -> dict[str, Any]:
             return {"type": pathlib.Path, "metavar": "FILE"}
     # A text, or a quantity with a unit, which the call converts.
     return {"metavar": "X"}
-
-
-def positional(call: Callable) -> list[str]:
-    """The parameters that are arguments by position on the command line."""
-    found = inspect.signature(call).parameters.values()
-    return [p.name for p in found if p.kind is p.POSITIONAL_ONLY]
-
-
-def add_options(parser: argparse.ArgumentParser, call: Callable) -> None:
-    """Add one option for each parameter, and an argument for each positional-only parameter."""
-    texts, parameters = meanings(call), inspect.signature(call, eval_str=True).parameters
-    for name, parameter in parameters.items():
-        reading, text = _reading(parameter.annotation), texts.get(name, "")
-        required, default = parameter.default is parameter.empty, parameter.default
-        if parameter.kind is parameter.POSITIONAL_ONLY:
-            # Without a default, argparse would list an optional list of arguments as required.
-            several: dict[str, Any] = {} if required else {"nargs": "*", "default": []}
-            reading["metavar"] = name.upper()
-            parser.add_argument(name, **reading, **several, help=text)
-            continue
-        if not required and default not in (None, False):
-            shown = f"{default:.4g}" if isinstance(default, float) else default
-            text += f" (default: {shown})"
-        if name == "law":
-            # Imported here, because the import needs numpy, which the general help does not need.
-            from bouncing_ball.beyond.laws.registry import LAWS
-
-            text += f" Laws: {', '.join(LAWS)}."
-        reading |= {"default": None if required else default, "help": text.replace("%", "%%")}
-        parser.add_argument(option(name), dest=name, required=required, **reading)

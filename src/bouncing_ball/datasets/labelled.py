@@ -1,67 +1,49 @@
-"""The labelled results of calls: :class:`xarray.Dataset` whose method ``plot`` draws their figure.
+"""Results with named axes: the grid that arrays of arguments span, and datasets over this grid.
 
-The attribute ``kind`` of a dataset determines its figure. ``found.plot()`` returns the figure, and
-``found.plot("name.png")`` also writes it to a file. ``PLOTS`` in the package of figures gives the
-function that draws each kind. That package is imported by the first call of ``plot``, because
-computations do not need matplotlib.
+A list or an array that is given for an argument becomes an axis named after the argument, so that
+two arrays span a grid. A :class:`xarray.DataArray` keeps its axis, so that two along the same axis
+are taken in pairs.
 """
 
 import math
-from collections.abc import Mapping
-from importlib import import_module
-from pathlib import Path
-from typing import Any
+from collections.abc import Collection, Mapping
+from typing import Any, TypeVar
 
 import numpy as np
 import xarray as xr
-from xarray.plot.accessor import DatasetPlotAccessor
 
 from bouncing_ball.datasets import CASE
 from bouncing_ball.datasets.variables import SHARED
-from bouncing_ball.errors import ParameterError, extra
-
-
-class Plot(DatasetPlotAccessor):
-    """Draws the figure of a labelled dataset when called; its methods are the plots of xarray."""
-
-    __slots__ = ()
-
-    def __call__(self, path: str | Path | None = None) -> Any:
-        """The figure as a :class:`matplotlib.figure.Figure`, written to ``path`` if it is given.
-
-        Raises
-        ------
-        ModelError
-            If the suffix of the path is not that of a picture, or the file cannot be written.
-        """
-        with extra("plot"):
-            figures = import_module("bouncing_ball.calls.plots")
-        return figures.plot(self._ds, path)
+from bouncing_ball.errors import ParameterError
 
 
 class Labelled(xr.Dataset):
-    """A dataset with the attribute ``kind``, whose :attr:`plot` draws the figure of that kind.
+    """The labelled result of a call; each kind of result is a subclass, which has ``plot()``.
+
+    A part of a result, such as ``found.isel(n=0)``, is a result of the same class.
 
     Examples
     --------
-    >>> found = Labelled({"phase": ("n", [0.5])}, attrs={"kind": "branch"})
-    >>> type(found.isel(n=0)).__name__, found.isel(n=0).kind
-    ('Labelled', 'branch')
+    >>> type(Labelled({"phase": ("n", [0.5])}).isel(n=0)).__name__
+    'Labelled'
     """
 
     __slots__ = ()
 
-    @property
-    def plot(self) -> Plot:  # type: ignore[override]
-        """``plot()`` draws the figure; ``plot.scatter`` and other methods are those of xarray."""
-        return Plot(self)
+
+Result = TypeVar("Result", bound=Labelled)
 
 
 class Grid:
     """The arguments of a call and the grid that its arrays span, one axis for each array.
 
-    A list or an array becomes an axis named after its parameter, so that two arrays make a grid.
-    A :class:`xarray.DataArray` keeps its axis, so that two along the same axis are taken in pairs.
+    ``single`` has the arguments that are single values, and ``flat`` all arguments, where those
+    that are arrays have one entry for each place of the grid.
+
+    Raises
+    ------
+    ParameterError
+        If an array has several axes without names, or does not consist of numbers.
 
     Examples
     --------
@@ -71,21 +53,12 @@ class Grid:
     """
 
     def __init__(self, **given: Any) -> None:
-        for name, value in given.items():
-            if isinstance(value, Mapping) and any(np.ndim(x) for x in value.values()):
-                raise ParameterError(
-                    f"{{{name}}} must be single numbers, because an array needs a named axis"
-                )
-        self.coords = {
-            name: _axis(name, value).assign_attrs(_attributes(name))
-            for name, value in given.items()
-            if np.ndim(value)
-        }
-        whole = dict(zip(self.coords, xr.broadcast(*self.coords.values()), strict=True))
+        self.coords = {name: _axis(name, value) for name, value in given.items() if np.ndim(value)}
+        whole = _broadcast(self.coords)
         template = next(iter(whole.values()), xr.DataArray(0.0))
-        self.dims, self.shape = template.dims, template.shape
+        self.dims = template.dims
+        self.shape = template.shape
         self.single = {name: value for name, value in given.items() if name not in whole}
-        self.attrs = {n: x for n, x in self.single.items() if isinstance(x, str | int | float)}
         self.flat = self.single | {name: each.values.ravel() for name, each in whole.items()}
 
     @property
@@ -103,28 +76,49 @@ class Grid:
         places = zip(*rows.values(), strict=True) if rows else [()]
         return [self.single | dict(zip(rows, each, strict=True)) for each in places]
 
-    def unfold(self, rows: xr.Dataset) -> Labelled:
+    def numbers_of(self, names: Collection[str]) -> np.ndarray:
+        """The number of each place in the smaller grid that these arguments span, shape (size,).
+
+        Examples
+        --------
+        >>> grid = Grid(amplitude=[1.0, 2.0], restitution=[0.5, 0.7, 0.9])
+        >>> grid.numbers_of(["restitution"]).tolist()
+        [0, 1, 2, 0, 1, 2]
+        """
+        part = _broadcast({name: self.coords[name] for name in self.coords if name in names})
+        template = next(iter(part.values()), xr.DataArray(0.0))
+        number = np.arange(template.size).reshape(template.shape)
+        inner = xr.DataArray(number, dims=template.dims)
+        outer = xr.DataArray(np.zeros(self.shape), dims=self.dims)
+        return (inner + outer).transpose(*self.dims).values.astype(int).ravel()
+
+    def unfold(self, rows: xr.Dataset, kind: type[Result]) -> Result:
         """Results along one axis, with one entry for each place, given the axes of the grid.
 
         Arguments that are single values become attributes.
         """
-        own = {name: each for name, each in rows.variables.items() if name not in self.coords}
-        for name, each in own.items():
+        data = {name: each for name, each in rows.variables.items() if name not in self.coords}
+        for name, each in data.items():
             if CASE in each.dims:
-                dims, shape = (*self.dims, *each.dims[1:]), (*self.shape, *each.shape[1:])
-                own[name] = xr.Variable(dims, each.values.reshape(shape), each.attrs)
-        own.pop(CASE, None)
-        coords = {name: own.pop(name) for name in rows.coords if name in own}
-        return Labelled(own, coords | self.coords, rows.attrs | self.attrs)
+                dims = (*self.dims, *each.dims[1:])
+                values = each.values.reshape((*self.shape, *each.shape[1:]))
+                data[name] = xr.Variable(dims, values, each.attrs)
+        data.pop(CASE, None)
+        coords = {name: data.pop(name) for name in rows.coords if name in data}
+        values = {n: x for n, x in self.single.items() if isinstance(x, str | int | float)}
+        return kind(data, coords | self.coords, rows.attrs | values)
 
 
-def _attributes(name: str) -> dict[str, Any]:
-    return SHARED[name].attributes() if name in SHARED else {}
+def _broadcast(coords: Mapping[str, xr.DataArray]) -> dict[str, xr.DataArray]:
+    """The arguments at all places of the grid that they span."""
+    return dict(zip(coords, xr.broadcast(*coords.values()), strict=True))
 
 
 def _axis(name: str, value: Any) -> xr.DataArray:
+    """An argument with a named axis, and with its description where it has one."""
+    attributes = SHARED[name].attributes() if name in SHARED else {}
     if isinstance(value, xr.DataArray):
-        return value
+        return value.assign_attrs(attributes)
     array = np.asarray(value)
     if array.ndim > 1:
         raise ParameterError(
@@ -132,4 +126,4 @@ def _axis(name: str, value: Any) -> xr.DataArray:
         )
     if array.dtype.kind not in "iuf":
         raise ParameterError(f"{{{name}}} must be one value or an array of numbers")
-    return xr.DataArray(array, dims=name, coords={name: array})
+    return xr.DataArray(array, dims=name, coords={name: array}, attrs=attributes)

@@ -4,10 +4,7 @@ Their fields broadcast together, like the arguments of a function. A scalar fiel
 applies to all elements and remains a scalar.
 """
 
-import functools
-import inspect
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, fields
 from itertools import pairwise
 from typing import Any, Self
@@ -42,70 +39,6 @@ def in_words(value: Any) -> str:
         edgeitems=2,
         formatter={"float_kind": lambda number: f"{number:.6g}"},
     )
-
-
-def plain(value: Any) -> Any:
-    """A result in the form that a user receives.
-
-    A single number becomes a Python number, a single object a :class:`Single`; arrays are
-    unchanged. A method is wrapped, so that its result is converted in the same way.
-
-    Examples
-    --------
-    >>> plain(np.array(0.5)), plain(np.bool_(True)), plain(np.array([0.5]))
-    (0.5, True, array([0.5]))
-    """
-    if isinstance(value, np.ndarray | np.generic):
-        return value if value.ndim else value.item()
-    if getattr(value, "shape", None) == () and type(value) is not Single:
-        return Single(value)
-    if isinstance(value, tuple):
-        return getattr(value, "_make", tuple)(map(plain, value))
-    return plainly(value) if inspect.ismethod(value) else value
-
-
-def plainly(call: Callable) -> Callable:
-    """A function wrapped so that :func:`plain` is applied to its results."""
-    return functools.wraps(call)(lambda *given, **more: plain(call(*given, **more)))
-
-
-class Single:
-    """One element of a batch, whose numbers are returned as Python numbers.
-
-    A batch computes with arrays, even if it has a single element, whereas a user who requests one
-    orbit receives floats.
-
-    Examples
-    --------
-    >>> from bouncing_ball.paper.contact.spring_damper import SpringDamper
-    >>> one = Single(SpringDamper(np.array(5.0), 0.0))
-    >>> one.frequency_ratio, one.damped_frequency, isinstance(one, SpringDamper)
-    (5.0, 5.0, True)
-    """
-
-    __slots__ = ("_of",)
-
-    def __init__(self, of: Any) -> None:
-        self._of = of
-
-    @property  # type: ignore[misc]
-    def __class__(self) -> type:
-        return type(self._of)
-
-    def __reduce__(self) -> Any:
-        return Single, (self._of,)
-
-    def __getattr__(self, name: str) -> Any:
-        return plain(getattr(self._of, name))
-
-    def __call__(self, *given: Any, **more: Any) -> Any:
-        return plain(self._of(*given, **more))
-
-    def __dir__(self) -> list[str]:
-        return dir(self._of)
-
-    def __repr__(self) -> str:
-        return repr(self._of)
 
 
 @dataclass(frozen=True, repr=False)

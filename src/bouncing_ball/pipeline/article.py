@@ -108,8 +108,6 @@ FORMATS = {
     "short": short,
 }
 """The functions that templates can call, by their names there."""
-
-
 # The numbers of sections, figures and tables.
 
 _HEADING = re.compile(r"^(##+) (?!Abstract|References)(.+)$", re.MULTILINE)

@@ -21,7 +21,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-import bouncing_ball
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.artifacts import CARRIERS, DATASET, RECORD, TEXTS, carrier_of
 from bouncing_ball.pipeline.configuration import read_yaml
@@ -197,8 +196,6 @@ def read_provenance(path: Path) -> dict[str, Any]:
 
 # Git ignores this file, so that it does not mark the next run as dirty.
 _CHANGED = "results/configuration.json"
-
-
 # Attributes of a dataset that are no parameters.
 _TEXTUAL = ("title", "references", "history", "Conventions")
 
@@ -255,7 +252,7 @@ def explain(file: Path, /) -> dict[str, Any]:
         If the file is not one of this workflow, or carries no provenance.
     """
     made = read_provenance(carrier_of(file))
-    repository = checkout(Path.cwd(), Path(bouncing_ball.__file__).resolve())
+    repository = checkout(Path.cwd(), Path(__file__).resolve())
     now = revision(repository) if repository else UNKNOWN
     unknown = "unknown" in (made["commit"], now.commit)
     checked_out = None if unknown else made["commit"] == now.commit

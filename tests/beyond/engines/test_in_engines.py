@@ -22,7 +22,7 @@ import pytest
 import xarray as xr
 from pandas import DataFrame
 
-from bouncing_ball import design, limits, simulate
+from bouncing_ball import corrected, design, limits, rigid, spring_damper
 from bouncing_ball.beyond.corrected.errors import SIMPLE
 from bouncing_ball.beyond.engines.choice import ENGINES
 from bouncing_ball.beyond.engines.engine import ERROR, EngineSettings, Physical
@@ -206,28 +206,32 @@ ORBIT = ("release", "restitution", "n", "frequency_ratio")
 def exact_orbit(release, restitution, n, frequency_ratio):
     """The orbit in the middle of its family's stable range."""
     zeta = float(damping_ratio(restitution, release))
-    model = SpringDamperModel(SpringDamper(frequency_ratio, zeta, release))
-    ends = limits(n, frequency_ratio=frequency_ratio, damping_ratio=zeta, release=str(release))
-    return model.orbit(n, (ends.saddle_node.amplitude + ends.period_doubling.amplitude) / 2)
+    ball = spring_damper(frequency_ratio=frequency_ratio, damping_ratio=zeta, release=str(release))
+    ends = limits(ball, n)
+    return ball.model.orbit(n, (ends.saddle_node.amplitude + ends.period_doubling.amplitude) / 2)
 
 
 @cache
 def seconds_per_bounce(model, *case):
     """Processor time of an impact in this package's simulation of a ball by a model."""
     orbit = exact_orbit(*case)
-    contact = {"frequency_ratio": case[-1], "release": str(case[0])}
-    given = {} if model == "restitution" else contact
-    start = {"phase": float(orbit.phase), "velocity": float(orbit.impact_velocity)}
+    release, restitution, _, ratio = case
+    exact = spring_damper(
+        frequency_ratio=ratio, measured_restitution=restitution, release=str(release)
+    )
+    balls = {
+        "restitution": rigid(restitution=restitution),
+        "corrected": corrected(exact),
+        "spring-damper": exact,
+    }
     # The second time everything is imported, and the third the processor has warmed up.
     for _ in range(3):
         began = process_time()
-        simulate(
+        balls[model].model.simulate(
             float(orbit.amplitude),
-            measured_restitution=case[1],
-            model=model,
+            phase=float(orbit.phase),
+            velocity=float(orbit.impact_velocity),
             impacts=SKIPPED + KEPT,
-            **start,
-            **given,
         )
         spent = process_time() - began
     return spent / (SKIPPED + KEPT)

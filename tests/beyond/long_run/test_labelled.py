@@ -8,16 +8,17 @@ import pytest
 import bouncing_ball as bb
 from bouncing_ball.cli.main import main
 
-R = {"restitution": 0.5}
-MODELS = [R, R | {"frequency_ratio": 100.0}, R | {"frequency_ratio": 100.0, "model": "corrected"}]
+R = bb.rigid(restitution=0.5)
+STIFF = bb.spring_damper(restitution=0.5, frequency_ratio=100.0)
+BALLS = [R, STIFF, bb.corrected(STIFF)]
 
 
-@pytest.mark.parametrize("given", MODELS)
-def test_the_end_of_a_motion_is_on_it(given):
+@pytest.mark.parametrize("ball", BALLS)
+def test_the_end_of_a_motion_is_on_it(ball):
     lam = np.array([0.5, 1.3, 1.6, 2.5, 4.0])
-    found = bb.motion_of(lam, phase=0.4, **given)
+    found = bb.motion_of(ball, amplitude=lam, phase=0.4)
     again = bb.motion_of(
-        lam[1:], phase=found.end_phase[1:], velocity=found.end_velocity[1:], **given
+        ball, amplitude=lam[1:], phase=found.end_phase[1:], velocity=found.end_velocity[1:]
     )
     assert found.kind[0] == "permanent contact"
     for name in ("kind", "periods", "impacts"):
@@ -27,19 +28,17 @@ def test_the_end_of_a_motion_is_on_it(given):
         rows = int(each.impacts)
         start = (float(each.end_phase), float(each.end_velocity))
         if each.kind in ("orbit", "subharmonic"):
-            of = bb.model(**given)
-            sequence = of.simulate(float(each.amplitude), *start, rows + 1)
+            sequence = ball.model.simulate(float(each.amplitude), *start, rows + 1)
             time = sequence.time[rows] / (2 * np.pi)
             assert time == pytest.approx(int(each.periods), abs=1e-5)
 
 
-@pytest.mark.parametrize("given", MODELS[:2])
-def test_the_diagram_has_the_orbits_and_their_period_doubling(given):
-    limits = bb.limits(1, **given)
-    ends = [float(x.amplitude) for x in limits]
+@pytest.mark.parametrize("ball", BALLS[:2])
+def test_the_diagram_has_the_orbits_and_their_period_doubling(ball):
+    ends = [limit.amplitude for limit in bb.limits(ball)]
     lam = np.linspace(ends[0] + 0.02, ends[1] + 0.05, 8)
-    found = bb.orbit_diagram(lam, starts=2, **given)
-    orbit = bb.model(**given).orbit(1, lam)
+    found = bb.orbit_diagram(ball, amplitudes=lam, starts=2)
+    orbit = ball.model.orbit(1, lam)
     for k, exact in enumerate(orbit.phase):
         at = found.isel(amplitude=k)
         of = at.where((at.kind == "orbit") & (at.periods == 1) & (at.impacts == 1), drop=True)
@@ -53,7 +52,7 @@ def test_the_diagram_has_the_orbits_and_their_period_doubling(given):
 
 def test_an_attractor_is_followed_from_where_starts_find_it():
     lam = np.linspace(1.6, 1.7, 6)
-    found = bb.orbit_diagram(lam, starts=1, impacts=300, **R)
+    found = bb.orbit_diagram(R, amplitudes=lam, starts=1, impacts=300)
     # The orbit of period 2 at all of them up to its own doubling, 1.667.
     for k in np.flatnonzero(lam < 1.66):
         at = found.isel(amplitude=k)
@@ -61,33 +60,41 @@ def test_an_attractor_is_followed_from_where_starts_find_it():
 
 
 def test_shares_are_those_of_balls_one_by_one():
-    found = bb.basins(1.2, starts=12, velocity_max=8.0, **R)
+    found = bb.basins(R, amplitude=1.2, starts=12, velocity_max=8.0)
     assert float(found.share.sum()) == pytest.approx(1.0)
     phase, speed = np.meshgrid(found.start_phase, found.start_speed)
     velocity = 1.2 * np.cos(phase) - speed
     for k in range(0, 144, 29):
-        one = bb.motion_of(1.2, phase=phase.flat[k], velocity=velocity.flat[k], **R)
+        one = bb.motion_of(R, amplitude=1.2, phase=phase.flat[k], velocity=velocity.flat[k])
         motion = found.isel(motion=int(found.destination.values.flat[k]))
         assert (one.kind, one.periods) == (motion.motion_kind, motion.motion_periods)
 
 
 def test_the_exponent_is_that_of_the_motion():
     lam = [1.0, 2.0]
-    found = bb.lyapunov_exponent(lam, phase=1.1, restitution=0.85, impacts=500)
+    ball = bb.rigid(restitution=0.85)
+    found = bb.lyapunov_exponent(ball, amplitude=lam, phase=1.1, impacts=500)
     assert found.kind.values.tolist() == ["orbit", "chaotic"]
-    both = bb.motion_of(lam, phase=1.1, restitution=0.85, impacts=500)
+    both = bb.motion_of(ball, amplitude=lam, phase=1.1, impacts=500)
     assert found.lyapunov_exponent.identical(both.lyapunov_exponent)
 
 
 @pytest.mark.parametrize(
     ("call", "text"),
     [
-        (lambda: bb.motion_of(-1.0, **R), "amplitude = -1.0 is not a number in [0, 1e+08]"),
-        (lambda: bb.orbit_diagram([], **R), "amplitudes has no entries"),
-        (lambda: bb.orbit_diagram([2.0, 1.0], **R), "must be at least one Λ, in rising order"),
-        (lambda: bb.basins(1.0, starts=100_000, **R), "10000000000 balls are more than fit into"),
-        (lambda: bb.basins([1.0, 2.0], **R), "amplitude must be a single Λ"),
-        (lambda: bb.basins(1.0, restitution=[0.5, 0.6]), "restitution must be a single number"),
+        (lambda: bb.motion_of(R, amplitude=-1.0), "amplitude = -1.0 is not a number in [0, 1e+08]"),
+        (lambda: bb.orbit_diagram(R, amplitudes=[]), "amplitudes has no entries"),
+        (lambda: bb.orbit_diagram(R, amplitudes=[2.0, 1.0]), "at least one Λ, in rising order"),
+        (lambda: bb.basins(R, amplitude=1.0, starts=100_000), "10000000000 balls are more than"),
+        (lambda: bb.basins(R, amplitude=[1.0, 2.0]), "amplitude must be a single number"),
+        (
+            lambda: bb.basins(bb.rigid(restitution=[0.5, 0.6]), amplitude=1.0),
+            "restitution must be a single number",
+        ),
+        (
+            lambda: bb.basins(bb.contact_law("tsuji", restitution=0.5, duration=0.1), amplitude=1),
+            "duration needs speed",
+        ),
     ],
 )
 def test_a_mistake_is_one_line_with_what_is_allowed(call, text):
@@ -101,11 +108,11 @@ def test_a_mistake_is_one_line_with_what_is_allowed(call, text):
     "given", [{}, {"amplitude": [1.0, 2.0, 3.0]}, {"phase": [0.1, 0.2], "amplitude": [1.0, 2.0]}]
 )
 def test_every_answer_draws_itself(given, tmp_path):
-    given = {"amplitude": 3.0} | given | R
-    found = [bb.motion_of(**given, impacts=200), bb.lyapunov_exponent(**given, impacts=200)]
+    given = {"amplitude": 3.0} | given
+    found = [bb.motion_of(R, **given, impacts=200), bb.lyapunov_exponent(R, **given, impacts=200)]
     if "phase" in given:
-        found.append(bb.orbit_diagram(given["amplitude"], starts=1, impacts=50, **R))
-        found.append(bb.basins(3.0, starts=5, impacts=200, **R))
+        found.append(bb.orbit_diagram(R, amplitudes=given["amplitude"], starts=1, impacts=50))
+        found.append(bb.basins(R, amplitude=3.0, starts=5, impacts=200))
     for k, data in enumerate(found):
         data.plot(tmp_path / f"{k}.png")
         assert (tmp_path / f"{k}.png").stat().st_size > 1000
@@ -125,8 +132,8 @@ def test_the_command_line_says_the_same(capsys, tmp_path):
     assert picture.exists()
     main("motion --law tsuji --set stiffness=900 --set damping=0.4 --amplitude 1 --json".split())
     answer = json.loads(capsys.readouterr().out)
-    parameters = {"stiffness": 900.0, "damping": 0.4}
-    assert answer["kind"] == bb.motion_of(1.0, law="tsuji", parameters=parameters).kind
+    ball = bb.contact_law("tsuji", stiffness=900.0, damping=0.4)
+    assert answer["kind"] == bb.motion_of(ball, amplitude=1.0).kind
     # Without losses neither motion repeats within so few impacts, nor is it known to be chaotic.
     main("diagram --restitution 1 --amplitude 1 1.2 --points 2 --impacts 60".split())
     assert "undecided (100%, because it has neither repeated nor" in capsys.readouterr().out

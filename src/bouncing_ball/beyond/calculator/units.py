@@ -17,7 +17,7 @@ from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple
 
-from bouncing_ball.errors import ParameterError, Range, count
+from bouncing_ball.errors import FAMILY, ParameterError, Range
 
 # A number, and the rest of the text.
 _TEXT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
@@ -170,5 +170,5 @@ def shown(value: float | None, unit: str = "", least: float = 1e-5) -> str:
     return f"{value / 10**power:.4g} {_PREFIXES[power]}{unit}"
 
 
-Index = Annotated[int, count(1000)]
+Index = Annotated[int, FAMILY]
 Rule = Literal["displacement", "force"]

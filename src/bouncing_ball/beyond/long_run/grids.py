@@ -1,4 +1,4 @@
-"""Motions on which balls end, as labelled datasets: for given starts, over Λ, and for basins.
+"""Motions on which balls end, as datasets: for given starts, over Λ, and for basins.
 
 All quantities are dimensionless, and phases are in radians.
 """
@@ -7,13 +7,13 @@ import math
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from bouncing_ball.beyond.corrected.instant import instant_of
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.motions import Kind, Motions
 from bouncing_ball.datasets import CASE
-from bouncing_ball.datasets.labelled import Grid, Labelled
-from bouncing_ball.datasets.variables import Variable, describe
+from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.errors import ParameterError
 
 VARIABLES = {
@@ -67,26 +67,22 @@ def require_memory(balls: int, what: str) -> None:
         )
 
 
-def motions(grid: Grid, model: Any, impacts: int) -> Labelled:
-    """The motions on which the balls of a grid (Λ, φ, z′_i) end.
+def motions(
+    model: Any, amplitude: np.ndarray, phase: np.ndarray, velocity: np.ndarray, impacts: int
+) -> xr.Dataset:
+    """The motions on which a row of balls ends that start with the impacts (Λ, φ, z′_i).
 
     The variables are the fields of :class:`~bouncing_ball.beyond.long_run.motions.Motions`, except
-    ``followed``, over the axes of the grid.
+    ``followed``, over the row, the dimension "case".
 
     Raises
     ------
     ModelError
         If there are too many balls, or a state is outside its range.
     """
-    require_memory(grid.size, "a grid of starts")
-    found = final_motions(
-        model.impact_law,
-        grid.row("amplitude"),
-        grid.row("phase"),
-        grid.row("velocity"),
-        impacts=impacts,
-    )
-    return grid.unfold(_labelled(_variables(found, (CASE,)), {}, kind="motions"))
+    require_memory(amplitude.size, "a grid of starts")
+    found = final_motions(model.impact_law, amplitude, phase, velocity, impacts=impacts)
+    return described(_variables(found, (CASE,)), variables=VARIABLES)
 
 
 def _variables(found: Motions, dims: tuple[str, ...]) -> dict[str, Any]:
@@ -97,11 +93,6 @@ def _variables(found: Motions, dims: tuple[str, ...]) -> dict[str, Any]:
         for name, values in vars(found).items()
         if name != "followed"
     }
-
-
-def _labelled(data: dict[str, Any], coords: dict[str, Any], **attributes: Any) -> Any:
-    """A labelled dataset with the attributes of its variables and of its own."""
-    return describe(Labelled(data, coords), variables=VARIABLES).assign_attrs(attributes)
 
 
 def fastest(model: Any, amplitude: Any) -> np.ndarray:
@@ -121,7 +112,9 @@ def fastest(model: Any, amplitude: Any) -> np.ndarray:
     return (1 + r) * np.maximum(lam, 1.0) / np.maximum(1 - r, 0.05)
 
 
-def diagram(model: Any, amplitude: np.ndarray, starts: int, samples: int, impacts: int) -> Labelled:
+def diagram(
+    model: Any, amplitude: np.ndarray, starts: int, samples: int, impacts: int
+) -> xr.Dataset:
     """The attractors over Λ, from several starts and from the motions at neighbouring Λ.
 
     After the starts, balls start again at each Λ from the ends of balls at lower and at higher Λ.
@@ -149,7 +142,7 @@ def diagram(model: Any, amplitude: np.ndarray, starts: int, samples: int, impact
         "impact_phase": ((*dims, "impact"), impact_phase),
         "impact_speed": ((*dims, "impact"), impact_speed),
     }
-    return _labelled(data, {"amplitude": amplitude}, kind="diagram")
+    return described(data, {"amplitude": amplitude}, VARIABLES)
 
 
 def _first_starts(model: Any, lam: np.ndarray, starts: int) -> tuple[np.ndarray, np.ndarray]:
@@ -215,7 +208,9 @@ def _impacts(model: Any, amplitude: np.ndarray, found: Motions, samples: int) ->
     return np.moveaxis(np.where(number >= length, np.nan, seen), 1, -1)
 
 
-def basins(model: Any, amplitude: float, starts: int, fast: float | None, impacts: int) -> Labelled:
+def basins(
+    model: Any, amplitude: float, starts: int, fast: float | None, impacts: int
+) -> xr.Dataset:
     """The motions on which a grid of impacts (φ, δ′) ends, with their shares of the grid.
 
     ``destination`` (start_speed, start_phase) is an index along ``motion``. Over ``motion`` the
@@ -250,4 +245,4 @@ def basins(model: Any, amplitude: float, starts: int, fast: float | None, impact
         "share_error": ("motion", np.sqrt(share * (1 - share) / which.size)),
     }
     coords = {"start_phase": phase, "start_speed": speed}
-    return _labelled(data, coords, kind="basins", amplitude=amplitude)
+    return described(data, coords, VARIABLES)

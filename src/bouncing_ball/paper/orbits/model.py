@@ -19,48 +19,19 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import fields
 from enum import StrEnum
-from importlib import import_module
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.numerics.arrays import Batch, plainly
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.numerics.arrays import Batch
 from bouncing_ball.paper.contact.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.paper.motion.dynamics import Dynamics
 from bouncing_ball.paper.motion.sequence import Cycle, ImpactSequence
 from bouncing_ball.paper.orbits.equations import OrbitSystem
 from bouncing_ball.paper.orbits.orbit import Orbit
 from bouncing_ball.paper.orbits.stability import Side
-
-
-def labelled() -> Any:
-    """The module of labelled results, :mod:`bouncing_ball.calls.results`.
-
-    The module is imported on first use, because a single orbit needs no labels, importing xarray
-    takes longer than computing the orbit, and the module itself imports models.
-    """
-    return import_module("bouncing_ball.calls.results")
-
-
-def _call(name: str) -> Any:
-    """A function of :mod:`bouncing_ball.calls` as a method, which passes the model as ``model``.
-
-    The module is imported on first use, because it imports models itself.
-    """
-    module, name = name.split(".")
-
-    def method(self: ImpactModel, *places: Any, **given: Any) -> Any:
-        if self.shape:
-            call = f"bouncing_ball.{name}(…, frequency_ratio=[5, 10])"
-            raise ModelError(f"several models have no labels: pass their parameters, as in {call}")
-        call = getattr(import_module(f"bouncing_ball.calls.{module}"), name)
-        return call(*places, model=self, **given).assign_attrs(model=self.label)
-
-    method.__name__ = name
-    method.__doc__ = f"The labelled dataset of :func:`bouncing_ball.{name}` for this model."
-    return method
 
 
 class Absence(StrEnum):
@@ -71,11 +42,6 @@ class Absence(StrEnum):
     NO_OTHER_SIDE = "the branch has no saddle-node and therefore no other side"
     NOT_REACHED = "this side of the branch does not reach this Λ"
     NOT_FOUND = "none was found, but one may exist"
-
-
-# The methods that return Python numbers for arguments that are single numbers.
-_ANSWERS = ("orbit", "absence", "saddle_node", "period_doubling", "simulate", "cycle",
-            "permanent_contact_threshold")  # fmt: skip
 
 
 class ImpactModel(Batch, ABC):
@@ -90,13 +56,6 @@ class ImpactModel(Batch, ABC):
     name: ClassVar[str]
     has_closed_form: ClassVar[bool] = True
     orbit_type: ClassVar[type[Orbit]]
-
-    def __init_subclass__(cls) -> None:
-        """Let methods of all classes return single numbers if the arguments are single numbers."""
-        for name in _ANSWERS:
-            method = getattr(cls, name)
-            if not hasattr(method, "__wrapped__"):
-                setattr(cls, name, plainly(method))
 
     @property
     def label(self) -> str:
@@ -131,8 +90,7 @@ class ImpactModel(Batch, ABC):
         Returns
         -------
         Orbit
-            Has the shape to which n, Λ and the model broadcast; NaN where there is no orbit. The
-            numbers of a single orbit are Python floats.
+            Has the shape to which n, Λ and the model broadcast; NaN where there is no orbit.
 
         Raises
         ------
@@ -163,7 +121,8 @@ class ImpactModel(Batch, ABC):
 
         Arguments and shape are those of :meth:`orbit`.
         """
-        missing, fold = ~self.orbit(n, amplitude, side).exists, self.saddle_node(n).amplitude
+        missing = ~self.orbit(n, amplitude, side).exists
+        fold = self.saddle_node(n).amplitude
         other = Absence.NOT_FOUND
         if self.has_closed_form:
             # The search along the closed form is complete.
@@ -206,12 +165,6 @@ class ImpactModel(Batch, ABC):
         The arguments are those of :func:`bouncing_ball.beyond.simulation.simulate`.
         """
         return self.dynamics(amplitude).simulate(phase, velocity, impacts)
-
-    history, drop = _call("over_time.history"), _call("over_time.drop")
-    branch = _call("periodic.branch")
-    motion_of, basins = _call("long_run.motion_of"), _call("long_run.basins")
-    lyapunov_exponent = _call("long_run.lyapunov_exponent")
-    orbit_diagram = _call("long_run.orbit_diagram")
 
     def cycle(self, amplitude: ArrayLike, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
         """The Poincaré map, from an impact (φ, δ′) to the next one.

@@ -67,7 +67,7 @@ def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:
     --------
     >>> from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
     >>> found = columns(RestitutionModel(1.0).orbit(1, 0.5), "phase")
-    >>> found
+    >>> {name: value.item() for name, value in found.items()}
     {'phase': 1.5707963267948966, 'stable': False, 'admissible': True}
     """
     judged = {"stable": orbit.is_stable(), "admissible": orbit.is_admissible()}

@@ -1,0 +1,174 @@
+"""The types and ranges of the arguments of calls, and their check.
+
+A number may be given as an array: a list or a numpy array is an axis named after its argument, and
+a :class:`xarray.DataArray` keeps its axis.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
+
+import numpy as np
+
+from bouncing_ball.errors import (
+    AMPLITUDE,
+    FAMILY,
+    FREQUENCY_RATIO,
+    RESTITUTION,
+    ParameterError,
+    Range,
+    count,
+)
+
+if TYPE_CHECKING:
+    from xarray import DataArray
+
+# The class of xarray is named in quotes, because a single orbit does not need xarray.
+Axis = Union[float, Sequence[float], np.ndarray, "DataArray"]
+"""A number, or an array of numbers, which is an axis of the result."""
+
+WholeAxis = Union[int, Sequence[int], np.ndarray, "DataArray"]
+"""A whole number, or an array of whole numbers, which is an axis of the result."""
+
+AMPLITUDE_OF_ORBIT = AMPLITUDE._replace(ends="(]")
+DAMPING_RATIO = Range(0, 1, "[)")
+TOLERANCE = Range(0, 1)
+POSITIVE = Range(0)
+FINITE = Range()
+# An impact takes a third of a millisecond, so that the largest number takes half a minute.
+IMPACTS = count(100_000)
+# Impacts of one ball, where many balls are computed together.
+FOLLOWED = count(10_000_000, low=10)
+PERIODS = Range(0, 10_000, "(]")
+SAMPLES = count(100_000)
+POINTS = count(10_000, low=10)
+
+FrequencyRatio = Annotated[Axis, FREQUENCY_RATIO]
+Amplitude = Annotated[Axis, AMPLITUDE]
+AmplitudeOfOrbit = Annotated[Axis, AMPLITUDE_OF_ORBIT]
+Restitution = Annotated[Axis, RESTITUTION]
+DampingRatio = Annotated[Axis, DAMPING_RATIO]
+Tolerance = Annotated[Axis, TOLERANCE]
+Positive = Annotated[Axis, POSITIVE]
+Finite = Annotated[Axis, FINITE]
+Family = Annotated[WholeAxis, FAMILY]
+Impacts = Annotated[int, IMPACTS]
+Followed = Annotated[int, FOLLOWED]
+Periods = Annotated[float, PERIODS]
+Samples = Annotated[int, SAMPLES]
+Points = Annotated[int, POINTS]
+Rule = Literal["displacement", "force"]
+SideName = Literal["stable", "unstable"]
+
+
+def is_array(value: Any) -> bool:
+    """Whether an argument spans an axis.
+
+    Examples
+    --------
+    >>> is_array([1.0]), is_array(np.float64(1.0))
+    (True, False)
+    """
+    return np.ndim(value) > 0
+
+
+def checked(name: str, value: Any, allowed: Range) -> Any:
+    """The value of an argument, a Python number or an array, whose entries are all in the range.
+
+    A list becomes a numpy array; a :class:`xarray.DataArray` is unchanged.
+
+    Raises
+    ------
+    ParameterError
+        If the value is missing, of another type or shape, or outside the range.
+
+    Examples
+    --------
+    >>> checked("restitution", [0.5, 1], RESTITUTION).tolist(), checked("n", np.int64(2), FAMILY)
+    ([0.5, 1.0], 2)
+    >>> checked("restitution", "x", RESTITUTION)
+    Traceback (most recent call last):
+    bouncing_ball.errors.ParameterError: restitution = 'x' is not a number in (0, 1]
+    >>> checked("n", True, FAMILY)
+    Traceback (most recent call last):
+    bouncing_ball.errors.ParameterError: n = True is not a whole number from 1 to 1000
+    """
+    if value is None:
+        raise ParameterError(f"{{{name}}} is missing")
+    if isinstance(value, list | tuple):
+        return _checked_list(name, value, allowed)
+    values = getattr(value, "values", value)
+    if isinstance(values, np.ndarray) and values.ndim:
+        _check_array(name, values, allowed, named=hasattr(value, "dims"))
+        return value
+    number = values.item() if isinstance(values, np.ndarray | np.generic) else values
+    _check_number(name, number, allowed)
+    return int(number) if allowed.whole else float(number)
+
+
+def checked_number(name: str, value: Any, allowed: Range) -> Any:
+    """The value of an argument that must be a single number in the range.
+
+    Raises
+    ------
+    ParameterError
+        If the value is missing, no single number, or outside the range.
+    """
+    if is_array(value):
+        raise ParameterError(f"{{{name}}} must be a single number")
+    return checked(name, value, allowed)
+
+
+def _checked_list(name: str, value: Sequence, allowed: Range) -> np.ndarray:
+    if not value:
+        raise ParameterError(f"{{{name}}} has no entries")
+    for entry in value:
+        if isinstance(entry, list | tuple):
+            axes = "several axes without names: give an xarray.DataArray"
+            raise ParameterError(f"{{{name}}} has {axes}")
+        _check_number(name, entry.item() if isinstance(entry, np.generic) else entry, allowed)
+    return np.array(value, dtype=int if allowed.whole else float)
+
+
+def _check_array(name: str, values: np.ndarray, allowed: Range, named: bool) -> None:
+    if values.ndim > 1 and not named:
+        axes = f"{values.ndim} axes without names: give an xarray.DataArray"
+        raise ParameterError(f"{{{name}}} has {axes}")
+    if not values.size:
+        raise ParameterError(f"{{{name}}} has no entries")
+    outside = values[~_within(values, allowed)] if values.dtype.kind in "iuf" else values
+    for entry in outside.ravel().tolist():
+        _check_number(name, entry, allowed)
+
+
+def _within(values: np.ndarray, allowed: Range) -> np.ndarray:
+    """Which numbers of an array are in the range, without a loop over them."""
+    above = values > allowed.low if allowed.ends[0] == "(" else values >= allowed.low
+    below = values < allowed.high if allowed.ends[1] == ")" else values <= allowed.high
+    whole = values == np.floor(values) if allowed.whole else True
+    return above & below & whole & np.isfinite(values)
+
+
+def _check_number(name: str, value: Any, allowed: Range) -> None:
+    # To Python, True is the number 1.
+    if isinstance(value, bool) or value not in allowed:
+        raise ParameterError(f"{{{name}}} = {{}} is not {allowed}", repr(value))
+
+
+def chosen(name: str, value: Any, allowed: Mapping[str, Any] | Sequence[str]) -> str:
+    """The value of an argument that must be one of the names allowed.
+
+    Raises
+    ------
+    ParameterError
+        If it is none of them.
+
+    Examples
+    --------
+    >>> chosen("side", "up", ("stable", "unstable"))
+    Traceback (most recent call last):
+    bouncing_ball.errors.ParameterError: side = 'up' is not one of stable, unstable
+    """
+    if not isinstance(value, str) or value not in allowed:
+        words = ", ".join(allowed)
+        raise ParameterError(f"{{{name}}} = {{}} is not one of {words}", repr(value))
+    return str(value)

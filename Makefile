@@ -11,6 +11,7 @@ NEWEST := .venv-newest
 ifneq ($(words $(if $(filter /%,$(VENV)),$(VENV),$(CURDIR))),1)
 $(error the path of this checkout has a space: move it, or make VENV=/a/path/without/spaces)
 endif
+COMMA := ,
 # The target that every other target needs first; empty if another venv exists already.
 SETUP ?= setup
 # Print one line for each file, and errors; the rest of Snakemake's output is in .snakemake/log.
@@ -104,9 +105,10 @@ gallery: $(SETUP)
 mutants: $(SETUP)
 	$(BIN)/python tests/mutants.py
 
-# Compare the results with the accepted record; the page is results/diff/index.html.
+# Compare the results with the accepted record; the page is results/diff/index.html. With
+# ONLY=fig14, only this artifact is made and compared; its page is results/diff/fig14.html.
 diff: $(SETUP)
-	$(BIN)/snakemake --cores 2 diff $(QUIETLY)
+	$(BIN)/snakemake --cores 2 $(subst $(COMMA), ,$(ONLY)) diff $(QUIETLY)
 
 # make accept ONLY='fig08 table1' copies these artifacts over the record; without ONLY, it copies
 # all artifacts that have moved beyond their budgets.

@@ -11,7 +11,8 @@ damping = 2 * 0.05 * (0.23 * stiffness) ** 0.5
 
 # Along the line of action m = I/R², and the drag torque M (here 0.5 N m) takes the part of
 # gravity, M R/I.
-mass, drag = inertia / base**2, 0.5 * base / inertia
+mass = inertia / base**2
+drag = 0.5 * base / inertia
 pair = bouncing_ball.design(
     mass=mass,
     gravity=drag,

@@ -16,6 +16,7 @@ ball = bouncing_ball.design(
 one = ball.judged
 errors = one.errors["max_height"], one.corrected_errors["max_height"]
 print(f"height: restitution model {errors[0]:.1%} off, corrected model {errors[1]:.3%}")
-delay, load = ball.corrected.delay, ball.corrected.load
+delay = ball.corrected.delay
+load = ball.corrected.load
 r = ball.corrected.restitution
 print(f"corrected: rebound {delay:.2g} s later, r = {r:.2g} + {load:.1g} s · a/v")

@@ -15,6 +15,7 @@ from bouncing_ball.beyond.error_law import (
     small_parameter,
 )
 from bouncing_ball.beyond.exhibits.random_orbits import random_orbits
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.paper.comparison.errors import OF_IMPACTS, Quantity
 from bouncing_ball.paper.contact.damping import Release, damping_ratio, restitution_coefficient
@@ -31,8 +32,10 @@ def array(law):
 
 def sample(seed, size, release, r, places=(0.0, 1.0)):
     rng = np.random.default_rng(seed)
-    r, n = rng.uniform(*r, size), rng.integers(1, 6, size)
-    low, high = restitution_orbit.saddle_node(n, r), restitution_orbit.period_doubling(n, r)
+    r = rng.uniform(*r, size)
+    n = rng.integers(1, 6, size)
+    low = restitution_orbit.saddle_node(n, r)
+    high = restitution_orbit.period_doubling(n, r)
     return n, damping_ratio(r, release), low + rng.uniform(*places, size) * (high - low), rng
 
 
@@ -47,7 +50,8 @@ def test_the_coefficients_are_the_limits_of_the_exact_errors(release):
         errors(SpringDamper(np.full(lam.shape, k * base), zeta, release), n, lam)[0] * k * base
         for k in (1, 2, 4)
     )
-    limit, expected = (8 * four - 6 * twice + once) / 3, array(coefficients(n, zeta, lam, release))
+    limit = (8 * four - 6 * twice + once) / 3
+    expected = array(coefficients(n, zeta, lam, release))
     error = np.abs(limit - expected) / np.maximum(np.abs(expected), 0.01)
     # The third order left is (1/ϖ)² of series whose ratio is 1/(r ϖ), or that of
     # the distance to the saddle-node; measured: all but the worst 2 % below 1e-5.
@@ -56,7 +60,7 @@ def test_the_coefficients_are_the_limits_of_the_exact_errors(release):
 
 
 @pytest.mark.parametrize("release", RELEASES)
-def test_the_corrected_model_leaves_the_second_order(release):
+def test_the_errors_of_the_corrected_model_are_of_second_order(release):
     """Doubling ϖ halves the restitution model's error, and quarters the corrected model's."""
     n, zeta, lam, _ = sample(22, 200, release, (0.25, 0.97), (0.2, 0.95))
     once, twice = (
@@ -73,12 +77,12 @@ def factors(seed, size, release):
     """|error - K|/(S δ) of random orbits with ϖ from 1 to 10⁴, and the arguments of the law."""
     n, zeta, lam, rng = random_orbits(size, seed, release)
     contact = SpringDamper(10 ** rng.uniform(0, 4, size), zeta, release)
-    arguments = n, Signature(contact)(), lam
+    arguments = n, Signature(LinearLaw.of(contact))(), lam
     return remainder(*arguments, errors(contact, n, lam)[0]), arguments
 
 
 @pytest.mark.parametrize("size", [3000, pytest.param(20_000, marks=pytest.mark.long)])
-def test_the_remainder_is_fitted_to_one_sample(size):
+def test_the_bound_of_the_remainder_is_the_next_power_of_two(size):
     """M is the next power of two above the largest factor, of the height and of the phase."""
     left, _ = factors(1, size, Release.DISPLACEMENT)
     largest = np.nanmax(left.factor, axis=1)
@@ -88,7 +92,7 @@ def test_the_remainder_is_fitted_to_one_sample(size):
 
 
 @pytest.mark.parametrize("release", RELEASES)
-def test_the_remainder_on_other_samples(release):
+def test_the_bound_of_the_remainder_holds_on_other_samples(release):
     """|error - K| ≤ M S δ in the whole stable range, whatever δ is."""
     left, arguments = factors(31, 2000, release)
     known = np.isfinite(left.law)
@@ -101,12 +105,20 @@ def test_the_remainder_on_other_samples(release):
     assert np.all(remainder(*arguments, far).exceeded[np.isfinite(size)])
 
 
-def test_the_scales_by_hand():
+def test_the_small_parameter_is_the_one_found_by_hand():
     """Λ sin ψ₀ = 0.4, so that a₀ = 0.6 and the load moves ψ by σ a₀/((1 + r) Λ sin ψ₀) = 0.1."""
-    half, delay, r, load, duration = 2 * np.pi, 0.05, 0.5, 0.1, 0.1
-    fold, speed, lift = half / 3, 2 * half / 1.5, 0.4
-    instant, lam = Instant(delay, r, load, duration), np.hypot(fold, lift)
-    node, whole = load / (half * (1 - r)), duration * (1 + 0.6) / (r * speed)
+    half = 2 * np.pi
+    delay = 0.05
+    r = 0.5
+    load = 0.1
+    duration = 0.1
+    fold = half / 3
+    speed = 2 * half / 1.5
+    lift = 0.4
+    instant = Instant(delay, r, load, duration)
+    lam = np.hypot(fold, lift)
+    node = load / (half * (1 - r))
+    whole = duration * (1 + 0.6) / (r * speed)
     expected = [
         (fold * 0.1 + (half + fold) * delay) / (lift + half**2 / 2),
         (duration - delay) / half,
@@ -122,9 +134,10 @@ def test_the_scales_by_hand():
 
 
 @pytest.mark.parametrize("release", RELEASES)
-def test_the_height_of_nearly_elastic_orbits(release):
+def test_the_height_error_of_nearly_elastic_orbits_has_its_limit(release):
     """K → -1/n over 1 + 2Λ sin φ/(nπ)² as r → 1."""
-    n, lam = np.array([1, 2, 5]), 0.9
+    n = np.array([1, 2, 5])
+    lam = 0.9
     law = coefficients(n, 1e-9, lam, release)
     expected = -1 / (n * (1 + 2 * lam / (n * np.pi) ** 2))
     np.testing.assert_allclose(law[Quantity.MAX_HEIGHT], expected, rtol=1e-7)
@@ -139,7 +152,7 @@ def test_the_permanent_contact_is_right_to_second_order(release):
     np.testing.assert_allclose(found, expected, rtol=0, atol=4e-6)
 
 
-def test_nothing_to_be_relative_to():
+def test_an_error_relative_to_zero_is_not_a_number():
     """Errors relative to 0: at r = 1 the saddle-node is at Λ = 0; at the saddle-node the phase is
     0.
     """
@@ -150,6 +163,6 @@ def test_nothing_to_be_relative_to():
     )
 
 
-def test_no_law_below_the_saddle_node(refusal):
+def test_below_the_saddle_node_the_error_law_is_refused(refusal):
     with refusal(NoOrbitError, "below the saddle-node"):
         coefficients(1, 0.2, 0.1)

@@ -5,6 +5,7 @@ import pytest
 
 from bouncing_ball.beyond.corrected import branch as corrected_branch
 from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
@@ -12,9 +13,13 @@ from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 
 def constants(contact):
     """τ₁, σ₂, μ and the delay of the release with the load."""
-    omega, zeta, lag = contact.frequency_ratio, contact.damping_ratio, contact.lag
-    instant = Signature(contact)()
-    r, delay, duration = instant.restitution, instant.delay, instant.duration
+    omega = contact.frequency_ratio
+    zeta = contact.damping_ratio
+    lag = contact.lag
+    instant = Signature(LinearLaw.of(contact))()
+    r = instant.restitution
+    delay = instant.delay
+    duration = instant.duration
     weight = (1 + r) / omega**2
     rho = lag - 2 * zeta * (1 + r) / omega
     still = weight - lag * lag * r
@@ -31,11 +36,14 @@ def constants(contact):
 
 def shifted(instant, n, squared, jerk, lam):
     """The line with the next order's terms, a²/v by iteration: (ψ, a/v) at Λ, or at the fold."""
-    r, load, part = instant.restitution, instant.load, 0.0
+    r = instant.restitution
+    load = instant.load
+    part = 0.0
     for _ in range(60):
         # (1 + r - μ) X - σY = nπ(1 - r) - σ - σ₂ a²/v
         side = n * np.pi * (1 - r) - load - squared * part
-        radius, turned = np.hypot(1 + r - jerk, load), np.arctan2(load, 1 + r - jerk)
+        radius = np.hypot(1 + r - jerk, load)
+        turned = np.arctan2(load, 1 + r - jerk)
         fold = side / radius
         at = fold if lam is None else lam
         psi = np.arccos(fold / at) - turned
@@ -46,17 +54,19 @@ def shifted(instant, n, squared, jerk, lam):
 
 @pytest.mark.parametrize("release", list(Release))
 @pytest.mark.parametrize(("n", "zeta"), [(1, 0.1359), (2, 0.3), (3, 0.02)])
-def test_it_is_of_third_order(n, zeta, release):
+def test_the_next_order_is_right_to_third_order(n, zeta, release):
     errors = []
     for omega in (80.0, 160.0, 320.0):
         contact = SpringDamper(omega, zeta, release)
-        exact, instant = SpringDamperModel(contact), Signature(contact)()
+        exact = SpringDamperModel(contact)
+        instant = Signature(LinearLaw.of(contact))()
         tau, squared, jerk, later = constants(contact)
         low = corrected_branch.saddle_node(n, instant)
         high, _ = corrected_branch.period_doubling(n, instant)
         lam = float(low + high) / 2
         _, psi, over = shifted(instant, n, squared, jerk, lam)
-        delay, duration = instant.delay + tau * over, instant.duration + later * over
+        delay = instant.delay + tau * over
+        duration = instant.duration + later * over
         orbit = exact.orbit(n, lam)
         fold, _, _ = shifted(instant, n, squared, jerk, None)
         errors.append(

@@ -13,9 +13,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from declared_artifacts import ARTIFACTS, STUDIES
 
-from bouncing_ball.pipeline.configuration import arguments, load, read_yaml, typed
-from bouncing_ball.pipeline.diff.datasets import ARTIFACTS, IGNORED, compare_datasets
+from bouncing_ball.pipeline.configuration import arguments, read_yaml, typed
+from bouncing_ball.pipeline.diff.budgets import ARTIFACTS as BUDGETS
+from bouncing_ball.pipeline.diff.budgets import IGNORED
+from bouncing_ball.pipeline.diff.datasets import compare_datasets
 
 ROOT = Path(__file__).resolve().parents[2]
 RUN = read_yaml(ROOT / "config" / "config.yaml")
@@ -79,20 +82,21 @@ OTHER_SOURCES = {
 
 
 @pytest.fixture(scope="module")
-def results(stages, coarse, recorded):
+def results(coarse, recorded):
     """For each artifact and variable, the results under all variations."""
     found = {}
-    for artifact, study in stages.items():
-        made = typed(load(study))
+    for artifact, study in STUDIES.items():
+        made = typed(study)
         # What is made of other datasets moves as they do, but for one; two take minutes.
-        reads = "data" in inspect.signature(load(study)).parameters and artifact != "ext_locked"
+        reads = "data" in inspect.signature(study).parameters and artifact != "ext_locked"
         if reads or artifact in ("ext_means", "ext_lives"):
             continue
         # The last doublings move most, and a share of 36 exponents decides nothing.
         fewer = {key: number for (name, key), number in coarse.items() if name == artifact}
         fewer = {} if artifact in ("ext_cascades", "ext_diagram") else fewer
         given = mapped(
-            arguments(study, artifact, RUN), lambda key, x, fewer=fewer: fewer.get(key, x)
+            arguments(study, ARTIFACTS[artifact].wing, artifact, RUN),
+            lambda key, x, fewer=fewer: fewer.get(key, x),
         )
         made = partial(made, data=recorded) if artifact == "ext_locked" else made
         record = made(**given)
@@ -118,7 +122,7 @@ def test_budgets_are_kept_and_no_wider_than_what_was_measured_asks_for(results, 
     assert len(results) > 100 and not beyond
     largest = {}
     for (artifact, name), found in results.items():
-        if name in budgets and name not in ARTIFACTS.get(artifact, {}):
+        if name in budgets and name not in BUDGETS.get(artifact, {}):
             share = max(each.share for each in found)
             largest[name] = max(share, largest.get(name, 0.0))
     # Ten times the change, and up to ten times more to the next power of ten; another

@@ -24,7 +24,7 @@ def data():
     ).assign_attrs({"title": "ϖ and Λ", "n": 1, "range__min": 0.5, "tolerances": [0.1, 0.01]})
 
 
-def test_round_trip(data, tmp_path):
+def test_a_dataset_that_is_written_and_read_is_the_same(data, tmp_path):
     path = tmp_path / "data.nc"
     write_dataset(data, path)
     again = read_dataset(path)
@@ -61,7 +61,7 @@ def test_a_failing_write_leaves_what_was_there(data, tmp_path, monkeypatch):
     assert {each: each.read_bytes() for each in path.parent.iterdir()} == {path: before}
 
 
-def test_parameters_as_attributes(tmp_path):
+def test_nested_parameters_become_flat_attributes_that_netcdf_holds(tmp_path):
     parameters = {
         "release": "displacement",
         "flag": True,

@@ -6,7 +6,7 @@ import xarray as xr
 
 from bouncing_ball.datasets.variables import SHARED, Variable, describe
 from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline.diff.datasets import ARTIFACTS, budget_of
+from bouncing_ball.pipeline.diff.budgets import ARTIFACTS, budget_of
 
 
 def test_every_declaration_is_complete(declared):

@@ -77,7 +77,8 @@ def test_figure_7_marks_the_instants_and_velocities(record):
     for arrow, velocity in zip(
         arrows, (data.impact_velocity, data.bounce_velocity, data.impact_velocity), strict=True
     ):
-        (x0, y0), (x1, y1) = arrow.xyann, arrow.xy
+        x0, y0 = arrow.xyann
+        x1, y1 = arrow.xy
         assert x1 > x0 and (y1 - y0) / (x1 - x0) == pytest.approx(float(velocity))
 
 

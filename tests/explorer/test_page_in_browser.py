@@ -19,7 +19,6 @@ import pytest
 from bouncing_ball.beyond.engines.choice import ENGINES
 from bouncing_ball.beyond.engines.engine import Physical
 from bouncing_ball.beyond.exhibits.explorer_orbits import reference_orbits
-from bouncing_ball.beyond.history import history
 from bouncing_ball.beyond.long_run.motions import Kind
 from bouncing_ball.beyond.simulation import simulate
 from bouncing_ball.explorer.document import BOUND, to_html
@@ -27,6 +26,7 @@ from bouncing_ball.explorer.engine_cases import as_json
 from bouncing_ball.paper.comparison.errors import QUANTITIES
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.motion.history import history
 from bouncing_ball.pipeline.configuration import typed
 
 pytestmark = pytest.mark.slow
@@ -42,8 +42,10 @@ def states():
     """Random hashes about the stable ranges, and beyond."""
     rng = np.random.default_rng(7)
     for k in range(STATES):
-        r, w = rng.uniform(0.2, 0.99), 10 ** rng.uniform(0.2, 3.5)
-        n, release = int(rng.integers(1, 5)), ("displacement", "force")[k % 2]
+        r = rng.uniform(0.2, 0.99)
+        w = 10 ** rng.uniform(0.2, 3.5)
+        n = int(rng.integers(1, 5))
+        release = ("displacement", "force")[k % 2]
         low = n * math.pi * (1 - r) / (1 + r)
         high = math.hypot(low, 2 * (1 + r * r) / (1 + r) ** 2)
         a = low + rng.uniform(-0.25, 1.3) * (high - low)
@@ -63,8 +65,11 @@ def physical_states():
     """A random hash of the physical tab for each of these."""
     rng = np.random.default_rng(5)
     for given, engine, release in GIVEN:
-        m, r, a = 10 ** rng.uniform(-2, 0), rng.uniform(0.65, 0.9), rng.uniform(0.7, 1.1)
-        omega, e = 40 * math.pi * 10 ** rng.uniform(0.7, 2.3), 10 ** rng.uniform(-3, -1.5)
+        m = 10 ** rng.uniform(-2, 0)
+        r = rng.uniform(0.65, 0.9)
+        a = rng.uniform(0.7, 1.1)
+        omega = 40 * math.pi * 10 ** rng.uniform(0.7, 2.3)
+        e = 10 ** rng.uniform(-3, -1.5)
         contact = Physical(m, m * omega**2, (1 - r) / 1.7 * m * omega)
         said = {"r": r, "k": contact.stiffness}
         if given in ENGINES:
@@ -147,7 +152,8 @@ def close(shown, expected):
 def test_random_states_say_what_their_commands_print(seen, answered):
     absent = 0
     for state in [seen["first"], *seen["states"]]:
-        said, values = answered(state["command"]), state["values"]
+        said = answered(state["command"])
+        values = state["values"]
         exists = values["spring-damper exists"]
         if said is None:
             absent += 1
@@ -165,7 +171,7 @@ def test_random_states_say_what_their_commands_print(seen, answered):
     assert 0 < absent < STATES / 3
 
 
-def test_the_badge(seen):
+def test_the_badge_is_red_if_a_number_or_a_text_differs_from_the_package(seen):
     right, wrong, tampered = (seen["badges"][name] for name in ("right", "wrong", "tampered"))
     assert right["kind"] == "good" and float(right["worst"]) < BOUND / 20
     assert "100 orbits and 8 balls of the Python package, commit c0ffeec0ff" in right["text"]
@@ -188,7 +194,7 @@ def test_no_request_leaves_the_page(seen):
     assert not re.search(r"https?://(?!www\.w3\.org/2000/svg)", text)
 
 
-def test_address_slider_and_typed_values(seen):
+def test_the_address_the_slider_and_typed_values_are_one_state(seen):
     assert seen["refused"] == "Not a value here, and left out: nonsense = 1."
     assert "--restitution 0.65 --frequency-ratio 6 --amplitude 1 " in seen["first"]["command"]
     given = "--restitution 0.5 --frequency-ratio 20 --amplitude 1.2 --n 1 --release force"
@@ -227,12 +233,14 @@ def test_scenes_end_as_their_commands_say(seen, answered):
 
 def test_balls_on_the_stage_are_where_the_package_has_them(seen):
     for scene in seen["scenes"]:
-        given, balls = scene["state"], scene["balls"]
+        given = scene["state"]
+        balls = scene["balls"]
         place = np.arange(given.get("balls", 1))
         phase = given["phi"] + place * given.get("dphi", 0)
         velocity = given["v"] + place * given.get("dv", 0)
         for end in scene["ends"]:
-            r, name = given["r"], end["name"]
+            r = given["r"]
+            name = end["name"]
             contact = SpringDamper.from_restitution(r, given.get("w", 1.0), Release.DISPLACEMENT)
             law = r if name == "restitution" else contact
             run = simulate(law, given["a"], phase, velocity, impacts=300)
@@ -242,7 +250,7 @@ def test_balls_on_the_stage_are_where_the_package_has_them(seen):
                 assert ball["heights"] == pytest.approx(expected, abs=1e-10), (scene["name"], k)
 
 
-def test_step_and_play_and_what_is_refused_on_the_stage(seen):
+def test_the_stage_steps_plays_and_refuses_a_ball_that_rises(seen):
     # In half a second, of which the browser draws some, less than a period passes.
     assert seen["stepped"] == 0 and 0 < seen["played"] < 2 * math.pi
     assert seen["noBalls"]["refused"] == "balls: 0 is not a whole number from 1 to 9."
@@ -271,8 +279,10 @@ CASES = [pytest.param(k, id="-".join(case)) for k, case in enumerate(GIVEN)]
 
 @pytest.mark.parametrize("case", CASES)
 def test_the_physical_tab_says_what_the_command_prints(case, seen, answered, short_runs):
-    state, (_, engine, release) = seen["given"][case], GIVEN[case]
-    said, page = answered(state["command"]), state["rows"] | state["values"]
+    state = seen["given"][case]
+    (_, engine, release) = GIVEN[case]
+    said = answered(state["command"])
+    page = state["rows"] | state["values"]
     orbit, *_ = said["orbits"]
     assert (state["refused"], state["chosen"], said["law"]) == ("", str(release), None)
     numbers = said | orbit | said["corrected"] | said["time_step"]
@@ -315,7 +325,7 @@ def test_a_contact_of_mujoco_that_is_not_linear_is_left_to_the_command(seen, ans
     assert answered(f"{call} --n 1 --solref '-1e5 -20'")["law"]["name"] == "impedance"
 
 
-def test_the_physical_tab_by_key(seen):
+def test_the_physical_tab_opens_by_a_key(seen):
     tab = seen["tab"]
     assert tab["selected"] == ["false", "true", "false"] and tab["focused"] == "tab-design"
     assert tab["shown"] and tab["hidden"] == 0 and "tab=design" in tab["hash"]

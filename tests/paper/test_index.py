@@ -1,10 +1,10 @@
 """The indexes of equations and of figures lead to modules that exist."""
 
-import importlib
 import re
 from importlib.util import find_spec
 
 import pytest
+from declared_artifacts import ARTIFACTS
 
 import bouncing_ball.paper
 import bouncing_ball.paper.exhibits
@@ -24,14 +24,16 @@ def test_the_index_of_figures_has_every_figure_and_the_table():
     assert figures == list(range(1, 17)) and "Table 1" in index
 
 
-def test_the_index_of_figures_leads_to_the_stage_that_makes_each_figure(stages):
+def test_the_index_of_figures_leads_to_the_stage_that_makes_each_figure():
     index = bouncing_ball.paper.exhibits.__doc__
     for row, module in re.findall(r"^Fig\. ([\d, ]+?)  *:mod:`\.(\w+)`", index, flags=re.M):
         for number in row.split(","):
-            study = stages.get(f"fig{int(number):02d}")
-            if study is None:
-                # The schematics have no study.
-                assert module == "schematics_figures"
-            else:
-                assert study.startswith(f"paper.exhibits.{module}.")
-                assert importlib.import_module(f"bouncing_ball.paper.exhibits.{module}_figures")
+            artifact = ARTIFACTS[f"fig{int(number):02d}"]
+            # The schematics have pictures only.
+            expected = artifact.module if artifact.study else artifact.figures
+            assert expected == f"paper.exhibits.{module}"
+
+
+def test_no_artifact_of_the_paper_reads_a_dataset_of_the_second_wing():
+    read = {name for each in ARTIFACTS.values() if each.wing == "paper" for name in each.reads}
+    assert read and {ARTIFACTS[name].wing for name in read} == {"paper"}

@@ -44,7 +44,7 @@ def head(folder):
         ("paper.md", "no"),
     ],
 )
-def test_what_makes_a_tree_dirty(repository, file, dirty):
+def test_a_tree_is_dirty_by_sources_and_not_by_results_or_the_record(repository, file, dirty):
     (repository / file).parent.mkdir(exist_ok=True)
     (repository / file).write_text("new", encoding="utf-8")
     assert revision(repository) == (head(repository), dirty)
@@ -56,7 +56,9 @@ def test_a_hook_of_another_repository_does_not_mislead(repository, tmp_path, mon
     assert revision(repository) == (expected, "no")
 
 
-def test_unknown_without_a_repository_of_its_own(repository, tmp_path, monkeypatch):
+def test_the_commit_is_unknown_without_a_repository_at_this_folder(
+    repository, tmp_path, monkeypatch
+):
     # A tarball unpacked inside of somebody's repository is not that commit.
     assert revision(repository / "src") == UNKNOWN
     assert revision(tmp_path) == UNKNOWN
@@ -68,7 +70,7 @@ def test_unknown_without_a_repository_of_its_own(repository, tmp_path, monkeypat
     assert revision(repository) == UNKNOWN
 
 
-def test_the_checkout_is_found_from_within(repository, tmp_path):
+def test_the_checkout_is_found_from_a_folder_inside_of_it(repository, tmp_path):
     assert checkout(repository / "src" / "bouncing_ball") == repository
     assert checkout(tmp_path, repository) == repository
     assert checkout(tmp_path) is None

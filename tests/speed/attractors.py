@@ -12,17 +12,23 @@ import time
 import numpy as np
 
 from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 
 
 def main(balls: int, impacts: int) -> None:
     rng = np.random.default_rng(0)
-    r, lam = rng.uniform(0.1, 0.95, balls), rng.uniform(0.9, 5, balls)
+    r = rng.uniform(0.1, 0.95, balls)
+    lam = rng.uniform(0.9, 5, balls)
     phase = rng.uniform(-np.pi, np.pi, balls)
     velocity = -lam - rng.uniform(0, 12, balls)
     contact = SpringDamper.from_restitution(r, 100.0)
-    laws = {"restitution": r, "spring-damper": contact, "corrected": Signature(contact)}
+    laws = {
+        "restitution": r,
+        "spring-damper": contact,
+        "corrected": Signature(LinearLaw.of(contact)),
+    }
     for name, law in laws.items():
         start = time.process_time()
         found = final_motions(law, lam, phase, velocity, impacts=impacts)

@@ -47,7 +47,8 @@ def simulations(repetitions: int) -> None:
         f"simulation, {BALLS} balls, {IMPACTS} impacts: over the linear contact's time per impact"
     )
     rng = np.random.default_rng(0)
-    phase, fall = rng.uniform(-3, 3, BALLS), rng.uniform(1.5, 5, BALLS)
+    phase = rng.uniform(-3, 3, BALLS)
+    fall = rng.uniform(1.5, 5, BALLS)
     for r, lam, duration in CASES:
         zeta = damping_ratio(r)
         linear = SpringDamper(np.pi / duration / np.sqrt(1 - zeta**2), zeta)
@@ -59,7 +60,8 @@ def simulations(repetitions: int) -> None:
                 law = law_of_impact(LAWS[name], r, duration, speed)
             else:
                 # MuJoCo's default impedance, which varies over half the depth of an impact.
-                ratio, damping = np.pi / duration, float(damping_ratio(r, Release.FORCE))
+                ratio = np.pi / duration
+                damping = float(damping_ratio(r, Release.FORCE))
                 law = Impedance(ratio, damping, 0.95, 0.9, speed * duration / 2 / np.pi)
             runs = partial(simulate, linear, *start), partial(simulate, law, *start)
             pairs = [tuple(map(per_impact, runs)) for _ in range(repetitions)]

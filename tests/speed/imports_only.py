@@ -59,7 +59,8 @@ def cold_run(tree: Path) -> float:
 def main() -> None:
     repetitions = int(sys.argv[1]) if len(sys.argv) > 1 else 3
     with tempfile.TemporaryDirectory() as folder:
-        whole, bare = Path(folder, "whole"), Path(folder, "bare")
+        whole = Path(folder, "whole")
+        bare = Path(folder, "bare")
         for tree in (whole, bare):
             shutil.copytree(ROOT, tree, ignore=IGNORED)
         for script in (bare / "workflow" / "scripts").glob("*.py"):

@@ -46,7 +46,7 @@ STEPS = ["lint", "clean", "all", "diff", "test", "test-cluster"]
 
 
 @pytest.mark.parametrize("failing", ["", *STEPS, "lint test"])
-def test_every_step_runs_and_the_diff_before_the_tests(tmp_path, failing):
+def test_every_step_runs_whatever_fails_and_the_diff_runs_before_the_tests(tmp_path, failing):
     status, called, last = run_script(tmp_path, failing)
     assert called[0] == "setup" and sorted(called[1:]) == sorted(STEPS)
     assert called.index("clean") < called.index("all") < called.index("diff") < called.index("test")
@@ -68,7 +68,7 @@ def test_the_newest_versions_run_what_the_locked_ones_do():
     assert all(".venv-newest/bin/" in lines[k] for k in found if k != found[1])
 
 
-def test_the_jobs_run_targets_that_there_are():
+def test_the_jobs_of_ci_run_targets_of_make_that_exist():
     steps = yaml.safe_load(WORKFLOW.read_text(encoding="utf-8"))["jobs"].values()
     commands = [step.get("run", "") for job in steps for step in job["steps"]]
     targets = [name for text in commands for name in re.findall(r"^make (\S+)$", text, re.M)]

@@ -18,7 +18,7 @@ DESCRIPTION = ("title", "history", "references")
 
 
 @pytest.mark.parametrize("name", sorted(path.stem for path in RECORD.glob("*.nc")))
-def test_a_dataset_keeps_the_conventions(pristine, name):
+def test_a_dataset_follows_the_cf_conventions(pristine, name):
     with netCDF4.Dataset(pristine.path / "results" / "figures" / f"{name}.nc") as data:
         assert data.Conventions == CONVENTIONS
         assert all(data.getncattr(key) for key in DESCRIPTION)

@@ -11,7 +11,8 @@ import shutil
 import pytest
 
 from bouncing_ball.datasets.files import read_dataset, write_dataset
-from bouncing_ball.pipeline.diff.datasets import budget_of, span
+from bouncing_ball.pipeline.diff.budgets import budget_of
+from bouncing_ball.pipeline.diff.datasets import span
 
 
 @pytest.fixture
@@ -34,10 +35,11 @@ def drifted(tree, budgets):
     write_dataset(data, path)
 
 
-def test_a_run_against_its_record_which_then_is_accepted(recorded, monkeypatch):
+def test_a_drifted_record_turns_diff_red_and_is_replaced_by_accept(recorded, monkeypatch):
     drifted(recorded, 0.5)
     lines = recorded.run("--cores", "1", "diff").stdout.splitlines()
-    assert lines[-2].split()[:4] == ["fig11", "within", "budget", "50"]
+    assert lines[-3] == "fig11: numbers moved within their budgets"
+    assert lines[-2].startswith("  figures/fig11.nc  within budget 50 % ")
     assert lines[-1].endswith("The new artifacts agree with the record.")
     reports = recorded.path / "results" / "diff"
     assert {path.name for path in reports.iterdir()} == {"diff.txt", "index.html"}
@@ -50,8 +52,8 @@ def test_a_run_against_its_record_which_then_is_accepted(recorded, monkeypatch):
     # The record is no input: what has changed there makes nothing again.
     assert done.returncode == 1 and "made results/" not in done.stdout
     lines = done.stdout.splitlines()
-    named = [line.split()[0] for line in lines if line.startswith("fig")]
-    assert named == ["fig12", "fig11"]
+    named = [line for line in lines if line.startswith("fig")]
+    assert named == ["fig12: a file is not in the record", "fig11: numbers moved"]
     assert lines[-1].startswith("1 extra, 1 drifted, ")
     last = "diff: the results differ from the record, see results/diff/index.html"
     assert done.stderr.splitlines()[-1] == last and "Error" not in done.stderr
@@ -73,3 +75,17 @@ def test_a_run_against_its_record_which_then_is_accepted(recorded, monkeypatch):
     done = recorded.run("--cores", "1", "accept")
     assert "copied figures/fig11.nc" in done.stdout and "git commit" in done.stdout
     assert recorded.git("status", "--porcelain") == ""
+
+
+def test_one_artifact_is_made_and_compared_alone_and_its_parameter_is_named(recorded):
+    recorded.configure("paper", "fig11", "restitution", value=0.7)
+    done = recorded.run("--cores", "1", "fig11", "diff", check=False)
+    lines = done.stdout.splitlines()
+    made = [line.split()[1] for line in lines if line.startswith("made ")]
+    assert made == ["results/figures/fig11.nc", "results/figures/fig11.png"]
+    assert "fig11: parameter changed, restitution 0.65 → 0.7" in lines
+    assert lines[-1] == "1 changed parameters. The new artifacts differ from the record."
+    last = "diff: the results differ from the record, see results/diff/fig11.html"
+    assert done.returncode == 1 and done.stderr.splitlines()[-1] == last
+    reports = recorded.path / "results" / "diff"
+    assert {path.name for path in reports.iterdir()} == {"fig11.txt", "fig11.html"}

@@ -17,12 +17,12 @@ def texts(pristine):
     return [(pristine.path / "results" / name).read_text(encoding="utf-8") for name in names]
 
 
-def test_the_sections_are_numbered(texts):
+def test_the_sections_are_numbered_without_gaps(texts):
     sections = re.findall(r"^## (\d+)\. ", texts[0], re.MULTILINE)
     assert list(map(int, sections)) == list(range(1, len(sections) + 1))
 
 
-def test_every_figure_and_table_is_shown(texts, pristine):
+def test_the_article_shows_every_figure_and_table(texts, pristine):
     text = "".join(texts).replace(r"$\Lambda_{SD}$", "Λ_SD")
     shown = re.findall(r"!\[[^]]*\]\((figures/[^)]*)\)", text)
     figures = sorted(
@@ -47,7 +47,7 @@ def test_the_page_of_claims_explains_its_columns_before_them(pristine):
         assert f"**{said}**" in words or f"*{said}*" in words, said
 
 
-def test_every_claim_stands_with_its_verdict(texts, pristine):
+def test_the_supplement_has_every_claim_once_with_its_verdict(texts, pristine):
     claims = read_dataset(pristine.path / "results/figures/claims.nc")
     for name, verdict in zip(claims.claim.values, claims.verdict.values, strict=True):
         # Other tables have rows of this name, too, and no verdict in them.
@@ -55,7 +55,7 @@ def test_every_claim_stands_with_its_verdict(texts, pristine):
         assert [row.endswith(f"| {verdict} |") for row in rows].count(True) == 1
 
 
-def test_the_explanations_that_are_needed_hold(pristine):
+def test_every_open_claim_has_an_explanation_that_holds(pristine):
     claims = read_dataset(pristine.path / "results/figures/claims.nc")
     open_claims = np.isin(claims.verdict.values, [Verdict.CLOSE, Verdict.CONTRADICTED])
     needed = set(claims.explained_by.values[open_claims])

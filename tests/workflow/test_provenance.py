@@ -4,12 +4,13 @@ import os
 import subprocess
 from pathlib import Path
 
-from bouncing_ball.pipeline.provenance import CARRIERS, LIBRARIES, explain, read_provenance
+from bouncing_ball.pipeline.artifacts import CARRIERS
+from bouncing_ball.pipeline.provenance import LIBRARIES, explain, read_provenance
 
 
 def test_every_artifact_carries_its_provenance(pristine):
     commit = pristine.git("rev-parse", "HEAD")
-    paths = [path for path in (pristine.path / "results/figures").iterdir()]
+    paths = (pristine.path / "results/figures").iterdir()
     carriers = [path for path in paths if path.suffix in CARRIERS]
     assert len(carriers) > 60
     for path in carriers:
@@ -23,7 +24,8 @@ def test_every_artifact_carries_its_provenance(pristine):
 def test_another_configuration_is_named_and_its_command_gives_the_file(complete, monkeypatch):
     path = Path("results/figures/fig11.nc")
     monkeypatch.chdir(complete.path)
-    before, commit = path.read_bytes(), read_provenance(path)["commit"]
+    before = path.read_bytes()
+    commit = read_provenance(path)["commit"]
     config = Path("results/mine.yaml")
     config.write_text("paper:\n  fig11:\n    restitution: 0.7\n", encoding="utf-8")
     complete.run("--cores", "1", str(path), "--configfile", str(config))

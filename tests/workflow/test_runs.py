@@ -32,6 +32,15 @@ def test_a_run_makes_every_figure_and_table(pristine):
     assert made == pictures | data | texts | pages
 
 
+def test_the_replication_makes_the_artifacts_of_the_paper_and_nothing_else(fresh):
+    jobs = fresh.planned("replication") - {
+        "The figures, tables and claims of the paper are up to date"
+    }
+    # Messages such as "fig08", "Drawing fig08" and "Setting table1".
+    made = {job.split()[-1] for job in jobs}
+    assert made == {name for name, each in ARTIFACTS.items() if each.wing == "paper"}
+
+
 def test_a_run_gives_the_accepted_datasets(pristine, recorded, coarse):
     # Statements on whole motions are about the maps at their whole size.
     whole = made_by_a_run() - {name for name, _ in coarse} - {"statements"}

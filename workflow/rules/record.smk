@@ -2,6 +2,11 @@
 # `git log figures/`.
 # Both rules have no outputs, so that Snakemake runs them at each call.
 
+from bouncing_ball.pipeline.diff.targets import (
+    requested_artifacts,
+    requested_files,
+    requested_names,
+)
 from bouncing_ball.pipeline.jobs import begin, concluded
 
 
@@ -19,13 +24,18 @@ rule accept:
         "../scripts/accept.py"
 
 
+# A local rule, because the jobs of a cluster do not know what else was requested.
 rule diff:
+    """The results against the record; `fig14 diff` makes and compares this artifact alone."""
+    localrule: True
     message:
         "Comparing the results with the record"
     input:
-        rules.all.input,
+        lambda wildcards: requested_files(workflow) or rules.all.input,
     params:
         record=ROOT,
+        artifacts=lambda wildcards: requested_artifacts(workflow),
+        name=lambda wildcards: "-".join(requested_names(workflow)),
     log:
         "results/logs/diff.log",
     script:

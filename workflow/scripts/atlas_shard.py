@@ -6,7 +6,12 @@ from bouncing_ball.datasets.files import parameter_attributes
 from bouncing_ball.pipeline.jobs import logged, publish
 
 with logged(snakemake):
-    parameters, name = snakemake.params.parameters, snakemake.wildcards.shard
+    parameters = snakemake.params.parameters
+    name = snakemake.wildcards.shard
     plan = Plan(**parameters)
-    dataset = limit_shard(plan) if name == "limits" else shard(plan, int(name.partition("-")[0]))
+    if name == "limits":
+        dataset = limit_shard(plan)
+    else:
+        number, _, _ = name.partition("-")
+        dataset = shard(plan, int(number))
     publish(snakemake, dataset, parameter_attributes(parameters), compressed=True)

@@ -1,4 +1,4 @@
-"""The results against the accepted record."""
+"""The results against the accepted record, with a page about all artifacts or about some."""
 
 from pathlib import Path
 
@@ -7,13 +7,16 @@ from bouncing_ball.pipeline.diff.folders import compare_folders
 from bouncing_ball.pipeline.diff.page import to_html, to_terminal
 from bouncing_ball.pipeline.jobs import conclude, logged
 
-table_file, page = Path("results/diff/diff.txt"), Path("results/diff/index.html")
+FOLDER = Path("results/diff")
+
 with logged(snakemake) as lines:
-    comparison = compare_folders(Path(snakemake.params.record), Path("results"))
-    table = to_terminal(comparison)
-    lines += table.splitlines()
-    write_text(table_file, table)
+    given = snakemake.params
+    comparison = compare_folders(Path(given.record), Path("results"), given.artifacts)
+    report = to_terminal(comparison)
+    lines += report.splitlines()
+    write_text(FOLDER / f"{given.name or 'diff'}.txt", report)
+    page = FOLDER / f"{given.name or 'index'}.html"
     write_text(page, to_html(comparison))
-    print(table, end="", flush=True)
+    print(report, end="", flush=True)
     if comparison.outcome.status:
         conclude(f"diff: the results differ from the record, see {page}")

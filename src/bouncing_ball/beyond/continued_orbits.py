@@ -26,7 +26,8 @@ from bouncing_ball.paper.orbits.stability import Bifurcation, Side
 # The largest number of Newton steps for the impact speed. They end after a step below a
 # thousandth of the speed: the remaining error is of the order of the square of this step, and
 # the start of a search needs three digits.
-_ROUNDS, _ENOUGH = 6, 1e-3
+_ROUNDS = 6
+_ENOUGH = 1e-3
 # Newton steps in each of several rounds; orbits that have converged are left out of the next
 # round. The length of a step is limited because the first step may be long next to the fold.
 _SETTINGS = NewtonSettings(max_iterations=5, longest=0.5)
@@ -45,7 +46,8 @@ _LOWEST = 1e-4
 _STRIDE = 0.05
 # The parabola of a fold is measured at the first length along the branch. It is used up to the
 # second number times the rise of Λ at that length.
-_BESIDE, _PARABOLA = 1e-2, 4.0
+_BESIDE = 1e-2
+_PARABOLA = 4.0
 _HERE = "this amplitude"
 
 
@@ -112,7 +114,8 @@ class _Search(NamedTuple):
 
     def solved(self, guess: np.ndarray) -> np.ndarray:
         """Solutions at the Λ of each guess; NaN where Newton's method does not converge."""
-        point, y = guess.copy(), np.full_like(guess, np.nan)
+        point = guess.copy()
+        y = np.full_like(guess, np.nan)
         todo = np.flatnonzero(np.all(np.isfinite(guess), axis=-1))
         axis = np.eye(guess.shape[-1])[-1]
         for _ in range(_TRIES):
@@ -140,6 +143,7 @@ def orbit_at(model: Any, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Any:
     n, amplitude : array_like
         Index of the family and Λ, which broadcast with the model.
     side : Side
+        Or its name, such as ``"stable"``.
 
     Returns
     -------
@@ -150,7 +154,7 @@ def orbit_at(model: Any, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Any:
     Raises
     ------
     ModelError
-        If n is not a positive integer.
+        If n is not a positive integer, or the side is unknown.
 
     Examples
     --------
@@ -162,6 +166,8 @@ def orbit_at(model: Any, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Any:
     >>> bool(np.all(found.distance(model.orbit([1, 2], 2.5)) < 1e-12))
     True
     """
+    side = Side(side)
+    side = Side(side)
     search, (lam,), shape = _Search.of(model, n, amplitude)
     psi = corrected.instant_phase(search.n, search.instant, lam, side is Side.STABLE)
     # Next to the fold, the given Λ may lie below the fold of the corrected model.
@@ -239,7 +245,8 @@ def continued(
         In order from the stable side at large Λ down to the fold and beyond. Empty if no orbit
         is found to start from, or if the continuation fails before an end of the branch.
     """
-    system, (search, _, _) = model.system(n), _Search.of(model, [n])
+    system = model.system(n)
+    search, _, _ = _Search.of(model, [n])
     fold = float(np.nan_to_num(corrected.saddle_node(n, search.instant)[0]))
     start = np.array([max(amplitude, fold) * _ABOVE])
     y = search.solved(search.start(start, corrected.instant_phase(n, search.instant, start)))[0]
@@ -335,7 +342,7 @@ class ContinuedModel(ImpactModel):
 
         Arguments, shape and errors are those of :meth:`.ImpactModel.orbit`.
         """
-        return orbit_at(self, n, amplitude, Side(side))
+        return orbit_at(self, n, amplitude, side)
 
     def saddle_node(self, n: ArrayLike) -> Any:
         """The orbits at the saddle-node; NaN where none is found.

@@ -52,6 +52,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.beyond.corrected.instant import Instant
 from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.paper.comparison.errors import OF_IMPACTS, Quantity
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
@@ -70,8 +71,10 @@ REMAINDER = dict.fromkeys(OF_IMPACTS, 2.0) | {Quantity.PHASE: 4.0}
 
 def _of_orbit(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> tuple[np.ndarray, ...]:
     """t_c, r, σ and D of the signature, and nπ, ψ, Λ_SN and Λ sin ψ of the restitution orbit."""
-    r, lam = instant.restitution, np.asarray(amplitude, dtype=float)
-    psi, fold = restitution_orbit.phase(n, r, lam), restitution_orbit.saddle_node(n, r)
+    r = instant.restitution
+    lam = np.asarray(amplitude, dtype=float)
+    psi = restitution_orbit.phase(n, r, lam)
+    fold = restitution_orbit.saddle_node(n, r)
     orbit = np.asarray(n) * np.pi, psi, fold, lam * np.sin(psi)
     return *(np.asarray(x, dtype=float) for x in instant[:4]), *orbit
 
@@ -144,7 +147,8 @@ def small_parameter(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> np.
     True
     """
     _, r, load, duration, half, _, _, lift = _of_orbit(n, instant, amplitude)
-    lam, pull = np.asarray(amplitude, dtype=float), np.abs(1 - lift)
+    lam = np.asarray(amplitude, dtype=float)
+    pull = np.abs(1 - lift)
     with np.errstate(divide="ignore", invalid="ignore"):
         fold = np.abs(load) * pull * lam / ((1 + r) * lift * lift)
     return fold + duration * (1 + pull) * (1 + r) / (2 * half * r) + duration * np.maximum(1, lam)
@@ -263,7 +267,7 @@ def coefficients(
     -1.0
     """
     contact = SpringDamper(1.0, np.asarray(damping_ratio, dtype=float), release)
-    return first_order(n, Signature(contact)(), amplitude)
+    return first_order(n, Signature(LinearLaw.of(contact))(), amplitude)
 
 
 def law_thresholds(

@@ -51,9 +51,21 @@ class RestitutionLaw(Batch, ABC):
             moved = v * (1 + 1j * _IMAGINARY)
             return np.imag(self.restitution(moved) * moved) / (_IMAGINARY * v)
 
+    def dynamics(self, amplitude: ArrayLike) -> RestitutionLawDynamics:
+        """The impacts and flights with this law on a table of amplitude Λ.
+
+        Raises
+        ------
+        ModelError
+            If Λ is outside its range.
+        """
+        return RestitutionLawDynamics.of(self, amplitude)
+
 
 class RestitutionLawDynamics(RestitutionDynamics):
-    """Impacts and flights with a restitution coefficient r(v); ``law`` is a :class:`RestitutionLaw`."""
+    """Impacts and flights with a restitution coefficient r(v); ``law`` is the
+    :class:`RestitutionLaw`.
+    """
 
     @classmethod
     def of(cls, law: RestitutionLaw, amplitude: ArrayLike) -> Self:

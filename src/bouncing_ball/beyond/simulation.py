@@ -1,20 +1,21 @@
-"""The simulation of balls with any law of the impact, which determines the dynamics."""
+"""The simulation of balls with any law of the impact, which determines the dynamics.
 
-import numpy as np
+The laws of this wing have the method ``dynamics``. The two laws of the paper, the spring-damper
+contact and the restitution coefficient, have not: they know nothing of motion.
+"""
+
 from numpy.typing import ArrayLike
 
-from bouncing_ball.beyond.corrected.motion import CorrectedDynamics
 from bouncing_ball.beyond.corrected.signature import Signature
-from bouncing_ball.beyond.laws.motion import ContactDynamics
-from bouncing_ball.beyond.restitution_by_speed import RestitutionLaw, RestitutionLawDynamics
-from bouncing_ball.paper.contact.law import ContactLaw
+from bouncing_ball.beyond.laws.contact_law import ContactLaw
+from bouncing_ball.beyond.laws.linear import LinearLaw
+from bouncing_ball.beyond.restitution_by_speed import RestitutionLaw
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.motion.dynamics import Dynamics
-from bouncing_ball.paper.motion.linear_contact import LinearContactDynamics
 from bouncing_ball.paper.motion.restitution import RestitutionDynamics
 from bouncing_ball.paper.motion.sequence import Cycle, ImpactSequence
 
-Law = ContactLaw | Signature | RestitutionLaw | ArrayLike
+Law = ContactLaw | SpringDamper | Signature | RestitutionLaw | ArrayLike
 """A contact law, the signature of one, or a restitution coefficient: a law r(v) or numbers r."""
 
 
@@ -26,14 +27,10 @@ def dynamics_of(law: Law, amplitude: ArrayLike) -> Dynamics:
     ModelError
         If r or Λ is outside its range.
     """
-    if isinstance(law, SpringDamper) and np.all(np.asarray(law.damping_ratio) < 1):
-        return LinearContactDynamics.of(law, amplitude)
-    if isinstance(law, ContactLaw):
-        return ContactDynamics.of(law, amplitude)
-    if isinstance(law, Signature):
-        return CorrectedDynamics.of(law, amplitude)
-    if isinstance(law, RestitutionLaw):
-        return RestitutionLawDynamics.of(law, amplitude)
+    if hasattr(law, "dynamics"):
+        return law.dynamics(amplitude)
+    if isinstance(law, SpringDamper):
+        return LinearLaw.of(law).dynamics(amplitude)
     return RestitutionDynamics.of(law, amplitude)
 
 

@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
 from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.beyond.laws.law_of_impact import law_of_impact, reference
 from bouncing_ball.beyond.laws.orbits import LawModel, law_at_orbit
 from bouncing_ball.beyond.laws.registry import law_named
@@ -43,7 +44,6 @@ from bouncing_ball.calls.arguments import (
 )
 from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.contact.law import ContactLaw
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.model import ImpactModel
 from bouncing_ball.paper.orbits.restitution_branch import rigid_speed
@@ -138,11 +138,12 @@ class ModelBall(Ball):
 
     def corrected(self) -> ModelBall:
         law = self.model.impact_law
-        if not isinstance(law, ContactLaw):
-            raise ModelError(f"{self.model.name} impacts have no contact that could be corrected")
-        model = CorrectedModel(Signature(law))
         if isinstance(self.model, SpringDamperModel):
-            model = CorrectedModel.of_contact(self.model.contact)
+            model: CorrectedModel = CorrectedModel.of_contact(self.model.contact)
+        elif isinstance(law, ContactLaw):
+            model = CorrectedModel(Signature(law))
+        else:
+            raise ModelError(f"{self.model.name} impacts have no contact that could be corrected")
         return ModelBall(model, {**self.parameters, "model": "corrected"})
 
     def row(self, grid: Grid) -> ModelBall:

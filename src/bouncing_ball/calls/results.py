@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.beyond.history import history as of_one_ball
 from bouncing_ball.calls.balls import Ball, ModelBall
 from bouncing_ball.datasets import CASE
 from bouncing_ball.datasets.labelled import Grid, Labelled
@@ -21,6 +20,7 @@ from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball.errors import ModelError, NoOrbitError, extra, require
 from bouncing_ball.numerics.continuation import ContinuationError
 from bouncing_ball.paper.motion.flight import Flight, land, table
+from bouncing_ball.paper.motion.history import history as of_one_ball
 from bouncing_ball.paper.motion.sequence import ImpactSequence, Status
 from bouncing_ball.paper.orbits import observables
 from bouncing_ball.paper.orbits.branch import whole_branch

@@ -13,10 +13,9 @@ from bouncing_ball.pipeline.diff.page import to_html, to_terminal
 def diff(
     record: Path, results: Path, artifacts: tuple[str, ...] = (), /, *, html: Path | None = None
 ) -> NoReturn:
-    """Compare, write the page if ``html`` is given, and print the short table.
+    """Compare, write the page if ``html`` is given, and print the differences with their causes.
 
-    Exits with 0 if the artifacts agree, 1 if they differ, and 2 if
-    something could not be compared.
+    Exits with 0 if the artifacts agree, 1 if they differ, and 2 if something could not be compared.
 
     Parameters
     ----------

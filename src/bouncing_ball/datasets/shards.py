@@ -1,6 +1,6 @@
 """Dividing the places of a study among jobs.
 
-A study with shards consists of two functions. The first, ``places`` in ``workflow/artifacts.yaml``,
+A study with shards consists of two functions. The first, ``places`` in the rule of its stage,
 computes arrays by name, with the places of the study along their last axes, either for all places
 or for those that its argument ``part`` selects. The second makes the dataset: it takes these arrays
 as the argument ``found``, and calls the first function if they are not given. The places are

@@ -173,7 +173,7 @@ SHARED = {
         "upper limit of the confidence interval of the exponent of uncertainty"
     ),
 }
-"""The variables that several stages or calls write; the others are declared beside the one that does."""
+"""The variables that several stages or calls write; the others stand beside the one that does."""
 
 
 def describe(

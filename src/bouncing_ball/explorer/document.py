@@ -53,7 +53,8 @@ def to_html(data: xr.Dataset, engines: str, quantities: Mapping[str, str]) -> st
         files(__package__).joinpath(name).read_text(encoding="utf-8")
         for name in (*(f"{name}.js" for name in SCRIPTS), "page.css", "scenes.json")
     )
-    script, style = "\n" + "\n".join(scripts), f"\n{look}"
+    script = "\n" + "\n".join(scripts)
+    style = f"\n{look}"
     environment = Environment(
         loader=PackageLoader(str(__package__), "."), undefined=StrictUndefined, autoescape=False
     )

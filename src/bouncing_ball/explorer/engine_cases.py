@@ -41,6 +41,6 @@ def as_json() -> str:
         }
         for engine in ENGINES.values()
     }
-    cases = [_case(*pair, *case) for pair in pairs for case in _CASES]
+    cases = [_case(engine, rule, *case) for engine, rule in pairs for case in _CASES]
     # Without "<" no text can open or close a tag of the page.
     return json.dumps({"engines": engines, "cases": cases}, allow_nan=False).replace("<", "\\u003c")

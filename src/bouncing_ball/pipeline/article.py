@@ -1,10 +1,11 @@
-"""The article and its supplement: templates and datasets to Markdown, and Markdown to PDF.
+"""The article and its supplement: from datasets and templates to Markdown and PDF.
 
-A template takes every number from a dataset, in the formats of this module. Sections, figures and
-tables are numbered, and pandoc (part of ``pypandoc_binary``) resolves the citations. For the PDF
-pandoc converts Markdown to Typst, and Typst (the extra ``pdf``) sets the pages with the figures as
-vector graphics. The same text and figures give the same bytes, because the file contains neither a
-time nor fonts of the machine.
+A template takes every number from a dataset and prints it by one of the functions in
+:data:`FORMATS`. Then headings, figures and tables get their numbers, and pandoc (part of
+``pypandoc_binary``) replaces the citations by numbers and lists the works cited. The result is
+Markdown as GitHub shows it. For a PDF pandoc converts this text to Typst, and Typst (the extra
+``pdf``) sets the pages with the figures as vector graphics. The same text and figures give the same
+bytes, because the file contains neither a time nor fonts of the machine.
 """
 
 import math
@@ -20,8 +21,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from bouncing_ball.errors import ModelError
 
-FORMATS = ("decimal", "listed", "pairs", "percent", "short")
-"""The functions of this module that templates can call."""
+# Numbers.
 
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -40,7 +40,8 @@ def decimal(value: float, digits: int) -> str:
     ('82.18', '–', '∞')
     """
     # Adding 0.0 removes the sign of a zero that results from rounding.
-    return _typeset(f"{round(float(value), digits) + 0.0:.{digits}f}")
+    rounded = round(float(value), digits) + 0.0
+    return _typeset(f"{rounded:.{digits}f}")
 
 
 def short(value: float, digits: int = 6) -> str:
@@ -52,8 +53,11 @@ def short(value: float, digits: int = 6) -> str:
     ('0.85', '10⁴', '2.5·10⁻¹³', '100')
     """
     value = float(value)
-    if not (0 < abs(value) < 1e-3 or 1e4 <= abs(value) < math.inf):
-        return _typeset(f"{float(f'{value:.{digits}g}'):.15g}")
+    is_small = 0 < abs(value) < 1e-3
+    is_large = 1e4 <= abs(value) < math.inf
+    if not is_small and not is_large:
+        rounded = float(f"{value:.{digits}g}")
+        return _typeset(f"{rounded:.15g}")
     mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
     factor = f"{float(mantissa):g}"
     power = f"10{str(int(exponent)).translate(_SUPERSCRIPTS)}"
@@ -69,10 +73,11 @@ def percent(share: float, digits: int = 3) -> str:
     ('1 %', '2.8 %')
     """
     # A share of a sample may lie halfway between two texts; rounding errors must not decide there.
-    return f"{short(100 * float(share) * (1 + 1e-9), digits)} %"
+    above_a_half = 100 * float(share) * (1 + 1e-9)
+    return f"{short(above_a_half, digits)} %"
 
 
-def listed(values, word: str = "and") -> str:
+def listed(values: Iterable[str | float], word: str = "and") -> str:
     """Texts or numbers as a list in a sentence.
 
     Examples
@@ -80,8 +85,8 @@ def listed(values, word: str = "and") -> str:
     >>> listed([0.7, 1.0, 1.2])
     '0.7, 1 and 1.2'
     """
-    texts = [value if isinstance(value, str) else short(value) for value in values]
-    return texts[0] if len(texts) == 1 else f"{', '.join(texts[:-1])} {word} {texts[-1]}"
+    *others, last = [value if isinstance(value, str) else short(value) for value in values]
+    return f"{', '.join(others)} {word} {last}" if others else last
 
 
 def pairs(left: Iterable[float], right: Iterable[float]) -> list[str]:
@@ -94,6 +99,18 @@ def pairs(left: Iterable[float], right: Iterable[float]) -> list[str]:
     """
     return [f"({short(a)}, {short(b)})" for a, b in zip(left, right, strict=True)]
 
+
+FORMATS = {
+    "decimal": decimal,
+    "listed": listed,
+    "pairs": pairs,
+    "percent": percent,
+    "short": short,
+}
+"""The functions that templates can call, by their names there."""
+
+
+# The numbers of sections, figures and tables.
 
 _HEADING = re.compile(r"^(##+) (?!Abstract|References)(.+)$", re.MULTILINE)
 # The first words of a caption, and a reference from anywhere.
@@ -121,23 +138,38 @@ def numbered(text: str) -> str:
     **Figure 17.** See 1.1.
     ## 2. Results
     """
-    numbers: dict[str, str] = {}
-    section = part = 0
-
-    def heading(found: re.Match[str]) -> str:
-        nonlocal section, part
-        section, part = (section + 1, 0) if found[1] == "##" else (section, part + 1)
-        numbers[found[2]] = f"{prefix}{section}.{part}" if part else f"{prefix}{section}"
-        return f"{found[1]} {numbers[found[2]]}{'' if part else '.'} {found[2]}"
-
-    prefix = "S" if text.startswith("# Supplement") else ""
-    text = _HEADING.sub(heading, text)
-    count = Counter() if prefix else Counter(Figure=16, Table=1)
+    is_supplement = text.startswith("# Supplement")
+    prefix = "S" if is_supplement else ""
+    text, numbers = _with_numbered_headings(text, prefix)
+    count = Counter() if is_supplement else Counter(Figure=16, Table=1)
     for kind, name in _CAPTION.findall(text):
         count[kind] += 1
         numbers[name] = f"{prefix}{count[kind]}"
     return _REFERENCE.sub(lambda found: numbers[found[1]], text)
 
+
+def _with_numbered_headings(text: str, prefix: str) -> tuple[str, dict[str, str]]:
+    """The text with numbers in its headings, and the number of each heading."""
+    numbers: dict[str, str] = {}
+    section = 0
+    subsection = 0
+
+    def heading(found: re.Match[str]) -> str:
+        nonlocal section, subsection
+        level, name = found.groups()
+        if level == "##":
+            section += 1
+            subsection = 0
+            numbers[name] = f"{prefix}{section}"
+            return f"{level} {numbers[name]}. {name}"
+        subsection += 1
+        numbers[name] = f"{prefix}{section}.{subsection}"
+        return f"{level} {numbers[name]} {name}"
+
+    return _HEADING.sub(heading, text), numbers
+
+
+# Citations.
 
 # A citation in the syntax of pandoc, and the place of the list of the works cited.
 _CITATION = re.compile(r"\[@[^\]]+\]")
@@ -152,9 +184,9 @@ def pandoc(text: str, reader: str, writer: str, *options: str) -> str:
     ModelError
         If pandoc fails or warns.
     """
-    options = "--wrap=none", "--fail-if-warnings", *options
+    arguments = ["--wrap=none", "--fail-if-warnings", *options]
     try:
-        return pypandoc.convert_text(text, writer, format=reader, extra_args=options)
+        return pypandoc.convert_text(text, writer, format=reader, extra_args=arguments)
     except RuntimeError as error:
         raise ModelError(f"pandoc: {' '.join(str(error).split())}") from None
 
@@ -173,11 +205,19 @@ def with_citations(markdown: str, folder: str | Path) -> str:
     citations = _CITATION.findall(markdown)
     if not citations:
         return markdown
-    files = (f"--bibliography={folder}/references.yaml", f"--csl={folder}/numbered.csl")
+    options = [
+        "--citeproc",
+        f"--bibliography={folder}/references.yaml",
+        f"--csl={folder}/numbered.csl",
+    ]
     bare = "\n\n".join([*citations, _LIST])
-    paragraphs = pandoc(bare, "markdown-smart", "plain", "--citeproc", *files).strip().split("\n\n")
-    numbers, works = iter(paragraphs), "\n".join(paragraphs[len(citations) :])
+    paragraphs = pandoc(bare, "markdown-smart", "plain", *options).strip().split("\n\n")
+    numbers = iter(paragraphs[: len(citations)])
+    works = "\n".join(paragraphs[len(citations) :])
     return _CITATION.sub(lambda _: next(numbers), markdown).replace(_LIST, f"{works}\n")
+
+
+# Markdown.
 
 
 def render_article(
@@ -189,13 +229,13 @@ def render_article(
     """The text of a template with numbered sections, figures, tables and citations.
 
     A template may include other templates of its folder. Templates can use ``data`` and ``tables``
-    by name, ``claims``, and the functions in :data:`FORMATS`.
-    Citations have the syntax of pandoc, ``[@key]``.
+    by name, ``claims``, and the functions in :data:`FORMATS`. Citations have the syntax of pandoc,
+    ``[@key]``.
 
     Raises
     ------
     ModelError
-        If a reference does not exist.
+        If a work cited is not among the references.
     KeyError, jinja2.UndefinedError
         If a template uses any other name that does not exist.
     """
@@ -207,27 +247,29 @@ def render_article(
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-
-    environment.globals.update(
-        {name: globals()[name] for name in FORMATS},
-        data=data,
-        tables=tables,
-        claims=claims,
-    )
+    environment.globals.update(FORMATS, data=data, tables=tables, claims=claims)
     text = environment.get_template(Path(template).name).render()
-    typeset = numbered(text).replace("Λ_SD", r"$\Lambda_{SD}$")
-    return with_citations(typeset, folder)
+    with_formulas = numbered(text).replace("Λ_SD", r"$\Lambda_{SD}$")
+    return with_citations(with_formulas, folder)
 
+
+# The PDF.
 
 # A figure of the article: the picture, and the caption on the lines after the picture.
 _FIGURE = re.compile(r"^!\[[^\]\n]*\]\((\S+)\.png\)\n((?:.+\n)+)", re.MULTILINE)
-# The caption of a table is the paragraph before the table.
+# The caption of a table is the paragraph before the table, and stays on the page of the table.
 _TABLE = re.compile(r"^(\*\*Table (?:.+\n)+)(?=\n\|)", re.MULTILINE)
 _STICKY = "```{=typst}\n#block(sticky: true)[\n```\n\n\\1\n```{=typst}\n]\n```\n"
 # A link to a file of the repository that is not among the results.
 _OUTSIDE = re.compile(r"\]\((?!https?:|figures/|#)")
 # GitHub's Markdown with formulas; straight quotes are not changed.
 _READER = "commonmark_x+implicit_figures-smart"
+
+
+def _captioned(found: re.Match[str]) -> str:
+    """A vector figure with its caption, from a picture and the lines after it."""
+    caption = " ".join(found[2].split())
+    return f"![{caption}]({found[1]}.svg)\n"
 
 
 def for_pdf(markdown: str) -> str:
@@ -241,10 +283,9 @@ def for_pdf(markdown: str) -> str:
     ![**Figure 1.** A ball. *More.*](figures/fig01.svg)
     <BLANKLINE>
     """
-    captioned = _FIGURE.sub(
-        lambda found: f"![{' '.join(found[2].split())}]({found[1]}.svg)\n", markdown
-    )
-    return _OUTSIDE.sub("](../", _TABLE.sub(_STICKY, captioned))
+    with_figures = _FIGURE.sub(_captioned, markdown)
+    with_tables = _TABLE.sub(_STICKY, with_figures)
+    return _OUTSIDE.sub("](../", with_tables)
 
 
 def article_pdf(markdown: str, template: str | Path, folder: str | Path) -> bytes:

@@ -1,9 +1,43 @@
-"""What an artifact is: a dataset, and the figure, the table or the page that are made from it."""
+"""What an artifact is: a dataset, and the figure, the table or the page that are made from it.
 
+The workflow declares the artifacts of its stages as :class:`Artifact`; :class:`ArtifactFiles` are
+the files of an artifact that a folder has. A run writes to a folder, ``results/``; the accepted
+record has the same layout at the top of the repository. ``figures/`` holds the files of most
+artifacts, and all files of an artifact have its name: ``fig14.nc`` is the dataset, ``fig14.png``
+and ``fig14.svg`` are the pictures drawn from it, ``table1.csv`` and ``table1.md`` are tables, and
+``explorer.html`` is a page. The article and its supplement are texts beside ``figures/``, made from
+all datasets. The measurements of physics engines, ``config/engines.nc``, are an artifact that no
+run makes.
+"""
+
+from collections.abc import Iterable
 from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+
+from bouncing_ball.errors import ModelError
 
 FOLDER = "results/figures"
 """The folder of all artifacts of a run."""
+
+DATASET = ".nc"
+PICTURES = (".png", ".svg")
+TABLES = (".csv", ".md")
+PAGE = ".html"
+
+CARRIERS = (DATASET, *PICTURES)
+"""Suffixes of the files that carry their provenance themselves."""
+
+TEXTS = ("paper.md", "supplement.md")
+"""The article and its supplement."""
+
+MEASURED = "config/engines.nc"
+"""Measurements of physics engines, which are compared if both folders have them."""
+
+RECORD = ("figures", *TEXTS)
+"""The accepted results in git, which affect no new result."""
+
+# In the order in which files are compared: other files are judged by the outcome of their dataset.
+_SUFFIXES = (DATASET, ".csv", *PICTURES, ".md", PAGE)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,18 +103,124 @@ class Artifact:
         """The dataset that others read; None for a figure without data, such as a schematic."""
         if self.accepted:
             return self.accepted
-        return f"{FOLDER}/{self.name}.nc" if self.study else None
+        return f"{FOLDER}/{self.name}{DATASET}" if self.study else None
 
     @property
     def files(self) -> list[str]:
         """The files that a run makes."""
-        kinds = []
+        suffixes: list[str] = []
         if self.study and not self.accepted:
-            kinds += ["nc"]
+            suffixes += [DATASET]
         if self.drawing:
-            kinds += ["png", "svg"]
+            suffixes += PICTURES
         if self.table:
-            kinds += ["csv", "md"]
+            suffixes += TABLES
         if self.page:
-            kinds += ["html"]
-        return [f"{FOLDER}/{self.name}.{kind}" for kind in kinds]
+            suffixes += [PAGE]
+        return [f"{FOLDER}/{self.name}{suffix}" for suffix in suffixes]
+
+
+@dataclass(frozen=True)
+class ArtifactFiles:
+    """The files of one name, as paths relative to the folder; the dataset is the first.
+
+    Examples
+    --------
+    >>> fig14 = ArtifactFiles("fig14", ("figures/fig14.nc", "figures/fig14.png"))
+    >>> fig14.dataset, fig14.others, fig14.is_text
+    ('figures/fig14.nc', ('figures/fig14.png',), False)
+    """
+
+    name: str
+    files: tuple[str, ...]
+
+    @property
+    def dataset(self) -> str | None:
+        """The file of the dataset; None for a text and for a schematic."""
+        return next((file for file in self.files if file.endswith(DATASET)), None)
+
+    @property
+    def others(self) -> tuple[str, ...]:
+        """The files that are made from the dataset."""
+        return tuple(file for file in self.files if file != self.dataset)
+
+    @property
+    def is_text(self) -> bool:
+        """Whether this is the article or its supplement, which are made from all datasets."""
+        return self.files[0] in TEXTS
+
+
+def _files_in(folder: Path) -> list[str]:
+    # Files whose names begin with a point were not written completely.
+    paths = [*folder.glob("figures/[!.]*"), *(folder / text for text in TEXTS)]
+    files = [
+        path.relative_to(folder).as_posix()
+        for path in paths
+        if path.suffix in _SUFFIXES and path.exists()
+    ]
+    if not files:
+        raise ModelError(f"nothing to compare in {folder}: neither figures/ nor {TEXTS[0]}")
+    return files
+
+
+def artifacts_in(*folders: Path) -> dict[str, ArtifactFiles]:
+    """The artifacts of which at least one folder has a file, by name; the texts come last.
+
+    Raises
+    ------
+    ModelError
+        If one of the folders has no artifact.
+    """
+    files = {file for folder in folders for file in _files_in(folder)}
+    if all((folder / MEASURED).is_file() for folder in folders):
+        files.add(MEASURED)
+    by_name: dict[str, list[str]] = {}
+    for file in sorted(files, key=lambda file: _SUFFIXES.index(PurePosixPath(file).suffix)):
+        by_name.setdefault(PurePosixPath(file).stem, []).append(file)
+    found = [ArtifactFiles(name, tuple(by_name[name])) for name in sorted(by_name)]
+    found.sort(key=lambda artifact: artifact.is_text)
+    return {artifact.name: artifact for artifact in found}
+
+
+def digest_of_code(results: Path, file: str) -> str | None:
+    """The digest of the code with which a run would make a dataset or a PNG file now.
+
+    A run notes it in ``code/``; without this file, as in results from elsewhere, it is unknown.
+    """
+    path = PurePosixPath(file)
+    job = path.stem if path.suffix == DATASET else f"draw_{path.stem}"
+    note = results / "code" / job
+    return note.read_text(encoding="utf-8").strip() if note.is_file() else None
+
+
+def artifacts_among(paths: Iterable[str]) -> list[str]:
+    """The names of the artifacts whose datasets are among some paths, in the order of the paths.
+
+    Examples
+    --------
+    >>> artifacts_among(["results/figures/fig14.nc", "config/engines.nc", "README.md"])
+    ['fig14', 'engines']
+    """
+    return [PurePosixPath(path).stem for path in paths if path.endswith(DATASET)]
+
+
+def carrier_of(path: Path) -> Path:
+    """The file that carries the provenance of a file: the file itself, or its dataset.
+
+    For the article and the supplement it is the dataset of the claims, the last dataset of a run.
+
+    Raises
+    ------
+    ModelError
+        If the file, or the dataset that should be beside it, does not exist.
+    """
+    if not path.is_file():
+        raise ModelError(f"{path} cannot be read: no such file")
+    if path.suffix in CARRIERS:
+        return path
+    beside = "figures/claims.nc" if path.name in TEXTS else f"{path.stem}{DATASET}"
+    dataset = path.parent / beside
+    if not dataset.is_file():
+        missing = f"there is no {beside} next to it"
+        raise ModelError(f"{path} is not an artifact of this workflow: {missing}")
+    return dataset

@@ -83,6 +83,25 @@ def logged(snakemake: Any) -> Iterator[list[str]]:
 
     The traceback is then in the log, and the process exits with status 1.
     """
+    _prepare_process()
+    lines: list[str] = []
+    log = Path(snakemake.log[0])
+    with _without_pint():
+        try:
+            yield lines
+            write_text(log, "".join(f"{line}\n" for line in lines))
+            _announce(list(snakemake.output))
+        except Exception as error:
+            # For example, writing the log fails if the disk is full.
+            with suppress(OSError):
+                write_text(log, traceback.format_exc())
+            name = "/".join([snakemake.rule, *snakemake.wildcards])
+            kind = "" if isinstance(error, ValueError) else f"{type(error).__name__}: "
+            message = " ".join(str(error).split())
+            sys.exit(f"{name}: {kind}{message} (details in {log})")
+
+
+def _prepare_process() -> None:
     # Ctrl-C ends the job at once. An exception could be raised while a netCDF file is locked, and
     # closing the file would then wait forever. Because files are written completely or not at all,
     # no file is damaged.
@@ -91,28 +110,30 @@ def logged(snakemake: Any) -> Iterator[list[str]]:
     # from garbage collection, and collecting seldom, saves time.
     gc.freeze()
     gc.set_threshold(100_000)
+
+
+@contextmanager
+def _without_pint() -> Iterator[None]:
     # For every dataset xarray checks whether its values are quantities of pint. The values of a
     # job are plain numbers, and importing pint takes longer than reading them.
-    without_pint = sys.modules.setdefault("pint", None) is None  # type: ignore[arg-type]
-    name = "/".join([snakemake.rule, *snakemake.wildcards])
-    lines: list[str] = []
-    log = Path(snakemake.log[0])
+    if "pint" in sys.modules:
+        yield
+        return
+    sys.modules["pint"] = None  # type: ignore[assignment]
     try:
-        yield lines
-        outputs = list(snakemake.output)
-        write_text(log, "".join(f"{line}\n" for line in lines))
-        if outputs:
-            done = advance()
-            print("made", *outputs, *([f"({done})"] if done else []), flush=True)
-    except Exception as error:
-        kind = "" if isinstance(error, ValueError) else f"{type(error).__name__}: "
-        # For example, writing the log fails if the disk is full.
-        with suppress(OSError):
-            write_text(log, traceback.format_exc())
-        sys.exit(f"{name}: {kind}{' '.join(str(error).split())} (details in {log})")
+        yield
     finally:
-        if without_pint:
-            del sys.modules["pint"]
+        del sys.modules["pint"]
+
+
+def _announce(outputs: Sequence[str]) -> None:
+    """Print the files that the job has made, and how much of the run is done."""
+    if not outputs:
+        return
+    line = " ".join(["made", *outputs])
+    if done := advance():
+        line += f" ({done})"
+    print(line, flush=True)
 
 
 def read_input(path: str) -> xr.Dataset:

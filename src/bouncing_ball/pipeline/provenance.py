@@ -21,7 +21,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.errors import ModelError, printable
+from bouncing_ball.errors import ModelError
+from bouncing_ball.pipeline.artifacts import CARRIERS, DATASET, RECORD, TEXTS, carrier_of
 from bouncing_ball.pipeline.configuration import read_yaml
 
 PREFIX = "provenance_"
@@ -29,11 +30,6 @@ PREFIX = "provenance_"
 
 LIBRARIES = ("numpy", "scipy", "xarray", "netCDF4", "matplotlib")
 CONFIGURATION = "config/config.yaml"
-CARRIERS = (".nc", ".png", ".svg")
-"""Suffixes of the files that carry their provenance themselves."""
-
-RECORD = ("figures", "paper.md", "supplement.md")
-"""The accepted results in git, which affect no new result."""
 
 _DESCRIPTION = "{http://purl.org/dc/elements/1.1/}description"
 
@@ -50,16 +46,13 @@ UNKNOWN = Revision("unknown", "unknown")
 
 def _git(folder: Path, *arguments: str) -> str | None:
     """The output of git; None if git fails or is not installed."""
-    # In a hook the variables GIT_… name a repository that may not be this one. Without optional
-    # locks, parallel jobs do not wait for each other's lock of the index.
-    environment = {key: value for key, value in os.environ.items() if key[:4] != "GIT_"}
+    # In a hook the variables GIT_… name a repository that may not be this one.
+    environment = {key: value for key, value in os.environ.items() if not key.startswith("GIT_")}
+    # Without optional locks, parallel jobs do not wait for each other's lock of the index.
+    command = ["git", "--no-optional-locks", "-C", str(folder), *arguments]
     try:
         done = subprocess.run(
-            ["git", "-C", str(folder), *arguments],
-            env=environment | {"GIT_OPTIONAL_LOCKS": "0"},
-            capture_output=True,
-            encoding="utf-8",
-            check=True,
+            command, env=environment, capture_output=True, encoding="utf-8", check=True
         )
     except (OSError, subprocess.CalledProcessError):
         return None
@@ -72,13 +65,15 @@ def revision(folder: Path) -> Revision:
     Untracked files count, unless git ignores them; the accepted record does not count.
     The result is :data:`UNKNOWN` without git, or if the folder is not the top of a repository.
     """
-    head = _git(folder, "rev-parse", "--show-cdup", "HEAD")
-    excluded = [f":(exclude){name}" for name in RECORD]
-    status = _git(folder, "status", "--porcelain", "--untracked-files=normal", "--", ".", *excluded)
-    # The first line is the path of the folder below the top of the repository: empty at the top.
-    if head is None or status is None or not head.startswith("\n"):
+    # A release that was unpacked inside of another repository is not a commit of that one.
+    if not (folder / ".git").exists():
         return UNKNOWN
-    return Revision(head.strip(), "yes" if status else "no")
+    excluded = [f":(exclude){name}" for name in RECORD]
+    commit = _git(folder, "rev-parse", "HEAD")
+    changed = _git(folder, "status", "--porcelain", "--untracked-files=normal", ".", *excluded)
+    if commit is None or changed is None:
+        return UNKNOWN
+    return Revision(commit.strip(), "yes" if changed else "no")
 
 
 def checkout(*starts: Path) -> Path | None:
@@ -110,13 +105,10 @@ def changes(config: Mapping[str, Any], written: Mapping[str, Any]) -> dict[str, 
     return found
 
 
-# Cached, because finding a version parses the metadata of the package.
-_version = cache(version)
-
-
+@cache
 def versions() -> dict[str, str]:
     """Versions of Python and of the libraries that affect the artifacts."""
-    return {"python": platform.python_version(), **{name: _version(name) for name in LIBRARIES}}
+    return {"python": platform.python_version(), **{name: version(name) for name in LIBRARIES}}
 
 
 def gather(
@@ -206,33 +198,30 @@ def read_provenance(path: Path) -> dict[str, Any]:
 _CHANGED = "results/configuration.json"
 
 
-def _carrier(path: Path) -> Path:
-    """The file that carries the provenance of an artifact: the artifact itself, or its dataset.
+# Attributes of a dataset that are no parameters.
+_TEXTUAL = ("title", "references", "history", "Conventions")
 
-    For the article and the supplement it is the dataset of the claims, the last dataset of a run.
+
+def parameters_of(attributes: Mapping[Any, Any]) -> dict[str, Any]:
+    """The parameters among the attributes of a dataset, as plain values.
+
+    Examples
+    --------
+    >>> parameters_of({"title": "Figure 14", "restitution": np.float64(0.85), "n": np.array([1])})
+    {'restitution': 0.85, 'n': [1]}
     """
-    if not path.is_file():
-        raise ModelError(f"{path} cannot be read: no such file")
-    if path.suffix in CARRIERS:
-        return path
-    dataset = Path("figures/claims.nc" if path.name in RECORD else f"{path.stem}.nc")
-    if not (path.parent / dataset).is_file():
-        why = f"there is no {dataset} next to it"
-        raise ModelError(f"{path} is not an artifact of this workflow: {why}")
-    return path.parent / dataset
-
-
-def _parameters(path: Path, commit: str) -> dict[str, Any]:
-    """The parameters, from the dataset beside the artifact if it has the same commit."""
-    beside = path.with_suffix(".nc")
-    attributes = read_attributes(beside) if beside.is_file() else {}
-    if attributes.get(PREFIX + "commit") != commit:
-        return {}
     return {
-        name: np.asarray(value).tolist()
+        str(name): np.asarray(value).tolist()
         for name, value in attributes.items()
-        if not name.startswith((PREFIX, "title", "references", "history", "Conventions"))
+        if not str(name).startswith((PREFIX, *_TEXTUAL))
     }
+
+
+def _parameters_beside(path: Path, commit: str) -> dict[str, Any]:
+    """The parameters, from the dataset beside the artifact if it has the same commit."""
+    dataset = path.with_suffix(DATASET)
+    attributes = read_attributes(dataset) if dataset.is_file() else {}
+    return parameters_of(attributes) if attributes.get(f"{PREFIX}commit") == commit else {}
 
 
 def _commands(made: Mapping[str, Any], target: str, checked_out: bool | None) -> list[str]:
@@ -264,14 +253,14 @@ def explain(file: Path, /) -> dict[str, Any]:
     ModelError
         If the file is not one of this workflow, or carries no provenance.
     """
-    made = read_provenance(_carrier(file))
+    made = read_provenance(carrier_of(file))
     repository = checkout(Path.cwd(), Path(__file__).resolve())
     now = revision(repository) if repository else UNKNOWN
     unknown = "unknown" in (made["commit"], now.commit)
     checked_out = None if unknown else made["commit"] == now.commit
     target = made["target"]
     if file.suffix not in CARRIERS:
-        target = f"results/{'' if file.name in RECORD else 'figures/'}{file.name}"
+        target = f"results/{file.name}" if file.name in TEXTS else f"results/figures/{file.name}"
     running = versions().items()
     return {
         "file": str(file),
@@ -279,7 +268,7 @@ def explain(file: Path, /) -> dict[str, Any]:
         "checked_out": checked_out,
         "dirty": made["dirty"],
         "configuration": made["configuration"],
-        "parameters": _parameters(file, made["commit"]),
+        "parameters": _parameters_beside(file, made["commit"]),
         "inputs": made["inputs"],
         "versions": made["versions"],
         "running": {name: x for name, x in running if made["versions"].get(name) != x},
@@ -297,5 +286,4 @@ def lines(answer: Mapping[str, Any]) -> list[str]:
     rows["make again"] = " && ".join(answer["make_again"])
     texts = {k: x if isinstance(x, str) else json.dumps(x) for k, x in rows.items()}
     width = max(map(len, rows)) + 2
-    # Texts from a file are made printable; paths and commands must not be cut off.
-    return [f"{printable(name):<{width}}{printable(text, None)}" for name, text in texts.items()]
+    return [f"{name:<{width}}{text}" for name, text in texts.items()]

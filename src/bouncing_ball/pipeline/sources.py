@@ -51,7 +51,7 @@ def imports(path: Path) -> frozenset[str]:
 @cache
 def _data_of_folder(folder: Path) -> tuple[Path, ...]:
     """The files of a package that are not Python, also in its folders that are no packages."""
-    found = []
+    found: list[Path] = []
     for path in folder.iterdir():
         if path.is_dir():
             if path.name != "__pycache__" and not (path / "__init__.py").exists():
@@ -61,7 +61,8 @@ def _data_of_folder(folder: Path) -> tuple[Path, ...]:
     return tuple(found)
 
 
-def data_beside(module: Path) -> list[Path]:
+@cache
+def data_beside(module: Path) -> tuple[Path, ...]:
     """The data files that a module may read.
 
     Data with the name of a module belong to this module; other data belong to all modules of their
@@ -72,11 +73,11 @@ def data_beside(module: Path) -> list[Path]:
     >>> "matplotlibrc" in [path.name for path in data_beside(_ROOT / "drawing" / "style.py")]
     True
     """
-    return [
+    return tuple(
         path
         for path in _data_of_folder(module.parent)
         if path.stem == module.stem or not path.with_suffix(".py").exists()
-    ]
+    )
 
 
 def sources(modules: Iterable[str], files: Iterable[Path] = ()) -> list[Path]:
@@ -117,20 +118,21 @@ def sources(modules: Iterable[str], files: Iterable[Path] = ()) -> list[Path]:
                 seen.add(path)
                 seen.update(data_beside(path))
                 pending.extend(imports(path))
-    return sorted(seen)
+    return sorted(seen, key=str)
 
 
 @cache
 def _digest_of_file(path: Path) -> bytes:
-    return sha256(path.read_bytes()).digest()
+    """A digest of the name of a file in the repository and of its contents."""
+    name = path.relative_to(_REPOSITORY).as_posix()
+    return sha256(name.encode() + b"\0" + path.read_bytes()).digest()
 
 
 def digest(paths: Iterable[Path]) -> str:
     """A digest of the contents and the names of files, which does not depend on their folder."""
     whole = sha256()
     for path in paths:
-        name = path.relative_to(_REPOSITORY).as_posix()
-        whole.update(name.encode() + b"\0" + _digest_of_file(path))
+        whole.update(_digest_of_file(path))
     return whole.hexdigest()
 
 

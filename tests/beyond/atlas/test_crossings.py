@@ -16,7 +16,7 @@ def found(function, *tolerances, ratios=RATIOS):
     return last_crossings(ratios[::-1], errors, np.array(tolerances))[:, 0]
 
 
-def test_a_power_is_closed_exactly():
+def test_the_threshold_of_a_power_law_is_exact():
     assert found(lambda w: w**-2.0, 0.01, 0.0004) == pytest.approx([10.0, 50.0], rel=1e-12)
 
 
@@ -28,7 +28,7 @@ def test_the_last_crossing_counts_and_not_the_first():
     assert 50 / STEP < found(error, 0.05)[0] < 50 * STEP
 
 
-def test_an_error_that_changes_its_sign_between_two_ratios():
+def test_the_threshold_of_an_error_that_changes_its_sign_lies_between_the_ratios():
     # Straight along ln ϖ below 32: 0.05 at 30 e^(-0.1), between the ratios 10 and 31.6.
     def error(w):
         return 0.5 * np.log(30 / min(w, 32.0))
@@ -72,7 +72,8 @@ def test_errors_side_by_side_have_the_thresholds_that_each_has_alone():
 
 @pytest.mark.slow
 def test_thresholds_are_those_of_a_search(small):
-    plan, random = small(), np.random.default_rng(3)
+    plan = small()
+    random = np.random.default_rng(3)
     fine = np.geomspace(plan.ratios[0], plan.ratios[-1], 121)
     for _ in range(2):
         one = plan.nodes(random.choice(plan.rows), random.integers(plan.nodes_per_row, size=1))

@@ -12,7 +12,8 @@ from bouncing_ball.paper.orbits import restitution_branch as restitution_orbit
 from bouncing_ball.pipeline.configuration import read_yaml
 
 ROOT = Path(__file__).resolve().parents[3]
-SUMMARY, CHARTS = ROOT / "config" / "atlas.nc", ROOT / "docs" / "atlas"
+SUMMARY = ROOT / "config" / "atlas.nc"
+CHARTS = ROOT / "docs" / "atlas"
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +30,8 @@ def test_the_summary_is_that_of_the_configuration(data):
 
 def test_a_supremum_is_reproduced_by_the_command_line_and_exceeded_by_no_node(data, ask):
     simple = data.sel(release="displacement", model="restitution", n=1)
-    low, rule = float(data.restitution_edge[0]), float(data.rule_of_thumb)
+    low = float(data.restitution_edge[0])
+    rule = float(data.rule_of_thumb)
     # The corner in which the height's error is largest.
     fold = float(restitution_orbit.saddle_node(1, low)) * (1 + 1e-12)
     orbit = f"orbit --amplitude {fold!r}"

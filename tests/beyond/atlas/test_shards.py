@@ -9,6 +9,7 @@ from bouncing_ball.beyond.atlas.answers import last_crossings
 from bouncing_ball.beyond.atlas.walk import walk
 from bouncing_ball.beyond.corrected.errors import errors
 from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.comparison.errors import OF_LIMITS, OF_ORBITS
 
@@ -49,7 +50,9 @@ def test_the_answers_are_those_of_all_errors_at_once(small, every_node, monkeypa
     def with_gaps(orbit):
         return np.where(orbit.amplitude < np.median(orbit.amplitude), errors_of(orbit), np.nan)
 
-    errors_of, bound, counted = answers.orbit_errors, 0.05, []
+    errors_of = answers.orbit_errors
+    bound = 0.05
+    counted = []
     monkeypatch.setattr(answers, "orbit_errors", with_gaps)
     monkeypatch.setattr(error_law, "REMAINDER", dict.fromkeys(OF_ORBITS, bound))
     plan = small()
@@ -65,7 +68,8 @@ def test_the_answers_are_those_of_all_errors_at_once(small, every_node, monkeypa
     there = answers.row_answers(plan, row)
     law = error_law.coefficients(nodes.n, nodes.damping_ratio, nodes.amplitude, nodes.release)
     for place, ratio in enumerate(plan.examined):
-        k, at = int(np.flatnonzero(ratios == ratio)[0]), there.isel(frequency_ratio=place)
+        k = int(np.flatnonzero(ratios == ratio)[0])
+        at = there.isel(frequency_ratio=place)
         tiles = found[:, :, k].reshape(2, 4, 3, -1)
         finite = np.isfinite(tiles)
         assert not finite.all() and finite.any()
@@ -79,8 +83,9 @@ def test_the_answers_are_those_of_all_errors_at_once(small, every_node, monkeypa
             assert np.array_equal(at.holding[..., m], np.moveaxis(right.sum(-1), -1, 0))
         assert np.array_equal(at.unstable, (~stable[k]).reshape(3, -1).sum(-1))
         # |error - K/ϖ| > M S δ where δ < 0.3.
-        own = nodes.n, Signature(nodes.contact(ratio))(), nodes.amplitude
-        small_number, whole = error_law.small_parameter(*own), error_law.scale(*own)
+        own = nodes.n, Signature(LinearLaw.of(nodes.contact(ratio)))(), nodes.amplitude
+        small_number = error_law.small_parameter(*own)
+        whole = error_law.scale(*own)
         stated = np.isfinite(found[0, :, k]) & (small_number < 0.3)
         off = [np.abs(found[0, j, k] - law[q] / ratio) / whole[q] for j, q in enumerate(OF_ORBITS)]
         beyond = stated & (np.array(off) > bound * small_number)
@@ -97,7 +102,7 @@ def test_the_orbits_that_were_looked_for_are_counted(small, monkeypatch):
     assert found.values.tolist() == 3 * [plan.nodes_per_tile * len(plan.ratios)]
 
 
-def test_counts_add_up(small, atlas):
+def test_the_counts_add_up_to_the_number_of_nodes(small, atlas):
     plan = small()
     nodes = atlas.threshold_counts.sum("threshold_bin").values
     reached = np.isin(np.arange(np.prod(plan.shape)), plan.rows).reshape(plan.shape)
@@ -107,7 +112,8 @@ def test_counts_add_up(small, atlas):
     for name in ("largest_threshold", "limit_needed"):
         assert np.all(np.isnan(atlas[name].values[~reached])), name
     # The histogram has the largest threshold in its last bin that is not empty.
-    bins, largest = atlas.threshold_bin.values, atlas.largest_threshold.values[reached]
+    bins = atlas.threshold_bin.values
+    largest = atlas.largest_threshold.values[reached]
     last = len(bins) - 1 - (atlas.threshold_counts.values[reached] > 0)[..., ::-1].argmax(-1)
     assert np.all(bins[last] <= largest)
     above = largest >= np.append(bins[1:], np.inf)[last]
@@ -128,8 +134,10 @@ def test_the_law_is_kept_where_it_is_stated(atlas):
 
 
 def test_the_limits_of_a_row_are_the_largest_of_its_r(small, limits):
-    plan, found = small(), []
-    row, down = plan.rows[-1], plan.ratios[::-1]
+    plan = small()
+    found = []
+    row = plan.rows[-1]
+    down = plan.ratios[::-1]
     for r in plan.restitutions(row):
         one = plan.placed(row, np.array([r]), np.zeros(1))
         error = errors(one.contact(down[:, np.newaxis]), one.n, one.amplitude, OF_LIMITS)

@@ -80,7 +80,7 @@ def made():
 
 
 @pytest.mark.parametrize("name", EXPECTED)
-def test_by_hand(made, name):
+def test_the_summary_is_the_one_computed_by_hand(made, name):
     first = dict.fromkeys(("quantity", "limit_quantity", "supremum_quantity", "model", "n"), 0)
     one = made[name].isel(first, missing_dims="ignore")
     assert np.allclose(np.squeeze(one.values), EXPECTED[name], rtol=1e-7)
@@ -90,7 +90,8 @@ def test_what_the_charts_draw_follows_from_the_law(made, described):
     described(made)
     # In the middle of the second range of r and of the first of the positions.
     fold = 2 * np.pi * 0.2 / 1.8
-    flip, zeta = np.hypot(2 * (1 + 0.64) / 1.8**2, fold), float(damping_ratio(0.8))
+    flip = np.hypot(2 * (1 + 0.64) / 1.8**2, fold)
+    zeta = float(damping_ratio(0.8))
     law = coefficients(2, zeta, fold + (flip - fold) / 4)
     one = made.isel(restitution=1, release=0, n=0)
     found = one.law_coefficient.isel(position=0)

@@ -18,8 +18,9 @@ def error(plan, row, r, place, kind, ratio=100.0):
     return np.abs(every[SIMPLE.index(model), 0])
 
 
-def test_the_suprema_in_closed_form(small):
-    plan, span = small(), (0.05, 1 - 1e-9)
+def test_the_suprema_with_a_closed_form_have_its_values(small):
+    plan = small()
+    span = (0.05, 1 - 1e-9)
     # Λ_SD = 1 - 1/ϖ² without damping; damping brings it closer to 1 while ζ² < 1/2.
     still = partial(largest, plan, 0, ("restitution", Quantity.PERMANENT_CONTACT))
     assert still(100.0, *span) == pytest.approx(1e-4, rel=1e-6)
@@ -27,7 +28,7 @@ def test_the_suprema_in_closed_form(small):
     assert np.isinf(largest(plan, 0, ("restitution", Quantity.PHASE), 100.0, *span))
 
 
-def test_the_last_r_at_which_the_height_fails(small):
+def test_below_the_failing_restitution_the_height_exceeds_the_tolerance(small):
     # At ϖ = 100 and the saddle-node; recomputed with Newton's method on Eqs. 21-26.
     plan = small()
     at = partial(largest, plan, 0, ("restitution", Quantity.MAX_HEIGHT), 100.0)
@@ -37,10 +38,13 @@ def test_the_last_r_at_which_the_height_fails(small):
 @pytest.mark.parametrize("model", SIMPLE)
 @pytest.mark.parametrize("quantity", [Quantity.MAX_HEIGHT, Quantity.APPARENT_RESTITUTION])
 def test_no_orbit_exceeds_the_largest_error(small, model, quantity):
-    plan, rng = small(), np.random.default_rng(3)
-    kind, span = (model, quantity), (0.05, 0.95)
+    plan = small()
+    rng = np.random.default_rng(3)
+    kind = (model, quantity)
+    span = (0.05, 0.95)
     found = largest(plan, 0, kind, 100.0, *span)
-    r, place = rng.uniform(*span, 300), rng.uniform(0, 1, 300) ** 2
+    r = rng.uniform(*span, 300)
+    place = rng.uniform(0, 1, 300) ** 2
     assert np.all(error(plan, 0, r, place, kind) < found)
     # It is reached in a corner.
     corners = error(plan, 0, [0.05, 0.05, 0.95, 0.95], [1e-12, 1, 1e-12, 1], kind)
@@ -50,7 +54,8 @@ def test_no_orbit_exceeds_the_largest_error(small, model, quantity):
 def test_a_maximum_inside_is_found(small):
     # With the force release the velocity's error is largest at the saddle-node of a middle r.
     plan = small()
-    row, kind = plan.rows[-1], ("restitution", Quantity.BOUNCE_VELOCITY)
+    row = plan.rows[-1]
+    kind = ("restitution", Quantity.BOUNCE_VELOCITY)
     other = minimize_scalar(
         lambda r: -float(error(plan, row, r, 1e-12, kind)), bounds=(0.2, 0.9), method="bounded"
     )

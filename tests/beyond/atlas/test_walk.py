@@ -1,4 +1,4 @@
-"""The walks against the root finding of :mod:`bouncing_ball.paper.orbits.spring_damper_bifurcations`."""
+"""The walks against the root finding of the bifurcations of the spring-damper model."""
 
 import numpy as np
 import pytest
@@ -37,7 +37,8 @@ def test_the_walk_gives_the_orbits_that_root_finding_gives(small, every_node):
 
 def test_what_the_walk_loses_is_looked_for(small, every_node, monkeypatch):
     plan = small(examined=COMPARED)
-    nodes, few = every_node(plan, plan.rows[0]), plan.ratios[-3:]
+    nodes = every_node(plan, plan.rows[0])
+    few = plan.ratios[-3:]
     (expected,) = walk(nodes, few)
     # As if the walk reached nothing.
     monkeypatch.setattr("bouncing_ball.beyond.atlas.walk.REACHED", -1.0)

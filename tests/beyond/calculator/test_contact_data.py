@@ -20,7 +20,8 @@ STEEL_ON_GLASS = {
     "table_youngs_modulus": 6.4e10,
     "table_poissons_ratio": 0.2,
 }
-MASS, TABLE = 0.02, Table(300.0, 1e-4, 9.81)
+MASS = 0.02
+TABLE = Table(300.0, 1e-4, 9.81)
 
 
 def found(release=Release.DISPLACEMENT, **given):
@@ -33,7 +34,8 @@ def test_every_set_gives_the_contact_it_was_taken_from(release, k, zeta):
     c = 2 * zeta * math.sqrt(k * MASS)
     ratio = math.sqrt(k / MASS) / TABLE.angular_frequency
     case = PhysicalCase(MASS, TABLE, SpringDamper(ratio, zeta, release))
-    own, time = float(case.contact.restitution), case.in_si()["contact_time"]
+    own = float(case.contact.restitution)
+    time = case.in_si()["contact_time"]
     printed = math.exp(-math.pi * zeta / math.sqrt(1 - zeta**2))
     for loss in (
         {"damping_ratio": zeta},
@@ -98,13 +100,13 @@ def test_the_hertz_contact_is_that_of_the_energy():
         ({"stiffness": 1e6, "drop_height": 0.5, "rebound_height": 1.0}, "above drop_height"),
     ],
 )
-def test_what_does_not_suffice_or_contradicts(given, says):
+def test_data_that_do_not_suffice_or_contradict_each_other_are_refused(given, says):
     with pytest.raises(ModelError) as error:
         found(**given)
     assert says in str(error.value)
 
 
-def test_a_drop_test_without_loss():
+def test_a_drop_test_that_returns_to_its_height_has_no_damping():
     assert found(stiffness=1e6, drop_height=1.0, rebound_height=1.0) == pytest.approx((1e6, 0))
 
 

@@ -11,6 +11,7 @@ from bouncing_ball.beyond import error_law
 from bouncing_ball.beyond.calculator.verdict import assessed, notes
 from bouncing_ball.beyond.corrected.errors import errors
 from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.laws.registry import LAWS
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.paper.comparison.errors import Quantity
@@ -39,7 +40,8 @@ def steel():
 
 
 def test_the_groups_are_those_of_the_model(steel):
-    omega, zeta = 2 * math.pi * 50, -math.log(0.85) / math.hypot(math.pi, math.log(0.85))
+    omega = 2 * math.pi * 50
+    zeta = -math.log(0.85) / math.hypot(math.pi, math.log(0.85))
     own = math.sqrt(1e7 / 0.02)
     assert steel.frequency_ratio == pytest.approx(own / omega, rel=1e-14)
     assert steel.damping_ratio == pytest.approx(zeta)
@@ -48,7 +50,7 @@ def test_the_groups_are_those_of_the_model(steel):
     assert steel.contact_time == pytest.approx(time, rel=1e-14)
     assert steel.static_deflection == pytest.approx(0.02 * 9.80665 / 1e7, rel=1e-15)
     assert steel.time_step.largest == steel.contact_time / 50 and "MFiX" in steel.time_step.rule
-    instant = Signature(SpringDamper(steel.frequency_ratio, steel.damping_ratio))()
+    instant = Signature(LinearLaw.of(SpringDamper(steel.frequency_ratio, steel.damping_ratio)))()
     three = float(instant.delay) / omega, 0.85, float(instant.load) / omega
     assert dataclasses.astuple(steel.corrected) == pytest.approx(three, rel=1e-13)
 
@@ -71,7 +73,8 @@ def test_every_family_has_its_errors_margins_and_orbit(steel):
         assert one.impact_speed == pytest.approx(speed, rel=1e-12)
         for name, standing in one.standing.items():
             assert standing.exists and standing.is_stable and standing.is_admissible, name
-            fall, rise = 1 - standing.saddle_node_margin, 1 + standing.period_doubling_margin
+            fall = 1 - standing.saddle_node_margin
+            rise = 1 + standing.period_doubling_margin
             assert standing.saddle_node == pytest.approx(0.8 * fall, rel=1e-14)
             assert standing.period_doubling == pytest.approx(0.8 * rise, rel=1e-14)
 
@@ -110,7 +113,8 @@ def test_choosing_inverts_the_exact_error():
 def test_permanent_contact(release):
     # Λ_SD by Eq. 33, and without tension over the force that damping adds to the spring's.
     found = design(**UNIT | {"n": 2}, stiffness=36.0, acceleration=0.9, release=release)
-    zeta, x = found.damping_ratio, 1 / 36
+    zeta = found.damping_ratio
+    x = 1 / 36
     expected = math.sqrt((1 - x) ** 2 + 4 * zeta**2 * x)
     if release is Release.FORCE:
         expected /= math.sqrt(1 + 4 * zeta**2 * x)
@@ -139,7 +143,8 @@ def test_a_contact_that_cannot_pull_has_another_restitution():
 
 
 def test_ways_to_say_the_same():
-    one, omega = design(**STEEL, restitution=0.85, n=1), 2 * math.pi * 50
+    one = design(**STEEL, restitution=0.85, n=1)
+    omega = 2 * math.pi * 50
     for rate in ({"angular_frequency": f"{omega!r} rad/s"}, {"period": "20 ms"}):
         other = design(
             **rate, mass=0.02, table_amplitude=0.8 * 9.80665 / omega**2, gravity="1 g", n=1,
@@ -162,7 +167,8 @@ def test_a_hertz_contact_without_loss_keeps_its_energy():
     expected = 2.868 * (0.004**2 / (5e-3 * 115e9**2 * speed)) ** 0.2
     assert found.contact_time == pytest.approx(expected, rel=2e-4)
     # ½ m v² = (8/15) E* √R p^{5/2} and F = (4/3) E* √R p^{3/2}, but for the weight.
-    rigid, depth = 4 / 3 * 115e9 * math.sqrt(5e-3), one.greatest_compression
+    rigid = 4 / 3 * 115e9 * math.sqrt(5e-3)
+    depth = one.greatest_compression
     weight = 2 * 0.004 * 9.80665 / one.peak_force
     assert 0.4 * rigid * depth**2.5 == pytest.approx(0.002 * one.impact_speed**2, rel=2 * weight)
     assert one.peak_force == pytest.approx(rigid * depth**1.5, rel=1e-9)
@@ -212,7 +218,8 @@ def test_an_orbit_that_is_stable_in_the_simple_model_alone():
 
 @pytest.mark.parametrize("name", ["exists", "is_stable", "is_admissible"])
 def test_each_disagreement_alone_is_not_good_enough(steel, name):
-    one, need = steel.orbits[1], dataclasses.replace(steel.needed, tolerance=0.007)
+    one = steel.orbits[1]
+    need = dataclasses.replace(steel.needed, tolerance=0.007)
     assert assessed(one, need, 71.0).is_good_enough
     simple = dataclasses.replace(one.standing["restitution"], **{name: False})
     other = dataclasses.replace(one, standing=one.standing | {"restitution": simple})
@@ -274,7 +281,7 @@ def test_a_contact_slower_than_the_table_is_noted(ratio, noted):
 def test_the_error_law_holds_up_to_its_small_parameter():
     contact = SpringDamper.from_restitution(0.85, 1.0)
     # Its parts are proportional to 1/ϖ.
-    small = float(error_law.small_parameter(1, Signature(contact)(), 0.8))
+    small = float(error_law.small_parameter(1, Signature(LinearLaw.of(contact))(), 0.8))
     for factor, holds in ((0.99, False), (1.01, True)):
         stiffness = (factor * small / error_law.STATED) ** 2
         found = design(**UNIT, acceleration=0.8, stiffness=stiffness)
@@ -327,7 +334,7 @@ def test_no_orbit_or_no_contact(change, says, refusal):
         (LAW | {"contact_time": 3e-4, "engine": "mujoco"}, "is not written for mujoco"),
     ],
 )
-def test_mistakes(change, says, refusal):
+def test_a_mistake_is_refused_in_one_line(change, says, refusal):
     with refusal(ModelError, says):
         design(**{**STEEL, "restitution": 0.85, **change})
 

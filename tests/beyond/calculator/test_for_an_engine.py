@@ -133,6 +133,6 @@ def test_from_one_engine_to_another_of_another_release(table):
         ),
     ],
 )
-def test_mistakes(given, says, refusal):
+def test_a_mistake_is_one_line_that_says_what_is_allowed(given, says, refusal):
     with refusal(ModelError, says):
         design(**{"engine": "mujoco", "mass": 1.0, "stiffness": 1e5, "restitution": 0.8} | given)

@@ -17,9 +17,11 @@ import pytest
 from bouncing_ball.beyond.continued_orbits import bifurcation, orbit_at, orbits_at
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
 from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.beyond.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball.beyond.laws.hertzian import KuwabaraKono, Tsuji
 from bouncing_ball.beyond.laws.impedance import Impedance
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.laws.orbits import LawModel
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.numerics.corrector import NewtonSettings, newton
@@ -125,7 +127,7 @@ def test_an_orbit_solves_its_equations(some):
     assert system.orbit(y).distance(orbit) < 100 * EPS * size
 
 
-def test_the_jacobian_of_the_equations(some):
+def test_the_jacobian_is_the_derivative_of_the_equations(some):
     _, model, n, orbit = some
     system = model.system(n)
     y = system.point(orbit)
@@ -168,7 +170,7 @@ def test_the_monodromy_is_the_jacobian_of_the_simulated_map(some):
 @pytest.mark.parametrize(
     "some", cases(x for x in MODELS if not x.startswith("corrected")), indirect=True
 )
-def test_the_jacobian_of_the_contact(some):
+def test_the_contact_jacobian_is_the_derivative_of_the_contact(some):
     # Where the force vanishes the map does not feel the time of release, so that
     # the monodromy would not show an error in it.
     _, model, _, orbit = some
@@ -201,7 +203,7 @@ def test_the_determinant_is_the_contraction(some):
 
 @every_case
 @pytest.mark.parametrize("name", often(DISSIPATIVE))
-def test_sides_and_bifurcations(name, n, above):
+def test_the_orbits_at_the_bifurcations_have_a_multiplier_plus_or_minus_one(name, n, above):
     model = MODELS[name]
     node, doubling = bifurcations(name, n)
     # The multiplier at a fold is as exact as the root of its distance to 1.
@@ -224,7 +226,8 @@ def test_sides_and_bifurcations(name, n, above):
 
 def test_the_path_is_continuous_and_closed(some):
     name, _, n, orbit = some
-    period, duration = 2 * np.pi * n, float(orbit.contact_duration)
+    period = 2 * np.pi * n
+    duration = float(orbit.contact_duration)
     height, velocity = orbit.path([0.0, period, -period, 5 * period])
     np.testing.assert_allclose(height, height[0], rtol=0, atol=1e-12 * n * n)
     # The corrected model meets the table's level to second order in the delay only.
@@ -250,14 +253,15 @@ def test_the_path_is_continuous_and_closed(some):
     np.testing.assert_allclose(v * v / 2 + z, orbit.max_height, rtol=100 * EPS)
 
 
-def test_nothing_happens_between_the_events(some):
+def test_the_ball_is_held_in_contact_and_above_the_table_in_flight(some):
     # First events: the ball is held in contact, and above the table in flight.
     _, _, _, orbit = some
     share = np.linspace(0, 1, 2001)[1:-1]
-    if orbit.contact_duration > 0 and hasattr(orbit.law, "loaded_grip"):
+    law = LinearLaw.of(orbit.law) if isinstance(orbit.law, SpringDamper) else orbit.law
+    if isinstance(law, ContactLaw):
         depth, rate = (-x for x in orbit.contact_motion(share * orbit.contact_duration))
         angle = orbit.phase + share * orbit.contact_duration
-        assert np.all(orbit.law.loaded_grip(depth, rate, 1 - orbit.amplitude * np.sin(angle)) > 0)
+        assert np.all(law.loaded_grip(depth, rate, 1 - orbit.amplitude * np.sin(angle)) > 0)
     time = float(orbit.contact_duration) + share * float(orbit.flight_time)
     gap = orbit.path(time)[0] - orbit.amplitude * np.sin(orbit.phase + time)
     rising = gap > 0
@@ -276,7 +280,8 @@ def test_arrays_are_their_elements(name):
     orbits = model.orbit(np.array([1, 2]), amplitude)
     assert orbits.shape == (2, 2) and len(orbits) == 2
     for k in np.ndindex(2, 2):
-        single, one = model.orbit(k[1] + 1, amplitude[k[0], 0]), orbits[k]
+        single = model.orbit(k[1] + 1, amplitude[k[0], 0])
+        one = orbits[k]
         for quantity in OBSERVABLES:
             assert getattr(one, quantity) == pytest.approx(
                 getattr(single, quantity), rel=1e-11, nan_ok=True
@@ -290,7 +295,7 @@ def test_arrays_are_their_elements(name):
 
 
 @pytest.mark.parametrize("name", often(DISSIPATIVE))
-def test_all_orbits_at_an_amplitude(name):
+def test_both_sides_are_among_all_orbits_at_an_amplitude(name):
     model = MODELS[name]
     found = model.orbits(1, 0.9)
     assert np.all(np.diff(found.contact_duration) >= 0)
@@ -299,10 +304,20 @@ def test_all_orbits_at_an_amplitude(name):
     assert model.orbits(1, 1e-3).size == 0
 
 
+@every_model
+def test_a_side_may_be_given_by_its_name(name):
+    model = MODELS[name]
+    for side in Side:
+        named = model.orbit(1, 0.9, str(side))
+        assert named.distance(model.orbit(1, 0.9, side)) == 0
+        assert model.absence(1, 0.9, str(side)) == model.absence(1, 0.9, side)
+
+
 @pytest.mark.parametrize("name", [name for name in DISSIPATIVE if MODELS[name].has_closed_form])
 def test_a_closed_form_is_what_the_continuation_finds(name):
     # What a model overrides against what it would inherit.
-    model, n = MODELS[name], np.array([1, 2])
+    model = MODELS[name]
+    n = np.array([1, 2])
     for kind in Bifurcation:
         exact = {"saddle-node": model.saddle_node, "period doubling": model.period_doubling}[kind](
             n
@@ -313,7 +328,8 @@ def test_a_closed_form_is_what_the_continuation_finds(name):
         )
     lam = model.saddle_node(n).amplitude + np.array([[1e-3], [0.3], [0.8]])
     for side in Side:
-        found, exact = orbit_at(model, n, lam, side), model.orbit(n, lam, side)
+        found = orbit_at(model, n, lam, side)
+        exact = model.orbit(n, lam, side)
         assert found.exists.tolist() == exact.exists.tolist()
         # Next to the fold a rounding of Λ is its root in the phase.
         assert np.nanmax(found.distance(exact)) < 1e-10
@@ -333,7 +349,7 @@ def test_the_closed_form_is_nearest_to_its_own_orbits(name, side):
 
 
 @every_model
-def test_what_is_refused(name):
+def test_a_wrong_index_and_an_orbit_below_the_fold_are_refused(name):
     model = MODELS[name]
     for n in (0, -1, 1.5, np.nan):
         for ask in (model.saddle_node, model.period_doubling, lambda n: model.orbit(n, 1.0)):
@@ -346,11 +362,13 @@ def test_what_is_refused(name):
 
 
 @pytest.mark.parametrize("n", [1, 3])
-def test_a_restitution_law_by_hand(n):
+def test_the_orbits_of_a_simple_restitution_law_are_those_found_by_hand(n):
     # With v = w⁴ the speed of the orbits, v + r v = 2πn, is w⁴ + c^¼ w³ = 2πn, for v > c.
-    model, c = OWN["MODEL"], 0.7**0.25
+    model = OWN["MODEL"]
+    c = 0.7**0.25
     w = max(np.roots([1, c, 0, 0, -2 * np.pi * n]).real)
-    level, r = w**4 - np.pi * n, c / w
+    level = w**4 - np.pi * n
+    r = c / w
     # d(r v)/dv = 3r/4, and 1 + tr + det = 0 at Λ sin φ = 2(1 + ¾r²)/((1 + r)(1 + ¾r)).
     lift = 2 * (1 + 0.75 * r * r) / ((1 + r) * (1 + 0.75 * r))
     assert float(model.saddle_node(n).amplitude) == pytest.approx(level, rel=1e-12)

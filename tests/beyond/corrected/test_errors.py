@@ -1,10 +1,10 @@
-"""The thresholds of both simple models, against scans of fine grids."""
+"""Errors of both simple models, and their thresholds against scans of fine grids."""
 
 import numpy as np
 import pytest
 
-from bouncing_ball.beyond.corrected.errors import errors, search
-from bouncing_ball.paper.comparison.errors import Quantity, modulus
+from bouncing_ball.beyond.corrected.errors import SIMPLE, errors, models, orbit_errors, search
+from bouncing_ball.paper.comparison.errors import Quantity, modulus, relative_errors
 from bouncing_ball.paper.comparison.thresholds import ThresholdStatus
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
@@ -52,3 +52,20 @@ def test_the_thresholds_of_contacts_are_those_of_a_fine_scan(release):
         turns = np.flatnonzero(signed[1:] * signed[:-1] < 0)
         low, high = (fine[turns[-1] + k] if turns.size else np.nan for k in (0, 1))
         assert (low <= zero <= high) if turns.size else np.isnan(zero)
+
+
+@pytest.mark.parametrize("release", list(Release))
+def test_errors_are_those_of_the_models_one_by_one(release):
+    contact = SpringDamper(np.array([[3.0], [30.0]]), np.array([0.05, 0.2]), release)
+    n = np.array([1, 2])
+    lam = np.array([0.9, 2.0])
+    found = errors(contact, n, lam, tuple(Quantity))
+    assert found.shape == (len(SIMPLE), len(Quantity), 2, 2)
+    for i, j in np.ndindex(2, 2):
+        exact, *simple = models(contact[i, j])
+        assert float(simple[0].restitution) == float(contact[i, j].restitution)
+        for k, model in enumerate(simple):
+            (one,) = relative_errors(exact, [model], n[j], lam[j], tuple(Quantity))
+            np.testing.assert_allclose(found[k, :, i, j], one, rtol=1e-9, atol=1e-13)
+    known = orbit_errors(models(contact)[0].orbit(n, lam))
+    np.testing.assert_allclose(known, found[:, :4], rtol=1e-9, atol=1e-13)

@@ -5,12 +5,12 @@ import pytest
 
 from bouncing_ball.beyond.corrected.signature import Signature
 from bouncing_ball.beyond.laws.law_of_impact import law_of_impact
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.laws.orbits import LawModel
 from bouncing_ball.beyond.laws.registry import LAWS
 from bouncing_ball.beyond.simulation import simulate
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.contact.damping import damping_ratio
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
 
 R, LAM = 0.7, 1.3
 NAMES = ("displacement", "force", "hunt-crossley", "tsuji", "kuwabara-kono")
@@ -21,17 +21,15 @@ def law(name, duration):
     """The contact with r and D at the speed 4."""
     if name not in ("displacement", "force"):
         return law_of_impact(LAWS[name], R, duration, 4.0)
-    unit = SpringDamper(1.0, damping_ratio(R, name), name)
-    return SpringDamper(unit.free_duration / duration, unit.damping_ratio, name)
+    unit = LinearLaw(1.0, damping_ratio(R, name), name)
+    return LinearLaw(unit.free_duration / duration, unit.damping_ratio, name)
 
 
 def images(law, amplitude, phase, speed):
     """J, t* - φ, and the phase and the relative velocity of the next contact."""
     motion = simulate(law, amplitude, phase, amplitude * np.cos(phase) - speed, 2)
-    arrival, time = (
-        motion.bounce_velocity[0] - amplitude * np.cos(phase) + speed,
-        motion.contact_duration[0],
-    )
+    arrival = motion.bounce_velocity[0] - amplitude * np.cos(phase) + speed
+    time = motion.contact_duration[0]
     impulse = arrival + time
     # The flights from both ends of the contact, at its end.
     end = amplitude * np.sin(phase + time) + motion.release_displacement[0]
@@ -52,7 +50,7 @@ def difference(law, amplitude, phase, speed, step=1e-5):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_it_is_of_second_order_in_c1_away_from_grazing(name):
+def test_the_map_and_its_derivative_are_of_second_order_away_from_grazing(name):
     rng = np.random.default_rng(1)
     start = rng.uniform(-np.pi, np.pi, 40), rng.uniform(2, 7, 40)
     found = [difference(law(name, duration), LAM, *start) for duration in DURATIONS]
@@ -65,12 +63,13 @@ def test_it_is_of_second_order_in_c1_away_from_grazing(name):
 
 
 @pytest.mark.parametrize("name", NAMES[2:])
-def test_the_numbers_that_the_multipliers_need(name):
+def test_the_multipliers_need_the_derivatives_of_delay_and_restitution(name):
     """Of second order with d(v t_c)/dv and d(rv + σa)/dv; of first with t_c; of none with r."""
     missed = []
     for duration in DURATIONS:
         contact = law(name, duration)
-        orbit, signature = LawModel(contact).orbit(1, 1.0), Signature(contact)
+        orbit = LawModel(contact).orbit(1, 1.0)
+        signature = Signature(contact)
         psi = float(orbit.phase)
         for _ in range(30):
             speed = np.pi + np.cos(psi)
@@ -78,7 +77,9 @@ def test_the_numbers_that_the_multipliers_need(name):
             # nπ - X = rv + σa for the phase of the instant.
             right = np.pi - instant.restitution * speed - instant.load * (1 - np.sin(psi))
             psi = float(np.arccos(right))
-        load, (x, y) = 1 - np.sin(psi), (np.cos(psi), np.sin(psi))
+        load = 1 - np.sin(psi)
+        x = np.cos(psi)
+        y = np.sin(psi)
         tangent = instant.tangent(speed, load)[0]
         found = []
         for e, b in (
@@ -86,7 +87,8 @@ def test_the_numbers_that_the_multipliers_need(name):
             (instant.delay, tangent.restitution),
             (tangent.delay, instant.restitution),
         ):
-            w, v = -(1 + b) * y - instant.load * x, speed - e * load
+            w = -(1 + b) * y - instant.load * x
+            v = speed - e * load
             time = 2 * np.pi - e
             found.append([1 - b + (time * (w + b) - e) / v, -b + (time * b - e - e * w) / v])
         missed.append(np.array(found) - np.array(orbit.trace_and_determinant()))
@@ -96,8 +98,10 @@ def test_the_numbers_that_the_multipliers_need(name):
     np.testing.assert_allclose((2 * order[1] - order[0])[known, 0], [2, 1, 0][known], atol=0.15)
 
 
-def test_it_fails_at_grazing_by_the_powers_of_the_speed():
-    phase, edge, beyond = np.array([-1.1]), 3.6, 3.75
+def test_at_grazing_the_error_grows_by_the_predicted_powers_of_the_speed():
+    phase = np.array([-1.1])
+    edge = 3.6
+    beyond = 3.75
     contact = law("displacement", 0.01)
     for _ in range(50):
         middle = (edge + beyond) / 2
@@ -105,7 +109,8 @@ def test_it_fails_at_grazing_by_the_powers_of_the_speed():
         edge, beyond = (middle, beyond) if slow else (edge, middle)
     found = [difference(contact, 4.0, phase, np.array([edge - eta]), 1e-3 * eta)
              for eta in (0.01, 0.0025)]  # fmt: skip
-    (first, last), speed = (x[0][:, 2, 0] for x in found), [x[1][0] for x in found]
+    first, last = (x[0][:, 2, 0] for x in found)
+    speed = [x[1][0] for x in found]
     np.testing.assert_allclose(
         np.log(last / first) / np.log(speed[0] / speed[1]), [1, 3], atol=0.15
     )

@@ -28,7 +28,7 @@ def per_mass(restitution, release=Release.DISPLACEMENT):
 @pytest.mark.parametrize("name", ENGINES)
 @given(mass=st.floats(1e-3, 1e3), stiffness=st.floats(1.0, 1e9), r=st.floats(0.2, 1.0))
 @hypothesis.settings(max_examples=20)
-def test_there_and_back(name, mass, stiffness, r):
+def test_the_parameters_of_a_contact_are_read_back_as_this_contact(name, mass, stiffness, r):
     engine = ENGINES[name]
     assert engine.name == name and repr(engine) == f"{type(engine).__name__}()"
     made = design(mass=mass, stiffness=stiffness, restitution=r, engine=name)
@@ -72,7 +72,8 @@ def test_the_snippet_has_the_numbers(name, release):
 
 @pytest.mark.parametrize(("name", "release"), BOTH)
 def test_a_text_with_places_for_numbers_is_the_snippet(name, release):
-    engine, step = ENGINES[name], 1.25e-6
+    engine = ENGINES[name]
+    step = 1.25e-6
     values = engine.numbers(engine.for_step(CONTACT, step)) | CONTACT._asdict()
     values["time_step"] = step
     texts = {key: repr(value) for key, value in values.items()}
@@ -122,7 +123,9 @@ def test_the_release_is_written_where_there_are_two():
         ("drake", {"hunt_crossley_dissipation": 1.0, "time_step": 1}, 1.0, "has no 'time_step'"),
     ],
 )
-def test_parameters_that_cannot_be_read(name, parameters, mass, says, refusal):
+def test_parameters_that_cannot_be_read_are_refused_in_one_line(
+    name, parameters, mass, says, refusal
+):
     with refusal(ModelError, says):
         ENGINES[name].reader(parameters).contact(parameters, mass)
 
@@ -153,7 +156,7 @@ def test_drakes_hunt_crossley_contact_loses_what_its_work_is():
         ("lammps", "glue", "unknown release 'glue'"),
     ],
 )
-def test_engines_and_releases_that_there_are_not(name, release, says, refusal):
+def test_an_unknown_engine_or_release_is_refused(name, release, says, refusal):
     with refusal(ModelError, says):
         engine_named(name).settings(CONTACT, release)
 

@@ -144,7 +144,8 @@ def pybullet(trial: Trial) -> tuple[np.ndarray, float]:
     ball = pybullet.createMultiBody(trial.mass, sphere, basePosition=[0, 0, RADIUS + trial.height])
     exec(trial.settings.snippet, {"pybullet": pybullet, "ball": ball, "table": table})
     pybullet.resetBaseVelocity(ball, [0, 0, trial.speed])
-    heights, start = [], process_time()
+    heights = []
+    start = process_time()
     for load in trial.load(trial.times - trial.settings.time_step):
         pybullet.setGravity(0, 0, load)
         pybullet.stepSimulation()
@@ -159,12 +160,14 @@ def drake(trial: Trial) -> tuple[np.ndarray, float]:
 
     names = dict(vars(pydrake))
     exec(trial.settings.snippet, names)
-    plant, properties = names["plant"], names["properties"]
+    plant = names["plant"]
+    properties = names["properties"]
     builder = pydrake.DiagramBuilder()
     pydrake.AddMultibodyPlantSceneGraph(builder, plant)
     plant.mutable_gravity_field().set_gravity_vector([0, 0, -trial.gravity])
     inertia = pydrake.SpatialInertia.SolidSphereWithMass(trial.mass, RADIUS)
-    ball, still = plant.AddRigidBody("ball", inertia), pydrake.RigidTransform()
+    ball = plant.AddRigidBody("ball", inertia)
+    still = pydrake.RigidTransform()
     shapes = {plant.world_body(): pydrake.HalfSpace(), ball: pydrake.Sphere(RADIUS)}
     for body, shape in shapes.items():
         plant.RegisterCollisionGeometry(body, still, shape, body.name(), properties)
@@ -245,12 +248,16 @@ def bounces(name, case, found, skipped, kept):
 
     The ball begins on its orbit, where the table is at its lowest.
     """
-    n, exact, step = case[2], exact_orbit(*case), found.time_step
+    n = case[2]
+    exact = exact_orbit(*case)
+    step = found.time_step
     # Back along the flight, from the impact to the table's lowest point.
     back = float(exact.phase) + np.pi / 2
-    velocity, amplitude = float(exact.impact_velocity), float(exact.amplitude)
+    velocity = float(exact.impact_velocity)
+    amplitude = float(exact.amplitude)
     height = amplitude * (1 + np.sin(exact.phase)) - velocity * back - back**2 / 2
-    period, cycles = 2 * np.pi * n, skipped + kept
+    period = 2 * np.pi * n
+    cycles = skipped + kept
     trial = Trial(
         *(found, 1.0, float(height), velocity + back),
         *(int(cycles * period / step), 1.0, amplitude),
@@ -318,7 +325,8 @@ def test_a_free_impact_has_the_promised_restitution(name, release, restitution, 
     only_if_installed(name)
     error = tolerance * restitution
     found = settings(name, release, restitution, 0.5, 1e5, error)
-    step, measured = found.time_step, []
+    step = found.time_step
+    measured = []
     for fraction in (0.02, 0.5, 0.98):
         away, _ = RUN[name](Trial(found, 0.5, fraction * step, -1.0, 2 * found.steps))
         measured.append((away[-1] - away[-2]) / step)
@@ -388,10 +396,12 @@ def test_the_impedance_takes_its_part_of_the_load(surface, share, zeta):
 def test_an_orbit_has_the_exact_height(name, release, restitution, n, frequency_ratio, record):
     only_if_installed(name)
     case = (release, restitution, n, frequency_ratio)
-    orbit, baseline = exact_orbit(*case), seconds_per_bounce(MODELS[-1], *case)
+    orbit = exact_orbit(*case)
+    baseline = seconds_per_bounce(MODELS[-1], *case)
     found = settings(name, release, restitution, 1.0, float(frequency_ratio) ** 2, ERROR)
     off, seconds = bounces(name, case, found, SKIPPED, KEPT)
-    error, scatter = float(off.mean()), float(off.std(ddof=1))
+    error = float(off.mean())
+    scatter = float(off.std(ddof=1))
     row = dict(zip(ORBIT, (str(release), *case[1:]), strict=True))
     row |= {"amplitude": float(orbit.amplitude), "max_height": float(orbit.max_height)}
     row |= {"engine": name, "contact_steps": found.steps, "bounce_time": seconds / baseline}
@@ -408,8 +418,11 @@ def test_an_orbit_has_the_exact_height(name, release, restitution, n, frequency_
 @pytest.mark.parametrize("name", RUN)
 def test_a_bounce_is_as_right_as_the_corrected_models(name, frequency_ratio, record):
     only_if_installed(name)
-    release, r, n = Release.of(PARAMETERS["release"]), PARAMETERS["restitution"], PARAMETERS["n"]
-    case, many = (release, r, n, frequency_ratio), np.array(PARAMETERS["steps"])
+    release = Release.of(PARAMETERS["release"])
+    r = PARAMETERS["restitution"]
+    n = PARAMETERS["n"]
+    case = (release, r, n, frequency_ratio)
+    many = np.array(PARAMETERS["steps"])
     errors, level = simulated(name, case, PARAMETERS["steps"])
     steps = round(steps_of(many, errors, level))
     row = {"engine": name, "frequency_ratio": frequency_ratio, "single_steps": steps}
@@ -441,8 +454,10 @@ def test_the_accepted_heights_are_those_of_the_model():
     assert (away.max([*away.dims][:3]) <= data.tolerance + 1e-5 / min(LOSSES)).all()
     for place in np.argwhere(data.free_steps.notnull().values):
         one = data.free_steps[tuple(place)]
-        rule, r = Release.of(one.release.item()), one.restitution.item()
-        scheme, zeta = ENGINES[one.engine.item()].scheme, float(damping_ratio(r, rule))
+        rule = Release.of(one.release.item())
+        r = one.restitution.item()
+        scheme = ENGINES[one.engine.item()].scheme
+        zeta = float(damping_ratio(r, rule))
         assert one == steps_for(scheme, zeta, rule, one.tolerance.item() * r)
     for run in runs.run[::7]:
         _, release, *case = run.item()

@@ -48,7 +48,8 @@ def test_the_table_has_every_engine_with_its_formulas_and_releases():
     assert [name for name, *_ in rows] == [*[*ENGINES][1:], "generic"]
     contact = Physical(2.0, 300.0, 5.0)
     for name, formulas, releases in rows:
-        found, values = ENGINES[name].parameters(contact), {}
+        found = ENGINES[name].parameters(contact)
+        values = {}
         for parameter, cell in re.findall(r"`(\w+)` = ([^`]+?)(?:, (?=`)|$)", formulas):
             python = re.sub(r"(\d)(?=[kc])", r"\1*", cell.replace("−", "-"))
             values[parameter] = eval(python, dict(zip("mkc", contact, strict=True)))

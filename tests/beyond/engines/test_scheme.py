@@ -42,7 +42,8 @@ def test_the_scheme_is_that_of_the_engine(engine, release):
 @pytest.mark.parametrize("zeta", [0.02, 0.3, 0.95])
 def test_the_bias_of_compensated_steps_is_of_second_order_and_the_scatter_is_the_dampers(zeta):
     exact = float(restitution_coefficient(zeta, Release.FORCE))
-    instants, bias = (np.arange(1000) + 0.5) / 1000, []
+    instants = (np.arange(1000) + 0.5) / 1000
+    bias = []
     for steps in (160, 320):
         h = float(Release.FORCE.free_angle(zeta)) / np.sqrt(1 - zeta**2) / steps
         found = restitution_in_steps(
@@ -59,7 +60,8 @@ def test_the_bias_of_compensated_steps_is_of_second_order_and_the_scatter_is_the
 @given(st.floats(1e-3, 1e9), st.floats(1e-3, 5.0), st.floats(1e-3, 0.5))
 def test_compensated_steps_pass_through_the_exact_motion(stiffness, zeta, step):
     omega = np.sqrt(stiffness)
-    loss, h = 2 * zeta * omega, step / omega
+    loss = 2 * zeta * omega
+    h = step / omega
     spring, damper = compensated(stiffness, loss, h)
     hypothesis.assume(damper > 0)
     # Implicit Euler and the exact flow have the same eigenvalues, and so the same characteristic
@@ -74,7 +76,8 @@ def test_compensated_steps_pass_through_the_exact_motion(stiffness, zeta, step):
 
 def by_a_loop(scheme, zeta, release, steps, fraction):
     h = float(release.free_angle(zeta)) / np.sqrt(1 - zeta**2) / steps
-    x, v = -fraction * h, -1.0
+    x = -fraction * h
+    v = -1.0
     k, c = compensated(1.0, 2 * zeta, h) if scheme is Scheme.COMPENSATED else (1.0, 2 * zeta)
     for _ in range(2 * steps):
         if scheme is not Scheme.SEMI_IMPLICIT:
@@ -83,7 +86,8 @@ def by_a_loop(scheme, zeta, release, steps, fraction):
             new = v - h * (x + 2 * zeta * v)
         if x >= 0 or (release is Release.FORCE and new < v):
             return v
-        x, v = x + h * new, new
+        x = x + h * new
+        v = new
     raise AssertionError("no end")
 
 
@@ -135,7 +139,7 @@ def test_many_steps_follow_the_law_of_few():
         ((-0.1, 50), "damping ratio ζ = -0.1 is not in [0, 1)"),
     ],
 )
-def test_mistakes(arguments, says, refusal):
+def test_a_mistake_is_refused_in_one_line(arguments, says, refusal):
     zeta, steps = arguments
     with refusal(ModelError, says):
         restitution_in_steps(Scheme.IMPLICIT, zeta, Release.FORCE, steps)

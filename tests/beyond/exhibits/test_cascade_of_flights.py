@@ -13,7 +13,7 @@ FLIGHTS = {
 }
 
 
-def test_openings_over_both_parameters(described):
+def test_each_row_of_openings_is_that_of_its_restitution_and_tends_to_its_limit(described):
     found = described(typed(cascade_of_flights)(FLIGHTS, "displacement"))
     assert found.opening_amplitude.dims == ("restitution", "flights", "frequency_ratio")
     # Each row is that of its r: Λ_SD at ϖ = 1.2 by another program, and the limits of E.
@@ -28,7 +28,7 @@ def test_openings_over_both_parameters(described):
     assert np.isnan(found.opening_amplitude[..., 0]).all() and (found.opening_multiplier.max() < 1)
 
 
-def test_limits_are_those_of_the_papers_release():
+def test_only_the_papers_release_has_openings():
     found = typed(cascade_of_flights)(FLIGHTS | {"restitution": [0.85]}, "force")
     for name in ("opening_amplitude", "stiff_opening"):
         assert np.isnan(found[name]).all()

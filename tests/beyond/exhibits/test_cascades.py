@@ -31,7 +31,8 @@ def test_k_of_the_first_doubling_is_that_of_the_error_law(study):
 
 def test_errors_tend_to_the_two_laws(study):
     _, data = study
-    error, ratio = data.cascade_error, data.frequency_ratio
+    error = data.cascade_error
+    ratio = data.frequency_ratio
     missed = error.sel(model="restitution") * ratio - data.cascade_coefficient
     # The next order is one of 1/ϖ: twice as stiff a contact misses half as much.
     halves = missed.isel(frequency_ratio=0) / missed.isel(frequency_ratio=1)

@@ -43,10 +43,12 @@ def errors():
 
 
 def test_the_linear_law_is_that_of_the_paper():
-    span, zeta = {"min": 20.0, "max": 200.0, "samples": 5}, float(damping_ratio(0.65))
+    span = {"min": 20.0, "max": 200.0, "samples": 5}
+    zeta = float(damping_ratio(0.65))
     relative, threshold = _errors("linear", LawErrors(**ONE, tolerance=0.01, frequency_ratio=span))
     # π/D = ϖ√(1 - ζ²), and κ = 0.
-    root, ratios = np.sqrt(1 - zeta**2), np.geomspace(20.0, 200.0, 5)
+    root = np.sqrt(1 - zeta**2)
+    ratios = np.geomspace(20.0, 200.0, 5)
     asked = zeta, Release.DISPLACEMENT, 1, 1.0, ratios, 0.01, ["max_height"]
     assert threshold / root == pytest.approx(search(*asked).threshold[0, 0, 0], rel=1e-9)
     model = SpringDamperModel(SpringDamper(ratios / root, zeta))
@@ -67,9 +69,11 @@ def height_by_one_impact(law):
     It uses r_c, t_c and h of one impact under the load of the orbit, in place of the signature,
     which is linear in the load.
     """
-    psi, delay = np.arccos(np.pi * 0.35 / 1.65), 0.0
+    psi = np.arccos(np.pi * 0.35 / 1.65)
+    delay = 0.0
     for _ in range(40):
-        speed, load = np.pi + np.cos(psi), 1 - np.sin(psi)
+        speed = np.pi + np.cos(psi)
+        load = 1 - np.sin(psi)
         start = speed - load * delay
         end = contacts(law, start, weight=load)
         duration, depth, rate = (float(x) for x in end[:3])
@@ -135,7 +139,8 @@ def test_contacts_of_one_centroid_take_different_times(errors):
 @pytest.mark.long
 def test_a_constant_restitution_misses_the_period_doubling_of_a_law_that_falls(errors):
     rigid = errors.relative_error.sel(model="restitution", quantity="period_doubling")
-    falling, constant = rigid.sel(law="hunt-crossley"), rigid.sel(law="tsuji")
+    falling = rigid.sel(law="hunt-crossley")
+    constant = rigid.sel(law="tsuji")
     # A harder contact helps the one, and not the other.
     assert float(constant[1]) < 0.4 * float(constant[0])
     assert float(falling[1]) > float(falling[0])

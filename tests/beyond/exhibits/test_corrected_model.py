@@ -23,7 +23,7 @@ def orders(request):
 
 
 @pytest.mark.parametrize("orders", [Release.DISPLACEMENT], indirect=True)
-def test_the_table_of_the_error_law(described, orders):
+def test_the_table_of_the_error_law_has_the_coefficients_and_thresholds(described, orders):
     data = described(orders)
     exact = data.error_threshold.sel(model="restitution")
     # The thresholds of the replication's own table.
@@ -43,7 +43,7 @@ def test_the_table_of_the_error_law(described, orders):
     assert float(data.error_zero.sel(quantity="period_doubling")) == pytest.approx(1.9, abs=0.1)
 
 
-def test_orders_of_random_orbits(described, orders):
+def test_the_errors_of_random_orbits_have_the_orders_one_and_two(described, orders):
     data = described(orders)
     middle = data.order.sel(quantity="max_height").median("sample")
     np.testing.assert_allclose(middle, [1, 2], atol=0.01)

@@ -39,7 +39,8 @@ def test_the_engines_err_as_their_steps_say():
             data = conformed(n=n, restitution=r, steps=steps)
             for name in runs.engine.values:
                 one = data.sel(n=n, restitution=r, release="force", engine=name)
-                scheme, taken = ENGINES[name].scheme, one.contact_steps
+                scheme = ENGINES[name].scheme
+                taken = one.contact_steps
                 expected = one.step_error.sel(scheme=scheme, steps=taken)
                 ratios[scheme] += (one.bounce_error / expected).values.ravel().tolist()
     # The scatter of 16 bounces, each like the one before, is known to some 30 %, and the mean of 24
@@ -54,7 +55,7 @@ def test_the_error_falls_as_one_over_the_steps(found):
 
 
 @pytest.mark.parametrize(("changed", "says"), [({"n": 3}, "n = 3"), ({"restitution": 0.7}, "0.7")])
-def test_an_orbit_that_no_engine_ran(changed, says, refusal):
+def test_an_orbit_that_no_engine_ran_is_refused(changed, says, refusal):
     with refusal(ModelError, says, "is not among"):
         conformed(**changed)
 

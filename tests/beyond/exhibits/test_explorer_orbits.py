@@ -10,7 +10,7 @@ from bouncing_ball.pipeline.configuration import typed
 GIVEN = {"frequency_ratio": {"min": 1.0, "max": 1e4, "samples": 40}, "seed": 31}
 
 
-def test_they_satisfy_the_equations_of_the_contact():
+def test_the_reference_orbits_satisfy_the_equations_of_the_contact():
     data = typed(reference_orbits)(GIVEN)
     for rule in ("displacement", "force"):
         part = data.sel(release=rule)

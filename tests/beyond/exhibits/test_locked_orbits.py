@@ -8,14 +8,14 @@ from scipy.stats import norm
 
 from bouncing_ball.beyond.exhibits import locked_orbits as transients
 from bouncing_ball.beyond.exhibits.locked_orbits import correlation, locked_orbits, mean_life
-from bouncing_ball.beyond.exhibits.motion_samples import uncertainty_exponent
+from bouncing_ball.beyond.exhibits.motion_samples import ThreeModels, uncertainty_exponent
 from bouncing_ball.beyond.long_run.lift_off import returns
 from bouncing_ball.beyond.long_run.motions import Kind
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.pipeline.configuration import typed
 
 
-def test_limits_of_estimates():
+def test_the_limits_of_estimates_contain_the_known_values():
     random = np.random.default_rng(3)
     one, other = random.normal(size=(2, 2000))
     _, low, high = correlation(one, other, 0.95)
@@ -38,7 +38,8 @@ def test_a_delay_may_grow_beyond_all_numbers():
 
 
 def test_a_contact_agrees_where_the_prediction_says():
-    place, common = {"restitution": 0.5, "amplitude": 2.5}, {"confidence": 0.95, "seed": 5}
+    place = {"restitution": 0.5, "amplitude": 2.5}
+    common = {"confidence": 0.95, "seed": 5}
     balls = {"cases": [place], "frequency_ratio": [1000.0], "balls": 20, "impacts": 250}
     lives = typed(transients.transients)(balls | common, "displacement")
     given = {
@@ -70,7 +71,7 @@ def test_a_ball_has_arrived_where_phase_and_velocity_agree(monkeypatch):
         return SimpleNamespace(end_phase=1.0, end_velocity=-4.0, kind=kind)
 
     model = SimpleNamespace(impact_law=None, shape=())
-    monkeypatch.setattr(transients, "three_models", lambda *_: (model,) * 3)
+    monkeypatch.setattr(transients, "three_models", lambda *_: ThreeModels(*[model] * 3))
     monkeypatch.setattr(transients, "final_motions", final_motions)
     case = {"cases": [{"restitution": 0.5, "amplitude": 2.5}], "frequency_ratio": [10.0]}
     asked = transients.Transients(**case, balls=10, impacts=50, confidence=0.95, seed=1)

@@ -33,7 +33,8 @@ def test_shards_give_the_dataset_of_one_job(name, recorded, tmp_path, refusal):
     artifact = ARTIFACTS[name]
     places = typed(function(artifact.module, artifact.places))
     study = typed(STUDIES[name])
-    given, parts = {"parameters": GIVEN[name] | PLACES[name], "release": "displacement"}, []
+    given = {"parameters": GIVEN[name] | PLACES[name], "release": "displacement"}
+    parts = []
     read = {"data": recorded} if artifact.reads else {}
     for shard in shard_names(3):
         found = places(**given, part=part_of(shard))

@@ -24,8 +24,8 @@ def study(ratio, lam, r, **changed):
 
 def test_exponents_of_orbits_are_those_of_their_multipliers():
     data = study(100.0, (2.2, 2.4, 3), (0.2, 0.25, 2))
-    for model, name in zip(three_models(data.restitution.values[:, None], 100.0, Release.DISPLACEMENT),
-                           data["model"].values, strict=True):  # fmt: skip
+    models = three_models(data.restitution.values[:, None], 100.0, Release.DISPLACEMENT)
+    for model, name in zip(models, data["model"].values, strict=True):
         one = data.sel(model=name)
         orbit = model.orbit(1, data["amplitude"].values)
         larger = np.abs(orbit.multipliers()).max(axis=-1)
@@ -40,7 +40,8 @@ def test_exponents_of_orbits_are_those_of_their_multipliers():
 def test_a_model_agrees_with_itself_and_wilsons_limits_are_closed_forms():
     balls = final_motions(0.5, np.linspace(1.2, 3.2, 9), 1.0, -9.0, impacts=300)
     nodes, share, low, high = agreement(balls, balls, 0.95)
-    known, z = nodes > 0, norm.ppf(0.975)
+    known = nodes > 0
+    z = norm.ppf(0.975)
     assert nodes[GROUPS.index("all")] == np.sum(balls.kind != "undecided")
     assert np.all(share[known] == 1) and np.all(high[known] == 1)
     assert np.allclose(low[known], nodes[known] / (nodes[known] + z**2))
@@ -53,7 +54,8 @@ def test_diagrams_have_the_stable_orbit_with_its_phase_and_exponent():
     data = typed(orbit_diagrams)(given | sizes, Release.DISPLACEMENT)
     assert np.allclose(data.phase_density.sum("bin_phase"), 1)
     for k, model in enumerate(three_models(np.array(0.6), 100.0, Release.DISPLACEMENT)):
-        one, orbit = data.isel(model=k), model.orbit(1, data["amplitude"].values)
+        one = data.isel(model=k)
+        orbit = model.orbit(1, data["amplitude"].values)
         here = one.phase_density.sel(
             bin_phase=xr.DataArray(orbit.phase, dims="x"), method="nearest"
         )

@@ -11,26 +11,27 @@ from bouncing_ball.beyond.error_law import first_order
 from bouncing_ball.beyond.laws.hertzian import HuntCrossley, KuwabaraKono, Tsuji
 from bouncing_ball.beyond.laws.impedance import Impedance
 from bouncing_ball.beyond.laws.law_of_impact import law_of_impact
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.laws.orbits import LawModel, law_at_orbit
 from bouncing_ball.beyond.laws.registry import LAWS, law_named
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.paper.comparison.errors import OF_ORBITS, relative
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.restitution_branch import rigid_speed
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
 from bouncing_ball.paper.orbits.spring_damper_bifurcations import orbits_at as by_formula
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.orbits.stability import Side
 
-KINDS = [SpringDamper, *LAWS.values()]
+KINDS = [LinearLaw, *LAWS.values()]
 every_kind = pytest.mark.parametrize("kind", KINDS, ids=[kind.name for kind in KINDS])
 
 
 @pytest.mark.parametrize(
     "law", [HuntCrossley(1e3, 0.08), HuntCrossley(1e3, 0.5), KuwabaraKono(2e3, 0.008)]
 )
-def test_the_speed_of_the_restitution_models_orbits(law):
-    model, n = LawModel(law), np.array([1, 2, 5])
+def test_the_impact_speed_of_the_restitution_models_orbits_solves_its_equation(law):
+    model = LawModel(law)
+    n = np.array([1, 2, 5])
     speed, _ = restitution_speed(n, model)
     # The last step of Newton's method is below 1e-3, and leaves its square.
     period = (1 + model.signature(speed).restitution) * speed
@@ -42,7 +43,7 @@ SELDOM = [pytest.param(x, marks=pytest.mark.long) for x in LAWS if x not in ("ts
 
 
 @pytest.mark.parametrize("name", ["tsuji", "impedance", "by depth", *SELDOM])
-def test_the_orders_of_the_corrected_model_and_the_error_law(name):
+def test_the_corrected_model_and_the_error_law_leave_errors_of_second_order(name):
     errors = []
     for duration in (0.04, 0.02):
         if name == "by depth":
@@ -71,14 +72,20 @@ def test_the_orders_of_the_corrected_model_and_the_error_law(name):
 
 
 @every_kind
-def test_a_law_by_its_restitution_and_duration(kind):
+def test_a_law_has_the_restitution_and_duration_that_were_asked_for(kind):
     for r, duration, speed in ((0.3, 0.2, 1.0), (0.95, 1e-3, 7.0), (1.0, 0.1, 3.0)):
         impact = free_impact(law_of_impact(kind, r, duration, speed), speed)
         assert float(impact.restitution) == pytest.approx(r, rel=1e-13)
         assert float(impact.duration) == pytest.approx(duration, rel=1e-13)
 
 
-def test_what_is_refused():
+def test_a_law_at_an_orbit_is_the_same_for_a_side_and_its_name():
+    of_side = law_at_orbit(HuntCrossley, 0.65, 0.1, 1, 1.0, Side.UNSTABLE)
+    assert law_at_orbit(HuntCrossley, 0.65, 0.1, 1, 1.0, "unstable") == of_side
+    assert law_at_orbit(HuntCrossley, 0.65, 0.1, 1, 1.0) != of_side
+
+
+def test_an_unknown_law_and_an_impossible_impact_are_refused():
     with pytest.raises(ModelError, match=r"unknown contact law 'rubber': one of hunt-crossley"):
         law_named("rubber")
     for r, duration, speed in ((0.0, 1.0, 1.0), (1.1, 1.0, 1.0), (0.5, 0.0, 1.0), (0.5, 1.0, -1)):
@@ -88,7 +95,7 @@ def test_what_is_refused():
         law_of_impact(HuntCrossley, 1e-6, 0.1, 1.0)
 
 
-def test_far_above_the_fold_orbits_are_walked_to_or_said_not_to_be_found(monkeypatch):
+def test_far_above_the_fold_an_orbit_is_followed_to_or_reported_as_not_found(monkeypatch):
     model = LawModel(Tsuji(1e3, 0.3))
     orbit = model.require_orbit(20, 300.0, Side.UNSTABLE)
     # The contact is one of the collocation's; the equations hold to rounding of z ≈ Λ.
@@ -120,7 +127,7 @@ def test_just_above_the_fold_two_orbits_part_as_the_root_of_the_distance(r, dura
 @pytest.mark.parametrize(("amplitude", "number"), [(0.9, 3), (3.0, 1)])
 def test_a_branch_that_turns_again_is_followed_to_all_of_its_orbits(amplitude, number):
     """Also from far above the fold, which is at Λ = 0.18: the closed form has the same orbits."""
-    contact = SpringDamper(2.0, 0.05)
+    contact = LinearLaw(2.0, 0.05)
     found = by_branch(SpringDamperModel(contact), 1, amplitude)
     known = by_formula(contact, 1, amplitude)
     assert found.contact_duration.shape == (number,)

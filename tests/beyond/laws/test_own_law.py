@@ -6,6 +6,6 @@ from pathlib import Path
 PAGE = Path(__file__).parents[3] / "docs" / "contact-laws.md"
 
 
-def test_the_worked_example():
+def test_the_example_of_the_documentation_runs():
     result = doctest.testfile(str(PAGE), module_relative=False)
     assert result.attempted > 10 and result.failed == 0

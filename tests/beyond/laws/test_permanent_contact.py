@@ -57,7 +57,7 @@ def test_a_stiff_contact_has_a_threshold_next_to_that_of_a_rigid_table():
 
 
 @pytest.mark.parametrize("law", [Tsuji(10, 0.3), HuntCrossley(4e3, 0.08), KuwabaraKono(99, 0.1)])
-def test_more_nodes_change_nothing(law, monkeypatch):
+def test_more_nodes_do_not_change_a_threshold(law, monkeypatch):
     found = permanent_contact(law)
     monkeypatch.setattr("bouncing_ball.beyond.laws.permanent_contact._TOLERANCE", 1e-9)
     # The method is of the fourth order, so that the grid has little more than half the spacing.

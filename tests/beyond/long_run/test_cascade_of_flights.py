@@ -20,7 +20,8 @@ from bouncing_ball.paper.contact.spring_damper import SpringDamper
 
 def motions(r, ratio, excess):
     """What a ball that is set down after the top of the table ends on, at E."""
-    zeta, excess = damping_ratio(r), np.asarray(excess)
+    zeta = damping_ratio(r)
+    excess = np.asarray(excess)
     lam = permanent_contact_threshold(ratio, zeta) + excess / np.square(ratio)
     phase = np.pi / 2 + 3 / ratio
     slow = lam * np.cos(phase) - 0.1 / np.square(ratio)
@@ -35,16 +36,20 @@ def motions(r, ratio, excess):
         (0.85, 100.0, [9.5], [2], [0.0]),
     ],
 )
-def test_the_flights_that_another_program_found(r, ratio, excess, flights, multipliers):
+def test_the_flights_and_multipliers_are_those_that_another_program_found(
+    r, ratio, excess, flights, multipliers
+):
     found = motions(r, ratio, excess)
     assert (found.periods == 1).all() and found.impacts.tolist() == flights
     np.testing.assert_allclose(np.exp(found.exponent), multipliers, atol=5e-4)
 
 
 def test_balls_have_as_many_flights_as_the_cascade_says():
-    r, ratio = np.array([0.3, 0.65, 0.85]), np.geomspace(12.0, 200.0, 19)
+    r = np.array([0.3, 0.65, 0.85])
+    ratio = np.geomspace(12.0, 200.0, 19)
     found = openings(damping_ratio(r), ratio, 3)
-    ratio, found = ratio[::6], type(found)(*(x[..., ::6] for x in found))
+    ratio = ratio[::6]
+    found = type(found)(*(x[..., ::6] for x in found))
     held = permanent_contact_threshold(ratio, damping_ratio(r)[:, np.newaxis])
     top = ratio**2 * (found.amplitude - held[:, np.newaxis])
     stable = found.multiplier < 1
@@ -62,10 +67,12 @@ def test_balls_have_as_many_flights_as_the_cascade_says():
 
 
 def test_the_derivatives_and_the_multipliers_are_those_of_the_motion():
-    law, rng = SpringDamper(9.0, 0.12), np.random.default_rng(2)
+    law = SpringDamper(9.0, 0.12)
+    rng = np.random.default_rng(2)
     problem = OpeningContacts(law, 2)
     y = np.array([1.4, 1.2, 0.3, 0.5, 0.3, 0.4, 0.4, -0.3, 0.2, -0.2])
-    y, step = y * (1 + 0.01 * rng.normal(size=(3, 10))), 1e-6 * np.eye(10)
+    y = y * (1 + 0.01 * rng.normal(size=(3, 10)))
+    step = 1e-6 * np.eye(10)
     around = [problem.system(y[:, np.newaxis] + sign * step)[0] for sign in (1, -1)]
     slopes = np.moveaxis((around[0] - around[1]) / 2e-6, 1, -1)
     np.testing.assert_allclose(problem.system(y)[1], slopes, atol=1e-8)
@@ -78,7 +85,8 @@ def test_the_derivatives_and_the_multipliers_are_those_of_the_motion():
 
 def test_a_new_flight_changes_the_motion_by_the_power_of_three_halves():
     """The motion that opens at a height η above the table, against the one held in contact."""
-    law, lam, phase, later = SpringDamper(20.0, 0.12), 1.1, 2.3, 3.0
+    law = SpringDamper(20.0, 0.12)
+    lam, phase, later = 1.1, 2.3, 3.0
 
     def held(velocity, time):
         return law.flow(time, 0.0, velocity, phase, lam)[:2]
@@ -87,7 +95,9 @@ def test_a_new_flight_changes_the_motion_by_the_power_of_three_halves():
         time = np.linspace(0.05, 0.3, 20_001)
         return held(velocity, time)[0].max()
 
-    touch, heights, apart = brentq(top, -0.2, -0.02), [], []
+    touch = brentq(top, -0.2, -0.02)
+    heights = []
+    apart = []
     for part in (1e-2, 2.5e-3, 6.25e-4):
         velocity = touch * (1 + part)
         motion = simulate(law, lam, phase, lam * np.cos(phase) + velocity, 2)
@@ -101,7 +111,8 @@ def test_a_new_flight_changes_the_motion_by_the_power_of_three_halves():
 
 @pytest.mark.parametrize("r", [0.3, 0.65, 0.85, 0.95])
 def test_the_limits_are_reached_with_the_square_of_the_ratio(r):
-    zeta, ratio = float(damping_ratio(r)), np.array([200.0, 400.0])
+    zeta = float(damping_ratio(r))
+    ratio = np.array([200.0, 400.0])
     found = openings([zeta], ratio, 2).amplitude[0]
     excess = ratio**2 * (found - permanent_contact_threshold(ratio, zeta))
     off = stiff_openings(zeta, 2)[:, np.newaxis] - excess
@@ -123,12 +134,16 @@ def test_the_limit_is_that_of_its_equation_by_another_integrator():
             return y[0] if held >= 0 else 0.0
 
         rate = np.sqrt(2 * excess)
-        s, y, exact = 2 * zeta - rate, [0.0, rate], {"rtol": 1e-11, "atol": 1e-13}
+        s = 2 * zeta - rate
+        y = [0.0, rate]
+        exact = {"rtol": 1e-11, "atol": 1e-13}
         for leg in range(2 * k - 1):
-            table.terminal, table.direction = True, 1 if leg % 2 else -1
+            table.terminal = True
+            table.direction = 1 if leg % 2 else -1
             y[0] = 1e-12 if leg % 2 == 0 else -1e-12
             run = solve_ivp(pull, (s, s + 99), y, args=(leg % 2,), events=table, **exact)
-            s, y = run.t[-1], list(run.y[:, -1])
+            s = run.t[-1]
+            y = list(run.y[:, -1])
         run = solve_ivp(pull, (s, s + 6), y, args=(1,), max_step=0.01, **exact)
         rises = np.flatnonzero((run.y[1, :-1] > 0) & (run.y[1, 1:] <= 0))[0]
         assert abs(run.y[0, rises]) < 1e-4 * excess

@@ -12,8 +12,10 @@ LYING = -np.pi / 2, 0.0
 
 
 def test_a_return_is_the_mappers_locked_orbit():
-    r, lam = np.linspace(0.2, 0.6, 9), np.linspace(2.0, 4.6, 9)
-    found, mapped = returns(r, lam, 300), final_motions(r, lam, *LYING, impacts=600)
+    r = np.linspace(0.2, 0.6, 9)
+    lam = np.linspace(2.0, 4.6, 9)
+    found = returns(r, lam, 300)
+    mapped = final_motions(r, lam, *LYING, impacts=600)
     locked = mapped.kind == "locked"
     assert locked.sum() > 5
     assert np.array_equal(found.periods[locked], mapped.periods[locked])
@@ -24,13 +26,15 @@ def test_a_return_is_the_mappers_locked_orbit():
 def test_the_sensitivity_is_the_corrected_models_to_first_order():
     """The phase at which chattering ends, from one of its bounces, in both models."""
     r, lam = 0.5, 2.5
-    found, late = returns(r, lam, 100), []
+    found = returns(r, lam, 100)
+    late = []
     for ratio in (1e4, 2e4):
         ends = []
         for model in three_models(np.array(r), ratio, Release.DISPLACEMENT)[:2]:
             path = model.simulate(lam, *LYING, 20)
             # Bounce 14 of 25, which is followed by T = 2 r v/(g (1 - r)) of chattering.
-            phase, speed = path.phase[14], -path.relative_velocity[14]
+            phase = path.phase[14]
+            speed = -path.relative_velocity[14]
             ends.append(phase + 2 * r * speed / ((1 - lam * np.sin(phase)) * (1 - r)))
         late.append(ratio * abs(ends[1] - ends[0]))
     # Richardson; the bounces after the 14th delay it by a few of their durations over T.
@@ -54,6 +58,7 @@ def test_at_a_discontinuity_the_wait_vanishes():
     for _ in range(4):
         grid = np.linspace(low, high, 1025)
         last = np.argmin(returns(r, grid, 50).periods == period)
-        low, high = grid[last - 1], grid[last]
+        low = grid[last - 1]
+        high = grid[last]
     waits = [returns(r, x, 50).wait for x in (low, high)]
     assert np.nanmin(waits) < 1e-4 < returns(r, low - 0.01, 50).wait

@@ -12,7 +12,8 @@ from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 
-R, RATIOS = 0.5, np.array([20.0, 40.0, 80.0, 160.0])
+R = 0.5
+RATIOS = np.array([20.0, 40.0, 80.0, 160.0])
 CONTACT = SpringDamper.from_restitution(R, RATIOS)
 MODELS = [SpringDamperModel(CONTACT), CorrectedModel.of_contact(CONTACT)]
 
@@ -48,9 +49,11 @@ def test_a_ball_at_a_doubling_returns_after_2_to_the_k_impacts_in_the_simulation
 
 def test_the_period_of_what_attracts_doubles_there(model, found):
     """Found without the orbit's equations: by where balls end beside each doubling."""
-    law, sides = model.period_doubling(1).law, np.array([[[-0.2]], [[0.2]]])
+    law = model.period_doubling(1).law
+    sides = np.array([[[-0.2]], [[0.2]]])
     lam = found.amplitude[:-1] + sides * np.diff(found.amplitude, axis=0)
-    phase, relative = found.phase[:-1], found.velocity[:-1]
+    phase = found.phase[:-1]
+    relative = found.velocity[:-1]
     motion = final_motions(law, lam, phase, relative + lam * np.cos(phase), impacts=5000)
     expected = 2 ** (np.arange(3)[:, np.newaxis] + np.arange(2)[:, np.newaxis, np.newaxis])
     np.testing.assert_array_equal(motion.impacts, np.broadcast_to(expected, lam.shape))
@@ -73,9 +76,11 @@ def test_a_contact_shifts_the_cascade_by_the_first_order_and_corrected_by_the_se
     """Halving 1/ϖ halves the distance from the limit, and quarters it for what is left."""
     if isinstance(model, CorrectedModel):
         exact = cascade(SpringDamperModel(CONTACT).period_doubling(1), 4)
-        error, order = found.amplitude / exact.amplitude - 1, 2
+        error = found.amplitude / exact.amplitude - 1
+        order = 2
     else:
-        error, order = found.amplitude / restitution.amplitude[:4, np.newaxis] - 1, 1
+        error = found.amplitude / restitution.amplitude[:4, np.newaxis] - 1
+        order = 1
     assert np.all(error != 0)
     falls = np.log2(error[:, :-1] / error[:, 1:])
     # The next order adds C/ϖ to the relative change of the error: it halves as well.

@@ -83,7 +83,7 @@ def row(claim: Claim, data):
     return {name: values.item() for name, values in result.data_vars.items() if not values.dims}
 
 
-def test_a_printed_number(data):
+def test_a_printed_number_is_judged_by_its_last_digit(data):
     found = row(height_threshold, data)
     assert found["deviation_units"] == pytest.approx(0.18)
     assert found["deviation"] == pytest.approx(0.18 / 82)
@@ -104,7 +104,7 @@ def test_a_printed_number(data):
     assert height_threshold.id == "height threshold"
 
 
-def test_a_statement_and_its_explanation(data):
+def test_a_statement_that_fails_is_explained_by_checks_that_hold(data):
     result = assess([rising], data)
     found = row(rising, data)
     assert (found["verdict"], found["found"], found["required"]) == ("contradicted", -0.25, "> 0")
@@ -130,7 +130,7 @@ def test_readings_that_differ_leave_a_claim_open(data):
     assert row(replace(two_readings, meant=True), data)["verdict"] == "contradicted"
 
 
-def test_formulas_and_groups(data):
+def test_each_claim_is_counted_in_its_group(data):
     assert row(right, data)["verdict"] == "reproduced"
     assert [
         row(claim, data)["group"] for claim in (right, height_threshold, rising, two_readings)
@@ -187,7 +187,7 @@ def test_what_is_missing_is_an_error_in_one_line(data, change, said, one_line):
     assert str(error.value).startswith(("'rises': ", "'it turns': "))
 
 
-def test_the_tally(data):
+def test_the_tally_counts_verdicts_without_restatements(data):
     some = [rising, two_readings, height_threshold, right]
     assert tally(assess(some, data)) == "3 claims of the paper: 2 reproduced, 1 contradicted"
     data["fig"]["rise"] = ("n", [0.5, 0.25, -1.0])

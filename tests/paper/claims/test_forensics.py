@@ -36,9 +36,10 @@ def cycle(phase, u, orbit, reference, *, weight, rise):
     flight = float(orbit.flight_time)
 
     def state(s):
-        held = np.array(reference.contact_state(s, 0.0, u, phase, lam, omega, zeta))
-        sag = np.array(reference.contact_state(s, 0.0, 0.0, 0.0, 0.0, omega, zeta))
-        return held - (1 - weight) * sag
+        contact = {"omega": omega, "zeta": zeta}
+        held = reference.contact_state(s, d0=0.0, v0=u, phase=phase, lam=lam, **contact)
+        sag = reference.contact_state(s, d0=0.0, v0=0.0, phase=0.0, lam=0.0, **contact)
+        return np.array(held) - (1 - weight) * np.array(sag)
 
     s = brentq(lambda s: state(s)[0], 0.97 * duration, 1.03 * duration, xtol=1e-300, rtol=9e-16)
     d, v = state(s)
@@ -102,7 +103,7 @@ def test_the_stiff_limits_are_holmes_map_and_the_restitution_model(study):
         assert nodes == pytest.approx(restitution_orbit.saddle_node(n, 0.85), abs=1e-4)
 
 
-def test_readings_of_the_damping(study):
+def test_each_reading_of_the_damping_has_the_saddle_node_of_its_zeta(study):
     for reading, zeta in (
         ("damping as printed", PRINTED_DAMPING),
         ("damping to first order", -np.log(0.85) / np.pi),
@@ -138,7 +139,7 @@ def test_digits_cut_off_and_what_no_orbit_reaches(study):
     assert cut.unreachable.item() == int((below > 1).sum()) == 1
 
 
-def test_rows_of_the_table(study):
+def test_the_table_has_a_row_for_each_reading(study):
     header, body = rows(study)
     assert len(body) == 8 and {len(line) for line in body} == {len(header)}
     stand = next(line for line in body if line[1] == "equations as they stand")

@@ -25,7 +25,7 @@ def checked():
     return typed(formulas)(PARAMETERS)
 
 
-def test_which_formulas_are_right(checked, described):
+def test_all_formulas_but_the_known_wrong_ones_are_right(checked, described):
     data = described(checked)
     assert set(data.formula.values) - agreeing(data) == WRONG
     # By per cents: no matter of the budget.
@@ -68,9 +68,9 @@ def test_every_printed_function_is_among_them():
 def test_a_changed_formula_shows_in_its_rows_and_in_no_other(name, checked, monkeypatch):
     right = getattr(printed, name)
 
-    def wrong(*args):
+    def wrong(*args, **named):
         # A coefficient misprinted in its tenth digit: what rounding accounts for is far less.
-        values = right(*args)
+        values = right(*args, **named)
         if name == "landing_defect":  # zero where the equation holds
             return values + 1e-9
         if name == "damping_ratio":  # zero at r = 1
@@ -105,12 +105,19 @@ def test_the_sign_of_a_term_is_seen(monkeypatch):
     # Eq. 12 with +2ζϖ in place of -2ζϖ in β; signs are what the text has lost.
     right = printed.contact
 
-    def flipped(time, omega, zeta, lam, phase, a, b):
-        loss = 2 * zeta * omega
-        beta = 2 * loss / ((omega**2 - 1) ** 2 + loss**2)
-        height, velocity = right(time, omega, zeta, lam, phase, a, b)
-        angle = time + phase
-        return height + beta * lam * np.cos(angle), velocity - beta * lam * np.sin(angle)
+    def flipped(*, time, frequency_ratio, damping_ratio, amplitude, phase, **constants):
+        loss = 2 * damping_ratio * frequency_ratio
+        beta = 2 * loss / ((frequency_ratio**2 - 1) ** 2 + loss**2)
+        height, velocity = right(
+            time=time,
+            frequency_ratio=frequency_ratio,
+            damping_ratio=damping_ratio,
+            amplitude=amplitude,
+            phase=phase,
+            **constants,
+        )
+        table = beta * amplitude * np.exp(1j * (time + phase))
+        return height + table.real, velocity - table.imag
 
     monkeypatch.setattr(printed, "contact", flipped)
     assert not {"Eqs. 12-13", "Eqs. 21-26"} & agreeing(typed(formulas)(PARAMETERS))
@@ -134,7 +141,7 @@ def test_the_steady_amplitude_is_that_of_the_resonance_curve():
     assert checks.steady_amplitude(omega, zeta) == pytest.approx(expected, rel=1e-12)
 
 
-def test_the_measured_restitution_without_and_with_gravity():
+def test_without_gravity_or_damping_the_measured_restitution_is_that_of_eq_16():
     r = np.array([0.85, 0.3])
     omega = np.array([5.0, 50.0])
     assert measured_restitution(r, omega, WEIGHTLESS) == pytest.approx(r, abs=1e-14)
@@ -142,7 +149,7 @@ def test_the_measured_restitution_without_and_with_gravity():
     assert measured_restitution(1.0, 5.0, 2.0) == pytest.approx(1.0, abs=1e-13)
 
 
-def test_the_static_error(checked, reference):
+def test_the_static_error_is_that_of_the_first_return_to_the_table(checked, reference):
     error = checked.static_error
     assert error.dims == ("restitution", "frequency_ratio")
     # The largest of the four, from the first return to δ = 0.
@@ -150,7 +157,9 @@ def test_the_static_error(checked, reference):
     zeta = -np.log(r) / np.hypot(np.pi, np.log(r))
 
     def at(time):
-        return reference.contact_state(time, 0.0, -np.pi, 0.0, 0.0, omega, zeta)
+        return reference.contact_state(
+            time, d0=0.0, v0=-np.pi, phase=0.0, lam=0.0, omega=omega, zeta=zeta
+        )
 
     end = brentq(lambda time: at(time)[0], np.pi / omega / 2, 1.5 * np.pi / omega, xtol=1e-15)
     found = abs(at(end)[1] / np.pi / r - 1)

@@ -51,7 +51,16 @@ def test_every_entry_is_an_orbit_of_its_parameters(described, reference, release
         speed = float(at.impact_velocity - lam * np.cos(at.phase))
         duration = float(at.contact_duration)
         zeta = float(damping_ratio(r))
-        end = reference.cycle(phase, speed, 1, lam, ratio, zeta, duration, release == "force")
+        end = reference.cycle(
+            phase,
+            speed,
+            n=1,
+            lam=lam,
+            omega=ratio,
+            zeta=zeta,
+            duration=duration,
+            force_release=release == "force",
+        )
         # The roundings of the events, over a flight of some 2π.
         assert end == pytest.approx((phase + 2 * np.pi, speed), abs=1e-11)
         assert float(at.release_phase) == pytest.approx(phase + duration, abs=1e-15)
@@ -69,7 +78,7 @@ def test_not_stable_where_there_is_no_orbit():
     assert np.isnan(data.max_height.values[gone]).all()
 
 
-def test_sweep_of_one_restitution(described):
+def test_the_orbits_of_a_sweep_tend_to_those_of_the_restitution_model(described):
     parameters = {"n": 2, "restitution": 0.85, "amplitude": [1.1, 0.6], "frequency_ratio": SPAN}
     data = described(frequency_sweep(parameters, "displacement"))
     assert data.amplitude.values.tolist() == [1.1, 0.6]

@@ -114,7 +114,7 @@ def test_branches_start_and_end_where_they_should(figure_8):
     assert figure_8.phase.values[0, 0] < figure_8.phase.values[0, -1]
 
 
-def test_special_points(figure_8):
+def test_the_special_points_are_the_bifurcations(figure_8):
     row = figure_8.sel(frequency_ratio=10.0)
     kinds = [kind for kind in row.special_kind.values.tolist() if kind]
     assert kinds == [SADDLE_NODE, PERIOD_DOUBLING]
@@ -131,7 +131,9 @@ def test_special_points(figure_8):
 
 
 @pytest.mark.slow
-def test_stability_ranges(continuation_settings, described):
+def test_the_ends_of_a_stability_range_are_a_saddle_node_and_a_period_doubling(
+    continuation_settings, described
+):
     # Those of the other release are Table 1 of every run.
     release = "force"
     parameters = WINDOW | {"n": [1, 2], "frequency_ratio": [1e3, 2.0]}
@@ -148,7 +150,7 @@ def test_stability_ranges(continuation_settings, described):
     assert limit == pytest.approx(np.array([[0.2547, 1.0383], [0.5094, 1.1281]]), abs=6e-5)
 
 
-def test_both_domains(continuation_settings, described):
+def test_fig_15_has_the_branches_of_both_models(continuation_settings, described):
     parameters = {
         "n": 2,
         "restitution": 0.65,
@@ -170,7 +172,7 @@ def test_both_domains(continuation_settings, described):
     )
 
 
-def test_a_very_stiff_contact(follow):
+def test_a_very_stiff_contact_is_stable_between_its_bifurcations(follow):
     _, branch = follow(1, 0.85, 1e5, 1.2)
     assert first_limits(branch)[:, -1] == pytest.approx(bifurcations(1, 0.85, 1e5), abs=1e-12)
 
@@ -195,13 +197,13 @@ def test_a_branch_that_does_not_exist_is_missing_and_says_why(continuation_setti
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("n", "r", "top"), [(1, 0.3, 10.0), (2, 0.85, 1.5)])
-def test_a_contact_slower_than_the_table(follow, n, r, top):
+def test_the_branch_of_a_contact_slower_than_the_table_is_followed(follow, n, r, top):
     system, branch = follow(n, r, 0.6, top)
     assert np.max(np.abs(system.residual(branch.points))) < 1e-10
     assert branch.points[:, -1].min() >= 0 and branch.points[:, -1].max() <= top * (1 + 1e-12)
 
 
-def test_a_window_without_a_period_doubling(continuation_settings):
+def test_a_window_without_a_period_doubling_has_no_range_and_says_why(continuation_settings):
     parameters = WINDOW | {"n": [1], "frequency_ratio": [10.0], "amplitude_max": 0.9}
     data = stability_ranges(parameters, "displacement", continuation_settings)
     assert np.isnan(data.computed).all()
@@ -209,7 +211,7 @@ def test_a_window_without_a_period_doubling(continuation_settings):
     assert "no period doubling" in why and "left the window at amplitude 0.9" in why
 
 
-def test_a_branch_without_a_saddle_node(follow, refusal):
+def test_a_branch_without_a_saddle_node_is_refused(follow, refusal):
     _, branch = follow(1, 0.85, 1.0, 1.5)
     with refusal(NoOrbitError, "no saddle-node"):
         first_limits(branch)

@@ -24,7 +24,7 @@ PARAMETERS = {
 }
 
 
-def test_one_percent_height_of_the_paper(described):
+def test_the_height_is_within_one_percent_above_82(described):
     # Eq. 37, Figure 14: n = 1, r = 0.65, Λ = 1; printed "≈ 82".
     parameters = {key: PARAMETERS[key] for key in ("n", "restitution", "amplitude")}
     parameters |= {"frequency_ratio": {"min": 1.0, "max": 1000.0, "samples": 31}, "tolerance": 0.01}
@@ -37,7 +37,7 @@ def test_one_percent_height_of_the_paper(described):
     np.testing.assert_allclose(data.relative_error.sel(quantity="max_height"), expected, rtol=1e-9)
 
 
-def test_one_percent_permanent_contact(described):
+def test_the_threshold_of_permanent_contact_is_within_one_percent_above_9_81(described):
     # Eq. 38, Figure 16; printed "≈ 6".
     span = {"min": 0.5, "max": 100.0, "samples": 101}
     parameters = {"restitution": 0.65, "frequency_ratio": span, "tolerance": 0.01}
@@ -49,7 +49,7 @@ def test_one_percent_permanent_contact(described):
     assert np.sqrt(gamma) / ratio**2 == pytest.approx(0.99, rel=1e-12)
 
 
-def test_all_quantities(described):
+def test_beyond_its_threshold_each_error_is_within_the_tolerance(described):
     data = described(typed(error_thresholds)(PARAMETERS, "displacement"))
     assert data.relative_error.dims == ("quantity", "frequency_ratio")
     assert data.error_threshold.dims == ("quantity", "tolerance")
@@ -66,7 +66,7 @@ def test_all_quantities(described):
         assert float(beyond.max()) <= tolerance
 
 
-def test_force_release():
+def test_under_the_force_release_the_restitution_never_comes_within_one_percent():
     paper = typed(error_thresholds)(PARAMETERS, "displacement")
     dry = typed(error_thresholds)(PARAMETERS, "force")
     # A contact released at zero force keeps more velocity than Eq. 16 says: r_a

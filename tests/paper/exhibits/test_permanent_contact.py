@@ -11,7 +11,7 @@ permanent_contact = typed(permanent_contact)
 PARAMETERS = {"restitution": 0.65, "frequency_ratio": {"min": 0.5, "max": 100.0, "samples": 201}}
 
 
-def test_threshold_and_minimum(described):
+def test_the_minimum_is_the_lowest_threshold_and_that_of_eq_36(described):
     data = described(permanent_contact(PARAMETERS, "displacement"))
     zeta = float(data.damping_ratio)
     omega = data.frequency_ratio.values

@@ -22,7 +22,7 @@ def bounce(s, phase, velocity, amplitude, r):
     return -r * (velocity - s) + (1 + r) * amplitude * np.cos(phase + s)
 
 
-def test_domains(described):
+def test_the_points_of_fig_3_are_fixed_points_of_the_exact_map(described):
     data = described(restitution_orbits(DOMAINS))
     assert data.phase.dims == ("n", "point") and data.phase.shape == (3, 81)
     assert data.n.values.tolist() == [1, 2, 3]
@@ -88,7 +88,7 @@ def test_elastic_domains_reach_the_top():
 HISTORY = {"n": 1, "restitution": 0.85, "amplitude": 1.0, "periods": 2, "samples": 401}
 
 
-def test_history(described):
+def test_the_ball_of_fig_2_touches_the_table_at_its_impacts_only(described):
     data = described(restitution_history(HISTORY))
     assert data.ball.dims == ("sample",) and data.sizes["sample"] == 401
     assert float(data.time[-1]) == pytest.approx(4 * np.pi, rel=1e-15)

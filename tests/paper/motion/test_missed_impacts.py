@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.simulation import next_impact
 from bouncing_ball.numerics import first_zero
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
@@ -24,7 +25,11 @@ def starts(balls, rng):
 
 def law_of(model, r, ratio):
     contact = SpringDamper.from_restitution(r, ratio)
-    return {"restitution": r, "spring-damper": contact, "corrected": Signature(contact)}[model]
+    return {
+        "restitution": r,
+        "spring-damper": contact,
+        "corrected": Signature(LinearLaw.of(contact)),
+    }[model]
 
 
 def compare(model, balls, monkeypatch, rows=3):

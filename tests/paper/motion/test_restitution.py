@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bouncing_ball.beyond.history import history
 from bouncing_ball.beyond.simulation import next_impact, simulate
 from bouncing_ball.errors import ModelError
+from bouncing_ball.paper.motion.history import history
 from bouncing_ball.paper.motion.sequence import Status
 from bouncing_ball.paper.motion.sticking import lift_off_phase
 

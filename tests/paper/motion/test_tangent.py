@@ -5,6 +5,7 @@ import pytest
 
 from bouncing_ball.beyond.corrected.signature import Signature
 from bouncing_ball.beyond.laws.hertzian import Tsuji, tsuji_damping
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.simulation import dynamics_of
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.motion.deviations import Jacobian
@@ -16,7 +17,7 @@ LAWS = [
     SpringDamper.from_restitution(0.7, 30.0, "force"),
     # Here one contact in ten resumes below the table's level.
     SpringDamper(2.0, 0.9, "force"),
-    Signature(SpringDamper.from_restitution(0.7, 30.0)),
+    Signature(LinearLaw.of(SpringDamper.from_restitution(0.7, 30.0))),
     Tsuji(2000.0, tsuji_damping(0.7)),
     Signature(Tsuji(2000.0, tsuji_damping(0.7))),
 ]

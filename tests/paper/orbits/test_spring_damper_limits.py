@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.paper.contact.damping import Release, damping_ratio
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.spring_damper_bifurcations import orbit_at, orbits_at, saddle_node
@@ -158,3 +158,12 @@ def test_contacts_beyond_the_searched_angles_are_never_found():
     orbits = orbits_at(contact, 2, 1.2720391140979281)
     angle = orbits.contact_duration * contact.damped_frequency
     assert np.max(angle, initial=0.0) < 2e5 * 0.02 + np.pi
+
+
+def test_a_side_may_be_given_by_its_name(refusal):
+    contact = SpringDamper(10.0, 0.05)
+    for side in Side:
+        by_name = orbit_at(contact, 1, 0.9, str(side))
+        assert by_name.phase == orbit_at(contact, 1, 0.9, side).phase
+    with refusal(ModelError, "unknown side 'upper'"):
+        orbit_at(contact, 1, 0.9, "upper")

@@ -52,7 +52,7 @@ def test_the_article_is_set_with_its_headings_captions_and_figures(accepted):
     assert operators > 500_000
 
 
-def test_a_short_one():
+def test_a_pdf_has_captions_and_links_and_is_the_same_every_time():
     first, second = (article_pdf(SMALL, TEMPLATE, ROOT) for _ in range(2))
     # No time and no machine in it.
     assert first == second
@@ -62,11 +62,11 @@ def test_a_short_one():
     assert sorted(uris(reader)) == ["../config/config.yaml", "figures/fig07.nc"]
 
 
-def test_what_cannot_be_set_is_said_in_one_line(tmp_path, refusal):
+def test_an_article_that_cannot_be_set_is_refused_in_one_line(tmp_path, refusal):
     with refusal(ModelError, "the article cannot be set: "):
         article_pdf(SMALL, TEMPLATE, tmp_path)
 
 
-def test_addresses_stay():
+def test_links_to_the_web_and_to_figures_stay_and_others_go_one_folder_up():
     text = "[a](https://example.org) [b](figures/x.nc) [c](#part) [d](docs/x.md)"
     assert for_pdf(text) == text.replace("(docs", "(../docs")

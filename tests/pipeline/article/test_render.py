@@ -42,25 +42,25 @@ def render(tmp_path):
     return run
 
 
-def test_numbers_come_from_the_datasets(render):
+def test_a_printed_number_follows_its_dataset(render):
     data = xr.Dataset({"x": ("n", [1.0, 9.8118])}, {"n": [1, 2]})
     assert render("{{ decimal(data.t.x.sel(n=2).item(), 2) }}", t=data) == "9.81"
     data["x"] = data.x + 1
     assert render("{{ decimal(data.t.x.sel(n=2).item(), 2) }}", t=data) == "10.81"
 
 
-def test_verdicts_come_from_the_claims(render):
+def test_a_printed_verdict_follows_the_claims(render):
     text = '{{ claims("contact").verdict }} {{ claims.count("reproduced") }}/{{ claims.count() }}'
     assert render(text) == "contradicted 1/2"
     assert render(text, ledger=claims(verdict=["close", "close"])) == "close 0/2"
 
 
-def test_what_is_not_there_is_an_error(render):
+def test_an_unknown_claim_is_an_error(render):
     with pytest.raises(KeyError, match="height"):
         render('{{ claims("height") }}')
 
 
-def test_restatements_are_counted_apart():
+def test_restatements_are_not_counted_among_the_claims():
     shown = Claims(claims(group=["number", "restatement"]))
     assert (shown.count(), shown.count(group="all")) == (1, 2)
     assert (shown.count("contradicted"), shown.count("contradicted", group="all")) == (0, 1)
@@ -98,7 +98,7 @@ def test_every_reference_is_cited():
     assert {work["id"] for work in known["references"]} == set(cited)
 
 
-def test_nan_is_not_printed():
+def test_nan_is_printed_as_a_dash():
     shown = Claims(claims(found=[np.nan, 9.8118], verdict=["undecidable", "contradicted"]))
     assert shown("heights").found == "–"
 

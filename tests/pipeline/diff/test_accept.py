@@ -13,7 +13,7 @@ from bouncing_ball.pipeline.provenance import UNKNOWN, Revision
 @pytest.fixture
 def run(pair, monkeypatch):
     """``run(*names)``: accept in a committed checkout, for which Snakemake has nothing to do."""
-    monkeypatch.setattr(module.origin, "revision", lambda _: Revision("1f0e", "no"))
+    monkeypatch.setattr(module.provenance, "revision", lambda _: Revision("1f0e", "no"))
     monkeypatch.setattr(module, "jobs_left", lambda *_: 0)
     (pair.record / "config").mkdir()
     (pair.record / "config" / "config.yaml").write_text("release: force\n", encoding="utf-8")
@@ -35,7 +35,7 @@ def drift(pair, by=1e-3):
     pair.write("fig05", data)
 
 
-def test_what_has_moved_is_copied_and_the_rest_is_not(pair, run):
+def test_accept_copies_what_has_moved_and_nothing_else(pair, run):
     drift(pair)
     pair.write("fig08", pair.dataset("fig08").assign_attrs(provenance_commit="2a2a"))
     (pair.new / "figures" / "fig09.svg").unlink()
@@ -52,7 +52,7 @@ def test_what_has_moved_is_copied_and_the_rest_is_not(pair, run):
     assert run() == ["Nothing to accept: the results agree with the record."]
 
 
-def test_what_is_named_is_copied_and_nothing_else(pair, run, refusal):
+def test_accept_of_named_artifacts_copies_these_alone(pair, run, refusal):
     drift(pair)
     pair.rewrite("paper.md", "reproduced", "contradicted")
     pair.write("fig08", pair.dataset("fig08").assign_attrs(provenance_commit="2a2a"))
@@ -80,7 +80,7 @@ def test_what_is_named_is_copied_and_nothing_else(pair, run, refusal):
 )
 def test_a_refusal_changes_nothing(pair, run, monkeypatch, refusal, state, left, config, said):
     drift(pair)
-    monkeypatch.setattr(module.origin, "revision", lambda _: state)
+    monkeypatch.setattr(module.provenance, "revision", lambda _: state)
     monkeypatch.setattr(module, "jobs_left", lambda *_: left)
     (pair.new / "figures" / "fig17.png").touch()
     before = contents(pair)

@@ -58,6 +58,9 @@ addEventListener("load", () => {
     ]),
     cells: [...page.querySelectorAll("td")].map(cell => cell.textContent),
     fetched: view.performance.getEntriesByType("resource").map(entry => entry.name),
+    tables: [...page.querySelectorAll(".wide")].map(each => each.scrollWidth - each.clientWidth),
+    // Lines of text in each row of a table of variables.
+    rows: [...page.querySelectorAll(".variables tr")].map(row => row.offsetHeight / 20),
     overflow: page.documentElement.scrollWidth - page.documentElement.clientWidth,
     modes: modes(page, view),
   });
@@ -77,7 +80,7 @@ def observe(browse, folder, width):
     return json.loads(unescaped)
 
 
-def test_the_page_as_a_browser_shows_it(pair, tmp_path, browse):
+def test_a_browser_shows_all_pictures_and_columns_of_the_page(pair, tmp_path, browse):
     """With a drifted, a missing and a swapped figure."""
     data = pair.dataset("fig05")
     data.phase.values[1, 40] += 1e-3
@@ -85,7 +88,10 @@ def test_the_page_as_a_browser_shows_it(pair, tmp_path, browse):
     shutil.copyfile(pair.new / "figures" / "fig08.png", pair.new / "figures" / "fig09.png")
     (pair.new / "figures" / "fig01.svg").unlink()
     (tmp_path / "page.html").write_text(to_html(pair.compare()), encoding="utf-8")
-    seen = observe(browse, tmp_path, 1200)
+    seen = observe(browse, tmp_path, 1300)
+    # All columns are within the window, in rows as tall as their text.
+    assert seen["overflow"] == 0 and seen["tables"] and max(seen["tables"]) == 0
+    assert max(seen["rows"]) <= 5
     every_picture_is_there_and_the_worst_first(seen, pair)
     side_by_side_then_one_upon_the_other(seen["modes"])
     # The page fits a telephone.
@@ -130,5 +136,5 @@ def side_by_side_then_one_upon_the_other(modes):
     before, after = modes["wipe"]
     assert after["resize"] == "horizontal"
     assert after["width"] == pytest.approx(before["width"] / 2, abs=1)
-    assert modes["large"][0]["wide"] == 1200
+    assert modes["large"][0]["wide"] == 1300
     assert modes["large"][0]["picture"] > 1.2 * modes["wipe"][0]["picture"]

@@ -22,6 +22,7 @@ from bouncing_ball.beyond.atlas.walk import walk
 from bouncing_ball.beyond.corrected.errors import orbit_errors
 from bouncing_ball.beyond.corrected.signature import Signature
 from bouncing_ball.beyond.error_law import remainder
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.paper.comparison.errors import OF_ORBITS
 
 # The error is bounded for the interpolation, because it is infinite where a model has no orbit.
@@ -173,7 +174,7 @@ def _of_nodes(plan: Plan, row: int, index: np.ndarray) -> xr.Dataset:
     # The walk goes down in ϖ, whereas the examined ϖ increase.
     at = np.flatnonzero(np.isin(down, plan.examined))[::-1]
     examined = np.moveaxis(error[at], 0, 2)
-    signature = Signature(nodes.contact(down[at, np.newaxis]))
+    signature = Signature(LinearLaw.of(nodes.contact(down[at, np.newaxis])))
     # One quantity after another, because the errors of all quantities do not fit into the cache.
     each = error.reshape(len(down), -1, len(index))
     tolerances = np.array(plan.tolerances)

@@ -11,11 +11,12 @@ from bouncing_ball.beyond.corrected.errors import models
 from bouncing_ball.beyond.corrected.instant import Instant, instant_of
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
 from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.beyond.laws.hertzian import Tsuji
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.laws.orbits import LawModel
 from bouncing_ball.beyond.laws.permanent_contact import known_threshold
 from bouncing_ball.beyond.laws.scales import rest
-from bouncing_ball.paper.contact.law import ContactLaw
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.model import ImpactModel
 from bouncing_ball.paper.orbits.restitution_branch import rigid_speed
@@ -143,7 +144,12 @@ class PhysicalCase:
         numbers = self.law.in_si(self.mass, self.table.length, self.table.time)
         return {"name": self.law.name, **numbers}
 
+    @property
+    def exact_law(self) -> ContactLaw:
+        """The contact law of the exact model."""
+        return LinearLaw.of(self.contact) if self.law is None else self.law
+
     @cached_property
     def permanent_contact(self) -> float:
         """Λ up to which the ball stays on the table; NaN if no such threshold was found."""
-        return known_threshold(self.contact if self.law is None else self.law)
+        return known_threshold(self.exact_law)

@@ -27,11 +27,11 @@ from bouncing_ball.beyond.calculator.units import SIParameter, number
 from bouncing_ball.beyond.corrected.signature import Signature, free_impact
 from bouncing_ball.beyond.engines.choice import engine_named
 from bouncing_ball.beyond.engines.engine import Engine, Physical
+from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.beyond.laws.hertzian import Tsuji, tsuji_damping
 from bouncing_ball.beyond.laws.law_of_impact import law_of_impact
 from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.paper.contact.damping import Release, damping_ratio
-from bouncing_ball.paper.contact.law import ContactLaw
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.restitution_branch import rigid_speed
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel

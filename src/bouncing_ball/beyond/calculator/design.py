@@ -27,12 +27,13 @@ from bouncing_ball.beyond.calculator.verdict import (
 )
 from bouncing_ball.beyond.engines.choice import engine_named
 from bouncing_ball.beyond.engines.engine import ERROR, Physical
+from bouncing_ball.beyond.laws.contact_law import ContactLaw
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.laws.registry import law_named
 from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError, Range, one_of, require
 from bouncing_ball.paper.comparison.errors import OF_ORBITS, QUANTITIES, Quantity
 from bouncing_ball.paper.comparison.thresholds import ThresholdStatus
 from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.contact.law import ContactLaw
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
 
@@ -300,13 +301,13 @@ def _law_type(
 
     The parameters of the law follow from a free impact, so that r counts as measured.
     """
-    if name is not None and engine is not None and name != SpringDamper.name:
+    if name is not None and engine is not None and name != LinearLaw.name:
         laws = engine_named(engine).laws
         if name not in {*laws, *laws.values()}:
             raise ParameterError(f"{{law}} {name} is not written for {engine}: leave {{law}} out")
         name = laws.get(name, name)
     kind = None if name is None else law_named(name)
-    if kind is None or kind is SpringDamper:
+    if kind is None or kind is LinearLaw:
         return None
     if release is not None:
         raise ParameterError(f"{{release}} is not allowed with {{law}} {name}, which has its own")

@@ -15,6 +15,7 @@ from bouncing_ball.beyond.calculator.case import PhysicalCase
 from bouncing_ball.beyond.calculator.results import Errors, Family, Needed, Standing
 from bouncing_ball.beyond.corrected.errors import search
 from bouncing_ball.beyond.error_law import law_thresholds
+from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.paper.comparison.errors import OF_IMPACTS, OF_ORBITS, Quantity, relative
 from bouncing_ball.paper.contact.permanent_contact import RESTITUTION_THRESHOLD
@@ -39,7 +40,7 @@ def _moduli(values: np.ndarray) -> Errors:
     return {str(q): finite(abs(x)) for q, x in zip(Quantity, values, strict=False)}
 
 
-def _loads(orbit: Any) -> tuple[float, float]:
+def _loads(law: ContactLaw, orbit: Any) -> tuple[float, float]:
     """Greatest compression and greatest force over weight in one contact, dimensionless."""
     if not orbit.exists:
         return math.nan, math.nan
@@ -47,7 +48,7 @@ def _loads(orbit: Any) -> tuple[float, float]:
     def loads(time: np.ndarray) -> np.ndarray:
         displacement, velocity = orbit.contact_motion(time)
         load = 1 - orbit.amplitude * np.sin(orbit.phase + time)
-        force = orbit.law.loaded_force(np.maximum(-displacement, 0.0), -velocity, load)
+        force = law.loaded_force(np.maximum(-displacement, 0.0), -velocity, load)
         return np.array([-displacement, force])
 
     duration = float(orbit.contact_duration)
@@ -199,7 +200,7 @@ def _family(
     unit = case.table
     orbit = orbits[0]
     standing = [_standing(*each, unit.amplitude) for each in zip(orbits, values, strict=True)]
-    depth, force = _loads(orbit)
+    depth, force = _loads(case.exact_law, orbit)
     restitution, corrected = map(_moduli, relative(values[0], values[1:]))
     return Family(
         n=n,

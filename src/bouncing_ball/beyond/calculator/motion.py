@@ -1,9 +1,9 @@
 """The motion on which a ball ends, and how accurately the restitution model predicts it.
 
 A ball on a stable orbit stays there. A ball near an unstable one leaves, and the mapper computes
-the motion on which it ends (:mod:`bouncing_ball.beyond.long_run.destination`). Motions that repeat in the
-same way in both models are compared by their greatest height. Other motions are compared by means
-over time of the height, and of the power that the table transfers to the ball
+the motion on which it ends (:mod:`bouncing_ball.beyond.long_run.destination`). Motions that repeat
+in the same way in both models are compared by their greatest height. Other motions are compared by
+means over time of the height, and of the power that the table transfers to the ball
 (:mod:`bouncing_ball.beyond.long_run.means`).
 
 In a chaotic motion the balls of both models start alike, and each gives a pair of means. The error

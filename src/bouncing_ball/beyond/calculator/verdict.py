@@ -1,6 +1,4 @@
-"""What a design says in sentences: the motion of the ball, the verdict on the restitution model with
-its reason, and further notes.
-"""
+"""What a design says in sentences: the motion, the verdict with its reason, and further notes."""
 
 import math
 from collections.abc import Mapping
@@ -12,13 +10,13 @@ from bouncing_ball.beyond.calculator.case import PhysicalCase
 from bouncing_ball.beyond.calculator.families import NO_ORBIT
 from bouncing_ball.beyond.calculator.results import Family, FinalMotion, Mean, Needed
 from bouncing_ball.beyond.calculator.units import percent, shown
+from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.beyond.laws.hertzian import Tsuji
 from bouncing_ball.beyond.laws.impedance import Impedance
 from bouncing_ball.beyond.long_run.motions import Kind
 from bouncing_ball.paper.comparison.errors import QUANTITIES, Quantity, modulus, relative
 from bouncing_ball.paper.comparison.thresholds import ThresholdStatus
 from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.contact.law import ContactLaw
 from bouncing_ball.paper.contact.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 

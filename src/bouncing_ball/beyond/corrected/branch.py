@@ -44,7 +44,8 @@ from bouncing_ball.beyond.corrected.instant import Instant
 
 def _level(n: ArrayLike, instant: Instant) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The right side nπ(1 - r) - σ of the line, R and χ."""
-    r, load = np.asarray(instant.restitution), np.asarray(instant.load)
+    r = np.asarray(instant.restitution)
+    load = np.asarray(instant.load)
     side = np.asarray(n) * np.pi * (1 - r) - load
     return side, np.hypot(1 + r, load), np.arctan2(load, 1 + r)
 
@@ -108,15 +109,18 @@ def trace_and_determinant(
     (1.25, 0.25)
     """
     lam = np.asarray(amplitude, dtype=float)
-    x, y = lam * np.cos(phase), lam * np.sin(phase)
+    x = lam * np.cos(phase)
+    y = lam * np.sin(phase)
     half = np.asarray(n) * np.pi
     here, _ = instant.tangent(half + x, 1 - y)
-    r, delay = np.asarray(here.restitution), np.asarray(here.delay)
+    r = np.asarray(here.restitution)
+    delay = np.asarray(here.delay)
     by_phase = -(1 + r) * y - instant.load * x
     speed = half + x - delay * (1 - y)
     rest = 2 * half - delay
     trace = 1 - r + (rest * (by_phase + r) - delay) / speed
-    return trace, (rest * r - delay - delay * by_phase) / speed - r
+    determinant = (rest * r - delay - delay * by_phase) / speed - r
+    return trace, determinant
 
 
 def period_doubling(n: ArrayLike, instant: Instant) -> tuple[np.ndarray, np.ndarray]:
@@ -131,12 +135,16 @@ def period_doubling(n: ArrayLike, instant: Instant) -> tuple[np.ndarray, np.ndar
     delay, r, load = (np.asarray(x, dtype=float) for x in instant[:3])
     half = np.asarray(n) * np.pi
     lever = half - delay
-    a, b, s = 1 + r, -load, half * (1 - r) - load
+    # The lines a X + b Y = s of the orbits and c X + d Y = t of the period doubling.
+    a = 1 + r
+    b = -load
+    s = half * (1 - r) - load
     c = lever * load - (1 - r)
     d = lever * (1 + r) - (1 - r) * delay
     t = half * (1 + r) - 2 * delay
     determinant = a * d - b * c
-    x, y = (s * d - b * t) / determinant, (a * t - s * c) / determinant
+    x = (s * d - b * t) / determinant
+    y = (a * t - s * c) / determinant
     stable_side = ((1 + r) * y + load * x > 0) & (lever > 0)
     amplitude = np.where(stable_side, np.hypot(x, y), np.nan)
     return amplitude, np.where(stable_side, np.arctan2(y, x), np.nan)

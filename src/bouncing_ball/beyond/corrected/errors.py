@@ -1,4 +1,6 @@
-"""Errors of the restitution model and of the corrected one on linear contacts, and their thresholds."""
+"""Errors of the restitution model and of the corrected model on linear contacts, and the
+thresholds above which each of them is accurate.
+"""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -138,20 +140,22 @@ def search(
     damping, index, lam = (np.atleast_1d(x) for x in np.broadcast_arrays(zeta, n, amplitude))
     size = len(quantities), len(SIMPLE), lam.size
 
-    def at(ratio: np.ndarray, orbit: np.ndarray, asked: Sequence[str]) -> np.ndarray:
-        """Shape (model, quantity, m)."""
-        return errors(SpringDamper(ratio, damping[orbit], rule), index[orbit], lam[orbit], asked)
+    def at(ratio: np.ndarray, orbit: np.ndarray, wanted: Sequence[str]) -> np.ndarray:
+        """The errors of the orbits with these indices, shape (model, quantity, m)."""
+        contact = SpringDamper(ratio, damping[orbit], rule)
+        return errors(contact, index[orbit], lam[orbit], wanted)
 
-    def along(ratio: np.ndarray, row: np.ndarray, asked: Sequence[str]) -> np.ndarray:
+    def along(ratio: np.ndarray, row: np.ndarray, wanted: Sequence[str]) -> np.ndarray:
+        """The errors of rows of (model, orbit), shape (quantity, m)."""
         model, orbit = np.divmod(row, lam.size)
-        return at(ratio, orbit, asked)[model, :, np.arange(row.size)].T
+        return at(ratio, orbit, wanted)[model, :, np.arange(row.size)].T
 
     orbit, ratio = np.divmod(np.arange(lam.size * ratios.size), ratios.size)
     scanned = at(ratios[ratio], orbit, quantities).swapaxes(0, 1)
     every = scanned.reshape(-1, ratios.size)
     found = thresholds(by_quantity(along, quantities, size[1] * size[2]), ratios, every, tolerance)
     # The restitution model is the first model.
-    own = scanned[:, 0].reshape(-1, ratios.size)
-    zero = last_crossing(by_quantity(along, quantities, lam.size), ratios, own)
+    of_restitution = scanned[:, 0].reshape(-1, ratios.size)
+    zero = last_crossing(by_quantity(along, quantities, lam.size), ratios, of_restitution)
     threshold, status = (part.reshape(size).swapaxes(0, 1) for part in found)
-    return Search(threshold, status, zero.reshape(-1, lam.size))
+    return Search(threshold=threshold, status=status, zero=zero.reshape(-1, lam.size))

@@ -17,14 +17,18 @@ and D are the law's :mod:`signature <bouncing_ball.beyond.corrected.signature>`.
 All quantities are dimensionless; all functions broadcast.
 """
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.beyond.corrected.instant import Instant
-from bouncing_ball.beyond.corrected.signature import Signature
 from bouncing_ball.numerics.elementary import sine_and_cosine
+
+if TYPE_CHECKING:
+    from bouncing_ball.beyond.corrected.signature import Signature
 
 # Iterations of ψ = φ + t_c(v), for laws whose delay depends on the speed. Each iteration
 # multiplies the error by a factor a dt_c/dv, of the order of a D/v.
@@ -56,19 +60,28 @@ def impact(signature: Signature, amplitude: ArrayLike, phase: ArrayLike, arrival
     An elastic ball on a table at rest, with a contact of duration 1:
 
     >>> from bouncing_ball.beyond.corrected.signature import Signature
-    >>> from bouncing_ball.paper.contact.spring_damper import SpringDamper
-    >>> hit = impact(Signature(SpringDamper(np.pi, 0.0)), 0.0, 0.0, -2.0)
+    >>> from bouncing_ball.beyond.laws.linear import LinearLaw
+    >>> hit = impact(Signature(LinearLaw(np.pi, 0.0)), 0.0, 0.0, -2.0)
     >>> float(hit.velocity), float(hit.depth)
     (2.0, 1.0)
     """
     lam, psi, p = (np.asarray(x, dtype=float) for x in (amplitude, phase, arrival))
     sine, cosine = sine_and_cosine(psi)
-    x, y = lam * cosine, lam * sine
+    x = lam * cosine
+    y = lam * sine
     speed = x - p
     instant = signature(speed)
     depth = speed * instant.delay
     after = x + instant.restitution * speed + instant.load * (1 - y)
-    return Hit(psi, p, speed, depth, y - depth, after, instant)
+    return Hit(
+        phase=psi,
+        arrival=p,
+        speed=speed,
+        depth=depth,
+        height=y - depth,
+        velocity=after,
+        instant=instant,
+    )
 
 
 def meeting(
@@ -79,8 +92,8 @@ def meeting(
     Examples
     --------
     >>> from bouncing_ball.beyond.corrected.signature import Signature
-    >>> from bouncing_ball.paper.contact.spring_damper import SpringDamper
-    >>> psi, p = meeting(Signature(SpringDamper(np.pi, 0.0)), 0.0, 0.25, -1.5)
+    >>> from bouncing_ball.beyond.laws.linear import LinearLaw
+    >>> psi, p = meeting(Signature(LinearLaw(np.pi, 0.0)), 0.0, 0.25, -1.5)
     >>> float(psi), float(p)
     (0.75, -2.0)
     """
@@ -102,8 +115,8 @@ def start_of(amplitude: ArrayLike, hit: Hit) -> tuple[np.ndarray, np.ndarray]:
     Examples
     --------
     >>> from bouncing_ball.beyond.corrected.signature import Signature
-    >>> from bouncing_ball.paper.contact.spring_damper import SpringDamper
-    >>> hit = impact(Signature(SpringDamper(np.pi, 0.0)), 0.0, 0.75, -2.0)
+    >>> from bouncing_ball.beyond.laws.linear import LinearLaw
+    >>> hit = impact(Signature(LinearLaw(np.pi, 0.0)), 0.0, 0.75, -2.0)
     >>> [float(x) for x in start_of(0.0, hit)]
     [0.25, -1.5]
     """

@@ -6,12 +6,13 @@ are in closed form, with κ as in :mod:`bouncing_ball.paper.contact.damping`::
     t_c = r (D + κ)/(1 + r),    σ = (1 - r)(D + κ) - 2ζ (1 + r)/ϖ
 """
 
+from __future__ import annotations
+
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.paper.contact.law import ContactLaw
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
@@ -33,7 +34,12 @@ class Instant(NamedTuple):
     d_restitution: np.ndarray | float = 0.0
     d_load: np.ndarray | float = 0.0
 
-    def tangent(self, speed: ArrayLike, load: ArrayLike) -> "tuple[Instant, np.ndarray]":
+    def at(self, speed: ArrayLike) -> Instant:
+        """This signature, which is the same at every speed, in the shape of the speeds."""
+        none = 0 * np.asarray(speed, dtype=float)
+        return Instant(*(x + none for x in self))
+
+    def tangent(self, speed: ArrayLike, load: ArrayLike) -> tuple[Instant, np.ndarray]:
         """The constant signature that agrees with this one to first order near v, under a load a.
 
         Its restitution is ``b = ∂(r v + σ a)/∂v = r + r′ v + σ′ a`` and its delay ``e = ∂(v t_c)/∂v
@@ -74,17 +80,12 @@ def linear_instant(contact: SpringDamper) -> Instant:
     # The time at which the flight after the contact rises through δ = 0.
     through = duration + contact.lag
     loss = 2 * np.asarray(contact.damping_ratio) / contact.frequency_ratio
-    load = (1 - r) * through - loss * (1 + r)
-    return Instant(r * through / (1 + r), r + 0 * duration, load, duration)
-
-
-def known_instant(law: ContactLaw) -> Instant | None:
-    """The signature of a contact law if it has a closed form and is the same at every speed,
-    otherwise None.
-    """
-    if isinstance(law, SpringDamper):
-        return linear_instant(law)
-    return law.signature
+    return Instant(
+        delay=r * through / (1 + r),
+        restitution=r + 0 * duration,
+        load=(1 - r) * through - loss * (1 + r),
+        duration=duration,
+    )
 
 
 def rigid_instant(restitution: ArrayLike, slope: ArrayLike, speed: ArrayLike) -> Instant:
@@ -95,7 +96,13 @@ def rigid_instant(restitution: ArrayLike, slope: ArrayLike, speed: ArrayLike) ->
     v = np.asarray(speed, dtype=float)
     r = np.asarray(restitution, dtype=float)
     none = np.zeros_like(v)
-    return Instant(none, r + none, none, none, d_restitution=(np.asarray(slope) - r) / v)
+    return Instant(
+        delay=none,
+        restitution=r + none,
+        load=none,
+        duration=none,
+        d_restitution=(np.asarray(slope) - r) / v,
+    )
 
 
 def instant_of(model: Any, speed: ArrayLike) -> Instant:
@@ -104,9 +111,9 @@ def instant_of(model: Any, speed: ArrayLike) -> Instant:
     The models of the paper do not know this view of an impact; all others have it as their method
     ``signature``.
     """
-    if isinstance(model, RestitutionModel):
-        return rigid_instant(model.restitution, model.restitution, speed)
-    if isinstance(model, SpringDamperModel):
-        known = linear_instant(model.contact)
-        return Instant(*(x + 0 * np.asarray(speed) for x in known))
+    match model:
+        case RestitutionModel():
+            return rigid_instant(model.restitution, model.restitution, speed)
+        case SpringDamperModel():
+            return linear_instant(model.contact).at(speed)
     return model.signature(speed)

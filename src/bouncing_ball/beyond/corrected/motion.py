@@ -55,7 +55,8 @@ class CorrectedDynamics(Dynamics):
 
     def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
         """The end of each contact, or of the rest on the table that follows it."""
-        hit, amplitude = impact.known, self.amplitude
+        hit = impact.known
+        amplitude = self.amplitude
         x, y = table(hit.phase, amplitude)
         rest = hit.instant.duration - hit.instant.delay
         whole = Flight(hit.height - y, hit.velocity - x, x, y, amplitude)
@@ -75,8 +76,9 @@ class CorrectedDynamics(Dynamics):
         landing = land(flight, np.maximum(departure.aloft, flight.sure()))
         at_level = departure.phase + landing.time
         flown = landing.time + self._descent(at_level, -landing.rate)
-        instant = reduce_angle(departure.phase + flown), flight.velocity + flight.x - flown
-        hit = corrected_map.impact(self.law, self.amplitude, *instant)
+        instant = reduce_angle(departure.phase + flown)
+        arrival = flight.velocity + flight.x - flown
+        hit = corrected_map.impact(self.law, self.amplitude, instant, arrival)
         phase, velocity = corrected_map.start_of(self.amplitude, hit)
         passed = departure.duration + flown - hit.instant.delay
         return Impact.at_level(phase, velocity, hit), passed
@@ -90,16 +92,19 @@ class CorrectedDynamics(Dynamics):
         x, y = table(phase, self.amplitude)
         fall = Flight(np.zeros_like(velocity), velocity, x, y, self.amplitude)
         here = self.law(-velocity)
-        delay, pull = here.delay, (1 - y) * here.delay
+        delay = here.delay
+        pull = (1 - y) * delay
         both = -velocity - pull + np.sqrt(velocity * velocity + pull * pull)
-        time = np.where(both > 0, -2 * delay * velocity / np.where(both > 0, both, 1.0), 2 * delay)
+        falls = both > 0
+        time = np.where(falls, -2 * delay * velocity / np.where(falls, both, 1.0), 2 * delay)
         for _ in range(_DESCENT):
             displacement, rate, acceleration, _ = fall.gap(time)
             if not self.law.is_constant:
                 here = self.law(-rate)
             by_time = rate - (here.delay - here.d_delay * rate) * acceleration
             missing = displacement - rate * here.delay
-            time = time - np.where(by_time < 0, missing / np.where(by_time < 0, by_time, -1.0), 0.0)
+            sinks = by_time < 0
+            time = time - np.where(sinks, missing / np.where(sinks, by_time, -1.0), 0.0)
         return time
 
     def jacobian(
@@ -109,17 +114,20 @@ class CorrectedDynamics(Dynamics):
 
         It is zero if the ball sticks, because its later motion does not depend on the impact.
         """
-        hit, then = impact.known, after.known
-        (x, y), none = table(hit.phase, self.amplitude), np.zeros_like(passed)
+        hit = impact.known
+        then = after.known
+        x, y = table(hit.phase, self.amplitude)
+        none = np.zeros_like(passed)
         free = np.where(departure.sticks, 0.0, 1.0)
-        here, depth = hit.instant.tangent(hit.speed, 1 - y)[0], then.instant.tangent(then.speed, 0)
+        here, _ = hit.instant.tangent(hit.speed, 1 - y)
+        there, _ = then.instant.tangent(then.speed, 0)
         between = passed + then.instant.delay - hit.instant.delay
-        end, lag = table(then.phase, self.amplitude), -depth[0].delay
+        end = table(then.phase, self.amplitude)
         released = (
             Deviation(free, none, -here.load * x * free),
             Deviation(none, here.delay * free, -here.restitution * free),
         )
-        columns = (each.flown((x, y), end, between, -then.speed, lag) for each in released)
+        columns = (each.flown((x, y), end, between, -then.speed, -there.delay) for each in released)
         return Jacobian.of_columns(*columns)
 
     def section(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:

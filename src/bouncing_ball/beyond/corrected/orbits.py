@@ -1,13 +1,10 @@
-"""n-T orbits of the corrected restitution model: path, equation and stability.
+"""The corrected restitution model and its n-T orbits: path, equation and stability.
 
-The only unknown is the phase ψ of the instant, because the velocity before the instant is -nπ.
-The only equation is that for the velocity after the instant, derived in
-:mod:`bouncing_ball.beyond.corrected.branch`. The tests compare its solutions by continuation with
-the closed form, which checks both.
-
-The corrected restitution model and its n-T orbits.
-
-Its equations are derived in :mod:`bouncing_ball.beyond.corrected.branch`.
+The only unknown of an orbit is the phase ψ of the instant, because the velocity before the instant
+is -nπ. The only equation is that for the velocity after the instant, derived in
+:mod:`bouncing_ball.beyond.corrected.branch`. If the signature does not depend on the speed, as for
+the linear contact, the orbits have a closed form; otherwise they are found by continuation. The
+tests compare both, which checks both.
 """
 
 from dataclasses import dataclass
@@ -23,6 +20,7 @@ from bouncing_ball.beyond.corrected.impact import Hit, impact, meeting
 from bouncing_ball.beyond.corrected.instant import Instant
 from bouncing_ball.beyond.corrected.motion import CorrectedDynamics
 from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.orbit import Orbit, check_index
 from bouncing_ball.paper.orbits.stability import Side
@@ -38,8 +36,8 @@ class CorrectedOrbit(Orbit):
     Examples
     --------
     >>> from bouncing_ball.beyond.corrected.signature import Signature
-    >>> from bouncing_ball.paper.contact.spring_damper import SpringDamper
-    >>> orbit = CorrectedOrbit.at(1, Signature(SpringDamper(np.pi, 0.0)), 0.8, np.pi / 2)
+    >>> from bouncing_ball.beyond.laws.linear import LinearLaw
+    >>> orbit = CorrectedOrbit.at(1, Signature(LinearLaw(np.pi, 0.0)), 0.8, np.pi / 2)
     >>> float(orbit.bounce_velocity) == np.pi - 0.5, round(float(orbit.phase) - np.pi / 2, 12)
     (True, -0.5)
     """
@@ -51,7 +49,8 @@ class CorrectedOrbit(Orbit):
         """The orbits with instants at the phase ψ; the velocity before an instant is -nπ."""
         launch = np.asarray(n) * np.pi
         hit = impact(law, amplitude, phase, -launch)
-        delay, duration = hit.instant.delay, hit.instant.duration
+        delay = hit.instant.delay
+        duration = hit.instant.duration
         found = cls.of(n, law, amplitude, hit.phase - delay, duration, delay - launch)
         # The cached property below would compute the same instant again.
         vars(found)["hit"] = hit
@@ -101,8 +100,11 @@ class CorrectedOrbit(Orbit):
 
     def jacobian(self) -> np.ndarray:
         """Jacobian of the last defect in (ψ, Λ), shape (..., 1, 2)."""
-        here, sine, cosine = self._tangent, np.sin(self.hit.phase), np.cos(self.hit.phase)
-        gain, load = 1 + here.restitution, here.load
+        here = self._tangent
+        sine = np.sin(self.hit.phase)
+        cosine = np.cos(self.hit.phase)
+        gain = 1 + here.restitution
+        load = here.load
         by_phase = -self.amplitude * (gain * sine + load * cosine)
         return np.stack([by_phase, gain * cosine - load * sine], axis=-1)[..., np.newaxis, :]
 
@@ -120,9 +122,12 @@ class CorrectedOrbit(Orbit):
         ``u s = (2πn - e)(W dψ - b dp) + e dp``. Each contact starts the time t_c(v) before its
         instant.
         """
-        y, d_delay = self.amplitude * np.sin(self.hit.phase), self.instant.d_delay
-        here, velocity = self._tangent, np.zeros((*self.shape, 2))
-        velocity[..., 0], velocity[..., 1] = self.jacobian()[..., 0, 0], -here.restitution
+        y = self.amplitude * np.sin(self.hit.phase)
+        d_delay = self.instant.d_delay
+        here = self._tangent
+        velocity = np.zeros((*self.shape, 2))
+        velocity[..., 0] = self.jacobian()[..., 0, 0]
+        velocity[..., 1] = -here.restitution
         later = (2 * np.pi * np.asarray(self.n) - here.delay)[..., np.newaxis] * velocity
         later[..., 1] += here.delay
         later /= (self.hit.speed - here.delay * (1 - y))[..., np.newaxis]
@@ -143,8 +148,9 @@ class CorrectedOrbit(Orbit):
         Without dissipation the determinant is 1, and rounding errors would decide about stability.
         A determinant that equals 1 within the error of a tabulated signature is therefore set to 1.
         """
-        place = self.amplitude, self.hit.phase
-        trace, det = formulas.trace_and_determinant(self.n, self.instant, *place)
+        trace, det = formulas.trace_and_determinant(
+            self.n, self.instant, self.amplitude, self.hit.phase
+        )
         return trace, np.where(np.abs(det - 1) < _ELASTIC, 1.0, det)
 
     def determinant(self) -> np.ndarray:
@@ -182,7 +188,7 @@ class CorrectedModel(ContinuedModel):
         ModelError
             If ζ ≥ 1.
         """
-        return ConstantCorrectedModel(Signature(contact))
+        return ConstantCorrectedModel(Signature(LinearLaw.of(contact)))
 
     def signature(self, speed: ArrayLike) -> Instant:
         """The signature at impact speeds v > 0."""
@@ -202,16 +208,18 @@ class ConstantCorrectedModel(CorrectedModel):
         """The n-T orbits at Λ on one side of the saddle-node; NaN where there is no orbit."""
         check_index(n)
         lam = np.asarray(amplitude, dtype=float)
-        psi = formulas.instant_phase(n, self._instant, lam, side == Side.STABLE)
+        psi = formulas.instant_phase(n, self._instant, lam, Side(side) is Side.STABLE)
         return CorrectedOrbit.at(n, self.law, lam, psi)
 
     def saddle_node(self, n: ArrayLike) -> CorrectedOrbit:
         """The orbits at the saddle-node, ψ = -χ; NaN where the branch has no saddle-node."""
         check_index(n)
-        lam, psi = formulas.saddle_node(n, self._instant), formulas.saddle_node_phase(self._instant)
+        lam = formulas.saddle_node(n, self._instant)
+        psi = formulas.saddle_node_phase(self._instant)
         return CorrectedOrbit.at(n, self.law, lam, np.where(np.isnan(lam), np.nan, psi))
 
     def period_doubling(self, n: ArrayLike) -> CorrectedOrbit:
         """The orbits at the period doubling; NaN where there is no period doubling."""
         check_index(n)
-        return CorrectedOrbit.at(n, self.law, *formulas.period_doubling(n, self._instant))
+        lam, psi = formulas.period_doubling(n, self._instant)
+        return CorrectedOrbit.at(n, self.law, lam, psi)

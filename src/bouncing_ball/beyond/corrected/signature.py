@@ -51,18 +51,24 @@ of r.
 All quantities are dimensionless; all functions broadcast.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
-from bouncing_ball.beyond.corrected.instant import Instant, known_instant
+from bouncing_ball.beyond.corrected.instant import Instant
+from bouncing_ball.beyond.corrected.motion import CorrectedDynamics
 from bouncing_ball.beyond.laws.collocation import contacts
 from bouncing_ball.errors import ModelError
 from bouncing_ball.numerics.arrays import Batch
-from bouncing_ball.paper.contact.law import ContactLaw
+
+if TYPE_CHECKING:
+    from bouncing_ball.beyond.laws.contact_law import ContactLaw
 
 # Width of a panel in ln v, and its number of nodes: with a pole of r(v) at ln v = x ± iπ, like
 # that of 1/(1 + C v), the interpolation error is of the order of 6⁻²⁴.
@@ -98,9 +104,9 @@ def free_impact(law: ContactLaw, speed: ArrayLike) -> Instant:
     (1.0, 0.0)
     """
     v = np.asarray(speed, dtype=float)
-    known = known_instant(law)
+    known = law.signature
     if known is not None:
-        return Instant(*(x + 0 * v for x in known))
+        return known.at(v)
     end = contacts(law, v, weight=0.0)
     if not np.all(np.isfinite(end.duration)):
         lost = np.broadcast_to(v, end.duration.shape)[np.isnan(end.duration)][0]
@@ -108,14 +114,22 @@ def free_impact(law: ContactLaw, speed: ArrayLike) -> Instant:
             f"{law.name}: a free impact of speed {lost:.3g} does not end within a dozen "
             "oscillations, because the law is adhesive or damped too strongly"
         )
-    by_speed, by_load = end.jacobian[..., 2, 1], end.jacobian[..., 2, 3]
+    by_speed = end.jacobian[..., 2, 1]
+    by_load = end.jacobian[..., 2, 3]
     r = -end.rate / v
     delay = (end.penetration + end.duration * r * v) / ((1 + r) * v)
     load = -by_load + (end.duration - delay) + delay * by_speed
-    return Instant(delay, r, load, end.duration, d_restitution=(-by_speed - r) / v)
+    return Instant(
+        delay=delay,
+        restitution=r,
+        load=load,
+        duration=end.duration,
+        d_restitution=(-by_speed - r) / v,
+    )
 
 
 def _width(law: ContactLaw) -> float:
+    """Width of a panel of the interpolation, in ln v."""
     return _WIDTH / _PARTS if law.has_kink and law.lag is None else _WIDTH
 
 
@@ -148,8 +162,8 @@ class Signature(Batch):
     The force of an elastic contact is symmetric in time, so that its centroid is in the middle and
     the effects of the load cancel:
 
-    >>> from bouncing_ball.paper.contact.spring_damper import SpringDamper
-    >>> instant = Signature(SpringDamper(2.0, 0.0))()
+    >>> from bouncing_ball.beyond.laws.linear import LinearLaw
+    >>> instant = Signature(LinearLaw(2.0, 0.0))()
     >>> float(instant.delay) == np.pi / 4, float(instant.restitution), float(instant.load)
     (True, 1.0, 0.0)
 
@@ -166,14 +180,24 @@ class Signature(Batch):
             raise ModelError("the signature of a contact law is tabulated for one law, not many")
 
     @cached_property
-    def _known(self):
+    def _known(self) -> Instant | None:
         # Cached, because a simulation needs it at every impact.
-        return known_instant(self.law)
+        return self.law.signature
 
     @property
     def is_constant(self) -> bool:
         """Whether the signature is the same at every impact speed, as for a linear contact."""
         return self._known is not None
+
+    def dynamics(self, amplitude: ArrayLike) -> CorrectedDynamics:
+        """The impacts and flights of the corrected model on a table of amplitude Λ.
+
+        Raises
+        ------
+        ModelError
+            If Λ is outside its range.
+        """
+        return CorrectedDynamics.of(self, amplitude)
 
     @property
     def label(self) -> str:
@@ -186,10 +210,10 @@ class Signature(Batch):
         Its fields have the shape to which the speeds and the law broadcast.
         """
         v = np.asarray(speed, dtype=float)
-        if self.is_constant:
-            none = 0 * v
-            return Instant(*(x + none for x in self._known))
-        v, width = np.clip(v, _SLOWEST, _FASTEST), _width(self.law)
+        if self._known is not None:
+            return self._known.at(v)
+        v = np.clip(v, _SLOWEST, _FASTEST)
+        width = _width(self.law)
         log = np.log(v) / width
         number = np.floor(np.where(np.isnan(log), 0.0, log)).astype(int)
         values = np.full((2, 4, *v.shape), np.nan)
@@ -200,4 +224,14 @@ class Signature(Batch):
             x = 2 * (log[here] - panel) - 1
             values[0, :, here] = chebyshev.chebval(x, coefficients).T
             values[1, :, here] = (chebyshev.chebval(x, slopes) / v[here]).T
-        return Instant(*values[0], *values[1, :3])
+        delay, restitution, load, duration = values[0]
+        d_delay, d_restitution, d_load, _ = values[1]
+        return Instant(
+            delay=delay,
+            restitution=restitution,
+            load=load,
+            duration=duration,
+            d_delay=d_delay,
+            d_restitution=d_restitution,
+            d_load=d_load,
+        )

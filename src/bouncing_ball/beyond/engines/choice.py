@@ -1,7 +1,4 @@
-"""Physics engines: their contact parameters from k, c and m, and the impacts that result.
-
-All quantities are in SI units. The engines are not imported and need not be installed.
-"""
+"""The physics engines that a user can name."""
 
 from bouncing_ball.beyond.engines.drake import Drake
 from bouncing_ball.beyond.engines.engine import Engine
@@ -15,8 +12,18 @@ from bouncing_ball.beyond.engines.proportional import (
 )
 from bouncing_ball.errors import one_of
 
-_ALL = (Generic(), MuJoCo(), Lammps(), Liggghts(), PyBullet(), Drake(), MercuryDPM())
-ENGINES: dict[str, Engine] = {engine.name: engine for engine in _ALL}
+ENGINES: dict[str, Engine] = {
+    engine.name: engine
+    for engine in (
+        Generic(),
+        MuJoCo(),
+        Lammps(),
+        Liggghts(),
+        PyBullet(),
+        Drake(),
+        MercuryDPM(),
+    )
+}
 """The engines by name."""
 
 

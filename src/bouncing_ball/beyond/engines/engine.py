@@ -19,9 +19,9 @@ from bouncing_ball.beyond.engines.scheme import (
     represented,
     steps_for,
 )
+from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.errors import ModelError, require
 from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.contact.law import ContactLaw
 
 ERROR = 0.001
 """The default of the largest error of a free impact's r that the time step may cause."""
@@ -85,9 +85,9 @@ class EngineSettings:
     """The settings to write into an engine, and the restitution that they produce.
 
     ``parameters`` have the names and units of the engine; those of a compensated scheme hold for
-    the time step only. ``time_step`` is in s; with ``steps``
-    such steps in a contact the ``restitution`` of a free impact is met within ``error``.
-    ``restitutions`` has the r of the same contact under each release that the engine has.
+    the time step only. ``time_step`` is in s; with ``steps`` such steps in a contact the
+    ``restitution`` of a free impact is met within ``error``. ``restitutions`` has the r of the same
+    contact under each release that the engine has.
     ``max_height`` and ``penetration`` in m and ``contact_duration`` in s belong to the orbit of a
     design; they are None if there is no orbit.
     """
@@ -291,8 +291,16 @@ class Engine(ABC):
         found = self.parameters(self.for_step(contact, step))
         by_rule = {str(one): r for one, r in self.restitutions(contact, rule).items()}
         return EngineSettings(
-            *(self.name, found, step, str(rule), restitution, by_rule),
-            *(steps, error, str(self.scheme), text),
+            name=self.name,
+            parameters=found,
+            time_step=step,
+            release=str(rule),
+            restitution=restitution,
+            restitutions=by_rule,
+            steps=steps,
+            error=error,
+            scheme=str(self.scheme),
+            snippet=text,
         )
 
     def _given(self, parameters: Mapping[str, Any], mass: float | None) -> float:
@@ -313,15 +321,16 @@ class Engine(ABC):
         """The mass in kg, and the engine's parameters of stiffness, which must be positive, and of
         damping, in the engine's units.
         """
-        m, found = self._given(parameters, mass), []
+        m = self._given(parameters, mass)
         for name in self.names:
             if name not in parameters:
                 both = " and ".join(self.names)
                 raise ModelError(f"{name} is missing: the parameters of {self.name} are {both}")
-            found.append(value := float(parameters[name]))
+            value = float(parameters[name])
             require(0 <= value < math.inf, value, name, "a number of at least 0")
-        require(found[0] > 0, found[0], self.names[0], "positive")
-        return m, found[0], found[1]
+        stiffness, damping = (float(parameters[name]) for name in self.names)
+        require(stiffness > 0, stiffness, self.names[0], "positive")
+        return m, stiffness, damping
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}()"

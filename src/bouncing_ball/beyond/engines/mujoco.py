@@ -30,7 +30,8 @@ from bouncing_ball.paper.contact.damping import Release
 # The defaults of MuJoCo: dmin, dmax, width in m, midpoint and power.
 _DEFAULT = (0.9, 0.95, 0.001, 0.5, 2.0)
 # The limits that MuJoCo imposes on an impedance.
-_LEAST, _MOST = 1e-4, 0.9999
+_LEAST = 1e-4
+_MOST = 0.9999
 # A contact with an impedance up to this value is treated as a spring and damper.
 _FELT = 0.01
 
@@ -69,9 +70,13 @@ def impedance(solimp: str | Sequence[float] = ()) -> list[float]:
         if not 0 <= value <= 1:
             raise ModelError(f"solimp has the impedance {value:g}, which is not in [0, 1]")
     found = given + list(_DEFAULT[len(given) :])
-    shares = [float(np.clip(d, _LEAST, _MOST)) for d in found[:2]]
-    # If the width is zero, MuJoCo takes the mean of dmin and dmax.
-    return (shares if found[2] > 0 else [sum(shares) / 2] * 2) + found[2:]
+    at_surface, deep, width, midpoint, power = found
+    at_surface = float(np.clip(at_surface, _LEAST, _MOST))
+    deep = float(np.clip(deep, _LEAST, _MOST))
+    if width <= 0:
+        # MuJoCo then takes the mean of dmin and dmax.
+        at_surface = deep = (at_surface + deep) / 2
+    return [at_surface, deep, width, midpoint, power]
 
 
 class MuJoCo(Engine):
@@ -102,9 +107,10 @@ class MuJoCo(Engine):
     scheme = Scheme.SEMI_IMPLICIT
 
     def parameters(self, contact: Physical) -> dict[str, list[float]]:
-        # A difference, because -c/m of a contact without damping would be -0.0.
-        per_mass = [0.0 - value / contact.mass for value in contact[1:]]
-        return {"solref": per_mass, "solimp": [_LEAST, _LEAST, 0.001]}
+        # Differences, because -c/m of a contact without damping would be -0.0.
+        stiffness = 0.0 - contact.stiffness / contact.mass
+        damping = 0.0 - contact.damping / contact.mass
+        return {"solref": [stiffness, damping], "solimp": [_LEAST, _LEAST, 0.001]}
 
     def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
         values = {name: value for name, value in parameters.items() if value is not None}
@@ -125,31 +131,36 @@ class MuJoCo(Engine):
     def law(
         self, parameters: Mapping[str, Any], mass: float = 1, time: float = 1, length: float = 1
     ) -> Impedance | None:
-        least, most, width, *shape = impedance(parameters.get("solimp", ()))
+        at_surface, deep, width, midpoint, power = impedance(parameters.get("solimp", ()))
         contact = self.read(parameters, 1.0)
-        if max(least, most) <= _FELT:
+        if max(at_surface, deep) <= _FELT:
             return None
-        own = contact.angular_frequency * time, contact.damping_ratio
-        return Impedance(*own, most, least, (width or 1.0) / length, *shape)
+        return Impedance(
+            frequency_ratio=contact.angular_frequency * time,
+            damping_ratio=contact.damping_ratio,
+            share=deep,
+            at_surface=at_surface,
+            width=(width or 1.0) / length,
+            midpoint=midpoint,
+            power=power,
+        )
 
     def remarks(self, parameters: Mapping[str, Any]) -> tuple[str, ...]:
         law = self.law(parameters)
         if law is None:
             return ()
         # The impedance is constant at depths greater than the width; d = 0 is a spring and damper.
-        least, most = law.at_surface, law.share
-        deep, spring = (
-            free_impact(Impedance(law.frequency_ratio, law.damping_ratio, d), 1.0)
-            for d in (most, 0.0)
-        )
+        deep = free_impact(Impedance(law.frequency_ratio, law.damping_ratio, law.share), 1.0)
+        spring = free_impact(Impedance(law.frequency_ratio, law.damping_ratio, 0.0), 1.0)
         found = (
-            f"with the impedance {most:g} a contact feels {1 - most:.2g} of the load (gravity, "
-            'table), and a spring and a damper all of it: solimp = "1e-4 1e-4 0.001"',
+            f"with the impedance {law.share:g} a contact feels {1 - law.share:.2g} of the load "
+            '(gravity, table), and a spring and a damper all of it: solimp = "1e-4 1e-4 0.001"',
             f"under a load a this r is r + σ a/v with σ = {deep.load:.4g} s, and "
             f"{spring.load:.4g} s for a spring and a damper",
         )
         if law.has_kink:
-            share, speeds = least / most, law.width * law.frequency_ratio * np.array([0.1, 1, 10])
+            share = law.at_surface / law.share
+            speeds = law.width * law.frequency_ratio * np.array([0.1, 1, 10])
             found += (
                 f"this is the contact below the depth of {law.width:g} m; at the surface the "
                 f"spring is {share**2:.2g} and the damper {share:.2g} of it",

@@ -1,15 +1,13 @@
-"""Any engine or script: a spring, a damper and a rule that ends the contact.
+"""Engines whose contact has two parameters, proportional to the stiffness and to the damping.
 
-LAMMPS and LIGGGHTS: granular walls with Hooke's law, whose damper is per unit of mass.
-
-The force of ``fix wall/gran hooke`` on a sphere is ``kn p - m gamman v``. On a wall the effective
-mass m is that of the sphere; between two equal spheres it is half of that. By default the damper
-pulls until the ball has left the wall; ``limit_damping`` in LAMMPS and ``limitForce`` in LIGGGHTS
-prevent that.
-
-MercuryDPM: a linear viscoelastic species, whose damper pulls until the ball has left.
-
-PyBullet: a spring and a damper on each of the two bodies, which form one constraint.
+* *generic*: any script with a spring, a damper and a rule that ends the contact.
+* *LAMMPS* and *LIGGGHTS*: granular walls with Hooke's law, whose damper is per unit of mass. The
+  force of ``fix wall/gran hooke`` on a sphere is ``kn p - m gamman v``. On a wall the effective
+  mass m is that of the sphere; between two equal spheres it is half of that. By default the damper
+  pulls until the ball has left the wall; ``limit_damping`` in LAMMPS and ``limitForce`` in LIGGGHTS
+  prevent that.
+* *MercuryDPM*: a linear viscoelastic species, whose damper pulls until the ball has left.
+* *PyBullet*: a spring and a damper on each of the two bodies, which form one constraint.
 """
 
 from collections.abc import Mapping
@@ -47,8 +45,9 @@ class Generic(Proportional):
         return {"mass": contact.mass, **super().parameters(contact)}
 
     def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
-        given = {"mass": mass, **parameters}
-        return super().read({name: given[name] for name in given if name != "mass"}, given["mass"])
+        values = dict(parameters)
+        mass = values.pop("mass", mass)
+        return super().read(values, mass)
 
 
 class Lammps(Proportional):

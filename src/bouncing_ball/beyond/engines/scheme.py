@@ -1,16 +1,4 @@
-r"""Parameters that take back the damping of an implicit step.
-
-A contact ``x″ = -c x′ - k x`` has the rates μ, ``μ² + c μ + k = 0``: its motion is a sum of
-``exp(μt)``. Implicit Euler with a step h multiplies each part by ``1/(1 - hμ)`` in place of
-``exp(hμ)``, which damps the motion to first order. With the rates ::
-
-    μ′ = (1 - exp(-hμ))/h,   μ = -ln(1 - hμ′)/h
-
-both are equal, so that the computed positions are those of the exact contact with the rates μ.
-The two rates are conjugate or real, so that k′ = μ′₁μ′₂ and c′ = -μ′₁ - μ′₂ are real. All k and c
-are per unit of mass.
-
-A free impact as the time stepping of an engine computes it.
+r"""A free impact as the time stepping of an engine computes it.
 
 In a free impact p″ = -p - 2ζ p′, where time is in units of 1/ω, ω = √(k/m). The height x = -p
 of the ball above the wall and its velocity v are advanced by a step h in one of two ways. Engines
@@ -20,14 +8,23 @@ implement their contacts differently, but each contact is equivalent to one of t
   with its constraint force; also LAMMPS, LIGGGHTS and MercuryDPM, whose velocity Verlet takes
   the damper's speed from the last half step: v is then that of the half steps.
 * *implicit Euler*: ``v⁺ = v - h(x⁺ + 2ζv⁺)``, ``x⁺ = x + h v⁺``. Drake's discrete contact.
-* *compensated implicit Euler*: the same with the parameters of
-  :mod:`bouncing_ball.beyond.engines.scheme`, which take the damping of the step back, in place of
-  1 and 2ζ. Drake's linear contact (SAP), and Bullet's springs, which are constraints with ``cfm``
-  and ``erp``.
+* *compensated implicit Euler*: the same with parameters that take back the damping of the step, in
+  place of 1 and 2ζ. Drake's linear contact (SAP), and Bullet's springs, which are constraints with
+  ``cfm`` and ``erp``.
 
 A ball is in contact during a step if x < 0 before this step. A contact with the force release only
 pushes. Because r depends on the instant within a step at which the ball meets the wall, it is
 computed for many such instants.
+
+The compensation follows from the rates μ of a contact ``x″ = -c x′ - k x``, ``μ² + c μ + k = 0``:
+its motion is a sum of ``exp(μt)``. Implicit Euler with a step h multiplies each part by
+``1/(1 - hμ)`` in place of ``exp(hμ)``, which damps the motion to first order. With the rates ::
+
+    μ′ = (1 - exp(-hμ))/h,   μ = -ln(1 - hμ′)/h
+
+both are equal, so that the computed positions are those of the exact contact with the rates μ. The
+two rates are conjugate or real, so that k′ = μ′₁μ′₂ and c′ = -μ′₁ - μ′₂ are real. Here all k and c
+are per unit of mass.
 
 The compensated positions are those of an exact contact, which begins in the middle of the step
 before the first one in contact: up to half a step before or after the ball meets the wall. The
@@ -186,13 +183,15 @@ def restitution_in_steps(
     step, lag = _step(scheme, 2 * zeta, h)
     start = np.asarray(fraction, dtype=float).ravel()
     grip = np.array([1.0, lag if release is Release.FORCE else 0.0])
-    state, further = np.stack([-h * start, -np.ones_like(start)]), 2 * steps
+    state = np.stack([-h * start, -np.ones_like(start)])
+    further = 2 * steps
     # A contact ends once within so many further steps, or the ball stays and r is -1. The number
     # is halved by a power of the matrix.
     while further > 1:
         half = further // 2
         later = np.linalg.matrix_power(step, half) @ state
-        state, further = np.where(grip @ later < 0, later, state), further - half
+        state = np.where(grip @ later < 0, later, state)
+        further -= half
     state = step @ state
     return np.where(grip @ state < 0, -1.0, state[1]).reshape(np.shape(fraction))
 
@@ -234,7 +233,8 @@ def steps_for(scheme: Scheme, damping_ratio: float, release: Release, error: flo
     last = error_in_steps(scheme, damping_ratio, release, _ASYMPTOTIC)
     if last > error:
         return int(np.ceil(_ASYMPTOTIC * last / error))
-    good, bad = _ASYMPTOTIC, _FEWEST - 1
+    good = _ASYMPTOTIC
+    bad = _FEWEST - 1
     while good - bad > 1:
         # Halve until the number is bracketed, because the error at few steps follows no simple law.
         middle = max(good // 2, bad + 1) if bad < _FEWEST else (good + bad) // 2

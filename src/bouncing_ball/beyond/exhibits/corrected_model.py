@@ -18,6 +18,7 @@ from bouncing_ball.beyond import error_law
 from bouncing_ball.beyond.corrected.errors import SIMPLE, errors, search
 from bouncing_ball.beyond.corrected.signature import Signature
 from bouncing_ball.beyond.exhibits.random_orbits import random_orbits
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.datasets.parameters import LossyRestitution, Samples, Seed
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.paper.comparison.errors import OF_IMPACTS, Quantity
@@ -98,7 +99,7 @@ def meeting_flights(parameters: ContactHistory, release: Release) -> xr.Dataset:
             "contact_duration": ((), end),
             "meeting_time": ((), meeting),
             "meeting_height": ((), float(start + (velocity - meeting / 2) * meeting)),
-            "delay": ((), float(Signature(contact)().delay)),
+            "delay": ((), float(Signature(LinearLaw.of(contact))().delay)),
         },
         coords={"time": time},
         variables=VARIABLES,
@@ -141,7 +142,8 @@ def _of_random_orbits(sample: Orders, release: Release) -> dict[str, tuple]:
     omega = np.exp(rng.uniform(np.log(span.min), np.log(span.max), sample.law_samples))
     contact = SpringDamper(omega, zeta, release)
     of_restitution_model, _ = errors(contact, n, lam)
-    remainder = error_law.remainder(n, Signature(contact)(), lam, of_restitution_model)
+    instant = Signature(LinearLaw.of(contact))()
+    remainder = error_law.remainder(n, instant, lam, of_restitution_model)
     return {
         "order": (("model", "quantity", "sample"), np.log2(once / twice)),
         "law_remainder": (("quantity", "law_sample"), remainder.factor),

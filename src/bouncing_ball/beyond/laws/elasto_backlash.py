@@ -22,8 +22,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from bouncing_ball.beyond.laws.contact_law import OscillatorLaw
 from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.contact.law import OscillatorLaw
 from bouncing_ball.paper.contact.permanent_contact import permanent_contact_threshold
 
 

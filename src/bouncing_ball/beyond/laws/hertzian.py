@@ -1,56 +1,47 @@
-r"""Base class of the contact laws of a sphere: Hertz' stiffness and a damping parameter.
+r"""Contact laws with Hertz' stiffness, or a linear one, and one damping parameter.
 
-Hertz contact with Hunt and Crossley's damping.
+The force is ``f = K p^ν`` plus a damping force with the parameter C. A ball of mass m on a plane
+has ``k x^{3/2}`` with k = (4/3) E* √R, and on a table of frequency Ω under gravity g therefore
+``K = k √g/(m Ω³)``. The three laws of a sphere differ in their damping.
 
-``f = K p^{3/2} (1 + C p′)``, released at p = 0, where the force vanishes too. The force never
-pulls a free ball, because the ball leaves with p′ > -1/C. The restitution coefficient
-depends on C v alone and falls with the speed, as 1 - (2/3) C v for a slow impact.
+**Hunt and Crossley:** ``f = K p^{3/2} (1 + C p′)``, released at p = 0, where the force vanishes
+too. The force never pulls a free ball, because the ball leaves with p′ > -1/C. The restitution
+coefficient depends on C v alone and falls with the speed, as 1 - (2/3) C v for a slow impact. The
+physical force ``k x^{3/2} (1 + λ ẋ)`` has ``C = λ g/Ω``. With a linear spring, as in Drake's point
+contact, the restitution coefficient is the same function of C v.
 
-Physical parameters: a ball of mass m on a plane with the force
-``k x^{3/2} (1 + λ ẋ)``, k = (4/3) E* √R, on a table of frequency Ω under gravity g,
-has ``K = k √g/(m Ω³)`` and ``C = λ g/Ω``.
+Source: K. H. Hunt and F. R. E. Crossley, *Coefficient of restitution interpreted as damping in
+vibroimpact*, Journal of Applied Mechanics 42 (1975) 440-445, as quoted by Simbody
+(``HuntCrossleyContact.h``: k xⁿ (1 + (3/2) c v), n = 3/2 for a sphere, and e = 1 - c v at low
+speed; its c is (2/3) λ).
 
-Source: K. H. Hunt and F. R. E. Crossley, *Coefficient of restitution
-interpreted as damping in vibroimpact*, Journal of Applied Mechanics 42 (1975) 440-445,
-as quoted by Simbody (``HuntCrossleyContact.h``: k xⁿ (1 + (3/2) c v), n = 3/2 for a
-sphere, and e = 1 - c v at low speed; its c is (2/3) λ).
+**Kuwabara and Kono**, and Brilliantov et al., the viscoelastic contact:
+``f = K (p^{3/2} + C √p p′)``, released where the force vanishes, p + C p′ = 0, because the surfaces
+do not adhere; the contact is still deformed when the ball leaves. The restitution coefficient
+depends on C v^{1/5} K^{2/5} alone and falls with the speed, as 1 - 1.15 C K^{2/5} v^{1/5} for a
+slow impact. The physical force ``k (x^{3/2} + (3/2) A √x ẋ)``, where A is a time that describes the
+dissipation, has ``C = (3/2) A Ω``.
 
-Viscoelastic Hertz contact, of Kuwabara and Kono, and of Brilliantov et al.
+Sources: G. Kuwabara and K. Kono, Japanese Journal of Applied Physics 26 (1987) 1230-1233, as quoted
+by the CGNS standard (``HertzKuwabaraKono``; the last page from memory); N. V. Brilliantov,
+F. Spahn, J.-M. Hertzsch and T. Pöschel, Physical Review E 53 (1996) 5382-5392, as quoted by LAMMPS
+(``pair_style gran/hooke``); for the release T. Schwager and T. Pöschel, Physical Review E 78 (2008)
+051304, as quoted by the toolbox ChattAbhi/Approx-ViscoElastic-CoR.
 
-``f = K (p^{3/2} + C √p p′)``, released where the force vanishes, p + C p′ = 0, because the
-surfaces do not adhere; the contact is still deformed when the ball leaves. The
-restitution coefficient depends on C v^{1/5} K^{2/5} alone and falls with the speed, as
-1 - 1.15 C K^{2/5} v^{1/5} for a slow impact.
-
-Physical parameters: a ball of mass m with the force ``k (x^{3/2} + (3/2) A √x ẋ)``, where A is
-a time that describes the dissipation, has ``K = k √g/(m Ω³)`` and ``C = (3/2) A Ω``.
-
-Sources: G. Kuwabara and K. Kono, Japanese Journal of Applied Physics 26 (1987)
-1230-1233, as quoted by the CGNS standard (``HertzKuwabaraKono``; the last page from
-memory); N. V. Brilliantov, F. Spahn, J.-M. Hertzsch and T. Pöschel, Physical Review E
-53 (1996) 5382-5392, as quoted by LAMMPS (``pair_style gran/hooke``); for the release
-T. Schwager and T. Pöschel, Physical Review E 78 (2008) 051304, as quoted by the toolbox
-ChattAbhi/Approx-ViscoElastic-CoR.
-
-Hertz contact with Tsuji's damping, which codes for granular matter use.
-
-``f = K p^{3/2} + C √K p^{1/4} p′``, released at p = 0. With q = p^{5/4} and
-ds = p^{1/4} dt a free impact is linear, ::
+**Tsuji**, which codes for granular matter use: ``f = K p^{3/2} + C √K p^{1/4} p′``, released at
+p = 0. With q = p^{5/4} and ds = p^{1/4} dt a free impact is linear, ::
 
     d²q/ds² + C √K dq/ds + (5/4) K q = 0
 
 so that the restitution coefficient does not depend on the speed, and
-``C = √5 (-ln r)/√(π² + ln² r)`` exactly; for C ≥ √5 the ball does not leave.
+``C = √5 (-ln r)/√(π² + ln² r)`` exactly; for C ≥ √5 the ball does not leave. The physical force
+``k x^{3/2} + α √(m k) x^{1/4} ẋ`` has C = α.
 
-Physical parameters: a ball of mass m with the force ``k x^{3/2} + α √(m k) x^{1/4} ẋ``
-has ``K = k √g/(m Ω³)`` and C = α.
-
-Sources: Y. Tsuji, T. Tanaka and T. Ishida, Powder Technology 71 (1992) 239-250, as
-quoted by LAMMPS (``pair_style granular``); D. Antypov and J. A. Elliott, *On an
-analytical solution for the damped Hertzian spring*, Europhysics Letters 94 (2011)
-50004, as quoted by Yade (``doc/references.bib``; its sources give the formula as Eq. 17).
-Y. T. Feng, arXiv:2603.27764 (2026), gives the same change of variable
-and the formula for any power (only its abstract was read).
+Sources: Y. Tsuji, T. Tanaka and T. Ishida, Powder Technology 71 (1992) 239-250, as quoted by LAMMPS
+(``pair_style granular``); D. Antypov and J. A. Elliott, *On an analytical solution for the damped
+Hertzian spring*, Europhysics Letters 94 (2011) 50004, as quoted by Yade (``doc/references.bib``;
+its sources give the formula as Eq. 17). Y. T. Feng, arXiv:2603.27764 (2026), gives the same change
+of variable and the formula for any power (only its abstract was read).
 """
 
 from abc import abstractmethod
@@ -60,9 +51,9 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.beyond.laws.contact_law import ContactLaw, Unit
 from bouncing_ball.errors import require
-from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.contact.law import ContactLaw, Unit, check_damping, check_positive
+from bouncing_ball.paper.contact.damping import Release, check_damping, check_positive
 
 
 @dataclass(frozen=True, repr=False)
@@ -102,7 +93,8 @@ class Hertz(ContactLaw):
     @classmethod
     def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:
         """The law with K = v²/P^{1+ν}, ν the power of p, and C = ``group`` :meth:`damping_unit`."""
-        scale, v = np.asarray(length, dtype=float), np.asarray(speed, dtype=float)
+        scale = np.asarray(length, dtype=float)
+        v = np.asarray(speed, dtype=float)
         stiffness = v * v / scale ** (1 + cls.power)
         return cls(stiffness, group * cls.damping_unit(scale, v) + 0 * stiffness)
 
@@ -254,7 +246,7 @@ class Tsuji(Hertz):
         """K q⁶ + C √K q p′."""
         square = root * root
         loss = self.damping * np.sqrt(self.stiffness)
-        return (self.stiffness * (square * square * square)) + loss * root * rate
+        return self.stiffness * (square * square * square) + loss * root * rate
 
     @classmethod
     def group_of(cls, restitution: float) -> float:

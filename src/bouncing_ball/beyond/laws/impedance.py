@@ -36,15 +36,29 @@ Source: MuJoCo's documentation, *Solver parameters*, read with the engine itself
 from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
 from bouncing_ball.beyond.corrected.instant import Instant, linear_instant
+from bouncing_ball.beyond.laws.contact_law import OscillatorLaw, Unit
 from bouncing_ball.errors import require
-from bouncing_ball.paper.contact.damping import Release, damping_ratio
-from bouncing_ball.paper.contact.law import OscillatorLaw, Unit, check_positive
+from bouncing_ball.paper.contact.damping import Release, check_positive, damping_ratio
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
+
+
+class _Piece(NamedTuple):
+    """``s = level + growth max(start + slope p, 0)^ν``, for depths on one side of the midpoint.
+
+    ``low`` marks the balls up to the depth cW, and ``deep`` those from the depth W on.
+    """
+
+    level: np.ndarray
+    growth: np.ndarray
+    start: np.ndarray
+    slope: np.ndarray
+    low: np.ndarray
+    deep: np.ndarray | bool
 
 
 @dataclass(frozen=True, repr=False)
@@ -114,36 +128,47 @@ class Impedance(OscillatorLaw):
         For the continued law it changes its sign only at the ends of the piece, because a ball may
         pass both depths within a panel.
         """
-        *_, low, deep = self._piece or (False, False)
-        first = np.where(deep, 1.0, penetration - self.midpoint * self.width)
-        return np.where(self._varies, first * np.where(low, -1.0, penetration - self.width), 1.0)
+        low = deep = np.False_
+        if self._piece is not None:
+            low = self._piece.low
+            deep = self._piece.deep
+        at_midpoint = np.where(deep, 1.0, penetration - self.midpoint * self.width)
+        at_width = np.where(low, -1.0, penetration - self.width)
+        return np.where(self._varies, at_midpoint * at_width, 1.0)
 
-    # The numbers of :meth:`_side` that hold at all depths, if they do, and whether they belong to
-    # the depths up to cW, or to those from W on.
+    # The formula of s that holds at all depths of a continued law.
     _piece: ClassVar[Any] = None
 
-    def _side(self, low: np.ndarray) -> list[np.ndarray]:
-        """A, B, C and E of ``s = A + B max(C + E p, 0)^ν`` on the two sides of the midpoint."""
-        c, upper = self.midpoint, 1 - np.asarray(self.midpoint)
+    def _side(self, low: np.ndarray, deep: np.ndarray | bool = False) -> _Piece:
+        """The formula of s for depths up to the midpoint where ``low``, and beyond it elsewhere."""
+        c = self.midpoint
+        upper = 1 - np.asarray(c)
         least = np.where(self._varies, self.at_surface / np.asarray(self.share), 1.0)
-        lower = least, (1 - least) * c, 0.0, 1 / (c * self.width)
-        higher = 1.0, (least - 1) * upper, 1 / upper, -1 / (upper * self.width)
-        return [np.where(low, *pair) for pair in zip(lower, higher, strict=True)]
+        return _Piece(
+            level=np.where(low, least, 1.0),
+            growth=np.where(low, (1 - least) * c, (least - 1) * upper),
+            start=np.where(low, 0.0, 1 / upper),
+            slope=np.where(low, 1 / (c * self.width), -1 / (upper * self.width)),
+            low=low,
+            deep=deep,
+        )
 
     def continued(self, penetration: np.ndarray, side: np.ndarray) -> Self:
         """The law whose s has the formula of one side of the midpoint at all depths of a ball."""
         law = copy(self)
         low = (side > 0) & (penetration < (1 + self.midpoint) / 2 * self.width)
-        vars(law).update(_piece=(*self._side(low), low, (side > 0) & ~low))
+        object.__setattr__(law, "_piece", self._side(low, deep=(side > 0) & ~low))
         return law
 
     def _ratio(self, penetration: np.ndarray) -> Any:
         """The ratio s = d/d_max; 1 if d is constant, even where it is 0."""
         if not self.has_kink:
             return 1.0
-        piece = self._piece or self._side(np.real(penetration) < self.midpoint * self.width)
-        level, growth, start, slope, *_ = piece
-        return level + growth * np.maximum(start + slope * penetration, 0.0) ** self.power
+        piece = self._piece
+        if piece is None:
+            piece = self._side(np.real(penetration) < self.midpoint * self.width)
+        rise = np.maximum(piece.start + piece.slope * penetration, 0.0)
+        return piece.level + piece.growth * rise**self.power
 
     def impedance(self, penetration: np.ndarray) -> np.ndarray:
         """The impedance d(p), of the shape of p."""
@@ -155,7 +180,8 @@ class Impedance(OscillatorLaw):
 
     def loaded_force(self, penetration: np.ndarray, rate: np.ndarray, load: Any) -> np.ndarray:
         """f + d a, the whole force on the ball with a load a."""
-        s, omega = self._ratio(penetration), self.frequency_ratio
+        s = self._ratio(penetration)
+        omega = self.frequency_ratio
         spring = omega * (omega * (s * penetration) + 2 * self.damping_ratio * rate)
         return s * (spring + self.share * load)
 
@@ -183,8 +209,9 @@ class Impedance(OscillatorLaw):
         """The largest Λ at which a steady contact never releases the ball; None if d varies."""
         if self.has_kink:
             return None
-        omega, zeta = np.asarray(self.frequency_ratio), np.asarray(self.damping_ratio)
-        stiffness, loss = omega * omega, 2 * zeta * omega
+        omega = np.asarray(self.frequency_ratio)
+        stiffness = omega * omega
+        loss = 2 * np.asarray(self.damping_ratio) * omega
         held = np.maximum(stiffness, np.hypot(stiffness - self.share, loss))
         return np.hypot(stiffness - 1, loss) / held
 

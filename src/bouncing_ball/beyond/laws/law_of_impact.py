@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.beyond.corrected.signature import free_impact
+from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.errors import ModelError, require
-from bouncing_ball.paper.contact.law import ContactLaw
+from bouncing_ball.paper.contact.damping import check_positive
 
 Law = TypeVar("Law", bound=ContactLaw)
 # Groups tried in turn until r is below the required one, and the absolute error of the result.
@@ -99,9 +100,10 @@ def law_of_impact(
     >>> round(float(impact.restitution), 12), round(float(impact.duration), 12)
     (0.65, 0.1)
     """
-    given, v = np.asarray(duration, dtype=float), np.asarray(speed, dtype=float)
-    for value, name in ((given, "contact duration D"), (v, "impact speed v")):
-        require((value > 0) & np.isfinite(value), value, name, "a finite number > 0")
+    given = np.asarray(duration, dtype=float)
+    v = np.asarray(speed, dtype=float)
+    check_positive(given, "contact duration D")
+    check_positive(v, "impact speed v")
     group, taken = reference(kind, float(restitution))
     try:
         with np.errstate(all="ignore"):

@@ -16,11 +16,10 @@ from bouncing_ball.beyond.continued_orbits import ContinuedModel, orbit_at, orbi
 from bouncing_ball.beyond.corrected.instant import Instant
 from bouncing_ball.beyond.corrected.signature import free_impact
 from bouncing_ball.beyond.laws.collocation import ContactEnds, contacts, path
+from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.beyond.laws.law_of_impact import law_of_impact
 from bouncing_ball.beyond.laws.permanent_contact import permanent_contact
-from bouncing_ball.beyond.simulation import dynamics_of
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.paper.contact.law import ContactLaw
 from bouncing_ball.paper.orbits.orbit import Orbit
 from bouncing_ball.paper.orbits.restitution_branch import rigid_speed
 from bouncing_ball.paper.orbits.stability import Side
@@ -43,7 +42,7 @@ class LawOrbit(Orbit):
     1.0
     """
 
-    dynamics = staticmethod(dynamics_of)
+    dynamics = staticmethod(ContactLaw.dynamics)
 
     @classmethod
     def at(cls, n: ArrayLike, law: ContactLaw, amplitude: ArrayLike, *start: ArrayLike) -> Self:
@@ -187,6 +186,7 @@ def law_at_orbit(
     >>> round(float(free_impact(law, speed).duration), 12)
     0.1
     """
+    side = Side(side)
     taken = np.asarray(duration, dtype=float)
     speed = np.full_like(taken, rigid_speed(n, restitution))
     before = missed_before = np.full_like(taken, np.nan)
@@ -200,7 +200,8 @@ def law_at_orbit(
         missed = -orbit.relative_impact_velocity - speed
         slope = np.full_like(taken, -1.0)
         np.divide(missed - missed_before, speed - before, out=slope, where=speed != before)
-        before, missed_before = speed, missed
+        before = speed
+        missed_before = missed
         speed = speed - missed / np.where(np.abs(slope + 1) < 0.5, slope, -1.0)
         if np.all(np.abs(missed) <= _SETTLED * speed):
             return law_of_impact(kind, restitution, taken, speed)

@@ -31,8 +31,10 @@ motions at the same Λ. A solution is refused if a ball is still held at a large
 All quantities are dimensionless.
 """
 
+from __future__ import annotations
+
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -40,14 +42,20 @@ from numpy.typing import ArrayLike
 from bouncing_ball.beyond.laws.scales import depth, rest
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.contact.law import ContactLaw
+
+if TYPE_CHECKING:
+    from bouncing_ball.beyond.laws.contact_law import ContactLaw
 
 _PERIOD = 2 * np.pi
 # The largest size of the grid and the tolerance of the relative residual. The error of Λ is below
 # 10⁻¹⁰ then, because the residual changes its sign within every interval. At a given Λ less is
 # enough, also for the first grid and for the motion from which the iteration starts.
-_MOST, _TOLERANCE = 200_000, 1e-8
-_GRID, _FEW, _COARSE, _FIRST = 60, 5_000, 1e-6, 1e-5
+_MOST = 200_000
+_TOLERANCE = 1e-8
+_GRID = 60
+_FEW = 5_000
+_COARSE = 1e-6
+_FIRST = 1e-5
 # The ratio of the larger Λ to the threshold. It skips the fold of a resonance, next to which the
 # threshold may be; a steady contact beyond it makes an answer wrong by more than 1 %.
 _ABOVE = 1.01
@@ -82,9 +90,10 @@ class _Steady(NamedTuple):
 
     def release(self, first: np.ndarray, z: np.ndarray) -> tuple[Any, Any]:
         """The grip at the start and its rate of change."""
-        along = *(self.unit * self.rates(0.0, first, z)), -z[1] * np.cos(z[0])
-        here = self.state(0.0, first, z)
-        moved = self.grip(*(x + _STEP * rate for x, rate in zip(here, along, strict=True)))
+        p, u, load = self.state(0.0, first, z)
+        p_rate, u_rate = self.unit * self.rates(0.0, first, z)
+        load_rate = -z[1] * np.cos(z[0])
+        moved = self.grip(p + _STEP * p_rate, u + _STEP * u_rate, load + _STEP * load_rate)
         return moved.real, moved.imag / _STEP.imag
 
     def is_held(self, found: Any, z: np.ndarray) -> bool:
@@ -123,13 +132,19 @@ def _holds(law: ContactLaw, amplitude: float) -> bool:
     """Whether the steady contact at Λ that is next to a slow motion never releases the ball."""
     from scipy.integrate import solve_bvp
 
-    steady, z = _Steady(law, rest(law)), np.array([np.pi / 2, amplitude])
-
+    steady = _Steady(law, rest(law))
+    z = np.array([np.pi / 2, amplitude])
     time = np.linspace(0.0, _PERIOD, _GRID)
     load = np.maximum(1 - amplitude * np.cos(time), _SLACK)
     slow = np.array([depth(law, 0 * time, 0.0, load) / steady.unit, 0 * time])
-    equations = (lambda t, y: steady.rates(t, y, z)), (lambda first, last: last - first)
-    found = solve_bvp(*equations, time, slow, tol=_COARSE, max_nodes=_FEW)
+    found = solve_bvp(
+        lambda t, y: steady.rates(t, y, z),
+        lambda first, last: last - first,
+        time,
+        slow,
+        tol=_COARSE,
+        max_nodes=_FEW,
+    )
     return steady.is_held(found, z)
 
 
@@ -145,8 +160,8 @@ def permanent_contact(law: ContactLaw) -> float:
     --------
     Λ_SD = √13/4 for ϖ = 2 and ζ = 1/2:
 
-    >>> from bouncing_ball.paper.contact.spring_damper import SpringDamper
-    >>> round(permanent_contact(SpringDamper(2.0, 0.5)) / 13**0.5, 15)
+    >>> from bouncing_ball.beyond.laws.linear import LinearLaw
+    >>> round(permanent_contact(LinearLaw(2.0, 0.5)) / 13**0.5, 15)
     0.25
     """
     if law.permanent_contact is not None:

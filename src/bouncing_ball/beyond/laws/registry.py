@@ -1,15 +1,15 @@
 """The contact laws by their names."""
 
+from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.beyond.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball.beyond.laws.hertzian import HuntCrossley, KuwabaraKono, LinearHuntCrossley, Tsuji
 from bouncing_ball.beyond.laws.impedance import Impedance
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.errors import one_of
-from bouncing_ball.paper.contact.law import ContactLaw
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
 
 _HERTZ = (HuntCrossley, LinearHuntCrossley, Tsuji, KuwabaraKono)
 LAWS: dict[str, type[ContactLaw]] = {
-    law.name: law for law in (*_HERTZ, SpringDamper, ElastoBacklash, Impedance)
+    law.name: law for law in (*_HERTZ, LinearLaw, ElastoBacklash, Impedance)
 }
 """The laws by their names on the command line and in calls."""
 

@@ -4,19 +4,24 @@ They set the step lengths of the numerical methods and the starting points of th
 results depend on them only within the error of the methods.
 """
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball.paper.contact.law import ContactLaw
+
+if TYPE_CHECKING:
+    from bouncing_ball.beyond.laws.contact_law import ContactLaw
 
 # Limit and tolerance of Newton's method for ln p, which takes one step for a power law and a few
 # for a sum of powers.
 _ITERATIONS = 40
 _ENOUGH = 1e-3
 # Steps of ln p: the one for the difference quotient, and the longest of Newton's method.
-_DIFFERENCE, _LONGEST = 1e-4, 10.0
+_DIFFERENCE = 1e-4
+_LONGEST = 10.0
 
 
 class Scales(NamedTuple):
@@ -39,7 +44,8 @@ def depth(law: ContactLaw, rate: np.ndarray, power: float, wanted: np.ndarray) -
         p = np.exp(log)
         return np.log(law.force(p, rate)) + power * log
 
-    log, target = np.zeros_like(wanted), np.log(wanted)
+    log = np.zeros_like(wanted)
+    target = np.log(wanted)
     with np.errstate(all="ignore"):
         for _ in range(_ITERATIONS):
             missing = logarithm(log) - target
@@ -59,8 +65,8 @@ def rest(law: ContactLaw) -> float:
 
     Examples
     --------
-    >>> from bouncing_ball.paper.contact.spring_damper import SpringDamper
-    >>> round(rest(SpringDamper(2.0, 0.1)), 6)
+    >>> from bouncing_ball.beyond.laws.linear import LinearLaw
+    >>> round(rest(LinearLaw(2.0, 0.1)), 6)
     0.25
 
     With a constant impedance d only the share 1 - d of the weight acts, so that p = (1 - d)/ϖ²:
@@ -95,8 +101,8 @@ def scales(law: ContactLaw, speed: np.ndarray, load: np.ndarray) -> Scales:
 
     Examples
     --------
-    >>> from bouncing_ball.paper.contact.spring_damper import SpringDamper
-    >>> length, speed = scales(SpringDamper(10.0, 0.0), np.array([2.0]), np.array([0.0]))
+    >>> from bouncing_ball.beyond.laws.linear import LinearLaw
+    >>> length, speed = scales(LinearLaw(10.0, 0.0), np.array([2.0]), np.array([0.0]))
     >>> round(float(length[0]), 3), float(speed[0])
     (0.2, 2.0)
     """

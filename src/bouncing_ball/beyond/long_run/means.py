@@ -23,9 +23,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.beyond.laws.collocation import integrals
+from bouncing_ball.beyond.laws.contact_law import ContactLaw
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.long_run.motions import Motions
 from bouncing_ball.beyond.simulation import Law, dynamics_of
-from bouncing_ball.paper.contact.law import ContactLaw
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.motion.dynamics import Departure, Dynamics, Impact
 from bouncing_ball.paper.motion.flight import table
@@ -114,7 +115,8 @@ def over_steps(
         held = -_change(w_rate)
         moved = _change(w * w) / 2
         if law is not None:
-            sunk, sunk_moved = integrals(law, duration, -gap[0], -rate[0], phase[0], amplitude)
+            of = LinearLaw.of(law) if isinstance(law, SpringDamper) else law
+            sunk, sunk_moved = integrals(of, duration, -gap[0], -rate[0], phase[0], amplitude)
             held = held - sunk
             moved = moved - sunk_moved
     release_height = gap[1] + w[1]

@@ -102,8 +102,9 @@ class Claim:
     item, statement : str
         The place in the paper, and the statement there in our words.
     decide : callable
-        A function of the datasets that returns a :class:`~bouncing_ball.paper.claims.verdict.Finding`,
-        or a mapping of findings by reading; with ``printed``, it returns numbers instead.
+        A function of the datasets that returns a
+        :class:`~bouncing_ball.paper.claims.verdict.Finding`, or a mapping of findings by reading;
+        with ``printed``, it returns numbers instead.
     printed : str
         The number with the digits that the paper prints; empty if the claim is not a number.
     condition, remark : str

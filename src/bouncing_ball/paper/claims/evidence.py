@@ -103,7 +103,7 @@ def stiff_orbit_error(data: Data) -> xr.DataArray:
 def amplitude_matters_below(data: Data) -> float:
     """Fig. 10: the interpolated ϖ below which the curves differ by more than 1 % of nπ."""
     sweep = data["fig10"]
-    ratio = data["fig10"].frequency_ratio.values
+    ratio = sweep.frequency_ratio.values
     apart = sweep.bounce_velocity.max("case") - sweep.bounce_velocity.min("case")
     share = np.ravel(apart / sweep.restitution_bounce_velocity)
     last = int(np.flatnonzero(share > TOLERANCE).max(initial=0))
@@ -114,8 +114,8 @@ def amplitude_matters_below(data: Data) -> float:
 
 def inadmissible_orbits(data: Data) -> int:
     """Number of orbits drawn in the paper's figures that are inadmissible."""
-    drawn = [data[f"fig{k:02d}"].admissible for k in (3, 5, 6, 8, 9, 10, 13, 14, 15)]
-    return sum(int((~flags.astype(bool)).sum()) for flags in drawn)
+    figures = ("fig03", "fig05", "fig06", "fig08", "fig09", "fig10", "fig13", "fig14", "fig15")
+    return sum(int((~data[name].admissible.astype(bool)).sum()) for name in figures)
 
 
 def contact_durations(data: Data, place: int) -> list[xr.DataArray]:
@@ -123,15 +123,21 @@ def contact_durations(data: Data, place: int) -> list[xr.DataArray]:
 
     ``place`` is 0 for the most compliant contact and -1 for the stiffest.
     """
-    figures = (data[name].sortby("frequency_ratio") for name in ("fig08", "fig09"))
-    branches = [figure.contact_duration.isel(frequency_ratio=place) for figure in figures]
-    return [end for branch in branches for end in (branch.min(), branch.max())]
+    ends = []
+    for name in ("fig08", "fig09"):
+        figure = data[name].sortby("frequency_ratio")
+        durations = figure.contact_duration.isel(frequency_ratio=place)
+        ends += [durations.min(), durations.max()]
+    return ends
 
 
 def folds(data: Data) -> int:
     """The smallest number of saddle-nodes on a branch of Figs. 8 and 9."""
-    kinds = (data[name].special_kind == BOUNDS[0] for name in ("fig08", "fig09"))
-    return min(int(found.sum("special").min()) for found in kinds)
+    counts = []
+    for name in ("fig08", "fig09"):
+        is_fold = data[name].special_kind == Bifurcation.SADDLE_NODE
+        counts.append(int(is_fold.sum("special").min()))
+    return min(counts)
 
 
 @np.errstate(invalid="ignore")  # a range without an end
@@ -144,7 +150,7 @@ def range_error(data: Data) -> xr.DataArray:
     both = data["fig15"].isel(frequency_ratio=0)
     kinds = both.special_kind.values
     lam = both.special_amplitude.values
-    ends = [[np.nan, *lam[kinds == kind]][-1] for kind in BOUNDS]
+    ends = [lam[kinds == kind][-1] if np.any(kinds == kind) else np.nan for kind in BOUNDS]
     rigid = np.array([both.saddle_node_amplitude, both.period_doubling_amplitude], dtype=float)
     return xr.DataArray(np.abs(ends / rigid - 1), {"bound": list(BOUNDS)})
 
@@ -170,8 +176,10 @@ def printed_slight_move(data: Data) -> xr.DataArray:
 
     The paper calls this change slight.
     """
-    stiffest, next_one = (_rows(data, "printed").isel(frequency_ratio=k, drop=True) for k in (0, 1))
-    return np.abs(next_one / stiffest - 1).max()
+    rows = _rows(data, "printed")
+    stiffest = rows.isel(frequency_ratio=0, drop=True)
+    following = rows.isel(frequency_ratio=1, drop=True)
+    return np.abs(following / stiffest - 1).max()
 
 
 def period_doubling_lowest(data: Data) -> xr.DataArray:

@@ -90,51 +90,72 @@ def restitution_model(rng, samples) -> Checks:
     functions of this module.
     """
     r = rng.uniform(0.1, 0.95, samples)
-    lam = rng.uniform(0.1, 3, samples)
-    phase = rng.uniform(-np.pi, np.pi, samples)
-    velocity = lam + rng.uniform(0.5, 6, samples)
+    return _impact_map(rng, r) | _restitution_orbits(rng, r) | _rest_on_the_table()
+
+
+def _impact_map(rng, r) -> Checks:
+    """Checks of Eqs. 1 to 5 on impacts from random states."""
+    lam = rng.uniform(0.1, 3, r.size)
+    phase = rng.uniform(-np.pi, np.pi, r.size)
+    velocity = lam + rng.uniform(0.5, 6, r.size)
     landing, rebound, time = impact_cycle(phase, velocity, r, lam)
     table = lam * np.cos(landing)
     falling = table - (rebound - table) / r
     height, fallen = printed.free_flight(phase + time, phase, lam * np.sin(phase), velocity)
-    flight = height - lam * np.sin(landing), fallen - falling
     map_height = printed.landing_defect(phase, velocity, time, lam)
-    bounced = printed.bounced_velocity(phase, velocity, time, lam, r)
+    map_velocity = printed.bounced_velocity(phase, velocity, time, lam, r)
+    simulated = "simulated flight and impact"
+    return {
+        "Eq. 2": check(simulated, printed.restitution_law(falling, table, r) - rebound),
+        "Eq. 4": check(simulated, height - lam * np.sin(landing), fallen - falling),
+        "Eq. 5": check(simulated, map_height, map_velocity - rebound),
+    }
 
-    n = rng.integers(1, 6, samples).astype(float)
+
+def _restitution_orbits(rng, r) -> Checks:
+    """Checks of Eqs. 6 to 8 on n-T orbits, one for each r."""
+    n = rng.integers(1, 6, r.size).astype(float)
     along = n * np.pi * (1 - r) / (1 + r)
     model = RestitutionModel(r)
-    above = along * rng.uniform(1.01, 3, samples)
-    phi, launch = printed.fixed_point(n, r, above)
-    back_phase, back_velocity, _ = impact_cycle(phi, launch, r, above)
-    fixed = reduce_angle(back_phase - phi), back_velocity - launch
+
+    above = along * rng.uniform(1.01, 3, r.size)
+    phase, velocity = printed.fixed_point(n, r, above)
+    back_phase, back_velocity, _ = impact_cycle(phase, velocity, r, above)
+
     # The orbit with φ = 0, where both sides of the fold meet, exists at this Λ only.
     fold = printed.saddle_node(n, r)
-    met_phase, met_velocity, _ = impact_cycle(0.0 * r, n * np.pi, r, fold)
+    fold_phase, fold_velocity, _ = impact_cycle(0.0 * r, n * np.pi, r, fold)
     at_fold = model.orbit_of(n, fold, 0.0 * r).trace_and_determinant()
-    folds = Bifurcation.SADDLE_NODE.test(*at_fold), met_phase, met_velocity - n * np.pi
+
     doubling = printed.period_doubling(n, r)
     corrected = np.hypot(2 * (1 + r * r) / (1 + r) ** 2, along)
-    flips = model.orbit_of(n, corrected, np.arccos(along / corrected)).trace_and_determinant()
+    at_doubling = model.orbit_of(n, corrected, np.arccos(along / corrected)).trace_and_determinant()
     # Holmes' map, whose next phase is φ + 2v, has the trace 1 + r - 2p and the determinant r.
     push = (1 + r) * np.sqrt(doubling**2 - along**2)
     holmes = Bifurcation.PERIOD_DOUBLING.test(1 + r - 2 * push, r)
-    # A ball at rest on two tables, with Λ slightly below and above the threshold of Eq. 9.
-    stays = np.isnan(lift_off_phase(1 + np.array([-1, 1]) * ROUNDING)).tolist() == [True, False]
-
-    simulated, flip = "simulated flight and impact", "multiplier at -1 of "
-    exact = check(flip + "the map of Eq. 5", Bifurcation.PERIOD_DOUBLING.test(*flips))
     return {
-        "Eq. 2": check(simulated, printed.restitution_law(falling, table, r) - rebound),
-        "Eq. 4": check(simulated, *flight),
-        "Eq. 5": check(simulated, map_height, bounced - rebound),
-        "Eq. 6": check("one simulated cycle", *fixed),
-        "Eq. 7": check("one simulated cycle, and a Floquet multiplier at 1", *folds),
+        "Eq. 6": check(
+            "one simulated cycle", reduce_angle(back_phase - phase), back_velocity - velocity
+        ),
+        "Eq. 7": check(
+            "one simulated cycle, and a Floquet multiplier at 1",
+            Bifurcation.SADDLE_NODE.test(*at_fold),
+            fold_phase,
+            fold_velocity - n * np.pi,
+        ),
         "Eq. 8": check("the corrected form", doubling / corrected - 1),
-        "Eq. 8, Holmes' map": check(flip + "Holmes' map", holmes),
-        "Eq. 8, corrected": exact,
-        "Eq. 9": check("lift-off of a ball at rest", float(not stays)),
+        "Eq. 8, Holmes' map": check("multiplier at -1 of Holmes' map", holmes),
+        "Eq. 8, corrected": check(
+            "multiplier at -1 of the map of Eq. 5", Bifurcation.PERIOD_DOUBLING.test(*at_doubling)
+        ),
     }
+
+
+def _rest_on_the_table() -> Checks:
+    """A ball at rest on two tables, with Λ slightly below and above the threshold of Eq. 9."""
+    below, above = np.isnan(lift_off_phase(1 + np.array([-1, 1]) * ROUNDING))
+    stays = bool(below) and not above
+    return {"Eq. 9": check("lift-off of a ball at rest", float(not stays))}
 
 
 def printed_contact(time, omega, zeta, lam, phase, impact):
@@ -142,10 +163,28 @@ def printed_contact(time, omega, zeta, lam, phase, impact):
 
     The constants A and B are linear in the height and velocity of the impact (Eqs. 21-22).
     """
-    zero, rate = printed.contact(0.0, omega, zeta, lam, phase, 0.0, 0.0)
+    zero, rate = printed.contact(
+        time=0.0,
+        frequency_ratio=omega,
+        damping_ratio=zeta,
+        amplitude=lam,
+        phase=phase,
+        a=0.0,
+        b=0.0,
+    )
     a = lam * np.sin(phase) - zero
     b = (impact - rate + zeta * omega * a) / (omega * np.sqrt(1 - zeta**2))
-    return np.array(printed.contact(time, omega, zeta, lam, phase, a, b))
+    return np.array(
+        printed.contact(
+            time=time,
+            frequency_ratio=omega,
+            damping_ratio=zeta,
+            amplitude=lam,
+            phase=phase,
+            a=a,
+            b=b,
+        )
+    )
 
 
 def acceleration(rise, rate, frequency, damping, gravity=1.0):
@@ -214,9 +253,29 @@ def contact_orbits(rng, samples) -> Checks:
     time = end * rng.uniform(0.1, 1, samples)
     rise, rate, *held = simulated(time)
     off = printed_contact(time, omega, zeta, lam, phase, impact) - held
-    # Eq. 10 in metres and seconds, for a contact whose frequency is ϖ times that of the table.
+
+    # Eqs. 21-22 give A and B; the following defects are those of Eqs. 23-26.
+    *_, level, velocity = simulated(end)
+    left = printed_contact(end, omega, zeta, lam, phase, impact) - (level, velocity)
+    landing = np.array(printed.flight(2 * np.pi * n, end, velocity, lam, phase))
+    landed = landing - (lam * np.sin(phase), impact)
+    thrown = printed.bounce_velocity(impact, n, end) - velocity
+    orbits = "orbits that repeat in the simulation"
+    return _frequency_ratio(rng, rise, rate, omega, zeta) | {
+        "Eqs. 12-13": check("simulated contact", off),
+        "Eqs. 14-15": check(orbits, landed),
+        "Eqs. 21-26": check(orbits, *repeated, left, landed),
+        "Eq. 27": check("simulated contact", thrown),
+    }
+
+
+def _frequency_ratio(rng, rise, rate, omega, zeta) -> Checks:
+    """Checks of both readings of ϖ: Eq. 11 with each of them against Eq. 10.
+
+    Eq. 10 is in metres and seconds, for a contact whose frequency is ϖ times that of the table.
+    """
     gravity = 9.81
-    table = rng.uniform(20, 60, samples)
+    table = rng.uniform(20, 60, omega.size)
     length = gravity / table**2
     speed = gravity / table
     physical = acceleration(rise * length, rate * speed, omega * table, zeta, gravity) / gravity
@@ -225,20 +284,10 @@ def contact_orbits(rng, samples) -> Checks:
         """The difference of Eq. 11 with a frequency ratio from Eq. 10, over ϖ."""
         return (acceleration(rise, rate, ratio, zeta) - physical) / omega
 
-    # Eqs. 21-22 give A and B; the following defects are those of Eqs. 23-26.
-    *_, level, velocity = simulated(end)
-    left = printed_contact(end, omega, zeta, lam, phase, impact) - (level, velocity)
-    landing = np.array(printed.flight(2 * np.pi * n, end, velocity, lam, phase))
-    landed = landing - (lam * np.sin(phase), impact)
-    thrown = printed.bounce_velocity(impact, n, end) - velocity
-    units, orbits = "Eq. 10 in physical units; ", "orbits that repeat in the simulation"
+    units = "Eq. 10 in physical units; "
     return {
         "ϖ = Ω/ω, Ω of the table": check(f"{units}one of two readings", scaled(1 / omega)),
         "ϖ = Ω/ω, Ω of the contact": check(f"{units}the other reading", scaled(omega)),
-        "Eqs. 12-13": check("simulated contact", off),
-        "Eqs. 14-15": check(orbits, landed),
-        "Eqs. 21-26": check(orbits, *repeated, left, landed),
-        "Eq. 27": check("simulated contact", thrown),
     }
 
 
@@ -248,8 +297,9 @@ def steady_amplitude(omega, zeta):
     The amplitude follows from δ at two times that are a quarter of a cycle apart.
     """
     lam = omega**-2.0
-    swing = (printed.steady_displacement(time, omega, zeta, lam) for time in (0.0, np.pi / 2))
-    return np.hypot(*(omega**2 * each + 1 for each in swing))
+    start = printed.steady_displacement(0.0, omega, zeta, lam)
+    quarter = printed.steady_displacement(np.pi / 2, omega, zeta, lam)
+    return np.hypot(omega**2 * start + 1, omega**2 * quarter + 1)
 
 
 def permanent_contact(rng, samples) -> Checks:
@@ -258,27 +308,50 @@ def permanent_contact(rng, samples) -> Checks:
     """
     omega = np.exp(rng.uniform(-0.5, 2, samples))
     zeta = rng.uniform(0.02, 0.5, samples)
-    lam = rng.uniform(0.1, 2, samples)
-    begin = rng.uniform(-np.pi, np.pi, samples)
-    end = begin + rng.uniform(0.5, 6, samples)
+    return (
+        _steady_motion(rng, omega, zeta) | _threshold(omega, zeta) | _inverse_threshold(rng, zeta)
+    )
+
+
+def _steady_motion(rng, omega, zeta) -> Checks:
+    """The check of Eq. 31 against a simulated contact that starts on the steady motion."""
+    lam = rng.uniform(0.1, 2, omega.size)
+    begin = rng.uniform(-np.pi, np.pi, omega.size)
+    end = begin + rng.uniform(0.5, 6, omega.size)
 
     def steady(time):
         return printed.steady_displacement(time, omega, zeta, lam)
 
-    start = steady(begin), slopes(steady, begin)
+    start = (steady(begin), slopes(steady, begin))
     later = SpringDamper(omega, zeta).flow(end - begin, *start, begin, lam).displacement
+    return {"Eq. 31": check("simulated contact", steady(end) - later)}
+
+
+def _threshold(omega, zeta) -> Checks:
+    """Checks of Eq. 33 and its values at ϖ = 1 and for ϖ → 0 against the amplitude of Eq. 31."""
     at_any = omega**2 * steady_amplitude(omega, zeta)
     threshold = printed.permanent_contact_threshold(omega, zeta) * at_any - 1
     resonant = 2 * zeta * steady_amplitude(1.0, zeta) - 1
     # Λ_SD grows as 1/ϖ², with a next term of relative order ϖ².
     compliant = 1 / steady_amplitude(_COMPLIANT, zeta) - 1
+    amplitude = "amplitude of Eq. 31"
+    return {
+        "Eq. 33": check(amplitude, threshold),
+        "Eq. 33, ϖ = 1": check(amplitude, resonant),
+        "Eq. 33, ϖ → 0": check(amplitude, compliant, budget=2 * _COMPLIANT**2),
+    }
 
-    # Λ_SD² is quadratic in 1/ϖ², so that its only stationary point is the minimum.
+
+def _inverse_threshold(rng, zeta) -> Checks:
+    """Checks of Eqs. 34 to 36: both ϖ with a given Λ_SD, and the lowest Λ_SD.
+
+    Λ_SD² is quadratic in 1/ϖ², so that its only stationary point is the minimum.
+    """
     place = (1 - 2 * zeta**2) ** -0.5
     bottom = permanent_contact_threshold(place, zeta)
     flat = slopes(lambda ratio: printed.permanent_contact_threshold(ratio, zeta), place)
     # Λ between the minimum and 1, where both frequency ratios exist.
-    level = bottom + (1 - bottom) * rng.uniform(0.1, 0.9, samples)
+    level = bottom + (1 - bottom) * rng.uniform(0.1, 0.9, zeta.size)
 
     def inverse(sign):
         """Defects of a printed ϖ: in its threshold, and in its place beside the minimum."""
@@ -287,12 +360,7 @@ def permanent_contact(rng, samples) -> Checks:
         return check("roots of Λ_SD", off, np.sign(ratio - place) - sign)
 
     minimum = printed.permanent_contact_minimum(zeta) / bottom - 1
-    amplitude = "amplitude of Eq. 31"
     return {
-        "Eq. 31": check("simulated contact", steady(end) - later),
-        "Eq. 33": check(amplitude, threshold),
-        "Eq. 33, ϖ = 1": check(amplitude, resonant),
-        "Eq. 33, ϖ → 0": check(amplitude, compliant, budget=2 * _COMPLIANT**2),
         "Eq. 34": inverse(1),
         "Eq. 35": inverse(-1),
         "Eq. 36": check("minimum of Λ_SD", minimum, flat),

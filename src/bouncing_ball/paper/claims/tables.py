@@ -1,7 +1,7 @@
 """The tables of the run: for each table a function of its dataset, with the name of the table.
 
 Each function returns the header and the rows as texts, made from parts of the dataset and columns
-(:mod:`.layout`).
+(:mod:`bouncing_ball.drawing.tables`).
 
 Claims and their verdicts in the form in which an article needs them.
 """

@@ -58,8 +58,10 @@ class Shown(NamedTuple):
 def _row(data: xr.Dataset, *names: str) -> Iterator[np.ndarray]:
     """Variables or parameters as flat arrays, without the places where the first one is NaN."""
     known = {**_UNSAID, **data.attrs, **data.coords, **data}
-    flat = [x.values.ravel() for x in xr.broadcast(*(xr.DataArray(known[x]) for x in names))]
-    return (column[np.isfinite(flat[0])] for column in flat)
+    arrays = xr.broadcast(*(xr.DataArray(known[name]) for name in names))
+    columns = [array.values.ravel() for array in arrays]
+    present = np.isfinite(columns[0])
+    return (column[present] for column in columns)
 
 
 def _contacts(data: xr.Dataset, *names: str) -> tuple[Any, ...]:
@@ -79,8 +81,14 @@ def contact_orbits(data: xr.Dataset) -> Iterator[Shown]:
 def restitution_orbits(data: xr.Dataset) -> Iterator[Shown]:
     """The orbits of the restitution model along Λ."""
     beside = "restitution_" if "restitution_amplitude" in data else ""
-    names = (beside + x for x in ("phase", "amplitude", "admissible"))
-    phase, lam, admissible, r, n = _row(data, *names, "restitution", "n")
+    phase, lam, admissible, r, n = _row(
+        data,
+        f"{beside}phase",
+        f"{beside}amplitude",
+        f"{beside}admissible",
+        "restitution",
+        "n",
+    )
     model = RestitutionModel(r)
     yield Shown(model, model.orbit_of(n, lam, phase), None, admissible)
 
@@ -89,8 +97,8 @@ def restitution_bifurcations(data: xr.Dataset) -> Iterator[Shown]:
     """Both bifurcations of each family of the restitution model."""
     exact = data.sel(impact_map="exact") if "impact_map" in data.dims else data
     for kind in Bifurcation:
-        ends = (f"{kind.name.lower()}_{part}" for part in ("phase", "amplitude"))
-        phase, lam, r, n = _row(exact, *ends, "restitution", "n")
+        name = kind.name.lower()
+        phase, lam, r, n = _row(exact, f"{name}_phase", f"{name}_amplitude", "restitution", "n")
         model = RestitutionModel(r)
         yield Shown(model, model.orbit_of(n, lam, phase), kind)
 
@@ -99,19 +107,31 @@ def located(data: xr.Dataset) -> Iterator[Shown]:
     """Bifurcations that a continuation located: along branches, or in Table 1."""
     for kind in Bifurcation:
         if "special_kind" in data:
-            part = data.assign(place=data["special_amplitude"].where(data.special_kind == kind))
+            amplitude = data["special_amplitude"].where(data.special_kind == kind)
+            part = data.assign(amplitude_there=amplitude)
         else:
-            part = data.assign(place=data["computed"]).sel(bound=kind)
-        names = ("place", "special_phase", "special_contact_duration")
-        model, n, *limit = _contacts(part, *names)
-        yield Shown(model, model.orbit_of(n, *limit), kind)
+            part = data.assign(amplitude_there=data["computed"]).sel(bound=kind)
+        names = ("amplitude_there", "special_phase", "special_contact_duration")
+        model, n, lam, phase, duration = _contacts(part, *names)
+        yield Shown(model, model.orbit_of(n, lam, phase, duration), kind)
 
 
-SHOWN: dict[Callable[[xr.Dataset], Iterator[Shown]], str] = {
-    contact_orbits: "fig05 fig06 fig07 fig08 fig09 fig10 fig12 fig13 fig14 fig15",
-    restitution_orbits: "fig02 fig03 fig15",
-    restitution_bifurcations: "fig03 fig15",
-    located: "fig08 fig09 fig15 table1",
+SHOWN: dict[Callable[[xr.Dataset], Iterator[Shown]], tuple[str, ...]] = {
+    contact_orbits: (
+        "fig05",
+        "fig06",
+        "fig07",
+        "fig08",
+        "fig09",
+        "fig10",
+        "fig12",
+        "fig13",
+        "fig14",
+        "fig15",
+    ),
+    restitution_orbits: ("fig02", "fig03", "fig15"),
+    restitution_bifurcations: ("fig03", "fig15"),
+    located: ("fig08", "fig09", "fig15", "table1"),
 }
 """The datasets that show each kind of orbits."""
 
@@ -182,7 +202,7 @@ def disagreements(name: str, data: xr.Dataset) -> dict[str, np.ndarray]:
     Only orbits that are admissible according to the dataset are simulated, and no bifurcations.
     """
     try:
-        found = [list(find(data)) for find, names in SHOWN.items() if name in names.split()]
+        found = [list(find(data)) for find, names in SHOWN.items() if name in names]
     except KeyError as error:
         raise ModelError(f"{name} lacks a variable: {error.args[0]}") from error
     if not all(sum(part.orbit.size for part in parts) for parts in found or [[]]):

@@ -69,6 +69,31 @@ class Release(StrEnum):
         return 2 * arctangent(np.sqrt((1 - sine) * (1 + sine)), sine)
 
 
+def check_positive(value: ArrayLike, name: str) -> None:
+    """Raise :class:`ModelError` unless a parameter is finite and positive.
+
+    Examples
+    --------
+    >>> check_positive(-1.0, "stiffness K")
+    Traceback (most recent call last):
+    ...
+    bouncing_ball.errors.ModelError: stiffness K = -1.0 is not a finite number > 0
+    """
+    x = np.asarray(value, dtype=float)
+    require(np.isfinite(x) & (x > 0), x, name, "a finite number > 0")
+
+
+def check_damping(value: ArrayLike, name: str) -> None:
+    """Raise :class:`ModelError` unless a parameter is finite and not negative.
+
+    Examples
+    --------
+    >>> check_damping(0.0, "damping C")
+    """
+    x = np.asarray(value, dtype=float)
+    require(np.isfinite(x) & (x >= 0), x, name, "a finite number ≥ 0")
+
+
 # Newton steps for β in 2β cot β = -ln r. The initial error is below 10 %, and each
 # step doubles the number of correct digits.
 _NEWTON_STEPS = 6

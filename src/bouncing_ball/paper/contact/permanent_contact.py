@@ -24,8 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import require
-from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.contact.law import check_damping, check_positive
+from bouncing_ball.paper.contact.damping import Release, check_damping, check_positive
 
 RESTITUTION_THRESHOLD = 1.0
 """Λ_CR, at which the greatest acceleration of the table equals that of gravity (Eq. 9)."""

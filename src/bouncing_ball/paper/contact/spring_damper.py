@@ -20,16 +20,22 @@ All quantities are dimensionless: time Ωt, length Ω²y/g.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import require
-from bouncing_ball.paper.contact.damping import Release, damping_ratio, restitution_coefficient
-from bouncing_ball.paper.contact.law import OscillatorLaw
+from bouncing_ball.numerics.arrays import Batch
+from bouncing_ball.paper.contact.contact import Span
+from bouncing_ball.paper.contact.damping import (
+    Release,
+    check_damping,
+    check_positive,
+    damping_ratio,
+    restitution_coefficient,
+)
 from bouncing_ball.paper.contact.oscillator import responses
-from bouncing_ball.paper.contact.permanent_contact import permanent_contact_threshold
 
 ARGUMENTS = ("time", "displacement", "velocity", "phase", "amplitude")
 """Order of the last axis of :attr:`ContactFlow.jacobian`."""
@@ -49,10 +55,10 @@ class ContactFlow(NamedTuple):
 
 
 @dataclass(frozen=True, repr=False)
-class SpringDamper(OscillatorLaw):
+class SpringDamper(Batch):
     """The paper's contact: ϖ, ζ and the rule that ends it, with f = ϖ² p + 2ζϖ p′ (Eq. 11).
 
-    It is the only contact law whose motion is computed in closed form.
+    Its motion has a closed form, see :meth:`flow`.
 
     Parameters
     ----------
@@ -73,34 +79,23 @@ class SpringDamper(OscillatorLaw):
     (<Release.FORCE: 'force'>, 10.0)
     """
 
+    frequency_ratio: float | np.ndarray
+    damping_ratio: float | np.ndarray
     release: Release = Release.DISPLACEMENT
 
-    name: ClassVar[str] = "linear"
-
     def __post_init__(self):
-        super().__post_init__()
+        check_positive(self.frequency_ratio, "frequency ratio ϖ")
+        check_damping(self.damping_ratio, "damping ratio ζ")
+        # Contacts are keys of caches, so that a single number must not be an array.
+        for name in ("frequency_ratio", "damping_ratio"):
+            value = np.asarray(getattr(self, name))
+            object.__setattr__(self, name, value if value.ndim else value.item())
         object.__setattr__(self, "release", Release.of(self.release))
 
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """The force over the weight, ϖ² p + 2ζϖ p′."""
         omega = self.frequency_ratio
         return omega * (omega * penetration + 2 * self.damping_ratio * rate)
-
-    @property
-    def permanent_contact(self) -> np.ndarray:
-        """Λ_SD or Λ_F, depending on the release (Eq. 33)."""
-        return permanent_contact_threshold(self.frequency_ratio, self.damping_ratio, self.release)
-
-    @classmethod
-    def group_of(cls, restitution: float) -> float:
-        """ζ that gives r with the displacement release (Eq. 16).
-
-        Raises
-        ------
-        ModelError
-            If r is not in (0, 1].
-        """
-        return float(damping_ratio(restitution))
 
     @classmethod
     def from_restitution(
@@ -225,18 +220,33 @@ class SpringDamper(OscillatorLaw):
         >>> round(float(flow.displacement), 14), abs(round(float(flow.velocity), 14))
         (-0.25, 0.0)
         """
-        args = (time, displacement, velocity, phase, amplitude)
-        args = (*args, self.frequency_ratio, self.damping_ratio)
-        args = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in args))
-        s, d0, v0, phi, lam, omega, zeta = args
-        loss, stiffness = 2 * zeta * omega, omega * omega
+        state = time, displacement, velocity, phase, amplitude
+        columns = (*state, self.frequency_ratio, self.damping_ratio)
+        rows = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in columns))
+        s, d0, v0, phi, lam, omega, zeta = rows
+        loss = 2 * zeta * omega
+        stiffness = omega * omega
         g, G, h = responses(s, omega, zeta)
         turn = np.exp(1j * phi)
-        drive, free = lam * turn, g.rate + loss * g.value
+        drive = lam * turn
+        # The free response to a unit displacement.
+        free = g.rate + loss * g.value
         d = d0 * free + v0 * g.value - G.value + np.imag(drive * h.value)
         v = v0 * g.rate - d0 * stiffness * g.value - G.rate + np.imag(drive * h.rate)
         acc = lam * np.sin(s + phi) - 1 - loss * v - stiffness * d
-        table = ((np.real(drive * x), np.imag(turn * x)) for x in h)
-        free_columns = (v, free, g.value), (acc, -stiffness * g.value, g.rate)
-        jacobian = [(*one, *by) for one, by in zip(free_columns, table, strict=True)]
-        return ContactFlow(d, v, acc, np.moveaxis(np.array(jacobian), (0, 1), (-2, -1)))
+        of_displacement = (v, free, g.value, np.real(drive * h.value), np.imag(turn * h.value))
+        of_velocity = (
+            acc,
+            -stiffness * g.value,
+            g.rate,
+            np.real(drive * h.rate),
+            np.imag(turn * h.rate),
+        )
+        jacobian = np.moveaxis(np.array([of_displacement, of_velocity]), (0, 1), (-2, -1))
+        return ContactFlow(d, v, acc, jacobian)
+
+    def during(self, span: Span, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """δ and δ′ at times 0 ≤ s ≤ D after the starts of contacts, one time for each contact."""
+        start = span.displacement, span.velocity, span.phase
+        flow = self.flow(time, *start, span.amplitude)
+        return flow.displacement, flow.velocity

@@ -101,8 +101,10 @@ def _draw_trace(
         if label and ratio <= _NAMED_UP_TO:
             # The names of neighbours are on different sides of the curve.
             if k % 2 == 0:
-                offset, side = (5, 4), "left"
+                offset = (5, 4)
+                side = "left"
             else:
-                offset, side = (-5, -4), "right"
+                offset = (-5, -4)
+                side = "right"
             name = rf"$\varpi={number(ratio)}$"
             note(axes, name, (x[at], y[at]), offset, ha=side, va="center", fontsize=8)

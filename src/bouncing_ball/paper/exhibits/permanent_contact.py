@@ -74,8 +74,8 @@ class PermanentContactError(PermanentContact):
 def permanent_contact_error(parameters: PermanentContactError, release: Release) -> xr.Dataset:
     """Permanent contact along ϖ in both models, and ϖ_PC for the tolerance (Eq. 38, Fig. 16).
 
-    The dataset has the variables of :func:`~.errors_along_ratio.errors_along_ratio` for the one quantity, and those of
-    :func:`~bouncing_ball.paper.exhibits.permanent_contact.permanent_contact`.
+    The dataset has the variables of :func:`~.errors_along_ratio.errors_along_ratio` for the one
+    quantity, and those of :func:`permanent_contact`.
 
     Raises
     ------

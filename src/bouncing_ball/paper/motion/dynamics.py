@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.errors import ModelError, require
 from bouncing_ball.numerics.arrays import BLOCK, Batch, blocks, pick
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.paper.contact.law import ContactLaw
+from bouncing_ball.paper.contact.contact import Contact
 from bouncing_ball.paper.motion.deviations import Deviation, Jacobian
 from bouncing_ball.paper.motion.flight import Flight, land, table
 from bouncing_ball.paper.motion.sequence import RECORDED, Cycle, ImpactSequence, Status
@@ -86,6 +86,11 @@ class Dynamics(Batch, ABC):
         lam = np.asarray(amplitude, dtype=float)
         require((lam >= 0) & np.isfinite(lam), lam, "amplitude Λ", "finite and ≥ 0")
         return cls(law, lam)
+
+    @property
+    def contact(self) -> Contact | None:
+        """The law of contacts of finite duration, or None if impacts are instants."""
+        return None
 
     def start(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
         """First impacts, which start at phases φ with δ′ at the table's level."""
@@ -174,7 +179,26 @@ class Dynamics(Batch, ABC):
         return flat, start, np.minimum(relative, 0.0), shape
 
     def simulate(self, phase: ArrayLike, velocity: ArrayLike, impacts: int) -> ImpactSequence:
-        """Follow balls through a number of impacts, see :func:`.simulation.simulate`."""
+        """Follow balls from an impact through a number of impacts, the first included.
+
+        Parameters
+        ----------
+        phase, velocity : array_like
+            The table's phase φ and the absolute velocity z′_i just before the first impact.
+        impacts : int
+            Number of impacts. The bounces that are summed up before a ball sticks are not counted.
+            Balls that remain on the table have fewer impacts.
+
+        Returns
+        -------
+        ImpactSequence
+            Its rows have the shape to which the arguments and the dynamics broadcast.
+
+        Raises
+        ------
+        ModelError
+            If a state is not finite, or if a ball rises from the table.
+        """
         flat, start, relative, shape = self.first_impacts(phase, velocity)
         rows = {name: np.full((impacts, start.size), np.nan) for name in RECORDED}
         status = np.zeros(start.size, dtype=np.int8)
@@ -185,7 +209,7 @@ class Dynamics(Batch, ABC):
             dynamics._follow(first, of_block, status[part])
         return ImpactSequence(
             amplitude=np.broadcast_to(self.amplitude, shape),
-            contact=self.law if isinstance(self.law, ContactLaw) else None,
+            contact=self.contact,
             status=status.reshape(shape),
             **{name: values.reshape(impacts, *shape) for name, values in rows.items()},
         )

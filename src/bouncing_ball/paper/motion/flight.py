@@ -1,4 +1,4 @@
-r"""Free flight and the landing that ends it.
+r"""Free flight and the landing that ends it (Eqs. 3-4, 14-15).
 
 Let s be the time since the ball left the table, δ_b and v its relative displacement and
 velocity at s = 0, and X = Λ cos φ_b, Y = Λ sin φ_b at the table's phase φ_b. Then ::

@@ -8,7 +8,7 @@ import numpy as np
 
 from bouncing_ball.numerics.arrays import in_words
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.paper.contact.law import ContactLaw
+from bouncing_ball.paper.contact.contact import Contact
 
 RECORDED = (
     "time",
@@ -60,8 +60,8 @@ class ImpactSequence:
     ----------
     amplitude : array
         Λ of each ball.
-    contact : ContactLaw or None
-        The contact law, or None if impacts are instantaneous.
+    contact : Contact or None
+        The law of the contacts, or None if impacts are instantaneous.
     time, phase : array
         Time of the impact since the first one, and the table's phase, in [-π, π].
     displacement, relative_velocity : array
@@ -80,7 +80,7 @@ class ImpactSequence:
     """
 
     amplitude: np.ndarray
-    contact: ContactLaw | None
+    contact: Contact | None
     time: np.ndarray
     phase: np.ndarray
     displacement: np.ndarray

@@ -109,10 +109,16 @@ class Orbit(Batch, ABC):
 
         Λ and φ suffice for an impact without duration, because z′_i is then -nπ.
         """
-        velocity = -np.asarray(n) * np.pi if impact_velocity is None else impact_velocity
+        if impact_velocity is None:
+            impact_velocity = -np.asarray(n) * np.pi
         missing = np.where(np.isnan(phase), np.nan, 0.0)
-        values = (amplitude, phase, contact_duration + missing, velocity + missing)
-        return cls(n, law, *np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in values)))
+        amplitude, phase, contact_duration, impact_velocity = np.broadcast_arrays(
+            np.asarray(amplitude, dtype=float),
+            np.asarray(phase, dtype=float),
+            contact_duration + missing,
+            impact_velocity + missing,
+        )
+        return cls(n, law, amplitude, phase, contact_duration, impact_velocity)
 
     # A model's orbits define the following.
 

@@ -145,9 +145,9 @@ def phase(
     lam = np.asarray(amplitude, dtype=float)
     below = ~(lam >= fold)
     if np.any(below):
-        least, where, family = (np.broadcast_to(x, below.shape)[below][0] for x in (fold, lam, n))
+        family, at, least = (x[below][0] for x in np.broadcast_arrays(n, lam, fold))
         raise NoOrbitError(
-            f"no {family}-T orbit at Λ = {where:g}: below the saddle-node at Λ = {least:.6g}"
+            f"no {family}-T orbit at Λ = {at:g}: below the saddle-node at Λ = {least:.6g}"
         )
     lift = np.sqrt((lam - fold) * (lam + fold))
     return np.arctan2(lift if stable_side else -lift, fold)

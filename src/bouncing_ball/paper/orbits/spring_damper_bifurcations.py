@@ -289,7 +289,7 @@ def orbit_at(
     Raises
     ------
     ModelError
-        If n is not a positive integer, or ζ ≥ 1.
+        If n is not a positive integer, ζ ≥ 1, or the side is unknown.
 
     Examples
     --------
@@ -297,7 +297,7 @@ def orbit_at(
     >>> abs(round(float(orbit.bounce_velocity) / np.pi, 3))
     1.0
     """
-    search = _stable_side if side is Side.STABLE else _unstable_side
+    search = _stable_side if Side(side) is Side.STABLE else _unstable_side
     excess = _searched(search, contact, n, amplitude)
     return SpringDamperOrbit.on_branch(excess, contact, n)
 

@@ -57,7 +57,7 @@ class SpringDamperModel(ImpactModel):
 
         Arguments, shape and errors are those of :meth:`.ImpactModel.orbit`.
         """
-        return limits.orbit_at(self.contact, n, amplitude, Side(side))
+        return limits.orbit_at(self.contact, n, amplitude, side)
 
     def orbits(self, n: int, amplitude: float) -> SpringDamperOrbit:
         """All n-T orbits of one contact at one Λ, in order of contact duration, shape (count,).

@@ -7,13 +7,14 @@ import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 from bouncing_ball.datasets.files import replacing
 from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline import provenance as origin
+from bouncing_ball.pipeline import provenance
+from bouncing_ball.pipeline.artifacts import CARRIERS
 from bouncing_ball.pipeline.configuration import read_yaml
 from bouncing_ball.pipeline.diff.folders import compare_folders
 from bouncing_ball.pipeline.diff.outcome import Whole
@@ -42,17 +43,54 @@ def _copied(artifact: Whole, record: Path, results: Path) -> list[str]:
 
     The result has one line for each file copied or removed.
     """
-    said = []
+    done = []
     for file in artifact.parts:
-        old, new = record / file.name, results / file.name
-        if not new.exists():
-            old.unlink()
-            said.append(f"removed {file.name}")
-        elif not old.is_file() or old.read_bytes() != new.read_bytes():
-            with replacing(old) as temporary:
-                shutil.copyfile(new, temporary)
-            said.append(f"copied {file.name}")
-    return said
+        accepted = record / file.name
+        made = results / file.name
+        if not made.exists():
+            accepted.unlink()
+            done.append(f"removed {file.name}")
+        elif not accepted.is_file() or accepted.read_bytes() != made.read_bytes():
+            with replacing(accepted) as temporary:
+                shutil.copyfile(made, temporary)
+            done.append(f"copied {file.name}")
+    return done
+
+
+def _require_reproducible(
+    record: Path, results: Path, files: Collection[str], config: Mapping[str, Any]
+) -> None:
+    """Refuse results that a run of the committed code and configuration would not give.
+
+    Raises
+    ------
+    ModelError
+        With the reason, see :func:`accept`.
+    """
+    if provenance.revision(record).dirty != "no":
+        raise ModelError("some changes are not committed: commit them, run again, then accept")
+    committed = read_yaml(record / provenance.CONFIGURATION)
+    if changed := provenance.changes(config, committed):
+        raise ModelError(
+            f"the values of this run differ from {provenance.CONFIGURATION}: {changed}"
+        )
+    if left := jobs_left(record, files):
+        jobs = "1 job" if left == 1 else f"{left} jobs"
+        raise ModelError(f"Snakemake would still run {jobs}: run make all diff first")
+    if foreign := sorted({*map(str, results.glob("figures/[!.]*"))} - {*files}):
+        raise ModelError(f"{foreign[0]} is not made by this workflow: remove it")
+
+
+def _require_committed(artifacts: Iterable[Whole], results: Path) -> None:
+    """Refuse files that were made with uncommitted changes.
+
+    A commit alone makes Snakemake run nothing again.
+    """
+    files = [results / file.name for artifact in artifacts for file in artifact.parts]
+    carriers = [file for file in files if file.suffix in CARRIERS and file.exists()]
+    early = [str(file) for file in carriers if provenance.read_provenance(file)["dirty"] != "no"]
+    if early:
+        raise ModelError(f"made with uncommitted changes, remove and run again: {' '.join(early)}")
 
 
 def accept(
@@ -88,24 +126,12 @@ def accept(
         artifact with one of the names, or if one to copy was made with uncommitted changes. The
         record is then unchanged.
     """
-    if origin.revision(record).dirty != "no":
-        raise ModelError("some changes are not committed: commit them, run again, then accept")
-    if changed := origin.changes(config, read_yaml(record / origin.CONFIGURATION)):
-        raise ModelError(f"the values of this run differ from {origin.CONFIGURATION}: {changed}")
-    if left := jobs_left(record, files):
-        jobs = "1 job" if left == 1 else f"{left} jobs"
-        raise ModelError(f"Snakemake would still run {jobs}: run make all diff first")
-    if foreign := sorted({*map(str, results.glob("figures/[!.]*"))} - {*files}):
-        raise ModelError(f"{foreign[0]} is not made by this workflow: remove it")
+    _require_reproducible(record, results, files, config)
     comparison = compare_folders(record, results, only)
     print(to_terminal(comparison), end="", flush=True)
     taken = [each for each in comparison.parts if only or not each.outcome.agrees]
-    # A commit alone makes Snakemake run nothing again.
-    new = [results / file.name for artifact in taken for file in artifact.parts]
-    made = [file for file in new if file.suffix in origin.CARRIERS and file.exists()]
-    if early := [str(file) for file in made if origin.read_provenance(file)["dirty"] != "no"]:
-        raise ModelError(f"made with uncommitted changes, remove and run again: {' '.join(early)}")
-    said = [line for artifact in taken for line in _copied(artifact, record, results)]
-    if not said:
+    _require_committed(taken, results)
+    done = [line for artifact in taken for line in _copied(artifact, record, results)]
+    if not done:
         return ["Nothing to accept: the results agree with the record."]
-    return [*said, "Commit the record with the reason: git add figures config *.md && git commit"]
+    return [*done, "Commit the record with the reason: git add figures config *.md && git commit"]

@@ -1,98 +1,28 @@
-"""The change of a variable from the accepted record that the comparison allows: its budget.
+"""The comparison of two datasets, variable by variable.
 
-A drift is |new - record| divided by the range of the record's values, or by ``scale``. Texts,
-counts and truth values are compared exactly. The budget of a variable is in its row of
-:mod:`bouncing_ball.datasets.variables`; budgets of single artifacts are in ``budgets.csv``, each
-with its source. A budget without another source comes from the convergence study, a test that
-varies tolerances, grids and rounding: it is the next power of ten above ten times the largest
-change.
-
-Drifts of numbers: pure functions of arrays.
+Parameters come first. If the two datasets were made from other parameters, this is what the
+comparison says, and differences of the numbers are secondary: they have no share of a budget.
+Otherwise the structure must be the same, and each variable has a drift at each of its entries,
+which is compared with the budget of the variable (:mod:`bouncing_ball.pipeline.diff.budgets`).
 
 A drift is dimensionless: a difference divided by a scale. The drift between two NaN, or between
 two infinities of the same sign, is zero; the drift between a finite value and one that is not
-finite is infinite.
-
-The comparison of two datasets, variable by variable: structure first, then numbers.
+finite is infinite. Texts, counts and truth values have not drifted if they are equal, and have an
+infinite drift if they are not.
 """
 
-import csv
-import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
-from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import printable
+from bouncing_ball.pipeline.diff.budgets import IGNORED, Budget, budget_of
+from bouncing_ball.pipeline.diff.cause import parameter_changes
 from bouncing_ball.pipeline.diff.outcome import Outcome, Row
-from bouncing_ball.pipeline.diff.texts import compare_texts
-
-
-class Budget(NamedTuple):
-    """The largest change allowed of a variable, relative to a scale: "1", or another variable.
-
-    Without a scale the change is relative to the range of the record's values. With ``over`` two
-    curves over that variable are compared, through the samples along the dimension ``point``,
-    because the samples may slide along the curve. The share ``share`` of the entries, of texts and
-    counts as well, may exceed the budget, because rounding decides about some entries.
-    """
-
-    size: float
-    scale: str = ""
-    over: str = ""
-    share: float = 0.0
-
-
-ROUNDING = 1e-13
-"""The smallest budget, for variables without another one."""
-
-IGNORED = math.inf
-"""The budget, ``inf`` in the tables, of variables that another dataset also has, or about which
-rounding decides."""
-
-PICTURE = 1.0
-"""The largest root mean square difference of two pictures, in grey levels of 255.
-
-Changing parameters by two units in the last place changes all rounding errors, as another processor
-does, and moves the pixels of a figure by at most 0.092 (Fig. 15). The budget is the next power of
-ten above ten times this value."""
-
-PICTURES = {"ext_diagram": 60.0, "ext_locking": 40.0, "ext_means": 60.0, "ext_locked": 40.0}
-"""Budgets of pictures of motions about which rounding decides: three times the 19 and 12 grey
-levels by which a change of 1e-15 in the start moves these pictures."""
-
-ARTIFACTS: dict[str, dict[str, Budget]] = {}
-"""Budgets of single artifacts, by variable; ``*`` stands for all variables that are not named."""
-
-_TABLE = Path(__file__).with_suffix(".csv").read_text(encoding="utf-8")
-for _row in csv.DictReader(_TABLE.splitlines()):
-    _budget = Budget(float(_row["size"]), _row["scale"], _row["over"], float(_row["share"] or 0))
-    for _name in _row["artifact"].split():
-        ARTIFACTS.setdefault(_name, {}).update(dict.fromkeys(_row["variable"].split(), _budget))
-
-
-def budget_of(artifact: str, name: str, attributes: Mapping[str, Any] | None = None) -> Budget:
-    """The budget of a variable of an artifact's dataset.
-
-    It is that of the artifact if there is one, otherwise that of the variable's attributes, which
-    its study has declared, otherwise rounding.
-
-    Examples
-    --------
-    >>> budget_of("fig05", "phase").size, budget_of("fig08", "phase").over
-    (1e-13, 'amplitude')
-    >>> budget_of("fig05", "found", {"budget": 1e-8, "scale": "1"}).size
-    1e-08
-    """
-    own = ARTIFACTS.get(artifact, {})
-    declared = attributes or {}
-    general = Budget(float(declared.get("budget", ROUNDING)), str(declared.get("scale", "")))
-    return own.get(name, own.get("*", general))
-
+from bouncing_ball.pipeline.provenance import parameters_of
 
 # Number of samples by which a point may slide along a curve.
 _REACH = 2
@@ -124,7 +54,8 @@ def same(record: ArrayLike, new: ArrayLike) -> np.ndarray:
     >>> same([np.nan, 1.0, np.inf], [np.nan, 2.0, np.inf]).tolist()
     [True, False, True]
     """
-    record, new = np.asarray(record), np.asarray(new)
+    record = np.asarray(record)
+    new = np.asarray(new)
     return (record == new) | ((record != record) & (new != new))
 
 
@@ -138,7 +69,8 @@ def pointwise(record: ArrayLike, new: ArrayLike, scale: ArrayLike) -> np.ndarray
     >>> pointwise([1.0, 1.0], [np.nan, 2.0], [1.0, np.nan]).tolist()
     [inf, inf]
     """
-    record, new = np.asarray(record, dtype=float), np.asarray(new, dtype=float)
+    record = np.asarray(record, dtype=float)
+    new = np.asarray(new, dtype=float)
     with np.errstate(invalid="ignore", divide="ignore"):
         distance = np.abs(new - record) / scale
     return np.where(same(record, new), 0.0, np.where(np.isnan(distance), np.inf, distance))
@@ -148,17 +80,24 @@ def _to_polyline(x, y, line_x, line_y) -> np.ndarray:
     """Distance of point k from the segments k - 1 - reach … k + reach of a polyline."""
     count = x.shape[-1]
     # The distance from the vertex itself, because a vertex between two gaps has no segment.
-    best = np.hypot(x - line_x, y - line_y)
-    for offset in range(-_REACH - 1, _REACH + 1) if count > 1 else ():
+    nearest = np.hypot(x - line_x, y - line_y)
+    if count == 1:
+        return nearest
+    for offset in range(-_REACH - 1, _REACH + 1):
         left = np.clip(np.arange(count) + offset, 0, count - 2)
-        ax, ay = line_x[..., left], line_y[..., left]
-        dx, dy = line_x[..., left + 1] - ax, line_y[..., left + 1] - ay
-        square = dx * dx + dy * dy
-        along = ((x - ax) * dx + (y - ay) * dy) / np.where(square > 0, square, 1.0)
+        left_x = line_x[..., left]
+        left_y = line_y[..., left]
+        chord_x = line_x[..., left + 1] - left_x
+        chord_y = line_y[..., left + 1] - left_y
+        square = chord_x * chord_x + chord_y * chord_y
+        along = ((x - left_x) * chord_x + (y - left_y) * chord_y) / np.where(
+            square > 0, square, 1.0
+        )
         along = np.clip(along, 0.0, 1.0)
+        distance = np.hypot(x - left_x - along * chord_x, y - left_y - along * chord_y)
         # fmin, because a segment with an end that is not finite does not count.
-        best = np.fmin(best, np.hypot(x - ax - along * dx, y - ay - along * dy))
-    return best
+        nearest = np.fmin(nearest, distance)
+    return nearest
 
 
 def curve(x: ArrayLike, y: ArrayLike, new_x: ArrayLike, new_y: ArrayLike) -> np.ndarray:
@@ -195,44 +134,62 @@ def _alike(record, new):
     return (np.isfinite(record) & np.isfinite(new)) | same(record, new)
 
 
-# Attributes with the origin of a file, or with texts about it, are not compared.
-_NOT_COMPARED = ("provenance_", "title", "references", "history", "budget", "scale")
-# Largest number of entries of a variable in a report.
-_LARGEST = 5
+# Attributes of variables that do not describe their contents.
+_NOT_COMPARED = ("budget", "scale")
 
 
-def _form(variable: xr.DataArray) -> str:
-    """Type and sizes of a variable; texts of all lengths have the same type.
+def _form(data: xr.Dataset, name: str) -> str | None:
+    """Type and sizes of a variable, None if there is none; texts of all lengths have the same type.
 
     Examples
     --------
-    >>> _form(xr.DataArray([[1, 2]], dims=("case", "n")))
+    >>> _form(xr.Dataset({"x": (("case", "n"), [[1, 2]])}), "x")
     'int64, case: 1, n: 2'
     """
+    if name not in data.variables:
+        return None
+    variable = data[name]
     kind = "text" if variable.dtype.kind in "OSUT" else str(variable.dtype)
-    return ", ".join([kind, *(f"{name}: {size}" for name, size in variable.sizes.items())])
+    sizes = [f"{dimension}: {size}" for dimension, size in variable.sizes.items()]
+    role = " (coordinate)" if name in data.coords else ""
+    return ", ".join([kind, *sizes]) + role
 
 
-def header(data: xr.Dataset) -> str:
-    """The structure of a dataset as lines: variables with their types and sizes, and attributes.
+def _attribute_rows(name: str, record: Mapping[Any, Any], new: Mapping[Any, Any]) -> list[Row]:
+    """The attributes of a variable that differ, such as its units."""
+    found = []
+    for attribute in sorted((record.keys() | new.keys()) - {*_NOT_COMPARED}):
+        old_text, new_text = (
+            repr(np.asarray(side[attribute]).tolist()) if attribute in side else None
+            for side in (record, new)
+        )
+        if old_text != new_text:
+            found.append(Row(f"{attribute} of {name}", Outcome.STRUCTURE, old_text, new_text))
+    return found
+
+
+def structure_rows(record: xr.Dataset, new: xr.Dataset) -> list[Row]:
+    """A row for each variable of another type or size, and for each attribute that differs.
 
     Examples
     --------
-    >>> print(header(xr.Dataset({"x": ("t", [0.0], {"units": "1"})}, attrs={"n": 1})))
-    attribute n: 1
-    attribute units of x: '1'
-    x: float64, t: 1
+    >>> record, new = (xr.Dataset({"x": ("t", values)}) for values in ([0.0], [0.0, 1.0]))
+    >>> (row,) = structure_rows(record, new)
+    >>> row.name, row.record, row.new
+    ('x', 'float64, t: 1', 'float64, t: 2')
     """
-    lines = [f"{x}: {_form(data[x])}{' (coordinate)' * (x in data.coords)}" for x in data.variables]
-    owners = [("", data.attrs), *((f" of {name}", data[name].attrs) for name in data.variables)]
-    for owner, attributes in owners:
-        for name, value in attributes.items():
-            if not name.startswith(_NOT_COMPARED):
-                lines.append(f"attribute {name}{owner}: {np.asarray(value).tolist()!r}")
-    return "\n".join(sorted(lines))
+    found = []
+    for name in map(str, {**record.variables, **new.variables}):
+        old_form = _form(record, name)
+        new_form = _form(new, name)
+        if old_form != new_form:
+            found.append(Row(name, Outcome.STRUCTURE, old_form, new_form))
+        if old_form is not None and new_form is not None:
+            found += _attribute_rows(name, record[name].attrs, new[name].attrs)
+    return found
 
 
-def _beside(data: xr.Dataset, name: str, other: str) -> np.ndarray:
+def _broadcast_beside(data: xr.Dataset, name: str, other: str) -> np.ndarray:
     """Another variable of a dataset, broadcast to the shape of the first."""
     return data[other].broadcast_like(data[name]).transpose(*data[name].dims).values
 
@@ -250,6 +207,18 @@ def _allowed(drift: np.ndarray, share: float) -> np.ndarray:
     beyond = drift > 1
     part = beyond.mean()
     return np.where(beyond, part / share, drift) if 0 < part <= share else drift
+
+
+def _curve_drift(name: str, record: xr.Dataset, new: xr.Dataset, over: str) -> np.ndarray:
+    """Distance of two curves, sampled along ``point``, in units of the scales of both axes."""
+    axis = record[name].dims.index("point")
+    x = _broadcast_beside(record, name, over)
+    new_x = _broadcast_beside(new, name, over)
+    y = record[name].values
+    new_y = new[name].values
+    scaled = (x / span(x), y / span(y), new_x / span(x), new_y / span(y))
+    distance = curve(*(np.moveaxis(values, axis, -1) for values in scaled))
+    return np.moveaxis(distance, -1, axis)
 
 
 def shares(name: str, record: xr.Dataset, new: xr.Dataset, budget: Budget) -> np.ndarray:
@@ -276,23 +245,23 @@ def shares(name: str, record: xr.Dataset, new: xr.Dataset, budget: Budget) -> np
     >>> shares("x", record, record + 0.5, Budget(0.25, scale="1")).tolist()
     [2.0, 2.0, 2.0]
     """
-    a, b = record[name], new[name]
+    old = record[name]
     if budget.size == IGNORED:
-        return np.zeros(a.shape)
+        return np.zeros(old.shape)
     if budget.share:
         return _allowed(shares(name, record, new, budget._replace(share=0.0)), budget.share)
     if budget.over:
-        axis = a.dims.index("point")
-        x, new_x = (_beside(data, name, budget.over) for data in (record, new))
-        pairs = [(x, span(x)), (a, span(a)), (new_x, span(x)), (b, span(a))]
-        moved = (np.moveaxis(np.asarray(part) / scale, axis, -1) for part, scale in pairs)
-        return np.moveaxis(curve(*moved), -1, axis) / budget.size
-    if a.dtype.kind != "f":
-        return np.where(same(a.values, b.values), 0.0, np.inf)
-    scale = span(a) if not budget.scale else 1.0
-    if budget.scale not in ("", "1"):
-        scale = _beside(record, name, budget.scale)
-    return pointwise(a.values, b.values, scale) / budget.size
+        return _curve_drift(name, record, new, budget.over) / budget.size
+    if old.dtype.kind != "f":
+        return np.where(same(old.values, new[name].values), 0.0, np.inf)
+    match budget.scale:
+        case "":
+            scale: ArrayLike = span(old)
+        case "1":
+            scale = 1.0
+        case other:
+            scale = _broadcast_beside(record, name, other)
+    return pointwise(old.values, new[name].values, scale) / budget.size
 
 
 def _place(variable: xr.DataArray, index: tuple[int, ...]) -> str:
@@ -309,43 +278,65 @@ def _place(variable: xr.DataArray, index: tuple[int, ...]) -> str:
     return ", ".join(f"{name} = {text}" for name, text in texts.items())
 
 
-def _entries(artifact: str, name: str, record: xr.Dataset, new: xr.Dataset) -> Iterator[Row]:
-    """The entries of a variable that have moved most, each with its share of the budget."""
-    a, b = record[name], new[name]
-    unmoved = same(a.values, b.values)
+def _variable_row(artifact: str, name: str, record: xr.Dataset, new: xr.Dataset) -> Row:
+    """The largest move of a variable over its budget, and the number of entries that moved."""
+    old = record[name]
+    now = new[name]
+    unmoved = same(old.values, now.values)
     if unmoved.all():
-        yield Row(name, Outcome.IDENTICAL)
-        return
-    share = shares(name, record, new, budget_of(artifact, name, new[name].attrs))
-    places = np.argwhere((share > 0) | ~unmoved)
-    order = np.argsort([-share[*place] for place in places], kind="stable")
+        return Row(name, Outcome.IDENTICAL, entries=old.size)
+    share = shares(name, record, new, budget_of(artifact, name, now.attrs))
+    # Among the entries that moved, because several may have the same share.
+    order = np.where((share > 0) | ~unmoved, share, -1.0)
+    place = tuple(int(k) for k in np.unravel_index(np.argmax(order), order.shape))
     beyond = int(np.count_nonzero(share > 1))
-    note = f"{beyond} of {share.size} entries beyond the budget" if beyond else ""
-    for at in (tuple(places[k]) for k in order[:_LARGEST]):
-        outcome = Outcome.WITHIN if share[at] <= 1 else Outcome.DRIFTED
-        old, now = (printable(side[at].item(), 60) for side in (a, b))
-        yield Row(name, outcome, old, now, float(share[at]), _place(a, at), note)
+    return Row(
+        name,
+        Outcome.DRIFTED if beyond else Outcome.WITHIN,
+        record=str(old.values[place]),
+        new=str(now.values[place]),
+        share=float(share[place]),
+        at=_place(old, place),
+        moved=int(np.count_nonzero(~unmoved)),
+        beyond=beyond,
+        entries=old.size,
+    )
+
+
+def _secondary(row: Row) -> Row:
+    """A row of two datasets with other parameters: the difference has no share of a budget."""
+    if row.outcome is Outcome.IDENTICAL:
+        return row
+    return replace(row, outcome=Outcome.PARAMETERS, share=0.0, beyond=0)
 
 
 def compare_datasets(artifact: str, record: xr.Dataset, new: xr.Dataset) -> list[Row]:
-    """Rows for the headers of two datasets, and for all variables that have the same form.
-
-    A variable has a row for each of the entries that moved most, five at most, or one row if it is
-    identical.
+    """A row for each parameter and each part of the structure that differs, and for each variable.
 
     Examples
     --------
     >>> budget = {"budget": 1e-12, "scale": "1"}
-    >>> record, new = (
-    ...     xr.Dataset({"residual": ("point", [x, 1.0], budget)}) for x in (0.0, 2.0**-41)
-    ... )
-    >>> found = compare_datasets("fig", record, new)
-    >>> [(each.name, str(each.outcome), round(each.share, 3)) for each in found][:1]
-    [('residual', 'within budget', 0.455)]
+    >>> record = xr.Dataset({"residual": ("point", [0.0, 1.0], budget)}, attrs={"n": 1})
+    >>> new = record.copy(data={"residual": [2.0**-41, 1.0]})
+    >>> (row,) = compare_datasets("fig", record, new)
+    >>> row.name, str(row.outcome), round(row.share, 3)
+    ('residual', 'within budget', 0.455)
+    >>> for row in compare_datasets("fig", record, new.assign_attrs(n=2)):
+    ...     print(f"{row.name}: {row.outcome}, {row.record} → {row.new}")
+    parameter n: changed parameters, 1 → 2
+    residual: changed parameters, 0.0 → 4.547473508864641e-13
     """
-    changed = compare_texts(header(record), header(new), None)
-    rows = [replace(row, name="header", outcome=Outcome.STRUCTURE) for row in changed]
-    for name in map(str, record.variables):
-        if name in new.variables and _form(record[name]) == _form(new[name]):
-            rows += _entries(artifact, name, record, new)
-    return rows
+    changes = parameter_changes(parameters_of(record.attrs), parameters_of(new.attrs))
+    parameters = [
+        Row(f"parameter {change.name}", Outcome.PARAMETERS, change.record, change.new)
+        for change in changes
+    ]
+    structure = structure_rows(record, new)
+    variables = [
+        _variable_row(artifact, name, record, new)
+        for name in map(str, record.variables)
+        if _form(record, name) == _form(new, name)
+    ]
+    if changes:
+        variables = [_secondary(row) for row in variables]
+    return parameters + structure + variables

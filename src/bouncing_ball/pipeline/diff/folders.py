@@ -1,35 +1,45 @@
-"""The comparison of one file of an artifact with the same file of the record.
+"""The comparison of two folders of artifacts, with the result for each artifact.
 
 Data are judged by their budgets; texts, tables and the words of SVG files line by line; PNG files
 by their pixels. Every file is judged alone: if a file is damaged, its outcome is that it could not
 be compared, with the reason, and the other files are compared nevertheless.
 
-Because a folder of artifacts may come from anywhere, none of its files is run, no link is followed,
-and text from it passes through :func:`bouncing_ball.errors.printable` before printing.
-
-The comparison of two folders of artifacts, with the result for each artifact.
-
-A folder holds ``figures/`` with datasets, pictures and tables, and the texts ``paper.md`` and
-``supplement.md``, and may hold ``config/engines.nc``, the results of physics engines. Other files
-are ignored. Files with the same name and different suffixes are one artifact.
+For an artifact that differs, the comparison names the cause (:mod:`bouncing_ball.pipeline.diff.
+cause`). An artifact that is made from others, such as the verdicts on the claims or the article,
+differs because of those of them that do not agree with the record.
 """
 
 import re
 import warnings
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from PIL import Image
 
 from bouncing_ball.datasets.files import read_dataset
-from bouncing_ball.errors import ModelError, printable
-from bouncing_ball.pipeline.diff.datasets import PICTURE, PICTURES, compare_datasets
+from bouncing_ball.errors import ModelError
+from bouncing_ball.pipeline.artifacts import (
+    DATASET,
+    PICTURES,
+    TEXTS,
+    ArtifactFiles,
+    artifacts_among,
+    artifacts_in,
+    digest_of_code,
+)
+from bouncing_ball.pipeline.diff import budgets
+from bouncing_ball.pipeline.diff.cause import (
+    UNKNOWN_ORIGIN,
+    Origin,
+    made_from,
+    origin_of,
+    own_causes,
+)
+from bouncing_ball.pipeline.diff.datasets import compare_datasets
 from bouncing_ball.pipeline.diff.outcome import Outcome, Row, Whole, worst
 from bouncing_ball.pipeline.diff.texts import compare_texts, words_of
-
-MAX_BYTES = 16 * 2**20
-"""Files above this size are not read; the largest file of the record has half a megabyte."""
 
 
 def redrawn(record: bytes, new: bytes) -> str:
@@ -40,11 +50,10 @@ def redrawn(record: bytes, new: bytes) -> str:
     >>> redrawn(b'{"matplotlib": "3.10.8"}', b'{"matplotlib": "3.11.0"}')
     'drawn by matplotlib 3.10.8 → 3.11.0, not judged'
     """
-    found = [re.findall(rb"matplotlib\W+([0-9.]+)", content) for content in (record, new)]
-    if not all(found) or found[0][0] == found[1][0]:
+    old, now = (re.search(rb"matplotlib\W+([0-9.]+)", content) for content in (record, new))
+    if not old or not now or old[1] == now[1]:
         return ""
-    old, now = (versions[0].decode() for versions in found)
-    return f"drawn by matplotlib {old} → {now}, not judged"
+    return f"drawn by matplotlib {old[1].decode()} → {now[1].decode()}, not judged"
 
 
 def read_picture(path: Path) -> np.ndarray:
@@ -55,13 +64,15 @@ def read_picture(path: Path) -> np.ndarray:
     OSError
         If the file is missing or damaged.
     """
-    with Image.open(path, formats=["PNG"]) as picture:
+    with Image.open(path) as picture:
         whole = picture.convert("RGBA")
     ground = Image.new("RGBA", whole.size, "white")
     return np.asarray(Image.alpha_composite(ground, whole).convert("RGB"), dtype=np.int16)
 
 
-def compare_pictures(record: np.ndarray, new: np.ndarray, budget: float = PICTURE) -> list[Row]:
+def compare_pictures(
+    record: np.ndarray, new: np.ndarray, budget: float = budgets.PICTURE
+) -> list[Row]:
     """The difference of two pictures of :func:`read_picture`: no row if all pixels are identical.
 
     Examples
@@ -71,41 +82,55 @@ def compare_pictures(record: np.ndarray, new: np.ndarray, budget: float = PICTUR
     [('pixels', 'drifted')]
     """
     if record.shape != new.shape:
-        old, now = (f"{shape[1]} × {shape[0]}" for shape in (record.shape, new.shape))
-        return [Row("size in pixels", Outcome.STRUCTURE, old, now)]
+        old_size, new_size = (f"{shape[1]} × {shape[0]}" for shape in (record.shape, new.shape))
+        return [Row("size in pixels", Outcome.STRUCTURE, old_size, new_size)]
     changed = (new != record).any(axis=-1)
     if not changed.any():
         return []
     share = float(np.sqrt(np.mean((new - record).astype(float) ** 2))) / budget
     outcome = Outcome.WITHIN if share <= 1 else Outcome.DRIFTED
-    return [Row("pixels", outcome, share=share, note=f"{changed.sum()} of {changed.size} changed")]
+    return [
+        Row("pixels", outcome, share=share, note=f"{100 * changed.mean():.2g} % of all changed")
+    ]
 
 
 def _content(path: Path) -> bytes | None:
-    """The bytes of a regular file of bounded size; None if the file does not exist."""
-    if path.is_symlink() or (path.exists() and not path.is_file()):
-        raise ModelError("a link, or not a regular file")
-    if path.exists() and path.stat().st_size > MAX_BYTES:
-        raise ModelError(f"larger than {MAX_BYTES} bytes")
     return path.read_bytes() if path.exists() else None
 
 
 def _rows(old: Path, now: Path, data: Outcome | None) -> list[Row]:
-    record, new = _content(old), _content(now)
+    """The rows of a file, see :func:`judge`; the library that reads it may raise an error."""
+    record = _content(old)
+    new = _content(now)
     if record == new:
         return []
-    if record is None or new is None:
-        return [Row("", Outcome.EXTRA if record is None else Outcome.MISSING)]
-    match old.suffix:
-        case ".png" | ".svg" if note := redrawn(record, new):
-            return [Row("", Outcome.WITHIN, note=note)]
-        case ".nc":
-            return compare_datasets(old.stem, read_dataset(old), read_dataset(now))
-        case ".png":
-            budget = PICTURES.get(old.stem, PICTURE)
-            return compare_pictures(read_picture(old), read_picture(now), budget)
-        case _:
-            return compare_texts(words_of(old, data), words_of(now, data), data)
+    if record is None:
+        return [Row("", Outcome.EXTRA)]
+    if new is None:
+        return [Row("", Outcome.MISSING)]
+    if old.suffix == DATASET:
+        return compare_datasets(old.stem, read_dataset(old), read_dataset(now))
+    if old.suffix in PICTURES and (note := redrawn(record, new)):
+        return [Row("", Outcome.WITHIN, note=note)]
+    if old.suffix == ".png":
+        budget = budgets.PICTURES.get(old.stem, budgets.PICTURE)
+        rows = compare_pictures(read_picture(old), read_picture(now), budget)
+    else:
+        rows = compare_texts(words_of(old, data), words_of(now, data), data)
+    if data is Outcome.PARAMETERS and now.name not in TEXTS:
+        return [replace(row, outcome=Outcome.PARAMETERS, share=0.0) for row in rows]
+    return rows
+
+
+def _is_stale(file: str, results: Path) -> bool:
+    """Whether other code than that of the working tree made a file of a run, as far as known."""
+    # An SVG file is made together with its PNG file.
+    if not file.endswith((DATASET, ".png")) or not (results / file).exists():
+        return False
+    digest = digest_of_code(results, file)
+    if digest is None:
+        return False
+    return origin_of(results / file).code not in ("", digest)
 
 
 def judge(file: str, folders: tuple[Path, Path], data: Outcome | None) -> Whole:
@@ -120,54 +145,111 @@ def judge(file: str, folders: tuple[Path, Path], data: Outcome | None) -> Whole:
     folders : tuple
         The folder of the record and the new folder.
     data : Outcome, optional
-        The worst outcome of the datasets from which a text is made.
+        The worst outcome of the datasets from which a picture or a text is made.
     """
     old, now = (folder / file for folder in folders)
     # Warnings of the libraries about a damaged file become one line.
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         try:
-            rows = tuple(_rows(old, now, data))
-            drawn = old.suffix == ".png"
-            return Whole(file, rows, (_content(old), _content(now)) if drawn else (None, None))
+            rows = _rows(old, now, data)
+            if _is_stale(file, folders[1]):
+                rows.append(Row("", Outcome.STALE, note="made by older code"))
+            shown = old.suffix == ".png"
+            pictures = (_content(old), _content(now)) if shown else (None, None)
+            return Whole(file, tuple(rows), pictures)
         # On a damaged file the libraries raise errors of many types.
         except Exception as error:
             why = " ".join(str(error).split()) or type(error).__name__
-            return Whole(file, (Row("", Outcome.UNREADABLE, note=printable(why, 120)),))
+            return Whole(file, (Row("", Outcome.UNREADABLE, note=why),))
 
 
-_TEXTS = ("paper.md", "supplement.md")
-# This file is compared if both folders have it, because not every machine has the engines.
-_MEASURED = Path("config/engines.nc")
-# In the order of comparison: data come first, because the judgement of other files depends on them.
-_SUFFIXES = (".nc", ".csv", ".png", ".svg", ".md", ".html")
+@dataclass(frozen=True)
+class _Judged:
+    """An artifact with the outcome of its dataset, and what both versions say of their making."""
+
+    artifact: ArtifactFiles
+    data: Whole | None
+    record: Origin
+    new: Origin
+
+    @property
+    def outcome(self) -> Outcome:
+        """The outcome of the dataset, ``IDENTICAL`` if there is none."""
+        return self.data.outcome if self.data else Outcome.IDENTICAL
 
 
-def artifacts_in(*folders: Path) -> dict[str, set[str]]:
-    """Names of the artifacts and their files, relative to the folders.
+def _judged(artifact: ArtifactFiles, folders: tuple[Path, Path]) -> _Judged:
+    data = judge(artifact.dataset, folders, None) if artifact.dataset else None
+    # A schematic has no dataset, and a text says nothing about its making.
+    carriers = [file for file in artifact.files if file.endswith((DATASET, ".png"))]
+    if not carriers:
+        return _Judged(artifact, data, UNKNOWN_ORIGIN, UNKNOWN_ORIGIN)
+    record, new = (origin_of(folder / carriers[0]) for folder in folders)
+    return _Judged(artifact, data, record, new)
 
-    Raises
-    ------
-    ModelError
-        If one of the folders has no artifact, or its figures/ is a link.
-    """
-    found: dict[str, set[str]] = {}
-    for folder in folders:
-        if (folder / "figures").is_symlink():
-            raise ModelError(f"{printable(folder / 'figures')}: a link; links are not followed")
-        # Files whose names begin with a point were not written completely.
-        paths = [*folder.glob("figures/[!.]*"), *(folder / text for text in _TEXTS)]
-        files = [
-            path.relative_to(folder) for path in paths if path.suffix in _SUFFIXES and path.exists()
-        ]
-        if not files:
-            where = f"in {printable(folder)}: neither figures/ nor {_TEXTS[0]}"
-            raise ModelError(f"nothing to compare {where}")
-        for file in files:
-            found.setdefault(file.stem, set()).add(file.as_posix())
-    if all((folder / _MEASURED).is_file() for folder in folders):
-        found[_MEASURED.stem] = {_MEASURED.as_posix()}
+
+def _inputs(judged: _Judged, artifacts: dict[str, ArtifactFiles]) -> list[str]:
+    """The names of the artifacts that another one is made from; a text is made from all."""
+    if judged.artifact.is_text:
+        return [name for name, artifact in artifacts.items() if artifact.dataset]
+    return [name for name in artifacts_among(judged.new.inputs) if name in artifacts]
+
+
+def _with_inputs(
+    wanted: Collection[str], artifacts: dict[str, ArtifactFiles], folders: tuple[Path, Path]
+) -> dict[str, _Judged]:
+    """The named artifacts, and all that they are made from, with their datasets compared."""
+    found: dict[str, _Judged] = {}
+    pending = list(wanted)
+    while pending:
+        name = pending.pop()
+        if name not in found:
+            found[name] = _judged(artifacts[name], folders)
+            pending += _inputs(found[name], artifacts)
     return found
+
+
+def _roots(name: str, judged: dict[str, _Judged], artifacts: dict[str, ArtifactFiles]) -> set[str]:
+    """The artifacts from which the differences in the inputs of an artifact come."""
+    found: set[str] = set()
+    for source in _inputs(judged[name], artifacts):
+        if source != name and not judged[source].outcome.agrees:
+            behind = _roots(source, judged, artifacts)
+            found |= behind
+            if not behind or judged[source].outcome is Outcome.PARAMETERS:
+                found.add(source)
+    return found
+
+
+def _ordered(names: Collection[str], judged: dict[str, _Judged]) -> list[str]:
+    """Names of artifacts, those with other parameters first."""
+    return sorted(names, key=lambda name: (judged[name].outcome is not Outcome.PARAMETERS, name))
+
+
+def _cause(whole: Whole, judged: _Judged, roots: Sequence[str]) -> str:
+    """Why an artifact differs from the record."""
+    causes = own_causes(judged.record, judged.new)
+    if roots:
+        causes.append(made_from(roots))
+    match whole.outcome:
+        case Outcome.STALE:
+            causes.insert(0, "made by older code than that of the working tree")
+        case Outcome.MISSING:
+            causes = ["a file is missing"]
+        case Outcome.EXTRA:
+            causes = ["a file is not in the record"]
+        case Outcome.UNREADABLE:
+            causes = ["a file could not be compared"]
+    if causes:
+        return "; ".join(causes)
+    if judged.outcome is Outcome.STRUCTURE:
+        return "the structure of the dataset changed"
+    if judged.outcome is not Outcome.IDENTICAL:
+        return "numbers moved within their budgets" if whole.outcome.agrees else "numbers moved"
+    if any(file.name.endswith(PICTURES) for file in whole.moved):
+        return "the picture changed"
+    return "the text changed"
 
 
 def compare_folders(record: Path, new: Path, only: Collection[str] = ()) -> Whole:
@@ -178,21 +260,23 @@ def compare_folders(record: Path, new: Path, only: Collection[str] = ()) -> Whol
     ModelError
         If one of the folders holds no artifact, or neither folder has a named artifact.
     """
-    files = artifacts_in(record, new)
-    # The texts come last, because they are made from all datasets.
-    names = sorted(files, key=lambda name: (f"{name}.md" in _TEXTS, name))
-    if unknown := [name for name in only if name not in names]:
-        known = printable(", ".join(names))
-        raise ModelError(f"unknown artifact {printable(unknown[0])}; known: {known}")
+    folders = (record, new)
+    artifacts = artifacts_in(*folders)
+    if unknown := [name for name in only if name not in artifacts]:
+        raise ModelError(f"unknown artifact {unknown[0]}; known: {', '.join(artifacts)}")
+    wanted = list(only or artifacts)
+    judged = _with_inputs(wanted, artifacts, folders)
     found = []
-    data: dict[str, Outcome] = {}
-    for name in names:
-        parts = []
-        for file in sorted(files[name], key=lambda file: _SUFFIXES.index(Path(file).suffix)):
-            of = worst(data.values()) if file in _TEXTS else data.get(name)
-            parts.append(judge(file, (record, new), of))
-            if file.endswith(".nc"):
-                data[name] = parts[-1].outcome
-        found.append(Whole(name, tuple(parts)))
-    wanted = [each for each in found if not only or each.name in only]
-    return Whole("", tuple(sorted(wanted, key=lambda x: (-x.outcome.rank, -x.share, x.name))))
+    for name in wanted:
+        artifact = artifacts[name]
+        data = judged[name].data
+        made_of = _inputs(judged[name], artifacts) if artifact.is_text else [name]
+        outcome = worst(judged[source].outcome for source in made_of)
+        others = [judge(file, folders, outcome) for file in artifact.others]
+        whole = Whole(name, tuple([data, *others] if data else others))
+        if whole.outcome is not Outcome.IDENTICAL:
+            roots = _ordered(_roots(name, judged, artifacts), judged)
+            whole = replace(whole, cause=_cause(whole, judged[name], roots))
+        found.append(whole)
+    found.sort(key=lambda whole: (-whole.outcome.rank, -whole.share, whole.name))
+    return Whole("", tuple(found))

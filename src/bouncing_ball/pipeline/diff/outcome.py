@@ -16,6 +16,8 @@ class Outcome(StrEnum):
     WITHIN = "within budget"
     DRIFTED = "drifted"
     STRUCTURE = "changed structure"
+    PARAMETERS = "changed parameters"
+    STALE = "stale"
     MISSING = "missing"
     EXTRA = "extra"
     UNREADABLE = "could not be compared"
@@ -36,8 +38,8 @@ class Outcome(StrEnum):
 
         Examples
         --------
-        >>> [outcome.status for outcome in Outcome]
-        [0, 0, 1, 1, 1, 1, 2]
+        >>> [outcome.status for outcome in (Outcome.WITHIN, Outcome.DRIFTED, Outcome.UNREADABLE)]
+        [0, 1, 2]
         """
         return 2 if self is Outcome.UNREADABLE else int(not self.agrees)
 
@@ -55,7 +57,7 @@ def worst(outcomes: Iterable[Outcome]) -> Outcome:
 
 @dataclass(frozen=True)
 class Row:
-    """One item of the comparison of a file: a line of a text, an entry of a variable, or pixels.
+    """One item of the comparison of a file: a line of a text, a variable, an attribute, or pixels.
 
     Parameters
     ----------
@@ -63,12 +65,16 @@ class Row:
         The number of a line, or the name of a variable.
     outcome : Outcome
     record, new : str, optional
-        The content in the record and in the new file; None if there is none.
+        The content in the record and in the new file, of a variable the entry that has moved most;
+        None if there is none.
     share : float
         Drift over the budget; 0 for a text.
     at : str
-        Coordinates of an entry of a variable.
+        Coordinates of the entry of a variable.
     note : str
+    moved, beyond, entries : int
+        For a variable, the number of its entries that moved, of those beyond the budget, and of
+        all entries.
     """
 
     name: str
@@ -78,6 +84,9 @@ class Row:
     share: float = 0.0
     at: str = ""
     note: str = ""
+    moved: int = 0
+    beyond: int = 0
+    entries: int = 0
 
 
 @dataclass(frozen=True)
@@ -93,11 +102,14 @@ class Whole:
         bytes are identical.
     pictures : tuple
         For a PNG file the bytes in the record and the new bytes.
+    cause : str
+        For an artifact that is not identical, why it differs.
     """
 
     name: str
     parts: tuple[Any, ...] = ()
     pictures: tuple[bytes | None, bytes | None] = (None, None)
+    cause: str = ""
 
     @property
     def outcome(self) -> Outcome:

@@ -1,16 +1,16 @@
-"""The short table for a terminal, and for the summary of a forge's job.
+"""The reports on a comparison: lines for a terminal, and a page with both versions of each picture.
 
-The HTML page with record and results side by side; it needs neither a network nor a script.
+Both name the cause of a difference first. The page needs neither a network nor a script.
 """
 
 import base64
 import re
 from difflib import SequenceMatcher
-from typing import Any
+from itertools import takewhile
 from urllib.parse import quote
 
-from bouncing_ball.errors import printable
-from bouncing_ball.pipeline.diff.outcome import Outcome, Whole
+from bouncing_ball.pipeline.artifacts import DATASET
+from bouncing_ball.pipeline.diff.outcome import Outcome, Row, Whole
 
 _SENTENCES = (
     "The new artifacts agree with the record.",
@@ -34,14 +34,51 @@ def sentence(comparison: Whole) -> str:
 
 
 def share_text(share: float) -> str:
-    """A share of a budget in per cent.
+    """A share of a budget in per cent, or as a multiple if it is large; empty for 0 and for ∞.
 
     Examples
     --------
-    >>> [share_text(share) for share in (0.0, 0.00123, 1.46, float("inf"))]
-    ['', '0.123 %', '146 %', 'inf %']
+    >>> [share_text(share) for share in (0.0, 0.00123, 1.46, 3e5, float("inf"))]
+    ['', '0.123 %', '146 %', '3e+05 ×', '']
     """
-    return f"{100 * share:.3g} %" if share else ""
+    if share in (0.0, float("inf")):
+        return ""
+    return f"{100 * share:.3g} %" if share < 10 else f"{share:.3g} ×"
+
+
+def entries_text(row: Row) -> str:
+    """The number of entries of a variable that moved.
+
+    Examples
+    --------
+    >>> entries_text(Row("phase", Outcome.DRIFTED, moved=7, beyond=2, entries=1204))
+    '7 of 1204, 2 beyond the budget'
+    """
+    if not row.entries:
+        return ""
+    if row.beyond:
+        return f"{row.moved} of {row.entries}, {row.beyond} beyond the budget"
+    return f"{row.moved} of {row.entries}"
+
+
+def _excerpt(text: str | None, start: int, width: int = 60) -> str:
+    """The part of a line that begins some words before a place, if there is a line."""
+    if not text:
+        return "nothing" if text is None else "an empty line"
+    first = max(0, start - 20)
+    shown = text[first : first + width]
+    before = "… " if first else ""
+    after = " …" if first + width < len(text) else ""
+    return f"{before}{shown.strip()}{after}"
+
+
+def _change(row: Row) -> str:
+    """Both contents of a row, of long texts the part where they begin to differ."""
+    if row.record is None and row.new is None:
+        return ""
+    pairs = zip(row.record or "", row.new or "", strict=False)
+    start = len(list(takewhile(lambda pair: pair[0] == pair[1], pairs)))
+    return f"{_excerpt(row.record, start)} → {_excerpt(row.new, start)}"
 
 
 def note(file: Whole) -> str:
@@ -49,42 +86,57 @@ def note(file: Whole) -> str:
 
     Examples
     --------
-    >>> from bouncing_ball.pipeline.diff.outcome import Row
     >>> note(Whole("paper.md", (Row("line 1", Outcome.DRIFTED, "r = 0.25", "r = 0.26"),)))
     'line 1: r = 0.25 → r = 0.26'
     """
-    if not file.moved:
+    rows = file.moved
+    if not rows:
         return ""
-    first, *rest = file.moved
-    where = f"{first.name} at {first.at}" if first.at else first.name
-    old, now = (printable(side or "nothing", 60) for side in (first.record, first.new))
-    moved = f"{old} → {now}" if old != now else ""
-    more = f"and {len(rest)} more" if rest else ""
-    return printable(": ".join(filter(None, [where, moved, first.note, more])))
+    is_dataset = file.name.endswith(DATASET)
+    if is_dataset and file.outcome is Outcome.PARAMETERS:
+        variables = [row for row in file.parts if row.entries]
+        moved = [row for row in variables if row.moved]
+        structure = [row for row in rows if row.outcome is Outcome.STRUCTURE]
+        differ = f"{len(moved)} of {len(variables)} variables differ"
+        return differ + (f", {len(structure)} parts of the structure" if structure else "")
+    first, *others = rows
+    place = f" at {first.at}" if first.at else ""
+    what = ": ".join(filter(None, [first.name + place, _change(first) or first.note]))
+    entries = f"; entries moved: {entries_text(first)}" if first.entries else ""
+    return what + entries + (f"; and {len(others)} more" if others else "")
 
 
 def to_terminal(comparison: Whole) -> str:
-    """A line for each file that is not identical, worst artifact first, and the result.
+    """For each artifact that is not identical its cause and its files, and then the result.
 
     Examples
     --------
-    >>> print(to_terminal(Whole("", (Whole("fig01"),))), end="")
-    1 identical. The new artifacts agree with the record.
+    >>> row = Row("line 1", Outcome.DRIFTED, "r = 0.25", "r = 0.26")
+    >>> paper = Whole("paper", (Whole("paper.md", (row,)),), cause="made from fig14")
+    >>> print(to_terminal(Whole("", (paper, Whole("fig01")))), end="")
+    paper: made from fig14
+      paper.md  drifted  line 1: r = 0.25 → r = 0.26
+    1 drifted, 1 identical. The new artifacts differ from the record.
     """
-    form = "{:<12}  {:<21}  {:>9}  {}".format
-    lines = [form("artifact", "outcome", "of budget", "what")] if comparison.moved else []
+    files = [file for artifact in comparison.moved for file in artifact.moved]
+    name_width = max((len(file.name) for file in files), default=0)
+    outcomes = {file.name: _outcome_text(file) for file in files}
+    outcome_width = max(map(len, outcomes.values()), default=0)
+    lines = []
     for artifact in comparison.moved:
-        name = printable(artifact.name, 40)
+        lines.append(f"{artifact.name}: {artifact.cause}")
         for file in artifact.moved:
-            what = f"{printable(file.name)} {note(file)}".rstrip()
-            lines.append(form(name, file.outcome, share_text(file.share), what))
+            name = f"{file.name:<{name_width}}"
+            outcome = f"{outcomes[file.name]:<{outcome_width}}"
+            lines.append(f"  {name}  {outcome}  {note(file)}".rstrip())
     return "".join(f"{line}\n" for line in [*lines, sentence(comparison)])
 
 
-def _plain(value: Any) -> Any:
-    """The value of an expression on the page; text other than markup is put on one line."""
-    is_text = isinstance(value, str) and not hasattr(value, "__html__")
-    return printable(value, None) if is_text else value
+def _outcome_text(file: Whole) -> str:
+    """The outcome of a file, with its share of the budget if it is judged by that."""
+    if file.outcome in (Outcome.WITHIN, Outcome.DRIFTED):
+        return f"{file.outcome} {share_text(file.share)}".rstrip()
+    return str(file.outcome)
 
 
 _Words = list[tuple[bool, str]]
@@ -100,12 +152,21 @@ def marked(record: str | None, new: str | None) -> tuple[_Words, _Words]:
     [(True, 'r, '), (False, '0.25'), (True, ', '), (False, 'ball')]
     [(True, 'r, '), (False, '0.27'), (True, ', '), (False, 'table')]
     """
-    old, now = (re.findall(r"[^\s,;|&]+|[\s,;|&]+", text or "") for text in (record, new))
-    found: tuple[_Words, _Words] = ([], [])
-    for kind, a, b, c, d in SequenceMatcher(None, old, now, autojunk=False).get_opcodes():
-        found[0].append((kind == "equal", "".join(old[a:b])))
-        found[1].append((kind == "equal", "".join(now[c:d])))
-    return found
+    old_words, new_words = (
+        re.findall(r"[^\s,;|&]+|[\s,;|&]+", text or "") for text in (record, new)
+    )
+    old_marked: _Words = []
+    new_marked: _Words = []
+    blocks = SequenceMatcher(None, old_words, new_words, autojunk=False).get_opcodes()
+    for kind, first, last, new_first, new_last in blocks:
+        is_same = kind == "equal"
+        old_marked.append((is_same, "".join(old_words[first:last])))
+        new_marked.append((is_same, "".join(new_words[new_first:new_last])))
+    return old_marked, new_marked
+
+
+def _base64(content: bytes) -> str:
+    return base64.b64encode(content).decode("ascii")
 
 
 def to_html(comparison: Whole) -> str:
@@ -119,13 +180,12 @@ def to_html(comparison: Whole) -> str:
     >>> "<h1>Artifacts against the record</h1>" in to_html(Whole(""))
     True
     """
-    # Imported here, because the table for the terminal does not need it.
+    # Imported here, because the lines for the terminal do not need it.
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     environment = Environment(
         loader=PackageLoader("bouncing_ball.pipeline.diff", "."),
         autoescape=True,
-        finalize=_plain,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
@@ -136,8 +196,8 @@ def to_html(comparison: Whole) -> str:
         sentence=sentence(comparison),
         marked=marked,
         note=note,
-        # A lone surrogate has no UTF-8 code that could be quoted.
-        anchor=lambda name: quote(printable(name, None)),
+        anchor=quote,
         share=share_text,
-        base64=lambda content: base64.b64encode(content).decode("ascii"),
+        entries=entries_text,
+        base64=_base64,
     )

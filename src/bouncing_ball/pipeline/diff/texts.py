@@ -8,9 +8,8 @@ from pathlib import Path
 
 from bouncing_ball.pipeline.diff.outcome import Outcome, Row
 
-# A printed number with its sign and exponent. An exponent has at most four digits, because the
-# artifacts have no longer ones, and Decimal would refuse them.
-_NUMBER = re.compile(r"[-+]?[0-9]+(?:\.[0-9]+)?(?:[eE][-+]?[0-9]{1,4}(?![0-9]))?")
+# A printed number with its sign and exponent.
+_NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d{1,4})?")
 
 
 def _same_to_the_last_digit(old: str, new: str) -> bool:
@@ -51,6 +50,12 @@ def may_be_rounding(old: str, new: str) -> bool:
     )
 
 
+def _line_outcome(old: str | None, new: str | None, data: Outcome | None) -> Outcome:
+    if data is not Outcome.WITHIN or old is None or new is None:
+        return Outcome.DRIFTED
+    return Outcome.WITHIN if may_be_rounding(old, new) else Outcome.DRIFTED
+
+
 def compare_texts(record: str, new: str, data: Outcome | None) -> list[Row]:
     """All lines that differ, each with its outcome.
 
@@ -74,19 +79,18 @@ def compare_texts(record: str, new: str, data: Outcome | None) -> list[Row]:
     >>> line.name, str(line.outcome), line.record, line.new
     ('line 1', 'drifted', 'are right', 'are wrong')
     """
-    before, after = record.split("\n"), new.split("\n")
+    old_lines = record.split("\n")
+    new_lines = new.split("\n")
     # Lines are matched by their words, so that a line whose number changes is still matched.
-    old_words, new_words = ([_NUMBER.sub("#", line) for line in side] for side in (before, after))
+    old_words = [_NUMBER.sub("#", line) for line in old_lines]
+    new_words = [_NUMBER.sub("#", line) for line in new_lines]
     blocks = SequenceMatcher(None, old_words, new_words, autojunk=False).get_opcodes()
     found = []
     for _, first, last, new_first, new_last in blocks:
-        pairs = zip_longest(before[first:last], after[new_first:new_last])
-        for number, (old, line) in enumerate(pairs, start=first + 1):
-            if old != line:
-                there = data is Outcome.WITHIN and old is not None and line is not None
-                within = there and may_be_rounding(str(old), str(line))
-                outcome = Outcome.WITHIN if within else Outcome.DRIFTED
-                found.append(Row(f"line {number}", outcome, old, line))
+        pairs = zip_longest(old_lines[first:last], new_lines[new_first:new_last])
+        for number, (old, now) in enumerate(pairs, start=first + 1):
+            if old != now:
+                found.append(Row(f"line {number}", _line_outcome(old, now, data), old, now))
     return found
 
 

@@ -1,5 +1,8 @@
 """The interface of a contact law: its force, the rule that ends the contact, and the root m.
 
+The paper's contact is :class:`~bouncing_ball.paper.contact.spring_damper.SpringDamper`; as a
+contact law among others it is :class:`~bouncing_ball.beyond.laws.linear.LinearLaw`.
+
 The penetration p = -δ of the ball into the table obeys ::
 
     p″ = a - f(p, p′),    a = 1 - Λ sin(τ + φ),    p(0) = 0,  p′(0) = v > 0
@@ -12,19 +15,21 @@ numerical methods need it to keep their order at the ends of the contact.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
 from dataclasses import dataclass, fields
 from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ModelError, require
+from bouncing_ball.beyond.corrected.instant import Instant
+from bouncing_ball.beyond.laws.collocation import states
+from bouncing_ball.beyond.laws.motion import ContactDynamics
+from bouncing_ball.beyond.laws.panel import Start
+from bouncing_ball.errors import ModelError
 from bouncing_ball.numerics.arrays import Batch
-from bouncing_ball.paper.contact.damping import Release
-
-# The imaginary step, relative to p and absolute for p′; its square is lost in rounding.
-_IMAGINARY = 1e-20
+from bouncing_ball.paper.contact.contact import Span
+from bouncing_ball.paper.contact.damping import Release, check_damping, check_positive
+from bouncing_ball.paper.motion.dynamics import Dynamics
 
 
 class Unit(NamedTuple):
@@ -34,29 +39,6 @@ class Unit(NamedTuple):
     mass: float = 0.0
     length: float = 0.0
     time: float = 0.0
-
-
-class Slopes(NamedTuple):
-    """Partial derivatives of a function of (p, p′), arrays of the shape of the arguments."""
-
-    by_penetration: np.ndarray
-    by_rate: np.ndarray
-
-
-def slopes_of(function: Callable, penetration: ArrayLike, rate: ArrayLike) -> Slopes:
-    """Partial derivatives by imaginary steps, exact up to rounding for an analytic function.
-
-    Examples
-    --------
-    >>> slopes = slopes_of(lambda p, u: p**1.5 * u, 4.0, 3.0)
-    >>> round(float(slopes.by_penetration), 12), round(float(slopes.by_rate), 12)
-    (9.0, 8.0)
-    """
-    p, u = np.asarray(penetration, dtype=float), np.asarray(rate, dtype=float)
-    small = _IMAGINARY * np.where(p > 0, p, 1.0)
-    by_penetration = np.imag(function(p + 1j * small, u)) / small
-    by_rate = np.imag(function(p, u + 1j * _IMAGINARY)) / _IMAGINARY
-    return Slopes(by_penetration, by_rate)
 
 
 @dataclass(frozen=True, repr=False)
@@ -143,8 +125,31 @@ class ContactLaw(Batch, ABC):
         """The grip function under a load a; by default the load has no effect."""
         return self.grip(penetration, rate)
 
+    def dynamics(self, amplitude: ArrayLike) -> Dynamics:
+        """The contacts and flights of balls with this law on a table of amplitude Λ.
+
+        Raises
+        ------
+        ModelError
+            If Λ is outside its range.
+        """
+        return ContactDynamics.of(self, amplitude)
+
+    def during(self, span: Span, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """δ and δ′ at times 0 ≤ s ≤ D after the starts of contacts, one time for each contact."""
+        start = Start(
+            depth=-span.displacement,
+            rate=-span.velocity,
+            phase=span.phase,
+            amplitude=span.amplitude,
+            weight=np.ones_like(time),
+        )
+        ends = span.duration, -span.release_displacement, -span.release_velocity
+        depth, rate = states(self, start, ends, time)
+        return -depth, -rate
+
     @property
-    def signature(self) -> Any:
+    def signature(self) -> Instant | None:
         """The signature of free impacts if it has a closed form and is the same at every speed,
         otherwise None.
         """
@@ -201,31 +206,6 @@ class ContactLaw(Batch, ABC):
         """The name and the parameters of a single law as text."""
         numbers = (f"{name.replace('_', ' ')} {x:.6g}" for name, x in self.parameters().items())
         return f"{self.name} with {', '.join(numbers)}"
-
-
-def check_positive(value: ArrayLike, name: str) -> None:
-    """Raise :class:`ModelError` unless a parameter is finite and positive.
-
-    Examples
-    --------
-    >>> check_positive(-1.0, "stiffness K")
-    Traceback (most recent call last):
-    ...
-    bouncing_ball.errors.ModelError: stiffness K = -1.0 is not a finite number > 0
-    """
-    x = np.asarray(value, dtype=float)
-    require(np.isfinite(x) & (x > 0), x, name, "a finite number > 0")
-
-
-def check_damping(value: ArrayLike, name: str) -> None:
-    """Raise :class:`ModelError` unless a parameter is finite and not negative.
-
-    Examples
-    --------
-    >>> check_damping(0.0, "damping C")
-    """
-    x = np.asarray(value, dtype=float)
-    require(np.isfinite(x) & (x >= 0), x, name, "a finite number ≥ 0")
 
 
 @dataclass(frozen=True, repr=False)

@@ -5,8 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.beyond.laws.collocation import Start, states
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.contact.contact import Span
 from bouncing_ball.paper.motion.flight import Flight, table
 from bouncing_ball.paper.motion.sequence import ImpactSequence, Status
 
@@ -44,38 +43,50 @@ def history(sequence: ImpactSequence, time: ArrayLike) -> History:
 
     Examples
     --------
-    >>> from bouncing_ball.beyond.simulation import simulate
-    >>> history(simulate(1.0, 0.0, 0.0, -2.0, 2), [0.0, 2.0, 4.0]).height.tolist()
+    >>> from bouncing_ball.paper.motion.restitution import RestitutionDynamics
+    >>> sequence = RestitutionDynamics.of(1.0, 0.0).simulate(0.0, -2.0, 2)
+    >>> history(sequence, [0.0, 2.0, 4.0]).height.tolist()
     [0.0, 2.0, 0.0]
     """
     if np.ndim(sequence.status):
         raise ValueError("the sequence has several balls: name one, as in sequence[0]")
-    t, lam = np.asarray(time, dtype=float), sequence.amplitude
+    t = np.asarray(time, dtype=float)
+    lam = sequence.amplitude
     last = int(sequence.impacts) - 1
     row = np.clip(np.searchsorted(sequence.time[: last + 1], t, side="right") - 1, 0, None)
-    since, duration = t - sequence.time[row], sequence.contact_duration[row]
+    since = t - sequence.time[row]
+    duration = sequence.contact_duration[row]
     touching = (since >= 0) & (since <= duration)
     # The end of the last flight is not known.
     flying = (since > duration) & ((row < last) | (sequence.status != Status.BOUNCING))
     left = sequence.phase[row] + np.where(flying, duration, 0.0)
-    state = sequence.release_displacement[row], sequence.relative_bounce_velocity[row]
-    flight = Flight(*state, *table(left, lam), lam)
+    x, y = table(left, lam)
+    displacement = sequence.release_displacement[row]
+    velocity = sequence.relative_bounce_velocity[row]
+    flight = Flight(displacement, velocity, x, y, lam)
     gap, speed, _, _ = flight.gap(np.where(flying, since - duration, 0.0))
-    gap, speed = (np.where(flying, x, np.nan) for x in (gap, speed))
+    gap = np.where(flying, gap, np.nan)
+    speed = np.where(flying, speed, np.nan)
     gap[touching], speed[touching] = _in_contact(sequence, row[touching], since[touching])
     w_rate, w = table(sequence.phase[row] + since, lam)
-    return History(t, gap + w, speed + w_rate, w, gap, touching)
+    return History(
+        time=t, height=gap + w, velocity=speed + w_rate, table=w, gap=gap, touching=touching
+    )
 
 
-def _in_contact(sequence: ImpactSequence, row: np.ndarray, since: np.ndarray):
-    """δ and δ′ at times since the starts of contacts."""
-    law, lam = sequence.contact, sequence.amplitude
-    at = sequence.displacement[row], sequence.relative_velocity[row], sequence.phase[row]
-    if law is None or not row.size:
-        return np.zeros((2, row.size))
-    if isinstance(law, SpringDamper):
-        return law.flow(since, *at, lam)[:2]
-    one = np.ones_like(since)
-    start = Start(-at[0], -at[1], at[2], lam * one, one)
-    ends = -sequence.release_displacement[row], -sequence.relative_bounce_velocity[row]
-    return -np.array(states(law, start, (sequence.contact_duration[row], *ends), since))
+def _in_contact(
+    sequence: ImpactSequence, row: np.ndarray, since: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """δ and δ′ at times since the starts of contacts; 0 while a ball rests on the table."""
+    if sequence.contact is None or not row.size:
+        return np.zeros_like(since), np.zeros_like(since)
+    span = Span(
+        displacement=sequence.displacement[row],
+        velocity=sequence.relative_velocity[row],
+        phase=sequence.phase[row],
+        amplitude=sequence.amplitude * np.ones_like(since),
+        duration=sequence.contact_duration[row],
+        release_displacement=sequence.release_displacement[row],
+        release_velocity=sequence.relative_bounce_velocity[row],
+    )
+    return sequence.contact.during(span, since)

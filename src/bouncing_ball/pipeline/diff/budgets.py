@@ -1,0 +1,200 @@
+"""How far a variable may change from the accepted record: its budget.
+
+The drift of a number is |new - record| divided by the range of the record's values, or by a
+scale. A study declares the budget and the scale of a variable beside the variable itself (see
+:mod:`bouncing_ball.datasets.variables`); both are attributes of the dataset. The table of this
+module holds budgets that hold in one artifact only, and those that allow more: points that slide
+along a curve, or a share of the entries about which rounding decides.
+
+A budget without another source comes from the convergence study, a test that varies tolerances,
+grids and rounding: it is the next power of ten above ten times the largest change.
+"""
+
+import math
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+
+class Budget(NamedTuple):
+    """The largest change allowed of a variable, relative to a scale: "1", or another variable.
+
+    Without a scale the change is relative to the range of the record's values. With ``over`` two
+    curves over that variable are compared, through the samples along the dimension ``point``,
+    because the samples may slide along the curve. The share ``share`` of the entries, of texts and
+    counts as well, may exceed the budget, because rounding decides about some entries.
+    """
+
+    size: float
+    scale: str = ""
+    over: str = ""
+    share: float = 0.0
+
+
+ROUNDING = 1e-13
+"""The smallest budget, for variables without another one."""
+
+IGNORED = math.inf
+"""The budget of variables that another dataset also has, or about which rounding decides."""
+
+PICTURE = 1.0
+"""The largest root mean square difference of two pictures, in grey levels of 255.
+
+Changing parameters by two units in the last place changes all rounding errors, as another processor
+does, and moves the pixels of a figure by at most 0.092 (Fig. 15). The budget is the next power of
+ten above ten times this value."""
+
+PICTURES = {"ext_diagram": 60.0, "ext_locking": 40.0, "ext_means": 60.0, "ext_locked": 40.0}
+"""Budgets of pictures of motions about which rounding decides: three times the 19 and 12 grey
+levels by which a change of 1e-15 in the start moves these pictures."""
+
+_FLAGS = ("stable", "admissible", "restitution_stable", "restitution_admissible")
+_ORBIT = (
+    "phase",
+    "release_phase",
+    "contact_duration",
+    "impact_velocity",
+    "bounce_velocity",
+    "apparent_restitution",
+)
+_MULTIPLIER = ("multiplier_real", "multiplier_imag")
+
+
+def _branches(coordinate: float, multiplier: float) -> dict[str, Budget]:
+    """Budgets of the branches of orbits in Figs. 8, 9 and 15.
+
+    If one chord of a continued branch changes, all of its points move along the curve; the branches
+    are therefore compared as curves. Rounding decides on which side of a bifurcation or a grazing
+    orbit a sample lies: 1.2 of the 600 steps.
+    """
+    flags = dict.fromkeys(_FLAGS, Budget(0.002, over="point"))
+    orbit = dict.fromkeys(_ORBIT, Budget(coordinate, over="amplitude"))
+    multipliers = dict.fromkeys(_MULTIPLIER, Budget(multiplier, over="amplitude"))
+    return {**flags, "amplitude": Budget(coordinate, over="phase"), **orbit, **multipliers}
+
+
+def _with_limits(name: str) -> tuple[str, str, str]:
+    """A share and the limits of its confidence interval."""
+    return name, f"{name}_low", f"{name}_high"
+
+
+ARTIFACTS: dict[str, dict[str, Budget]] = {
+    # As in Fig. 8, with 400 steps.
+    "fig03": dict.fromkeys(("stable", "admissible"), Budget(0.003, over="point")),
+    "fig08": _branches(coordinate=1e-6, multiplier=1e-4),
+    "fig09": _branches(coordinate=1e-8, multiplier=1e-5),
+    "fig15": _branches(coordinate=1e-8, multiplier=1e-5),
+    # A hundred times the largest disagreement of the page with Python, over the size of the
+    # quantity where that is above 1; a contact's force is in proportion to ϖ.
+    "explorer": {
+        "*": Budget(1e-11, scale="1"),
+        "contact_force": Budget(1e-11, scale="frequency_ratio"),
+    },
+    # The second order of a stiff contact is a small difference of large values.
+    "ext_orders": {"relative_error": Budget(1e-11)},
+    "engines": {
+        # In an engine of another version an impact falls on another part of a time step. Each r is
+        # within the tolerance of the requested one.
+        "measured_restitution": Budget(2.0, scale="tolerance"),
+        # Mean heights are within the scatter that a step causes.
+        "height_error": Budget(1.0, scale="step_scatter"),
+        # Few single bounces scatter by up to twice that; the next power of ten.
+        "height_scatter": Budget(10.0, scale="step_scatter"),
+        # Times differ between machines, and versions change.
+        "bounce_time": Budget(IGNORED),
+        "model_time": Budget(IGNORED),
+        "engine_version": Budget(IGNORED),
+    },
+    # A chaotic transient ends, and a basin's boundary is met, where rounding decides: a change of
+    # 1e-15 in the start changes the kind at 1.4 % of the nodes, and moves a share of agreement by
+    # 0.022 at most. Three times that is allowed.
+    "ext_locking": {
+        **dict.fromkeys(("kind", "periods", "impacts"), Budget(ROUNDING, share=0.05)),
+        **dict.fromkeys(_with_limits("agreement"), Budget(0.07, scale="1")),
+        "agreement_nodes": Budget(0.05),
+        # Five standard errors; the standard error is an estimate itself.
+        "lyapunov_exponent": Budget(5.0, scale="lyapunov_error", share=0.05),
+        "lyapunov_error": Budget(0.5, share=0.05),
+    },
+    "ext_diagram": {
+        # Densities of some hundred samples of a chaotic motion, and ends of balls that may change.
+        "phase_density": Budget(0.05, scale="1", share=0.05),
+        # Five standard errors. Rounding sends transients to other motions: up to 19 of 288 entries,
+        # whose binomial limit at a chance of 1e-4 is 12.5 %.
+        "lyapunov_exponent": Budget(5.0, scale="lyapunov_error", share=0.125),
+        "lyapunov_error": Budget(0.5, share=0.05),
+    },
+    "ext_locked": {
+        # On long locked orbits the sensitivity times rounding exceeds the wait, at some 15 % of the
+        # places: rounding decides there.
+        **dict.fromkeys(
+            ("periods", "sensitivity", "wait", "needed_ratio"), Budget(1e-6, share=0.3)
+        ),
+        # A change of 4e-16 of the amplitude moves a share by 0.0064 at most. Three times that is
+        # allowed.
+        **dict.fromkeys(
+            (
+                *_with_limits("same"),
+                *_with_limits("same_by_prediction"),
+                *_with_limits("rank_correlation"),
+                *_with_limits("jump_share"),
+                *_with_limits("uncertainty_exponent"),
+            ),
+            Budget(0.02, scale="1"),
+        ),
+    },
+    # A change of 1e-15 of the start moves a share of 60 balls by 0.067 at most, and a mean life by
+    # 11 of 100 periods. Three times the former is allowed.
+    "ext_lives": {
+        **dict.fromkeys(
+            ("survival", *_with_limits("chaotic_share")),
+            Budget(0.2, scale="1"),
+        ),
+        **dict.fromkeys(_with_limits("mean_life"), Budget(0.5, share=0.2)),
+    },
+    # One start of 2000 at a boundary moves a share by 0.0005. If it is one of the four that the
+    # smallest shift moves, it moves an exponent or a limit of it by 0.04 at most.
+    "ext_basins": dict.fromkeys(
+        (
+            *_with_limits("basin_share"),
+            *_with_limits("uncertain_share"),
+            *_with_limits("uncertainty_exponent"),
+        ),
+        Budget(0.05, scale="1"),
+    ),
+    # As for ext_locking: the same change moves an error by 2.2 of its margins at most, 7 % of the
+    # decisions, a share by 0.12, and a number of nodes by 2 of 48. Three times that is allowed. A
+    # margin is an estimate itself.
+    "ext_means": {
+        "mean_error": Budget(7.0, scale="mean_margin", share=0.05),
+        "mean_margin": Budget(0.5, share=0.05),
+        "decision": Budget(ROUNDING, share=0.2),
+        "needed_ratio": Budget(ROUNDING, share=0.2),
+        **dict.fromkeys(_with_limits("right"), Budget(0.37, scale="1")),
+        "right_nodes": Budget(0.15),
+    },
+    # Saddle-nodes are found as minima here, and some readings are ill-conditioned.
+    "forensics": {"computed": Budget(1e-8)},
+}
+"""Budgets of single artifacts, by variable; ``*`` stands for all variables that are not named."""
+
+
+def budget_of(artifact: str, name: str, attributes: Mapping[str, Any] | None = None) -> Budget:
+    """The budget of a variable of an artifact's dataset.
+
+    It is that of the artifact if there is one, otherwise that of the variable's attributes, which
+    its study has declared, otherwise rounding.
+
+    Examples
+    --------
+    >>> budget_of("fig05", "phase").size, budget_of("fig08", "phase").over
+    (1e-13, 'amplitude')
+    >>> budget_of("fig05", "found", {"budget": 1e-8, "scale": "1"}).size
+    1e-08
+    """
+    of_artifact = ARTIFACTS.get(artifact, {})
+    if name in of_artifact:
+        return of_artifact[name]
+    if "*" in of_artifact:
+        return of_artifact["*"]
+    declared = attributes or {}
+    return Budget(float(declared.get("budget", ROUNDING)), str(declared.get("scale", "")))

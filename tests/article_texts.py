@@ -9,6 +9,7 @@ from bouncing_ball.beyond.exhibits import (
     contact_laws_figures,
     corrected_model_figures,
     engine_steps_figures,
+    proofs_figures,
 )
 from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.drawing.tables import to_csv, to_markdown
@@ -25,6 +26,7 @@ TABLES = {
     "ext_orders": corrected_model_figures.ext_orders,
     "ext_laws": contact_laws_figures.ext_laws,
     "ext_engines": engine_steps_figures.ext_engines,
+    "ext_proofs": proofs_figures.ext_proofs,
     "formulas": rows.formulas,
     "forensics": rows.forensics,
     "witness": rows.witness,

@@ -13,7 +13,7 @@ import pytest
 import bouncing_ball
 from bouncing_ball import contact_law, corrected, orbit, orbits, rigid, simulate, spring_damper
 from bouncing_ball.beyond.laws.hertzian import Tsuji
-from bouncing_ball.beyond.laws.orbits import LawModel
+from bouncing_ball.beyond.laws.orbits import LawModel, law_at_orbit
 from bouncing_ball.calls.balls import ModelBall
 from bouncing_ball.paper.orbits.stability import Side
 
@@ -119,6 +119,8 @@ def test_the_name_of_a_side_means_the_side():
         by_name = ball.at_orbit(1, 0.9, side.value).model
         assert by_name.law == ball.at_orbit(1, 0.9, side).model.law
         assert by_name.orbit(1, 0.9, side.value).phase == by_name.orbit(1, 0.9, side).phase
+        by_name = law_at_orbit(Tsuji, 0.8, 0.2, 1, 0.9, side.value)
+        assert by_name == law_at_orbit(Tsuji, 0.8, 0.2, 1, 0.9, side)
     assert ball.at_orbit(1, 0.9).model.law != ball.at_orbit(1, 0.9, "unstable").model.law
 
 

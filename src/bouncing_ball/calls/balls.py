@@ -139,7 +139,7 @@ class ModelBall(Ball):
     def corrected(self) -> ModelBall:
         law = self.model.impact_law
         if isinstance(self.model, SpringDamperModel):
-            model = CorrectedModel.of_contact(self.model.contact)
+            model: CorrectedModel = CorrectedModel.of_contact(self.model.contact)
         elif isinstance(law, ContactLaw):
             model = CorrectedModel(Signature(law))
         else:

@@ -27,7 +27,7 @@ from bouncing_ball.datasets import CASE
 from bouncing_ball.datasets.labelled import Grid, Labelled
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.errors import ParameterError, extra
-from bouncing_ball.paper.comparison.errors import QUANTITIES, Quantity
+from bouncing_ball.paper.comparison.errors import Quantity
 from bouncing_ball.paper.contact.damping import Release, damping_ratio
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
 
@@ -60,7 +60,7 @@ def error_thresholds(
     *,
     amplitude: AmplitudeOfOrbit,
     tolerance: Tolerance = 0.01,
-    quantities: Sequence[str] = tuple(Quantity),
+    quantities: Sequence[str] | None = None,
     release: Rule = "displacement",
 ) -> Thresholds:
     """The ϖ above which the restitution model is accurate for a contact with a spring and a damper.
@@ -79,7 +79,7 @@ def error_thresholds(
         Excitation amplitude Λ > 0 of the stable orbit.
     tolerance : float or array
         Largest modulus of the relative error.
-    quantities : sequence of str
+    quantities : sequence of str, optional
         The quantities compared; by default all: "max_height", "bounce_velocity", "phase",
         "apparent_restitution", "saddle_node", "period_doubling" and "permanent_contact".
     release : str
@@ -146,7 +146,9 @@ def _on_grid(grid: Grid, quantities: list[str], release: Release) -> xr.Dataset:
 
 
 def _names(quantities: Any) -> list[str]:
+    if quantities is None:
+        return [str(each) for each in Quantity]
     names = [quantities] if isinstance(quantities, str) else list(quantities)
     if not names:
         raise ParameterError("{quantities} has no entries")
-    return [chosen("quantities", name, [str(each) for each in QUANTITIES]) for name in names]
+    return [chosen("quantities", name, [str(each) for each in Quantity]) for name in names]

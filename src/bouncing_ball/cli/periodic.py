@@ -11,14 +11,13 @@ from bouncing_ball.beyond.corrected.signature import Signature, free_impact
 from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.calls import periodic as calls
 from bouncing_ball.calls.arguments import AMPLITUDE_OF_ORBIT, FAMILY, FREQUENCY_RATIO
-from bouncing_ball.calls.balls import spring_damper
+from bouncing_ball.calls.balls import ModelBall, spring_damper
 from bouncing_ball.cli.impact import add_ball, add_contact, ball_of
 from bouncing_ball.cli.options import Parser, add_choice, add_number, meanings
 from bouncing_ball.errors import NoOrbitError, ParameterError
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.orbit import OBSERVABLES
-from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.orbits.stability import Bifurcation
 
 Answer = dict[str, Any]
@@ -158,7 +157,7 @@ def error_law(*, n: int, amplitude: float, **contact: Any) -> Answer:
         If Λ lies below the saddle-node of the restitution model.
     """
     # The coefficients do not depend on ϖ; the contact with ϖ = 1 stands for all.
-    law = _spring_damper(frequency_ratio=1.0, **contact).contact
+    law = _ball(frequency_ratio=1.0, **contact).model.impact_law
     found = error_laws.coefficients(n, law.damping_ratio, amplitude, law.release)
     signed = {str(name): float(k) if math.isfinite(k) else None for name, k in found.items()}
     second = error_laws.permanent_contact_coefficient(law.damping_ratio, law.release)
@@ -179,13 +178,12 @@ def permanent_contact_options(parser: Parser) -> None:
 
 def permanent_contact(**contact: Any) -> Answer:
     """The Λ up to which the ball stays on the table."""
-    model = _spring_damper(**contact)
-    threshold = float(model.permanent_contact_threshold())
-    return {"threshold_amplitude": threshold, **described(model.contact)}
+    ball = _ball(**contact)
+    threshold = ball.model.permanent_contact_threshold()
+    return {"threshold_amplitude": float(threshold), **described(ball.model.impact_law)}
 
 
-def _spring_damper(*, release: str | None, **contact: Any) -> SpringDamperModel:
-    """The model of the contact that the options of :func:`.add_contact` describe."""
+def _ball(*, release: str | None, **contact: Any) -> ModelBall:
+    """The ball on the contact that the options of :func:`.add_contact` describe."""
     rule = Release.DISPLACEMENT if release is None else Release(release)
-    model: Any = spring_damper(release=rule.value, **contact).model
-    return model
+    return spring_damper(release=rule.value, **contact)

@@ -114,9 +114,12 @@ def sources(modules: Iterable[str], files: Iterable[Path] = ()) -> list[Path]:
         parts = pending.pop().split(".")
         for k in range(len(parts)):
             path = module_file(".".join(parts[: k + 1]))
-            if path is not None and path not in seen:
-                seen.add(path)
-                seen.update(data_beside(path))
+            if path is None or path in seen:
+                continue
+            seen.add(path)
+            seen.update(data_beside(path))
+            # The package itself imports its public functions only when a user asks for them.
+            if path != _ROOT / "__init__.py":
                 pending.extend(imports(path))
     return sorted(seen, key=str)
 

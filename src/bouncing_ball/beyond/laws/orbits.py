@@ -186,6 +186,7 @@ def law_at_orbit(
     >>> round(float(free_impact(law, speed).duration), 12)
     0.1
     """
+    side = Side(side)
     taken = np.asarray(duration, dtype=float)
     speed = np.full_like(taken, rigid_speed(n, restitution))
     before = missed_before = np.full_like(taken, np.nan)

@@ -25,6 +25,15 @@ LATE_FIGURE = (
     "import matplotlib.backends.backend_agg, matplotlib.backends.backend_svg\n"
     "import PIL.Image, PIL.PngImagePlugin\nPIL.Image.preinit()\n"
 )
+# Scripts that import a function by its name: the parameters with its module and its name.
+BY_NAME = {
+    "study": ("module", "study"),
+    "shard": ("module", "places"),
+    "figure": ("figures", "drawing"),
+    "table": ("figures", "table"),
+}
+# What the scripts and the rules share, and what the rules import themselves.
+SHARED = {"adapter", "whole_configuration"}
 FINISH = """
 for path in (*snakemake.output, *snakemake.log):
     open(path, "w").close()
@@ -36,12 +45,12 @@ def reduce_to_imports(script: Path) -> None:
     tree = ast.parse(script.read_text(encoding="utf-8"))
     imports = [node for node in tree.body if isinstance(node, ast.Import | ast.ImportFrom)]
     text = "".join(ast.unparse(node) + "\n" for node in imports) + LATE_DATA
-    if script.stem == "study":
-        text += (
-            "from bouncing_ball.pipeline.configuration import load\nload(snakemake.params.study)\n"
-        )
+    named = BY_NAME.get(script.stem)
+    if named is not None:
+        module, name = named
+        text += f"function(snakemake.params.{module}, snakemake.params.{name})\n"
     if script.stem == "figure":
-        text += "load(snakemake.params.drawing)\n" + LATE_FIGURE
+        text += LATE_FIGURE
     script.write_text(text + FINISH, encoding="utf-8")
 
 
@@ -64,7 +73,8 @@ def main() -> None:
         for tree in (whole, bare):
             shutil.copytree(ROOT, tree, ignore=IGNORED)
         for script in (bare / "workflow" / "scripts").glob("*.py"):
-            reduce_to_imports(script)
+            if script.stem not in SHARED:
+                reduce_to_imports(script)
         times = [(cold_run(whole), cold_run(bare)) for _ in range(repetitions)]
     pipeline, imports = (statistics.median(column) for column in zip(*times, strict=True))
     print(f"cold run {pipeline:.1f} s, imports only {imports:.1f} s")

@@ -111,7 +111,7 @@ def one_of(kind: str, name: str, known: Mapping[str, _Known]) -> _Known:
     Traceback (most recent call last):
     bouncing_ball.errors.ModelError: unknown side 'left': one of stable, unstable
     """
-    if name not in known:
+    if not isinstance(name, str) or name not in known:
         raise ModelError(f"unknown {kind} {name!r}: one of {', '.join(known)}")
     return known[name]
 

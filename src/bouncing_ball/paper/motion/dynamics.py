@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError, require
-from bouncing_ball.numerics.arrays import BLOCK, Batch, blocks, pick
+from bouncing_ball.numerics.arrays import BLOCK, Batch, as_numbers, blocks, pick
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.contact.contact import Contact
 from bouncing_ball.paper.motion.deviations import Deviation, Jacobian
@@ -83,8 +83,10 @@ class Dynamics(Batch, ABC):
         ModelError
             If Λ is not finite and ≥ 0.
         """
-        lam = np.asarray(amplitude, dtype=float)
-        require((lam >= 0) & np.isfinite(lam), lam, "amplitude Λ", "finite and ≥ 0")
+        name = "amplitude Λ"
+        allowed = "finite and ≥ 0"
+        lam = as_numbers(amplitude, name, allowed)
+        require((lam >= 0) & np.isfinite(lam), lam, name, allowed)
         return cls(law, lam)
 
     @property

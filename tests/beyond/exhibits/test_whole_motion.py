@@ -9,6 +9,7 @@ from bouncing_ball.beyond.exhibits.motion_samples import three_models
 from bouncing_ball.beyond.exhibits.orbit_diagram import orbit_diagrams
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.paper.contact.damping import Release
+from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
 from bouncing_ball.pipeline.configuration import typed
 from bouncing_ball.pipeline.diff.datasets import compare_datasets
 
@@ -38,7 +39,7 @@ def test_exponents_of_orbits_are_those_of_their_multipliers():
 
 
 def test_a_model_agrees_with_itself_and_wilsons_limits_are_closed_forms():
-    balls = final_motions(0.5, np.linspace(1.2, 3.2, 9), 1.0, -9.0, impacts=300)
+    balls = final_motions(RestitutionModel(0.5), np.linspace(1.2, 3.2, 9), 1.0, -9.0, impacts=300)
     nodes, share, low, high = agreement(balls, balls, 0.95)
     known = nodes > 0
     z = norm.ppf(0.975)

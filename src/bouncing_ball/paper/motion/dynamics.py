@@ -6,7 +6,7 @@ A subclass of :class:`Dynamics` computes the ends of contacts; everything else f
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple, Self
+from typing import Any, ClassVar, NamedTuple, Protocol, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -279,3 +279,10 @@ def _recorded(time: np.ndarray, impact: Impact, departure: Departure) -> dict[st
         "relative_bounce_velocity": departure.flight.velocity,
         "settling": departure.settling,
     }
+
+
+class HasDynamics(Protocol):
+    """A model or a law of the impact, which determines how balls move."""
+
+    def dynamics(self, amplitude: ArrayLike) -> Dynamics:
+        """The contacts and flights of balls on a table of amplitude Λ."""

@@ -9,7 +9,6 @@ from bouncing_ball.numerics import first_zero
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
-from bouncing_ball.paper.orbits.spring_damper_orbit import SpringDamperOrbit
 
 MODELS = ("restitution", "spring-damper", "corrected")
 
@@ -89,16 +88,3 @@ def test_the_first_landing_agrees_with_thirty_digits():
             assert float(time) == pytest.approx(float(found.time[k]), abs=1e-9, rel=1e-12)
             checked += 1
     assert checked > 20
-
-
-def test_a_release_that_is_due_now_is_not_put_off_by_a_turn():
-    # Long contacts whose steady part alone decides: the 1-T orbit of each is a contact of nearly
-    # a period, and by rounding a step may lie on the crossing itself.
-    ratio = np.linspace(60.0, 70.0, 2000)
-    contact = SpringDamper.from_restitution(0.65, ratio)
-    excess = (2 * np.pi - 0.19) * contact.damped_frequency - contact.free_angle
-    orbit = SpringDamperOrbit.on_branch(excess, contact, 1)
-    cycle = orbit.cycle(orbit.phase, orbit.relative_impact_velocity)
-    good = orbit.is_stable()
-    assert good.sum() > 1000
-    np.testing.assert_allclose(cycle.time[good], 2 * np.pi, rtol=1e-9)

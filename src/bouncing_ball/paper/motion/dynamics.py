@@ -42,7 +42,8 @@ class Departure(NamedTuple):
     the :class:`~bouncing_ball.paper.motion.sequence.Status`.
 
     ``settling`` is the part of the duration in which the ball still bounces. ``aloft`` is a time of
-    flight before which the ball has not landed; it is used if it exceeds :meth:`.Flight.sure`.
+    flight before which the ball has not landed; it is used if it exceeds
+    :meth:`.Flight.earliest_landing`.
     ``by`` has the derivatives of the contact's end, if they are computed together with it.
     ``sticks`` marks the balls that stay until the table's downward acceleration exceeds gravity;
     it is None without derivatives.
@@ -116,7 +117,7 @@ class Dynamics(Batch, ABC):
         ModelError
             If a flight is too long for floating-point numbers.
         """
-        landing = land(departure.flight, departure.flight.sure())
+        landing = land(departure.flight, departure.flight.earliest_landing())
         impact = Impact.at_level(departure.phase + landing.time, -landing.rate)
         return impact, departure.duration + landing.time
 

@@ -88,10 +88,8 @@ def test_after_a_release_below_the_level_the_first_of_landing_and_resumption_is_
     """A ball that is let go comes up to the level, or the force returns before."""
     rng = np.random.default_rng(1)
     size = 4000
-    omega, zeta, lam = (
-        10 ** rng.uniform(-0.5, 1, size),
-        *rng.uniform(0.05, [[0.95], [4]], (2, size)),
-    )
+    omega = 10 ** rng.uniform(-0.5, 1, size)
+    zeta, lam = rng.uniform(0.05, [[0.95], [4]], (2, size))
     x, y = table(rng.uniform(-np.pi, np.pi, size), lam)
     contact = LinearLaw(omega, zeta, Release.FORCE)
     rate = 10 ** rng.uniform(-3, 0.7, size)

@@ -171,7 +171,8 @@ def test_chaos_has_the_exponent_of_the_paths_side_by_side(law):
         # One that sticks meets its neighbour, and is left out from then on.
         apart = shift.any(axis=0)
         distance = np.hypot(*shift[:, apart])
-        state, moved = state[:, apart], state[:, apart] + shift[:, apart] * tiny / distance
+        state = state[:, apart]
+        moved = state + shift[:, apart] * tiny / distance
         late = k >= 10
         grown = grown[apart] + late * np.log(distance / tiny)
         time = time[apart] + late * both.time[0, apart]

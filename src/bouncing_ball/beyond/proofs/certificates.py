@@ -283,7 +283,8 @@ def orbit_at(
         raise ProofError(f"no {problem.n}-T orbit was found at Λ = {amplitude} to start from")
     bits = _bits(problem, digits)
     with precision(bits):
-        contact, square = problem.contact(), _rational(amplitude) ** 2
+        contact = problem.contact()
+        square = _rational(amplitude) ** 2
 
         def test(excess: Series) -> Series:
             return (point(contact, problem.n, excess).square - square).truncated(1)

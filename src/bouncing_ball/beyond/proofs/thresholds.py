@@ -131,7 +131,8 @@ def error_threshold(
         excess -= float(approximate.free_angle)
     bits = _bits(problem, digits)
     with precision(bits):
-        r, square = _rational(restitution), _rational(amplitude) ** 2
+        r = _rational(restitution)
+        square = _rational(amplitude) ** 2
         wanted = restitution_values(r, n, _rational(amplitude))[quantity]
         condition = CONDITIONS[quantity](wanted * (1 + _rational(error)))
         zeta = problem.damping()

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.beyond.corrected.errors import models
+from bouncing_ball.beyond.corrected.errors import exact_and_simple_models
 from bouncing_ball.beyond.corrected.instant import Instant
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
 from bouncing_ball.beyond.corrected.signature import Signature
@@ -100,7 +100,7 @@ class PhysicalCase:
         that of a free impact.
         """
         if self.law is None:
-            return {model.name: model for model in models(self.contact)}
+            return {model.name: model for model in exact_and_simple_models(self.contact)}
         return {
             "hertz" if isinstance(self.law, Tsuji) else self.law.name: LawModel(self.law),
             "restitution": RestitutionModel(self.contact.restitution),

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.beyond.corrected.errors import models
+from bouncing_ball.beyond.corrected.errors import exact_and_simple_models
 from bouncing_ball.beyond.exhibits.random_orbits import random_orbits
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.datasets.parameters import Parameters, Seed, Span
@@ -122,7 +122,9 @@ def _under(rule: Release, omega: np.ndarray, seed: int) -> xr.Dataset:
     """One random orbit for each ϖ under a release rule, over ``sample``."""
     n, zeta, lam, _ = random_orbits(omega.size, seed, rule, _PLACES)
     r = restitution_coefficient(zeta)
-    exact, simple, corrected = models(SpringDamper.from_restitution(r, omega, rule))
+    exact, simple, corrected = exact_and_simple_models(
+        SpringDamper.from_restitution(r, omega, rule)
+    )
     orbit = exact.orbit(n, lam)
     trace, determinant = orbit.trace_and_determinant()
     simple_orbit = simple.orbit(n, lam)

@@ -17,8 +17,7 @@ import numpy as np
 from pydantic import Field
 from scipy.stats import binomtest
 
-from bouncing_ball.beyond.corrected.errors import SIMPLE
-from bouncing_ball.beyond.corrected.errors import models as models_of_contact
+from bouncing_ball.beyond.corrected.errors import SIMPLE, exact_and_simple_models
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
 from bouncing_ball.datasets.parameters import (
     Amplitude,
@@ -127,7 +126,7 @@ def three_models(
         which r and ϖ broadcast.
     """
     contact = SpringDamper.from_restitution(restitution, ratio, release)
-    exact, simple, corrected = models_of_contact(contact)
+    exact, simple, corrected = exact_and_simple_models(contact)
     return ThreeModels(restitution=simple, corrected=corrected, contact=exact)
 
 

@@ -148,22 +148,22 @@ class Problem:
     def damping(self) -> arb:
         """ζ as a ball (Eq. 16)."""
         if self.damping_ratio is not None:
-            return _rational(self.damping_ratio)
-        decrement = -_rational(self.restitution).log()
+            return rational(self.damping_ratio)
+        decrement = -rational(self.restitution).log()
         return decrement / (arb.pi() ** 2 + decrement**2).sqrt()
 
     def contact(self) -> Contact:
         """The contact with balls as parameters, at the present precision."""
         zeta = self.damping()
         sine = zeta if self.release is Release.FORCE else arb(0)
-        return Contact(_rational(self.frequency_ratio), zeta, sine)
+        return Contact(rational(self.frequency_ratio), zeta, sine)
 
     def approximate(self) -> SpringDamper:
         """The contact in double precision."""
         return SpringDamper(float(self.frequency_ratio), float(self.damping().mid()), self.release)
 
 
-def _rational(value: Fraction | None) -> arb:
+def rational(value: Fraction | None) -> arb:
     assert value is not None
     return arb(fmpq(value.numerator, value.denominator))
 
@@ -199,7 +199,7 @@ def saddle_node(problem: Problem, digits: int = 30) -> Certificate:
         If no saddle-node is found, or if a part of the proof fails; the message names it.
     """
     start = _start(problem, double.saddle_node, "saddle-node")
-    bits = _bits(problem, digits)
+    bits = working_bits(problem, digits)
     with precision(bits):
         contact = problem.contact()
         excess = certified_zero(lambda e: fold_test(contact, problem.n, e), start)
@@ -219,7 +219,7 @@ def period_doubling(problem: Problem, digits: int = 30) -> Certificate:
         If no period doubling is found, or if a part of the proof fails; the message names it.
     """
     start = _start(problem, double.period_doubling, "period doubling")
-    bits = _bits(problem, digits)
+    bits = working_bits(problem, digits)
     with precision(bits):
         contact = problem.contact()
         excess = certified_zero(lambda e: doubling_test(contact, problem.n, e), start)
@@ -281,10 +281,10 @@ def orbit_at(
     start -= float(approximate.free_angle)
     if not math.isfinite(start):
         raise ProofError(f"no {problem.n}-T orbit was found at Λ = {amplitude} to start from")
-    bits = _bits(problem, digits)
+    bits = working_bits(problem, digits)
     with precision(bits):
         contact = problem.contact()
-        square = _rational(amplitude) ** 2
+        square = rational(amplitude) ** 2
 
         def test(excess: Series) -> Series:
             return (point(contact, problem.n, excess).square - square).truncated(1)
@@ -336,7 +336,7 @@ def _resolution(middle: arb) -> arb:
     return (abs(middle) + 1) * arb(2) ** (-ctx.prec * 3 // 4)
 
 
-def _bits(problem: Problem, digits: int) -> int:
+def working_bits(problem: Problem, digits: int) -> int:
     stiff = max(1.0, float(problem.frequency_ratio))
     wanted = digits * math.log2(10) + 2 * math.log2(stiff)
     return math.ceil((wanted + _GUARD) * 4 / 3)

@@ -29,7 +29,7 @@ saddle-node.
 The package consists of layers, each of which imports only from the layers above it in this list:
 
 ``errors``      what a user reads, ranges of numbers
-``numerics``    knows no ball: continuation, certified first zeros, rows of an array
+``numerics``    independent of the ball: continuation, certified first zeros, rows of an array
 ``datasets``    variables with units and budgets, labelled results, netCDF files
 ``drawing``     what all pictures share: style, canvas, labels, tables
 ``paper``       the paper, whole: contact, motion, orbits, comparison, exhibits, claims

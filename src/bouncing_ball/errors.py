@@ -98,7 +98,7 @@ def require(valid: "ArrayLike", value: "ArrayLike", name: str, allowed: str) -> 
 
 
 def one_of(kind: str, name: str, known: Mapping[str, _Known]) -> _Known:
-    """What a name that a user gave stands for.
+    """The entry of a mapping under a name that a user gave.
 
     Raises
     ------

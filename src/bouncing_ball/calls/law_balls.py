@@ -111,8 +111,8 @@ def contact_law(
     Parameters
     ----------
     law : str or ContactLaw
-        Name of a contact law, in place of the linear spring and damper; or a law of your own, with
-        its parameters.
+        Name of a contact law, in place of the linear spring and damper; or a law that you have
+        written, with its parameters.
     speed : float, optional
         Speed of this free impact. The default is the impact speed of the orbit; for limits, the
         impact speed of the restitution model, 2πn/(1 + r); for a simulation, the first one.

@@ -48,7 +48,7 @@ LAWS = {
     "linear": Spring(10.0, 0.136),
     "linear, force release": Spring(10.0, 0.136, Release.FORCE),
     "undamped": LinearLaw(3.0, 0.0),
-    "soft": LinearLaw(1.5, 0.1),
+    "compliant": LinearLaw(1.5, 0.1),
     "stiff, force release": LinearLaw(2e3, 0.05, "force"),
     "hunt-crossley": HuntCrossley(1e3, 0.08),
     "hunt-crossley, strong": HuntCrossley(1e3, 0.5),

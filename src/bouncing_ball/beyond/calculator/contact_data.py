@@ -43,7 +43,7 @@ MATERIALS = ("youngs_modulus", "poissons_ratio", "table_youngs_modulus", "table_
 # Parameters that determine its loss; the height of a rebound needs that of the drop, too.
 LOSSY = ("damping", "damping_ratio", "restitution", "measured_restitution", "rebound_height")
 _PAIRS = {"rebound_height": "drop_height"}
-# Parameters of MuJoCo, which have arguments of their own because they are lists.
+# Parameters of MuJoCo that are lists; each of them is a separate argument.
 _OF_MUJOCO = ("solref", "solimp")
 Given = Mapping[str, float]
 STANDARD_GRAVITY = 9.80665

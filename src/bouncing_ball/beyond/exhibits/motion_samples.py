@@ -92,7 +92,7 @@ class ParameterPlane(Sharded):
 
 MODELS = (*SIMPLE, "spring-damper")
 LEAST_ERROR = 1e-5
-"""Smallest error of a Lyapunov exponent that is stated. A motion repeats within 1e-6 of its state,
+"""Smallest error that is given for a Lyapunov exponent. A motion repeats within 1e-6 of its state,
 so that the error of its multipliers is about 1e-6 times the curvature of the map, which is of order
 one to ten."""
 LIMITS = ("", "_low", "_high")

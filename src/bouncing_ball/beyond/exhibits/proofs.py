@@ -185,7 +185,7 @@ def _threshold(
 
 
 def judged(ball: arb, printed: str) -> str:
-    """What an interval says of a printed number, whose last digit is rounded.
+    """Whether an interval agrees with a printed number, whose last digit is rounded.
 
     Examples
     --------

@@ -24,7 +24,7 @@ from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits import spring_damper_bifurcations as double
 from bouncing_ball.paper.orbits.stability import Side
 
-# Bits beyond the digits that are asked for and those that stiff contacts cost by cancellation,
+# Bits beyond the requested digits and those that stiff contacts cost by cancellation,
 # about log2(ϖ²). With so many the ball is far narrower than the last decimal digit, so that the
 # decimal number and its error are the same whatever the double precision of the start.
 _GUARD = 160
@@ -37,11 +37,11 @@ _COARSE = 80
 
 
 class ProofError(ModelError):
-    """What was asked for could not be proved; the message gives the reason."""
+    """A number or an orbit cannot be certified; the message gives the reason."""
 
 
 class Proved(StrEnum):
-    """What a certificate proves."""
+    """A property that a certificate proves."""
 
     UNIQUE = "exactly one solution"
     FOLD = "quadratic fold"

@@ -2,7 +2,7 @@
 
 The repository is Sphinx's source folder, so that relative links and pictures are those of the
 files. Nothing is loaded from the network, neither when the site is built nor when it is read:
-formulas are MathML, and the explorer is a page of its own.
+formulas are MathML, and the explorer is a separate page.
 """
 
 import os

@@ -74,21 +74,27 @@ def _contact_state(s, d0, v0, phase, lam, omega, zeta):
 def _paper_contact(u, phase, lam, omega, zeta):
     """(δ, δ′) as a function of time, from the paper's Eqs. 12-13 (ζ < 1, no resonance)."""
     gamma = (omega**2 - 1) ** 2 + (2 * zeta * omega) ** 2
-    p, q, a = omega**2 - 1, 2 * zeta * omega, zeta * omega
+    p = omega**2 - 1
+    q = 2 * zeta * omega
+    a = zeta * omega
     omega_d = omega * math.sqrt(1 - zeta**2)
 
     def steady(s):
-        sin, cos = math.sin(s + phase), math.cos(s + phase)
+        sin = math.sin(s + phase)
+        cos = math.cos(s + phase)
         return (
             -1 / omega**2 + lam * (p * sin - q * cos) / gamma,
             lam * (p * cos + q * sin) / gamma,
         )
 
     d0, v0 = steady(0.0)
-    b1, b2 = -d0, (u - v0 - a * d0) / omega_d
+    b1 = -d0
+    b2 = (u - v0 - a * d0) / omega_d
 
     def state(s):
-        sin, cos, decay = math.sin(omega_d * s), math.cos(omega_d * s), math.exp(-a * s)
+        sin = math.sin(omega_d * s)
+        cos = math.cos(omega_d * s)
+        decay = math.exp(-a * s)
         free = decay * (b1 * cos + b2 * sin)
         rate = decay * omega_d * (b2 * cos - b1 * sin) - a * free
         d, v = steady(s)

@@ -23,7 +23,9 @@ class Exact:
     def __init__(self, contact: SpringDamper, n: int, omega=None, zeta=None):
         self.omega = mpf(float(contact.frequency_ratio)) if omega is None else omega
         self.zeta = mpf(float(contact.damping_ratio)) if zeta is None else zeta
-        self.a, self.q, self.n = self.zeta * self.omega, self.omega**2, int(n)
+        self.a = self.zeta * self.omega
+        self.q = self.omega**2
+        self.n = int(n)
         self.damped = self.omega * mp.sqrt(1 - self.zeta**2)
         force = contact.release is Release.FORCE
         self.lag = 2 * self.zeta / self.omega if force else mpf(0)
@@ -50,7 +52,8 @@ class Exact:
         duration = (self.free_angle + mpf(excess)) / self.damped
         flight = 2 * mp.pi * self.n - duration
         push, weight, sine, cosine = self.responses(duration)
-        c, s = mp.cos(duration), mp.sin(duration)
+        c = mp.cos(duration)
+        s = mp.sin(duration)
         columns = (push, sine, cosine)
         matrix = mp.matrix(
             [
@@ -64,7 +67,8 @@ class Exact:
 
     def cycle(self, duration, phase, u, amplitude):
         """The return map, for events near those of the orbit."""
-        x, y = amplitude * mp.cos(phase), amplitude * mp.sin(phase)
+        x = amplitude * mp.cos(phase)
+        y = amplitude * mp.sin(phase)
 
         def released(s):
             gap, rate = self.state(s, u, x, y)
@@ -88,7 +92,8 @@ class Exact:
     def trace(self, excess):
         """Trace of the monodromy, by central differences."""
         duration, u, x, y = self.orbit(excess)
-        amplitude, phase = mp.hypot(x, y), mp.atan2(y, x)
+        amplitude = mp.hypot(x, y)
+        phase = mp.atan2(y, x)
         total = mpf(0)
         for k, (by_phase, by_speed) in enumerate(((STEP, 0), (0, STEP))):
             ends = [

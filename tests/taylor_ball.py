@@ -19,7 +19,8 @@ class TaylorBall:
         gap = z - lam * heyoka.sin(angle)
         closing = v - lam * heyoka.cos(angle)
         pull = 2 * zeta * omega * closing + omega * omega * gap
-        up, down = heyoka.event_direction.positive, heyoka.event_direction.negative
+        up = heyoka.event_direction.positive
+        down = heyoka.event_direction.negative
 
         def integrator(acceleration, *events):
             return heyoka.taylor_adaptive(
@@ -49,7 +50,9 @@ class TaylorBall:
         """Rows (time, z′_i, duration of contact, z′_b)."""
         for integrator in (self.contact, self.flight):
             integrator.pars[:] = [lam, omega, zeta, phase]
-        time, state, rows = 0.0, np.array([lam * np.sin(phase), velocity]), []
+        time = 0.0
+        state = np.array([lam * np.sin(phase), velocity])
+        rows = []
 
         def landed(index, t, y):
             below = y[0] < lam * np.sin(t + phase)

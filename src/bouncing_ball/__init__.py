@@ -29,7 +29,7 @@ saddle-node.
 The package consists of layers, each of which imports only from the layers above it in this list:
 
 ``errors``      what a user reads, ranges of numbers
-``numerics``    knows no ball: continuation, certified first zeros, rows of an array
+``numerics``    independent of the ball: continuation, certified first zeros, rows of an array
 ``datasets``    variables with units and budgets, labelled results, netCDF files
 ``drawing``     what all pictures share: style, canvas, labels, tables
 ``paper``       the paper, whole: contact, motion, orbits, comparison, exhibits, claims
@@ -44,7 +44,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from bouncing_ball.beyond.calculator.design import design
-    from bouncing_ball.calls.balls import contact_law, corrected, rigid, spring_damper
+    from bouncing_ball.calls.balls import corrected, rigid, spring_damper
+    from bouncing_ball.calls.law_balls import contact_law
     from bouncing_ball.calls.long_run import basins, lyapunov_exponent, motion_of, orbit_diagram
     from bouncing_ball.calls.over_time import drop, history, simulate
     from bouncing_ball.calls.periodic import branch, limits, orbit, orbits, permanent_contact
@@ -91,8 +92,10 @@ def __getattr__(name: str) -> Any:
     """
     module: Any
     match name:
-        case "contact_law" | "corrected" | "rigid" | "spring_damper":
+        case "corrected" | "rigid" | "spring_damper":
             from bouncing_ball.calls import balls as module
+        case "contact_law":
+            from bouncing_ball.calls import law_balls as module
         case "branch" | "limits" | "orbit" | "orbits" | "permanent_contact":
             from bouncing_ball.calls import periodic as module
         case "drop" | "history" | "simulate":

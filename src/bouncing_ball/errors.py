@@ -98,7 +98,7 @@ def require(valid: "ArrayLike", value: "ArrayLike", name: str, allowed: str) -> 
 
 
 def one_of(kind: str, name: str, known: Mapping[str, _Known]) -> _Known:
-    """What a name that a user gave stands for.
+    """The entry of a mapping under a name that a user gave.
 
     Raises
     ------
@@ -111,7 +111,7 @@ def one_of(kind: str, name: str, known: Mapping[str, _Known]) -> _Known:
     Traceback (most recent call last):
     bouncing_ball.errors.ModelError: unknown side 'left': one of stable, unstable
     """
-    if name not in known:
+    if not isinstance(name, str) or name not in known:
         raise ModelError(f"unknown {kind} {name!r}: one of {', '.join(known)}")
     return known[name]
 

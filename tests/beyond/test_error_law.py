@@ -98,7 +98,7 @@ def test_the_bound_of_the_remainder_holds_on_other_samples(release):
     known = np.isfinite(left.law)
     assert known.mean() > 0.9 and not np.any(left.exceeded)
     assert np.mean(left.small > 0.3) > 0.2
-    np.testing.assert_array_equal(left.stated, np.isfinite(left.factor) & (left.small < 0.3))
+    np.testing.assert_array_equal(left.is_valid, np.isfinite(left.factor) & (left.small < 0.3))
     size = array(scale(*arguments)) * small_parameter(*arguments)
     # An error of twice the remainder is beyond it.
     far = left.law + 1.001 * array(REMAINDER)[:, np.newaxis] * size

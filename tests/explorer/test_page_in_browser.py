@@ -20,13 +20,14 @@ from bouncing_ball.beyond.engines.choice import ENGINES
 from bouncing_ball.beyond.engines.engine import Physical
 from bouncing_ball.beyond.exhibits.explorer_orbits import reference_orbits
 from bouncing_ball.beyond.long_run.motions import Kind
-from bouncing_ball.beyond.simulation import simulate
 from bouncing_ball.explorer.document import BOUND, to_html
 from bouncing_ball.explorer.engine_cases import as_json
 from bouncing_ball.paper.comparison.errors import QUANTITIES
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.motion.history import history
+from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
+from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.pipeline.configuration import typed
 
 pytestmark = pytest.mark.slow
@@ -242,8 +243,8 @@ def test_balls_on_the_stage_are_where_the_package_has_them(seen):
             r = given["r"]
             name = end["name"]
             contact = SpringDamper.from_restitution(r, given.get("w", 1.0), Release.DISPLACEMENT)
-            law = r if name == "restitution" else contact
-            run = simulate(law, given["a"], phase, velocity, impacts=300)
+            model = RestitutionModel(r) if name == "restitution" else SpringDamperModel(contact)
+            run = model.simulate(given["a"], phase, velocity, impacts=300)
             for k, ball in enumerate(ball for ball in balls if ball["model"] == name):
                 expected = history(run[k], ball["since"]).height
                 # Over 100 periods the time itself is known to 1e-13, and a ball is not much faster.

@@ -39,7 +39,8 @@ def test_the_shipped_configuration_is_accepted(model):
 
 
 def test_finer_grids_of_the_whole_motion_are_accepted_and_are_finer(model):
-    config, larger = copy.deepcopy(CONFIG), read_yaml(FOLDER / "motions-large.yaml")
+    config = copy.deepcopy(CONFIG)
+    larger = read_yaml(FOLDER / "motions-large.yaml")
     update_config(config, larger)
     check(model, config)
     assert config["beyond"]["ext_locking"]["amplitude"]["min"] == 0.8

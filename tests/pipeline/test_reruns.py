@@ -43,7 +43,8 @@ def test_a_parameter_changes_the_arguments_of_its_studies_only(keys, value, expe
     for key in keys[:-1]:
         section = section[key]
     section[keys[-1]] = value
-    before, after = arguments_in(CONFIG), arguments_in(config)
+    before = arguments_in(CONFIG)
+    after = arguments_in(config)
     assert {name for name in STUDIES if before[name] != after[name]} == expected
 
 
@@ -130,7 +131,8 @@ def test_the_file_of_a_digest_is_written_only_when_the_digest_changes(tmp_path):
 def test_touch_keeps_a_digest_only_if_the_outputs_were_made_by_this_code(
     tmp_path, digest_then, output_time, kept
 ):
-    path, output = tmp_path / "code", tmp_path / "fig02.nc"
+    path = tmp_path / "code"
+    output = tmp_path / "fig02.nc"
     path.write_text(digest_then)
     output.touch()
     os.utime(path, (100, 100))

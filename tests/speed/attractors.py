@@ -11,10 +11,11 @@ import time
 
 import numpy as np
 
-from bouncing_ball.beyond.corrected.signature import Signature
-from bouncing_ball.beyond.laws.linear import LinearLaw
+from bouncing_ball.beyond.corrected.orbits import CorrectedModel
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
+from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 
 
 def main(balls: int, impacts: int) -> None:
@@ -24,14 +25,14 @@ def main(balls: int, impacts: int) -> None:
     phase = rng.uniform(-np.pi, np.pi, balls)
     velocity = -lam - rng.uniform(0, 12, balls)
     contact = SpringDamper.from_restitution(r, 100.0)
-    laws = {
-        "restitution": r,
-        "spring-damper": contact,
-        "corrected": Signature(LinearLaw.of(contact)),
+    models = {
+        "restitution": RestitutionModel(r),
+        "spring-damper": SpringDamperModel(contact),
+        "corrected": CorrectedModel.of_contact(contact),
     }
-    for name, law in laws.items():
+    for name, model in models.items():
         start = time.process_time()
-        found = final_motions(law, lam, phase, velocity, impacts=impacts)
+        found = final_motions(model, lam, phase, velocity, impacts=impacts)
         spent = time.process_time() - start
         followed = found.followed.sum()
         print(

@@ -15,11 +15,10 @@ import numpy as np
 
 from bouncing_ball.beyond.laws.impedance import Impedance
 from bouncing_ball.beyond.laws.law_of_impact import law_of_impact
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.laws.orbits import LawModel
 from bouncing_ball.beyond.laws.registry import LAWS
-from bouncing_ball.beyond.simulation import simulate
 from bouncing_ball.paper.contact.damping import Release, damping_ratio
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.restitution_branch import rigid_speed
 
 HERTZ = ("hunt-crossley", "tsuji", "kuwabara-kono")
@@ -34,6 +33,10 @@ def spent(run) -> tuple[float, object]:
     start = time.process_time()
     result = run()
     return time.process_time() - start, result
+
+
+def simulated(law, amplitude, phase, velocity):
+    return law.dynamics(amplitude).simulate(phase, velocity, IMPACTS)
 
 
 def per_impact(run) -> float:
@@ -51,8 +54,8 @@ def simulations(repetitions: int) -> None:
     fall = rng.uniform(1.5, 5, BALLS)
     for r, lam, duration in CASES:
         zeta = damping_ratio(r)
-        linear = SpringDamper(np.pi / duration / np.sqrt(1 - zeta**2), zeta)
-        start = lam, phase, -fall - lam, IMPACTS
+        linear = LinearLaw(np.pi / duration / np.sqrt(1 - zeta**2), zeta)
+        start = lam, phase, -fall - lam
         said = []
         speed = float(rigid_speed(1, r))
         for name in (*HERTZ, "by depth"):
@@ -63,7 +66,7 @@ def simulations(repetitions: int) -> None:
                 ratio = np.pi / duration
                 damping = float(damping_ratio(r, Release.FORCE))
                 law = Impedance(ratio, damping, 0.95, 0.9, speed * duration / 2 / np.pi)
-            runs = partial(simulate, linear, *start), partial(simulate, law, *start)
+            runs = partial(simulated, linear, *start), partial(simulated, law, *start)
             pairs = [tuple(map(per_impact, runs)) for _ in range(repetitions)]
             said.append(f"{name} {median(b / a for a, b in pairs):.1f}")
         cost = median(a for a, _ in pairs)

@@ -63,7 +63,8 @@ def test_a_killed_atlas_is_resumed_without_loss(made, fresh):
 def test_a_shard_of_the_workflow_has_the_bits_of_the_package(made):
     section = read_yaml(made.path / "config" / "config.yaml")["atlas"] | SMALL
     plan = Plan(**section)
-    expected, found = shard(plan, 1), read_dataset(made.path / SHARDS[1])
+    expected = shard(plan, 1)
+    found = read_dataset(made.path / SHARDS[1])
     for name in expected.variables:
         assert found[name].values.tobytes() == expected[name].values.tobytes(), name
 

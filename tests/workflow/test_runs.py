@@ -57,7 +57,8 @@ def test_a_run_touches_no_tracked_file(pristine, cloned):
 
 def test_a_killed_run_is_resumed_without_loss(pristine):
     resumed = json.loads(pristine.path.with_name("resumed.json").read_text(encoding="utf-8"))
-    early, after = resumed["early"], pristine.checksums("results")
+    early = resumed["early"]
+    after = pristine.checksums("results")
     assert 0 < len(early) < len(after)
     # What is there under its own name is whole, even after a kill, and stays.
     assert [name for name in early if early[name] != after[name]] == []
@@ -67,7 +68,8 @@ def test_a_killed_run_is_resumed_without_loss(pristine):
 def test_a_run_that_nothing_interrupts_gives_the_same_bytes(pristine, fresh):
     # Another number of jobs at a time, another order.
     fresh.run("--cores", "1")
-    after, expected = fresh.contents("results"), pristine.contents("results")
+    after = fresh.contents("results")
+    expected = pristine.contents("results")
     assert after.keys() == expected.keys()
     assert [name for name in after if after[name] != expected[name]] == []
 
@@ -80,7 +82,8 @@ def test_two_figures_that_are_interrupted_and_resumed_elsewhere_have_the_same_by
     elsewhere = replace(pristine, path=tmp_path / "elsewhere", package=str(pristine.path / "src"))
     shutil.copytree(pristine.path / "config", elsewhere.path / "config")
     run = ("--snakefile", str(pristine.path / "Snakefile"), "--cores", "1", "fig11", "fig12")
-    expected, found = pristine.contents("results"), []
+    expected = pristine.contents("results")
+    found = []
     for count, sign in enumerate((signal.SIGINT, signal.SIGTERM), start=1):
         elsewhere.interrupt(sign, *run, after=count, of="figures/[!.]*")
         found.append(elsewhere.contents("results"))

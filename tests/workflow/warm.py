@@ -55,7 +55,8 @@ def main(folder: Path) -> None:
         plt.savefig(io.BytesIO(), format=kind)
     plt.close()
     gc.freeze()
-    program, address = folder / "python", str(folder / "socket")
+    program = folder / "python"
+    address = str(folder / "socket")
     program.write_text(PYTHON.format(python=sys.executable, address=address))
     program.chmod(0o755)
     listening = socket.socket(socket.AF_UNIX)

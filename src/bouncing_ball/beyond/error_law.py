@@ -58,7 +58,7 @@ from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits import restitution_branch as restitution_orbit
 
-STATED = 0.3
+VALID_BELOW = 0.3
 """δ below which the law is considered useful: the remainder is then less than 0.6 times the scale,
 or 1.2 times for the phase."""
 
@@ -192,8 +192,8 @@ class Remainder(NamedTuple):
     """|error - law|/(S δ) of each quantity; NaN where the error is NaN."""
     small: np.ndarray
     """δ, without the axis of quantities."""
-    stated: np.ndarray
-    """Whether the error is finite and δ is below :data:`STATED`, so that the law is useful."""
+    is_valid: np.ndarray
+    """Whether the error is finite and δ is below :data:`VALID_BELOW`, so that the law is useful."""
     exceeded: np.ndarray
     """Whether the factor is above M, at any δ."""
 
@@ -224,7 +224,7 @@ def remainder(
     --------
     >>> instant, error = Instant(0.05, 0.5, 0.1, 0.1), np.array([-0.016, np.nan])
     >>> left = remainder(1, instant, 1.3, error, OF_IMPACTS[1:3])
-    >>> float(left.law[0].round(5)), left.stated.tolist(), left.exceeded.tolist()
+    >>> float(left.law[0].round(5)), left.is_valid.tolist(), left.exceeded.tolist()
     (-0.01592, [True, False], [False, False])
     """
     asked = tuple(quantities)
@@ -234,7 +234,7 @@ def remainder(
     with np.errstate(invalid="ignore", divide="ignore"):
         factor = np.abs(error - law) / (np.stack([size[q] for q in asked]) * small)
     bound = np.reshape([REMAINDER[q] for q in asked], (-1,) + (1,) * (law.ndim - 1))
-    return Remainder(law, factor, small, np.isfinite(error) & (small < STATED), factor > bound)
+    return Remainder(law, factor, small, np.isfinite(error) & (small < VALID_BELOW), factor > bound)
 
 
 def coefficients(

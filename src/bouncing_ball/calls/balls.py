@@ -1,13 +1,9 @@
 """Balls, which all calls take: a model of the impact with its parameters.
 
 :func:`rigid` makes a ball of the restitution model, :func:`spring_damper` one on a spring-damper
-contact, :func:`contact_law` one on a contact of another law, and :func:`corrected` one of the
-corrected restitution model of a contact. Parameters that are arrays make several balls.
-
-A contact law may be given by the r and D of a free impact. r and D may depend on the speed of the
-impact, so that such a ball has a model only at a speed: :meth:`Ball.at_orbit` and
-:meth:`Ball.at_speed` return the ball with its model, and a ball whose model is known returns
-itself.
+contact, and :func:`corrected` one of the corrected restitution model of a contact. Balls on
+contacts of other laws are made in :mod:`~bouncing_ball.calls.law_balls`. Parameters that are arrays
+make several balls.
 """
 
 from __future__ import annotations
@@ -22,23 +18,16 @@ from numpy.typing import ArrayLike
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
 from bouncing_ball.beyond.corrected.signature import Signature
 from bouncing_ball.beyond.laws.contact_law import ContactLaw
-from bouncing_ball.beyond.laws.law_of_impact import law_of_impact, reference
-from bouncing_ball.beyond.laws.orbits import LawModel, law_at_orbit
-from bouncing_ball.beyond.laws.registry import law_named
 from bouncing_ball.calls.arguments import (
     DAMPING_RATIO,
-    FINITE,
     FREQUENCY_RATIO,
-    POSITIVE,
     RESTITUTION,
     Axis,
     DampingRatio,
     FrequencyRatio,
-    Positive,
     Restitution,
     Rule,
     checked,
-    checked_number,
     chosen,
     is_array,
 )
@@ -46,10 +35,8 @@ from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.model import ImpactModel
-from bouncing_ball.paper.orbits.restitution_branch import rigid_speed
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
-from bouncing_ball.paper.orbits.stability import Side
 
 if TYPE_CHECKING:
     from bouncing_ball.datasets.labelled import Grid
@@ -154,60 +141,6 @@ class ModelBall(Ball):
         return replace(self, model=self.model.take(number))
 
 
-@dataclass(frozen=True, eq=False)
-class FreeImpactBall(Ball):
-    """A ball on the contact of a law that is given by the r and D of a free impact.
-
-    Parameters
-    ----------
-    law : type of ContactLaw
-    restitution : float
-        r of the free impact.
-    duration : float or array
-        D of the free impact.
-    is_corrected : bool
-        Whether the ball obeys the corrected restitution model of the contact.
-    """
-
-    law: type[ContactLaw]
-    restitution: float
-    duration: Any
-    is_corrected: bool = False
-
-    is_known = False
-
-    @property
-    def parameters(self) -> Mapping[str, Any]:  # type: ignore[override]
-        found = {"law": self.law.name, "restitution": self.restitution, "duration": self.duration}
-        return found | ({"model": "corrected"} if self.is_corrected else {})
-
-    def at_speed(self, speed: ArrayLike) -> ModelBall:
-        return self._with(law_of_impact(self.law, self.restitution, self.duration, speed))
-
-    def at_orbit(self, n: int, amplitude: float, side: str = "stable") -> ModelBall:
-        return self._with(
-            law_at_orbit(self.law, self.restitution, self.duration, n, amplitude, Side(side))
-        )
-
-    def at_limits(self, n: ArrayLike) -> ModelBall:
-        return self.at_speed(rigid_speed(n, self.restitution))
-
-    def _with(self, law: ContactLaw) -> ModelBall:
-        ball = ModelBall(LawModel(law), self.parameters)
-        return ball.corrected() if self.is_corrected else ball
-
-    def corrected(self) -> FreeImpactBall:
-        return replace(self, is_corrected=True)
-
-    def row(self, grid: Grid) -> FreeImpactBall:
-        return replace(self, duration=grid.flat["duration"])
-
-    def take(self, number: int) -> FreeImpactBall:
-        if not is_array(self.duration):
-            return self
-        return replace(self, duration=float(self.duration[number]))
-
-
 def rigid(*, restitution: Restitution) -> ModelBall:
     """A ball of the restitution model, whose impacts are instants (Eqs. 1-9).
 
@@ -227,7 +160,7 @@ def rigid(*, restitution: Restitution) -> ModelBall:
     RestitutionModel(restitution=0.85)
     """
     r = checked("restitution", restitution, RESTITUTION)
-    flat = _flat({"restitution": r})
+    flat = flattened({"restitution": r})
     return ModelBall(RestitutionModel(flat["restitution"]), {"restitution": r})
 
 
@@ -281,7 +214,7 @@ def spring_damper(
         loss: checked(loss, value, allowed),
         "frequency_ratio": checked("frequency_ratio", frequency_ratio, FREQUENCY_RATIO),
     }
-    flat = _flat(parameters)
+    flat = flattened(parameters)
     ratio = flat["frequency_ratio"]
     if loss == "damping_ratio":
         contact = SpringDamper(ratio, flat[loss], Release.of(release))
@@ -309,125 +242,6 @@ def the_loss(
     if len(given) > 1:
         raise ParameterError(f"argument {{{given[1]}}}: not allowed with argument {{{given[0]}}}")
     return given[0]
-
-
-def contact_law(
-    law: str | ContactLaw,
-    *,
-    speed: Positive | None = None,
-    restitution: float | None = None,
-    duration: Positive | None = None,
-    release: Rule | None = None,
-    **parameters: Axis,
-) -> Ball:
-    """A ball on a contact of another law than the linear spring and damper.
-
-    The law is given by its parameters, such as ``stiffness=1000.0, damping=0.08``, or by the
-    restitution coefficient and the duration of a free impact.
-
-    Parameters
-    ----------
-    law : str or ContactLaw
-        Name of a contact law, in place of the linear spring and damper; or a law of your own, with
-        its parameters.
-    speed : float, optional
-        Speed of this free impact. The default is the impact speed of the orbit; for limits, the
-        impact speed of the restitution model, 2πn/(1 + r); for a simulation, the first one.
-    restitution : float, optional
-        Restitution coefficient r in (0, 1] of a free impact.
-    duration : float or array, optional
-        Duration D of a free impact. With the restitution coefficient it replaces the
-        parameters of the contact law.
-    release : str, optional
-        Where a contact of the linear law ends, "displacement" or "force"; other laws determine it.
-    **parameters : float or array
-        The parameters of the law.
-
-    Raises
-    ------
-    ModelError
-        If the law is unknown, or a parameter is missing, unknown, of a wrong type or shape, out of
-        range or contradicts another.
-
-    Examples
-    --------
-    >>> contact_law("hunt-crossley", stiffness=1000.0, damping=0.08).model
-    LawModel(law=HuntCrossley(stiffness=1000, damping=0.08))
-    >>> ball = contact_law("hunt-crossley", restitution=0.8, duration=0.2)
-    >>> ball.at_speed(3.0).model
-    LawModel(law=HuntCrossley(stiffness=641.257, damping=0.124382))
-    """
-    if isinstance(law, ContactLaw):
-        return ModelBall(LawModel(law), {"law": law.name} if law.shape == () else {})
-    kind = law_named(str(law))
-    if parameters:
-        _refuse_free_impact(kind, parameters, restitution, duration, speed)
-        return _law_of_parameters(kind, parameters, release)
-    if restitution is None or duration is None:
-        raise ParameterError(
-            f"{{law}} {kind.name} needs {_needs(kind)}, or {{restitution}} and {{duration}}"
-        )
-    if release is not None:
-        raise ParameterError("{release} is allowed with {parameters} of {law} linear only")
-    if is_array(restitution):
-        raise ParameterError(f"{{restitution}} must be a single number with {{law}} {kind.name}")
-    ball = FreeImpactBall(
-        law=kind,
-        restitution=checked("restitution", restitution, RESTITUTION),
-        duration=checked("duration", duration, POSITIVE),
-    )
-    # An r that no contact of this law has is refused here.
-    reference(kind, ball.restitution)
-    if speed is None:
-        return ball
-    at = checked_number("speed", speed, POSITIVE)
-    known = replace(ball, duration=_flat({"duration": ball.duration})["duration"]).at_speed(at)
-    return replace(known, parameters={**ball.parameters, "speed": at})
-
-
-def _needs(kind: type[ContactLaw]) -> str:
-    return ", ".join(f"{{{name}}}=NUMBER" for name in kind.parameter_names())
-
-
-def _refuse_free_impact(
-    kind: type[ContactLaw],
-    parameters: Mapping[str, Any],
-    restitution: float | None,
-    duration: Axis | None,
-    speed: Axis | None,
-) -> None:
-    """Raise an error if a law has both parameters and a free impact."""
-    free_impact = {"restitution": restitution, "duration": duration, "speed": speed}
-    for name, value in free_impact.items():
-        if value is not None:
-            first = next(iter(parameters))
-            raise ParameterError(
-                f"{{{name}}} is not allowed with {{{first}}}: {_needs(kind)} determine {kind.name}"
-            )
-
-
-def _law_of_parameters(
-    kind: type[ContactLaw], parameters: Mapping[str, Any], release: str | None
-) -> ModelBall:
-    known = kind.parameter_names()
-    for name in parameters:
-        if name not in known:
-            all_of = f"its parameters are {', '.join(known)}"
-            raise ParameterError(f"unknown parameter {{}} of {kind.name}: {all_of}", repr(name))
-    for name in known:
-        if name not in parameters:
-            raise ParameterError(f"{kind.name} also needs {{{name}}}=NUMBER")
-    values = {name: checked(name, value, FINITE) for name, value in parameters.items()}
-    flat = _flat(values)
-    if release is None:
-        return ModelBall(LawModel(kind(**flat)), {"law": kind.name, **values})
-    if "release" not in kind.__dataclass_fields__:
-        raise ParameterError(
-            f"{{release}} is not allowed: {kind.name} determines where a contact ends"
-        )
-    rule = chosen("release", release, [str(each) for each in Release])
-    law = kind(**flat, **{"release": Release.of(rule)})
-    return ModelBall(LawModel(law), {"law": kind.name, **values, "release": rule})
 
 
 def corrected(ball: Ball) -> Ball:
@@ -500,7 +314,7 @@ def a_single_ball(ball: Any) -> ModelBall:
     return a_known_ball(ball)
 
 
-def _flat(parameters: Mapping[str, Any]) -> Mapping[str, Any]:
+def flattened(parameters: Mapping[str, Any]) -> Mapping[str, Any]:
     """The parameters at all places of the grid that their arrays span, one after another."""
     if not any(is_array(value) for value in parameters.values()):
         return parameters

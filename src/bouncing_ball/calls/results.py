@@ -346,7 +346,7 @@ def drop_on_grid(
     rate, level = table(phi, lam)
     require(start >= level, start, "height", "at or above the table, Λ sin φ")
     flight = Flight(start - level, -rate, rate, level, lam)
-    falling = land(flight, flight.sure()).time
+    falling = land(flight, flight.earliest_landing()).time
     first = _Starts(lam, phi + falling, -falling)
     since = time - falling[:, np.newaxis]
     found = _followed(first.model(ball, grid), first, since)

@@ -1,4 +1,4 @@
-"""The frequency ratio ϖ of a contact above which a rigid ball stands for it."""
+"""The frequency ratio ϖ of a contact above which a rigid ball replaces it within a tolerance."""
 
 from __future__ import annotations
 

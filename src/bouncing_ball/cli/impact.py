@@ -10,15 +10,8 @@ from bouncing_ball.calls.arguments import (
     RESTITUTION,
     Rule,
 )
-from bouncing_ball.calls.balls import (
-    LOSSES,
-    Ball,
-    contact_law,
-    corrected,
-    rigid,
-    spring_damper,
-    the_loss,
-)
+from bouncing_ball.calls.balls import LOSSES, Ball, corrected, rigid, spring_damper, the_loss
+from bouncing_ball.calls.law_balls import contact_law
 from bouncing_ball.cli.options import (
     Parser,
     add_assignments,

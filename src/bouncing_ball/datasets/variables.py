@@ -17,7 +17,7 @@ from bouncing_ball.errors import ModelError
 
 
 class Variable(NamedTuple):
-    """What a dataset says of one of its variables.
+    """The description of a variable in a dataset.
 
     ``symbol`` and ``equation`` are empty if the paper has none for it. ``budget`` is the largest
     change from the accepted record, as a share of ``scale``: of 1, of another variable, or, if it

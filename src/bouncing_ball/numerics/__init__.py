@@ -1,4 +1,4 @@
-"""Numerical methods that know no ball: rows of arrays, certified first zeros, continuation.
+"""Numerical methods, independent of the ball: rows of arrays, certified first zeros, continuation.
 
 Pseudo-arclength continuation follows the solutions of F(x, p) = 0. Its parts are a
 :class:`~bouncing_ball.numerics.corrector.Problem`, a corrector, a step control and events;

@@ -10,6 +10,9 @@ from itertools import pairwise
 from typing import Any, Self
 
 import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.errors import ModelError, printable
 
 
 def _entry(value: Any, shape: tuple[int, ...], index: Any) -> Any:
@@ -19,6 +22,30 @@ def _entry(value: Any, shape: tuple[int, ...], index: Any) -> Any:
     if not np.ndim(value):
         return value
     return (value if np.shape(value) == shape else np.broadcast_to(value, shape))[index]
+
+
+def as_numbers(value: ArrayLike, name: str, allowed: str) -> np.ndarray:
+    """A parameter as an array of floating-point numbers.
+
+    Raises
+    ------
+    ModelError
+        If it is no number and no array of numbers: text, True or False, or rows of unequal length.
+
+    Examples
+    --------
+    >>> as_numbers("x", "frequency ratio ϖ", "a finite number > 0")
+    Traceback (most recent call last):
+    ...
+    bouncing_ball.errors.ModelError: frequency ratio ϖ = 'x' is not a finite number > 0
+    """
+    try:
+        x = np.asarray(value)
+    except ValueError:
+        x = None
+    if x is None or x.dtype.kind not in "iuf":
+        raise ModelError(f"{name} = {printable(repr(value))} is not {allowed}")
+    return x.astype(float, copy=False)
 
 
 def in_words(value: Any) -> str:
@@ -69,6 +96,25 @@ class Batch:
     def size(self) -> int:
         """The number of elements; 1 for a single element."""
         return math.prod(self.shape)
+
+    def check_shape(self) -> None:
+        """Raise :class:`ModelError` unless all fields broadcast to one shape.
+
+        Examples
+        --------
+        >>> from bouncing_ball.paper.contact.spring_damper import SpringDamper
+        >>> SpringDamper([5.0, 10.0], [0.1, 0.2, 0.3])
+        Traceback (most recent call last):
+        ...
+        bouncing_ball.errors.ModelError: frequency_ratio of shape (2,) and damping_ratio of \
+shape (3,) do not broadcast to one shape
+        """
+        shapes = {f.name: np.shape(getattr(self, f.name)) for f in fields(self)}
+        try:
+            np.broadcast_shapes(*shapes.values())
+        except ValueError:
+            arrays = (f"{name} of shape {shape}" for name, shape in shapes.items() if shape)
+            raise ModelError(f"{' and '.join(arrays)} do not broadcast to one shape") from None
 
     def __len__(self) -> int:
         if not self.shape:

@@ -1,4 +1,4 @@
-"""What an artifact is: a dataset, and the figure, the table or the page that are made from it.
+"""Artifacts: a dataset, and the figure, the table or the page that are made from it.
 
 The workflow declares the artifacts of its stages as :class:`Artifact`; :class:`ArtifactFiles` are
 the files of an artifact that a folder has. A run writes to a folder, ``results/``; the accepted

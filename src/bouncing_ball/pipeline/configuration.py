@@ -268,7 +268,7 @@ _WORDS = {
 
 
 def _schemas(model: type[BaseModel], path: Sequence[str | int]) -> list[dict[str, Any]]:
-    """The schemas on the way from the whole configuration to a key, the key's own schema last."""
+    """The schemas from that of the whole configuration to that of a key, which comes last."""
     root = model.model_json_schema()
     found = [resolved(root, root)]
     for part in path:

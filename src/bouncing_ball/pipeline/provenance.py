@@ -239,7 +239,7 @@ def _commands(made: Mapping[str, Any], target: str, checked_out: bool | None) ->
 
 
 def explain(file: Path, /) -> dict[str, Any]:
-    """What an artifact is made from, as plain values.
+    """The inputs from which an artifact is made, as plain values.
 
     Parameters
     ----------

@@ -22,8 +22,10 @@ PLAN = Plan(
     shards=1,
 )
 # Of four tiles with four nodes each, r by r; at two ϖ, or in five bins of thresholds.
-TWO, BINS = ("frequency_ratio",), ("threshold_bin",)
-MODEL, TOLERANCE = ("model", "quantity"), ("model", "quantity", "tolerance")
+TWO = ("frequency_ratio",)
+BINS = ("threshold_bin",)
+MODEL = ("model", "quantity")
+TOLERANCE = ("model", "quantity", "tolerance")
 MADE = {
     "largest_threshold": ([5.0, 200.0, 70.0, 90.0], TOLERANCE, ()),
     "threshold_counts": ([[0, 4, 0, 0], [0, 2, 1, 1], [0, 1, 3, 0], [0, 1, 3, 0]], TOLERANCE, BINS),

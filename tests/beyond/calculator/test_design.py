@@ -283,7 +283,7 @@ def test_the_error_law_holds_up_to_its_small_parameter():
     # Its parts are proportional to 1/ϖ.
     small = float(error_law.small_parameter(1, Signature(LinearLaw.of(contact))(), 0.8))
     for factor, holds in ((0.99, False), (1.01, True)):
-        stiffness = (factor * small / error_law.STATED) ** 2
+        stiffness = (factor * small / error_law.VALID_BELOW) ** 2
         found = design(**UNIT, acceleration=0.8, stiffness=stiffness)
         assert found.orbits[0].law_holds is holds
 

@@ -7,17 +7,19 @@ from bouncing_ball import design
 from bouncing_ball.beyond.calculator.motion import height_and_power
 from bouncing_ball.beyond.calculator.results import FinalMotion, Mean
 from bouncing_ball.beyond.calculator.verdict import aside, judged_by_motion
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.means import means as means_of
-from bouncing_ball.beyond.simulation import simulate
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
+from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 
 UNIT = {"mass": 1.0, "angular_frequency": 1.0, "gravity": 1.0, "restitution": 0.85, "n": 1}
 
 
-@pytest.mark.parametrize("law", [1.0, SpringDamper(4.0, 0.0), SpringDamper(40.0, 0.0)])
+@pytest.mark.parametrize("law", [RestitutionModel(1.0), LinearLaw(4.0, 0.0), LinearLaw(40.0, 0.0)])
 def test_an_elastic_ball_has_the_energy_that_the_table_gives_it(law):
-    found = simulate(law, 1.7, 0.4, -4.0, 40)
+    found = law.dynamics(1.7).simulate(0.4, -4.0, 40)
     _, power = height_and_power(found, 3)
     level = 1.7 * np.sin(found.phase)
     energy = found.impact_velocity**2 / 2 + level
@@ -27,7 +29,7 @@ def test_an_elastic_ball_has_the_energy_that_the_table_gives_it(law):
 
 
 def test_an_instant_takes_its_impulse_times_the_speed_of_the_table():
-    found = simulate(0.6, 2.3, 0.4, -4.0, 60)
+    found = RestitutionModel(0.6).simulate(2.3, 0.4, -4.0, 60)
     impulse = -1.6 * found.relative_velocity[:-1]
     work = np.sum(impulse * 2.3 * np.cos(found.phase[:-1]))
     assert height_and_power(found)[1] == pytest.approx(work / found.time[-1], rel=1e-12)
@@ -69,7 +71,7 @@ def test_the_headline_says_what_the_ball_does(amplitude, kind, says):
             assert shown in found.verdict
             assert 0 < exact.half_width < 0.1 * exact.value
         # What the table gives, the impacts lose: (1 - r²)/2 of the squared relative speed.
-        impacts = simulate(0.85, 2.0, 1.4, np.linspace(-3.2, -3.0, 64), 500)
+        impacts = RestitutionModel(0.85).simulate(2.0, 1.4, np.linspace(-3.2, -3.0, 64), 500)
         lost = (1 - 0.85**2) / 2 * np.sum(impacts.relative_velocity[100:-1] ** 2, axis=0)
         power = lost / (impacts.time[-1] - impacts.time[100])
         margin = 4 * (power.std() / 8 + simple.half_width / 2)
@@ -88,12 +90,13 @@ def test_where_there_is_no_orbit_the_ball_is_laid_on_the_table(amplitude, restit
     assert "no n-T orbit in any model" in found.reason and not found.judged.exists
     if kind == "locked":
         # Means over whole repetitions are those of one repetition, which all balls share.
-        laws = SpringDamper.from_restitution(restitution, np.sqrt(5000.0)), restitution
-        for law, *shown in zip(
-            laws, found.motion.mean_height.values(), found.motion.mean_power.values(), strict=True
+        contact = SpringDamper.from_restitution(restitution, np.sqrt(5000.0))
+        models = SpringDamperModel(contact), RestitutionModel(restitution)
+        for model, *shown in zip(
+            models, found.motion.mean_height.values(), found.motion.mean_power.values(), strict=True
         ):
-            motion = final_motions(law, amplitude, np.pi, -amplitude)
-            once = means_of(law, amplitude, motion, 1)[1:3]
+            motion = final_motions(model, amplitude, np.pi, -amplitude)
+            once = means_of(model, amplitude, motion, 1)[1:3]
             assert [x.value for x in shown] == pytest.approx(once.tolist(), rel=1e-9)
 
 

@@ -34,7 +34,7 @@ from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.orbits.stability import Bifurcation, Side
 
 EPS = np.finfo(float).eps
-SOFT = SpringDamper.from_restitution(0.85, 4.0)
+COMPLIANT = SpringDamper.from_restitution(0.85, 4.0)
 STIFF = SpringDamper.from_restitution(0.65, 50.0)
 PUSHING = SpringDamper.from_restitution(0.65, 20.0, "force")
 HERTZ = {
@@ -52,7 +52,7 @@ OWN = runpy.run_path(str(Path(__file__).with_name("plastic_impact.py")))
 MODELS = {
     "restitution": RestitutionModel(0.65),
     "elastic": RestitutionModel(1.0),
-    "soft contact": SpringDamperModel(SOFT),
+    "compliant contact": SpringDamperModel(COMPLIANT),
     "stiff contact": SpringDamperModel(STIFF),
     "force release": SpringDamperModel(PUSHING),
     "undamped contact": SpringDamperModel(SpringDamper(10.0, 0.0)),

@@ -3,7 +3,13 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.beyond.corrected.errors import SIMPLE, errors, models, orbit_errors, search
+from bouncing_ball.beyond.corrected.errors import (
+    SIMPLE,
+    errors,
+    exact_and_simple_models,
+    orbit_errors,
+    search,
+)
 from bouncing_ball.paper.comparison.errors import Quantity, modulus, relative_errors
 from bouncing_ball.paper.comparison.thresholds import ThresholdStatus
 from bouncing_ball.paper.contact.damping import Release
@@ -62,10 +68,10 @@ def test_errors_are_those_of_the_models_one_by_one(release):
     found = errors(contact, n, lam, tuple(Quantity))
     assert found.shape == (len(SIMPLE), len(Quantity), 2, 2)
     for i, j in np.ndindex(2, 2):
-        exact, *simple = models(contact[i, j])
+        exact, *simple = exact_and_simple_models(contact[i, j])
         assert float(simple[0].restitution) == float(contact[i, j].restitution)
         for k, model in enumerate(simple):
             (one,) = relative_errors(exact, [model], n[j], lam[j], tuple(Quantity))
             np.testing.assert_allclose(found[k, :, i, j], one, rtol=1e-9, atol=1e-13)
-    known = orbit_errors(models(contact)[0].orbit(n, lam))
+    known = orbit_errors(exact_and_simple_models(contact)[0].orbit(n, lam))
     np.testing.assert_allclose(known, found[:, :4], rtol=1e-9, atol=1e-13)

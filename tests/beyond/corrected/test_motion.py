@@ -7,9 +7,9 @@ import pytest
 
 from bouncing_ball.beyond.corrected.signature import Signature
 from bouncing_ball.beyond.laws.linear import LinearLaw
-from bouncing_ball.beyond.simulation import next_impact, simulate
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.motion.sequence import Status
+from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
 
 RELEASES = list(Release)
 BALLS = 400
@@ -44,8 +44,8 @@ def errors(release, omega, change=lambda law: law):
     """Of the next impact's time and velocity, one of each ball."""
     lam, phase, velocity, zeta = states(5)
     contact = LinearLaw(np.full(BALLS, omega), zeta, release)
-    exact = next_impact(contact, lam, phase, velocity)
-    got = next_impact(change(Signature(contact)), lam, phase, velocity)
+    exact = contact.dynamics(lam).next_impact(phase, velocity)
+    got = change(Signature(contact)).dynamics(lam).next_impact(phase, velocity)
     return np.hypot(got.time - exact.time, got.relative_velocity - exact.relative_velocity)
 
 
@@ -83,8 +83,8 @@ def test_without_delay_and_load_the_corrected_model_is_the_restitution_model():
     lam, phase, velocity, _ = states(7)
     law = Changed(Signature(LinearLaw(5.0, 0.2)), delay=0.0, load=0.0, duration=0.0)
     r = float(law(1.0).restitution)
-    got = next_impact(law, lam, phase, velocity)
-    known = next_impact(r, lam, phase, velocity)
+    got = law.dynamics(lam).next_impact(phase, velocity)
+    known = RestitutionModel(r).cycle(lam, phase, velocity)
     np.testing.assert_allclose(got.time, known.time, atol=1e-12)
     np.testing.assert_allclose(got.relative_velocity, known.relative_velocity, atol=1e-12)
 
@@ -94,7 +94,7 @@ def test_at_every_impact_the_ball_falls_and_time_has_passed():
     lam = rng.uniform(0.3, 4, 300)
     phase = rng.uniform(-3, 3, 300)
     velocity = lam * np.cos(phase) - rng.uniform(0.1, 6, 300)
-    run = simulate(Signature(LinearLaw(20.0, 0.1)), lam, phase, velocity, 300)
+    run = Signature(LinearLaw(20.0, 0.1)).dynamics(lam).simulate(phase, velocity, 300)
     there = np.isfinite(run.time)
     assert np.all(run.relative_velocity[there] <= 0)
     assert np.all(np.diff(run.time, axis=0)[there[1:]] > 0)
@@ -106,13 +106,13 @@ def test_at_every_impact_the_ball_falls_and_time_has_passed():
 def test_after_a_weak_impact_the_ball_stays_until_the_table_falls_away():
     """A ball set down gently stays until the table recedes with more than gravity."""
     law = Signature(LinearLaw(20.0, 0.3))
-    resting = simulate(law, 0.9, 0.0, 0.9 - 1e-3, 5)
+    resting = law.dynamics(0.9).simulate(0.0, 0.9 - 1e-3, 5)
     assert resting.status == Status.PERMANENT_CONTACT and resting.impacts == 1
-    lifted = simulate(law, 1.5, 0.0, 1.5 - 1e-3, 2)
+    lifted = law.dynamics(1.5).simulate(0.0, 1.5 - 1e-3, 2)
     phase = float(lifted.release_phase[0])
     assert phase == pytest.approx(np.arcsin(1 / 1.5), abs=1e-14)
     assert lifted.relative_bounce_velocity[0] == 0
     # In the exact contact the same ball leaves at the same moment, but for the
     # spring, which lets go where its force has gone: a delay of order 1/ϖ.
-    exact = simulate(LinearLaw(20.0, 0.3), 1.5, 0.0, 1.5 - 1e-3, 1)
+    exact = LinearLaw(20.0, 0.3).dynamics(1.5).simulate(0.0, 1.5 - 1e-3, 1)
     assert float(exact.contact_duration[0]) == pytest.approx(phase, abs=4 / 20)

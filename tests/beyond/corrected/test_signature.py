@@ -5,7 +5,6 @@ import pytest
 
 from bouncing_ball.beyond.corrected.signature import Signature
 from bouncing_ball.beyond.laws.linear import LinearLaw
-from bouncing_ball.beyond.simulation import simulate
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.contact.damping import Release
 
@@ -24,7 +23,7 @@ def test_flights_continued_into_any_contact_meet_at_the_centroid_of_its_force():
             phase = rng.uniform(-3, 3)
             speed = rng.uniform(2, 9)
             contact = LinearLaw(omega, zeta, release)
-            impact = simulate(contact, lam, phase, lam * np.cos(phase) - speed, 1)
+            impact = contact.dynamics(lam).simulate(phase, lam * np.cos(phase) - speed, 1)
             end = float(impact.contact_duration[0])
             left = float(impact.release_displacement[0])
             if not np.isfinite(end):

@@ -8,7 +8,6 @@ from bouncing_ball.beyond.laws.law_of_impact import law_of_impact
 from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.laws.orbits import LawModel
 from bouncing_ball.beyond.laws.registry import LAWS
-from bouncing_ball.beyond.simulation import simulate
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.contact.damping import damping_ratio
 
@@ -27,7 +26,7 @@ def law(name, duration):
 
 def images(law, amplitude, phase, speed):
     """J, t* - φ, and the phase and the relative velocity of the next contact."""
-    motion = simulate(law, amplitude, phase, amplitude * np.cos(phase) - speed, 2)
+    motion = law.dynamics(amplitude).simulate(phase, amplitude * np.cos(phase) - speed, 2)
     arrival = motion.bounce_velocity[0] - amplitude * np.cos(phase) + speed
     time = motion.contact_duration[0]
     impulse = arrival + time

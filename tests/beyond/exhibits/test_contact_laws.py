@@ -141,6 +141,6 @@ def test_a_constant_restitution_misses_the_period_doubling_of_a_law_that_falls(e
     rigid = errors.relative_error.sel(model="restitution", quantity="period_doubling")
     falling = rigid.sel(law="hunt-crossley")
     constant = rigid.sel(law="tsuji")
-    # A harder contact helps the one, and not the other.
+    # A stiffer contact helps the one, and not the other.
     assert float(constant[1]) < 0.4 * float(constant[0])
     assert float(falling[1]) > float(falling[0])

@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 from bouncing_ball.beyond.laws.impedance import Impedance
 from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.laws.motion import sampled_resumption
-from bouncing_ball.beyond.simulation import next_impact, simulate
 from bouncing_ball.paper.contact.damping import Release, damping_ratio
 from bouncing_ball.paper.contact.permanent_contact import permanent_contact_threshold
 from bouncing_ball.paper.motion.flight import Flight, land, table
@@ -49,7 +48,7 @@ def test_twenty_impacts_agree_with_a_taylor_integrator(case, release, taylor_bal
     velocity = float(orbit.impact_velocity) - 0.05
     reference = taylor_ball(release is Release.FORCE)
     expected = reference.impacts(lam, case[2], contact.damping_ratio, phase, velocity, 20)
-    got = simulate(contact, lam, phase, velocity, 20)
+    got = contact.dynamics(lam).simulate(phase, velocity, 20)
     found = (got.time, got.impact_velocity, got.contact_duration, got.bounce_velocity)
     # Measured: below 6e-13. The clock of the integrator is absolute: its rounding, 1e-14,
     # is a velocity error of ϖ times that and the impact velocity.
@@ -67,7 +66,7 @@ def test_contacts_that_resume_below_the_level_agree_with_a_taylor_integrator(
     ball and gets it back before it has come up to its level."""
     contact = LinearLaw(omega, zeta, Release.FORCE)
     lam = factor * float(permanent_contact_threshold(omega, zeta, Release.FORCE))
-    got = simulate(contact, lam, 0.3, -0.2 + lam * np.cos(0.3), 20)
+    got = contact.dynamics(lam).simulate(0.3, -0.2 + lam * np.cos(0.3), 20)
     resumed = got.displacement < 0
     assert resumed.sum() > 10 and np.all(got.relative_velocity[resumed] > 0)
     rows = taylor_ball(True).impacts(lam, omega, zeta, 0.3, -0.2 + lam * np.cos(0.3), 20)
@@ -89,10 +88,8 @@ def test_after_a_release_below_the_level_the_first_of_landing_and_resumption_is_
     """A ball that is let go comes up to the level, or the force returns before."""
     rng = np.random.default_rng(1)
     size = 4000
-    omega, zeta, lam = (
-        10 ** rng.uniform(-0.5, 1, size),
-        *rng.uniform(0.05, [[0.95], [4]], (2, size)),
-    )
+    omega = 10 ** rng.uniform(-0.5, 1, size)
+    zeta, lam = rng.uniform(0.05, [[0.95], [4]], (2, size))
     x, y = table(rng.uniform(-np.pi, np.pi, size), lam)
     contact = LinearLaw(omega, zeta, Release.FORCE)
     rate = 10 ** rng.uniform(-3, 0.7, size)
@@ -121,7 +118,7 @@ def test_after_a_release_below_the_level_the_first_of_landing_and_resumption_is_
 def test_a_contact_that_ends_at_the_level_does_not_resume_within_a_rounding_error():
     """Where an impedance lets the contact end at p = 0, the force that is left is positive."""
     phase, fall = np.random.default_rng(0).uniform([[-3], [1.5]], [[3], [5]], (2, 500))
-    run = simulate(Impedance(30.0, 0.05, 0.95), 1.0, phase, -fall - 1, 40)
+    run = Impedance(30.0, 0.05, 0.95).dynamics(1.0).simulate(phase, -fall - 1, 40)
     assert np.sum(run.release_displacement == 0) > 500
     assert not np.any((run.displacement < 0) & (run.displacement > -1e-15))
 
@@ -129,7 +126,7 @@ def test_a_contact_that_ends_at_the_level_does_not_resume_within_a_rounding_erro
 def test_an_elastic_ball_on_a_table_at_rest_keeps_its_energy():
     """The only exact answer with many impacts: equal velocities and equal times."""
     omega, speed = 7.0, 1.5
-    sequence = simulate(LinearLaw(omega, 0.0), 0.0, 0.0, -speed, 1000)
+    sequence = LinearLaw(omega, 0.0).dynamics(0.0).simulate(0.0, -speed, 1000)
     assert sequence.status == Status.BOUNCING
     # 1000 impacts with an error of a unit in the last place each.
     np.testing.assert_allclose(sequence.impact_velocity, -speed, rtol=1e-13)
@@ -147,7 +144,7 @@ def test_permanent_contact_begins_and_ends_at_its_threshold(omega, zeta, release
     threshold = float(permanent_contact_threshold(omega, zeta, release))
     # Of the threshold some roundings are unknown.
     lam = threshold * np.array([1 - 1e-12, 1 + 1e-12])
-    sequence = simulate(contact, lam, 0.2, lam * np.cos(0.2) - 1e-3, 40)
+    sequence = contact.dynamics(lam).simulate(0.2, lam * np.cos(0.2) - 1e-3, 40)
     assert sequence.status.tolist() == [Status.PERMANENT_CONTACT, Status.BOUNCING]
     last = sequence.impacts[0] - 1
     assert sequence.contact_duration[last, 0] == np.inf
@@ -156,11 +153,11 @@ def test_permanent_contact_begins_and_ends_at_its_threshold(omega, zeta, release
 
 
 def test_after_a_permanent_contact_there_is_no_next_impact():
-    cycle = next_impact(LinearLaw(10.0, 0.1), 0.2, [0.0, 1.0], [0.0, -50.0])
+    cycle = LinearLaw(10.0, 0.1).dynamics(0.2).next_impact([0.0, 1.0], [0.0, -50.0])
     assert np.isnan(cycle.phase[0]) and cycle.time[0] == np.inf
     assert np.isfinite(cycle.phase[1])
     # Of no ball there is no impact.
-    assert next_impact(LinearLaw(10.0, 0.1), 0.2, [], []).phase.shape == (0,)
+    assert LinearLaw(10.0, 0.1).dynamics(0.2).next_impact([], []).phase.shape == (0,)
 
 
 @pytest.mark.parametrize("release", RELEASES)
@@ -172,10 +169,10 @@ def test_a_ball_among_many_moves_exactly_as_alone(release):
     zeta = rng.uniform(0.0, 0.4, size)
     phase = rng.uniform(-3.0, 3.0, size)
     velocity = lam * np.cos(phase) - rng.uniform(0.0, 5.0, size)
-    many = simulate(LinearLaw(omega, zeta, release), lam, phase, velocity, 30)
+    many = LinearLaw(omega, zeta, release).dynamics(lam).simulate(phase, velocity, 30)
     for k in range(size):
         contact = LinearLaw(float(omega[k]), float(zeta[k]), release)
-        one = simulate(contact, float(lam[k]), float(phase[k]), float(velocity[k]), 30)
+        one = contact.dynamics(float(lam[k])).simulate(float(phase[k]), float(velocity[k]), 30)
         assert one.status == many.status[k]
         for name in ("time", "phase", "relative_velocity", "contact_duration", "displacement"):
             np.testing.assert_array_equal(getattr(one, name), getattr(many, name)[:, k], name)
@@ -186,11 +183,11 @@ def test_the_size_of_blocks_changes_nothing():
     rng = np.random.default_rng(4)
     phase = rng.uniform(-3.0, 3.0, (2, 9000))
     contact = LinearLaw(10.0, 0.05)
-    many = simulate(contact, 1.5, phase, -4.0, 5)
+    many = contact.dynamics(1.5).simulate(phase, -4.0, 5)
     assert many.phase.shape == (5, 2, 9000)
-    few = simulate(contact, 1.5, phase[1, -3:], -4.0, 5)
+    few = contact.dynamics(1.5).simulate(phase[1, -3:], -4.0, 5)
     np.testing.assert_array_equal(many.phase[:, 1, -3:], few.phase)
-    cycle = next_impact(contact, 1.5, many.phase[0], many.relative_velocity[0])
+    cycle = contact.dynamics(1.5).next_impact(many.phase[0], many.relative_velocity[0])
     np.testing.assert_array_equal(cycle.phase, many.phase[1])
 
 
@@ -210,7 +207,7 @@ def test_a_ball_is_unloaded_in_flight_and_loaded_in_contact(
     it or, by force, loaded."""
     contact = LinearLaw(omega, zeta, release)
     velocity = lam * np.cos(phase) - speed
-    sequence = simulate(contact, lam, phase, velocity, 15)
+    sequence = contact.dynamics(lam).simulate(phase, velocity, 15)
     last = np.max(sequence.time[np.isfinite(sequence.time)])
     dense = history(sequence, np.linspace(0, last, 3000))
     lag = 2 * zeta / omega if release is Release.FORCE else 0.0
@@ -228,7 +225,7 @@ def test_a_ball_that_rides_the_table_for_thousands_of_oscillations_leaves_it():
     """A ball that hardly moves rides the table for thousands of oscillations of the contact,
     in which nothing decays, before it leaves; no zero is passed over on the way."""
     omega, lam, phase = 3000.0, 0.999, 2.0
-    ride = simulate(LinearLaw(omega, 0.0), lam, phase, lam * np.cos(phase), 1)
+    ride = LinearLaw(omega, 0.0).dynamics(lam).simulate(phase, lam * np.cos(phase), 1)
     assert ride.status == Status.BOUNCING and 1.0 < ride.contact_duration[0] < 10.0
     s = np.linspace(0.0, float(ride.contact_duration[0]), 400_001)[1:-1]
     steady = -1 / omega**2 + lam * np.sin(s + phase) / (omega**2 - 1)
@@ -243,7 +240,7 @@ def test_a_ball_that_rides_the_table_for_thousands_of_oscillations_leaves_it():
 def test_next_to_the_undamped_resonance_a_contact_ends_where_its_flow_does(detuning):
     """There the steady part is infinite, and near it all digits are lost against the transient."""
     contact = LinearLaw(1 + detuning, 0.0)
-    impact = simulate(contact, 1.2, 0.4, 1.2 * np.cos(0.4) - 3, 1)
+    impact = contact.dynamics(1.2).simulate(0.4, 1.2 * np.cos(0.4) - 3, 1)
     # The flow keeps its digits at the resonance too.
     end = contact.flow(impact.contact_duration[0], 0.0, -3.0, 0.4, 1.2)
     assert abs(end.displacement) < 1e-12
@@ -253,7 +250,7 @@ def test_next_to_the_undamped_resonance_a_contact_ends_where_its_flow_does(detun
 def test_the_cycle_has_a_smooth_limit_at_critical_damping():
     """ζ → 1: the bound by half a free period is of no use, and not needed."""
     zeta = np.array([0.99, 0.99999, 1 - 1e-9])
-    cycle = next_impact(LinearLaw(3.0, zeta), 2.0, -0.5, -3.0)
+    cycle = LinearLaw(3.0, zeta).dynamics(2.0).next_impact(-0.5, -3.0)
     # A smooth limit: the cycle changes by as little as ζ, times 100.
     assert np.all(np.isfinite(cycle.time))
     assert abs(cycle.time[1] - cycle.time[2]) < 1e-3

@@ -132,3 +132,14 @@ def test_a_branch_that_turns_again_is_followed_to_all_of_its_orbits(amplitude, n
     known = by_formula(contact, 1, amplitude)
     assert found.contact_duration.shape == (number,)
     assert np.abs(found.contact_duration - known.contact_duration).max() < 1e-11
+
+
+@pytest.mark.parametrize("law", [HuntCrossley, LinearLaw, Impedance])
+@pytest.mark.parametrize("value", ["x", "2.0", True, [[1.0], [2.0, 3.0]]])
+def test_a_parameter_of_a_law_that_is_no_number_is_refused(law, value, refusal):
+    first, second, *_ = law.parameter_names()
+    for parameters in ({first: value, second: 0.1}, {first: 2.0, second: value}):
+        with refusal(ModelError, f"= {value!r} is not a"):
+            law(**parameters)
+    with refusal(ModelError, f"{first} of shape (2,) and {second} of shape (3,) do not broadcast"):
+        law(**{first: [2.0, 3.0], second: [0.1, 0.2, 0.3]})

@@ -11,11 +11,11 @@ from bouncing_ball.beyond.long_run.cascade_of_flights import (
     stiff_openings,
 )
 from bouncing_ball.beyond.long_run.destination import final_motions
-from bouncing_ball.beyond.simulation import simulate
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.contact.damping import damping_ratio
 from bouncing_ball.paper.contact.permanent_contact import permanent_contact_threshold
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 
 
 def motions(r, ratio, excess):
@@ -25,7 +25,7 @@ def motions(r, ratio, excess):
     lam = permanent_contact_threshold(ratio, zeta) + excess / np.square(ratio)
     phase = np.pi / 2 + 3 / ratio
     slow = lam * np.cos(phase) - 0.1 / np.square(ratio)
-    return final_motions(SpringDamper(ratio, zeta), lam, phase, slow)
+    return final_motions(SpringDamperModel(SpringDamper(ratio, zeta)), lam, phase, slow)
 
 
 @pytest.mark.parametrize(
@@ -100,7 +100,7 @@ def test_a_new_flight_changes_the_motion_by_the_power_of_three_halves():
     apart = []
     for part in (1e-2, 2.5e-3, 6.25e-4):
         velocity = touch * (1 + part)
-        motion = simulate(law, lam, phase, lam * np.cos(phase) + velocity, 2)
+        motion = SpringDamperModel(law).simulate(lam, phase, lam * np.cos(phase) + velocity, 2)
         start = motion.time[1] - motion.time[0]
         flow = law.flow(later - start, 0.0, motion.relative_velocity[1], motion.phase[1], lam)
         heights.append(top(velocity))

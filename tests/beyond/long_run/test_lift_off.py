@@ -7,6 +7,7 @@ from bouncing_ball.beyond.exhibits.motion_samples import three_models
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.lift_off import returns
 from bouncing_ball.paper.contact.damping import Release
+from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
 
 LYING = -np.pi / 2, 0.0
 
@@ -15,7 +16,7 @@ def test_a_return_is_the_mappers_locked_orbit():
     r = np.linspace(0.2, 0.6, 9)
     lam = np.linspace(2.0, 4.6, 9)
     found = returns(r, lam, 300)
-    mapped = final_motions(r, lam, *LYING, impacts=600)
+    mapped = final_motions(RestitutionModel(r), lam, *LYING, impacts=600)
     locked = mapped.kind == "locked"
     assert locked.sum() > 5
     assert np.array_equal(found.periods[locked], mapped.periods[locked])
@@ -46,7 +47,7 @@ def test_a_contact_has_the_orbit_where_it_is_stiff_enough():
     found = returns(0.6, 3.0, 100)
     wanted = float(found.sensitivity / found.wait)
     contact = three_models(np.array(0.6), wanted * np.array([0.01, 10.0]), Release.DISPLACEMENT)[-1]
-    mapped = final_motions(contact.impact_law, 3.0, *LYING, impacts=400)
+    mapped = final_motions(contact, 3.0, *LYING, impacts=400)
     assert wanted > 1e5 and mapped.periods[1] == found.periods != mapped.periods[0]
 
 

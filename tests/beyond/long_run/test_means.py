@@ -11,14 +11,16 @@ from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.means import means
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
+from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 
 RELEASE = Release.DISPLACEMENT
 
 
 def found_and_means(model, amplitude, samples=100):
     velocity = amplitude * np.cos(1.0) - 9.0
-    found = final_motions(model.impact_law, amplitude, 1.0, velocity, impacts=250)
-    return found, means(model.impact_law, amplitude, found, samples)
+    found = final_motions(model, amplitude, 1.0, velocity, impacts=250)
+    return found, means(model, amplitude, found, samples)
 
 
 @pytest.mark.parametrize(
@@ -63,7 +65,7 @@ def test_errors_of_the_means_are_of_first_and_of_second_order():
 
 
 def test_the_exponent_is_the_mappers_and_a_ball_at_rest_has_no_means():
-    law = np.array([0.85, 0.85])
+    law = RestitutionModel(np.array([0.85, 0.85]))
     found = final_motions(law, np.array([2.0, 0.9]), 0.0, np.array([-9.0, 0.0]), impacts=400)
     of = means(law, np.array([2.0, 0.9]), found, 400)
     assert abs(of[3, 0] - found.exponent[0]) < 8 * found.exponent_error[0]
@@ -72,7 +74,7 @@ def test_the_exponent_is_the_mappers_and_a_ball_at_rest_has_no_means():
 
 def test_a_law_whose_contact_is_a_spring_has_the_means_of_the_linear_contact():
     amplitude = np.array([0.7, 1.3])
-    spring = SpringDamper(20.0, 0.0, Release.FORCE)
+    spring = SpringDamperModel(SpringDamper(20.0, 0.0, Release.FORCE))
     found = final_motions(spring, amplitude, 0.5, -4.0, impacts=3)
     linear = means(spring, amplitude, found, 5)
     general = means(LinearHuntCrossley(400.0, 0.0), amplitude, found, 5)

@@ -6,7 +6,6 @@ import pytest
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.period_doublings import FEIGENBAUM, Turns, cascade
-from bouncing_ball.beyond.simulation import simulate
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
@@ -41,7 +40,7 @@ def test_the_ratios_tend_to_feigenbaums(restitution):
 
 def test_a_ball_at_a_doubling_returns_after_2_to_the_k_impacts_in_the_simulation(restitution):
     for k, (lam, phase, relative) in enumerate(zip(*restitution, strict=True)):
-        impacts = simulate(R, lam, phase, relative + lam * np.cos(phase), 2**k + 1)
+        impacts = RestitutionModel(R).simulate(lam, phase, relative + lam * np.cos(phase), 2**k + 1)
         # Multipliers of a turn are of order one, but those of its parts are not.
         assert impacts.time[-1] == pytest.approx(2 * np.pi * 2**k, abs=1e-9)
         assert impacts.relative_velocity[-1] == pytest.approx(relative, abs=1e-9)
@@ -49,19 +48,17 @@ def test_a_ball_at_a_doubling_returns_after_2_to_the_k_impacts_in_the_simulation
 
 def test_the_period_of_what_attracts_doubles_there(model, found):
     """Found without the orbit's equations: by where balls end beside each doubling."""
-    law = model.period_doubling(1).law
     sides = np.array([[[-0.2]], [[0.2]]])
     lam = found.amplitude[:-1] + sides * np.diff(found.amplitude, axis=0)
     phase = found.phase[:-1]
     relative = found.velocity[:-1]
-    motion = final_motions(law, lam, phase, relative + lam * np.cos(phase), impacts=5000)
+    motion = final_motions(model, lam, phase, relative + lam * np.cos(phase), impacts=5000)
     expected = 2 ** (np.arange(3)[:, np.newaxis] + np.arange(2)[:, np.newaxis, np.newaxis])
     np.testing.assert_array_equal(motion.impacts, np.broadcast_to(expected, lam.shape))
 
 
 def test_the_derivatives_are_those_of_differences(model):
-    law = model.period_doubling(1).law
-    turns = Turns(law, 1, 3)
+    turns = Turns(model.period_doubling(1), 3)
     y = np.stack(np.broadcast_arrays(0.4, -4.4, np.full(RATIOS.size, 1.6)), axis=-1)
     step = 1e-6
     for c in range(3):

@@ -6,15 +6,16 @@ import sys
 
 CODE = """
 import numpy as np, hashlib
-from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.long_run.destination import final_motions
-from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.corrected.orbits import CorrectedModel
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
+from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 rng = np.random.default_rng(5)
 r, lam, phase = rng.uniform([[0.1], [0.9], [-3]], [[0.95], [5], [3]], (3, 60))
 contact = SpringDamper.from_restitution(r, 100.0)
-for law in (r, contact, Signature(LinearLaw.of(contact))):
-    found = final_motions(law, lam, phase, -lam - rng.uniform(0, 12, 60), impacts=200)
+for model in (RestitutionModel(r), SpringDamperModel(contact), CorrectedModel.of_contact(contact)):
+    found = final_motions(model, lam, phase, -lam - rng.uniform(0, 12, 60), impacts=200)
     # A chaotic ball of 200 impacts has made a last digit into another motion long ago.
     assert (found.kind == "chaotic").sum() > 5
     for values in (found.end_phase, found.end_velocity, found.periods, found.impacts):

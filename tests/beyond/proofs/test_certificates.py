@@ -50,7 +50,8 @@ def check(problem, kind):
     sign = 1 if kind == "saddle-node" else -1
     with mpmath.workdps(60):
         with precision(found.bits):
-            excess, radius = number(found.excess), mpf(found.excess.rad().str(5, radius=False))
+            excess = number(found.excess)
+            radius = mpf(found.excess.rad().str(5, radius=False))
         amplitude, bound = (mpf(text) for text in found.texts(30))
         one = exact(problem)
         _, _, x, y = one.orbit(excess)
@@ -85,7 +86,8 @@ def random_problems(seed, count):
 
 def outcomes(seed, count):
     """How many random problems are certified and how many are refused; none is wrong."""
-    certified, refused = 0, []
+    certified = 0
+    refused = []
     for problem in random_problems(seed, count):
         for kind in ("saddle-node", "period doubling"):
             try:

@@ -15,14 +15,23 @@ from bouncing_ball.beyond.proofs.thresholds import (
 )
 from bouncing_ball.paper.contact.damping import Release, damping_ratio
 
-R, TOLERANCE = Fraction(65, 100), Fraction(1, 100)
+R = Fraction(65, 100)
+TOLERANCE = Fraction(1, 100)
 
 
 @pytest.fixture(scope="module")
 def approximate():
     grid = np.geomspace(1.0, 1e4, 101)
     zeta = damping_ratio(0.65)
-    found = search(zeta, Release.DISPLACEMENT, 1, 1.0, grid, 0.01, list(CONDITIONS))
+    found = search(
+        zeta,
+        Release.DISPLACEMENT,
+        n=1,
+        amplitude=1.0,
+        ratios=grid,
+        tolerance=0.01,
+        quantities=list(CONDITIONS),
+    )
     return dict(zip(CONDITIONS, found.threshold[0, :, 0], strict=True))
 
 

@@ -46,7 +46,7 @@ def test_the_values_are_those_of_the_orbits_and_bifurcations_of_each_model():
 
 
 def test_what_is_missing_is_not_right():
-    # r = 0.0893: a soft contact has no saddle-node, and a stiff one has.
+    # r = 0.0893: a compliant contact has no saddle-node, and a stiff one has.
     contact = SpringDamper.from_restitution(0.0893, np.array([2.592, 100.0]))
     exact = SpringDamperModel(contact)
     simple = [RestitutionModel(0.0893)]

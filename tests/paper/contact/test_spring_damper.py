@@ -117,3 +117,27 @@ def test_a_frequency_ratio_outside_its_range_is_refused(omega, refusal):
 def test_a_damping_ratio_outside_its_range_is_refused(zeta, refusal):
     with refusal(ModelError, f"ζ = {zeta}", "≥ 0"):
         SpringDamper(2.0, zeta)
+
+
+@pytest.mark.parametrize("value", ["x", "2.0", True, None, [True], ["1", "2"], [[1.0], [2.0, 3.0]]])
+def test_what_is_no_number_is_refused_where_the_contact_is_made(value, refusal):
+    with refusal(ModelError, f"frequency ratio ϖ = {value!r} is not a finite number > 0"):
+        SpringDamper(value, 0.1)
+    with refusal(ModelError, f"damping ratio ζ = {value!r} is not a finite number ≥ 0"):
+        SpringDamper(2.0, value)
+    with refusal(ModelError, f"frequency ratio ϖ = {value!r} is not"):
+        SpringDamper.from_restitution(0.5, value)
+    with refusal(ModelError, f"restitution coefficient r = {value!r} is not in (0, 1]"):
+        SpringDamper.from_restitution(value, 2.0)
+
+
+def test_parameters_whose_shapes_do_not_broadcast_are_refused(refusal):
+    parts = "frequency_ratio of shape (2,)", "damping_ratio of shape (3,)", "do not broadcast"
+    with refusal(ModelError, *parts):
+        SpringDamper([2.0, 3.0], [0.1, 0.2, 0.3])
+
+
+@pytest.mark.parametrize("release", ["x", True, None, 1, ["force"]])
+def test_an_unknown_release_is_refused_with_the_names_that_are_known(release, refusal):
+    with refusal(ModelError, f"unknown release {release!r}", "displacement, force"):
+        SpringDamper(2.0, 0.1, release)

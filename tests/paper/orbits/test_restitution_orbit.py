@@ -123,6 +123,16 @@ def test_a_restitution_coefficient_outside_its_range_is_refused(r, refusal):
             call()
 
 
+@pytest.mark.parametrize("value", ["x", "0.5", True, None, ["1"], [[0.5], [0.5, 0.6]]])
+def test_what_is_no_number_is_refused_where_the_model_is_made(value, refusal):
+    with refusal(ModelError, f"restitution coefficient r = {value!r} is not in (0, 1]"):
+        RestitutionModel(value)
+    with refusal(ModelError, f"family n = {value!r} is not a positive integer"):
+        RestitutionModel(0.5).orbit(value, 1.0)
+    with refusal(ModelError, f"amplitude Λ = {value!r} is not finite and ≥ 0"):
+        RestitutionModel(0.5).simulate(value, 0.0, -1.0, 3)
+
+
 @pytest.mark.parametrize("lam", [0.2, -1.0, np.nan, [1.0, 0.2]])
 def test_the_phase_of_an_orbit_below_the_saddle_node_is_refused(lam, refusal):
     # Of several Λ the first one without an orbit is named.

@@ -85,7 +85,7 @@ def test_a_required_orbit_that_does_not_exist_is_refused_with_its_reason(refusal
 
 
 def test_a_branch_without_a_fold_has_a_single_side():
-    # Strong damping, soft contact: Λ falls all the way to permanent contact.
+    # Strong damping, compliant contact: Λ falls all the way to permanent contact.
     contact = SpringDamper(2.592, float(damping_ratio(0.0893)))
     assert np.isnan(saddle_node(contact, 1))
     orbit = orbit_at(contact, 1, 2.5)

@@ -15,7 +15,7 @@ from bouncing_ball.paper.orbits.spring_damper_orbit import SpringDamperOrbit
 
 
 def test_the_greatest_height_of_a_ball_released_downwards_is_in_contact():
-    # A stable orbit of a soft contact: the ball turns round before release, so
+    # A stable orbit of a compliant contact: the ball turns round before release, so
     # its greatest height lies in the contact.
     r, omega, lam = 0.1546, 0.3691, 10.5378
     orbit = orbit_at(SpringDamper(omega, float(damping_ratio(r))), 1, lam)

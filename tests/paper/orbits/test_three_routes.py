@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.beyond.simulation import next_impact
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
 from bouncing_ball.paper.contact.damping import Release, damping_ratio
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
@@ -81,7 +80,7 @@ def test_the_simulation_returns_to_every_admissible_orbit(drawn):
     orbit = every[every.is_admissible()]
     assert orbit.size > every.size / 4
     u = orbit.relative_impact_velocity
-    cycle = next_impact(orbit.law, orbit.amplitude, orbit.phase, u)
+    cycle = orbit.cycle(orbit.phase, u)
     turn = np.angle(np.exp(1j * (cycle.phase - orbit.phase)))
     late = cycle.time - 2 * np.pi * orbit.n
     off = np.max(np.abs([turn, late, (cycle.relative_velocity - u)]), axis=0)

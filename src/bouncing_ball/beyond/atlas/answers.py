@@ -186,8 +186,8 @@ def _of_nodes(plan: Plan, row: int, index: np.ndarray) -> xr.Dataset:
         {
             "threshold": (("tolerance", "model", "quantity", "node"), threshold),
             "error": (("model", "quantity", ratio, "node"), examined),
-            "stated": (("quantity", ratio, "node"), left.stated),
-            "exceeded": (("quantity", ratio, "node"), left.stated & left.exceeded),
+            "stated": (("quantity", ratio, "node"), left.is_valid),
+            "exceeded": (("quantity", ratio, "node"), left.is_valid & left.exceeded),
             "unstable": ((ratio, "node"), ~stable[at]),
             "sought": ("node", sum(step.sought.sum(axis=0) for step in steps)),
         }

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.beyond.corrected.errors import models
-from bouncing_ball.beyond.corrected.instant import Instant, instant_of
+from bouncing_ball.beyond.corrected.errors import exact_and_simple_models
+from bouncing_ball.beyond.corrected.instant import Instant
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
 from bouncing_ball.beyond.corrected.signature import Signature
 from bouncing_ball.beyond.laws.contact_law import ContactLaw
@@ -55,12 +55,12 @@ class Table:
 
     @property
     def time(self) -> float:
-        """SIParameter of time, 1/Ω, in s."""
+        """Unit of time, 1/Ω, in s."""
         return 1 / self.angular_frequency
 
     @property
     def length(self) -> float:
-        """SIParameter of length, g/Ω², in m."""
+        """Unit of length, g/Ω², in m."""
         return self.gravity / self.angular_frequency**2
 
 
@@ -100,7 +100,7 @@ class PhysicalCase:
         that of a free impact.
         """
         if self.law is None:
-            return {model.name: model for model in models(self.contact)}
+            return {model.name: model for model in exact_and_simple_models(self.contact)}
         return {
             "hertz" if isinstance(self.law, Tsuji) else self.law.name: LawModel(self.law),
             "restitution": RestitutionModel(self.contact.restitution),
@@ -109,15 +109,17 @@ class PhysicalCase:
 
     def instant(self, n: ArrayLike) -> Instant:
         """Signature of the contact at the impact speeds of the restitution model's n-T orbits."""
-        r = self.contact.restitution
         # The r of a contact law is interpolated, and may exceed 1 by rounding.
-        return instant_of(self.models["corrected"], rigid_speed(n, r))._replace(restitution=r)
+        return self._interpolated_instant(n)._replace(restitution=self.contact.restitution)
+
+    def _interpolated_instant(self, n: ArrayLike) -> Instant:
+        corrected: Any = self.models["corrected"]
+        return corrected.signature(rigid_speed(n, self.contact.restitution))
 
     def has_its_restitution(self, n: ArrayLike) -> np.ndarray:
         """Whether the contact law has the r of ``contact`` at the impact speed of n-T orbits."""
         r = float(self.contact.restitution)
-        own = instant_of(self.models["corrected"], rigid_speed(n, r)).restitution
-        return np.abs(own - r) < _SAME
+        return np.abs(self._interpolated_instant(n).restitution - r) < _SAME
 
     def in_si(self) -> dict[str, float]:
         """Stiffness k = mω² in N/m, damping c = 2ζmω in N s/m, where ω = ϖΩ, contact time in s,

@@ -43,7 +43,7 @@ MATERIALS = ("youngs_modulus", "poissons_ratio", "table_youngs_modulus", "table_
 # Parameters that determine its loss; the height of a rebound needs that of the drop, too.
 LOSSY = ("damping", "damping_ratio", "restitution", "measured_restitution", "rebound_height")
 _PAIRS = {"rebound_height": "drop_height"}
-# Parameters of MuJoCo, which have arguments of their own because they are lists.
+# Parameters of MuJoCo that are lists; each of them is a separate argument.
 _OF_MUJOCO = ("solref", "solimp")
 Given = Mapping[str, float]
 STANDARD_GRAVITY = 9.80665
@@ -340,36 +340,36 @@ class Source(NamedTuple):
         return (*found, f"r changes from {before} to {after}, because {why}")
 
 
-def read_engine(said: Mapping[str, Any]) -> tuple[Source | None, dict[str, Any]]:
+def read_engine(arguments: Mapping[str, Any]) -> tuple[Source | None, dict[str, Any]]:
     """The engine whose parameters are given, and the arguments with these as k and c.
 
     Without such an engine, None and the arguments unchanged.
     """
-    values = _engine_values(said)
-    name = said.get("from_engine")
+    values = _engine_values(arguments)
+    name = arguments.get("from_engine")
     if name is None:
         if values:
             first = next(iter(values))
             what = f"{{{first}}}" if first in _OF_MUJOCO else f"{{parameters}} {first}"
             raise ParameterError(f"{what} needs {{from_engine}}, the name of the engine")
-        return None, dict(said)
+        return None, dict(arguments)
     engine = engine_named(name).reader(values)
     for other in (*STIFF, *LOSSY, "law"):
-        if said.get(other) is not None:
+        if arguments.get(other) is not None:
             raise ParameterError(f"{{{other}}} is not allowed with {{from_engine}}")
-    mass = said.get("mass")
+    mass = arguments.get("mass")
     if mass is not None:
         mass = number("mass", mass, SIParameter("kg", "20 g"))
     source = Source(engine, values, engine.contact(values, mass))
-    rule = said.get("release")
+    rule = arguments.get("release")
     # Written for another engine, the contact ends as there; otherwise as here, or as a law's.
-    if not said.get("engine") and not engine.needs_speed:
+    if not arguments.get("engine") and not engine.needs_speed:
         rule = str(engine.release(rule))
-    return source, {**said, **source.contact._asdict(), "mass": mass, "release": rule}
+    return source, {**arguments, **source.contact._asdict(), "mass": mass, "release": rule}
 
 
-def _engine_values(said: Mapping[str, Any]) -> dict[str, Any]:
+def _engine_values(arguments: Mapping[str, Any]) -> dict[str, Any]:
     """The parameters of an engine that are given, by name."""
-    values = {name: said.get(name) for name in _OF_MUJOCO}
-    values |= said.get("parameters") or {}
+    values = {name: arguments.get(name) for name in _OF_MUJOCO}
+    values |= arguments.get("parameters") or {}
     return {name: value for name, value in values.items() if value is not None}

@@ -198,11 +198,11 @@ def design(
     (0.75, 'force')
     """
     call = locals()
-    source, said = read_engine(call)
-    given = _in_si(said)
+    source, arguments = read_engine(call)
+    given = _in_si(arguments)
     question = call | _in_si(call)
-    kind = _law_type(law, engine, said["release"], given)
-    rule = _release_rule(engine, said["release"], given)
+    kind = _law_type(law, engine, arguments["release"], given)
+    rule = _release_rule(engine, arguments["release"], given)
     one_of("quantity", quantity, {str(each): each for each in QUANTITIES})
     if n is not None and (n != int(n) or n < 1):
         raise ModelError(f"index of the family n = {n} is not a positive integer")

@@ -82,7 +82,7 @@ def by_error_law(case: PhysicalCase, n: np.ndarray) -> tuple[np.ndarray, np.ndar
     there = case.models["restitution"].orbit(n, lam).exists
     instant = case.instant(n[there])
     predicted[: len(OF_IMPACTS), there] = [*error_law.first_order(n[there], instant, lam).values()]
-    is_small = error_law.small_parameter(n[there], instant, lam) < error_law.STATED
+    is_small = error_law.small_parameter(n[there], instant, lam) < error_law.VALID_BELOW
     # If the r of a contact law depends on the speed, it equals the r of the restitution model at
     # one speed only.
     holds[there] = is_small & case.has_its_restitution(n[there])

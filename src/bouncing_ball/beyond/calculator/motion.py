@@ -70,7 +70,7 @@ def of_family(case: PhysicalCase, family: Family, tolerance: float) -> FinalMoti
     # The exact model and the restitution model.
     found = {
         name: final_motions(
-            _law(case, name), case.table.amplitude, start.phase, start.velocity, impacts=_IMPACTS
+            case.models[name], case.table.amplitude, start.phase, start.velocity, impacts=_IMPACTS
         )
         for name in list(case.models)[:2]
     }
@@ -128,19 +128,12 @@ def _start(case: PhysicalCase, orbit: Any | None) -> _Start:
     return _Start(float(orbit.phase), float(orbit.impact_velocity) * (1 + _BESIDE))
 
 
-def _law(case: PhysicalCase, name: str) -> Any:
-    model: Any = case.models[name]
-    if name == "restitution":
-        return model.restitution
-    return case.contact if case.law is None else case.law
-
-
 def _laid(case: PhysicalCase, family: Family) -> str | None:
     """Kind of the motion of a ball that is laid on the table; None if it ends on the orbit."""
     lam = case.table.amplitude
     if lam <= case.permanent_contact:
         return str(Kind.PERMANENT_CONTACT)
-    found = final_motions(_law(case, next(iter(case.models))), lam, 0.0, lam, impacts=_IMPACTS)
+    found = final_motions(next(iter(case.models.values())), lam, 0.0, lam, impacts=_IMPACTS)
     same = found.kind == Kind.ORBIT and (int(found.periods), int(found.impacts)) == (family.n, 1)
     return None if same else str(found.kind)
 
@@ -234,8 +227,8 @@ def height_and_power(sequence: ImpactSequence, before: int = 0) -> tuple[np.ndar
     The mean height of an elastic ball on a table at rest is two thirds of its greatest height, and
     the ball receives no power:
 
-    >>> from bouncing_ball.beyond.simulation import simulate
-    >>> height, power = height_and_power(simulate(1.0, 0.0, 0.0, -2.0, 5))
+    >>> from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
+    >>> height, power = height_and_power(RestitutionModel(1.0).simulate(0.0, 0.0, -2.0, 5))
     >>> round(float(height), 12), round(float(power), 12)
     (1.333333333333, 0.0)
     """

@@ -1,4 +1,4 @@
-"""What a design says in sentences: the motion, the verdict with its reason, and further notes."""
+"""The sentences of a design: the motion, the verdict with its reason, and further notes."""
 
 import math
 from collections.abc import Mapping

@@ -31,7 +31,9 @@ SIMPLE = ("restitution", "corrected")
 """The simple models, which are compared with the exact model."""
 
 
-def models(contact: SpringDamper) -> tuple[SpringDamperModel, RestitutionModel, CorrectedModel]:
+def exact_and_simple_models(
+    contact: SpringDamper,
+) -> tuple[SpringDamperModel, RestitutionModel, CorrectedModel]:
     """The exact model of a contact, and both simple models with the r of a free impact on it.
 
     Raises
@@ -41,7 +43,7 @@ def models(contact: SpringDamper) -> tuple[SpringDamperModel, RestitutionModel, 
 
     Examples
     --------
-    >>> [model.name for model in models(SpringDamper(5.0, 0.0))]
+    >>> [model.name for model in exact_and_simple_models(SpringDamper(5.0, 0.0))]
     ['spring-damper', 'restitution', 'corrected']
     """
     return (
@@ -67,7 +69,7 @@ def errors(
     >>> errors(SpringDamper(100.0, 0.1), 1, 1.0, ["max_height"]).round(4).tolist()
     [[-0.0083], [-0.0]]
     """
-    exact, *simple = models(contact)
+    exact, *simple = exact_and_simple_models(contact)
     return relative_errors(exact, simple, n, amplitude, quantities)
 
 
@@ -85,7 +87,10 @@ def orbit_errors(orbit: SpringDamperOrbit) -> np.ndarray:
     [-0.0083, -0.0]
     """
     exact = [getattr(orbit, quantity) for quantity in OF_ORBITS]
-    simple = (values(x, orbit.n, orbit.amplitude, OF_ORBITS) for x in models(orbit.law)[1:])
+    simple = (
+        values(x, orbit.n, orbit.amplitude, OF_ORBITS)
+        for x in exact_and_simple_models(orbit.law)[1:]
+    )
     return np.stack([[*map(relative, exact, each)] for each in simple])
 
 

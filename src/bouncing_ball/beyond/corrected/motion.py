@@ -73,7 +73,7 @@ class CorrectedDynamics(Dynamics):
     def fly(self, departure: Departure) -> tuple[Impact, np.ndarray]:
         """The start of the next contact, and the time from the last start to it."""
         flight = departure.flight
-        landing = land(flight, np.maximum(departure.aloft, flight.sure()))
+        landing = land(flight, np.maximum(departure.aloft, flight.earliest_landing()))
         at_level = departure.phase + landing.time
         flown = landing.time + self._descent(at_level, -landing.rate)
         instant = reduce_angle(departure.phase + flown)

@@ -103,7 +103,7 @@ def destinations(parameters: Basins, release: Release, part: Part = np.asarray) 
     velocity = lam * np.cos(phase) - speed
     ends = []
     for model in three_models(r, ratio, release):
-        found = final_motions(model.impact_law, lam, phase, velocity, impacts=parameters.impacts)
+        found = final_motions(model, lam, phase, velocity, impacts=parameters.impacts)
         ends.append(_index_of_motion(found))
     return {"destination": np.stack(ends, axis=1).astype(np.int8)}
 

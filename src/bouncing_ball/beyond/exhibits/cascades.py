@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 from pydantic import Field
 
-from bouncing_ball.beyond.corrected.errors import models
+from bouncing_ball.beyond.corrected.errors import exact_and_simple_models
 from bouncing_ball.beyond.long_run.cascade_of_flights import openings, stiff_openings
 from bouncing_ball.beyond.long_run.period_doublings import MOST, cascade
 from bouncing_ball.datasets.parameters import (
@@ -170,9 +170,9 @@ def cascades(parameters: Cascades, release: Release) -> xr.Dataset:
     ratios = parameters.frequency_ratio.grid()
     with_stiff = np.concatenate([ratios, _STIFF])
     contact = SpringDamper.from_restitution(r[:, np.newaxis], with_stiff, release)
-    exact_model, _, corrected_model = models(contact)
+    exact_model, _, corrected_model = exact_and_simple_models(contact)
     # The restitution model has the r of a free impact on the contact and does not depend on ϖ.
-    _, restitution_model, _ = models(contact[:, :1])
+    _, restitution_model, _ = exact_and_simple_models(contact[:, :1])
     # Arrays over (doubling, restitution, ϖ).
     simple, corrected, exact = (
         cascade(model.period_doubling(parameters.n), parameters.doublings)

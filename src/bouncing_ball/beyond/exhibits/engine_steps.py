@@ -17,7 +17,6 @@ from pydantic import AfterValidator, Strict
 
 from bouncing_ball.beyond.corrected.errors import SIMPLE, errors
 from bouncing_ball.beyond.engines.scheme import Scheme, restitution_in_steps
-from bouncing_ball.beyond.simulation import next_impact
 from bouncing_ball.datasets.parameters import Family, Many, Parameters, Restitution, Seed, number
 from bouncing_ball.datasets.selection import index_of
 from bouncing_ball.datasets.variables import Variable, describe
@@ -129,7 +128,9 @@ def greatest_heights(orbit: Orbit, restitution: np.ndarray) -> np.ndarray:
     heights = []
     for zeta in damping_ratio(restitution, contact.release):
         law = SpringDamper(contact.frequency_ratio, zeta, contact.release)
-        phase, relative_velocity, *_ = next_impact(law, lam, phase, relative_velocity)
+        cycle = SpringDamperModel(law).cycle(lam, phase, relative_velocity)
+        phase = cycle.phase
+        relative_velocity = cycle.relative_velocity
         velocity = lam * np.cos(phase) + relative_velocity
         heights.append(lam * np.sin(phase) + velocity * velocity / 2)
     return np.array(heights)

@@ -8,15 +8,17 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.beyond.corrected.errors import models
+from bouncing_ball.beyond.corrected.errors import exact_and_simple_models
 from bouncing_ball.beyond.exhibits.random_orbits import random_orbits
 from bouncing_ball.beyond.long_run.destination import final_motions
-from bouncing_ball.beyond.simulation import Law, simulate
 from bouncing_ball.datasets.parameters import Parameters, Seed, Span
 from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball.paper.contact.damping import Release, restitution_coefficient
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.orbits.model import ImpactModel
 from bouncing_ball.paper.orbits.orbit import OBSERVABLES
+from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
+from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 
 VARIABLES = {
     "end_speed": Variable("speed of the ball towards the table at that impact", symbol="-δ′"),
@@ -85,21 +87,25 @@ def reference_orbits(parameters: References) -> xr.Dataset:
 def _followed() -> xr.Dataset:
     """The balls, and the motions on which they end, over (model, motion)."""
     r, omega, lam, phase, velocity = _BALLS
+    restitution = RestitutionModel(r)
     contact = SpringDamper.from_restitution(r, omega, Release.DISPLACEMENT)
+    spring_damper = SpringDamperModel(contact)
     given = {name: ("motion", values) for name, values in zip(_GIVEN, _BALLS, strict=True)}
     start = xr.Dataset(given)
     of_models = [
         xr.Dataset({name: ("motion", values.astype(float)) for name, values in ends.items()})
-        for ends in (_ends(r, lam, phase, velocity), _ends(contact, lam, phase, velocity))
+        for ends in (_ends(model, lam, phase, velocity) for model in (restitution, spring_damper))
     ]
     models = xr.Variable("model", ["restitution", "spring-damper"])
     return start.merge(xr.concat(of_models, models))
 
 
-def _ends(law: Law, lam: np.ndarray, phase: np.ndarray, velocity: np.ndarray) -> dict[str, Any]:
+def _ends(
+    model: ImpactModel, lam: np.ndarray, phase: np.ndarray, velocity: np.ndarray
+) -> dict[str, Any]:
     """The motions of balls, and their states at the last of 100 impacts or before they rest."""
-    found = final_motions(law, lam, phase, velocity)
-    run = simulate(law, lam, phase, velocity, 100)
+    found = final_motions(model, lam, phase, velocity)
+    run = model.simulate(lam, phase, velocity, 100)
     last = run.impacts - 1
     at_last = last, np.arange(last.size)
     return {
@@ -116,7 +122,9 @@ def _under(rule: Release, omega: np.ndarray, seed: int) -> xr.Dataset:
     """One random orbit for each ϖ under a release rule, over ``sample``."""
     n, zeta, lam, _ = random_orbits(omega.size, seed, rule, _PLACES)
     r = restitution_coefficient(zeta)
-    exact, simple, corrected = models(SpringDamper.from_restitution(r, omega, rule))
+    exact, simple, corrected = exact_and_simple_models(
+        SpringDamper.from_restitution(r, omega, rule)
+    )
     orbit = exact.orbit(n, lam)
     trace, determinant = orbit.trace_and_determinant()
     simple_orbit = simple.orbit(n, lam)

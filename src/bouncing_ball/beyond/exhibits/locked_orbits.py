@@ -197,7 +197,7 @@ def _time_to_the_end(
     velocity = lam * np.cos(phase) - speed
     shape = np.broadcast_shapes(model.shape, lam.shape, phase.shape)
     path = np.full((3, impacts, *shape), np.nan)
-    found = final_motions(model.impact_law, lam, phase, velocity, impacts=impacts, path=path)
+    found = final_motions(model, lam, phase, velocity, impacts=impacts, path=path)
     times, phases, velocities = path
     from_end = np.maximum(
         np.abs(reduce_angle(phases - found.end_phase)), np.abs(velocities - found.end_velocity)
@@ -311,7 +311,7 @@ def returns_at_places(
     ratios = np.array(parameters.frequency_ratio)[:, np.newaxis]
     changes = np.array([0.0, *parameters.shifts])[:, np.newaxis]
     found = returns(r, lam + changes, parameters.impacts)
-    contact = three_models(r, ratios, release).contact.impact_law
+    contact = three_models(r, ratios, release).contact
     motion = final_motions(contact, lam, -np.pi / 2, 0.0, impacts=parameters.impacts)
     same = (motion.kind == Kind.LOCKED) & (motion.periods == found.periods[0])
     return {**found._asdict(), "same": same}

@@ -89,7 +89,7 @@ def motions_at_nodes(parameters: Locking, release: Release, part: Part = np.asar
     phase = parameters.phase
     velocity = lam * np.cos(phase) - parameters.impact_speed
     found = [
-        vars(final_motions(model.impact_law, lam, phase, velocity, impacts=parameters.impacts))
+        vars(final_motions(model, lam, phase, velocity, impacts=parameters.impacts))
         for model in three_models(r, ratios[:, np.newaxis], release)
     ]
     shape = (ratios.size, lam.size)

@@ -119,9 +119,8 @@ def errors_at_nodes(parameters: MeanMotions, release: Release, part: Part = np.a
     velocity = lam * (np.cos(phase) - speed)
     of_models = []
     for model in three_models(r, ratios, release):
-        law = model.impact_law
-        found = final_motions(law, lam, phase, velocity, impacts=parameters.impacts)
-        flights, height, power, exponent = means(law, lam, found, parameters.samples)
+        found = final_motions(model, lam, phase, velocity, impacts=parameters.impacts)
+        flights, height, power, exponent = means(model, lam, found, parameters.samples)
         exponent = np.where(found.periods > 0, found.exponent, exponent)
         values = np.stack([power, height, flights, exponent])
         # The restitution model has one ϖ.

@@ -1,4 +1,4 @@
-"""Maps of motions over restitution and amplitude: what several figures share."""
+"""Parts that the figures with maps of motions over restitution and amplitude share."""
 
 from collections.abc import Iterable, Mapping
 from itertools import pairwise

@@ -17,8 +17,7 @@ import numpy as np
 from pydantic import Field
 from scipy.stats import binomtest
 
-from bouncing_ball.beyond.corrected.errors import SIMPLE
-from bouncing_ball.beyond.corrected.errors import models as models_of_contact
+from bouncing_ball.beyond.corrected.errors import SIMPLE, exact_and_simple_models
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
 from bouncing_ball.datasets.parameters import (
     Amplitude,
@@ -93,7 +92,7 @@ class ParameterPlane(Sharded):
 
 MODELS = (*SIMPLE, "spring-damper")
 LEAST_ERROR = 1e-5
-"""Smallest error of a Lyapunov exponent that is stated. A motion repeats within 1e-6 of its state,
+"""Smallest error that is given for a Lyapunov exponent. A motion repeats within 1e-6 of its state,
 so that the error of its multipliers is about 1e-6 times the curvature of the map, which is of order
 one to ten."""
 LIMITS = ("", "_low", "_high")
@@ -127,7 +126,7 @@ def three_models(
         which r and ϖ broadcast.
     """
     contact = SpringDamper.from_restitution(restitution, ratio, release)
-    exact, simple, corrected = models_of_contact(contact)
+    exact, simple, corrected = exact_and_simple_models(contact)
     return ThreeModels(restitution=simple, corrected=corrected, contact=exact)
 
 

@@ -107,15 +107,35 @@ def _printed(restitution: float, ratio: float, n: int, kind: Bifurcation) -> str
 
 def thresholds(parameters: Thresholds, digits: int) -> Iterator[Row]:
     """The ϖ at which the errors of the restitution model fall to the tolerance (Eqs. 37, 38)."""
-    r, lam = exactly(parameters.restitution), exactly(parameters.amplitude)
-    tolerance, n = exactly(parameters.tolerance), parameters.n
+    r = exactly(parameters.restitution)
+    lam = exactly(parameters.amplitude)
+    tolerance = exactly(parameters.tolerance)
+    n = parameters.n
     names = list(CONDITIONS)
-    zeta, rule = damping_ratio(parameters.restitution), Release.DISPLACEMENT
-    starts = search(zeta, rule, n, float(lam), _GRID, float(tolerance), names).threshold[0, :, 0]
+    found = search(
+        damping_ratio(parameters.restitution),
+        Release.DISPLACEMENT,
+        n=n,
+        amplitude=float(lam),
+        ratios=_GRID,
+        tolerance=float(tolerance),
+        quantities=names,
+    )
+    starts = found.threshold[0, :, 0]
     for quantity, start in zip(names, starts, strict=True):
         name = f"ϖ for {float(tolerance):.0%} of {quantity.replace('_', ' ')}"
         printed = "82" if quantity == "max_height" else ""
-        yield _threshold(name, quantity, r, n, lam, tolerance, float(start), digits, printed)
+        yield _threshold(
+            name,
+            quantity,
+            restitution=r,
+            n=n,
+            amplitude=lam,
+            tolerance=tolerance,
+            start=float(start),
+            digits=digits,
+            printed=printed,
+        )
     try:
         found = permanent_contact_threshold(r, tolerance, digits)
     except ProofError as error:
@@ -131,9 +151,9 @@ def thresholds(parameters: Thresholds, digits: int) -> Iterator[Row]:
 def _threshold(
     name: str,
     quantity: str,
-    r: Fraction,
+    restitution: Fraction,
     n: int,
-    lam: Fraction,
+    amplitude: Fraction,
     tolerance: Fraction,
     start: float,
     digits: int,
@@ -143,7 +163,15 @@ def _threshold(
     reason = "no threshold was found to start from"
     for sign in (-1, 1) if np.isfinite(start) else ():
         try:
-            found = error_threshold(quantity, r, n, lam, sign * tolerance, start, digits)
+            found = error_threshold(
+                quantity,
+                restitution,
+                n=n,
+                amplitude=amplitude,
+                error=sign * tolerance,
+                start=start,
+                digits=digits,
+            )
         except ProofError as error:
             reason = str(error)
             continue
@@ -153,7 +181,7 @@ def _threshold(
 
 
 def judged(ball: arb, printed: str) -> str:
-    """What an interval says of a printed number, whose last digit is rounded.
+    """Whether an interval agrees with a printed number, whose last digit is rounded.
 
     Examples
     --------
@@ -161,7 +189,8 @@ def judged(ball: arb, printed: str) -> str:
     ('reproduced', 'contradicted', 'not decided')
     """
     unit = arb(10) ** -len(printed.partition(".")[2])
-    low, high = arb(printed) - unit / 2, arb(printed) + unit / 2
+    low = arb(printed) - unit / 2
+    high = arb(printed) + unit / 2
     if ball > low and ball < high:
         return "reproduced"
     if ball < low or ball > high:

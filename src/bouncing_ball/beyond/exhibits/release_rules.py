@@ -89,11 +89,11 @@ def _bifurcations(parameters: ReleaseRules, rule: Release) -> xr.Dataset:
 def _thresholds(wanted: RuleThresholds) -> xr.Dataset:
     """The ϖ above which each quantity is within the tolerance, for each reading of r."""
     r = wanted.restitution
-    own = float(restitution_coefficient(damping_ratio(r), Release.FORCE))
+    force_restitution = float(restitution_coefficient(damping_ratio(r), Release.FORCE))
     readings = {
         "displacement release, r of Eq. 16": (Release.DISPLACEMENT, r),
         "force release, r of Eq. 16": (Release.FORCE, r),
-        "force release, its own r": (Release.FORCE, own),
+        "force release, its own r": (Release.FORCE, force_restitution),
     }
     found = [
         errors_along_ratio(
@@ -111,7 +111,7 @@ def _thresholds(wanted: RuleThresholds) -> xr.Dataset:
         .assign_coords(reading=reading)
         for reading, (rule, simple) in readings.items()
     ]
-    return xr.concat(found, "reading").assign(force_restitution=own)
+    return xr.concat(found, "reading").assign(force_restitution=force_restitution)
 
 
 def release_rules(parameters: ReleaseRules) -> xr.Dataset:

@@ -536,7 +536,9 @@ def path(
     >>> round(float(depth), 12), abs(round(float(rate), 12))
     (1.0, 0.0)
     """
-    laws, (t, *columns), shape = _row(law, time, *found[:3], speed, phase, amplitude, weight)
+    ends = found[:3]
+    start = speed, phase, amplitude, weight
+    laws, (t, *columns), shape = _row(law, time, *ends, *start)
     duration, end_depth, end_rate, v, phi, lam, w = columns
     start = Start(depth=np.zeros_like(t), rate=v, phase=phi, amplitude=lam, weight=w)
     depth, rate = states(laws, start, (duration, end_depth, end_rate), t)

@@ -26,7 +26,7 @@ from bouncing_ball.beyond.laws.collocation import states
 from bouncing_ball.beyond.laws.motion import ContactDynamics
 from bouncing_ball.beyond.laws.panel import Start
 from bouncing_ball.errors import ModelError
-from bouncing_ball.numerics.arrays import Batch
+from bouncing_ball.numerics.arrays import Batch, as_numbers
 from bouncing_ball.paper.contact.contact import Span
 from bouncing_ball.paper.contact.damping import Release, check_damping, check_positive
 from bouncing_ball.paper.motion.dynamics import Dynamics
@@ -60,8 +60,13 @@ class ContactLaw(Batch, ABC):
     def __post_init__(self):
         # Laws are keys of caches, so that a parameter must be a number or an array with an axis.
         for name, value in self.parameters().items():
+            # None stands for a default that the subclass sets.
+            if value is None:
+                continue
+            as_numbers(value, name.replace("_", " "), "a number or an array of numbers")
             x = np.asarray(value)
             object.__setattr__(self, name, x if x.ndim else x.item())
+        self.check_shape()
 
     @abstractmethod
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:

@@ -28,13 +28,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
-from bouncing_ball.beyond.simulation import simulate
 from bouncing_ball.errors import require
 from bouncing_ball.numerics.corrector import NewtonSettings, solve
 from bouncing_ball.paper.contact.permanent_contact import permanent_contact_threshold
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.motion.deviations import Deviation, Jacobian
 from bouncing_ball.paper.motion.flight import Flight, table
+from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 
 # Number of samples of an oscillation, among which its first maximum is bracketed.
 _FINE = 400
@@ -359,7 +359,8 @@ def _returns(contact: SpringDamper, flights: int, points: np.ndarray) -> np.ndar
     landing_rate = np.minimum(safe[..., 1 - 2 * flights], 0.0)
     phase = release_phase + first_flight
     velocity = landing_rate + table(phase, amplitude)[0]
-    time = simulate(contact, amplitude, phase, velocity, flights + 2).time
+    model = SpringDamperModel(contact)
+    time = model.simulate(amplitude, phase, velocity, flights + 2).time
     late = np.abs(time[flights:] - time[0] - 2 * np.pi).min(axis=0)
     return np.isfinite(points[..., 0]) & (late < _CLOSE)
 

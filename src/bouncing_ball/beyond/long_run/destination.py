@@ -31,11 +31,10 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.beyond.long_run.lyapunov import DIGITS, FORGOTTEN, NEAR, Stretching
 from bouncing_ball.beyond.long_run.motions import Kind, Motions, Reason
-from bouncing_ball.beyond.simulation import Law, dynamics_of
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.motion.deviations import Jacobian
-from bouncing_ball.paper.motion.dynamics import Departure, Dynamics, Impact
+from bouncing_ball.paper.motion.dynamics import Departure, Dynamics, HasDynamics, Impact
 from bouncing_ball.paper.motion.flight import table
 from bouncing_ball.paper.motion.sequence import Status
 
@@ -134,7 +133,7 @@ class _Balls(NamedTuple):
 
 
 def final_motions(
-    law: Law,
+    model: HasDynamics,
     amplitude: ArrayLike,
     phase: ArrayLike,
     velocity: ArrayLike,
@@ -146,9 +145,10 @@ def final_motions(
 
     Parameters
     ----------
-    law, amplitude, phase, velocity
-        As in :func:`bouncing_ball.beyond.simulation.simulate`. The phase is φ, and the velocity is
-        the absolute velocity z′ before the impact.
+    model : HasDynamics
+        The model, or the law, of the impact.
+    amplitude, phase, velocity : array_like
+        Λ ≥ 0, the phase φ of the first impact, and the absolute velocity z′ before it.
     impacts : int
         Number of impacts after which the search for a repetition ends. A motion is found if it
         repeats within about a third of them.
@@ -170,22 +170,23 @@ def final_motions(
     --------
     Below and above the period doubling at Λ = 1.527, and a motion that sticks to the table:
 
-    >>> found = final_motions(0.5, [1.2, 1.6, 2.5], 1.0, -3.0)
+    >>> from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
+    >>> model = RestitutionModel(0.5)
+    >>> found = final_motions(model, [1.2, 1.6, 2.5], 1.0, -3.0)
     >>> found.kind.tolist(), found.periods.tolist(), found.impacts.tolist()[:2]
     (['orbit', 'subharmonic', 'locked'], [1, 2, 6], [1, 2])
 
     The path to a motion is the one that a simulation has, up to a rounding of the velocity:
 
-    >>> from bouncing_ball.beyond.simulation import simulate
     >>> path = np.empty((3, 20, 2))
-    >>> start = 0.5, [1.2, 1.6], 1.0, -3.0
-    >>> found = final_motions(*start, impacts=20, path=path)
-    >>> way = simulate(*start, 20)
+    >>> start = [1.2, 1.6], 1.0, -3.0
+    >>> found = final_motions(model, *start, impacts=20, path=path)
+    >>> way = model.simulate(*start, 20)
     >>> apart = np.abs(path - [way.time, way.phase, way.impact_velocity])
     >>> found.followed.tolist(), apart[:2].max().tolist(), bool(apart[2].max() < 1e-15)
     ([20, 20], 0.0, True)
     """
-    dynamics, start, relative, shape = dynamics_of(law, amplitude).first_impacts(phase, velocity)
+    dynamics, start, relative, shape = model.dynamics(amplitude).first_impacts(phase, velocity)
     # After memory of this size has been freed once, the process keeps it and need not request it
     # from the system at each step.
     np.empty(_KEPT, dtype=np.int8)

@@ -81,7 +81,7 @@ def motions(
         If there are too many balls, or a state is outside its range.
     """
     require_memory(amplitude.size, "a grid of starts")
-    found = final_motions(model.impact_law, amplitude, phase, velocity, impacts=impacts)
+    found = final_motions(model, amplitude, phase, velocity, impacts=impacts)
     return described(_variables(found, (CASE,)), variables=VARIABLES)
 
 
@@ -190,7 +190,7 @@ def _ends(
     phase = np.nan_to_num(phase)
     speed = np.where(speed > 0, speed, 1.0)
     velocity = amplitude * np.cos(phase) - speed
-    return final_motions(model.impact_law, amplitude, phase, velocity, impacts=impacts)
+    return final_motions(model, amplitude, phase, velocity, impacts=impacts)
 
 
 def _impacts(model: Any, amplitude: np.ndarray, found: Motions, samples: int) -> np.ndarray:
@@ -228,7 +228,7 @@ def basins(
     speed = (float(fastest(model, amplitude)) if fast is None else fast) * middle
     start_phase, start_speed = np.meshgrid(phase, speed)
     velocity = amplitude * np.cos(start_phase) - start_speed
-    found = final_motions(model.impact_law, amplitude, start_phase, velocity, impacts=impacts)
+    found = final_motions(model, amplitude, start_phase, velocity, impacts=impacts)
     kinds = np.array(list(Kind))
     kind_number = np.argmax(found.kind[..., np.newaxis] == kinds, axis=-1)
     keys = np.stack([kind_number, found.periods, found.impacts], axis=-1).reshape(-1, 3)

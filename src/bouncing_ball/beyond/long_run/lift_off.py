@@ -23,13 +23,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
-from bouncing_ball.beyond.simulation import dynamics_of
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.motion.dynamics import Departure, Dynamics, Impact
 from bouncing_ball.paper.motion.flight import table
+from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
 
 # The ϖ of the corrected model from whose map the first order is computed. The relative error from
 # the second order is of order 1/ϖ, and that from rounding of order ε ϖ.
@@ -134,10 +134,10 @@ def returns(restitution: ArrayLike, amplitude: ArrayLike, impacts: int) -> Retur
     # A ball at rest on the table, at a phase at which the table presses on it.
     phase = np.full(r.shape, -np.pi / 2)
     velocity = np.zeros(r.shape)
-    dynamics, state, shape = dynamics_of(r, lam).in_a_row(phase, velocity)
+    dynamics, state, shape = RestitutionModel(r).dynamics(lam).in_a_row(phase, velocity)
     contact = SpringDamper.from_restitution(r.ravel(), _STIFF, Release.DISPLACEMENT)
-    corrected_law = CorrectedModel.of_contact(contact).impact_law
-    corrected, _, _ = dynamics_of(corrected_law, lam.ravel()).in_a_row(*state)
+    corrected_model = CorrectedModel.of_contact(contact)
+    corrected, _, _ = corrected_model.dynamics(lam.ravel()).in_a_row(*state)
 
     found = Return(
         periods=np.zeros(r.size, dtype=int),

@@ -23,12 +23,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.beyond.laws.collocation import integrals
-from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.long_run.motions import Motions
-from bouncing_ball.beyond.simulation import Law, dynamics_of
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.motion.dynamics import Departure, Dynamics, Impact
+from bouncing_ball.paper.motion.dynamics import Departure, Dynamics, HasDynamics, Impact
 from bouncing_ball.paper.motion.flight import table
 from bouncing_ball.paper.motion.linear_contact import has_closed_form
 from bouncing_ball.paper.motion.sequence import Status
@@ -126,7 +124,7 @@ def over_steps(
     return height, work
 
 
-def means(law: Law, amplitude: ArrayLike, found: Motions, samples: int) -> np.ndarray:
+def means(model: HasDynamics, amplitude: ArrayLike, found: Motions, samples: int) -> np.ndarray:
     """Means over the motions on which balls end: over one period, or over ``samples`` impacts if
     the motion does not repeat.
 
@@ -144,7 +142,9 @@ def means(law: Law, amplitude: ArrayLike, found: Motions, samples: int) -> np.nd
     In each period the 1-T orbit dissipates ½(1 - r²)v², where (1 + r) v = 2π:
 
     >>> from bouncing_ball.beyond.long_run.destination import final_motions
-    >>> flights, _, power, _ = means(0.5, 1.2, final_motions(0.5, 1.2, 1.0, -3.0), 100)
+    >>> from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
+    >>> model = RestitutionModel(0.5)
+    >>> flights, _, power, _ = means(model, 1.2, final_motions(model, 1.2, 1.0, -3.0), 100)
     >>> float(flights.round(6)), bool(np.isclose(power, np.pi / 3))
     (1.0, True)
     """
@@ -153,7 +153,7 @@ def means(law: Law, amplitude: ArrayLike, found: Motions, samples: int) -> np.nd
     falls = np.isfinite(phase)
     phase = np.where(falls, phase, 0 * lam)
     velocity = np.where(falls, velocity, lam)
-    dynamics, start, relative, shape = dynamics_of(law, lam).first_impacts(phase, velocity)
+    dynamics, start, relative, shape = model.dynamics(lam).first_impacts(phase, velocity)
     impacts = np.where(found.impacts > 0, found.impacts, samples).ravel() * falls.ravel()
     total = np.full((5, impacts.size), np.nan)
     _add_up(dynamics, dynamics.start(start, relative), impacts, total)
@@ -210,10 +210,9 @@ def _step(
     lam = dynamics.amplitude
     if impact.known is not None:
         return _step_of_instants(lam, impact.known, departure, after.known, passed)
-    law = dynamics.law if isinstance(dynamics.law, ContactLaw) else None
     flight = departure.flight
     return over_steps(
-        law,
+        dynamics.contact,
         lam,
         departure.duration,
         phase=np.array([impact.phase, departure.phase]),

@@ -15,7 +15,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.beyond.simulation import Law, dynamics_of
 from bouncing_ball.errors import require
 from bouncing_ball.numerics.corrector import NewtonSettings, solve
 from bouncing_ball.numerics.elementary import reduce_angle
@@ -70,16 +69,14 @@ class Turns:
 
     Parameters
     ----------
-    law : Law
-        One law of the impact, or an array with an entry for each orbit.
-    n : int
-        Mean number of table periods from one impact to the next.
+    orbits : Orbit
+        n-T orbits with the law and the mean number n of table periods from one impact to the next:
+        one for all, or a row with one entry for each point.
     impacts : int
         m, the number of impacts in one turn.
     """
 
-    law: Law
-    n: Any
+    orbits: Orbit
     impacts: int
 
     def after(self, y: np.ndarray, differentiate: bool = True) -> tuple[Any, Any, Any, Jacobian]:
@@ -88,7 +85,7 @@ class Turns:
         """
         phase, velocity, amplitude = np.moveaxis(y, -1, 0)
         # Newton's steps may lead to Λ < 0, where no doubling is accepted.
-        dynamics = dynamics_of(self.law, np.abs(amplitude))
+        dynamics = self.orbits.dynamics(self.orbits.law, np.abs(amplitude))
         dynamics, (phase, velocity), shape = dynamics.in_a_row(phase, velocity)
         impact = dynamics.at_section(phase, velocity)
         change = Jacobian.identity(phase.size)
@@ -122,7 +119,7 @@ class Turns:
         leading_axes = tuple(range(1, y.ndim))
         moved = y + np.expand_dims(steps, leading_axes)
         _, velocity, time, m = self.after(moved)
-        late = time - 2 * np.pi * np.asarray(self.n) * self.impacts
+        late = time - 2 * np.pi * np.asarray(self.orbits.n) * self.impacts
         doubling = 1 + m.a + m.d + m.a * m.d - m.b * m.c
         values = np.stack([late, velocity - moved[..., 1], doubling], axis=-1)
         matrix = np.moveaxis(values[1:4] - values[4:], 0, -1) / (2 * _DIFFERENCE)
@@ -165,7 +162,7 @@ def cascade(orbit: Orbit, doublings: int) -> Cascade:
 
 def _followed(row: Orbit, doublings: int) -> np.ndarray:
     """Points y at the doublings of a one-dimensional array of orbits, (doublings, orbits, 3)."""
-    dynamics = dynamics_of(row.law, row.amplitude)
+    dynamics = row.dynamics(row.law, row.amplitude)
     dynamics, start, _ = dynamics.in_a_row(row.phase, row.relative_impact_velocity)
     phase, velocity = dynamics.section(dynamics.start(*start))
     y = np.stack(np.broadcast_arrays(phase, velocity, row.amplitude), axis=-1)
@@ -174,8 +171,8 @@ def _followed(row: Orbit, doublings: int) -> np.ndarray:
     gap = _FIRST * np.abs(np.sin(phase))
     which = np.arange(len(y))
     for k in range(1, doublings):
-        old = Turns(row.law, row.n, 2 ** (k - 1))
-        turns = Turns(row.law, row.n, 2**k)
+        old = Turns(row, 2 ** (k - 1))
+        turns = Turns(row, 2**k)
         solved = solve(turns.system, _doubled(old, turns, y, _SHARE * gap), _SETTINGS)
         step = solved.point[:, -1] - y[:, -1]
         # Λ rises along a cascade; a doubling at or below the previous Λ is that of the old orbit.

@@ -78,7 +78,8 @@ class Contact:
         The quotients are singular at the undamped resonance ζ = 0, ϖ = 1, where the balls become
         infinite.
         """
-        a, q = self.decay, self.frequency_ratio * self.frequency_ratio
+        a = self.decay
+        q = self.frequency_ratio * self.frequency_ratio
         sine, cosine = (self.damped * time).sin_cos()
         fall = (-(a * time)).exp()
         g = fall * sine / self.damped
@@ -87,8 +88,10 @@ class Contact:
         gravity = (1 - rest) / q
         # h = (e^{is} - rest - i g)/(q - 1 + 2ia)
         slow_sine, slow_cosine = time.sin_cos()
-        real, imaginary = slow_cosine - rest, slow_sine - g
-        detuning, loss = q - 1, 2 * a
+        real = slow_cosine - rest
+        imaginary = slow_sine - g
+        detuning = q - 1
+        loss = 2 * a
         square = detuning * detuning + loss * loss
         in_phase = (real * detuning + imaginary * loss) / square
         quadrature = (imaginary * detuning - real * loss) / square
@@ -156,7 +159,16 @@ def point(contact: Contact, n: int, excess: Number) -> Point:
     )
     (u, x, y), matrix = _solved(release, velocity, landing, right)
     end, speed = contact.state(duration, u, x, y)
-    return Point(duration, flight, u, x, y, matrix, end, speed)
+    return Point(
+        duration=duration,
+        flight=flight,
+        u=u,
+        x=x,
+        y=y,
+        matrix=matrix,
+        gap=end,
+        rate=speed,
+    )
 
 
 def _solved(first, second, third, right) -> tuple[list[Number], Number]:

@@ -24,7 +24,7 @@ from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits import spring_damper_bifurcations as double
 from bouncing_ball.paper.orbits.stability import Side
 
-# Bits beyond the digits that are asked for and those that stiff contacts cost by cancellation,
+# Bits beyond the requested digits and those that stiff contacts cost by cancellation,
 # about log2(ϖ²). With so many the ball is far narrower than the last decimal digit, so that the
 # decimal number and its error are the same whatever the double precision of the start.
 _GUARD = 160
@@ -37,11 +37,11 @@ _COARSE = 80
 
 
 class ProofError(ModelError):
-    """What was asked for could not be proved; the message gives the reason."""
+    """A number or an orbit cannot be certified; the message gives the reason."""
 
 
 class Proved(StrEnum):
-    """What a certificate proves."""
+    """A property that a certificate proves."""
 
     UNIQUE = "exactly one solution"
     FOLD = "quadratic fold"
@@ -148,15 +148,15 @@ class Problem:
     def damping(self) -> arb:
         """ζ as a ball (Eq. 16)."""
         if self.damping_ratio is not None:
-            return _rational(self.damping_ratio)
-        decrement = -_rational(self.restitution).log()
+            return rational(self.damping_ratio)
+        decrement = -rational(self.restitution).log()
         return decrement / (arb.pi() ** 2 + decrement**2).sqrt()
 
     def contact(self) -> Contact:
         """The contact with balls as parameters, at the present precision."""
         zeta = self.damping()
         sine = zeta if self.release is Release.FORCE else arb(0)
-        return Contact(_rational(self.frequency_ratio), zeta, sine)
+        return Contact(rational(self.frequency_ratio), zeta, sine)
 
     def approximate(self) -> SpringDamper:
         """The contact in double precision."""
@@ -174,7 +174,7 @@ def exactly(number: float) -> Fraction:
     return Fraction(repr(float(number)))
 
 
-def _rational(value: Fraction | None) -> arb:
+def rational(value: Fraction | None) -> arb:
     assert value is not None
     return arb(fmpq(value.numerator, value.denominator))
 
@@ -210,7 +210,7 @@ def saddle_node(problem: Problem, digits: int = 30) -> Certificate:
         If no saddle-node is found, or if a part of the proof fails; the message names it.
     """
     start = _start(problem, double.saddle_node, "saddle-node")
-    bits = _bits(problem, digits)
+    bits = working_bits(problem, digits)
     with precision(bits):
         contact = problem.contact()
         excess = certified_zero(lambda e: fold_test(contact, problem.n, e), start)
@@ -230,7 +230,7 @@ def period_doubling(problem: Problem, digits: int = 30) -> Certificate:
         If no period doubling is found, or if a part of the proof fails; the message names it.
     """
     start = _start(problem, double.period_doubling, "period doubling")
-    bits = _bits(problem, digits)
+    bits = working_bits(problem, digits)
     with precision(bits):
         contact = problem.contact()
         excess = certified_zero(lambda e: doubling_test(contact, problem.n, e), start)
@@ -292,9 +292,10 @@ def orbit_at(
     start -= float(approximate.free_angle)
     if not math.isfinite(start):
         raise ProofError(f"no {problem.n}-T orbit was found at Λ = {amplitude} to start from")
-    bits = _bits(problem, digits)
+    bits = working_bits(problem, digits)
     with precision(bits):
-        contact, square = problem.contact(), _rational(amplitude) ** 2
+        contact = problem.contact()
+        square = rational(amplitude) ** 2
 
         def test(excess: Series) -> Series:
             return (point(contact, problem.n, excess).square - square).truncated(1)
@@ -346,7 +347,7 @@ def _resolution(middle: arb) -> arb:
     return (abs(middle) + 1) * arb(2) ** (-ctx.prec * 3 // 4)
 
 
-def _bits(problem: Problem, digits: int) -> int:
+def working_bits(problem: Problem, digits: int) -> int:
     stiff = max(1.0, float(problem.frequency_ratio))
     wanted = digits * math.log2(10) + 2 * math.log2(stiff)
     return math.ceil((wanted + _GUARD) * 4 / 3)

@@ -113,6 +113,7 @@ def flip_coefficient(found: ReturnMap, determinant: arb) -> arb:
         ((1 - d) * first[0] + b * first[1]) / volume,
         (c * first[0] + (1 - a) * first[1]) / volume,
     )
-    mixed, third = quadratic(q, solved), cubic(q)
+    mixed = quadratic(q, solved)
+    third = cubic(q)
     total = [third[k] / 6 + mixed[k] / 2 for k in (0, 1)]
     return (p[0] * total[0] + p[1] * total[1]) / scale

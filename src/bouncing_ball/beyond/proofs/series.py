@@ -153,7 +153,8 @@ def _exponential(c: arb, order: int) -> list[arb]:
 
 def _trigonometric(cycle: Sequence[arb], order: int) -> list[arb]:
     """Taylor coefficients of a function whose derivatives repeat after four."""
-    found, factorial = [], arb(1)
+    found = []
+    factorial = arb(1)
     for k in range(order + 1):
         factorial = factorial * max(k, 1)
         found.append(cycle[k % 4] / factorial)

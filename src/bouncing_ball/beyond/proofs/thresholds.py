@@ -16,11 +16,11 @@ from bouncing_ball.beyond.proofs.branch import Contact, Point, point
 from bouncing_ball.beyond.proofs.certificates import (
     Problem,
     ProofError,
-    _bits,
-    _rational,
     doubling_test,
     fold_test,
     precision,
+    rational,
+    working_bits,
 )
 from bouncing_ball.beyond.proofs.series import Series
 from bouncing_ball.paper.orbits import spring_damper_bifurcations as double
@@ -129,11 +129,12 @@ def error_threshold(
         orbit = double.orbit_at(approximate, n, float(amplitude))
         excess = float(orbit.contact_duration) * float(approximate.damped_frequency)
         excess -= float(approximate.free_angle)
-    bits = _bits(problem, digits)
+    bits = working_bits(problem, digits)
     with precision(bits):
-        r, square = _rational(restitution), _rational(amplitude) ** 2
-        wanted = restitution_values(r, n, _rational(amplitude))[quantity]
-        condition = CONDITIONS[quantity](wanted * (1 + _rational(error)))
+        r = rational(restitution)
+        square = rational(amplitude) ** 2
+        wanted = restitution_values(r, n, rational(amplitude))[quantity]
+        condition = CONDITIONS[quantity](wanted * (1 + rational(error)))
         zeta = problem.damping()
 
         def equations(box: list[arb]) -> tuple[Series, Series]:
@@ -232,10 +233,10 @@ def permanent_contact_threshold(
         If Λ_SD is nowhere below 1 by this tolerance.
     """
     problem = Problem(Fraction(10), restitution=restitution)
-    bits = _bits(problem, digits)
+    bits = working_bits(problem, digits)
     with precision(bits):
         zeta = problem.damping()
-        level = 1 - _rational(tolerance)
+        level = 1 - rational(tolerance)
         half = 1 - 2 * zeta * zeta
         inside = half * half - 1 + level * level
         if not inside > 0 or not half > 0:
@@ -246,6 +247,6 @@ def permanent_contact_threshold(
 
 def permanent_contact_minimum(damping: Problem, digits: int = 30) -> arb:
     """The smallest Λ_SD over ϖ, 2ζ√(1 - ζ²) (Eq. 36), as a ball."""
-    with precision(_bits(damping, digits)):
+    with precision(working_bits(damping, digits)):
         zeta = damping.damping()
         return 2 * zeta * (1 - zeta * zeta).sqrt()

@@ -1,4 +1,4 @@
-"""What the simulation needs to know of a contact of finite duration.
+"""The interface of a contact of finite duration that the simulation uses.
 
 The contact of the paper is the :class:`~bouncing_ball.paper.contact.spring_damper.SpringDamper`.
 The simulation, the sequences of impacts and the histories use it by this interface only.

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import one_of, require
+from bouncing_ball.numerics.arrays import as_numbers
 from bouncing_ball.numerics.elementary import arctangent, exponential, logarithm, sine_and_versine
 
 
@@ -69,8 +70,13 @@ class Release(StrEnum):
         return 2 * arctangent(np.sqrt((1 - sine) * (1 + sine)), sine)
 
 
-def check_positive(value: ArrayLike, name: str) -> None:
-    """Raise :class:`ModelError` unless a parameter is finite and positive.
+def check_positive(value: ArrayLike, name: str) -> np.ndarray:
+    """A parameter as an array.
+
+    Raises
+    ------
+    ModelError
+        Unless all its entries are finite positive numbers.
 
     Examples
     --------
@@ -79,19 +85,51 @@ def check_positive(value: ArrayLike, name: str) -> None:
     ...
     bouncing_ball.errors.ModelError: stiffness K = -1.0 is not a finite number > 0
     """
-    x = np.asarray(value, dtype=float)
-    require(np.isfinite(x) & (x > 0), x, name, "a finite number > 0")
+    allowed = "a finite number > 0"
+    x = as_numbers(value, name, allowed)
+    require(np.isfinite(x) & (x > 0), x, name, allowed)
+    return x
 
 
-def check_damping(value: ArrayLike, name: str) -> None:
-    """Raise :class:`ModelError` unless a parameter is finite and not negative.
+def check_damping(value: ArrayLike, name: str) -> np.ndarray:
+    """A parameter as an array.
+
+    Raises
+    ------
+    ModelError
+        Unless all its entries are finite numbers and not negative.
 
     Examples
     --------
-    >>> check_damping(0.0, "damping C")
+    >>> float(check_damping(0.0, "damping C"))
+    0.0
     """
-    x = np.asarray(value, dtype=float)
-    require(np.isfinite(x) & (x >= 0), x, name, "a finite number ≥ 0")
+    allowed = "a finite number ≥ 0"
+    x = as_numbers(value, name, allowed)
+    require(np.isfinite(x) & (x >= 0), x, name, allowed)
+    return x
+
+
+def check_restitution(value: ArrayLike) -> np.ndarray:
+    """The restitution coefficient r as an array.
+
+    Raises
+    ------
+    ModelError
+        If any r lies outside (0, 1] or is no number.
+
+    Examples
+    --------
+    >>> check_restitution("x")
+    Traceback (most recent call last):
+    ...
+    bouncing_ball.errors.ModelError: restitution coefficient r = 'x' is not in (0, 1]
+    """
+    name = "restitution coefficient r"
+    allowed = "in (0, 1]"
+    r = as_numbers(value, name, allowed)
+    require((r > 0) & (r <= 1), r, name, allowed)
+    return r
 
 
 # Newton steps for β in 2β cot β = -ln r. The initial error is below 10 %, and each
@@ -127,8 +165,7 @@ def damping_ratio(restitution: ArrayLike, release: Release = Release.DISPLACEMEN
     >>> round(float(damping_ratio(0.65)), 4), round(float(damping_ratio(0.65, Release.FORCE)), 4)
     (0.1359, 0.1499)
     """
-    r = np.asarray(restitution, dtype=float)
-    require((r > 0) & (r <= 1), r, "restitution coefficient r", "in (0, 1]")
+    r = check_restitution(restitution)
     decrement = -logarithm(r) + 0.0  # + 0.0 turns -0 into 0 at r = 1
     if release is Release.DISPLACEMENT:
         return decrement / np.sqrt(np.pi * np.pi + decrement * decrement)
@@ -186,8 +223,8 @@ def restitution_coefficient(
     >>> float(restitution_coefficient(0.0))
     1.0
     """
-    zeta = np.asarray(damping, dtype=float)
     allowed = "in [0, 1): an overdamped contact has no restitution coefficient"
+    zeta = as_numbers(damping, "damping ratio ζ", allowed)
     require((zeta >= 0) & (zeta < 1), zeta, "damping ratio ζ", allowed)
     angle = Release.of(release).free_angle(zeta)
     return exponential(-angle * zeta / np.sqrt((1 - zeta) * (1 + zeta)))

@@ -45,11 +45,10 @@ def permanent_contact_threshold(
     >>> float(permanent_contact_threshold(1.0, 0.25))
     0.5
     """
-    check_positive(frequency_ratio, "frequency ratio ϖ")
-    check_damping(damping_ratio, "damping ratio ζ")
-    omega = np.asarray(frequency_ratio, dtype=float)
-    loss = 2 * np.asarray(damping_ratio) / omega
-    lag = 2 * Release.of(release).sine(damping_ratio) / omega
+    omega = check_positive(frequency_ratio, "frequency ratio ϖ")
+    zeta = check_damping(damping_ratio, "damping ratio ζ")
+    loss = 2 * zeta / omega
+    lag = 2 * Release.of(release).sine(zeta) / omega
     return np.hypot((1 - 1 / omega) * (1 + 1 / omega), loss) / np.hypot(1, lag)
 
 
@@ -89,10 +88,8 @@ def permanent_contact_frequency_ratios(
     >>> round(float(ratios.lower), 3), round(float(ratios.upper), 2)
     (0.722, 9.81)
     """
-    check_positive(threshold, "threshold Λ")
-    check_damping(damping_ratio, "damping ratio ζ")
-    lam = np.asarray(threshold, dtype=float)
-    zeta = np.asarray(damping_ratio, dtype=float)
+    lam = check_positive(threshold, "threshold Λ")
+    zeta = check_damping(damping_ratio, "damping ratio ζ")
     centre = 1 - 2 * zeta * zeta
     has_minimum = centre > 0
     divisor = (1 - lam) * (1 + lam)

@@ -70,7 +70,8 @@ class SpringDamper(Batch):
     Raises
     ------
     ModelError
-        If ϖ or ζ is outside its range, or the release is unknown.
+        If ϖ or ζ is no number in its range, their shapes do not broadcast, or the release is
+        unknown.
 
     Examples
     --------
@@ -86,6 +87,7 @@ class SpringDamper(Batch):
     def __post_init__(self):
         check_positive(self.frequency_ratio, "frequency ratio ϖ")
         check_damping(self.damping_ratio, "damping ratio ζ")
+        self.check_shape()
         # Contacts are keys of caches, so that a single number must not be an array.
         for name in ("frequency_ratio", "damping_ratio"):
             value = np.asarray(getattr(self, name))
@@ -130,7 +132,7 @@ class SpringDamper(Batch):
         """
         rule = Release.of(release)
         zeta = damping_ratio(restitution, rule if measured else Release.DISPLACEMENT)
-        return cls(np.asarray(frequency_ratio, dtype=float), zeta, rule)
+        return cls(check_positive(frequency_ratio, "frequency ratio ϖ"), zeta, rule)
 
     @property
     def release_sine(self) -> np.ndarray:

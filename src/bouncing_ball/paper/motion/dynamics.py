@@ -6,13 +6,13 @@ A subclass of :class:`Dynamics` computes the ends of contacts; everything else f
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple, Self
+from typing import Any, ClassVar, NamedTuple, Protocol, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError, require
-from bouncing_ball.numerics.arrays import BLOCK, Batch, blocks, pick
+from bouncing_ball.numerics.arrays import BLOCK, Batch, as_numbers, blocks, pick
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.contact.contact import Contact
 from bouncing_ball.paper.motion.deviations import Deviation, Jacobian
@@ -42,7 +42,8 @@ class Departure(NamedTuple):
     the :class:`~bouncing_ball.paper.motion.sequence.Status`.
 
     ``settling`` is the part of the duration in which the ball still bounces. ``aloft`` is a time of
-    flight before which the ball has not landed; it is used if it exceeds :meth:`.Flight.sure`.
+    flight before which the ball has not landed; it is used if it exceeds
+    :meth:`.Flight.earliest_landing`.
     ``by`` has the derivatives of the contact's end, if they are computed together with it.
     ``sticks`` marks the balls that stay until the table's downward acceleration exceeds gravity;
     it is None without derivatives.
@@ -83,8 +84,10 @@ class Dynamics(Batch, ABC):
         ModelError
             If Λ is not finite and ≥ 0.
         """
-        lam = np.asarray(amplitude, dtype=float)
-        require((lam >= 0) & np.isfinite(lam), lam, "amplitude Λ", "finite and ≥ 0")
+        name = "amplitude Λ"
+        allowed = "finite and ≥ 0"
+        lam = as_numbers(amplitude, name, allowed)
+        require((lam >= 0) & np.isfinite(lam), lam, name, allowed)
         return cls(law, lam)
 
     @property
@@ -114,7 +117,7 @@ class Dynamics(Batch, ABC):
         ModelError
             If a flight is too long for floating-point numbers.
         """
-        landing = land(departure.flight, departure.flight.sure())
+        landing = land(departure.flight, departure.flight.earliest_landing())
         impact = Impact.at_level(departure.phase + landing.time, -landing.rate)
         return impact, departure.duration + landing.time
 
@@ -277,3 +280,10 @@ def _recorded(time: np.ndarray, impact: Impact, departure: Departure) -> dict[st
         "relative_bounce_velocity": departure.flight.velocity,
         "settling": departure.settling,
     }
+
+
+class HasDynamics(Protocol):
+    """A model or a law of the impact, which determines how balls move."""
+
+    def dynamics(self, amplitude: ArrayLike) -> Dynamics:
+        """The contacts and flights of balls on a table of amplitude Λ."""

@@ -85,20 +85,23 @@ class Flight(Motion):
         """The end of the time in which z > Λ, or the time itself if it is not within this time."""
         return np.where((time >= self.above) & (time < self.below), self.below, time)
 
-    def room(self) -> np.ndarray:
-        """v² + 2(1 + Λ)δ_b; if it is positive and v > 0, the ball certainly comes above the
-        table's level.
+    def level_speed_squared(self) -> np.ndarray:
+        """v² + 2(1 + Λ)δ_b: the square of the relative speed at the table's level against the
+        strongest relative gravity, 1 + Λ.
+
+        If it is positive and v > 0, the ball certainly comes above this level.
         """
         return self.velocity * self.velocity + 2 * (1 + self.amplitude) * self.displacement
 
-    def sure(self) -> np.ndarray:
+    def earliest_landing(self) -> np.ndarray:
         """A time before which the ball has certainly not landed.
 
         It is the flight time of a ball thrown with v from δ_b against the strongest
         relative gravity, 1 + Λ. For a ball at rest on a table with Y ≥ 1, which recedes, it
         follows from ``δ ≥ (Y - 1) s²/2 + X s³/6 - Λ s⁴/24``.
         """
-        time = (self.velocity + np.sqrt(np.maximum(self.room(), 0.0))) / (1 + self.amplitude)
+        speed = np.sqrt(np.maximum(self.level_speed_squared(), 0.0))
+        time = (self.velocity + speed) / (1 + self.amplitude)
         if np.all(self.velocity):
             return time
         x = self.x
@@ -157,18 +160,18 @@ def emerge(flight: Flight) -> tuple[np.ndarray, np.ndarray]:
 
     The results are a time before which they have certainly not landed, and whether they rise.
     """
-    time = flight.sure()
+    time = flight.earliest_landing()
     rising = flight.velocity > 0
-    unsure = np.flatnonzero(rising & (flight.room() <= 0))
-    if unsure.size:
-        part = flight.take(unsure)
-        start = np.zeros(unsure.size)
+    uncertain = np.flatnonzero(rising & (flight.level_speed_squared() <= 0))
+    if uncertain.size:
+        part = flight.take(uncertain)
+        start = np.zeros(uncertain.size)
         # The ball is highest where it first stops rising, and no step can pass over this time.
         top, *_ = part.gap(first_zero(Fall(part), start).time)
         rise = first_zero(Rise(part), start)
-        rising[unsure] = (top > 0) & ~(rise.ended | rise.undecided) & (rise.rate > 0)
+        rising[uncertain] = (top > 0) & ~(rise.ended | rise.undecided) & (rise.rate > 0)
         # Above the table's level the flight is bounded by that against the gravity 1 + Λ.
-        time[unsure] = rise.time + 2 * rise.rate / (1 + part.amplitude)
+        time[uncertain] = rise.time + 2 * rise.rate / (1 + part.amplitude)
     return time, rising
 
 
@@ -188,7 +191,7 @@ def land(flight: Flight, start: np.ndarray) -> Zero:
 
     >>> zero, three = np.zeros(1), np.full(1, 3.0)
     >>> flight = Flight(zero, three, zero, zero, 0.0)
-    >>> landing = land(flight, flight.sure())
+    >>> landing = land(flight, flight.earliest_landing())
     >>> landing.time.tolist(), landing.rate.tolist()
     ([6.0], [3.0])
     """

@@ -97,7 +97,7 @@ class ContactMotion(Motion):
         velocity = rate - self.lag * (y - 1)
         return -self.lag * velocity, velocity
 
-    def sure(self) -> np.ndarray:
+    def earliest_release(self) -> np.ndarray:
         """A time before which the contact has certainly not ended, within half a period.
 
         Replace the forcing by a constant P, its largest value within the half period. The
@@ -245,7 +245,7 @@ class LinearContactDynamics(ResumingDynamics):
         x, y = table(impact.phase, self.amplitude)
         kind = ClosedFormMotion if has_closed_form(self.law) else ResonantMotion
         motion = kind(self.law, self.amplitude, impact.displacement, impact.velocity, x, y)
-        end = first_zero(motion, motion.sure())
+        end = first_zero(motion, motion.earliest_release())
         # Where the search ended without a release, the contact is permanent.
         status = np.where(end.ended, Status.PERMANENT_CONTACT, Status.BOUNCING)
         status[end.undecided] = Status.UNDECIDED

@@ -28,7 +28,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import require
+from bouncing_ball.paper.contact.damping import check_restitution
 from bouncing_ball.paper.motion.deviations import Deviation, Jacobian
 from bouncing_ball.paper.motion.dynamics import Departure, Dynamics, Impact
 from bouncing_ball.paper.motion.flight import Flight, table
@@ -106,9 +106,7 @@ class RestitutionDynamics(Dynamics):
         ModelError
             If r or Λ is outside its range.
         """
-        r = np.asarray(law, dtype=float)
-        require((r > 0) & (r <= 1), r, "restitution coefficient r", "in (0, 1]")
-        return super().of(r, amplitude)
+        return super().of(check_restitution(law), amplitude)
 
     def rebound(self, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """r and d(r v)/dv at impact speeds v > 0; for a constant r both are r."""

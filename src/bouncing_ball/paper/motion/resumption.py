@@ -58,7 +58,7 @@ def resumption(flight: Flight, lag: Any) -> tuple[np.ndarray, np.ndarray]:
         return found.time, ~found.ended
 
     if np.all(lag == 0):
-        return flight.sure(), np.zeros(flight.velocity.shape, dtype=bool)
+        return flight.earliest_landing(), np.zeros(flight.velocity.shape, dtype=bool)
     return of_slow_balls(flight, np.flatnonzero(~leaves_fast(flight, lag)), certified)
 
 
@@ -68,12 +68,12 @@ def leaves_fast(flight: Flight, lag: Any, lag_of_load: Any = 0.0) -> np.ndarray:
     ``lag`` is κ, and ``lag_of_load`` is κ_a, for a grip that depends on the load a; |a′| is at
     most Λ.
     """
-    inside = flight.room()
+    square = flight.level_speed_squared()
     table = flight.amplitude
     return (
-        (inside > 0)
+        (square > 0)
         & (flight.velocity >= 0)
-        & (np.sqrt(np.maximum(inside, 0.0)) >= lag * (1 + table) + lag_of_load * table)
+        & (np.sqrt(np.maximum(square, 0.0)) >= lag * (1 + table) + lag_of_load * table)
     )
 
 
@@ -87,7 +87,7 @@ def of_slow_balls(
     ``search`` takes the flights of these balls and their indices. It returns the times at which
     they reach δ = 0 or their grip returns, and whether the grip returns first.
     """
-    time = flight.sure()
+    time = flight.earliest_landing()
     resumed = np.zeros(flight.velocity.shape, dtype=bool)
     if slow.size:
         part = flight.take(slow)

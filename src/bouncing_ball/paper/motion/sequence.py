@@ -107,8 +107,9 @@ class ImpactSequence:
 
         Examples
         --------
-        >>> from bouncing_ball.beyond.simulation import simulate
-        >>> simulate(1.0, 0.0, 0.0, [-1.0, -2.0], 2)[1].time.tolist()
+        >>> from bouncing_ball.paper.motion.restitution import RestitutionDynamics
+        >>> dynamics = RestitutionDynamics.of(1.0, 0.0)
+        >>> dynamics.simulate(0.0, [-1.0, -2.0], 2)[1].time.tolist()
         [0.0, 4.0]
         """
         return replace(

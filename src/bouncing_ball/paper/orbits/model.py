@@ -162,21 +162,20 @@ class ImpactModel(Batch, ABC):
     ) -> ImpactSequence:
         """Impacts that follow a first impact at the phase φ, before which the ball has z′_i.
 
-        The arguments are those of :func:`bouncing_ball.beyond.simulation.simulate`.
+        The arguments are those of :meth:`.Dynamics.simulate`.
         """
         return self.dynamics(amplitude).simulate(phase, velocity, impacts)
 
     def cycle(self, amplitude: ArrayLike, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
         """The Poincaré map, from an impact (φ, δ′) to the next one.
 
-        The arguments are those of :func:`bouncing_ball.beyond.simulation.next_impact`.
+        The arguments are those of :meth:`.Dynamics.next_impact`.
         """
         return self.dynamics(amplitude).next_impact(phase, relative_velocity)
 
     @property
     def impact_law(self) -> Any:
-        """The law of the impact, which is the only field of the model and the first argument of
-        :func:`bouncing_ball.beyond.simulation.simulate`."""
+        """The law of the impact, which is the only field of the model."""
         (law,) = (getattr(self, field.name) for field in fields(self))
         return law
 

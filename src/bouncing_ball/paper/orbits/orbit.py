@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import require
-from bouncing_ball.numerics.arrays import Batch, blocks, in_words
+from bouncing_ball.numerics.arrays import Batch, as_numbers, blocks, in_words
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.motion.sequence import Cycle
 from bouncing_ball.paper.orbits import stability
@@ -55,9 +55,11 @@ def check_index(n: ArrayLike) -> None:
     ...
     bouncing_ball.errors.ModelError: index of the family n = 1.5 is not a positive integer
     """
-    index = np.asarray(n, dtype=float)
+    name = "index of the family n"
+    allowed = "a positive integer"
+    index = as_numbers(n, name, allowed)
     whole = (index == np.floor(index)) & (index >= 1) & np.isfinite(index)
-    require(whole, np.asarray(n), "index of the family n", "a positive integer")
+    require(whole, np.asarray(n), name, allowed)
 
 
 def as_columns(*arrays: ArrayLike) -> Iterator[np.ndarray]:

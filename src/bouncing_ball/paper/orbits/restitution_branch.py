@@ -21,7 +21,8 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import NoOrbitError, require
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.paper.contact.damping import check_restitution
 from bouncing_ball.paper.orbits.orbit import check_index
 
 
@@ -45,8 +46,7 @@ def check_family(n: ArrayLike, restitution: ArrayLike) -> None:
     bouncing_ball.errors.ModelError: restitution coefficient r = 1.5 is not in (0, 1]
     """
     check_index(n)
-    r = np.asarray(restitution, dtype=float)
-    require((r > 0) & (r <= 1), r, "restitution coefficient r", "in (0, 1]")
+    check_restitution(restitution)
 
 
 def saddle_node(n: ArrayLike, restitution: ArrayLike) -> np.ndarray:

@@ -88,7 +88,7 @@ def _texts(record: Any, new: Any) -> tuple[str, str]:
 
 @dataclass(frozen=True)
 class Origin:
-    """What an artifact says about its making; an entry is empty if it says nothing.
+    """How an artifact was made, from its attributes; an entry is empty if it is not recorded.
 
     Parameters
     ----------

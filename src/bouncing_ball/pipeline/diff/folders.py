@@ -167,7 +167,7 @@ def judge(file: str, folders: tuple[Path, Path], data: Outcome | None) -> Whole:
 
 @dataclass(frozen=True)
 class _Judged:
-    """An artifact with the outcome of its dataset, and what both versions say of their making."""
+    """An artifact with the outcome of its dataset, and how both versions were made."""
 
     artifact: ArtifactFiles
     data: Whole | None

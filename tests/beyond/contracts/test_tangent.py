@@ -6,17 +6,18 @@ import pytest
 from bouncing_ball.beyond.corrected.signature import Signature
 from bouncing_ball.beyond.laws.hertzian import Tsuji, tsuji_damping
 from bouncing_ball.beyond.laws.linear import LinearLaw
-from bouncing_ball.beyond.simulation import dynamics_of
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.motion.deviations import Jacobian
+from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
+from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 
 LAM, STEP = 1.8, 1e-6
 LAWS = [
-    0.7,
-    SpringDamper.from_restitution(0.7, 30.0),
-    SpringDamper.from_restitution(0.7, 30.0, "force"),
+    RestitutionModel(0.7),
+    SpringDamperModel(SpringDamper.from_restitution(0.7, 30.0)),
+    SpringDamperModel(SpringDamper.from_restitution(0.7, 30.0, "force")),
     # Here one contact in ten resumes below the table's level.
-    SpringDamper(2.0, 0.9, "force"),
+    SpringDamperModel(SpringDamper(2.0, 0.9, "force")),
     Signature(LinearLaw.of(SpringDamper.from_restitution(0.7, 30.0))),
     Tsuji(2000.0, tsuji_damping(0.7)),
     Signature(Tsuji(2000.0, tsuji_damping(0.7))),
@@ -25,7 +26,7 @@ LAWS = [
 
 def step(law, phase, velocity):
     """The two states of a step on the section, its Jacobian and the contact's duration."""
-    dynamics, *state, _ = dynamics_of(law, LAM).first_impacts(phase, velocity + LAM * np.cos(phase))
+    dynamics, *state, _ = law.dynamics(LAM).first_impacts(phase, velocity + LAM * np.cos(phase))
     impact = dynamics.start(*state)
     departure = dynamics.depart(impact, differentiate=True)
     after, passed = dynamics.fly(departure)
@@ -59,10 +60,10 @@ def test_the_jacobian_is_that_of_the_simulated_map(law):
 
 def test_areas_shrink_by_the_impact_and_by_nothing_else():
     phase, velocity = starts()
-    law = SpringDamper.from_restitution(0.7, 30.0)
+    contact = SpringDamper.from_restitution(0.7, 30.0)
     for case, loss in (
-        (0.7, lambda _: 0.49),
-        (law, lambda d: np.exp(-2 * law.damping_ratio * 30 * d)),
+        (RestitutionModel(0.7), lambda _: 0.49),
+        (SpringDamperModel(contact), lambda d: np.exp(-2 * contact.damping_ratio * 30 * d)),
     ):
         (before, after), of, duration = step(case, phase, velocity)
         # The flow keeps areas across it: a section that it crosses slowly is wide.

@@ -1,0 +1,213 @@
+"""Balls on contacts of other laws than the linear spring and damper, made by :func:`contact_law`.
+
+A contact law may be given by the r and D of a free impact. r and D may depend on the speed of the
+impact, so that such a ball has a model only at a speed: :meth:`.Ball.at_orbit` and
+:meth:`.Ball.at_speed` return the ball with its model, and a ball whose model is known returns
+itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from numpy.typing import ArrayLike
+
+from bouncing_ball.beyond.laws.contact_law import ContactLaw
+from bouncing_ball.beyond.laws.law_of_impact import law_of_impact, reference
+from bouncing_ball.beyond.laws.orbits import LawModel, law_at_orbit
+from bouncing_ball.beyond.laws.registry import law_named
+from bouncing_ball.calls.arguments import (
+    FINITE,
+    POSITIVE,
+    RESTITUTION,
+    Axis,
+    Positive,
+    Rule,
+    checked,
+    checked_number,
+    chosen,
+    is_array,
+)
+from bouncing_ball.calls.balls import Ball, ModelBall, flattened
+from bouncing_ball.errors import ParameterError
+from bouncing_ball.paper.contact.damping import Release
+from bouncing_ball.paper.orbits.restitution_branch import rigid_speed
+from bouncing_ball.paper.orbits.stability import Side
+
+if TYPE_CHECKING:
+    from bouncing_ball.datasets.labelled import Grid
+
+
+@dataclass(frozen=True, eq=False)
+class FreeImpactBall(Ball):
+    """A ball on the contact of a law that is given by the r and D of a free impact.
+
+    Parameters
+    ----------
+    law : type of ContactLaw
+    restitution : float
+        r of the free impact.
+    duration : float or array
+        D of the free impact.
+    is_corrected : bool
+        Whether the ball obeys the corrected restitution model of the contact.
+    """
+
+    law: type[ContactLaw]
+    restitution: float
+    duration: Any
+    is_corrected: bool = False
+
+    is_known = False
+
+    @property
+    def parameters(self) -> Mapping[str, Any]:  # type: ignore[override]
+        found = {"law": self.law.name, "restitution": self.restitution, "duration": self.duration}
+        return found | ({"model": "corrected"} if self.is_corrected else {})
+
+    def at_speed(self, speed: ArrayLike) -> ModelBall:
+        return self._with(law_of_impact(self.law, self.restitution, self.duration, speed))
+
+    def at_orbit(self, n: int, amplitude: float, side: str = "stable") -> ModelBall:
+        return self._with(
+            law_at_orbit(self.law, self.restitution, self.duration, n, amplitude, Side(side))
+        )
+
+    def at_limits(self, n: ArrayLike) -> ModelBall:
+        return self.at_speed(rigid_speed(n, self.restitution))
+
+    def _with(self, law: ContactLaw) -> ModelBall:
+        ball = ModelBall(LawModel(law), self.parameters)
+        return ball.corrected() if self.is_corrected else ball
+
+    def corrected(self) -> FreeImpactBall:
+        return replace(self, is_corrected=True)
+
+    def row(self, grid: Grid) -> FreeImpactBall:
+        return replace(self, duration=grid.flat["duration"])
+
+    def take(self, number: int) -> FreeImpactBall:
+        if not is_array(self.duration):
+            return self
+        return replace(self, duration=float(self.duration[number]))
+
+
+def contact_law(
+    law: str | ContactLaw,
+    *,
+    speed: Positive | None = None,
+    restitution: float | None = None,
+    duration: Positive | None = None,
+    release: Rule | None = None,
+    **parameters: Axis,
+) -> Ball:
+    """A ball on a contact of another law than the linear spring and damper.
+
+    The law is given by its parameters, such as ``stiffness=1000.0, damping=0.08``, or by the
+    restitution coefficient and the duration of a free impact.
+
+    Parameters
+    ----------
+    law : str or ContactLaw
+        Name of a contact law, in place of the linear spring and damper; or a law that you have
+        written, with its parameters.
+    speed : float, optional
+        Speed of this free impact. The default is the impact speed of the orbit; for limits, the
+        impact speed of the restitution model, 2πn/(1 + r); for a simulation, the first one.
+    restitution : float, optional
+        Restitution coefficient r in (0, 1] of a free impact.
+    duration : float or array, optional
+        Duration D of a free impact. With the restitution coefficient it replaces the
+        parameters of the contact law.
+    release : str, optional
+        Where a contact of the linear law ends, "displacement" or "force"; other laws determine it.
+    **parameters : float or array
+        The parameters of the law.
+
+    Raises
+    ------
+    ModelError
+        If the law is unknown, or a parameter is missing, unknown, of a wrong type or shape, out of
+        range or contradicts another.
+
+    Examples
+    --------
+    >>> contact_law("hunt-crossley", stiffness=1000.0, damping=0.08).model
+    LawModel(law=HuntCrossley(stiffness=1000, damping=0.08))
+    >>> ball = contact_law("hunt-crossley", restitution=0.8, duration=0.2)
+    >>> ball.at_speed(3.0).model
+    LawModel(law=HuntCrossley(stiffness=641.257, damping=0.124382))
+    """
+    if isinstance(law, ContactLaw):
+        return ModelBall(LawModel(law), {"law": law.name} if law.shape == () else {})
+    kind = law_named(str(law))
+    if parameters:
+        _refuse_free_impact(kind, parameters, restitution, duration, speed)
+        return _law_of_parameters(kind, parameters, release)
+    if restitution is None or duration is None:
+        raise ParameterError(
+            f"{{law}} {kind.name} needs {_needs(kind)}, or {{restitution}} and {{duration}}"
+        )
+    if release is not None:
+        raise ParameterError("{release} is allowed with {parameters} of {law} linear only")
+    if is_array(restitution):
+        raise ParameterError(f"{{restitution}} must be a single number with {{law}} {kind.name}")
+    ball = FreeImpactBall(
+        law=kind,
+        restitution=checked("restitution", restitution, RESTITUTION),
+        duration=checked("duration", duration, POSITIVE),
+    )
+    # An r that no contact of this law has is refused here.
+    reference(kind, ball.restitution)
+    if speed is None:
+        return ball
+    at = checked_number("speed", speed, POSITIVE)
+    known = replace(ball, duration=flattened({"duration": ball.duration})["duration"]).at_speed(at)
+    return replace(known, parameters={**ball.parameters, "speed": at})
+
+
+def _needs(kind: type[ContactLaw]) -> str:
+    return ", ".join(f"{{{name}}}=NUMBER" for name in kind.parameter_names())
+
+
+def _refuse_free_impact(
+    kind: type[ContactLaw],
+    parameters: Mapping[str, Any],
+    restitution: float | None,
+    duration: Axis | None,
+    speed: Axis | None,
+) -> None:
+    """Raise an error if a law has both parameters and a free impact."""
+    free_impact = {"restitution": restitution, "duration": duration, "speed": speed}
+    for name, value in free_impact.items():
+        if value is not None:
+            first = next(iter(parameters))
+            raise ParameterError(
+                f"{{{name}}} is not allowed with {{{first}}}: {_needs(kind)} determine {kind.name}"
+            )
+
+
+def _law_of_parameters(
+    kind: type[ContactLaw], parameters: Mapping[str, Any], release: str | None
+) -> ModelBall:
+    known = kind.parameter_names()
+    for name in parameters:
+        if name not in known:
+            all_of = f"its parameters are {', '.join(known)}"
+            raise ParameterError(f"unknown parameter {{}} of {kind.name}: {all_of}", repr(name))
+    for name in known:
+        if name not in parameters:
+            raise ParameterError(f"{kind.name} also needs {{{name}}}=NUMBER")
+    values = {name: checked(name, value, FINITE) for name, value in parameters.items()}
+    flat = flattened(values)
+    if release is None:
+        return ModelBall(LawModel(kind(**flat)), {"law": kind.name, **values})
+    if "release" not in kind.__dataclass_fields__:
+        raise ParameterError(
+            f"{{release}} is not allowed: {kind.name} determines where a contact ends"
+        )
+    rule = chosen("release", release, [str(each) for each in Release])
+    law = kind(**flat, **{"release": Release.of(rule)})
+    return ModelBall(LawModel(law), {"law": kind.name, **values, "release": rule})

@@ -1,6 +1,7 @@
 """The branches of Figs. 8, 9 and 15, and Table 1."""
 
 from itertools import cycle
+from textwrap import fill
 
 import numpy as np
 import xarray as xr
@@ -19,6 +20,9 @@ from bouncing_ball.drawing.canvas import WIDE, canvas, coloured, legend_below
 from bouncing_ball.drawing.labels import in_a_row, parameters, title
 from bouncing_ball.drawing.style import COLOURS, MARKS
 from bouncing_ball.drawing.tables import Columns, Table, entry_of, table, text, value
+
+# Width in characters of a reason inside of a panel.
+_LINE = 80
 
 
 def domains(data: xr.Dataset) -> Figure:
@@ -41,6 +45,7 @@ def over_amplitude(data: xr.Dataset) -> Figure:
     above = r", and above it $\varphi+\tau_b$" if touching else ""
     axes.set(xlabel=r"amplitude $\Lambda$", title=title(data), xlim=(0.0, data.amplitude.max()))
     axes.set(ylabel=rf"phase of the table over $\pi$: $\varphi${above}")
+    _say_what_is_missing(axes, rows)
     legend_below(figure, ncols=7)
     return figure
 
@@ -64,6 +69,7 @@ def both_domains(data: xr.Dataset) -> Figure:
     lowest = float(curve.amplitude.fillna(data.saddle_node_amplitude).min())
     title = parameters(data, "n", "restitution", "frequency_ratio")
     label_branch_axes(axes, data, r"phase of the table over $\pi$", title, left=0.9 * lowest)
+    _say_what_is_missing(axes, data)
     legend_below(figure, ncols=4)
     return figure
 
@@ -82,6 +88,15 @@ def up_to_second_saddle_node(curve: xr.Dataset) -> xr.Dataset:
         point=curve.contact_duration.values <= longest,
         special=curve.special_contact_duration.values <= longest,
     )
+
+
+def _say_what_is_missing(axes: Axes, rows: xr.Dataset) -> None:
+    """The reasons for the branches that cannot be followed, in the panel, a line for each."""
+    missing = rows.amplitude.isnull().all("point").values
+    reasons = rows.end_reason.isel(end=0).values[missing]
+    if reasons.size:
+        text = "\n".join(fill(reason, _LINE) for reason in reasons)
+        axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", fontsize=7)
 
 
 def _name_curves(axes: Axes, names: list[str]) -> None:

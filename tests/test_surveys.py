@@ -195,9 +195,9 @@ MANY = {"periods": 10_000, "samples": 10_000}
 @pytest.mark.parametrize(
     ("amplitude", "given", "text"),
     [
-        (-1.0, {}, "amplitude = -1.0 is not a number in [0, 1e+08]"),
-        ([1.0, "a"], {}, "amplitude = 'a' is not a number in [0"),
-        (np.array([1.0, -2.0]), {}, "amplitude = -2.0 is not a number in [0"),
+        (-1.0, {}, "amplitude = -1.0 is not 0 or a number in [1e-12, 1e+08]"),
+        ([1.0, "a"], {}, "amplitude = 'a' is not 0 or a number in [1e-12"),
+        (np.array([1.0, -2.0]), {}, "amplitude = -2.0 is not 0 or a number in [1e-12"),
         (np.ones((1, 1)), {}, "amplitude has 2 axes without names"),
         (None, {}, "amplitude is missing"),
         ([], {}, "amplitude has no entries"),

@@ -1,5 +1,6 @@
 """The branches of Figs. 8, 9 and 15, and Table 1."""
 
+from collections.abc import Callable
 from itertools import cycle
 from textwrap import fill
 
@@ -27,20 +28,25 @@ _LINE = 80
 
 def domains(data: xr.Dataset) -> Figure:
     """Figs. 8 and 9: the spring-damper model's branch for each ϖ, in one panel."""
-    figure = over_amplitude(data.drop_attrs())
+    figure = over_amplitude(data.drop_attrs(), shown=up_to_second_saddle_node)
     title = parameters(data, "n", "restitution")
     figure.axes[0].set(title=title, xlim=(0.0, data.attrs["amplitude_max"]))
     return figure
 
 
-def over_amplitude(data: xr.Dataset) -> Figure:
-    """Branches of a labelled dataset as in Figs. 8 and 9, named by the arguments that differ."""
+def over_amplitude(
+    data: xr.Dataset, shown: Callable[[xr.Dataset], xr.Dataset] = lambda curve: curve
+) -> Figure:
+    """Branches of a labelled dataset as in Figs. 8 and 9, named by the arguments that differ.
+
+    ``shown`` is the part of each branch that is drawn; by default it is the whole branch.
+    """
     figure, axes = canvas(WIDE, 4.2)
     rows, names = in_a_row(data, "point", "special", "multiplier", "end")
     _name_curves(axes, [name for name in names if name])
     # Both phases of a curve have its colour.
     for curve, colour in coloured(rows, CASE):
-        _draw_spring_damper(axes, up_to_second_saddle_node(curve), colour, colour)
+        _draw_spring_damper(axes, shown(curve), colour, colour)
     touching = bool((rows.contact_duration > 0).any())
     above = r", and above it $\varphi+\tau_b$" if touching else ""
     axes.set(xlabel=r"amplitude $\Lambda$", title=title(data), xlim=(0.0, data.amplitude.max()))

@@ -8,10 +8,14 @@ from snakemake.utils import min_version
 min_version("9.5")
 
 
+include: "workflow/rules/common.smk"
+# Snakemake reads the configuration next, and a file that is no text of YAML would give a traceback.
+include: "workflow/rules/readable.smk"
+
+
 configfile: "config/config.yaml"
 
 
-include: "workflow/rules/common.smk"
 # From parameters to datasets: what all stages have in common, and the stages of the two wings,
 # with the study, the drawing and the table of each artifact.
 include: "workflow/rules/stage.smk"

@@ -252,7 +252,7 @@ def test_a_misspelt_parameter_is_named_with_its_function():
             "frequency_ratio is missing",
         ),
         (lambda: corrected(RIGID), "restitution impacts have no contact"),
-        (lambda: orbit(RIGID, amplitude="a"), "amplitude = 'a' is not a number in (0, 1e+08]"),
+        (lambda: orbit(RIGID, amplitude="a"), "amplitude = 'a' is not a number in [1e-12, 1e+08]"),
         # A text of the user is shown as it is, and is no placeholder of a message.
         (lambda: orbit(RIGID, amplitude="{law} {}"), "amplitude = '{law} {}' is not a num"),
         (lambda: contact_law("tsuji", **{"{x}": 1.0}), "unknown parameter '{x}' of tsuji"),
@@ -263,7 +263,7 @@ def test_a_misspelt_parameter_is_named_with_its_function():
         (lambda: contact_law(["tsuji"]), "unknown contact law"),
         (
             lambda: contact_law("tsuji", restitution=0.5, duration="long"),
-            "duration = 'long' is not a finite number > 0",
+            "duration = 'long' is not a number in [1e-12, 1e+08]",
         ),
         (
             lambda: bouncing_ball.permanent_contact(
@@ -297,3 +297,27 @@ def test_what_needs_an_underdamped_contact_says_so(uses, refusal):
     arguments = {"orbit": (1, 1.0), "simulate": (1.0, 0.0, -3.0, 2)}.get(uses, (1,))
     with refusal(bouncing_ball.ModelError, "damping ratio ζ = 2.0 is not below 1"):
         getattr(model, uses)(*arguments)
+
+
+@pytest.mark.parametrize(
+    "ask",
+    [
+        lambda: bouncing_ball.history(RIGID, amplitude=1e-300),
+        lambda: bouncing_ball.simulate(RIGID, amplitude=1e-300),
+        lambda: bouncing_ball.simulate(RIGID, amplitude=1.0, velocity=-1e300),
+        lambda: bouncing_ball.simulate(RIGID, amplitude=1.0, phase=1e300),
+        lambda: bouncing_ball.drop(RIGID, height=1e12),
+        lambda: orbit(
+            bouncing_ball.contact_law("linear", restitution=0.85, duration=0.3),
+            n=333,
+            amplitude=1e-300,
+        ),
+    ],
+)
+def test_numbers_whose_squares_have_no_digits_are_refused(ask):
+    with pytest.raises(bouncing_ball.ModelError, match=r"is not (0 or )?a number in \["):
+        ask()
+
+
+def test_a_table_at_rest_is_allowed():
+    assert bouncing_ball.simulate(RIGID, amplitude=[0.0, 1e-12], impacts=3).time.shape == (2, 3)

@@ -195,9 +195,9 @@ MANY = {"periods": 10_000, "samples": 10_000}
 @pytest.mark.parametrize(
     ("amplitude", "given", "text"),
     [
-        (-1.0, {}, "amplitude = -1.0 is not a number in [0, 1e+08]"),
-        ([1.0, "a"], {}, "amplitude = 'a' is not a number in [0"),
-        (np.array([1.0, -2.0]), {}, "amplitude = -2.0 is not a number in [0"),
+        (-1.0, {}, "amplitude = -1.0 is not 0 or a number in [1e-12, 1e+08]"),
+        ([1.0, "a"], {}, "amplitude = 'a' is not 0 or a number in [1e-12"),
+        (np.array([1.0, -2.0]), {}, "amplitude = -2.0 is not 0 or a number in [1e-12"),
         (np.ones((1, 1)), {}, "amplitude has 2 axes without names"),
         (None, {}, "amplitude is missing"),
         ([], {}, "amplitude has no entries"),
@@ -245,3 +245,20 @@ def test_balls_on_a_law_are_followed_at_the_speeds_of_their_first_impacts():
         ball = bb.contact_law("tsuji", restitution=0.8, duration=duration, speed=0.5 + 3.0)
         one = bb.simulate(ball, amplitude=0.5, velocity=-3.0, impacts=2)
         np.testing.assert_allclose(found.time[1, k], one.time, rtol=1e-12)
+
+
+def test_the_plot_of_a_branch_shows_all_that_its_dataset_has():
+    """At ϖ = 2 the branch turns twice, and two period doublings lie on the longer contacts."""
+    found = bb.branch(bb.spring_damper(restitution=0.85, frequency_ratio=2.0), points=100)
+    (axes,) = found.plot().axes
+    for kind in ("saddle-node", "period doubling"):
+        here = (found.special_kind == kind).values
+        drawn = [line for line in axes.lines if line.get_label() == kind]
+        assert len(drawn) == 2
+        for line in drawn:
+            x = line.get_xdata()[np.isfinite(line.get_ydata().astype(float))]
+            np.testing.assert_array_equal(np.sort(x), np.sort(found.special_amplitude.values[here]))
+    stable = np.unique(
+        np.concatenate([x.get_xdata() for x in axes.lines if x.get_label() == "stable"])
+    )
+    assert np.isin(found.amplitude.values[found.stable.values], stable).all()

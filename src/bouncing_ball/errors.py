@@ -148,6 +148,8 @@ def printable(text: object, width: int | None = 300) -> str:
 class Range(NamedTuple):
     """The range of the numbers allowed, as an annotation; ``ends`` are the interval's brackets.
 
+    If ``or_zero`` is true, 0 is allowed beside the interval.
+
     Examples
     --------
     >>> print(Range(0, 1, "(]"), 0 in Range(0, 1, "(]"), 1 in Range(0, 1, "(]"))
@@ -160,10 +162,13 @@ class Range(NamedTuple):
     high: float = math.inf
     ends: str = "()"
     whole: bool = False
+    or_zero: bool = False
 
     def __contains__(self, value: Any) -> bool:
         if not isinstance(value, int | float) or not math.isfinite(value):
             return False
+        if self.or_zero and value == 0:
+            return True
         above = value > self.low if self.ends[0] == "(" else value >= self.low
         below = value < self.high if self.ends[1] == ")" else value <= self.high
         return above and below and (not self.whole or value == int(value))
@@ -173,7 +178,8 @@ class Range(NamedTuple):
             return f"a whole number from {self.low:g} to {self.high:.0f}"
         if math.isinf(self.high):
             return "a finite number" + ("" if math.isinf(self.low) else f" > {self.low:g}")
-        return f"a number in {self.ends[0]}{self.low:g}, {self.high:g}{self.ends[1]}"
+        interval = f"a number in {self.ends[0]}{self.low:g}, {self.high:g}{self.ends[1]}"
+        return f"0 or {interval}" if self.or_zero else interval
 
 
 def count(high: int, low: int = 1) -> Range:
@@ -181,8 +187,9 @@ def count(high: int, low: int = 1) -> Range:
     return Range(low, high, "[]", whole=True)
 
 
-# The ranges of calls. Beyond these limits the squares of ϖ and Λ leave no digits.
+# The ranges of calls. Beyond these limits the squares of ϖ and Λ leave no digits, and a table that
+# moves by less than the smallest Λ is at rest within the rounding of a flight.
 FREQUENCY_RATIO = Range(1e-8, 1e8, "[]")
-AMPLITUDE = Range(0, 1e8, "[]")
+AMPLITUDE = Range(1e-12, 1e8, "[]", or_zero=True)
 RESTITUTION = Range(0, 1, "(]")
 FAMILY = count(1000)

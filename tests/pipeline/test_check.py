@@ -65,7 +65,7 @@ SPAN = (*FIG05, "frequency_ratio")
         (FIG08, 3, "paper.fig08 = 3 must be a mapping of the keys n, restitution, "),
         (("paper",), {"fig2": 1}, "unknown key paper.fig2 = 1, did you mean fig"),
         (("paper",), 3, "paper = 3 must be a mapping"),
-        (("beyond",), REMOVED, "missing key beyond"),
+        (("beyond",), REMOVED, "missing section beyond"),
         # An artifact of the other wing.
         (("beyond", "fig08"), {}, "unknown key beyond.fig08 = {}. Allowed here: "),
         (("paper", "fig11"), 3, "frequency_ratio (The threshold of permanent contact of one"),

@@ -7,7 +7,7 @@ import xarray as xr
 
 from bouncing_ball.datasets.files import write_dataset
 from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline.jobs import logged, make_dataset, read_input
+from bouncing_ball.pipeline.jobs import logged, make_dataset, read_input, using
 
 
 @pytest.fixture
@@ -50,3 +50,17 @@ def test_an_input_is_whole_or_its_command_is_named(tmp_path, refusal):
     assert read_input(str(path)).attrs["n"] == 1
     path.write_bytes(path.read_bytes()[:-100])
     refused(f"{path} is damaged")
+
+
+def test_a_file_that_is_accepted_by_hand_is_restored_from_git(tmp_path, refusal):
+    path = tmp_path / "config" / "atlas.nc"
+    path.parent.mkdir()
+    path.write_bytes(b"no dataset")
+    with refusal(ModelError, f"{path} is damaged: restore it, git checkout -- {path}"):
+        read_input(str(path))
+
+
+def test_a_readable_file_with_other_content_is_named(refusal):
+    with refusal(ModelError, "config/atlas.nc has not the content that is needed ("):
+        with using("config/atlas.nc"):
+            _ = xr.Dataset().needed

@@ -20,6 +20,28 @@ def test_a_wrong_configuration_stops_the_workflow_and_changes_no_file(complete):
     assert after == before
 
 
+def test_a_configuration_that_is_no_text_of_yaml_gives_one_line(complete):
+    path = complete.path / "config/config.yaml"
+    kept = path.read_bytes()
+    try:
+        for content, said in (
+            (
+                "# Größe\n".encode("latin-1") + kept,
+                "not UTF-8 text in line 1: save the file as UTF-8",
+            ),
+            (kept.decode().encode("utf-16"), "not UTF-8 text but UTF-16: save the file as UTF-8"),
+            (b"a:\n\tb: 1\n", "not YAML in line 2: a tab, where YAML allows only spaces"),
+            (
+                b"a: " + 3000 * b"[" + 3000 * b"]",
+                "more than 30 lists or mappings within each other",
+            ),
+        ):
+            path.write_bytes(content)
+            assert complete.refusal().startswith(f"config/config.yaml: {said}")
+    finally:
+        path.write_bytes(kept)
+
+
 def test_the_package_of_another_checkout_is_refused(fresh, tmp_path):
     # Run as it would be with that checkout's environment.
     shutil.copytree(fresh.path / "src", tmp_path / "other")

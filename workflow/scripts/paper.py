@@ -3,12 +3,12 @@
 from pathlib import Path
 
 from bouncing_ball.beyond.atlas.figures import shares
-from bouncing_ball.datasets.files import read_dataset, write_text
+from bouncing_ball.datasets.files import write_text
 from bouncing_ball.drawing.tables import to_markdown
 from bouncing_ball.paper.claims import tables as rows
 from bouncing_ball.paper.claims.claims import tally
 from bouncing_ball.pipeline.article import render_article
-from bouncing_ball.pipeline.jobs import logged, read_input
+from bouncing_ball.pipeline.jobs import logged, read_input, using
 
 
 def text_of(path):
@@ -18,10 +18,11 @@ def text_of(path):
 with logged(snakemake) as lines:
     data = {Path(path).stem: read_input(path) for path in snakemake.input.data}
     tables = {Path(path).stem: text_of(path) for path in snakemake.input.tables}
-    data["atlas"] = read_dataset(snakemake.input.atlas)
+    data["atlas"] = read_input(snakemake.input.atlas)
     # Its page begins with words, which the supplement has already.
     tables["claims"] = to_markdown(*rows.claims(data["claims"]))
-    tables["atlas"] = to_markdown(*shares(data["atlas"]))
+    with using(snakemake.input.atlas):
+        tables["atlas"] = to_markdown(*shares(data["atlas"]))
     claims = rows.Claims(data["claims"])
     for template, path in (("article", "paper"), ("supplement", "supplement")):
         file = Path(snakemake.params.templates, f"{template}.md.j2")

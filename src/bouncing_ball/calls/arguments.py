@@ -29,10 +29,12 @@ Axis = Union[float, Sequence[float], np.ndarray, "DataArray"]
 WholeAxis = Union[int, Sequence[int], np.ndarray, "DataArray"]
 """A whole number, or an array of whole numbers, which is an axis of the result."""
 
-AMPLITUDE_OF_ORBIT = AMPLITUDE._replace(ends="(]")
+AMPLITUDE_OF_ORBIT = AMPLITUDE._replace(or_zero=False)
 DAMPING_RATIO = Range(0, 1, "[)")
 TOLERANCE = Range(0, 1)
-POSITIVE = Range(0)
+# Heights, speeds and durations, and phases and velocities: their squares keep digits beside Λ.
+POSITIVE = Range(1e-12, 1e8, "[]")
+STATE = Range(-1e8, 1e8, "[]")
 FINITE = Range()
 # An impact takes a third of a millisecond, so that the largest number takes half a minute.
 IMPACTS = count(100_000)
@@ -49,7 +51,7 @@ Restitution = Annotated[Axis, RESTITUTION]
 DampingRatio = Annotated[Axis, DAMPING_RATIO]
 Tolerance = Annotated[Axis, TOLERANCE]
 Positive = Annotated[Axis, POSITIVE]
-Finite = Annotated[Axis, FINITE]
+State = Annotated[Axis, STATE]
 Family = Annotated[WholeAxis, FAMILY]
 Impacts = Annotated[int, IMPACTS]
 Followed = Annotated[int, FOLLOWED]
@@ -145,7 +147,8 @@ def _within(values: np.ndarray, allowed: Range) -> np.ndarray:
     above = values > allowed.low if allowed.ends[0] == "(" else values >= allowed.low
     below = values < allowed.high if allowed.ends[1] == ")" else values <= allowed.high
     whole = values == np.floor(values) if allowed.whole else True
-    return above & below & whole & np.isfinite(values)
+    inside = above & below & whole & np.isfinite(values)
+    return inside | (values == 0) if allowed.or_zero else inside
 
 
 def _check_number(name: str, value: Any, allowed: Range) -> None:

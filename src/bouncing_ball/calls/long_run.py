@@ -11,14 +11,14 @@ import numpy as np
 from bouncing_ball.beyond.long_run import grids
 from bouncing_ball.calls.arguments import (
     AMPLITUDE,
-    FINITE,
     FOLLOWED,
     POSITIVE,
     SAMPLES,
+    STATE,
     Amplitude,
-    Finite,
     Followed,
     Samples,
+    State,
     checked,
     checked_number,
 )
@@ -96,8 +96,8 @@ def motion_of(
     ball: Ball,
     *,
     amplitude: Amplitude,
-    phase: Finite = 0.0,
-    velocity: Finite = -math.pi,
+    phase: State = 0.0,
+    velocity: State = -math.pi,
     impacts: Followed = 4000,
 ) -> LongRun:
     """The motion on which a ball ends, after a first impact as in
@@ -139,8 +139,8 @@ def motion_of(
     ('locked', 13)
     """
     lam = checked("amplitude", amplitude, AMPLITUDE)
-    phi = checked("phase", phase, FINITE)
-    before = checked("velocity", velocity, FINITE)
+    phi = checked("phase", phase, STATE)
+    before = checked("velocity", velocity, STATE)
     most = checked_number("impacts", impacts, FOLLOWED)
     grid = Grid(amplitude=lam, phase=phi, velocity=before, **a_ball(ball).parameters)
     model = model_of_starts(ball, grid)
@@ -152,8 +152,8 @@ def lyapunov_exponent(
     ball: Ball,
     *,
     amplitude: Amplitude,
-    phase: Finite = 0.0,
-    velocity: Finite = -math.pi,
+    phase: State = 0.0,
+    velocity: State = -math.pi,
     impacts: Followed = 4000,
 ) -> Exponents:
     """The largest Lyapunov exponent of the motion on which a ball ends, per period of the table.

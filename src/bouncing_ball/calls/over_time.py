@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 from bouncing_ball.calls.arguments import (
     AMPLITUDE,
-    FINITE,
     IMPACTS,
     PERIODS,
     POSITIVE,
     SAMPLES,
+    STATE,
     Amplitude,
-    Finite,
     Impacts,
     Periods,
     Positive,
     Samples,
+    State,
     checked,
     checked_number,
 )
@@ -31,8 +31,8 @@ def simulate(
     ball: Ball,
     *,
     amplitude: Amplitude,
-    phase: Finite = 0.0,
-    velocity: Finite = -math.pi,
+    phase: State = 0.0,
+    velocity: State = -math.pi,
     impacts: Impacts = 100,
 ) -> Simulation:
     """The sequence of impacts that begins with a given first impact.
@@ -71,8 +71,8 @@ def simulate(
     ([0.0, 4.0, 6.0], 'bouncing')
     """
     lam = checked("amplitude", amplitude, AMPLITUDE)
-    phi = checked("phase", phase, FINITE)
-    before = checked("velocity", velocity, FINITE)
+    phi = checked("phase", phase, STATE)
+    before = checked("velocity", velocity, STATE)
     count = checked_number("impacts", impacts, IMPACTS)
     a_ball(ball)
     # Imported here, because the command line needs no labels.
@@ -85,8 +85,8 @@ def history(
     ball: Ball,
     *,
     amplitude: Amplitude,
-    phase: Finite = 0.0,
-    velocity: Finite = -math.pi,
+    phase: State = 0.0,
+    velocity: State = -math.pi,
     periods: Periods = 10.0,
     samples: Samples = 200,
 ) -> History:
@@ -127,8 +127,8 @@ def history(
     (('velocity', 'time'), array([1., 2.]))
     """
     lam = checked("amplitude", amplitude, AMPLITUDE)
-    phi = checked("phase", phase, FINITE)
-    before = checked("velocity", velocity, FINITE)
+    phi = checked("phase", phase, STATE)
+    before = checked("velocity", velocity, STATE)
     length = checked_number("periods", periods, PERIODS)
     count = checked_number("samples", samples, SAMPLES)
     a_ball(ball)
@@ -142,7 +142,7 @@ def drop(
     *,
     height: Positive,
     amplitude: Amplitude = 0.0,
-    phase: Finite = 0.0,
+    phase: State = 0.0,
     periods: Periods = 10.0,
     samples: Samples = 200,
 ) -> History:
@@ -184,7 +184,7 @@ def drop(
     """
     start = checked("height", height, POSITIVE)
     lam = checked("amplitude", amplitude, AMPLITUDE)
-    phi = checked("phase", phase, FINITE)
+    phi = checked("phase", phase, STATE)
     length = checked_number("periods", periods, PERIODS)
     count = checked_number("samples", samples, SAMPLES)
     a_ball(ball)

@@ -39,7 +39,7 @@ _OF_SIMULATIONS = {
     "status": Variable("what the ball does after the last of these impacts"),
 }
 # Number of impacts of a ball that are simulated at first, and the largest number allowed.
-_FIRST, _MOST = 64, 65_536
+_FIRST, _MOST = 4, 65_536
 # Largest number of states of all balls. A state takes about fifty bytes, and as much again while
 # it is computed.
 _STATES = 10_000_000

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball.calls import over_time
-from bouncing_ball.calls.arguments import AMPLITUDE, FINITE, IMPACTS, Range
+from bouncing_ball.calls.arguments import AMPLITUDE, IMPACTS, STATE, Range
 from bouncing_ball.cli.impact import add_ball, ball_of
 from bouncing_ball.cli.options import Parser, add_number, meanings
 from bouncing_ball.cli.periodic import Answer, described
@@ -24,8 +24,8 @@ def add_options(parser: Parser) -> None:
 def add_start(parser: Parser, most: Range, texts: dict[str, str], impacts: int) -> None:
     """Add the options for a first impact and for the number of impacts."""
     add_number(parser, "amplitude", AMPLITUDE, texts["amplitude"], required=True)
-    add_number(parser, "phase", FINITE, texts["phase"], default=0.0)
-    add_number(parser, "velocity", FINITE, texts["velocity"], default=-math.pi)
+    add_number(parser, "phase", STATE, texts["phase"], default=0.0)
+    add_number(parser, "velocity", STATE, texts["velocity"], default=-math.pi)
     add_number(parser, "impacts", most, texts["impacts"], default=impacts)
 
 

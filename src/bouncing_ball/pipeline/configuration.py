@@ -11,6 +11,7 @@ Every mistake gives a message of one line. A duplicate key is a mistake, because
 value would be used without a warning.
 """
 
+import codecs
 import inspect
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from difflib import get_close_matches
@@ -36,7 +37,9 @@ class ConfigurationError(ModelError):
 
 
 class _Loader(_BASE):  # type: ignore[misc, valid-type]
-    """A loader of the safe subset of YAML that refuses duplicate keys in a mapping."""
+    """A loader of the safe subset of YAML that refuses duplicate keys in a mapping, and numbers
+    that do not mean what they seem to mean.
+    """
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict:
         seen = set()
@@ -46,6 +49,49 @@ class _Loader(_BASE):  # type: ignore[misc, valid-type]
                 raise ConfigurationError(f"duplicate key {key.value!r} in line {line}")
             seen.add(str(key.value))
         return super().construct_mapping(node, deep)
+
+    def construct_yaml_int(self, node: yaml.ScalarNode) -> int:
+        value = super().construct_yaml_int(node)
+        digits = node.value.lstrip("+-")
+        octal = len(digits) > 1 and digits.startswith("0") and digits.isdigit()
+        return self._meant(node, value, surprising=octal or ":" in digits)
+
+    def construct_yaml_float(self, node: yaml.ScalarNode) -> float:
+        value = super().construct_yaml_float(node)
+        return self._meant(node, value, surprising=":" in node.value)
+
+    @staticmethod
+    def _meant(node: yaml.ScalarNode, value: Any, *, surprising: bool) -> Any:
+        """The value itself, unless YAML reads the number to a base of 8 or of 60."""
+        if surprising:
+            line = node.start_mark.line + 1
+            raise ConfigurationError(
+                f"{node.value} in line {line} is {value} to YAML: write it as a decimal number, "
+                "without a leading zero and without a colon, or in quotes if it is a text"
+            )
+        return value
+
+
+_Loader.add_constructor("tag:yaml.org,2002:int", _Loader.construct_yaml_int)
+_Loader.add_constructor("tag:yaml.org,2002:float", _Loader.construct_yaml_float)
+
+# The largest number of mappings and lists within each other; a configuration has five.
+_DEEPEST = 30
+
+
+def _check_depth(text: str) -> None:
+    """Refuse brackets or indentations that are too deep for Snakemake, which reads the file too."""
+    depth = 0
+    for event in yaml.parse(text, Loader=_BASE):
+        if isinstance(event, yaml.CollectionStartEvent):
+            depth += 1
+        elif isinstance(event, yaml.CollectionEndEvent):
+            depth -= 1
+        if depth > _DEEPEST:
+            line = event.start_mark.line + 1
+            raise ConfigurationError(
+                f"more than {_DEEPEST} lists or mappings within each other in line {line}"
+            )
 
 
 def parse_yaml(text: str) -> Any:
@@ -66,13 +112,24 @@ def parse_yaml(text: str) -> Any:
     bouncing_ball.pipeline.configuration.ConfigurationError: duplicate key 'n' in line 1
     """
     try:
+        _check_depth(text)
         return yaml.load(text, Loader=_Loader)
     except yaml.MarkedYAMLError as error:
-        line = f" in line {error.problem_mark.line + 1}" if error.problem_mark else ""
-        raise ConfigurationError(f"not YAML{line}: {error.problem}") from None
+        mark = error.problem_mark
+        line = f" in line {mark.line + 1}" if mark else ""
+        problem = error.problem
+        if mark and _is_a_tab(text, mark):
+            problem = "a tab, where YAML allows only spaces"
+        raise ConfigurationError(f"not YAML{line}: {problem}") from None
     except yaml.YAMLError as error:
         # For example a character that is not allowed in YAML.
         raise ConfigurationError(f"not YAML: {' '.join(str(error).split())}") from None
+
+
+def _is_a_tab(text: str, mark: yaml.Mark) -> bool:
+    """Whether the character at a place of the text is a tab."""
+    lines = text.split("\n")
+    return mark.line < len(lines) and lines[mark.line][mark.column : mark.column + 1] == "\t"
 
 
 def read_yaml(path: str | Path) -> Any:
@@ -85,11 +142,18 @@ def read_yaml(path: str | Path) -> Any:
         message does not name the file.
     """
     try:
-        return parse_yaml(Path(path).read_text(encoding="utf-8"))
+        content = Path(path).read_bytes()
     except OSError as error:
         raise ConfigurationError(str(error.strerror)) from None
-    except UnicodeDecodeError:
-        raise ConfigurationError("not UTF-8 text") from None
+    try:
+        text = content.decode("utf-8")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        is_utf_16 = content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+        kind = "but UTF-16" if is_utf_16 else f"in line {line}"
+        raise ConfigurationError(f"not UTF-8 text {kind}: save the file as UTF-8") from None
+    # As in a text file, which may end its lines as Windows does.
+    return parse_yaml(text.replace("\r\n", "\n"))
 
 
 _GIVEN_BY_THE_JOB = ("data", "part", "found")
@@ -302,7 +366,8 @@ def _sentence(model: type[BaseModel], error: Any) -> str:
     if kind == "extra_forbidden":
         return _unknown_key(given, path, list(schemas[-2]["properties"]))
     if kind == "missing":
-        return f"missing key {name}: {description or schema.get('title')}"
+        what = "section" if len(path) == 1 and "properties" in schema else "key"
+        return f"missing {what} {name}: {description or schema.get('title')}"
     if kind == "value_error":
         text = str(error["ctx"]["error"])
         return f"{given} {text}" if text.startswith("must") else f"{name}: {text}"

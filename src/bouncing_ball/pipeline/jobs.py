@@ -147,8 +147,33 @@ def read_input(path: str) -> xr.Dataset:
     try:
         return read_dataset(path)
     except ModelError as error:
-        again = f"make it again, snakemake --cores 2 --force {path}"
-        raise ModelError(f"{error}: {again}") from error
+        raise ModelError(f"{error}: {_again(path)}") from error
+
+
+def _again(path: str) -> str:
+    """What to type for a file that is missing or wrong; no rule makes the files in ``config``."""
+    if Path(path).parent.name == "config":
+        return f"restore it, git checkout -- {path}"
+    return f"make it again, snakemake --cores 2 --force {path}"
+
+
+@contextmanager
+def using(*paths: str) -> Iterator[None]:
+    """A context for the use of datasets, in which a file with other content is named.
+
+    Raises
+    ------
+    ModelError
+        If a variable, a coordinate or an attribute is missing.
+    """
+    try:
+        yield
+    except (AttributeError, KeyError) as error:
+        names = ", ".join(paths)
+        text = " ".join(str(error).split())
+        raise ModelError(
+            f"{names} has not the content that is needed ({text}): {_again(paths[0])}"
+        ) from error
 
 
 def joined(shards: Sequence[xr.Dataset]) -> dict[str, np.ndarray]:

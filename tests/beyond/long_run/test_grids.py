@@ -82,7 +82,10 @@ def test_the_exponent_is_that_of_the_motion():
 @pytest.mark.parametrize(
     ("call", "text"),
     [
-        (lambda: bb.motion_of(R, amplitude=-1.0), "amplitude = -1.0 is not a number in [0, 1e+08]"),
+        (
+            lambda: bb.motion_of(R, amplitude=-1.0),
+            "amplitude = -1.0 is not 0 or a number in [1e-12, 1e+08]",
+        ),
         (lambda: bb.orbit_diagram(R, amplitudes=[]), "amplitudes has no entries"),
         (lambda: bb.orbit_diagram(R, amplitudes=[2.0, 1.0]), "at least one Λ, in rising order"),
         (lambda: bb.basins(R, amplitude=1.0, starts=100_000), "10000000000 balls are more than"),

@@ -16,6 +16,7 @@ from bouncing_ball.paper.exhibits.continuation_of_orbits import (
     orbit_branches,
     stability_ranges,
 )
+from bouncing_ball.paper.exhibits.continuation_of_orbits_figures import domains
 from bouncing_ball.paper.orbits.spring_damper_bifurcations import period_doubling, saddle_node
 from bouncing_ball.paper.orbits.spring_damper_branch import branch_point
 from bouncing_ball.paper.orbits.spring_damper_orbit import SpringDamperOrbit
@@ -193,6 +194,22 @@ def test_a_branch_that_does_not_exist_is_missing_and_says_why(continuation_setti
         "no 1-T orbit up to Λ = 1.5 for ϖ = 0.6" in str(reason)
         for reason in data.end_reason[1].values
     )
+
+
+def test_branches_of_which_none_exists_are_refused_with_the_reason(refusal, continuation_settings):
+    parameters = FIGURE_8 | {"frequency_ratio": [0.1], "points": 11}
+    with refusal(NoOrbitError, "nothing to draw: no 1-T orbit up to Λ = 1.5 for ϖ = 0.1"):
+        orbit_branches(parameters, "displacement", continuation_settings)
+
+
+def test_the_figure_has_the_reason_for_a_branch_that_is_missing(continuation_settings):
+    parameters = FIGURE_8 | {"frequency_ratio": [10.0, 0.6], "points": 11}
+    data = orbit_branches(parameters, "displacement", continuation_settings)
+    attributes = {"n": 1, "restitution": 0.85, "amplitude_max": 1.5}
+    (axes,) = domains(data.assign_attrs(attributes)).axes
+    assert ["no 1-T orbit up to Λ = 1.5 for ϖ = 0.6" in text.get_text() for text in axes.texts] == [
+        True
+    ]
 
 
 @pytest.mark.slow

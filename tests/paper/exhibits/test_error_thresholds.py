@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.paper.comparison.errors import Quantity, modulus, relative_errors
 from bouncing_ball.paper.comparison.thresholds import ThresholdStatus
 from bouncing_ball.paper.contact.damping import Release, damping_ratio
@@ -35,6 +36,13 @@ def test_the_height_is_within_one_percent_above_82(described):
     assert float(data.restitution_max_height) == pytest.approx(reference, rel=1e-14)
     expected = np.abs(data.max_height / reference - 1)
     np.testing.assert_allclose(data.relative_error.sel(quantity="max_height"), expected, rtol=1e-9)
+
+
+def test_contacts_of_which_none_has_an_orbit_are_refused(refusal):
+    parameters = {key: PARAMETERS[key] for key in ("n", "restitution", "amplitude")}
+    parameters |= {"frequency_ratio": {"min": 0.1, "max": 0.2, "samples": 11}, "tolerance": 0.01}
+    with refusal(NoOrbitError, "no 1-T orbit at Λ = 1 for any ϖ from 0.1 to 0.2"):
+        typed(height_error)(parameters, "displacement")
 
 
 def test_the_threshold_of_permanent_contact_is_within_one_percent_above_9_81(described):

@@ -152,6 +152,31 @@ def test_all_orbits_at_an_amplitude_approach_the_table_and_leave_it():
     assert np.all(found.relative_impact_velocity < 0) and np.all(found.apparent_restitution > 0)
 
 
+@pytest.mark.parametrize("ratio", [1e-8, 1e-5, 1e-4, 4.9e-4])
+@pytest.mark.parametrize("amplitude", [1e-3, 1.0, 1e8])
+@every_release
+def test_a_contact_that_is_too_soft_for_n_periods_has_no_orbits(ratio, amplitude, release):
+    # Even a contact that fills the period is shorter than a thousandth of the free duration.
+    assert orbits_at(SpringDamper(ratio, 0.05, release), 1, amplitude).size == 0
+
+
+@every_release
+def test_the_softest_contact_with_an_orbit_is_stiffer_than_the_bound(release):
+    # Of contacts with ϖ up to 0.3, those have orbits up to Λ whose branch comes down to it.
+    for ratio in (0.02, 0.1, 0.3):
+        contact = SpringDamper(ratio, 0.05, release)
+        angle = contact.free_angle + np.linspace(-contact.free_angle * 0.999, 0, 2001)[:-1]
+        cycle = angle[angle < 2 * np.pi * contact.damped_frequency]
+        amplitude = branch_point(cycle - contact.free_angle, contact, 1).amplitude
+        theta = 2 * np.pi * ratio
+        assert np.nanmin(amplitude) > 1 / (theta * (theta + 0.1)) - 2
+
+
+def test_the_search_on_a_very_soft_contact_ends_at_once():
+    # θ (θ + 2ζ) (2 + Λ) < 1 for θ = 2πnϖ; the scan took 20 s here.
+    assert orbits_at(SpringDamper(5.3e-7, 3e-13), 1000, 1.0).size == 0
+
+
 def test_contacts_beyond_the_searched_angles_are_never_found():
     # The angle beyond half an oscillation is searched in steps of 0.02, up to 200000 of them.
     contact = SpringDamper(781.3162393999957, 0.13815983841837418)

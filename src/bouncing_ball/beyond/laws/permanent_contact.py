@@ -61,6 +61,9 @@ _FIRST = 1e-5
 _ABOVE = 1.01
 # Rounding of the grip over its value at rest.
 _SLACK = 1e-7
+# The depth at rest, over g/Ω², below which no threshold is sought: a step of the integration from
+# which the iteration starts is about its root, so that there would be a hundred thousand.
+_STIFF = 1e-9
 _TINY = 1e-300
 # An imaginary step in time.
 _STEP = 1e-20j
@@ -112,6 +115,8 @@ def _touching(law: ContactLaw, at_surface: bool) -> float:
     from scipy.integrate import solve_bvp, solve_ivp
 
     steady = _Steady(law, rest(law))
+    if steady.unit < _STIFF:
+        return np.nan
     at_surface |= law.release is Release.DISPLACEMENT
 
     def ends(first: np.ndarray, last: np.ndarray, z: np.ndarray) -> np.ndarray:
@@ -174,7 +179,7 @@ def permanent_contact(law: ContactLaw) -> float:
                 return found
     raise ModelError(
         f"no threshold of permanent contact was found for {law.label}, because it is too weakly "
-        "damped"
+        f"damped or too stiff (a depth at rest below {_STIFF:g} g/Ω²)"
     )
 
 

@@ -80,13 +80,19 @@ def _damped(s, a, q, w):
     return c, sn
 
 
+@lru_cache(maxsize=_PANEL)
+def _rule(count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Gauss's nodes and weights on [-1, 1]; long integrals of all lengths need few of these."""
+    return np.polynomial.legendre.leggauss(count)
+
+
 @lru_cache(maxsize=64)
 def _gauss(radians: int) -> tuple[np.ndarray, np.ndarray]:
     """Nodes and weights on [0, 1] for an integral over this many radians of the table."""
     panels = 1 + radians // _PANEL
     # Rounded up to a whole number of radians in a panel.
     radians_each = -(-radians // panels)
-    x, weight = np.polynomial.legendre.leggauss(_NODES + radians_each)
+    x, weight = _rule(_NODES + radians_each)
     start = np.arange(panels)[:, np.newaxis]
     nodes = ((start + (1 + x) / 2) / panels).ravel()
     return nodes, np.tile(weight / (2 * panels), panels)

@@ -114,7 +114,20 @@ def orbit_branches(parameters: Domains, release: Release, continuation: Continua
     grazing orbits (ϖ, special); ``end_reason`` (ϖ, end), why the branch ends; and the number
     ``damping_ratio`` ζ. Where a branch cannot be followed its values are NaN and ``end_reason`` is
     the error.
+
+    Raises
+    ------
+    NoOrbitError
+        If no branch can be followed on any of the contacts; the message is the first error.
     """
+    branches = _branches(parameters, release, continuation)
+    if not branches.amplitude.notnull().any():
+        raise NoOrbitError(f"nothing to draw: {branches.end_reason.values[0, 0]}")
+    return branches
+
+
+def _branches(parameters: Domains, release: Release, continuation: Continuation) -> xr.Dataset:
+    """The dataset of :func:`orbit_branches`, also if no branch can be followed."""
     ratios = parameters.frequency_ratio
     rows = [_branch(ratio, parameters, release, continuation) for ratio in ratios]
     zeta = float(damping_ratio(parameters.restitution))
@@ -147,7 +160,7 @@ def both_domains(
     r = parameters.restitution
     top = parameters.amplitude_max
     one = dict(parameters) | {"frequency_ratio": (parameters.frequency_ratio,)}
-    contact = orbit_branches(Domains(**one), release, continuation)
+    contact = _branches(Domains(**one), release, continuation)
     model = RestitutionModel(r)
     rigid = model.orbit_of(n, *restitution_orbits.branch(n, r, top, parameters.points))
     along = columns(rigid, "amplitude", "phase")

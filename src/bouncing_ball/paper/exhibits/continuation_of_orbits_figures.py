@@ -1,6 +1,8 @@
 """The branches of Figs. 8, 9 and 15, and Table 1."""
 
+from collections.abc import Callable
 from itertools import cycle
+from textwrap import fill
 
 import numpy as np
 import xarray as xr
@@ -20,27 +22,36 @@ from bouncing_ball.drawing.labels import in_a_row, parameters, title
 from bouncing_ball.drawing.style import COLOURS, MARKS
 from bouncing_ball.drawing.tables import Columns, Table, entry_of, table, text, value
 
+# Width in characters of a reason inside of a panel.
+_LINE = 80
+
 
 def domains(data: xr.Dataset) -> Figure:
     """Figs. 8 and 9: the spring-damper model's branch for each ϖ, in one panel."""
-    figure = over_amplitude(data.drop_attrs())
+    figure = over_amplitude(data.drop_attrs(), shown=up_to_second_saddle_node)
     title = parameters(data, "n", "restitution")
     figure.axes[0].set(title=title, xlim=(0.0, data.attrs["amplitude_max"]))
     return figure
 
 
-def over_amplitude(data: xr.Dataset) -> Figure:
-    """Branches of a labelled dataset as in Figs. 8 and 9, named by the arguments that differ."""
+def over_amplitude(
+    data: xr.Dataset, shown: Callable[[xr.Dataset], xr.Dataset] = lambda curve: curve
+) -> Figure:
+    """Branches of a labelled dataset as in Figs. 8 and 9, named by the arguments that differ.
+
+    ``shown`` is the part of each branch that is drawn; by default it is the whole branch.
+    """
     figure, axes = canvas(WIDE, 4.2)
     rows, names = in_a_row(data, "point", "special", "multiplier", "end")
     _name_curves(axes, [name for name in names if name])
     # Both phases of a curve have its colour.
     for curve, colour in coloured(rows, CASE):
-        _draw_spring_damper(axes, up_to_second_saddle_node(curve), colour, colour)
+        _draw_spring_damper(axes, shown(curve), colour, colour)
     touching = bool((rows.contact_duration > 0).any())
     above = r", and above it $\varphi+\tau_b$" if touching else ""
     axes.set(xlabel=r"amplitude $\Lambda$", title=title(data), xlim=(0.0, data.amplitude.max()))
     axes.set(ylabel=rf"phase of the table over $\pi$: $\varphi${above}")
+    _say_what_is_missing(axes, rows)
     legend_below(figure, ncols=7)
     return figure
 
@@ -64,6 +75,7 @@ def both_domains(data: xr.Dataset) -> Figure:
     lowest = float(curve.amplitude.fillna(data.saddle_node_amplitude).min())
     title = parameters(data, "n", "restitution", "frequency_ratio")
     label_branch_axes(axes, data, r"phase of the table over $\pi$", title, left=0.9 * lowest)
+    _say_what_is_missing(axes, data)
     legend_below(figure, ncols=4)
     return figure
 
@@ -82,6 +94,15 @@ def up_to_second_saddle_node(curve: xr.Dataset) -> xr.Dataset:
         point=curve.contact_duration.values <= longest,
         special=curve.special_contact_duration.values <= longest,
     )
+
+
+def _say_what_is_missing(axes: Axes, rows: xr.Dataset) -> None:
+    """The reasons for the branches that cannot be followed, in the panel, a line for each."""
+    missing = rows.amplitude.isnull().all("point").values
+    reasons = rows.end_reason.isel(end=0).values[missing]
+    if reasons.size:
+        text = "\n".join(fill(reason, _LINE) for reason in reasons)
+        axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", fontsize=7)
 
 
 def _name_curves(axes: Axes, names: list[str]) -> None:

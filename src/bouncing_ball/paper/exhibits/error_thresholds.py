@@ -2,11 +2,13 @@
 
 from typing import Annotated
 
+import numpy as np
 import xarray as xr
 from pydantic import Strict
 
 from bouncing_ball.datasets.parameters import Many, Tolerance
 from bouncing_ball.datasets.variables import Variable, describe
+from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.paper.comparison.errors import Quantity
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
@@ -59,6 +61,11 @@ def height_error(parameters: OrbitErrors, release: Release) -> xr.Dataset:
     The dataset has the variables of :func:`error_thresholds` for the one quantity, and
     ``max_height``, ``phase`` in rad, ``contact_duration``, ``impact_velocity`` and ``admissible``
     of the exact orbit, shape (ϖ,), NaN where there is none; ``restitution_max_height`` is a number.
+
+    Raises
+    ------
+    NoOrbitError
+        If there is no exact orbit on any of the contacts.
     """
     n = parameters.n
     lam = parameters.amplitude
@@ -74,6 +81,11 @@ def height_error(parameters: OrbitErrors, release: Release) -> xr.Dataset:
     )
     contact = SpringDamper.from_restitution(parameters.restitution, ratios, release)
     orbit = SpringDamperModel(contact).orbit(n, lam)
+    if not np.any(orbit.exists):
+        raise NoOrbitError(
+            f"nothing to draw: no {n}-T orbit at Λ = {lam:g} for any ϖ from {ratios[0]:g} to "
+            f"{ratios[-1]:g}; stiffer contacts, of a larger ϖ, have one"
+        )
     for name in ("max_height", "phase", "contact_duration", "impact_velocity"):
         dataset[name] = ("frequency_ratio", getattr(orbit, name))
     dataset["admissible"] = ("frequency_ratio", orbit.is_admissible())

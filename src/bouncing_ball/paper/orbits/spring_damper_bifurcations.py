@@ -307,9 +307,10 @@ def orbits_at(contact: SpringDamper, n: int, amplitude: float) -> SpringDamperOr
 
     These are the points of the branch with the given Λ at which the ball approaches the table at
     impact and leaves it at release; they need not be admissible. The turning points of Λ are
-    added to a fine grid first, so that two orbits next to one of them are not missed. The grid ends
-    after 2·10⁵ steps of 0.02 radians of ϖ_d D, so that for nϖ above about 600 the longest contacts
-    are not searched.
+    added to a fine grid first, so that two orbits next to one of them are not missed. The grid
+    starts at contacts of a thousandth of the free duration, at which Λ exceeds 10⁶; if n periods
+    are shorter than this, no orbit is found. It ends after 2·10⁵ steps of 0.02 radians of ϖ_d D,
+    so that for nϖ above about 600 the longest contacts are not searched.
 
     Raises
     ------
@@ -325,6 +326,10 @@ def orbits_at(contact: SpringDamper, n: int, amplitude: float) -> SpringDamperOr
     check_index(n)
     omega = np.atleast_1d(contact.frequency_ratio)
     curve = _Curves(replace(contact, frequency_ratio=omega), np.array([float(n)]))
+    low, high = curve.ends()
+    # Even a contact that fills the cycle may be shorter than the shortest one of the branch.
+    if _is_too_soft(contact, n, amplitude) or low >= high:
+        return SpringDamperOrbit.on_branch(np.empty(0), contact, n)
     grid = _fine_grid(curve, float(contact.damped_frequency))
     turns = _all_roots(curve, _fold, grid)
     grid = np.sort(np.concatenate([grid, turns]))
@@ -334,6 +339,19 @@ def orbits_at(contact: SpringDamper, n: int, amplitude: float) -> SpringDamperOr
     approaches = found.relative_impact_velocity < 0
     leaves = found.relative_bounce_velocity > 0
     return found[at_amplitude & approaches & leaves]
+
+
+def _is_too_soft(contact: SpringDamper, n: int, amplitude: float) -> bool:
+    """Whether a contact is certainly too soft for any n-T orbit at Λ.
+
+    The force carries the weight for n periods, 2πn, in a contact of D ≤ 2πn, so that the largest
+    compression y = δ + κδ′ is at least 1/ϖ². As the contact starts at δ = 0, ends at y = 0 and
+    |δ″| ≤ ϖ²|y| + 1 + Λ, it is at most q/ϖ² (ϖ²|y| + 1 + Λ), where q = θ (θ + 2ζ) with θ = 2πnϖ.
+    There is no orbit if q (2 + Λ) < 1; the displacement release needs a larger q.
+    """
+    angle = 2 * np.pi * n * float(contact.frequency_ratio)
+    softness = angle * (angle + 2 * float(contact.damping_ratio))
+    return softness * (2 + amplitude) < 1
 
 
 def _fine_grid(curve: _Curves, damped_frequency: float) -> np.ndarray:

@@ -22,7 +22,8 @@ UNIT = {"mass": 1.0, "angular_frequency": 1.0, "gravity": 1.0, "acceleration": 1
 
 @pytest.fixture(scope="module")
 def found():
-    return design(**UNIT, stiffness=36.0)
+    # The paper's error of 1 %, over the value of the restitution model, is this over the contact's.
+    return design(**UNIT, stiffness=36.0, tolerance=1 / 99)
 
 
 @pytest.fixture(scope="module")
@@ -49,7 +50,7 @@ def test_the_text_begins_with_the_verdict(said):
     assert all(word in text for word in words)
     # It does not depend on n.
     assert text.count("threshold of permanent contact") == 1
-    assert lines[-1].split()[-6:] == ["0.02", "%"] * 3
+    assert lines[-1].split()[-6:] == ["+0.02", "%"] * 3
 
 
 def test_without_a_family_each_has_one_line(said):
@@ -64,7 +65,7 @@ def test_without_a_family_each_has_one_line(said):
 def test_choosing(said):
     out = said(*CASE, "--quantity", "phase", "--tolerance", "0.1 %")
     assert out.splitlines()[1].startswith("A simulation needs a contact of at least ")
-    words = "the phase of impact of the 1-T orbit is then within 0.1 % of the restitution model's"
+    words = "the restitution model then predicts the phase of impact of the 1-T orbit within 0.1 %"
     assert words in out
 
 

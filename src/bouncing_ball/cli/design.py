@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from bouncing_ball.beyond.calculator import design as calculator
 from bouncing_ball.beyond.calculator.results import Contact, Design, Family, rows
-from bouncing_ball.beyond.calculator.units import percent, shown
+from bouncing_ball.beyond.calculator.units import percent, shown, signed
 from bouncing_ball.beyond.engines.engine import EngineSettings
 from bouncing_ball.cli.options import Parser, add_file, add_parameters, option
 from bouncing_ball.datasets.files import PICTURES, require_writable
@@ -75,7 +75,7 @@ def _line(name: str, *columns: str) -> str:
 
 def _error(one: Family, quantity: Quantity) -> str:
     errors = (of[quantity] for of in (one.errors, one.law_errors, one.corrected_errors))
-    return _line(f"    {QUANTITIES[quantity]}", *(shown(error, "%") for error in errors))
+    return _line(f"    {QUANTITIES[quantity]}", *map(signed, errors))
 
 
 def _family_lines(one: Family) -> list[str]:
@@ -127,8 +127,8 @@ def _short(found: Design) -> list[str]:
     )
     rows = [
         f"{f'{one.n}-T':<9}{('no', 'yes')[one.is_stable]:<9}{shown(one.max_height, 'm'):<18}"
-        f"{shown(one.peak_force, 'N'):<13}{shown(one.errors[quantity], '%', least):<40}"
-        f"{shown(one.corrected_errors[quantity], '%', least)}"
+        f"{shown(one.peak_force, 'N'):<13}{signed(one.errors[quantity], least):<40}"
+        f"{signed(one.corrected_errors[quantity], least)}"
         for one in found.orbits
     ]
     about = f"{option('n')} {found.n} prints all results for one, {option('all_families')} for all"

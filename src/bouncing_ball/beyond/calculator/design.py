@@ -154,7 +154,8 @@ def design(
     quantity
         Name of the quantity that must be accurate.
     tolerance
-        Largest relative error of the quantity, such as "5 %" or 0.05.
+        Largest relative error of the restitution model's quantity against the contact's, such as
+        "5 %" or 0.05.
     engine
         Physics engine for which the contact is written: generic, mujoco, lammps, liggghts,
         pybullet, drake or mercurydpm. The contact then ends as in this engine.
@@ -250,8 +251,8 @@ def _chosen(
     need = needed(quantity, question["tolerance"], contact, n, table.amplitude)
     if need.status == ThresholdStatus.NEVER_WITHIN:
         raise NoOrbitError(
-            f"no contact up to ϖ = {RATIOS[-1]:g} has its {QUANTITIES[Quantity(quantity)]} within "
-            f"{percent(need.tolerance)} of the restitution model with r = {r:.4g}"
+            f"no contact up to ϖ = {RATIOS[-1]:g} has its {QUANTITIES[Quantity(quantity)]} "
+            f"predicted within {percent(need.tolerance)} by the restitution model with r = {r:.4g}"
         )
     stiff = replace(contact, frequency_ratio=need.frequency_ratio or float(RATIOS[0]))
     return PhysicalCase(given["mass"], table, stiff), need

@@ -7,7 +7,6 @@ from typing import Any, NamedTuple
 from bouncing_ball.beyond.calculator import design as calculator
 from bouncing_ball.beyond.calculator.results import Contact, Design, Family, rows
 from bouncing_ball.beyond.calculator.units import percent, shown, signed
-from bouncing_ball.beyond.engines.engine import EngineSettings
 from bouncing_ball.cli.options import Parser, add_file, add_parameters, option
 from bouncing_ball.datasets.files import PICTURES, require_writable
 from bouncing_ball.errors import NoOrbitError, ParameterError, extra
@@ -98,7 +97,10 @@ def document(given: Answer) -> dict[str, Any]:
     return answer
 
 
-def _engine_lines(engine: EngineSettings) -> list[str]:
+def _engine_lines(found: Design | Contact) -> list[str]:
+    engine = found.engine_settings()
+    speed = found.slowed_speed
+    slowed = "" if speed is None else f" of a fast impact, 1 % less at {shown(speed, 'm/s')}"
     expected = [
         ("greatest height", engine.max_height, "m"),
         ("duration of contact", engine.contact_duration, "s"),
@@ -107,8 +109,8 @@ def _engine_lines(engine: EngineSettings) -> list[str]:
     return [
         "",
         f"For {engine.name}, with the {engine.release} release "
-        f"(r = {engine.restitution:.4g}, within {engine.error:g} in {engine.steps} steps of "
-        f"{engine.scheme} in a contact):",
+        f"(r = {engine.restitution:.4g}{slowed}, within {engine.error:g} in {engine.steps} steps "
+        f"of {engine.scheme} in a contact):",
         "",
         *(f"    {line}".rstrip() for line in engine.snippet.splitlines()),
         "",
@@ -166,7 +168,7 @@ def _law_lines(found: Design) -> list[str]:
 def lines(given: Answer) -> list[str]:
     """The answer as text, with the verdict first."""
     found = given.found
-    engine = _engine_lines(found.engine_settings()) if found.question["engine"] else []
+    engine = _engine_lines(found) if found.question["engine"] else []
     if isinstance(found, Contact):
         about = [_line(*row) for row in rows(found)]
         about += [_line("release", found.release), *(f"Note: {note}." for note in found.notes)]

@@ -1,5 +1,6 @@
 """The calculator: :func:`design`, parameters with units in, a :class:`Design` out."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Annotated, Any, get_args
@@ -13,10 +14,18 @@ from bouncing_ball.beyond.calculator.contact_data import (
     read_engine,
     table_of,
 )
+from bouncing_ball.beyond.calculator.drop_test import slowed_speed
 from bouncing_ball.beyond.calculator.families import RATIOS, families, finite, needed
 from bouncing_ball.beyond.calculator.motion import of_family
 from bouncing_ball.beyond.calculator.results import Contact, Corrected, Design, Needed, TimeStep
-from bouncing_ball.beyond.calculator.units import Index, Rule, SIParameter, number, percent
+from bouncing_ball.beyond.calculator.units import (
+    Index,
+    Rule,
+    SIParameter,
+    number,
+    percent,
+    shown,
+)
 from bouncing_ball.beyond.calculator.verdict import (
     aside,
     assessed,
@@ -45,6 +54,8 @@ STEP_RULE = f"a contact takes {STEPS} steps, the default of MFiX-Exa (mfix.tcoll
 _FAMILIES = range(1, 9)
 # Beyond this limit the squares of ϖ and Λ leave no digits. The other calls have the same limit.
 _LARGEST = 1e8
+# Largest number of times that the damping of a drop test is fitted to the stiffness chosen.
+_REFITS = 12
 # Parameters of which each implies that there is a table.
 _TABLE = {"frequency", "angular_frequency", "period", "table_amplitude", "acceleration"}
 _LOSS = SIParameter("", "0.85", Range(0, 1, "(]"))
@@ -137,12 +148,12 @@ def design(
         Restitution coefficient of a free impact that ends at the table's level,
         r = exp(-πζ/√(1 - ζ²)), Eq. 16 of the paper. With an engine or a law, r under its release.
     measured_restitution
-        Restitution coefficient of a free impact under the given release, as a drop test measures
-        it.
+        Restitution coefficient of a free impact, without gravity, under the given release.
     drop_height
-        Height of the drop in a drop test; needs the height of the rebound.
+        Height of the drop in a drop test, with gravity, onto a table at rest; needs the height of
+        the rebound.
     rebound_height
-        Height of the rebound in a drop test.
+        Height of the rebound in a drop test, above the table at rest.
     n
         Index n of the family. By default n = 1 to 8, with a verdict on the first stable orbit.
     release
@@ -223,6 +234,7 @@ def design(
         elif source:
             # For another engine the spring and damper is written in place of the law.
             case = source.case(case, asked, engine is not None)
+        remarks += _drop_remarks(case, given)
         return _design(case, need, asked, question, remarks)
     except NoOrbitError as error:
         bare = str(acceleration).strip()
@@ -241,9 +253,32 @@ def _chosen(
     question: Mapping[str, Any],
 ) -> tuple[PhysicalCase, Needed]:
     """The case with the most compliant contact within the tolerance, and the ϖ needed for it."""
-    quantity = question["quantity"]
     # A contact with the ζ of the given loss, whose ϖ is still to be found.
-    contact = SpringDamper(1.0, loss(given, rule), rule)
+    case, need = _chosen_with(loss(given, rule), given["mass"], table, rule, asked, question)
+    if "rebound_height" not in given:
+        return case, need
+    # By gravity the ζ of a drop test depends on the stiffness, though hardly for a stiff contact.
+    for _ in range(_REFITS):
+        before = case.contact
+        omega = float(before.frequency_ratio) * table.angular_frequency
+        zeta = loss(given, rule, lambda _, omega=omega: omega, table.gravity)
+        case, need = _chosen_with(zeta, given["mass"], table, rule, asked, question)
+        if math.isclose(case.contact.frequency_ratio, before.frequency_ratio, rel_tol=1e-12):
+            break
+    return case, need
+
+
+def _chosen_with(
+    zeta: float,
+    mass: float,
+    table: Table,
+    rule: Release,
+    asked: Sequence[int],
+    question: Mapping[str, Any],
+) -> tuple[PhysicalCase, Needed]:
+    """The case with the most compliant contact of this ζ within the tolerance."""
+    quantity = question["quantity"]
+    contact = SpringDamper(1.0, zeta, rule)
     r = float(contact.restitution)
     n = meant(asked, r, table.amplitude)
     if quantity in OF_ORBITS:
@@ -255,7 +290,7 @@ def _chosen(
             f"predicted within {percent(need.tolerance)} by the restitution model with r = {r:.4g}"
         )
     stiff = replace(contact, frequency_ratio=need.frequency_ratio or float(RATIOS[0]))
-    return PhysicalCase(given["mass"], table, stiff), need
+    return PhysicalCase(mass, table, stiff), need
 
 
 def _without_table(
@@ -267,7 +302,7 @@ def _without_table(
 ) -> Contact:
     """The answer about a contact without a table, by which there is no impact speed."""
     # With a table of 1 rad/s the frequency ratio is the frequency of the contact.
-    case = case_of(given, Table(1.0, 1.0, STANDARD_GRAVITY), rule, [1])
+    case = case_of(given, Table(1.0, 1.0, given.get("gravity", STANDARD_GRAVITY)), rule, [1])
     if case is None:
         raise ParameterError("no stiffness: give {stiffness}, or {contact_time}")
     if needs_speed and (question["law"] or question["engine"]):
@@ -290,8 +325,35 @@ def _without_table(
         contact_time=None if needs_speed else physical.contact_time(rule),
         release=str(rule),
         measured_restitution=None if needs_speed else physical.restitution(rule),
-        notes=remarks,
+        slowed_speed=None if needs_speed else _slowed_speed(case),
+        notes=remarks + _drop_remarks(case, given),
         question=question,
+    )
+
+
+def _slowed_speed(case: PhysicalCase) -> float | None:
+    """The impact speed in m/s at which gravity lowers the r of a linear contact by 1 %."""
+    contact = case.contact
+    if case.law is not None or contact.damping_ratio >= 1:
+        return None
+    omega = float(contact.frequency_ratio) * case.table.angular_frequency
+    zeta, r = float(contact.damping_ratio), float(contact.restitution)
+    return slowed_speed(omega, zeta, r, case.table.gravity, contact.release)
+
+
+def _drop_remarks(case: PhysicalCase, given: Mapping[str, float]) -> tuple[str, ...]:
+    """A sentence on the drop test that was given, if one was, and on its restitution."""
+    if "rebound_height" not in given:
+        return ()
+    drop, height = given["drop_height"], given["rebound_height"]
+    r = math.sqrt(height / drop)
+    if case.law is not None:
+        return (f"the drop test is read without gravity, as r = √(h′/h) = {r:.4g}, for this law",)
+    arrives = shown(math.sqrt(2 * case.table.gravity * drop), "m/s")
+    free = float(case.contact.restitution)
+    return (
+        f"dropped from {shown(drop, 'm')} onto a table at rest, at {arrives}, the ball rises to "
+        f"{shown(height, 'm')}: √(h′/h) = {r:.4g}, and r = {free:.4g} without gravity",
     )
 
 
@@ -426,6 +488,7 @@ def _design(
             str(rule): float(replace(contact, release=rule).restitution) for rule in Release
         },
         measured_restitution=float(contact.restitution),
+        slowed_speed=_slowed_speed(case),
         permanent_contact=finite(case.permanent_contact),
         law=case.law_in_si,
         corrected=Corrected(

@@ -204,7 +204,9 @@ class Contact:
     """A contact without a table, in SI units.
 
     ``natural_frequency`` is ω = √(k/m) in rad/s: on a table that moves with Ω it gives ϖ = ω/Ω.
-    ``question`` holds the arguments of the call. What depends on the impact speed is None.
+    ``question`` holds the arguments of the call. What depends on the impact speed is None. The r of
+    a free impact holds at speeds above ``slowed_speed``: there, on a table at rest, gravity lowers
+    √(h′/h) by 1 %, and at slower impacts by more. It is None without damping.
     """
 
     mass: Annotated[float, Listed("mass in kg")]
@@ -215,6 +217,7 @@ class Contact:
     contact_time: Annotated[float | None, Listed("contact time", "s")]
     release: str
     measured_restitution: Annotated[float | None, Listed("restitution of a free impact")]
+    slowed_speed: Annotated[float | None, Listed("gravity lowers r by 1 % at", "m/s")]
     notes: tuple[str, ...]
     question: dict[str, Any]
 
@@ -231,10 +234,11 @@ class Design:
 
     ``frequency_ratio``, ``damping_ratio`` and ``amplitude`` are ϖ, ζ and Λ. ``restitution`` has the
     r of a free impact for each release rule, and ``measured_restitution`` is that for the rule of
-    this contact. ``n`` is the family of the verdict, and ``question`` holds the arguments of the
-    call. Up to Λ = ``permanent_contact`` a ball may stay on the table; None if no such threshold
-    was found. ``law`` has the ``name`` of a contact law and its parameters, whose units are powers
-    of kg, m and s.
+    this contact; it holds at impacts faster than ``slowed_speed``, at which, on a table at rest,
+    gravity lowers √(h′/h) by 1 %, None without damping or for another law. ``n`` is the family of
+    the verdict, and ``question`` holds the arguments of the call. Up to Λ = ``permanent_contact`` a
+    ball may stay on the table; None if no such threshold was found. ``law`` has the ``name`` of a
+    contact law and its parameters, whose units are powers of kg, m and s.
     """
 
     frequency_ratio: Annotated[float, Listed("frequency ratio ϖ")]
@@ -251,6 +255,7 @@ class Design:
         Listed("restitution, released without force"),
     ]
     measured_restitution: float
+    slowed_speed: Annotated[float | None, Listed("gravity lowers r by 1 % at", "m/s")]
     permanent_contact: Annotated[float | None, Listed("permanent contact up to Λ")]
     law: dict[str, Any] | None
     corrected: Corrected

@@ -1,5 +1,6 @@
 """``bouncing-ball design``: the calculator's answer, as JSON or as text."""
 
+from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -14,6 +15,8 @@ from bouncing_ball.paper.comparison.errors import OF_IMPACTS, QUANTITIES, Quanti
 from bouncing_ball.paper.comparison.thresholds import ThresholdStatus
 
 _SIMPLE = "error law", "corrected"
+# What has a default, and is said in the answer.
+_NOT_ECHOED = {"quantity", "tolerance", "restitution_error"}
 
 
 class Answer(NamedTuple):
@@ -165,6 +168,30 @@ def _law_lines(found: Design) -> list[str]:
     ]
 
 
+def _echo(question: Mapping[str, Any]) -> str:
+    """The parameters that were given, with their units."""
+    kinds = calculator.quantities()
+    said = []
+    for name, value in question.items():
+        if value is None or name in _NOT_ECHOED:
+            continue
+        words = name.replace("_", " ")
+        if name not in kinds:
+            said.append(f"{words} {_plain(value)}")
+        elif name == "mass":
+            said.append(f"{words} {shown(1000 * value, 'g')}")
+        else:
+            said.append(f"{words} {shown(value, kinds[name].name.replace('*', ' '))}")
+    return f"Given: {', '.join(said)}."
+
+
+def _plain(value: Any) -> str:
+    """A name, a number, or the parameters of an engine."""
+    if isinstance(value, dict):
+        return " ".join(f"{name}={number:g}" for name, number in value.items())
+    return str(value)
+
+
 def lines(given: Answer) -> list[str]:
     """The answer as text, with the verdict first."""
     found = given.found
@@ -172,7 +199,7 @@ def lines(given: Answer) -> list[str]:
     if isinstance(found, Contact):
         about = [_line(*row) for row in rows(found)]
         about += [_line("release", found.release), *(f"Note: {note}." for note in found.notes)]
-        return about + engine
+        return [_echo(found.question), *about, *engine]
     need = found.needed
     always = ThresholdStatus.ALWAYS_WITHIN
     asked = f"ϖ for {percent(need.tolerance)} in the {QUANTITIES[Quantity(need.quantity)]}"
@@ -182,6 +209,7 @@ def lines(given: Answer) -> list[str]:
         found.headline,
         found.verdict,
         f"Reason: {found.reason}.",
+        _echo(found.question),
         *(f"Note: {note}." for note in found.notes),
         *engine,
         "",

@@ -8,6 +8,7 @@ import pytest
 
 from bouncing_ball import design
 from bouncing_ball.beyond import error_law
+from bouncing_ball.beyond.calculator.drop_test import rebound
 from bouncing_ball.beyond.calculator.verdict import assessed, notes
 from bouncing_ball.beyond.corrected.errors import errors
 from bouncing_ball.beyond.corrected.signature import Signature
@@ -151,10 +152,14 @@ def test_a_contact_that_cannot_pull_has_another_restitution():
 def test_ways_to_say_the_same():
     one = design(**STEEL, restitution=0.85, n=1)
     omega = 2 * math.pi * 50
+    own = math.sqrt(1e7 / 0.02)
+    height = rebound(own, one.damping_ratio, 1.0, 9.80665, Release.DISPLACEMENT)
+    # Gravity changes an impact on a stiff contact little.
+    assert height == pytest.approx(0.85**2, rel=1e-4)
     for rate in ({"angular_frequency": f"{omega!r} rad/s"}, {"period": "20 ms"}):
         other = design(
             **rate, mass=0.02, table_amplitude=0.8 * 9.80665 / omega**2, gravity="1 g", n=1,
-            contact_time=one.contact_time, drop_height="1 m", rebound_height=0.85**2,
+            contact_time=one.contact_time, drop_height="1 m", rebound_height=height,
         )  # fmt: skip
         assert other.frequency_ratio == pytest.approx(one.frequency_ratio, rel=1e-12)
         errors = [each.orbits[0].errors["phase"] for each in (one, other)]
@@ -317,6 +322,17 @@ def test_the_error_law_holds_up_to_its_small_parameter():
 FAINT = {"acceleration": "0.1 g"}
 
 
+@pytest.mark.parametrize("acceleration", [0.49, "0.49", "0.49 m/s^2"])
+def test_an_acceleration_in_si_units_means_the_same_with_and_without_its_unit(acceleration):
+    given = STEEL | {"restitution": 0.85, "acceleration": acceleration}
+    found = design(**given)
+    assert found.amplitude == pytest.approx(0.49 / 9.80665, rel=1e-14)
+    assert found.reason.endswith("; did you mean 0.49 g?")
+    with pytest.raises(NoOrbitError, match=r"did you mean 0\.49 g\?"):
+        design(**given, n=1)
+    assert "did you mean" not in design(**given | {"acceleration": "0.05 g"}).reason
+
+
 @pytest.mark.parametrize(
     ("change", "says"),
     [
@@ -356,6 +372,12 @@ def test_no_orbit_or_no_contact(change, says, refusal):
         ({"tolerance": 0}, "tolerance = 0 is not a number in (0, 1)"),
         ({"law": "hunt-crossley"}, "stiffness is not allowed with law hunt-crossley"),
         (LAW, "law hunt-crossley needs contact_time"),
+        (LAW | {"law": "hertz"}, "is law tsuji, or give radius and reduced_modulus"),
+        (LAW | {"law": "hunt_crossley"}, "; did you mean hunt-crossley?"),
+        ({"stiffness": None, "contact_time": 2.8e6}, "a contact of 2.8 Ms is longer than any"),
+        ({"stiffness": 1e-9}, "a contact of 14.07 ks is longer than any"),
+        (HERTZ | {"reduced_modulus": 115}, "is in Pa, and no solid is so soft: did you mean 115 G"),
+        (HERTZ | {"reduced_modulus": "115"}, "did you mean 115 GPa?"),
         (LAW | {"contact_time": 3e-4, "release": "force"}, "release is not allowed with law"),
         (LAW | {"contact_time": 3e-4, "engine": "mujoco"}, "is not written for mujoco"),
     ],

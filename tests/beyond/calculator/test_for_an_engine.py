@@ -121,9 +121,23 @@ def test_from_one_engine_to_another_of_another_release(table):
 
 
 @pytest.mark.parametrize(
+    ("solref", "says"),
+    [
+        ("284244 68.8", "a time constant of 284244 s, which no simulation has: -k/m and -c/m are"),
+        ("-284244, -68.8", "is not 2 numbers: write it without commas, '-284244 -68.8'"),
+    ],
+)
+def test_a_solref_that_no_simulation_has_is_refused_with_what_was_meant(solref, says, refusal):
+    with refusal(ModelError, says):
+        design(mass=1.0, from_engine="mujoco", solref=solref)
+    assert design(mass=1.0, from_engine="mujoco", solref="-284244 -68.8").stiffness == 284244
+
+
+@pytest.mark.parametrize(
     ("given", "says"),
     [
         ({"engine": "unreal"}, "unknown engine 'unreal': one of generic, mujoco"),
+        ({"engine": "MuJoCo"}, "mercurydpm; did you mean mujoco?"),
         ({"release": "displacement"}, "mujoco has no displacement release"),
         ({"mass": None}, "mass is missing"),
         ({"stiffness": None}, "no stiffness: give stiffness, or contact_time"),

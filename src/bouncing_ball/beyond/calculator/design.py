@@ -56,6 +56,10 @@ _FAMILIES = range(1, 9)
 _LARGEST = 1e8
 # Largest number of times that the damping of a drop test is fitted to the stiffness chosen.
 _REFITS = 12
+# The smallest modulus in Pa that is taken for one if it is given without a unit.
+_SOFTEST = 1e4
+# The longest contact in s that is taken for one: no simulation has a longer one.
+_LONGEST = 1000.0
 # Parameters of which each implies that there is a table.
 _TABLE = {"frequency", "angular_frequency", "period", "table_amplitude", "acceleration"}
 _LOSS = SIParameter("", "0.85", Range(0, 1, "(]"))
@@ -237,12 +241,13 @@ def design(
         remarks += _drop_remarks(case, given)
         return _design(case, need, asked, question, remarks)
     except NoOrbitError as error:
-        bare = str(acceleration).strip()
-        if bare.replace(".", "", 1).isdigit():
-            raise NoOrbitError(f"{error}; did you mean {bare} g?") from None
+        # An acceleration in m/s², with or without its unit, may have been meant in g.
+        in_g = str(acceleration).strip().endswith("g") or gravity is not None
+        meant = "" if acceleration is None or in_g else f"did you mean {given['acceleration']:g} g?"
+        why = "; ".join(filter(None, [str(error), meant]))
         if n is not None or case is None:
-            raise
-        return _design(case, None, asked, question, remarks, no_orbit=str(error))
+            raise NoOrbitError(why) from None
+        return _design(case, None, asked, question, remarks, no_orbit=why)
 
 
 def _chosen(
@@ -316,6 +321,8 @@ def _without_table(
         stiffness=given.get("stiffness", case.mass * omega**2),
         damping=given.get("damping", 2 * zeta * case.mass * omega),
     )
+    if not needs_speed:
+        _require_short(physical.contact_time(rule))
     return Contact(
         mass=physical.mass,
         stiffness=physical.stiffness,
@@ -329,6 +336,15 @@ def _without_table(
         notes=remarks + _drop_remarks(case, given),
         question=question,
     )
+
+
+def _require_short(contact_time: float) -> None:
+    """Raise an error for a contact that is too long for any simulation."""
+    if contact_time > _LONGEST:
+        raise ModelError(
+            f"a contact of {shown(contact_time, 's')} is longer than any that is simulated, up to "
+            f"{_LONGEST:g} s: check the mass, the stiffness and their units"
+        )
 
 
 def _slowed_speed(case: PhysicalCase) -> float | None:
@@ -369,6 +385,11 @@ def _law_type(
         if name not in {*laws, *laws.values()}:
             raise ParameterError(f"{{law}} {name} is not written for {engine}: leave {{law}} out")
         name = laws.get(name, name)
+    if name is not None and name.casefold() in ("hertz", "hertzian"):
+        raise ParameterError(
+            f"{{law}} {name} has no damper: Hertz's spring with a damper is {{law}} tsuji, or give "
+            "{radius} and {reduced_modulus} in place of {law}"
+        )
     kind = None if name is None else law_named(name)
     if kind is None or kind is LinearLaw:
         return None
@@ -420,8 +441,22 @@ def _in_si(parameters: Mapping[str, Any]) -> dict[str, float]:
             value = number(name, parameters[name], kind)
             if value not in kind.allowed:
                 raise _out_of_range(name, parameters[name], value, kind)
+            if kind.name == "Pa" and value < _SOFTEST and _is_bare(parameters[name]):
+                raise ParameterError(
+                    f"{{{name}}} = {value:g} is in Pa, and no solid is so soft: "
+                    f"did you mean {value:g} GPa?"
+                )
             given[name] = value
     return given
+
+
+def _is_bare(value: Any) -> bool:
+    """Whether a number has no unit."""
+    try:
+        float(value)
+    except (TypeError, ValueError):
+        return False
+    return True
 
 
 def _out_of_range(name: str, text: Any, value: float, kind: SIParameter) -> ParameterError:
@@ -451,6 +486,7 @@ def _design(
     ratio = float(contact.frequency_ratio)
     only = "below 1: on a vibrating table only underdamped contacts are computed"
     require(contact.damping_ratio < 1, contact.damping_ratio, "damping ratio ζ", only)
+    _require_short(case.in_si()["contact_time"])
     found = families(case, asked, bool(no_orbit))
     require(1 / _LARGEST < ratio < _LARGEST, ratio, "ϖ", f"between {1 / _LARGEST:g} and 1e8")
     # The verdict is about the first family whose orbit is stable and admissible, or else exists.

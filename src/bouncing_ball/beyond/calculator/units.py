@@ -19,6 +19,21 @@ from typing import Annotated, Any, Literal, NamedTuple
 
 from bouncing_ball.errors import FAMILY, ParameterError, Range
 
+# Units as they are written, by the SI unit of a parameter, for hints on a wrong spelling.
+_SPELLINGS = {
+    "kg": ("kg", "g", "mg"),
+    "Hz": ("Hz", "kHz", "rpm", "rad/s"),
+    "rad/s": ("rad/s", "Hz", "rpm"),
+    "s": ("s", "ms", "us", "ns"),
+    "m": ("m", "cm", "mm", "um"),
+    "m/s^2": ("m/s^2", "mm/s^2", "g"),
+    "N/m": ("N/m", "kN/m", "MN/m", "N/mm", "kN/mm"),
+    "N*s/m": ("N s/m", "kN s/m", "N s/mm", "kg/s"),
+    "Pa": ("Pa", "kPa", "MPa", "GPa"),
+}
+_BETWEEN = re.compile(r"[\s·*.^]")
+# A number with a decimal comma, and its unit.
+_COMMA = re.compile(r"([+-]?\d+),(\d+)(.*)", re.DOTALL)
 # A number, and the rest of the text.
 _TEXT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
 # Letters, products, quotients and powers of one digit. A power of a power is refused, because pint
@@ -88,6 +103,10 @@ write it as '50 Hz'
         return ParameterError(f"{{{name}}} = {{}} {why}", said)
 
     if isinstance(value, str):
+        comma = _COMMA.fullmatch(value.strip()[:60])
+        if comma is not None:
+            whole, part, rest = comma.groups()
+            raise wrong(f"has a comma: write {f'{whole}.{part}{rest}'!r}, with a decimal point")
         found = _TEXT.fullmatch(value.strip())
         if found is None:
             raise wrong(f"does not begin with a number: {example}", repr(short))
@@ -101,10 +120,20 @@ write it as '50 Hz'
         raise wrong("is neither a number nor a text", repr(value)) from None
     found_value, why = _converted(plain, unit, kind) if unit else (plain, "")
     if why:
-        raise wrong(f"{why}: {example}")
+        meant = _spelling(unit, kind)
+        raise wrong(f"{why}: did you mean '{value} {meant}'?" if meant else f"{why}: {example}")
     if not math.isfinite(found_value):
         raise wrong("is not a finite number")
     return found_value
+
+
+def _spelling(unit: str, kind: SIParameter) -> str:
+    """The unit that was meant, if a common one has the same letters; otherwise an empty text."""
+    typed = _BETWEEN.sub("", unit).casefold()
+    for spelling in _SPELLINGS.get(kind.name, ()):
+        if _BETWEEN.sub("", spelling).casefold() == typed:
+            return spelling
+    return ""
 
 
 def _converted(value: float, unit: str, kind: SIParameter) -> tuple[float, str]:

@@ -323,9 +323,14 @@ def _of_stiffness(given: Given, table: Table, release: Release) -> PhysicalCase:
         zeta = given["damping"] / (2 * mass * omega)
         zeta = _oscillating(zeta, release, "damping ratio ζ of the contact")
     else:
-        zeta = loss(given, release, lambda _: omega, table.gravity)
+        zeta = loss(given, release, same_omega(omega), table.gravity)
     contact = SpringDamper(omega / table.angular_frequency, zeta, release)
     return PhysicalCase(mass, table, contact)
+
+
+def same_omega(omega: float) -> Callable[[float], float]:
+    """√(k/m) in rad/s, as a function of ζ, of contacts of one stiffness: it is constant."""
+    return lambda zeta: omega
 
 
 def _omega_of_time(duration: float, release: Release) -> Callable[[float], float]:

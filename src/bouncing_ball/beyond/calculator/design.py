@@ -12,6 +12,7 @@ from bouncing_ball.beyond.calculator.contact_data import (
     loss,
     meant,
     read_engine,
+    same_omega,
     table_of,
 )
 from bouncing_ball.beyond.calculator.drop_test import slowed_speed
@@ -266,7 +267,7 @@ def _chosen(
     for _ in range(_REFITS):
         before = case.contact
         omega = float(before.frequency_ratio) * table.angular_frequency
-        zeta = loss(given, rule, lambda _, omega=omega: omega, table.gravity)
+        zeta = loss(given, rule, same_omega(omega), table.gravity)
         case, need = _chosen_with(zeta, given["mass"], table, rule, asked, question)
         if math.isclose(case.contact.frequency_ratio, before.frequency_ratio, rel_tol=1e-12):
             break

@@ -108,7 +108,7 @@ mutants: $(SETUP)
 # Compare the results with the accepted record; the page is results/diff/index.html. With
 # ONLY=fig14, only this artifact is made and compared; its page is results/diff/fig14.html.
 diff: $(SETUP)
-	$(BIN)/snakemake --cores 2 $(subst $(COMMA), ,$(ONLY)) diff $(QUIETLY)
+	$(BIN)/snakemake --cores 2 $(strip $(subst $(COMMA), ,$(ONLY)) diff) $(QUIETLY)
 
 # make accept ONLY='fig08 table1' copies these artifacts over the record; without ONLY, it copies
 # all artifacts that have moved beyond their budgets.

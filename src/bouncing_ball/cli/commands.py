@@ -160,6 +160,7 @@ COMMANDS = {
         examples=(
             "limits --restitution 0.85",
             "limits --n 2 --damping-ratio 0.05 --frequency-ratio 10",
+            "limits --restitution 0.85 --frequency-ratio 10 --certify",
         ),
         program=_limits,
     ),

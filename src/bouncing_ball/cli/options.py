@@ -151,6 +151,21 @@ def add_number(
     )
 
 
+def add_optional_number(
+    parser: argparse.ArgumentParser, name: str, allowed: Range, text: str, *, const: float
+) -> None:
+    """Add an option that may be given with a number or alone, for the number ``const``."""
+    parser.add_argument(
+        option(name),
+        dest=name,
+        type=_within(allowed),
+        nargs="?",
+        const=const,
+        metavar="N" if allowed.whole else "X",
+        help=f"{text} Given without a number: {const:g}.",
+    )
+
+
 def add_choice(
     parser: argparse.ArgumentParser,
     name: str,

@@ -13,8 +13,14 @@ from bouncing_ball.calls import periodic as calls
 from bouncing_ball.calls.arguments import AMPLITUDE_OF_ORBIT, FAMILY, FREQUENCY_RATIO
 from bouncing_ball.calls.balls import ModelBall, spring_damper
 from bouncing_ball.cli.impact import add_ball, add_contact, ball_of
-from bouncing_ball.cli.options import Parser, add_choice, add_number, meanings
-from bouncing_ball.errors import NoOrbitError, ParameterError
+from bouncing_ball.cli.options import (
+    Parser,
+    add_choice,
+    add_number,
+    add_optional_number,
+    meanings,
+)
+from bouncing_ball.errors import NoOrbitError, ParameterError, count, extra
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.orbit import OBSERVABLES
@@ -25,6 +31,11 @@ Side = Literal["stable", "unstable", "all"]
 _SIDE = (
     'Side of the branch: "stable" or "unstable" next to the saddle-node, or "all" for every orbit '
     "at this amplitude, in order of contact duration."
+)
+_DIGITS = count(100, low=10)
+_CERTIFY = (
+    "Prove both limits by ball arithmetic, and print this number of decimal digits of Λ with a "
+    "bound of the error. The numbers given are taken as exact decimal numbers."
 )
 _INDEX = 'Number, from 1, of one orbit in the list of side "all".'
 
@@ -110,17 +121,24 @@ def _law_of(found: calls.PeriodicOrbit) -> Answer:
 def limits_options(parser: Parser) -> None:
     """Add the options of :func:`limits`."""
     add_number(parser, "n", FAMILY, meanings(calls.limits)["n"], default=1)
+    add_optional_number(parser, "certify", _DIGITS, _CERTIFY, const=30)
     add_ball(parser)
 
 
-def limits(*, n: int, **impact: Any) -> Answer:
+def limits(*, n: int, certify: int | None, **impact: Any) -> Answer:
     """Saddle-node and period doubling of a family, and whether their orbits are admissible.
+
+    With ``certify``, a number of decimal digits, both are proved by ball arithmetic as well.
 
     Raises
     ------
     NoOrbitError
         If the branch has no saddle-node or no period doubling.
+    ModelError
+        If something cannot be certified; the message gives the reason.
     """
+    if certify is not None:
+        return {"certified": _certified(n, certify, **impact)} | limits(n=n, certify=None, **impact)
     found: Any = calls.limits(ball_of(**impact), n)
     answer: Answer = {}
     for name, end in found._asdict().items():
@@ -134,6 +152,44 @@ def limits(*, n: int, **impact: Any) -> Answer:
     # speed of the restitution model.
     model = found.saddle_node.model
     return answer | described(model.impact_law, float(restitution_speed(n, model)[0]))
+
+
+def _certified(
+    n: int,
+    digits: int,
+    *,
+    frequency_ratio: float | None,
+    restitution: float | None,
+    damping_ratio: float | None,
+    release: str | None,
+    **others: Any,
+) -> Answer:
+    """Λ of both limits as decimal texts with bounds of their errors, and what was proved."""
+    given = [name for name, value in others.items() if value not in (None, "spring-damper")]
+    if given:
+        raise ParameterError(f"{{certify}} is not allowed with {{{given[0]}}}")
+    if frequency_ratio is None:
+        raise ParameterError("{certify} needs {frequency_ratio}: it is for spring-damper contacts")
+    with extra("proofs"):
+        from bouncing_ball.beyond.proofs import certificates
+
+    problem = certificates.Problem(
+        certificates.exactly(frequency_ratio),
+        restitution=None if restitution is None else certificates.exactly(restitution),
+        damping_ratio=None if damping_ratio is None else certificates.exactly(damping_ratio),
+        n=n,
+        release=Release(release or "displacement"),
+    )
+    proofs = {
+        "saddle_node": certificates.saddle_node(problem, digits),
+        "period_doubling": certificates.period_doubling(problem, digits),
+    }
+    answer = {}
+    for name, found in proofs.items():
+        amplitude, radius = found.texts(digits)
+        proved = [str(each) for each in found.proved]
+        answer[name] = {"amplitude": amplitude, "radius": radius, "proved": proved}
+    return answer
 
 
 def error_law_options(parser: Parser) -> None:

@@ -13,6 +13,7 @@ from bouncing_ball.beyond.proofs.certificates import (
     Problem,
     ProofError,
     decimal,
+    exactly,
     period_doubling,
     precision,
     saddle_node,
@@ -80,11 +81,6 @@ class Row(NamedTuple):
     bits: int
     what: str
     printed: str = ""
-
-
-def exactly(number: float) -> Fraction:
-    """A decimal number of the configuration as a fraction, for example 0.85 as 17/20."""
-    return Fraction(repr(number))
 
 
 def ends_of_table_1(parameters: Proofs) -> Iterator[Row]:

@@ -25,8 +25,8 @@ from bouncing_ball.paper.orbits import spring_damper_bifurcations as double
 from bouncing_ball.paper.orbits.stability import Side
 
 # Bits beyond the digits that are asked for and those that stiff contacts cost by cancellation,
-# about log2(ϖ²). With so many the ball is far narrower than the last decimal digit, so that the decimal
-# number and its error are the same whatever the double precision of the start.
+# about log2(ϖ²). With so many the ball is far narrower than the last decimal digit, so that the
+# decimal number and its error are the same whatever the double precision of the start.
 _GUARD = 160
 # Largest number of Newton steps with long numbers: each doubles the digits of the start.
 _STEPS = 12
@@ -161,6 +161,17 @@ class Problem:
     def approximate(self) -> SpringDamper:
         """The contact in double precision."""
         return SpringDamper(float(self.frequency_ratio), float(self.damping().mid()), self.release)
+
+
+def exactly(number: float) -> Fraction:
+    """The fraction that the shortest decimal text of a number means.
+
+    Examples
+    --------
+    >>> exactly(0.85)
+    Fraction(17, 20)
+    """
+    return Fraction(repr(float(number)))
 
 
 def _rational(value: Fraction | None) -> arb:

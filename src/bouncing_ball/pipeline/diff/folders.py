@@ -4,9 +4,10 @@ Data are judged by their budgets; texts, tables and the words of SVG files line 
 by their pixels. Every file is judged alone: if a file is damaged, its outcome is that it could not
 be compared, with the reason, and the other files are compared nevertheless.
 
-For an artifact that differs, the comparison names the cause (:mod:`bouncing_ball.pipeline.diff.
-cause`). An artifact that is made from others, such as the verdicts on the claims or the article,
-differs because of those of them that do not agree with the record.
+For an artifact that differs, the comparison names the cause
+(:mod:`bouncing_ball.pipeline.diff.cause`). An artifact that is made from others, such as the
+verdicts on the claims or the article, differs because of those of them that do not agree with the
+record.
 """
 
 import re

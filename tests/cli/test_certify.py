@@ -1,0 +1,46 @@
+"""``limits --certify``: proved digits, and one line for what cannot be proved."""
+
+from decimal import Decimal
+
+import pytest
+
+GIVEN = ("limits", "--restitution", "0.85", "--frequency-ratio", "10")
+
+
+def test_the_certified_digits_contain_those_of_double_precision(ask):
+    answer = ask(*GIVEN, "--certify")
+    for name in ("saddle_node", "period_doubling"):
+        proof = answer["certified"][name]
+        assert abs(float(proof["amplitude"]) - answer[name]["amplitude"]) < 1e-14
+        assert len(proof["amplitude"].lstrip("0.").replace(".", "")) == 30
+        assert float(proof["radius"]) < 1e-29
+        assert {"exactly one solution", "admissible"} <= {*proof["proved"]}
+    assert "supercritical" in answer["certified"]["period_doubling"]["proved"]
+
+
+def test_fewer_digits_are_the_rounded_ones(ask):
+    many, few = (ask(*GIVEN, "--certify", digits)["certified"] for digits in ("40", "12"))
+    for name in many:
+        exact, rounded = (Decimal(one[name]["amplitude"]) for one in (many, few))
+        assert abs(exact - rounded) <= Decimal(few[name]["radius"])
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (("limits", "--restitution", "0.85", "--certify"), "needs --frequency-ratio"),
+        ((*GIVEN, "--certify", "3"), "from 10 to 100"),
+        ((*GIVEN, "--model", "corrected", "--certify"), "not allowed with --model"),
+        (
+            ("limits", "--law", "tsuji", "--restitution", "0.8", "--duration", "0.1", "--certify"),
+            "--law",
+        ),
+        (
+            ("limits", "--restitution", "1", "--frequency-ratio", "10", "--certify"),
+            "without dissipation",
+        ),
+    ],
+)
+def test_what_cannot_be_certified_is_refused_in_one_line(refused, options, says):
+    _, line = refused(*options)
+    assert says in line

@@ -16,7 +16,7 @@ for name, moving in (("two balls", mass / 2), ("ball and wall", mass)):
     print(f"{name}: {met.contact_time:.2g} s, r = {r:.2f}, step {met.time_step.largest:.2g} s")
 one = met.judged
 errors = one.errors["max_height"], one.corrected_errors["max_height"]
-print(f"height: restitution model {errors[0]:.1%} off, corrected model {errors[1]:.3%}")
+print(f"height: restitution model {errors[0]:+.1%}, corrected model {errors[1]:+.3%}")
 
 # The grains of Silbert et al. (Phys. Rev. E 64, 051302, 2001), as LAMMPS' pair_style gran/hooke
 # quotes them: k = 2·10⁵ and γ = 50 in units of mass, diameter and gravity; two grains have half

@@ -24,10 +24,10 @@ pair = bouncing_ball.design(
 )
 one = pair.judged
 errors = one.errors["max_height"], one.corrected_errors["max_height"]
-print(f"height: restitution model {errors[0]:.1%} off, corrected model {errors[1]:.3%}")
+print(f"height: restitution model {errors[0]:+.1%}, corrected model {errors[1]:+.3%}")
 orbit = pair.orbits[0]
-worst = max(orbit.errors, key=orbit.errors.get)
-print(f"largest error: {worst}, {100 * orbit.errors[worst]:.1f} %")
+worst = max(orbit.errors, key=lambda name: abs(orbit.errors[name]))
+print(f"largest error: {worst}, {100 * orbit.errors[worst]:+.1f} %")
 
 # Which mesh would do, for Λ = 1 and r = 0.65?
 chosen = bouncing_ball.design(

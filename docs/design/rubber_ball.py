@@ -15,7 +15,7 @@ ball = bouncing_ball.design(
 )
 one = ball.judged
 errors = one.errors["max_height"], one.corrected_errors["max_height"]
-print(f"height: restitution model {errors[0]:.1%} off, corrected model {errors[1]:.3%}")
+print(f"height: restitution model {errors[0]:+.1%}, corrected model {errors[1]:+.3%}")
 delay = ball.corrected.delay
 load = ball.corrected.load
 r = ball.corrected.restitution

@@ -34,7 +34,7 @@ print(
 )
 one = ball.judged
 errors = one.errors["max_height"], one.corrected_errors["max_height"]
-print(f"height: restitution model {errors[0]:.1%} off, corrected model {errors[1]:.3%}")
+print(f"height: restitution model {errors[0]:+.1%}, corrected model {errors[1]:+.3%}")
 
 # On a thick steel plate such a ball was in contact for about 5 µs, measured (G. McLaskey,
 # Cornell, courses.cit.cornell.edu/mclaskey/impact.html); at 1 m/s Hertz's formula gives nearly

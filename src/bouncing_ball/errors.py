@@ -3,9 +3,10 @@
 All of them derive from :class:`ValueError`, so that callers can catch them without a distinction.
 """
 
+import difflib
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
@@ -112,8 +113,29 @@ def one_of(kind: str, name: str, known: Mapping[str, _Known]) -> _Known:
     bouncing_ball.errors.ModelError: unknown side 'left': one of stable, unstable
     """
     if not isinstance(name, str) or name not in known:
-        raise ModelError(f"unknown {kind} {name!r}: one of {', '.join(known)}")
+        meant = did_you_mean(str(name), known)
+        raise ModelError(f"unknown {kind} {name!r}: one of {', '.join(known)}{meant}")
     return known[name]
+
+
+# How alike a name and a known one must be for the known one to be suggested.
+_ALIKE = 0.83
+
+
+def did_you_mean(name: object, known: Iterable[str]) -> str:
+    """A clause that suggests the known name that a wrong one resembles; empty if none does.
+
+    Examples
+    --------
+    >>> did_you_mean("MuJoCo", ["generic", "mujoco"]), did_you_mean("unreal", ["generic"])
+    ('; did you mean mujoco?', '')
+    >>> did_you_mean("hunt_crossley", ["hunt-crossley"])
+    '; did you mean hunt-crossley?'
+    """
+    names = list(known)
+    typed = str(name).casefold().replace("_", "-")
+    close = difflib.get_close_matches(typed, names, n=1, cutoff=_ALIKE)
+    return f"; did you mean {close[0]}?" if close else ""
 
 
 def escaped(text: str) -> str:

@@ -1,13 +1,13 @@
 """``bouncing-ball design``: the calculator's answer, as JSON or as text."""
 
+from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from bouncing_ball.beyond.calculator import design as calculator
 from bouncing_ball.beyond.calculator.results import Contact, Design, Family, rows
-from bouncing_ball.beyond.calculator.units import percent, shown
-from bouncing_ball.beyond.engines.engine import EngineSettings
+from bouncing_ball.beyond.calculator.units import percent, shown, signed
 from bouncing_ball.cli.options import Parser, add_file, add_parameters, option
 from bouncing_ball.datasets.files import PICTURES, require_writable
 from bouncing_ball.errors import NoOrbitError, ParameterError, extra
@@ -15,6 +15,8 @@ from bouncing_ball.paper.comparison.errors import OF_IMPACTS, QUANTITIES, Quanti
 from bouncing_ball.paper.comparison.thresholds import ThresholdStatus
 
 _SIMPLE = "error law", "corrected"
+# What has a default, and is said in the answer.
+_NOT_ECHOED = {"quantity", "tolerance", "restitution_error"}
 
 
 class Answer(NamedTuple):
@@ -75,7 +77,7 @@ def _line(name: str, *columns: str) -> str:
 
 def _error(one: Family, quantity: Quantity) -> str:
     errors = (of[quantity] for of in (one.errors, one.law_errors, one.corrected_errors))
-    return _line(f"    {QUANTITIES[quantity]}", *(shown(error, "%") for error in errors))
+    return _line(f"    {QUANTITIES[quantity]}", *map(signed, errors))
 
 
 def _family_lines(one: Family) -> list[str]:
@@ -98,7 +100,10 @@ def document(given: Answer) -> dict[str, Any]:
     return answer
 
 
-def _engine_lines(engine: EngineSettings) -> list[str]:
+def _engine_lines(found: Design | Contact) -> list[str]:
+    engine = found.engine_settings()
+    speed = found.slowed_speed
+    slowed = "" if speed is None else f" of a fast impact, 1 % less at {shown(speed, 'm/s')}"
     expected = [
         ("greatest height", engine.max_height, "m"),
         ("duration of contact", engine.contact_duration, "s"),
@@ -107,8 +112,8 @@ def _engine_lines(engine: EngineSettings) -> list[str]:
     return [
         "",
         f"For {engine.name}, with the {engine.release} release "
-        f"(r = {engine.restitution:.4g}, within {engine.error:g} in {engine.steps} steps of "
-        f"{engine.scheme} in a contact):",
+        f"(r = {engine.restitution:.4g}{slowed}, within {engine.error:g} in {engine.steps} steps "
+        f"of {engine.scheme} in a contact):",
         "",
         *(f"    {line}".rstrip() for line in engine.snippet.splitlines()),
         "",
@@ -127,8 +132,8 @@ def _short(found: Design) -> list[str]:
     )
     rows = [
         f"{f'{one.n}-T':<9}{('no', 'yes')[one.is_stable]:<9}{shown(one.max_height, 'm'):<18}"
-        f"{shown(one.peak_force, 'N'):<13}{shown(one.errors[quantity], '%', least):<40}"
-        f"{shown(one.corrected_errors[quantity], '%', least)}"
+        f"{shown(one.peak_force, 'N'):<13}{signed(one.errors[quantity], least):<40}"
+        f"{signed(one.corrected_errors[quantity], least)}"
         for one in found.orbits
     ]
     about = f"{option('n')} {found.n} prints all results for one, {option('all_families')} for all"
@@ -163,14 +168,38 @@ def _law_lines(found: Design) -> list[str]:
     ]
 
 
+def _echo(question: Mapping[str, Any]) -> str:
+    """The parameters that were given, with their units."""
+    kinds = calculator.quantities()
+    said = []
+    for name, value in question.items():
+        if value is None or name in _NOT_ECHOED:
+            continue
+        words = name.replace("_", " ")
+        if name not in kinds:
+            said.append(f"{words} {_plain(value)}")
+        elif name == "mass":
+            said.append(f"{words} {shown(1000 * value, 'g')}")
+        else:
+            said.append(f"{words} {shown(value, kinds[name].name.replace('*', ' '))}")
+    return f"Given: {', '.join(said)}."
+
+
+def _plain(value: Any) -> str:
+    """A name, a number, or the parameters of an engine."""
+    if isinstance(value, dict):
+        return " ".join(f"{name}={number:g}" for name, number in value.items())
+    return str(value)
+
+
 def lines(given: Answer) -> list[str]:
     """The answer as text, with the verdict first."""
     found = given.found
-    engine = _engine_lines(found.engine_settings()) if found.question["engine"] else []
+    engine = _engine_lines(found) if found.question["engine"] else []
     if isinstance(found, Contact):
         about = [_line(*row) for row in rows(found)]
         about += [_line("release", found.release), *(f"Note: {note}." for note in found.notes)]
-        return about + engine
+        return [_echo(found.question), *about, *engine]
     need = found.needed
     always = ThresholdStatus.ALWAYS_WITHIN
     asked = f"ϖ for {percent(need.tolerance)} in the {QUANTITIES[Quantity(need.quantity)]}"
@@ -180,6 +209,7 @@ def lines(given: Answer) -> list[str]:
         found.headline,
         found.verdict,
         f"Reason: {found.reason}.",
+        _echo(found.question),
         *(f"Note: {note}." for note in found.notes),
         *engine,
         "",

@@ -18,7 +18,7 @@ from collections.abc import Callable, Iterable
 from typing import Any, NoReturn
 
 from bouncing_ball.cli.output import say
-from bouncing_ball.errors import Range, escaped
+from bouncing_ball.errors import Range, did_you_mean, escaped
 
 _OTHER_NAMES = {"parameters": "set", "from_engine": "from", "all_families": "all"}
 _OTHER_NAMES |= {"amplitudes": "amplitude"}
@@ -36,6 +36,21 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         self.exit(2, f"{self.prog.split()[0]}: {escaped(message)}\n")
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        namespace, unknown = super().parse_known_args(args, namespace)
+        for text in unknown:
+            meant = did_you_mean(text.partition("=")[0], self._option_string_actions)
+            if text.startswith("--") and meant:
+                self.error(f"unrecognized arguments: {' '.join(unknown)}{meant}")
+        return namespace, unknown
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        try:
+            super()._check_value(action, value)
+        except argparse.ArgumentError as error:
+            error.message += did_you_mean(value, map(str, action.choices or ()))
+            raise
 
     def _print_message(self, message: str, file: Any = None) -> None:
         # argparse prints no message if the help cannot be written.

@@ -103,13 +103,16 @@ const ENGINE_READS = {
 
 // Up to this impedance MuJoCo's contact is taken for a spring and a damper.
 const FELT = 0.01;
+// The longest time constant of MuJoCo, and the longest contact, in s, that are taken for one.
+const LONGEST_CONSTANT = 100, LONGEST = 1000;
 
 // The numbers of an attribute, as many as are allowed.
 function numbersOf(name, text, least, most) {
   const parts = text.trim().split(/\s+/).filter(Boolean), numbers = parts.map(Number);
   const allowed = least === most ? `${least} numbers` : `${least} to ${most} numbers`;
+  const hint = text.includes(",") ? `: write it without commas, '${text.replaceAll(",", " ").trim().split(/\s+/).join(" ")}'` : "";
   refuseIf(numbers.length < least || numbers.length > most || !numbers.every(Number.isFinite),
-    `${name} = '${text}' is not ${allowed}`);
+    `${name} = '${text}' is not ${allowed}${hint}`);
   return numbers;
 }
 
@@ -132,7 +135,9 @@ function readEngine(engine, mass, [one, two, three]) {
   if (engine === "mujoco") {
     const impedance = impedanceOf(two);
     refuseIf(!one.trim(), "solref is missing: give it, such as '-10000 -20'");
-    const [a, b] = numbersOf("solref", one, 2, 2);
+    const [a, b] = numbersOf("solref", one, 2, 2), [k, c] = [general(a, 6), general(b, 6)];
+    refuseIf(a > LONGEST_CONSTANT && b > 0, `solref = '${k} ${c}' is a time constant of ${k} s, which no `
+      + `simulation has: -k/m and -c/m are written '-${k} -${c}'`);
     refuseIf(!(a < 0 && b <= 0) && !(a > 0 && b > 0), `solref = '${general(a, 6)} ${general(b, 6)}' is neither `
       + "two negative numbers, -k/m and -c/m, nor two positive ones, a time constant and a damping ratio");
     refuseIf(impedance > FELT, `with the impedance ${general(impedance, 6)} MuJoCo's contact is not linear: write `
@@ -154,7 +159,14 @@ function readEngine(engine, mass, [one, two, three]) {
 // Engines whose scheme is compensated, so that their parameters belong to a time step.
 const STEPPED = ["pybullet", "drake"];
 // The contact in SI units, its dimensionless groups, and remarks.
-function caseOf({given, engine, release, r, one, two, three, m, k, f}) {
+function caseOf(state) {
+  const found = anyCaseOf(state), duration = freeAngle(found.contact) / dampedFrequency(found.contact) * found.time;
+  refuseIf(duration > LONGEST, `a contact of ${prefixed(duration, "s")} is longer than any that is simulated, up to `
+    + `${LONGEST} s: check the mass, the stiffness and their units`);
+  return found;
+}
+
+function anyCaseOf({given, engine, release, r, one, two, three, m, k, f}) {
   const mass = m / 1000, time = 1 / (2 * Math.PI * f), length = GRAVITY * time ** 2;
   if (given in ENGINE_NAMES) {
     const [stiffness, damping] = readEngine(given, mass, [one, two, three]);

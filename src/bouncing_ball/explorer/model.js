@@ -433,7 +433,7 @@ function answer({r, omega, amplitude, n, release, side = "stable", contact = con
   const value = (name, k) => name === "permanent_contact" ? thresholds[k]
     : name in limits[k] ? limits[k][name] : orbits[k].exists ? orbits[k][name] : NaN;
   const errors = k => Object.fromEntries(Object.keys(QUANTITIES).map(
-    name => [name, Math.abs(value(name, 0) / value(name, k) - 1)]));
+    name => [name, (value(name, k) - value(name, 0)) / value(name, 0)]));
   return {contact, own, models, orbits, limits, thresholds, signature, errors: errors(1), corrected: errors(2)};
 }
 

@@ -14,7 +14,7 @@ function insteadOf({amplitude, phase, impact_velocity}, {contact}) {
   return `one that starts beside it ${SAID[end.kind](end)}`;
 }
 
-function verdictOf(found, {n}) {
+function verdictOf(found, {n, physical}) {
   const [exact, simple, corrected] = found.orbits, error = found.errors.max_height;
   const wrong = exact.exists !== simple.exists
     ? (exact.exists ? `it misses the ${n}-T orbit, which the contact has`
@@ -23,19 +23,20 @@ function verdictOf(found, {n}) {
       ? `its ${n}-T orbit ` + (simple.is_stable ? "is stable, and the contact's is not"
         : "is not stable, and the contact's is") : "";
   const same = exact.exists === corrected.exists && exact.is_stable === corrected.is_stable;
-  const subject = `the greatest height of the ${n}-T orbit`;
+  const heights = [simple, exact].map(orbit => orbit.max_height * (physical?.length ?? 1));
+  const predicted = `for the greatest height of the ${n}-T orbit it predicts `
+    + `${inPlaceOf(...heights, physical && "m")}, ${signed(error)}`;
   if (!exact.exists && !simple.exists)
     return [false, `There is no ${n}-T orbit here: the saddle-node is at Λ = `
       + `${shown(found.limits[0].saddle_node, 4)}.`];
   if (exact.exists && !exact.is_stable)
     return [false, `No ball stays on the ${n}-T orbit, because it is unstable: ${insteadOf(exact, found)}.`];
-  if (!wrong && error <= TOLERANCE)
-    return [true, `The restitution model is good enough: ${subject} is ${percent(error)} off, `
-      + `within ${percent(TOLERANCE)}.`];
+  if (!wrong && Math.abs(error) <= TOLERANCE)
+    return [true, `The restitution model is good enough: ${predicted}, within ${percent(TOLERANCE)}.`];
   return [false, `The restitution model is not good enough: `
-    + `${wrong || `${subject} is ${percent(error)} off, beyond ${percent(TOLERANCE)}`}`
-    + (same && found.corrected.max_height <= TOLERANCE
-      ? `; the corrected restitution model is good enough: its error is ${percent(found.corrected.max_height)}.`
+    + `${wrong || `${predicted}, beyond ${percent(TOLERANCE)}`}`
+    + (same && Math.abs(found.corrected.max_height) <= TOLERANCE
+      ? `; the corrected restitution model is good enough: its error is ${signed(found.corrected.max_height)}.`
       : "; nor is the corrected one: simulate the contact.")];
 }
 
@@ -143,7 +144,7 @@ function fillTables(found, question) {
   );
   $("error-rows").replaceChildren(...Object.entries(QUANTITIES).map(([key, name]) => row(name,
     [found.errors[key], found.corrected[key]].map((value, k) =>
-      [`${percent(value)}${value <= TOLERANCE ? ", within" : Number.isFinite(value) ? ", beyond" : ""}`,
+      [`${signed(value)}${Math.abs(value) <= TOLERANCE ? ", within" : Number.isFinite(value) ? ", beyond" : ""}`,
         value, `${k ? "corrected_errors" : "errors"} ${key}`]))));
 }
 

@@ -6,12 +6,25 @@ const shown = (x, digits = 6) => Number.isFinite(x) ? String(Number(x.toPrecisio
 const percent = x => !Number.isFinite(x) ? "none"
   : x > 0 && x < 1e-5 ? "less than 0.001 %" : `${x < 0.995 ? Number((100 * x).toPrecision(2)) : (100 * x).toFixed(0)} %`;
 
-function prefixed(x, unit) {
+// An error with its sign, as in the calculator.
+const signed = x => {
+  const size = percent(Math.abs(x));
+  return !Number.isFinite(x) || x === 0 || size.startsWith("less") ? size : (x > 0 ? "+" : "-") + size;
+};
+// Two values that are compared, in as many digits as show that they differ.
+function inPlaceOf(predicted, exact, unit) {
+  const error = exact ? Math.abs(predicted / exact - 1) : 1;
+  const digits = error ? Math.min(12, Math.max(4, 2 - Math.floor(Math.log10(error)))) : 4;
+  const power = prefixPower(Math.max(Math.abs(predicted), Math.abs(exact)));
+  return [predicted, exact].map(x => unit ? prefixed(x, unit, digits, power) : shown(x, digits)).join(" in place of ");
+}
+
+const prefixPower = x => x === 0 ? 0
+  : Math.min(9, Math.max(-9, 3 * Math.floor(Math.log10(Math.abs(Number(x.toPrecision(4)))) / 3)));
+function prefixed(x, unit, digits = 4, power = prefixPower(x)) {
   if (!Number.isFinite(x)) return "none";
   const prefixes = {9: "G", 6: "M", 3: "k", 0: "", "-3": "m", "-6": "µ", "-9": "n"};
-  const power = x === 0 ? 0
-    : Math.min(9, Math.max(-9, 3 * Math.floor(Math.log10(Math.abs(Number(x.toPrecision(4)))) / 3)));
-  return `${shown(x / 10 ** power, 4)} ${prefixes[power]}${unit}`;
+  return `${shown(x / 10 ** power, digits)} ${prefixes[power]}${unit}`;
 }
 
 // ---- Axes, lines and marks.

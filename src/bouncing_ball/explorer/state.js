@@ -71,12 +71,31 @@ function withRelease(state) {
   return state;
 }
 
+// A clause that suggests the known name that a wrong one resembles, as in bouncing_ball.errors.
+function matched(a, b) {
+  let best = 0, at = 0, there = 0;
+  for (let i = 0; i < a.length; i++)
+    for (let j = 0; j < b.length; j++) {
+      let k = 0;
+      while (i + k < a.length && j + k < b.length && a[i + k] === b[j + k]) k++;
+      if (k > best) [best, at, there] = [k, i, j];
+    }
+  return best && best + matched(a.slice(0, at), b.slice(0, there)) + matched(a.slice(at + best), b.slice(there + best));
+}
+function didYouMean(name, known) {
+  const typed = name.toLowerCase().replaceAll("_", "-");
+  const alike = known.map(other => 2 * matched(other, typed) / (other.length + typed.length));
+  const best = Math.max(...alike);
+  return best >= 0.83 ? `; did you mean ${known[alike.indexOf(best)]}?` : "";
+}
+
 // Why a state has no answer: an r that no contact of the engine has, or a ball that rises.
 function impossible(state) {
   const least = Math.exp(-2), {a, r, w, phi, v, dv, dphi} = state;
   const physical = state.tab === "design", {engine, given} = state;
   if (physical && !CHOICES.engine.includes(engine))
-    return `unknown engine '${engine}': one of ${CHOICES.engine.slice(1).join(", ")}`;
+    return `unknown engine '${engine}': one of ${CHOICES.engine.slice(1).join(", ")}`
+      + didYouMean(engine, CHOICES.engine.slice(1));
   if (physical && !releasesOf(state).includes(state.release)) {
     const name = engine === "none" ? given : engine;
     return `${name} has no ${state.release} release: its contacts end by ${releasesOf(state).join(" and ")}`;

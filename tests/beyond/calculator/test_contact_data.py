@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from bouncing_ball.beyond.simulation import simulate
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
@@ -29,6 +30,14 @@ def found(release=Release.DISPLACEMENT, **given):
     return case.in_si()["stiffness"], case.in_si()["damping"]
 
 
+def rise(contact, drop):
+    """The height in m to which a ball rises on the table at rest, by the package's simulation."""
+    speed = math.sqrt(2 * drop / TABLE.length)
+    run = simulate(contact, 0.0, 0.0, -speed, 1)
+    up = float(run.relative_bounce_velocity[0])
+    return TABLE.length * (float(run.release_displacement[0]) + up * up / 2)
+
+
 @given(st.sampled_from(Release), st.floats(1e2, 1e9), st.floats(1e-3, 0.6))
 def test_every_set_gives_the_contact_it_was_taken_from(release, k, zeta):
     c = 2 * zeta * math.sqrt(k * MASS)
@@ -41,7 +50,7 @@ def test_every_set_gives_the_contact_it_was_taken_from(release, k, zeta):
         {"damping_ratio": zeta},
         {"restitution": printed},
         {"measured_restitution": own},
-        {"drop_height": 2.0, "rebound_height": 2.0 * own**2},
+        {"drop_height": 2.0, "rebound_height": rise(case.contact, 2.0)},
     ):
         for stiff in ({"stiffness": k}, {"contact_time": time}):
             assert found(release, **stiff, **loss) == pytest.approx((k, c), rel=1e-9), loss

@@ -64,9 +64,12 @@ def test_the_headline_says_what_the_ball_does(amplitude, kind, says):
         for name in ("height", "power"):
             exact, simple = getattr(found.motion, f"mean_{name}").values()
             off, margin = vars(found.motion.mean_error[name]).values()
-            assert off == pytest.approx(abs(exact.value / simple.value - 1), rel=1e-9)
+            assert off == pytest.approx(simple.value / exact.value - 1, rel=1e-9)
+            size = abs(off)
             shown = (
-                f"at most {100 * (off + margin):.2g} %" if margin > off else f"{100 * off:.2g} % ±"
+                f"at most {100 * (size + margin):.2g} %"
+                if margin > size
+                else f"{100 * off:+.2g} % ±"
             )
             assert shown in found.verdict
             assert 0 < exact.half_width < 0.1 * exact.value
@@ -137,7 +140,9 @@ def motion(kind, other, **more):
 
 def means(height, width):
     errors = {"height": Mean(height, width), "power": Mean(0.01, 0.0)}
-    return motion("chaotic", "locked", mean_error=errors)
+    exact = dict.fromkeys(("spring-damper", "restitution"), Mean(1.0, 0.0))
+    given = {"mean_height": exact, "mean_power": exact, "mean_error": errors}
+    return motion("chaotic", "locked", **given)
 
 
 LOCKED = ("locked", "locked")
@@ -149,15 +154,40 @@ LOCKED = ("locked", "locked")
         (motion("permanent contact", "permanent contact"), True, "the ball rests in both models"),
         (motion("locked", "permanent contact"), False, "its motion is permanent contact, and the"),
         (motion("subharmonic", "orbit"), False, "is periodic, and the contact's is doubled"),
-        (motion(*LOCKED, greatest={"a": 1.04, "b": 1.0}), True, "is 4 % off, within 5 %"),
-        (motion(*LOCKED, greatest={"a": 1.06, "b": 1.0}), False, "is 6 % off, beyond 5 %"),
+        (
+            motion(*LOCKED, greatest={"a": 1.0, "b": 1.04}),
+            True,
+            "1.04 m in place of 1 m, +4 %, within",
+        ),
+        (
+            motion(*LOCKED, greatest={"a": 1.0, "b": 0.94}),
+            False,
+            "m in place of 1 m, -6 %, beyond 5 %",
+        ),
         (motion("chaotic", "chaotic"), False, "is not known"),
         (motion("undecided", "permanent contact"), False, "is not known"),
-        (means(0.02, 0.005), True, "height is 2 % ± 0.5 % off and the mean power is 1 % ± 0 % off"),
-        (means(0.0, 0.02), True, "height is at most 2 % off and the mean power is 1 % ± 0 % off"),
-        (means(0.009, 0.045), False, "not decided at 5 %: the mean height is at most 5.4 % off"),
-        (means(0.04, 0.02), False, "not decided at 5 %: the mean height is 4 % ± 2 % off"),
-        (means(0.12, 0.005), False, "not good enough: the mean height is 12 % ± 0.5 % off"),
+        (
+            means(0.02, 0.005),
+            True,
+            "1 m, +2 % ± 0.5 % and a mean power of 1 W in place of 1 W, +1 % ±",
+        ),
+        (means(-0.02, 0.005), True, "a mean height of 1 m in place of 1 m, -2 % ± 0.5 % and"),
+        (means(0.0, 0.02), True, "height of 1 m in place of 1 m, at most 2 % off and a mean power"),
+        (
+            means(0.009, 0.045),
+            False,
+            "at 5 %: it predicts a mean height of 1 m in place of 1 m, at most 5.4 % off",
+        ),
+        (
+            means(0.04, 0.02),
+            False,
+            "not decided at 5 %: it predicts a mean height of 1 m in place of 1 m, +4 % ± 2 %",
+        ),
+        (
+            means(-0.12, 0.005),
+            False,
+            "enough: it predicts a mean height of 1 m in place of 1 m, -12 % ± 0.5",
+        ),
     ],
 )
 def test_the_verdict_on_a_motion(found, good, says):

@@ -4,7 +4,9 @@ A free impact ends at the angle π - 2α (:mod:`bouncing_ball.paper.contact.damp
 
     ω_d t = π - 2α,   ω_d = ω√(1 - ζ²),   ω² = k/m,   c = 2ζmω
 
-A drop test measures r = √(h′/h) under any release rule. A Hertz contact has the
+A drop test is a drop with gravity onto a table at rest, from which the damping is fitted
+(:mod:`bouncing_ball.beyond.calculator.drop_test`); for a contact law gravity is neglected, and
+r = √(h′/h). A Hertz contact has the
 force ``k x^{3/2} + C √(mk) x^{1/4} x′``, k = (4/3) E* √R, with the damping of Tsuji. Its r
 is the same at every speed (:mod:`bouncing_ball.beyond.laws.hertzian`), so that E*, R and r
 determine it. For two elastic bodies, the ball and the table (Hertz), ::
@@ -16,13 +18,14 @@ and the damping c that the engine computes with. All quantities are in SI units.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from bouncing_ball.beyond.calculator.case import PhysicalCase, Table
+from bouncing_ball.beyond.calculator.drop_test import fitted_damping_ratio
 from bouncing_ball.beyond.calculator.units import SIParameter, number
 from bouncing_ball.beyond.corrected.signature import Signature, free_impact
 from bouncing_ball.beyond.engines.choice import engine_named
@@ -65,8 +68,16 @@ def _one_of(given: Given, names: tuple[str, ...], what: str, give: str = "") -> 
     return found[0] if found else ""
 
 
-def loss(given: Given, release: Release) -> float:
+def loss(
+    given: Given,
+    release: Release,
+    omega_of: Callable[[float], float] | None = None,
+    gravity: float = STANDARD_GRAVITY,
+) -> float:
     """Damping ratio ζ of a contact whose loss is given without the stiffness.
+
+    A drop test needs ``omega_of``, √(k/m) in rad/s as a function of ζ, for the effect of gravity;
+    without it gravity is neglected.
 
     Raises
     ------
@@ -95,6 +106,8 @@ def loss(given: Given, release: Release) -> float:
     drop = given["drop_height"]
     if height > drop:
         raise ParameterError(f"{{rebound_height}} {height:g} m is above {{drop_height}} {drop:g} m")
+    if omega_of is not None:
+        return fitted_damping_ratio(omega_of, drop, height, gravity, release)
     return float(damping_ratio(math.sqrt(height / drop), release))
 
 
@@ -281,7 +294,11 @@ def case_of(
     if stiff == "stiffness":
         return _of_stiffness(given, table, release)
     # A contact with ω = 1; its free duration over the given one is ϖ.
-    unit = SpringDamper(1.0, loss(given, release), release)
+    if modulus is None and kind is None:
+        zeta = loss(given, release, _omega_of_time(given["contact_time"], release), table.gravity)
+    else:
+        zeta = loss(given, release)
+    unit = SpringDamper(1.0, zeta, release)
     if modulus is not None and release is not Release.DISPLACEMENT:
         raise ModelError("a Hertz contact with Tsuji's damping has the displacement release only")
     r = float(unit.restitution)
@@ -306,9 +323,19 @@ def _of_stiffness(given: Given, table: Table, release: Release) -> PhysicalCase:
         zeta = given["damping"] / (2 * mass * omega)
         zeta = _oscillating(zeta, release, "damping ratio ζ of the contact")
     else:
-        zeta = loss(given, release)
+        zeta = loss(given, release, same_omega(omega), table.gravity)
     contact = SpringDamper(omega / table.angular_frequency, zeta, release)
     return PhysicalCase(mass, table, contact)
+
+
+def same_omega(omega: float) -> Callable[[float], float]:
+    """√(k/m) in rad/s, as a function of ζ, of contacts of one stiffness: it is constant."""
+    return lambda zeta: omega
+
+
+def _omega_of_time(duration: float, release: Release) -> Callable[[float], float]:
+    """√(k/m) in rad/s, as a function of ζ, of contacts whose free impacts last as long as given."""
+    return lambda zeta: float(SpringDamper(1.0, zeta, release).free_duration) / duration
 
 
 class Source(NamedTuple):

@@ -1,5 +1,6 @@
 """The calculator: :func:`design`, parameters with units in, a :class:`Design` out."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Annotated, Any, get_args
@@ -11,12 +12,21 @@ from bouncing_ball.beyond.calculator.contact_data import (
     loss,
     meant,
     read_engine,
+    same_omega,
     table_of,
 )
+from bouncing_ball.beyond.calculator.drop_test import slowed_speed
 from bouncing_ball.beyond.calculator.families import RATIOS, families, finite, needed
 from bouncing_ball.beyond.calculator.motion import of_family
 from bouncing_ball.beyond.calculator.results import Contact, Corrected, Design, Needed, TimeStep
-from bouncing_ball.beyond.calculator.units import Index, Rule, SIParameter, number, percent
+from bouncing_ball.beyond.calculator.units import (
+    Index,
+    Rule,
+    SIParameter,
+    number,
+    percent,
+    shown,
+)
 from bouncing_ball.beyond.calculator.verdict import (
     aside,
     assessed,
@@ -45,6 +55,12 @@ STEP_RULE = f"a contact takes {STEPS} steps, the default of MFiX-Exa (mfix.tcoll
 _FAMILIES = range(1, 9)
 # Beyond this limit the squares of ϖ and Λ leave no digits. The other calls have the same limit.
 _LARGEST = 1e8
+# Largest number of times that the damping of a drop test is fitted to the stiffness chosen.
+_REFITS = 12
+# The smallest modulus in Pa that is taken for one if it is given without a unit.
+_SOFTEST = 1e4
+# The longest contact in s that is taken for one: no simulation has a longer one.
+_LONGEST = 1000.0
 # Parameters of which each implies that there is a table.
 _TABLE = {"frequency", "angular_frequency", "period", "table_amplitude", "acceleration"}
 _LOSS = SIParameter("", "0.85", Range(0, 1, "(]"))
@@ -137,12 +153,12 @@ def design(
         Restitution coefficient of a free impact that ends at the table's level,
         r = exp(-πζ/√(1 - ζ²)), Eq. 16 of the paper. With an engine or a law, r under its release.
     measured_restitution
-        Restitution coefficient of a free impact under the given release, as a drop test measures
-        it.
+        Restitution coefficient of a free impact, without gravity, under the given release.
     drop_height
-        Height of the drop in a drop test; needs the height of the rebound.
+        Height of the drop in a drop test, with gravity, onto a table at rest; needs the height of
+        the rebound.
     rebound_height
-        Height of the rebound in a drop test.
+        Height of the rebound in a drop test, above the table at rest.
     n
         Index n of the family. By default n = 1 to 8, with a verdict on the first stable orbit.
     release
@@ -154,7 +170,8 @@ def design(
     quantity
         Name of the quantity that must be accurate.
     tolerance
-        Largest relative error of the quantity, such as "5 %" or 0.05.
+        Largest relative error of the restitution model's quantity against the contact's, such as
+        "5 %" or 0.05.
     engine
         Physics engine for which the contact is written: generic, mujoco, lammps, liggghts,
         pybullet, drake or mercurydpm. The contact then ends as in this engine.
@@ -222,14 +239,16 @@ def design(
         elif source:
             # For another engine the spring and damper is written in place of the law.
             case = source.case(case, asked, engine is not None)
+        remarks += _drop_remarks(case, given)
         return _design(case, need, asked, question, remarks)
     except NoOrbitError as error:
-        bare = str(acceleration).strip()
-        if bare.replace(".", "", 1).isdigit():
-            raise NoOrbitError(f"{error}; did you mean {bare} g?") from None
+        # An acceleration in m/s², with or without its unit, may have been meant in g.
+        in_g = str(acceleration).strip().endswith("g") or gravity is not None
+        meant = "" if acceleration is None or in_g else f"did you mean {given['acceleration']:g} g?"
+        why = "; ".join(filter(None, [str(error), meant]))
         if n is not None or case is None:
-            raise
-        return _design(case, None, asked, question, remarks, no_orbit=str(error))
+            raise NoOrbitError(why) from None
+        return _design(case, None, asked, question, remarks, no_orbit=why)
 
 
 def _chosen(
@@ -240,9 +259,32 @@ def _chosen(
     question: Mapping[str, Any],
 ) -> tuple[PhysicalCase, Needed]:
     """The case with the most compliant contact within the tolerance, and the ϖ needed for it."""
-    quantity = question["quantity"]
     # A contact with the ζ of the given loss, whose ϖ is still to be found.
-    contact = SpringDamper(1.0, loss(given, rule), rule)
+    case, need = _chosen_with(loss(given, rule), given["mass"], table, rule, asked, question)
+    if "rebound_height" not in given:
+        return case, need
+    # By gravity the ζ of a drop test depends on the stiffness, though hardly for a stiff contact.
+    for _ in range(_REFITS):
+        before = case.contact
+        omega = float(before.frequency_ratio) * table.angular_frequency
+        zeta = loss(given, rule, same_omega(omega), table.gravity)
+        case, need = _chosen_with(zeta, given["mass"], table, rule, asked, question)
+        if math.isclose(case.contact.frequency_ratio, before.frequency_ratio, rel_tol=1e-12):
+            break
+    return case, need
+
+
+def _chosen_with(
+    zeta: float,
+    mass: float,
+    table: Table,
+    rule: Release,
+    asked: Sequence[int],
+    question: Mapping[str, Any],
+) -> tuple[PhysicalCase, Needed]:
+    """The case with the most compliant contact of this ζ within the tolerance."""
+    quantity = question["quantity"]
+    contact = SpringDamper(1.0, zeta, rule)
     r = float(contact.restitution)
     n = meant(asked, r, table.amplitude)
     if quantity in OF_ORBITS:
@@ -250,11 +292,11 @@ def _chosen(
     need = needed(quantity, question["tolerance"], contact, n, table.amplitude)
     if need.status == ThresholdStatus.NEVER_WITHIN:
         raise NoOrbitError(
-            f"no contact up to ϖ = {RATIOS[-1]:g} has its {QUANTITIES[Quantity(quantity)]} within "
-            f"{percent(need.tolerance)} of the restitution model with r = {r:.4g}"
+            f"no contact up to ϖ = {RATIOS[-1]:g} has its {QUANTITIES[Quantity(quantity)]} "
+            f"predicted within {percent(need.tolerance)} by the restitution model with r = {r:.4g}"
         )
     stiff = replace(contact, frequency_ratio=need.frequency_ratio or float(RATIOS[0]))
-    return PhysicalCase(given["mass"], table, stiff), need
+    return PhysicalCase(mass, table, stiff), need
 
 
 def _without_table(
@@ -266,7 +308,7 @@ def _without_table(
 ) -> Contact:
     """The answer about a contact without a table, by which there is no impact speed."""
     # With a table of 1 rad/s the frequency ratio is the frequency of the contact.
-    case = case_of(given, Table(1.0, 1.0, STANDARD_GRAVITY), rule, [1])
+    case = case_of(given, Table(1.0, 1.0, given.get("gravity", STANDARD_GRAVITY)), rule, [1])
     if case is None:
         raise ParameterError("no stiffness: give {stiffness}, or {contact_time}")
     if needs_speed and (question["law"] or question["engine"]):
@@ -280,6 +322,8 @@ def _without_table(
         stiffness=given.get("stiffness", case.mass * omega**2),
         damping=given.get("damping", 2 * zeta * case.mass * omega),
     )
+    if not needs_speed:
+        _require_short(physical.contact_time(rule))
     return Contact(
         mass=physical.mass,
         stiffness=physical.stiffness,
@@ -289,8 +333,44 @@ def _without_table(
         contact_time=None if needs_speed else physical.contact_time(rule),
         release=str(rule),
         measured_restitution=None if needs_speed else physical.restitution(rule),
-        notes=remarks,
+        slowed_speed=None if needs_speed else _slowed_speed(case),
+        notes=remarks + _drop_remarks(case, given),
         question=question,
+    )
+
+
+def _require_short(contact_time: float) -> None:
+    """Raise an error for a contact that is too long for any simulation."""
+    if contact_time > _LONGEST:
+        raise ModelError(
+            f"a contact of {shown(contact_time, 's')} is longer than any that is simulated, up to "
+            f"{_LONGEST:g} s: check the mass, the stiffness and their units"
+        )
+
+
+def _slowed_speed(case: PhysicalCase) -> float | None:
+    """The impact speed in m/s at which gravity lowers the r of a linear contact by 1 %."""
+    contact = case.contact
+    if case.law is not None or contact.damping_ratio >= 1:
+        return None
+    omega = float(contact.frequency_ratio) * case.table.angular_frequency
+    zeta, r = float(contact.damping_ratio), float(contact.restitution)
+    return slowed_speed(omega, zeta, r, case.table.gravity, contact.release)
+
+
+def _drop_remarks(case: PhysicalCase, given: Mapping[str, float]) -> tuple[str, ...]:
+    """A sentence on the drop test that was given, if one was, and on its restitution."""
+    if "rebound_height" not in given:
+        return ()
+    drop, height = given["drop_height"], given["rebound_height"]
+    r = math.sqrt(height / drop)
+    if case.law is not None:
+        return (f"the drop test is read without gravity, as r = √(h′/h) = {r:.4g}, for this law",)
+    arrives = shown(math.sqrt(2 * case.table.gravity * drop), "m/s")
+    free = float(case.contact.restitution)
+    return (
+        f"dropped from {shown(drop, 'm')} onto a table at rest, at {arrives}, the ball rises to "
+        f"{shown(height, 'm')}: √(h′/h) = {r:.4g}, and r = {free:.4g} without gravity",
     )
 
 
@@ -306,6 +386,11 @@ def _law_type(
         if name not in {*laws, *laws.values()}:
             raise ParameterError(f"{{law}} {name} is not written for {engine}: leave {{law}} out")
         name = laws.get(name, name)
+    if name is not None and name.casefold() in ("hertz", "hertzian"):
+        raise ParameterError(
+            f"{{law}} {name} has no damper: Hertz's spring with a damper is {{law}} tsuji, or give "
+            "{radius} and {reduced_modulus} in place of {law}"
+        )
     kind = None if name is None else law_named(name)
     if kind is None or kind is LinearLaw:
         return None
@@ -357,8 +442,22 @@ def _in_si(parameters: Mapping[str, Any]) -> dict[str, float]:
             value = number(name, parameters[name], kind)
             if value not in kind.allowed:
                 raise _out_of_range(name, parameters[name], value, kind)
+            if kind.name == "Pa" and value < _SOFTEST and _is_bare(parameters[name]):
+                raise ParameterError(
+                    f"{{{name}}} = {value:g} is in Pa, and no solid is so soft: "
+                    f"did you mean {value:g} GPa?"
+                )
             given[name] = value
     return given
+
+
+def _is_bare(value: Any) -> bool:
+    """Whether a number has no unit."""
+    try:
+        float(value)
+    except (TypeError, ValueError):
+        return False
+    return True
 
 
 def _out_of_range(name: str, text: Any, value: float, kind: SIParameter) -> ParameterError:
@@ -388,6 +487,7 @@ def _design(
     ratio = float(contact.frequency_ratio)
     only = "below 1: on a vibrating table only underdamped contacts are computed"
     require(contact.damping_ratio < 1, contact.damping_ratio, "damping ratio ζ", only)
+    _require_short(case.in_si()["contact_time"])
     found = families(case, asked, bool(no_orbit))
     require(1 / _LARGEST < ratio < _LARGEST, ratio, "ϖ", f"between {1 / _LARGEST:g} and 1e8")
     # The verdict is about the first family whose orbit is stable and admissible, or else exists.
@@ -425,6 +525,7 @@ def _design(
             str(rule): float(replace(contact, release=rule).restitution) for rule in Release
         },
         measured_restitution=float(contact.restitution),
+        slowed_speed=_slowed_speed(case),
         permanent_contact=finite(case.permanent_contact),
         law=case.law_in_si,
         corrected=Corrected(

@@ -9,9 +9,10 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from bouncing_ball.beyond import error_law
-from bouncing_ball.beyond.calculator.case import PhysicalCase
+from bouncing_ball.beyond.calculator.case import PhysicalCase, Table
 from bouncing_ball.beyond.calculator.results import Errors, Family, Needed, Standing
 from bouncing_ball.beyond.corrected.errors import search
 from bouncing_ball.beyond.error_law import law_thresholds
@@ -36,8 +37,36 @@ def finite(value: float | np.ndarray) -> float | None:
     return float(value) if math.isfinite(value) else None
 
 
-def _moduli(values: np.ndarray) -> Errors:
-    return {str(q): finite(abs(x)) for q, x in zip(Quantity, values, strict=False)}
+def against_contact(error: np.ndarray) -> np.ndarray:
+    """The error of a simple model against the contact, (q - q_SD)/q_SD, from that of the paper.
+
+    The paper divides by the value of the simple model: its error is e = (q_SD - q)/q (Eq. 37), so
+    that the error against the contact is -e/(1 + e). Both are the same to first order, but for
+    the sign.
+
+    Examples
+    --------
+    >>> against_contact(np.array([-0.5, 1.0, np.inf])).tolist()
+    [1.0, -0.5, -1.0]
+    """
+    paper = np.asarray(error, dtype=float)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(np.isinf(paper), -1.0, -paper / (1 + paper))
+
+
+def prediction_error(predicted: ArrayLike, true: ArrayLike) -> np.ndarray:
+    """Signed relative error of predicted values against the true ones, which are the contact's.
+
+    Examples
+    --------
+    >>> prediction_error([2.0, 1.0], [1.0, 2.0]).tolist()
+    [1.0, -0.5]
+    """
+    return relative(predicted, true)
+
+
+def _by_quantity(values: np.ndarray) -> Errors:
+    return {str(q): finite(x) for q, x in zip(Quantity, values, strict=False)}
 
 
 def _loads(law: ContactLaw, orbit: Any) -> tuple[float, float]:
@@ -65,7 +94,8 @@ def by_error_law(case: PhysicalCase, n: np.ndarray) -> tuple[np.ndarray, np.ndar
     """The restitution model's errors that the error law predicts, shape (quantity, n), and whether
     it holds, shape (n,).
 
-    The error of the permanent contact, K₂/ϖ², is known for the linear contact only.
+    They are errors against the contact, which to first order are those of the law with the other
+    sign. The error of the permanent contact, K₂/ϖ², is known for the linear contact only.
 
     Examples
     --------
@@ -73,7 +103,7 @@ def by_error_law(case: PhysicalCase, n: np.ndarray) -> tuple[np.ndarray, np.ndar
     >>> from bouncing_ball.paper.contact.spring_damper import SpringDamper
     >>> case = PhysicalCase(1.0, Table(1.0, 1.0, 1.0), SpringDamper(10.0, 0.0))
     >>> by_error_law(case, np.array([1]))[0][-1].tolist()
-    [-0.01]
+    [0.01]
     """
     lam = case.table.amplitude
     contact = case.contact
@@ -89,7 +119,7 @@ def by_error_law(case: PhysicalCase, n: np.ndarray) -> tuple[np.ndarray, np.ndar
     if case.law is None:
         second = error_law.permanent_contact_coefficient(contact.damping_ratio, contact.release)
         predicted[-1] = second / contact.frequency_ratio**2
-    return predicted, holds
+    return -predicted, holds
 
 
 def _standing(orbit: Orbit, values: np.ndarray, amplitude: float) -> Standing:
@@ -201,7 +231,8 @@ def _family(
     orbit = orbits[0]
     standing = [_standing(*each, unit.amplitude) for each in zip(orbits, values, strict=True)]
     depth, force = _loads(case.exact_law, orbit)
-    restitution, corrected = map(_moduli, relative(values[0], values[1:]))
+    restitution, corrected = map(_by_quantity, prediction_error(values[1:], values[0]))
+    in_si = values * _units(case.table)
     return Family(
         n=n,
         exists=standing[0].exists,
@@ -214,11 +245,24 @@ def _family(
         greatest_compression=finite(depth * unit.length),
         peak_force=finite(force * case.mass * unit.gravity),
         peak_force_over_weight=finite(force),
+        values={
+            str(quantity): dict(zip(case.models, map(finite, of_models), strict=True))
+            for quantity, of_models in zip(Quantity, in_si.T, strict=True)
+        },
         errors=restitution,
         corrected_errors=corrected,
-        law_errors=_moduli(by_law),
+        law_errors=_by_quantity(by_law),
         law_holds=holds,
     )
+
+
+def _units(table: Table) -> np.ndarray:
+    """The SI units of the quantities, in their order: m, m/s, and 1 for the others."""
+    units = np.ones(len(Quantity))
+    order = list(Quantity)
+    units[order.index(Quantity.MAX_HEIGHT)] = table.length
+    units[order.index(Quantity.BOUNCE_VELOCITY)] = table.length / table.time
+    return units
 
 
 # From contacts that last a considerable part of the table's period to contacts stiffer than those
@@ -238,7 +282,7 @@ def needed(
     quantity : str
         One of :class:`~bouncing_ball.paper.comparison.errors.Quantity`.
     tolerance : float
-        Largest relative error allowed.
+        Largest relative error allowed, against the contact (:func:`against_contact`).
     contact : SpringDamper
     n : int
     amplitude : float
@@ -246,11 +290,12 @@ def needed(
 
     Examples
     --------
-    Λ_SD = 1 - 1/ϖ² without damping:
+    Without damping the threshold is Λ_SD = 1 - 1/ϖ², for which the restitution model has 1, so
+    that its error is 1/(ϖ² - 1):
 
     >>> found = needed("permanent_contact", 0.01, SpringDamper(5.0, 0.0), 1, 1.0)
-    >>> round(found.frequency_ratio, 12), round(found.by_law, 12)
-    (10.0, 10.0)
+    >>> round(found.frequency_ratio**2, 9), round(found.by_law, 12)
+    (101.0, 10.0)
     """
     zeta = contact.damping_ratio
     rule = contact.release
@@ -277,6 +322,7 @@ def needed(
         ratios=RATIOS,
         tolerance=tolerance,
         quantities=(quantity,),
+        measure=against_contact,
     )
     simple, corrected = found.threshold[:, 0, 0]
     status, corrected_status = found.status[:, 0, 0]

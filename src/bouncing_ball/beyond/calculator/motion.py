@@ -19,11 +19,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from bouncing_ball.beyond.calculator.case import PhysicalCase
+from bouncing_ball.beyond.calculator.families import prediction_error
 from bouncing_ball.beyond.calculator.results import Family, FinalMotion, Mean
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.means import over_steps
 from bouncing_ball.beyond.long_run.motions import Kind
-from bouncing_ball.paper.comparison.errors import relative
 from bouncing_ball.paper.motion.sequence import ImpactSequence, Status
 
 # Relative change of an orbit's impact velocity for a start beside the orbit.
@@ -181,7 +181,8 @@ def _compared(
             found.append(height_and_power(run, before))
         means = np.concatenate([means, np.array(found)], axis=-1)
         error, margin = _error_of_means(*means)
-        if np.all(error + margin <= tolerance) or np.any(error - margin > tolerance):
+        size = np.abs(error)
+        if np.all(size + margin <= tolerance) or np.any(size - margin > tolerance):
             break
     table = case.table
     watt = case.mass * table.gravity**2 / table.angular_frequency
@@ -195,13 +196,13 @@ def _compared(
 
 
 def _error_of_means(exact: np.ndarray, simple: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Moduli of the relative errors of the simple model's means, with their half-widths.
+    """Relative errors of the simple model's means against the exact ones, and their half-widths.
 
     The arguments have the shape (quantity, ball); equal balls of both models start alike.
     """
-    error = relative(exact.mean(axis=-1), simple.mean(axis=-1))[:, np.newaxis]
-    differences = (exact - (1 + error) * simple) / simple.mean(axis=-1, keepdims=True)
-    return np.abs(error[:, 0]), _half_width(differences)
+    error = prediction_error(simple.mean(axis=-1), exact.mean(axis=-1))[:, np.newaxis]
+    differences = (simple - (1 + error) * exact) / exact.mean(axis=-1, keepdims=True)
+    return error[:, 0], _half_width(differences)
 
 
 def _in_si(samples: np.ndarray, unit: float, models: Iterable[str]) -> dict[str, Mean]:

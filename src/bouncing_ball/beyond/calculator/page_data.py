@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.beyond.calculator.families import RATIOS
+from bouncing_ball.beyond.calculator.families import RATIOS, against_contact
 from bouncing_ball.beyond.calculator.results import Design
 from bouncing_ball.beyond.corrected.errors import SIMPLE, search
 from bouncing_ball.paper.comparison.thresholds import ThresholdStatus
@@ -42,6 +42,7 @@ def page(design: Design) -> xr.Dataset:
         ratios=RATIOS,
         tolerance=asked.tolerance,
         quantities=(asked.quantity,),
+        measure=against_contact,
     )
     always = found.status == ThresholdStatus.ALWAYS_WITHIN
     from_there_on = np.where(always, RATIOS[0], found.threshold)[:, 0]

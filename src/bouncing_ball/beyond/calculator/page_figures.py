@@ -90,12 +90,15 @@ def _errors(axes: Axes, design: Mapping[str, Any]) -> None:
         ("corrected_errors", "corrected", "D", CORRECTED, 3.5),
         ("law_errors", "error law", "|", COLOURS[2], 13),
     ):
-        values = [error or np.nan for error in one[key].values()]
+        values = [abs(error) if error else np.nan for error in one[key].values()]
         axes.plot(values, names, marker, color=colour, label=name, markersize=size)
     axes.axvline(design["needed"]["tolerance"], color=TABLE, linewidth=0.8, linestyle="--")
     # The first quantity is at the top, and those without an error have their rows, too.
     axes.set_ylim(len(names) - 0.5, -0.5)
-    axes.set(xscale="log", title=f"relative error, {design['n']}-T orbit (dashed: tolerance)")
+    axes.set(
+        xscale="log",
+        title=f"relative errors, without sign, {design['n']}-T orbit (dashed: tolerance)",
+    )
     axes.grid(visible=True, axis="x", linewidth=0.3)
     axes.legend(loc="upper center", bbox_to_anchor=(0.35, -0.1), ncols=3, columnspacing=1.0)
 

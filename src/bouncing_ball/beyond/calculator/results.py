@@ -15,8 +15,8 @@ from bouncing_ball.beyond.engines.engine import EngineSettings, Physical
 from bouncing_ball.paper.orbits.stability import Bifurcation
 
 Errors = dict[str, float | None]
-"""Relative errors by quantity; None where one of the values does not exist, or the simple one is
-zero."""
+"""Relative errors by quantity, (q - q_SD)/q_SD with the value q_SD of the contact; None where one
+of the values does not exist, or that of the contact is zero."""
 
 
 class Listed(NamedTuple):
@@ -86,10 +86,11 @@ class Family:
     """The n-T orbit of a case, in SI units, and the errors of the simple models.
 
     ``exists``, ``is_stable`` and ``is_admissible`` refer to the orbit of the exact model, which
-    comes first in ``standing``. All errors are moduli of relative errors: ``errors`` are those of
-    the restitution model, ``corrected_errors`` those of the corrected model, and ``law_errors``
-    those that the error law gives for the restitution model; ``law_holds`` tells whether the law
-    holds.
+    comes first in ``standing``. ``values`` has each quantity in every model, the exact one first,
+    in m, in m/s or without a unit. All errors are relative to the exact value and have a sign,
+    positive where the model predicts too much: ``errors`` are those of the restitution model,
+    ``corrected_errors`` those of the corrected model, and ``law_errors`` those that the error law
+    gives for the restitution model; ``law_holds`` tells whether the law holds.
     """
 
     n: int
@@ -103,6 +104,7 @@ class Family:
     greatest_compression: Annotated[float | None, Listed("greatest compression", "m")]
     peak_force: Annotated[float | None, Listed("peak force", "N")]
     peak_force_over_weight: Annotated[float | None, Listed("peak force over weight")]
+    values: dict[str, dict[str, float | None]]
     errors: Errors
     corrected_errors: Errors
     law_errors: Errors
@@ -127,8 +129,8 @@ class FinalMotion:
     ball laid on the table, None if it is the same. If the orbit is not stable, there are the same
     three values for the restitution model. For motions that repeat in the same way in both models
     there is then the ``greatest`` height in each model; for other motions there are means over
-    time of the height and of the power that the table transfers, with the moduli of their relative
-    errors.
+    time of the height and of the power that the table transfers, with the signed relative errors
+    of the restitution model.
     """
 
     kind: str
@@ -147,6 +149,8 @@ class FinalMotion:
 @dataclass(frozen=True)
 class Needed:
     """The frequency ratio above which the error of a quantity stays within a tolerance ε.
+
+    The error is relative to the value on the contact.
 
     ``frequency_ratio`` is the largest ϖ at which the error of the restitution model crosses the
     tolerance, and ``corrected`` that of the corrected model. ``by_law`` is the ϖ that the error
@@ -200,7 +204,9 @@ class Contact:
     """A contact without a table, in SI units.
 
     ``natural_frequency`` is ω = √(k/m) in rad/s: on a table that moves with Ω it gives ϖ = ω/Ω.
-    ``question`` holds the arguments of the call. What depends on the impact speed is None.
+    ``question`` holds the arguments of the call. What depends on the impact speed is None. The r of
+    a free impact holds at speeds above ``slowed_speed``: there, on a table at rest, gravity lowers
+    √(h′/h) by 1 %, and at slower impacts by more. It is None without damping.
     """
 
     mass: Annotated[float, Listed("mass in kg")]
@@ -211,6 +217,7 @@ class Contact:
     contact_time: Annotated[float | None, Listed("contact time", "s")]
     release: str
     measured_restitution: Annotated[float | None, Listed("restitution of a free impact")]
+    slowed_speed: Annotated[float | None, Listed("gravity lowers r by 1 % at", "m/s")]
     notes: tuple[str, ...]
     question: dict[str, Any]
 
@@ -227,10 +234,11 @@ class Design:
 
     ``frequency_ratio``, ``damping_ratio`` and ``amplitude`` are ϖ, ζ and Λ. ``restitution`` has the
     r of a free impact for each release rule, and ``measured_restitution`` is that for the rule of
-    this contact. ``n`` is the family of the verdict, and ``question`` holds the arguments of the
-    call. Up to Λ = ``permanent_contact`` a ball may stay on the table; None if no such threshold
-    was found. ``law`` has the ``name`` of a contact law and its parameters, whose units are powers
-    of kg, m and s.
+    this contact; it holds at impacts faster than ``slowed_speed``, at which, on a table at rest,
+    gravity lowers √(h′/h) by 1 %, None without damping or for another law. ``n`` is the family of
+    the verdict, and ``question`` holds the arguments of the call. Up to Λ = ``permanent_contact`` a
+    ball may stay on the table; None if no such threshold was found. ``law`` has the ``name`` of a
+    contact law and its parameters, whose units are powers of kg, m and s.
     """
 
     frequency_ratio: Annotated[float, Listed("frequency ratio ϖ")]
@@ -247,6 +255,7 @@ class Design:
         Listed("restitution, released without force"),
     ]
     measured_restitution: float
+    slowed_speed: Annotated[float | None, Listed("gravity lowers r by 1 % at", "m/s")]
     permanent_contact: Annotated[float | None, Listed("permanent contact up to Λ")]
     law: dict[str, Any] | None
     corrected: Corrected

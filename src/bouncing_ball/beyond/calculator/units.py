@@ -19,6 +19,21 @@ from typing import Annotated, Any, Literal, NamedTuple
 
 from bouncing_ball.errors import FAMILY, ParameterError, Range
 
+# Units as they are written, by the SI unit of a parameter, for hints on a wrong spelling.
+_SPELLINGS = {
+    "kg": ("kg", "g", "mg"),
+    "Hz": ("Hz", "kHz", "rpm", "rad/s"),
+    "rad/s": ("rad/s", "Hz", "rpm"),
+    "s": ("s", "ms", "us", "ns"),
+    "m": ("m", "cm", "mm", "um"),
+    "m/s^2": ("m/s^2", "mm/s^2", "g"),
+    "N/m": ("N/m", "kN/m", "MN/m", "N/mm", "kN/mm"),
+    "N*s/m": ("N s/m", "kN s/m", "N s/mm", "kg/s"),
+    "Pa": ("Pa", "kPa", "MPa", "GPa"),
+}
+_BETWEEN = re.compile(r"[\s·*.^]")
+# A number with a decimal comma, and its unit.
+_COMMA = re.compile(r"([+-]?\d+),(\d+)(.*)", re.DOTALL)
 # A number, and the rest of the text.
 _TEXT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
 # Letters, products, quotients and powers of one digit. A power of a power is refused, because pint
@@ -88,6 +103,10 @@ write it as '50 Hz'
         return ParameterError(f"{{{name}}} = {{}} {why}", said)
 
     if isinstance(value, str):
+        comma = _COMMA.fullmatch(value.strip()[:60])
+        if comma is not None:
+            whole, part, rest = comma.groups()
+            raise wrong(f"has a comma: write {f'{whole}.{part}{rest}'!r}, with a decimal point")
         found = _TEXT.fullmatch(value.strip())
         if found is None:
             raise wrong(f"does not begin with a number: {example}", repr(short))
@@ -101,10 +120,20 @@ write it as '50 Hz'
         raise wrong("is neither a number nor a text", repr(value)) from None
     found_value, why = _converted(plain, unit, kind) if unit else (plain, "")
     if why:
-        raise wrong(f"{why}: {example}")
+        meant = _spelling(unit, kind)
+        raise wrong(f"{why}: did you mean '{value} {meant}'?" if meant else f"{why}: {example}")
     if not math.isfinite(found_value):
         raise wrong("is not a finite number")
     return found_value
+
+
+def _spelling(unit: str, kind: SIParameter) -> str:
+    """The unit that was meant, if a common one has the same letters; otherwise an empty text."""
+    typed = _BETWEEN.sub("", unit).casefold()
+    for spelling in _SPELLINGS.get(kind.name, ()):
+        if _BETWEEN.sub("", spelling).casefold() == typed:
+            return spelling
+    return ""
 
 
 def _converted(value: float, unit: str, kind: SIParameter) -> tuple[float, str]:
@@ -141,7 +170,7 @@ def percent(share: float) -> str:
     return f"{100 * share:.6g} %"
 
 
-def shown(value: float | None, unit: str = "", least: float = 1e-5) -> str:
+def shown(value: float | None, unit: str = "", least: float = 1e-5, digits: int = 4) -> str:
     """A value as text: four digits with a prefix of its unit, or a share in "%" with two digits.
 
     A share below ``least``, or below 1e-5 if this is smaller, is given as "less than" that bound.
@@ -163,11 +192,57 @@ def shown(value: float | None, unit: str = "", least: float = 1e-5) -> str:
             return f"less than {percent(bound)}"
         return f"{100 * value:.2g} %" if value < 0.995 else f"{100 * value:.0f} %"
     if value == 0 or not unit:
-        return f"{value:.4g} {unit}".rstrip()
+        return f"{value:.{digits}g} {unit}".rstrip()
+    power = _power(value)
+    return f"{value / 10**power:.{digits}g} {_PREFIXES[power]}{unit}"
+
+
+def _power(value: float) -> int:
+    """The power of ten of the prefix with which a value is shown, by its four digits."""
     rounded = abs(float(f"{value:.4g}"))
-    thousands = math.floor(math.log10(rounded) / 3)
-    power = min(9, max(-9, 3 * thousands))
-    return f"{value / 10**power:.4g} {_PREFIXES[power]}{unit}"
+    if rounded == 0:
+        return 0
+    return min(9, max(-9, 3 * math.floor(math.log10(rounded) / 3)))
+
+
+def signed(error: float | None, least: float = 1e-5) -> str:
+    """An error in percent with its sign, in the digits of :func:`shown`.
+
+    Examples
+    --------
+    >>> signed(1.1453), signed(-0.0123), signed(0.0), signed(-1e-9), signed(None)
+    ('+115 %', '-1.2 %', '0 %', 'less than 0.001 %', 'none')
+    """
+    if error is None or error == 0:
+        return shown(error, "%")
+    size = shown(abs(error), "%", least)
+    if size.startswith("less"):
+        return size
+    return f"{'+' if error > 0 else '-'}{size}"
+
+
+# Digits of two values that are compared: at least four, and two of their difference.
+_FEWEST, _MOST = 4, 12
+
+
+def in_place_of(predicted: float | None, true: float | None, unit: str = "") -> str:
+    """Two values that are compared, with one prefix and in as many digits as show that they differ.
+
+    Examples
+    --------
+    >>> in_place_of(2.061e-3, 0.961e-3, "m"), in_place_of(5.41098, 5.41067)
+    ('2.061 mm in place of 0.961 mm', '5.41098 in place of 5.41067')
+    """
+    error = abs(predicted / true - 1) if predicted is not None and true else 1.0
+    needed = 2 - math.floor(math.log10(error)) if error else _FEWEST
+    digits = min(_MOST, max(_FEWEST, needed))
+    if not unit or predicted is None or true is None:
+        texts = [shown(value, unit, digits=digits) for value in (predicted, true)]
+    else:
+        power = _power(max(abs(predicted), abs(true)))
+        name = f"{_PREFIXES[power]}{unit}"
+        texts = [f"{value / 10**power:.{digits}g} {name}" for value in (predicted, true)]
+    return " in place of ".join(texts)
 
 
 Index = Annotated[int, FAMILY]

@@ -7,18 +7,22 @@ from typing import NamedTuple
 import numpy as np
 
 from bouncing_ball.beyond.calculator.case import PhysicalCase
-from bouncing_ball.beyond.calculator.families import NO_ORBIT
+from bouncing_ball.beyond.calculator.families import NO_ORBIT, prediction_error
 from bouncing_ball.beyond.calculator.results import Family, FinalMotion, Mean, Needed
-from bouncing_ball.beyond.calculator.units import percent, shown
+from bouncing_ball.beyond.calculator.units import in_place_of, percent, shown, signed
 from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.beyond.laws.hertzian import Tsuji
 from bouncing_ball.beyond.laws.impedance import Impedance
 from bouncing_ball.beyond.long_run.motions import Kind
-from bouncing_ball.paper.comparison.errors import QUANTITIES, Quantity, modulus, relative
+from bouncing_ball.paper.comparison.errors import QUANTITIES, Quantity
 from bouncing_ball.paper.comparison.thresholds import ThresholdStatus
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+
+_UNITS = {Quantity.MAX_HEIGHT: "m", Quantity.BOUNCE_VELOCITY: "m/s"}
+# Units of the means over time.
+_OF_MEANS = {"height": "m", "power": "W"}
 
 # What a ball does that starts near an orbit, by the kind of the motion on which it ends.
 _DOES: Mapping[str, str] = {
@@ -89,18 +93,25 @@ def assessed(family: Family, needed: Needed, frequency_ratio: float) -> Assessme
         name = QUANTITIES[Quantity(needed.quantity)]
         sentence = f"Whether the restitution model is good enough in the {name} is not known."
         return Assessment(False, sentence, "the contact or the model has no value to compare")
-    good = wrong is None and error is not None and error <= needed.tolerance
-    subject = _subject(needed.quantity, family.n)
-    size = shown(error, "%", needed.tolerance)
+    good = wrong is None and error is not None and abs(error) <= needed.tolerance
     reason = _reason(needed, frequency_ratio, good, tolerance)
     if good:
-        sentence = (
-            f"The restitution model is good enough: {subject} is {size} off, within {tolerance}."
-        )
+        found = _prediction(family, needed)
+        sentence = f"The restitution model is good enough: {found}, within {tolerance}."
         return Assessment(True, sentence, reason)
-    why = wrong or f"{subject} is {size} off, beyond {tolerance}"
+    why = wrong or f"{_prediction(family, needed)}, beyond {tolerance}"
     instead = _instead(family, needed)
     return Assessment(False, f"The restitution model is not good enough: {why}{instead}.", reason)
+
+
+def _prediction(family: Family, needed: Needed) -> str:
+    """A clause with the values of a quantity in the restitution model and on the contact, and the
+    error of the model.
+    """
+    exact, predicted, *_ = family.values[needed.quantity].values()
+    both = in_place_of(predicted, exact, _UNITS.get(Quantity(needed.quantity), ""))
+    size = signed(family.errors[needed.quantity], needed.tolerance)
+    return f"for {_subject(needed.quantity, family.n)} it predicts {both}, {size}"
 
 
 def judged_by_motion(motion: FinalMotion, tolerance: float, n: int) -> Assessment:
@@ -120,17 +131,21 @@ def judged_by_motion(motion: FinalMotion, tolerance: float, n: int) -> Assessmen
         sentence = f"its motion is {_named(simple)}, and the contact's is {_named(exact)}"
         return Assessment(False, f"The restitution model is not good enough: {sentence}.", about)
     if motion.greatest is not None:
-        error = float(modulus(relative(*motion.greatest.values())))
-        found = f"the greatest height of this motion is {shown(error, '%')} off"
-        return _within(error, error, tolerance, found, about)
+        true, predicted = motion.greatest.values()
+        error = float(prediction_error(predicted, true))
+        both = in_place_of(predicted, true, "m")
+        found = f"for the greatest height of this motion it predicts {both}, {signed(error)}"
+        return _within(abs(error), abs(error), tolerance, found, about)
     if motion.mean_error is None:
         sentence = "Whether the restitution model is good enough for this motion is not known."
         return Assessment(False, sentence, f"{about}; nor are means, as some balls come to rest")
-    found = " and ".join(
-        f"the mean {name} is {_between(error)} off" for name, error in motion.mean_error.items()
+    means = {"height": motion.mean_height, "power": motion.mean_power}
+    found = "it predicts " + " and ".join(
+        _of_mean(name, means[name], error) for name, error in motion.mean_error.items()
     )
-    least = max(error.value - error.half_width for error in motion.mean_error.values())
-    most = max(error.value + error.half_width for error in motion.mean_error.values())
+    errors = motion.mean_error.values()
+    least = max(abs(error.value) - error.half_width for error in errors)
+    most = max(abs(error.value) + error.half_width for error in errors)
     return _within(least, most, tolerance, found, f"{about}; means over time are compared")
 
 
@@ -139,11 +154,19 @@ def _named(kind: str | None) -> str:
     return words.get(kind, str(kind))
 
 
+def _of_mean(name: str, of_models: Mapping[str, Mean | None] | None, error: Mean) -> str:
+    """The mean of both models, and the error with its interval."""
+    true, predicted = (mean for mean in (of_models or {}).values() if mean is not None)
+    both = in_place_of(predicted.value, true.value, _OF_MEANS[name])
+    return f"a mean {name} of {both}, {_between(error)}"
+
+
 def _between(error: Mean) -> str:
-    """A positive error with its interval, or its upper end where the interval contains zero."""
-    if error.half_width > error.value:
-        return f"at most {shown(error.value + error.half_width, '%')}"
-    return f"{shown(error.value, '%')} ± {shown(error.half_width, '%')}"
+    """An error with its interval, or its largest size where the interval contains zero."""
+    size = abs(error.value)
+    if error.half_width > size:
+        return f"at most {shown(size + error.half_width, '%')} off"
+    return f"{signed(error.value)} ± {shown(error.half_width, '%')}"
 
 
 def _within(least: float, most: float, tolerance: float, found: str, why: str) -> Assessment:
@@ -165,8 +188,8 @@ def _instead(family: Family, needed: Needed) -> str:
     error = family.corrected_errors[needed.quantity]
     corrected = family.standing["corrected"]
     same = (family.exists, family.is_stable) == (corrected.exists, corrected.is_stable)
-    if same and error is not None and error <= needed.tolerance:
-        size = shown(error, "%", needed.tolerance)
+    if same and error is not None and abs(error) <= needed.tolerance:
+        size = signed(error, needed.tolerance)
         return f"; the corrected restitution model is good enough: its error is {size}"
     return "; nor is the corrected one: simulate the contact"
 
@@ -191,8 +214,8 @@ def chosen(si: Mapping[str, float], needed: Needed, n: int) -> Assessment:
     sentence = (
         f"A simulation needs a contact of at least {shown(si['stiffness'], 'N/m')}, with a contact "
         f"time of {shown(si['contact_time'], 's')} or less and a damping of "
-        f"{shown(si['damping'], 'N s/m')} at that stiffness: {_subject(needed.quantity, n)} is "
-        f"then within {tolerance} of the restitution model's."
+        f"{shown(si['damping'], 'N s/m')} at that stiffness: the restitution model then predicts "
+        f"{_subject(needed.quantity, n)} within {tolerance}."
     )
     if needed.frequency_ratio is None:
         return Assessment(True, sentence, _NO_CROSSING[needed.status])
@@ -207,7 +230,7 @@ def _cost_of(law: Impedance, case: PhysicalCase, family: Family) -> str:
     if family.greatest_compression is None or family.max_height is None or not spring.exists:
         return about
     depth = np.array(family.greatest_compression / case.table.length)
-    off = float(relative(family.max_height, spring.max_height * case.table.length))
+    off = float(prediction_error(family.max_height, spring.max_height * case.table.length))
     return (
         f"{about}: at the orbit's depth of {shown(family.greatest_compression, 'm')}, where the "
         f"impedance is {float(law.impedance(depth)):.3g}, the ball bounces {shown(abs(off), '%')} "

@@ -2,7 +2,7 @@
 thresholds above which each of them is accurate.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -114,6 +114,7 @@ def search(
     ratios: np.ndarray,
     tolerance: float,
     quantities: Sequence[str] = OF_IMPACTS,
+    measure: Callable[[np.ndarray], np.ndarray] = np.asarray,
 ) -> Search:
     """Thresholds and zeros of the errors of both simple models, for linear contacts.
 
@@ -127,6 +128,9 @@ def search(
     tolerance : float
         The tolerated relative error.
     quantities : sequence of str
+    measure : callable
+        The error that is tolerated, as a function of the paper's error (Eqs. 37-38); by default
+        the paper's.
 
     Returns
     -------
@@ -148,7 +152,7 @@ def search(
     def at(ratio: np.ndarray, orbit: np.ndarray, wanted: Sequence[str]) -> np.ndarray:
         """The errors of the orbits with these indices, shape (model, quantity, m)."""
         contact = SpringDamper(ratio, damping[orbit], rule)
-        return errors(contact, index[orbit], lam[orbit], wanted)
+        return measure(errors(contact, index[orbit], lam[orbit], wanted))
 
     def along(ratio: np.ndarray, row: np.ndarray, wanted: Sequence[str]) -> np.ndarray:
         """The errors of rows of (model, orbit), shape (quantity, m)."""

@@ -34,6 +34,8 @@ _LEAST = 1e-4
 _MOST = 0.9999
 # A contact with an impedance up to this value is treated as a spring and damper.
 _FELT = 0.01
+# The longest time constant in s that is taken for one; more is a stiffness without its sign.
+_LONGEST = 100.0
 
 
 def _numbers(name: str, value: str | Sequence[float], counts: range) -> list[float]:
@@ -46,7 +48,9 @@ def _numbers(name: str, value: str | Sequence[float], counts: range) -> list[flo
         found = [np.nan]
     if len(found) not in counts or not np.all(np.isfinite(found)):
         shown = value if isinstance(value, str) else " ".join(map(str, parts))
-        raise ModelError(f"{name} = {shown!r} is not {allowed}")
+        apart = " ".join(shown.replace(",", " ").split())
+        hint = f": write it without commas, {apart!r}" if "," in shown else ""
+        raise ModelError(f"{name} = {shown!r} is not {allowed}{hint}")
     return found
 
 
@@ -121,6 +125,11 @@ class MuJoCo(Engine):
         first, second = _numbers("solref", values["solref"], range(2, 3))
         if first < 0 and second <= 0:
             return Physical(m, -first * m, abs(second) * m)
+        if first > _LONGEST and second > 0:
+            raise ModelError(
+                f"solref = '{first:g} {second:g}' is a time constant of {first:g} s, which no "
+                f"simulation has: -k/m and -c/m are written '-{first:g} -{second:g}'"
+            )
         if first > 0 and second > 0:
             return Physical(m, m / (first * second) ** 2, 2 * m / first)
         raise ModelError(

@@ -99,7 +99,7 @@ def sources(modules: Iterable[str], files: Iterable[Path] = ()) -> list[Path]:
     --------
     >>> found = sources(["bouncing_ball.paper.contact.damping"])
     >>> [path.name for path in found if path.name != "__init__.py"]
-    ['errors.py', 'elementary.py', 'damping.py']
+    ['errors.py', 'arrays.py', 'elementary.py', 'damping.py']
     """
     for module in modules:
         if module_file(module) is None:

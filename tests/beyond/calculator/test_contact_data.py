@@ -3,7 +3,6 @@
 import math
 
 import pytest
-from bouncing_ball.beyond.simulation import simulate
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
@@ -14,6 +13,7 @@ from bouncing_ball.beyond.corrected.signature import free_impact
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 
 STEEL_ON_GLASS = {
     "youngs_modulus": 2.1e11,
@@ -33,7 +33,7 @@ def found(release=Release.DISPLACEMENT, **given):
 def rise(contact, drop):
     """The height in m to which a ball rises on the table at rest, by the package's simulation."""
     speed = math.sqrt(2 * drop / TABLE.length)
-    run = simulate(contact, 0.0, 0.0, -speed, 1)
+    run = SpringDamperModel(contact).simulate(0.0, 0.0, -speed, 1)
     up = float(run.relative_bounce_velocity[0])
     return TABLE.length * (float(run.release_displacement[0]) + up * up / 2)
 

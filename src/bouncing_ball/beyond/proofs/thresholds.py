@@ -155,51 +155,83 @@ def error_threshold(
         return Threshold(quantity, ratio, bits)
 
 
-def certified_box(
-    equations: Callable[[list[arb]], tuple[Series, Series]], start: list[float]
-) -> list[arb]:
+Equations = Callable[[list[arb]], tuple[Series, Series]]
+"""Two functions of two unknowns, as series about a box or a point."""
+
+# Largest number of Newton steps with long numbers: each doubles the digits of the start.
+_STEPS = 12
+# The box of the proof is the last Newton step times these factors, tried in turn.
+_WIDER = (2**8, 2**16, 2**24)
+
+
+def certified_box(equations: Equations, start: list[float]) -> list[arb]:
     """A box that is proved to contain exactly one solution of two equations.
+
+    Krawczyk's method: the image ``m - Y F(m) + (I - Y J(B)) (B - m)`` of a box B with midpoint m
+    lies in its interior, where Y is an approximate inverse of the Jacobian and J(B) encloses the
+    Jacobians at all points of B.
 
     Raises
     ------
     ProofError
         If Newton's method does not converge, or if no box is mapped into its interior.
     """
-    middle = [arb(x) for x in start]
-    for _ in range(12):
-        values, slopes = _linearised(equations(middle))
-        inverse = _inverse([[arb(x.mid()) for x in row] for row in slopes])
-        step = [_scalar_product(row, values) for row in inverse]
-        if not all(x.is_finite() for x in step):
-            raise ProofError("Newton's method met a singular point")
-        middle = [arb((m - s).mid()) for m, s in zip(middle, step, strict=True)]
-        small = arb(2) ** (-ctx.prec * 3 // 4)
-        if all(s.abs_upper() < small * (1 + abs(m)) for s, m in zip(step, middle, strict=True)):
-            break
-    else:
-        raise ProofError("Newton's method did not converge from the start of double precision")
-    values, slopes = _linearised(equations(middle))
-    inverse = _inverse([[arb(x.mid()) for x in row] for row in slopes])
-    step = [_scalar_product(row, values) for row in inverse]
-    for factor in (2**8, 2**16, 2**24):
-        radii = [
-            (arb(s.abs_upper()) + small * (1 + abs(m))) * factor
-            for s, m in zip(step, middle, strict=True)
-        ]
-        box = [(m - x).union(m + x) for m, x in zip(middle, radii, strict=True)]
-        _, over = _linearised(equations(box))
-        image = []
-        for k in (0, 1):
-            # Row k of I - Y J over the box.
-            row = [
-                (1 if k == j else 0) - _scalar_product(inverse[k], [over[0][j], over[1][j]])
-                for j in (0, 1)
-            ]
-            spread = _scalar_product(row, [b - m for b, m in zip(box, middle, strict=True)])
-            image.append(middle[k] - step[k] + spread)
+    middle = _solved(equations, [arb(x) for x in start])
+    step, inverse = _newton_step(equations, middle)
+    for factor in _WIDER:
+        box = []
+        for center, change in zip(middle, step, strict=True):
+            radius = factor * (arb(change.abs_upper()) + _resolution(center))
+            box.append((center - radius).union(center + radius))
+        image = _krawczyk(equations, box, middle, step, inverse)
         if all(b.contains_interior(x) for b, x in zip(box, image, strict=True)):
             return image
     raise ProofError("no box around the solution is mapped into its interior")
+
+
+def _solved(equations: Equations, middle: list[arb]) -> list[arb]:
+    """The solution near a start by Newton's method, without a proof."""
+    for _ in range(_STEPS):
+        step, _ = _newton_step(equations, middle)
+        if not all(change.is_finite() for change in step):
+            raise ProofError("Newton's method met a singular point")
+        middle = [arb((m - change).mid()) for m, change in zip(middle, step, strict=True)]
+        pairs = zip(step, middle, strict=True)
+        if all(change.abs_upper() < _resolution(center) for change, center in pairs):
+            return middle
+    raise ProofError("Newton's method did not converge from the start of double precision")
+
+
+def _newton_step(equations: Equations, middle: list[arb]) -> tuple[list[arb], list[list[arb]]]:
+    """The step Y F(m), and the approximate inverse Y of the Jacobian."""
+    values, slopes = _linearised(equations(middle))
+    inverse = _inverse([[arb(x.mid()) for x in row] for row in slopes])
+    return [_scalar_product(row, values) for row in inverse], inverse
+
+
+def _krawczyk(
+    equations: Equations,
+    box: list[arb],
+    middle: list[arb],
+    step: list[arb],
+    inverse: list[list[arb]],
+) -> list[arb]:
+    """The image of a box under Krawczyk's operator."""
+    _, slopes = _linearised(equations(box))
+    away = [b - m for b, m in zip(box, middle, strict=True)]
+    image = []
+    for k in (0, 1):
+        contraction = []
+        for j in (0, 1):
+            column = [slopes[0][j], slopes[1][j]]
+            contraction.append((1 if k == j else 0) - _scalar_product(inverse[k], column))
+        image.append(middle[k] - step[k] + _scalar_product(contraction, away))
+    return image
+
+
+def _resolution(center: arb) -> arb:
+    """The size of a Newton step after which rounding dominates."""
+    return (abs(center) + 1) * arb(2) ** (-ctx.prec * 3 // 4)
 
 
 def _scalar_product(left: list[arb], right: list[arb]) -> arb:

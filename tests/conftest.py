@@ -61,7 +61,8 @@ def _contact_state(s, d0, v0, phase, lam, omega, zeta):
     matrix = np.zeros((5, 5))
     matrix[0, 1] = omega
     matrix[1] = [-omega, -2 * zeta * omega, -1.0, lam, 0.0]
-    matrix[3, 4], matrix[4, 3] = 1.0, -1.0
+    matrix[3, 4] = 1.0
+    matrix[4, 3] = -1.0
     start = [omega * d0, v0, 1.0, np.sin(phase), np.cos(phase)]
     # expm alone loses e^|matrix| roundings up to a norm of four; below one half
     # it loses none, and squaring loses one for each of the parts.

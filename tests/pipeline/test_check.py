@@ -47,7 +47,8 @@ def test_finer_grids_of_the_whole_motion_are_accepted_and_are_finer(model):
     assert len(larger["beyond"]) == 5
 
 
-FIG05, FIG08 = ("paper", "fig05"), ("paper", "fig08")
+FIG05 = ("paper", "fig05")
+FIG08 = ("paper", "fig08")
 SPAN = (*FIG05, "frequency_ratio")
 
 

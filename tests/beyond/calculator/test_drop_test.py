@@ -42,7 +42,8 @@ def one_contact(m, k, c, release, table, start, speed):
     length = math.sqrt(m / k)
     y = [amplitude * math.sin(omega * start), speed]
     first = solve_ivp(motion, [start, start + 1e-4 * length], y, **PRECISE)
-    time, y = first.t[-1], first.y[:, -1]
+    time = first.t[-1]
+    y = first.y[:, -1]
     run = solve_ivp(motion, [time, time + 40 * length], y, events=ended(holds), **PRECISE)
     assert len(run.t_events[0]) == 1
     return run.t_events[0][0], *run.y_events[0][0]

@@ -192,7 +192,9 @@ def drake(trial: Trial) -> tuple[np.ndarray, float]:
 
 RUN = {run.__name__: run for run in (mujoco, lammps, pybullet, drake)}
 RELEASES = [(name, release) for name in RUN for release in ENGINES[name].releases]
-LOSSES, FAMILIES, RATIOS = (0.65, 0.85), (1, 2), (10, 20, 50)
+LOSSES = (0.65, 0.85)
+FAMILIES = (1, 2)
+RATIOS = (10, 20, 50)
 TOLERANCES = (0.01, 0.001)
 SKIPPED, KEPT = 8, 16
 # Single bounces at the steps whose error is the corrected model's, if a bounce needs no more steps.

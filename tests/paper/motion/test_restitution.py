@@ -75,7 +75,8 @@ def chattering(r, lam, phase, speed):
 
 @pytest.mark.parametrize(("r", "lam"), [(0.5, 0.8), (0.3, 1.4), (0.8, 0.0)])
 def test_the_time_of_chattering_is_that_of_all_its_bounces(r, lam):
-    phase, speed = -1.0, 0.2
+    phase = -1.0
+    speed = 0.2
     sequence = RestitutionModel(r).simulate(lam, phase, lam * np.cos(phase) - speed / r, 200)
     stuck = int(np.argmax(sequence.contact_duration > 0))
     assert sequence.time[stuck] > 0

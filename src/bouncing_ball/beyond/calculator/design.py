@@ -354,7 +354,8 @@ def _slowed_speed(case: PhysicalCase) -> float | None:
     if case.law is not None or contact.damping_ratio >= 1:
         return None
     omega = float(contact.frequency_ratio) * case.table.angular_frequency
-    zeta, r = float(contact.damping_ratio), float(contact.restitution)
+    zeta = float(contact.damping_ratio)
+    r = float(contact.restitution)
     return slowed_speed(omega, zeta, r, case.table.gravity, contact.release)
 
 
@@ -362,7 +363,8 @@ def _drop_remarks(case: PhysicalCase, given: Mapping[str, float]) -> tuple[str, 
     """A sentence on the drop test that was given, if one was, and on its restitution."""
     if "rebound_height" not in given:
         return ()
-    drop, height = given["drop_height"], given["rebound_height"]
+    drop = given["drop_height"]
+    height = given["rebound_height"]
     r = math.sqrt(height / drop)
     if case.law is not None:
         return (f"the drop test is read without gravity, as r = √(h′/h) = {r:.4g}, for this law",)

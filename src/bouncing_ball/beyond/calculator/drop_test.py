@@ -68,13 +68,15 @@ def rebound(
     damped = omega * math.sqrt((1 - zeta) * (1 + zeta))
     decay = zeta * omega
     # Coefficients of e^{-ζωt} cos ω_d t and e^{-ζωt} sin ω_d t of x and of x′.
-    x_cosine, x_sine = -sink, (speed - decay * sink) / damped
+    x_cosine = -sink
+    x_sine = (speed - decay * sink) / damped
     v_cosine = -decay * x_cosine + damped * x_sine
     v_sine = -decay * x_sine - damped * x_cosine
 
     def state(angle: float) -> tuple[float, float]:
         shrunk = math.exp(-zeta * omega / damped * angle)
-        cosine, sine = math.cos(angle), math.sin(angle)
+        cosine = math.cos(angle)
+        sine = math.sin(angle)
         depth = sink + shrunk * (x_cosine * cosine + x_sine * sine)
         return depth, shrunk * (v_cosine * cosine + v_sine * sine)
 

@@ -538,8 +538,8 @@ def path(
     """
     ends = found[:3]
     start = speed, phase, amplitude, weight
-    laws, (t, *columns), shape = _row(law, time, *ends, *start)
-    duration, end_depth, end_rate, v, phi, lam, w = columns
+    laws, columns, shape = _row(law, time, *ends, *start)
+    t, duration, end_depth, end_rate, v, phi, lam, w = columns
     start = Start(depth=np.zeros_like(t), rate=v, phase=phi, amplitude=lam, weight=w)
     depth, rate = states(laws, start, (duration, end_depth, end_rate), t)
     return depth.reshape(shape), rate.reshape(shape)

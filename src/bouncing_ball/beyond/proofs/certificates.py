@@ -191,7 +191,8 @@ def fold_test(contact: Contact, n: int, excess: Series) -> Series:
 def doubling_test(contact: Contact, n: int, excess: Series) -> Series:
     """1 + tr + det, from ``1 - tr + det = -(det A/(u R_D)) ½ dΛ²/dD`` (docs/closed-form.md)."""
     found = point(contact, n, excess)
-    x, y = found.x, found.y
+    x = found.x
+    y = found.y
     sine, cosine = found.duration.sin_cos()
     acceleration = contact.acceleration(found.gap, found.rate, x * sine + y * cosine)
     pace = found.rate + contact.lag * acceleration

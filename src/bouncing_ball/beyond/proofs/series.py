@@ -107,7 +107,8 @@ class Series:
         if not isinstance(other, Series):
             return Series([a * other for a in self.terms], self.order)
         found = [arb(0)] * len(self.terms)
-        left, right = self.terms, other.terms
+        left = self.terms
+        right = other.terms
         for a, b, c in _products(self.order):
             found[c] += left[a] * right[b]
         return Series(found, self.order)

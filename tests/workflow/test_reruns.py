@@ -64,6 +64,14 @@ def test_no_file_time_hides_a_change_of_the_code(complete):
     assert complete.planned("fig02") == set()
 
 
+def test_touch_hides_no_change_of_a_value(complete):
+    complete.run("--cores", "1", "--touch")
+    assert complete.planned() == set()
+    complete.configure("paper", "fig02", "amplitude", value=1.1)
+    complete.run("--cores", "1", "--touch", "fig02")
+    assert complete.planned("fig02") == {"fig02", "Drawing fig02", "fig02 is up to date"}
+
+
 def test_a_failing_study_prints_its_line_and_its_log_and_no_sources(fresh):
     module = "src/bouncing_ball/paper/exhibits/restitution_model.py"
     heading = '-> xr.Dataset:\n    """Ball and table'

@@ -72,17 +72,27 @@ def shards_of(wildcards):
     return expand(rules.shard.output.data, shard=names, **wildcards)
 
 
+# Whether some of the datasets of an artifact were made from other arguments.
+def others(artifact, datasets):
+    from bouncing_ball.pipeline.jobs import made_from
+
+    given = arguments_of(artifact)
+    return not all(made_from(each, given) for each in datasets if each.exists())
+
+
 # The one input that stands for the code of a job: a file with the digest of its script, of the
 # named modules, and of all modules and data that these import and read. It is written only if the
-# digest changes, and the job then runs again.
-def code(job, script, *modules, outputs=(), files=()):
+# digest changes, and the job then runs again. `--touch` keeps outputs only if they were made by this
+# code and, if they are datasets of an artifact, from the arguments that its study has now.
+def code(job, script, *modules, outputs=(), files=(), made_by=None):
     path = Path("results", "code", job)
     if not workflow.is_main_process and path.exists():
         return str(path)
     read = [Path(file).resolve() for file in (SCRIPTS / "adapter.py", SCRIPTS / script, *files)]
     found = digest(sources([f"bouncing_ball.{module}" for module in modules], read))
     if workflow.touch:
-        keep_doubt(path, found, map(Path, outputs))
+        outputs = [Path(output) for output in outputs]
+        keep_doubt(path, found, outputs, doubted=made_by is not None and others(made_by, outputs))
     else:
         keep_digest(path, found)
     return str(path)

@@ -13,6 +13,7 @@ rule shard:
             "shard.py",
             ARTIFACTS[w.artifact].module,
             outputs=Path("results/shards", w.artifact).glob("*.nc"),
+            made_by=ARTIFACTS[w.artifact],
         ),
     output:
         data="results/shards/{artifact}/{shard}.nc",
@@ -37,6 +38,7 @@ rule study:
             "study.py",
             ARTIFACTS[w.artifact].module,
             outputs=[f"results/figures/{w.artifact}.nc"],
+            made_by=ARTIFACTS[w.artifact],
         ),
         data=lambda w: [ARTIFACTS[name].dataset for name in ARTIFACTS[w.artifact].reads],
         shards=shards_of,

@@ -3,10 +3,9 @@
 import xarray as xr
 from adapter import function
 
-from bouncing_ball.datasets.files import parameter_attributes
 from bouncing_ball.datasets.shards import part_of
 from bouncing_ball.pipeline.configuration import typed
-from bouncing_ball.pipeline.jobs import logged, publish
+from bouncing_ball.pipeline.jobs import logged, publish, recorded
 
 with logged(snakemake):
     job = snakemake.params
@@ -17,4 +16,4 @@ with logged(snakemake):
         # Each array has dimensions of its own.
         dimensions = [f"{name}_{k}" for k in range(values.ndim)]
         data[name] = (dimensions, values)
-    publish(snakemake, xr.Dataset(data), parameter_attributes(job.arguments))
+    publish(snakemake, xr.Dataset(data), recorded(job.arguments))

@@ -25,7 +25,7 @@ from bouncing_ball.datasets.files import (
 )
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.configuration import typed
-from bouncing_ball.pipeline.provenance import PREFIX, gather
+from bouncing_ball.pipeline.provenance import PREFIX, gather, parameters_of, read_attributes
 
 REFERENCE = (
     "Carbonelli, Perret-Liaudet, Rigaud and Feki, Investigation of restitution coefficient "
@@ -206,6 +206,35 @@ def provenance(snakemake: Any) -> dict[str, str]:
     return gathered | {f"{PREFIX}code": Path(code).read_text(encoding="ascii")}
 
 
+def recorded(arguments: Mapping[str, Any]) -> dict[str, Any]:
+    """The arguments of a study as the attributes of its dataset, the parameters by their names.
+
+    Examples
+    --------
+    >>> recorded({"parameters": {"n": 1, "amplitude": 1.2}, "release": "force"})
+    {'n': 1, 'amplitude': 1.2, 'release': 'force'}
+    """
+    others = {name: value for name, value in arguments.items() if name != "parameters"}
+    return parameter_attributes({**arguments.get("parameters", {}), **others})
+
+
+def made_from(path: Path, arguments: Mapping[str, Any]) -> bool:
+    """Whether a dataset records these arguments of its study; one without a record may have them.
+
+    A file that cannot be read was not made from them.
+    """
+    try:
+        found = parameters_of(read_attributes(path))
+    except ModelError:
+        return False
+    expected = parameters_of(recorded(arguments))
+    # NetCDF keeps a list of one number as a number.
+    return all(
+        np.array_equal(np.ravel(found[name]), np.ravel(expected[name]))
+        for name in found.keys() & expected.keys()
+    )
+
+
 def make_dataset(snakemake: Any, study: Callable[..., xr.Dataset]) -> list[str]:
     """Run the study of the job and write its dataset.
 
@@ -227,8 +256,7 @@ def make_dataset(snakemake: Any, study: Callable[..., xr.Dataset]) -> list[str]:
     for name, variable in dataset.variables.items():
         if "units" not in variable.attrs:
             raise ModelError(f"{name} has no unit: the study ends with described(...)")
-    named = given.pop("parameters", {}) | given
-    publish(snakemake, dataset, dataset.attrs or parameter_attributes(named))
+    publish(snakemake, dataset, dataset.attrs or recorded(given))
     sizes = ", ".join(f"{name} {size}" for name, size in dataset.sizes.items())
     lines = [f"{snakemake.output.data}: {sizes}"]
     if "end_reason" in dataset:

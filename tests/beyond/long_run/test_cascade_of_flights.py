@@ -66,6 +66,18 @@ def test_balls_have_as_many_flights_as_the_cascade_says():
     assert np.abs(off).max() < 0.05
 
 
+@pytest.mark.parametrize(("r", "openings"), [(0.3, 10), (0.5, 14), (0.65, 16)])
+def test_the_ratio_of_openings_tends_to_one_over_r_squared_with_an_error_of_order_k_r_to_the_k(
+    r, openings
+):
+    excess = stiff_openings(float(damping_ratio(r)), openings)
+    apart = excess[1:] / excess[:-1] * r**2 - 1
+    k = np.arange(1, openings)
+    share = apart / (k * r**k)
+    assert np.all(share > 0) and np.all(np.diff(share) < 0)
+    assert 0 < apart[-1] < 2e-3
+
+
 def test_the_derivatives_and_the_multipliers_are_those_of_the_motion():
     law = SpringDamper(9.0, 0.12)
     rng = np.random.default_rng(2)

@@ -60,3 +60,9 @@ def test_one_bad_value_among_many_is_reported_on_one_line(refusal):
     # A sweep hands over arrays; numpy breaks a long one into many lines.
     with refusal(ModelError, "(0, 1]"):
         damping_ratio(np.linspace(0.0, 1.0, 60))
+
+
+@pytest.mark.parametrize("release", Release)
+def test_a_release_given_by_its_name_gives_the_same_damping(release):
+    assert damping_ratio(0.65, str(release)) == damping_ratio(0.65, release)
+    assert restitution_coefficient(0.1, str(release)) == restitution_coefficient(0.1, release)

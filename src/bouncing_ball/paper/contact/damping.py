@@ -139,7 +139,7 @@ _NEWTON_STEPS = 6
 _REST = 6.123233995736766e-17
 
 
-def damping_ratio(restitution: ArrayLike, release: Release = Release.DISPLACEMENT) -> np.ndarray:
+def damping_ratio(restitution: ArrayLike, release: str = Release.DISPLACEMENT) -> np.ndarray:
     """Damping ratio ζ of a free contact with the restitution coefficient r.
 
     ``ζ = -ln r / √(π² + ln² r)`` (Eq. 16) for the displacement release. For the
@@ -149,14 +149,14 @@ def damping_ratio(restitution: ArrayLike, release: Release = Release.DISPLACEMEN
     ----------
     restitution : array_like
         r in (0, 1] for the displacement release, in (e⁻², 1] for the force release.
-    release : Release
+    release : Release or str
         The condition that ends the contact in which r is measured.
 
     Raises
     ------
     ModelError
-        If any r lies outside its range. The lower bounds 0 and e⁻² are the limits
-        for ζ → 1.
+        If any r lies outside its range, or the release is unknown. The lower bounds 0 and e⁻²
+        are the limits for ζ → 1.
 
     Examples
     --------
@@ -167,7 +167,7 @@ def damping_ratio(restitution: ArrayLike, release: Release = Release.DISPLACEMEN
     """
     r = check_restitution(restitution)
     decrement = -logarithm(r) + 0.0  # + 0.0 turns -0 into 0 at r = 1
-    if release is Release.DISPLACEMENT:
+    if Release.of(release) is Release.DISPLACEMENT:
         return decrement / np.sqrt(np.pi * np.pi + decrement * decrement)
     allowed = "in (e⁻², 1], the range of the force release with ζ < 1"
     require(decrement < 2, r, "restitution coefficient r", allowed)
@@ -199,7 +199,7 @@ def _half_angle(decrement: np.ndarray) -> np.ndarray:
 
 
 def restitution_coefficient(
-    damping: ArrayLike, release: Release = Release.DISPLACEMENT
+    damping: ArrayLike, release: str = Release.DISPLACEMENT
 ) -> np.ndarray:
     """Restitution coefficient of a free, underdamped linear contact.
 
@@ -210,7 +210,7 @@ def restitution_coefficient(
     ----------
     damping : array_like
         ζ in [0, 1).
-    release : Release
+    release : Release or str
         The condition that ends the contact.
 
     Raises

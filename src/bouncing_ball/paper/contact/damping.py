@@ -198,9 +198,7 @@ def _half_angle(decrement: np.ndarray) -> np.ndarray:
     return beta
 
 
-def restitution_coefficient(
-    damping: ArrayLike, release: str = Release.DISPLACEMENT
-) -> np.ndarray:
+def restitution_coefficient(damping: ArrayLike, release: str = Release.DISPLACEMENT) -> np.ndarray:
     """Restitution coefficient of a free, underdamped linear contact.
 
     ``r = exp(-(π - 2α) ζ/√(1 - ζ²))``, the inverse of :func:`damping_ratio`. For the

@@ -145,10 +145,11 @@ def path(
     >>> round(float(depth), 12), abs(round(float(rate), 12))
     (1.0, 0.0)
     """
-    ends = found[:3]
+    ends = found.duration, found.penetration, found.rate
     start = speed, phase, amplitude, weight
-    laws, columns, shape = _row(law, time, *ends, *start)
-    t, duration, end_depth, end_rate, v, phi, lam, w = columns
+    columns = (time, *ends, *start)
+    laws, flat, shape = _row(law, *columns)
+    t, duration, end_depth, end_rate, v, phi, lam, w = flat
     start = Start(depth=np.zeros_like(t), rate=v, phase=phi, amplitude=lam, weight=w)
     depth, rate = states(laws, start, (duration, end_depth, end_rate), t)
     return depth.reshape(shape), rate.reshape(shape)

@@ -84,7 +84,7 @@ def require_agreement(certified: xr.Dataset, ledger: xr.Dataset) -> None:
     ModelError
         If a verdict differs.
     """
-    for name in certified.claim.values:
+    for name in map(str, certified.claim.values):
         pair = [each.verdict.sel(claim=name).item() for each in (certified, ledger)]
         if pair[0] != pair[1] and Verdict.NOT_ASKED not in pair:
             raise ModelError(

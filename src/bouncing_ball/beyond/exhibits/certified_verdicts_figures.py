@@ -12,8 +12,8 @@ def ext_verdicts(data: xr.Dataset) -> Table:
     columns: Columns = {
         "claim": text("claim"),
         "printed": text("printed_text"),
-        "above": lambda part: entry_of(part.low, ".12f"),
-        "below": lambda part: entry_of(part.high, ".12f"),
+        "above": lambda part: entry_of(part.low, ".17g"),
+        "below": lambda part: entry_of(part.high, ".17g"),
         "deviation": deviation_text,
         "verdict": text("verdict"),
     }

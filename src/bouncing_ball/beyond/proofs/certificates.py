@@ -264,7 +264,8 @@ def _require_multiplier(contact: Contact, orbit: Point, found: ReturnMap, multip
     """
     determinant = _determinant(contact, orbit)
     (a, b), (c, d) = found.monodromy
-    if not (a * d - b * c).overlaps(determinant):
+    # A ball that is not a number overlaps every other one.
+    if not (a * d - b * c).is_finite() or not (a * d - b * c).overlaps(determinant):
         raise ProofError("the return map contradicts the determinant exp(-2ζϖD)")
     if not (1 - multiplier * (a + d) + determinant).contains(0):
         raise ProofError(f"the return map contradicts the multiplier {multiplier}")

@@ -186,8 +186,11 @@ def _root(c: arb, order: int) -> list[arb]:
     return found
 
 
-def angle(x: Any, y: Any) -> "Series":
-    """The polar angle of the point (x, y) as a series, by the arctangent of a small angle.
+def angle(x: Any, y: Any) -> Any:
+    """The polar angle of the point (x, y), which are balls or series.
+
+    The angle by which a series turns the point is small, so that its arctangent has a Taylor series
+    about 0.
 
     Examples
     --------
@@ -195,6 +198,8 @@ def angle(x: Any, y: Any) -> "Series":
     >>> [round(float(c), 12) for c in angle(x, y).terms[:2]]
     [0.785398163397, -0.5]
     """
+    if not isinstance(x, Series):
+        return arb.atan2(y, x)
     along = x * x.value + y * y.value
     across = y * x.value - x * y.value
     # At the point itself the turned angle is exactly 0.

@@ -22,7 +22,7 @@ from bouncing_ball.beyond.proofs.certificates import (
 )
 from bouncing_ball.beyond.proofs.newton import certified_zero
 from bouncing_ball.beyond.proofs.problem import Problem
-from bouncing_ball.beyond.proofs.return_map import return_map
+from bouncing_ball.beyond.proofs.return_map import ReturnMap, flip_coefficient, return_map
 from bouncing_ball.beyond.proofs.series import Series
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.orbits import spring_damper_bifurcations as double
@@ -207,6 +207,70 @@ def test_the_return_map_contradicts_a_wrong_sign_of_the_damping_force(monkeypatc
     problem = Problem(Fraction(10), restitution=Fraction(85, 100), release=Release.FORCE)
     with pytest.raises(ProofError, match="contradicts"):
         period_doubling(problem)
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        ({"matrix": arb("0 +/- 1")}, "linear system"),
+        ({"duration": arb(0)}, "contact's duration"),
+        ({"flight": arb(0)}, "flight time"),
+        ({"u": arb("-0.1 +/- 0.2")}, "approach the table"),
+        ({"rate": arb("nan")}, "leave the table"),
+    ],
+)
+def test_an_orbit_that_may_be_singular_or_graze_is_refused(change, reason):
+    orbit = saddle_node(GIVEN).orbit
+    certificates._require_regular(orbit)
+    with pytest.raises(ProofError, match=reason):
+        certificates._require_regular(orbit._replace(**change))
+
+
+@pytest.mark.parametrize("entry", [arb("nan"), arb(2)])
+def test_a_return_map_without_the_determinant_of_the_branch_is_refused(monkeypatch, entry):
+    found = saddle_node(GIVEN)
+    with precision(found.bits):
+        contact = GIVEN.contact()
+        right = return_map(contact, found.orbit, 1)
+        velocity = Series([arb(0), entry, entry], 1)
+        with pytest.raises(ProofError, match="determinant"):
+            certificates._require_multiplier(
+                contact, found.orbit, right._replace(velocity=velocity), 1
+            )
+
+
+def test_an_inadmissible_bifurcation_is_refused(monkeypatch):
+    for name in ("contact_holds", "flight_is_free"):
+        monkeypatch.setattr(certificates, name, lambda *given: False)
+        for proof in (saddle_node, period_doubling):
+            with pytest.raises(ProofError, match="may be inadmissible"):
+                proof(GIVEN)
+        monkeypatch.undo()
+
+
+def test_a_criticality_of_unknown_sign_is_refused(monkeypatch):
+    monkeypatch.setattr(certificates, "flip_coefficient", lambda *given: arb("0 +/- 1"))
+    with pytest.raises(ProofError, match="cubic coefficient is not certain"):
+        period_doubling(GIVEN)
+
+
+@pytest.mark.parametrize(("a", "b"), [(0.5, 0.25), (0.5, -0.5), (0.0, 1.0)])
+def test_the_flip_coefficient_is_that_of_a_normal_form(a, b):
+    """x → -x + a x² + b x³ has c = a² + b, in other coordinates, too."""
+    with precision(100):
+        x, y = (Series.variable(arb(0), k, 3) for k in (0, 1))
+        # x = ξ + η/2 is the variable of the map, and the other direction contracts by a half.
+        along = x + y / 2
+        mapped = arb(a) * along * along + arb(b) * along * along * along - along
+        other = y / 2
+        found = ReturnMap(mapped - other / 2, other)
+        # The determinant is -1/2, and flip_coefficient takes it as the product of multipliers.
+        coefficient = flip_coefficient(found, arb(-1) / 2)
+        (p, q), (r, s) = found.monodromy
+        assert p == -1 and r == 0 and (p * s - q * r) == arb(-1) / 2
+        # The eigenvector's length, here that of (b, -1 - a) or (-1 - d, c), scales c by its square.
+        vector = q if not q.contains(0) else -1 - s
+        assert (coefficient / vector**2 - (a * a + b)).contains(0)
 
 
 def test_with_a_negative_damping_the_other_multiplier_is_not_inside_the_unit_circle():

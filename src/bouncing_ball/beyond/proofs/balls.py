@@ -54,6 +54,6 @@ def decimal(ball: arb, digits: int) -> tuple[str, str]:
     ('1.4142135623730950488', True)
     """
     text = arb(ball.mid()).str(digits, radius=False)
-    # Twice the bound covers the rounding of its text to three digits.
-    error = 2 * (arb(text) - ball).abs_upper()
+    # One part in 32 covers the rounding of the bound's text to three digits.
+    error = (arb(text) - ball).abs_upper() * arb(33) / 32
     return text, arb(error).str(3, radius=False)

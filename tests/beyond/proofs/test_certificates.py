@@ -248,6 +248,44 @@ def test_an_inadmissible_bifurcation_is_refused(monkeypatch):
         monkeypatch.undo()
 
 
+@pytest.mark.parametrize("name", ["fold_test", "doubling_test"])
+def test_a_period_doubling_whose_multiplier_may_touch_is_refused(monkeypatch, name):
+    found = period_doubling(GIVEN)
+    right = getattr(certificates, name)
+    monkeypatch.setattr(certificates, name, lambda *given: right(*given) * arb("0 +/- 1"))
+    with precision(found.bits), pytest.raises(ProofError, match="without crossing"):
+        certificates.period_doubling_properties(GIVEN.contact(), 1, found.excess)
+
+
+def test_at_a_saddle_node_an_orbit_is_called_neither_stable_nor_unstable():
+    found = saddle_node(GIVEN)
+    with precision(found.bits):
+        proved = certificates.orbit_properties(GIVEN.contact(), 1, found.excess)
+    assert proved == [Proved.ADMISSIBLE]
+
+
+@pytest.mark.parametrize("x", [arb("0 +/- 1e-9"), arb("nan"), arb("inf")])
+def test_an_amplitude_that_may_be_zero_or_infinite_is_refused(x):
+    orbit = saddle_node(GIVEN).orbit
+    with pytest.raises(ProofError, match="0 or infinite"):
+        certificates._amplitude(orbit._replace(x=x, y=arb(0)))
+
+
+@pytest.mark.parametrize("slope", ["1 +/- 0.99999999", "0 +/- 1"])
+def test_a_ball_on_which_the_slope_varies_too_much_is_not_certified(slope):
+    with precision(200):
+        # Just below the size at which Newton's method ends, 2^-150.
+        error = (arb(2) ** -150).union(-(arb(2) ** -150)) * arb("0.8")
+
+        def uncertain(x):
+            """x with an error, whose derivative is 1 at a point and uncertain in a ball."""
+            at_a_point = x.value.is_exact()
+            return Series([x.value + error, arb(1) if at_a_point else arb(slope), arb(0)], 1)
+
+        with pytest.raises(ProofError, match="mapped into its interior"):
+            certified_zero(uncertain, 1e-9)
+
+
 def test_a_criticality_of_unknown_sign_is_refused(monkeypatch):
     monkeypatch.setattr(certificates, "flip_coefficient", lambda *given: arb("0 +/- 1"))
     with pytest.raises(ProofError, match="cubic coefficient is not certain"):
@@ -332,6 +370,9 @@ def test_a_contact_is_not_accepted_to_a_release_that_is_too_early():
         orbit = found.orbit
         early = orbit._replace(duration=orbit.duration / 4)
         assert not certificates.contact_holds(GIVEN.contact(), early)
+        # A ball that starts upwards is released at once.
+        upwards = orbit._replace(u=arb("1e-3"))
+        assert not certificates.contact_holds(GIVEN.contact(), upwards)
 
 
 def test_a_flight_in_which_the_ball_lands_earlier_is_noticed():

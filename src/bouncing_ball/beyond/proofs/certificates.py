@@ -153,12 +153,17 @@ def _certified(
             excess = certified_zero(lambda e: test(contact, problem.n, e), start)
             proved = properties(contact, problem.n, excess)
             orbit = point(contact, problem.n, excess)
-            amplitude = orbit.square.sqrt()
-            if not amplitude.is_finite() or amplitude.contains(0):
-                raise ProofError("Λ may be 0 or infinite")
+            amplitude = _amplitude(orbit)
         except ProofError as error:
             raise ProofError(f"the {what} is not certified: {error}") from error
         return Certificate(excess, orbit, amplitude, (Proved.UNIQUE, *proved), bits)
+
+
+def _amplitude(orbit: Point) -> arb:
+    found = orbit.square.sqrt()
+    if not found.is_finite() or found.contains(0):
+        raise ProofError("Λ may be 0 or infinite")
+    return found
 
 
 def _start(problem: Problem, search: Callable, what: str) -> float:

@@ -51,8 +51,7 @@ def certified_zero(test: Callable[[Series], Series], start: float) -> arb:
         radius = least * factor
         ball = (middle - radius).union(middle + radius)
         slope = test(Series.variable(ball, 0, 2)).coefficient(1, 0)
-        if not slope.is_finite() or slope.contains(0):
-            continue
+        # If the slope may be 0, the image is not finite and lies in no ball.
         image = middle - value / slope
         if ball.contains_interior(image):
             return image

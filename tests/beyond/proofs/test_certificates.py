@@ -11,7 +11,7 @@ from sixty_digits import Exact
 
 from bouncing_ball.beyond.proofs import certificates, newton
 from bouncing_ball.beyond.proofs.balls import ProofError, decimal, precision, rational
-from bouncing_ball.beyond.proofs.branch import Contact, point
+from bouncing_ball.beyond.proofs.branch import Contact, Point, point
 from bouncing_ball.beyond.proofs.certificates import (
     Proved,
     doubling_test,
@@ -164,7 +164,7 @@ def test_a_ball_that_is_too_wide_is_not_certified(monkeypatch):
 def test_a_shifted_start_is_refused(monkeypatch, proof, shift):
     start = certificates._start
     monkeypatch.setattr(certificates, "_start", lambda *given: start(*given) + shift)
-    with pytest.raises(ProofError, match="another solution|did not converge|singular"):
+    with pytest.raises(ProofError, match=r"another solution|did not converge|singular"):
         proof(GIVEN)
 
 
@@ -207,6 +207,18 @@ def test_the_return_map_contradicts_a_wrong_sign_of_the_damping_force(monkeypatc
     problem = Problem(Fraction(10), restitution=Fraction(85, 100), release=Release.FORCE)
     with pytest.raises(ProofError, match="contradicts"):
         period_doubling(problem)
+
+
+def test_a_flight_that_begins_or_ends_in_the_wrong_direction_is_noticed():
+    """Above a table that falls at ten times gravity, the gap is -t²/2 + rate t + 10(1 - cos t)."""
+    numbers = dict.fromkeys(Point._fields, arb(0)) | {"y": arb(10), "flight": arb("4.5")}
+    leaving = Point(**numbers | {"rate": arb("0.001")})
+    with precision(80):
+        contact = GIVEN.contact()
+        assert certificates.flight_is_free(contact, leaving)
+        # The ball would first sink below the table, or end its flight upwards.
+        assert not certificates.flight_is_free(contact, leaving._replace(rate=arb("-0.001")))
+        assert not certificates.flight_is_free(contact, leaving._replace(flight=arb(2)))
 
 
 @pytest.mark.parametrize(
@@ -353,9 +365,7 @@ def test_a_contact_that_has_been_released_earlier_is_noticed(release):
         contact = problem.contact()
         orbit = found.orbit
         assert certificates.contact_holds(contact, orbit)
-        assert not certificates.contact_holds(
-            contact, orbit._replace(duration=orbit.duration * 3)
-        )
+        assert not certificates.contact_holds(contact, orbit._replace(duration=orbit.duration * 3))
         # The equations of the orbit hold for the third zero of δ + κδ′, too.
         third = point(contact, 1, 2 * arb.pi())
         assert not certificates.contact_holds(contact, third)

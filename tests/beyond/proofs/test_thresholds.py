@@ -68,7 +68,9 @@ def signed(quantity, corrected, ratio):
 @pytest.mark.parametrize("quantity", MEASURED)
 def test_the_certified_threshold_is_that_of_double_precision(found, quantity, corrected):
     start = found[0][quantity, corrected]
-    proof = error_threshold(compared(quantity, corrected), signed(quantity, corrected, start), start)
+    proof = error_threshold(
+        compared(quantity, corrected), signed(quantity, corrected, start), start
+    )
     with precision(proof.bits):
         text, radius = decimal(proof.ball, 30)
     # The search in double precision ends at 1e-9 of ϖ, and balls at 2e-28 for the flattest error.
@@ -94,11 +96,13 @@ def simple_in_sixty_digits(corrected, ratio, r, zeta):
 
     def balance(psi):
         # The velocity after the impact is that before the next one, with the other sign.
-        x, y = mp.cos(psi), mp.sin(psi)
+        x = mp.cos(psi)
+        y = mp.sin(psi)
         return x + r * (n_pi + x) + load * (1 - y) - n_pi
 
     psi = mp.findroot(balance, mp.acos(n_pi * (1 - r) / (1 + r)), tol=mpf(10) ** -110)
-    x, y = mp.cos(psi), mp.sin(psi)
+    x = mp.cos(psi)
+    y = mp.sin(psi)
     phase = psi - delay
     impact = -n_pi + delay - mp.cos(phase)
     release = n_pi - (duration - delay) - mp.cos(phase + duration)

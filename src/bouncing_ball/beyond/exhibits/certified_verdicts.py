@@ -28,7 +28,9 @@ def _paper_parameters() -> dict[str, Any]:
     compliant = PAPER["fig06"]
     return {
         **{name: table[name] for name in ("n", "restitution", "frequency_ratio")},
-        "thresholds": {name: height[name] for name in ("n", "restitution", "amplitude", "tolerance")},
+        "thresholds": {
+            name: height[name] for name in ("n", "restitution", "amplitude", "tolerance")
+        },
         "apparent": {
             "n": compliant["n"],
             **compliant["cases"][-1],

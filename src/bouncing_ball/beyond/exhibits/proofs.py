@@ -1,4 +1,4 @@
-"""Certified numbers of the paper: Table 1, other printed numbers, thresholds, and what is proved."""
+"""Certified numbers: Table 1, other printed numbers, thresholds, and what is proved."""
 
 from collections.abc import Callable, Iterator
 from fractions import Fraction
@@ -143,7 +143,9 @@ def apparent(parameters: Apparent, digits: int) -> Row:
             ball = apparent_restitution(problem, found.excess)
         return CertifiedNumber(ball, found.bits, found.proved)
 
-    name = f"apparent restitution of r = {parameters.restitution:g}, ϖ = {float(ratio):g}, Λ = {lam:g}"
+    name = (
+        f"apparent restitution of r = {parameters.restitution:g}, ϖ = {float(ratio):g}, Λ = {lam:g}"
+    )
     return _row(name, prove, f"compliant end of {lam:g}")
 
 
@@ -211,8 +213,8 @@ def thresholds(parameters: Thresholds, digits: int) -> Iterator[Row]:
 def proofs(parameters: Proofs) -> xr.Dataset:
     """Certified numbers as decimal texts with their radii, over ``certificate``.
 
-    ``certified_what`` says what was proved, or why nothing was; ``certified_claim`` is the id of the
-    claim of the paper whose number it is if the parameters are the paper's.
+    ``certified_what`` says what was proved, or why nothing was; ``certified_claim`` is the id of
+    the claim of the paper whose number it is if the parameters are the paper's.
     """
     digits = parameters.digits
     rows = [

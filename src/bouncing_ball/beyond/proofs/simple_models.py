@@ -88,7 +88,7 @@ class SimpleModel:
         return angle(*self.instant(amplitude)) - self.delay
 
     def apparent_restitution(self, amplitude: arb) -> Number:
-        """Eq. 17, with z′_i = -(nπ - t_c) and the table's velocities at both ends of the contact."""
+        """Eq. 17 with the table's velocities at both ends of the contact."""
         x, y = self.instant(amplitude)
         sine, cosine = _sin_cos(self.delay)
         later_sine, later_cosine = _sin_cos(self.duration - self.delay)

@@ -36,7 +36,7 @@ class Verdict(StrEnum):
     CONFIRMED = "confirmed"
     """A statement of ours that holds in the whole interval of the number found."""
     NOT_DECIDED = "not decided"
-    """A statement of ours, or a verdict on a printed number, that holds in a part of the interval."""
+    """A statement of ours, or a verdict on a number, that holds in a part of the interval."""
 
 
 @dataclass(frozen=True)
@@ -204,11 +204,21 @@ def against_print(estimate: ArrayLike | xr.DataArray, printed: str) -> Finding:
     else:
         if not -np.inf < low <= value <= high < np.inf:
             raise ModelError(f"{low} to {high} is no interval around {value}")
-        ends = [(Fraction(end) - Fraction(printed)) * 10 ** _decimals(printed) for end in (low, high)]
+        ends = [
+            (Fraction(end) - Fraction(printed)) * 10 ** _decimals(printed) for end in (low, high)
+        ]
         nearest = max(ends[0], -ends[1], Fraction(0))
         verdict = _agreement(nearest, max(-ends[0], ends[1]))
     relative = (value - wanted) / abs(wanted)
-    return Finding(value, verdict, printed, np.nan, units, relative, low, high)
+    return Finding(
+        value,
+        verdict,
+        printed,
+        deviation_units=units,
+        deviation=relative,
+        low=low,
+        high=high,
+    )
 
 
 def _decimals(printed: str) -> int:
@@ -217,7 +227,7 @@ def _decimals(printed: str) -> int:
 
 
 def _agreement(nearest: float | Fraction, farthest: float | Fraction) -> Verdict:
-    """The verdict on numbers with these distances from a printed one, in units of its last digit."""
+    """The verdict on numbers at these distances, in units of the last printed digit."""
     if farthest <= 0.5:
         return Verdict.REPRODUCED
     if nearest > 0.5 and farthest <= CLOSE_UNITS:

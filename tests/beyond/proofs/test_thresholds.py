@@ -209,6 +209,16 @@ def test_the_apex_must_lie_in_the_flight_and_above_the_table():
             proofs._require_apex(wrong)
 
 
+def test_a_threshold_of_the_height_needs_its_apex(monkeypatch, found):
+    def refuse(orbit):
+        raise ProofError("no apex")
+
+    monkeypatch.setattr(proofs, "_require_apex", refuse)
+    start = found[0]["max_height", False]
+    with pytest.raises(ProofError, match="no apex"):
+        error_threshold(compared("max_height"), -TOLERANCE, start)
+
+
 def test_the_corrected_model_without_delay_and_load_is_the_restitution_model():
     with precision(200):
         zeta = damping_of(R)

@@ -12,9 +12,9 @@ def ext_verdicts(data: xr.Dataset) -> Table:
     columns: Columns = {
         "claim": text("claim"),
         "printed": text("printed_text"),
+        "verdict": text("verdict"),
+        "deviation": deviation_text,
         "above": lambda part: entry_of(part.low, ".17g"),
         "below": lambda part: entry_of(part.high, ".17g"),
-        "deviation": deviation_text,
-        "verdict": text("verdict"),
     }
     return table(each(data, "claim"), columns)

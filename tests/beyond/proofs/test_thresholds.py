@@ -196,6 +196,13 @@ def test_an_error_that_grows_with_the_frequency_ratio_is_refused():
         error_threshold(compared("apparent_restitution"), Fraction(error), ratio)
 
 
+def test_a_zero_of_the_error_that_may_be_a_tangency_is_refused():
+    orbit = proofs.Series([arb(0), arb(1), arb(0)], 1)
+    error = proofs.Series([arb(0), arb(0), arb("1 +/- 2")], 1)
+    with pytest.raises(ProofError, match="fall with rising"):
+        proofs._crossing(orbit, error, Fraction(0))
+
+
 def test_the_apex_must_lie_in_the_flight_and_above_the_table():
     numbers = dict.fromkeys(Point._fields, arb(0)) | {"flight": arb(6), "x": arb(0), "y": arb(1)}
     good = Point(**numbers | {"u": arb(-3)})

@@ -41,16 +41,16 @@ def test_the_share_of_right_nodes_counts_the_nodes_that_have_a_number():
     """Four nodes: one without a number, one right from the second ϖ on, one never, one always."""
     given = {"amplitude": grid(1.0, 2.0), "restitution": grid(0.2, 0.4), "impacts": 200}
     sizes = {"starts": 3, "samples": 50, "tolerance": 0.01, "confidence": 0.95, "seed": 7}
-    ratios = [10.0, 100.0]
-    errors = np.array([[np.nan, 0.2, 0.2, 1e-3], [1e-3, 1e-3, 0.2, 1e-3]])
+    ratios = [10.0, 100.0, 1000.0]
+    errors = np.array([[np.nan, 0.2, 0.2, 1e-3], *[[1e-3, 1e-3, 0.2, 1e-3]] * 2])
     found = {
         "mean_error": np.tile(errors, (2, len(MEANS), 1, 1)),
-        "mean_margin": np.zeros((2, len(MEANS), 2, 4)),
+        "mean_margin": np.zeros((2, len(MEANS), 3, 4)),
     }
     parameters = MeanMotions(**given, **sizes, frequency_ratio=ratios)
     data = mean_motions(parameters, Release.DISPLACEMENT, found)
     assert np.all(data.right_nodes == 3)
-    assert data.right.values[0, 0] == pytest.approx([1 / 3, 2 / 3])
+    assert data.right.values[0, 0] == pytest.approx([1 / 3, 2 / 3, 2 / 3])
     words = data.decision.values[0, 0].ravel().tolist()
     assert words == ["no number", "from this on", "not at any", "from this on"]
     least = data.needed_ratio.values[0, 0].ravel()

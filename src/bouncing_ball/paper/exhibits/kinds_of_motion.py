@@ -81,7 +81,7 @@ def follow(dynamics: RestitutionDynamics, phase: float, speed: float, impacts: i
     # The deviation (dφ, dδ′) has length 1 after each impact.
     along = np.ones(balls)
     across = np.zeros(balls)
-    rows = []
+    rows: list[Path] = []
     for _ in range(impacts):
         departure = dynamics.depart(impact, differentiate=True)
         _require_bouncing(departure.status, dynamics.amplitude, len(rows))

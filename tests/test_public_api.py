@@ -325,3 +325,16 @@ def test_numbers_whose_squares_have_no_digits_are_refused(ask):
 
 def test_a_table_at_rest_is_allowed():
     assert bouncing_ball.simulate(RIGID, amplitude=[0.0, 1e-12], impacts=3).time.shape == (2, 3)
+
+
+@pytest.mark.parametrize("amplitude_max", [400.0, 1e4])
+def test_a_branch_is_followed_to_large_amplitudes(amplitude_max):
+    ball = bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=10.0)
+    found = bouncing_ball.branch(ball, amplitude_max=amplitude_max, points=20)
+    assert float(found.amplitude[-1]) == pytest.approx(amplitude_max, rel=1e-12)
+    # Beyond them the unstable side has more.
+    for kind, limit in zip(
+        ("saddle-node", "period doubling"), bouncing_ball.limits(ball), strict=True
+    ):
+        located = found.special_amplitude.values[found.special_kind.values == kind]
+        assert np.abs(located - limit.amplitude).min() < 1e-11

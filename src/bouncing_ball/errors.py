@@ -6,6 +6,7 @@ All of them derive from :class:`ValueError`, so that callers can catch them with
 import difflib
 import math
 import re
+import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
@@ -176,8 +177,8 @@ class Range(NamedTuple):
     --------
     >>> print(Range(0, 1, "(]"), 0 in Range(0, 1, "(]"), 1 in Range(0, 1, "(]"))
     a number in (0, 1] False True
-    >>> print(Range(0), "|", count(3), 2.5 in count(3))
-    a finite number > 0 | a whole number from 1 to 3 False
+    >>> print(Range(0), "|", count(3), 2.5 in count(3), 10**400 in Range(0))
+    a finite number > 0 | a whole number from 1 to 3 False False
     """
 
     low: float = -math.inf
@@ -187,7 +188,8 @@ class Range(NamedTuple):
     or_zero: bool = False
 
     def __contains__(self, value: Any) -> bool:
-        if not isinstance(value, int | float) or not math.isfinite(value):
+        # A whole number may be larger than every float, and would not be converted.
+        if not isinstance(value, int | float) or not abs(value) <= sys.float_info.max:
             return False
         if self.or_zero and value == 0:
             return True

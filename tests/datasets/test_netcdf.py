@@ -1,5 +1,7 @@
 """Files are written completely or not at all, with the same bytes every time."""
 
+import shutil
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -94,3 +96,26 @@ def test_a_damaged_file_is_one_line(tmp_path, refusal):
     path.write_bytes(path.read_bytes()[:2000])
     with refusal(ModelError, "fig08.nc is damaged"):
         read_dataset(path)
+
+
+@pytest.mark.parametrize("error", [RuntimeError("NetCDF: HDF error"), PermissionError(13, "no")])
+def test_a_full_disk_is_called_full(tmp_path, monkeypatch, error):
+    """The libraries report it as one of these errors; with space left they are what they say."""
+
+    def to_netcdf(*_, **__):
+        raise error
+
+    data = xr.Dataset({"phase": ("point", [0.0] * 1000)})
+    monkeypatch.setattr(xr.Dataset, "to_netcdf", to_netcdf)
+    for free, expected, said in (
+        (data.nbytes, OSError, "No space left on device"),
+        (10**9, type(error), str(error)),
+    ):
+        usage = shutil.disk_usage(tmp_path)._replace(free=free)
+        monkeypatch.setattr(shutil, "disk_usage", lambda _, usage=usage: usage)
+        with pytest.raises(expected) as raised:
+            write_dataset(data, tmp_path / "fig08.nc")
+        assert said in str(raised.value)
+        monkeypatch.undo()
+        monkeypatch.setattr(xr.Dataset, "to_netcdf", to_netcdf)
+    assert list(tmp_path.iterdir()) == []

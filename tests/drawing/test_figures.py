@@ -1,6 +1,7 @@
 """The figures are drawn from their datasets, and from all that they should show."""
 
 import operator
+from collections import Counter
 from pathlib import Path
 
 import numpy as np
@@ -87,12 +88,30 @@ def test_stability_is_drawn_solid_dashed_and_dotted(record):
     runs = [line for line in lines(drawn("fig03", data)) if len(line.get_xdata()) > 1]
     widths = {kind: look["linewidth"] for kind, look in LINES.items()}
     solid = [line for line in runs if line.get_linewidth() == widths["stable"]]
-    # Each solid run shares one more point with its dashed neighbour.
-    assert sum(len(line.get_xdata()) for line in solid) == int(data.stable.sum()) + len(solid)
+    # Each solid run begins at its saddle-node and ends at its period doubling.
+    assert sum(len(line.get_xdata()) for line in solid) == int(data.stable.sum()) + 2 * len(solid)
     assert {line.get_linewidth() for line in runs} == {widths["stable"], widths["unstable"]}
     hidden = drawn("fig03", data.assign(admissible=data.admissible & False))
     dotted = {line.get_linewidth() for line in lines(hidden) if len(line.get_xdata()) > 1}
     assert dotted == {widths["inadmissible"]} and len(set(widths.values())) == 3
+
+
+@pytest.mark.parametrize("name", ["fig03", "fig08", "fig09", "fig15"])
+def test_a_line_changes_its_look_at_a_special_point_and_nowhere_else(record, name):
+    data = record[name]
+    found = lines(drawn(name, data))
+    marks = [line.get_xydata() for line in found if line.get_marker() in ("o", "s", "^")]
+    marks = {tuple(point) for line in marks for point in line if np.all(np.isfinite(point))}
+    runs = [line for line in found if line.get_marker() == "None" and len(line.get_xdata()) > 1]
+    assert len(runs) > 4
+    ends = [tuple(line.get_xydata()[k]) for line in runs for k in (0, -1)]
+    top = data.attrs["amplitude_max"]
+    # The others are the ends of the branches, at the largest Λ.
+    assert all(end in marks or end[0] == pytest.approx(top, abs=1e-12) for end in ends)
+    # At each mark a solid line meets a dashed one, but for a branch drawn up to a saddle-node.
+    met = Counter(end for end in ends if end in marks)
+    turned = 2 if name == "fig08" else 0
+    assert set(met) == marks and sorted(met.values()).count(1) == turned
 
 
 def test_markers_stand_at_the_bifurcations(record):
@@ -125,9 +144,11 @@ def test_figure_8_is_drawn_up_to_where_its_softest_branch_turns_back(record):
     part = up_to_second_saddle_node(soft)
     assert part.sizes["point"] < soft.sizes["point"]
     assert float(part.contact_duration.max()) < float(soft.contact_duration.max())
-    # Up to the turn, but for one step along the branch.
+    # Its points end a step before the turn, and the line at the turn.
     assert float(part.amplitude[0]) == pytest.approx(turns.max(), abs=1e-3)
-    shown = np.concatenate([line.get_ydata() for line in lines(drawn("fig08", data))])
+    drawn_lines = [line for line in lines(drawn("fig08", data)) if line.get_marker() == "None"]
+    assert any(line.get_xdata()[0] == turns.max() for line in drawn_lines if len(line.get_xdata()))
+    shown = np.concatenate([line.get_ydata() for line in drawn_lines])
     assert np.nanmin(shown) >= float(part.phase.min()) / np.pi - 1e-3
     stiff = data.sel(frequency_ratio=10.0)
     assert up_to_second_saddle_node(stiff) is stiff

@@ -42,6 +42,22 @@ def test_a_configuration_that_is_no_text_of_yaml_gives_one_line(complete):
         path.write_bytes(kept)
 
 
+def test_results_are_a_folder_or_a_link_to_one(fresh, tmp_path):
+    results = fresh.path / "results"
+    assert not results.exists()
+    refused = "results is no folder, but the run writes its files there: move it away"
+    results.write_text("my notes", encoding="utf-8")
+    assert fresh.refusal("fig03") == refused
+    results.unlink()
+    results.symlink_to(tmp_path / "elsewhere")
+    assert fresh.refusal("fig03") == refused
+    (tmp_path / "elsewhere").mkdir()
+    assert {"fig03", "Drawing fig03"} <= fresh.planned("fig03")
+    # The link is no change of the tree, which the provenance would call dirty.
+    assert fresh.git("status", "--porcelain") == ""
+    results.unlink()
+
+
 def test_the_package_of_another_checkout_is_refused(fresh, tmp_path):
     # Run as it would be with that checkout's environment.
     shutil.copytree(fresh.path / "src", tmp_path / "other")

@@ -27,6 +27,10 @@ if found.resolve() != HERE.resolve():
         f"bouncing_ball is imported from {found}, not from {HERE}: use this checkout's .venv (make setup)"
     )
 
+# A link to a folder that does not exist is no folder either.
+if os.path.lexists("results") and not os.path.isdir("results"):
+    sys.exit("results is no folder, but the run writes its files there: move it away")
+
 from bouncing_ball.pipeline.artifacts import Artifact
 from bouncing_ball.pipeline.configuration import ConfigurationError, arguments
 from bouncing_ball.pipeline.sources import digest, keep_digest, keep_doubt, sources
@@ -90,9 +94,13 @@ def code(job, script, *modules, outputs=(), files=(), made_by=None):
         return str(path)
     read = [Path(file).resolve() for file in (SCRIPTS / "adapter.py", SCRIPTS / script, *files)]
     found = digest(sources([f"bouncing_ball.{module}" for module in modules], read))
-    if workflow.touch:
-        outputs = [Path(output) for output in outputs]
-        keep_doubt(path, found, outputs, doubted=made_by is not None and others(made_by, outputs))
-    else:
-        keep_digest(path, found)
+    try:
+        if workflow.touch:
+            outputs = [Path(output) for output in outputs]
+            doubted = made_by is not None and others(made_by, outputs)
+            keep_doubt(path, found, outputs, doubted=doubted)
+        else:
+            keep_digest(path, found)
+    except OSError as error:
+        sys.exit(f"{path} cannot be written: {error.strerror}")
     return str(path)

@@ -194,9 +194,9 @@ def _on_branch(model: Any, n: int, amplitude: float, side: Side) -> np.ndarray |
     names = [special.name for special in found]
     if Bifurcation.SADDLE_NODE not in names:
         return np.nan
-    # The branch runs from the stable side across the fold.
+    # The branch runs from the stable side, on which it crosses Λ once, across the fold.
     at = names.index(Bifurcation.SADDLE_NODE)
-    beside = found[:at][::-1] if side is Side.STABLE else found[at:]
+    beside = found[:at] if side is Side.STABLE else found[at:]
     return next((special.point for special in beside if special.name == _HERE), np.nan)
 
 

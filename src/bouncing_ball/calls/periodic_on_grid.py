@@ -29,7 +29,10 @@ from bouncing_ball.paper.orbits.stability import Side
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+# The longest step along a branch, and as a fraction of the largest Λ, if that is large: a branch
+# has some thousand points at most.
 _LARGEST_STEP = 0.1
+_STRIDE = 2e-3
 
 
 class Orbits(Drawn):
@@ -219,8 +222,9 @@ def branch_of(model: Any, n: int, amplitude_max: float | None, points: int) -> x
     NoOrbitError
         If the branch begins above this Λ, or if it cannot be followed.
     """
+    longest = max(_LARGEST_STEP, _STRIDE * (amplitude_max or 0.0))
     try:
-        found = whole_branch(model, n, amplitude_max, _LARGEST_STEP)
+        found = whole_branch(model, n, amplitude_max, longest)
         return branch_columns(model.system(n), found, points)
     except ContinuationError as error:
         raise NoOrbitError(f"the branch of {n}-T orbits for {model.label}: {error}") from None

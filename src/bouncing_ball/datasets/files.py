@@ -3,8 +3,10 @@
 The same dataset has the same bytes every time.
 """
 
+import errno
 import json
 import os
+import shutil
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -19,6 +21,10 @@ PICTURES = (".pdf", ".png", ".svg")
 
 CONVENTIONS = "CF-1.11"
 """The netCDF conventions that the files follow."""
+
+
+# A netCDF file is larger than its arrays by its header and by blocks that are not filled; in bytes.
+_OVERHEAD = 1 << 18
 
 
 def require_writable(path: Path | None, suffixes: Sequence[str] = ()) -> None:
@@ -110,7 +116,7 @@ def write_dataset(dataset: xr.Dataset, path: str | Path, *, compressed: bool = F
     Raises
     ------
     OSError
-        If the file cannot be written.
+        If the file cannot be written; if the disk is full, the error says so.
     """
     encoding: dict[str, dict[str, Any]] = {str(x): {"_FillValue": None} for x in dataset.coords}
     for name, values in dataset.data_vars.items():
@@ -118,7 +124,13 @@ def write_dataset(dataset: xr.Dataset, path: str | Path, *, compressed: bool = F
         if values.ndim and (compressed or values.dtype == "int8"):
             encoding[str(name)] = {"zlib": True, "complevel": 4}
     with replacing(path) as temporary:
-        dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding)
+        try:
+            dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding)
+        except (OSError, RuntimeError) as error:
+            # To the libraries this is an error of HDF, or of permissions.
+            if shutil.disk_usage(temporary.parent).free < dataset.nbytes + _OVERHEAD:
+                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path)) from error
+            raise
 
 
 def read_dataset(path: str | Path) -> xr.Dataset:

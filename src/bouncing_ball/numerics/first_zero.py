@@ -41,7 +41,8 @@ _MAX_STEPS = 3000
 _ZERO = np.array(0.0)
 _QUARTER = np.array(0.25)
 _THIRD = np.array(1 / 3)
-_TINY = np.array(1e-300)
+# Added to what is divided by; rates of up to 1e28 do not overflow over it.
+_TINY = np.array(1e-280)
 _MINUS_TWO = np.array(-2.0)
 
 

@@ -4,7 +4,9 @@ A new law is one more line of :data:`LAWS`. The spring-damper as a law without a
 (:class:`Spring`) is compared with the closed form everywhere.
 """
 
+import runpy
 from dataclasses import dataclass
+from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
@@ -66,6 +68,7 @@ LAWS = {
     "impedance, by depth and deep": Impedance(
         10.0, 0.05, share=0.6, at_surface=0.2, width=0.05, midpoint=0.3, power=3.0
     ),
+    "hardening spring": runpy.run_path(str(Path(__file__).with_name("hardening_spring.py")))["LAW"],
 }
 # Other parameters of laws that are tried often: weekly.
 SELDOM = (

@@ -42,6 +42,7 @@ HERTZ = {
     "kuwabara-kono": KuwabaraKono(2e3, 0.008),
     "impedance": Impedance(15.0, 0.1),
     "elasto-backlash": ElastoBacklash(15.0, 0.1),
+    "hardening spring": runpy.run_path(str(Path(__file__).with_name("hardening_spring.py")))["LAW"],
 }
 # Of contacts and their derivatives: roundings, but for the laws without a closed form,
 # where it is the collocation's convergence, and of a simulated cycle its own tolerance, 1e-12

@@ -3,7 +3,10 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.corrected.signature import Signature, free_impact
+from bouncing_ball.beyond.laws.elasto_backlash import ElastoBacklash
+from bouncing_ball.beyond.laws.hertzian import KuwabaraKono
+from bouncing_ball.beyond.laws.impedance import Impedance
 from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.contact.damping import Release
@@ -55,3 +58,26 @@ def test_an_elastic_contact_has_its_centroid_in_the_middle(release):
 def test_an_overdamped_contact_has_no_signature(refusal):
     with refusal(ModelError, "damping ratio ζ = 1.0", "below 1"):
         Signature(LinearLaw(10.0, 1.0))
+
+
+KINKED = Impedance(10.0, 0.136, 0.95, 0.5, width=0.2)
+
+
+@pytest.mark.parametrize(
+    ("law", "missed"),
+    [
+        (KuwabaraKono(1e3, 0.005), 1e-12),
+        # Of a law with a kink, the documented error at the speed that just reaches it.
+        (ElastoBacklash(10.0, 0.136), 1e-12),
+        (KINKED, 1e-6),
+    ],
+    ids=lambda x: getattr(x, "name", ""),
+)
+def test_between_its_nodes_a_signature_is_that_of_free_impacts(law, missed):
+    speed = np.geomspace(0.3, 12.0, 37)
+    found = Signature(law)(speed)
+    exact = free_impact(law, speed)
+    for name in ("delay", "load", "duration"):
+        error = np.abs(getattr(found, name) - getattr(exact, name)) / exact.duration
+        assert error.max() < missed
+    assert np.abs(found.restitution - exact.restitution).max() < max(1e-2 * missed, 1e-12)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.beyond.exhibits.basins import MOTIONS, basins
+from bouncing_ball.beyond.exhibits.basins import MOTIONS, Basins, basins
 from bouncing_ball.beyond.exhibits.motion_samples import three_models
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.pipeline.configuration import typed
@@ -32,3 +32,11 @@ def test_a_stiff_contact_has_the_restitution_models_basins(data):
     assert data.basin_share.sum("motion").values == pytest.approx(np.ones((1, 3)))
     assert np.all(data.basin_share_low <= data.basin_share)
     assert np.all(data.uncertain_share.isel(shift=0) >= data.uncertain_share.isel(shift=1))
+
+
+def test_the_starts_of_the_picture_are_the_middles_of_its_cells():
+    given = {"cases": [CASE], "confidence": 0.95, "seed": 3, **SIZES, "starts": 12}
+    phase, speed = Basins(**given).grid()
+    # Cells of π/6 from -π to π, and of 1/2 from 0 to 6.
+    np.testing.assert_allclose(phase, -np.pi + np.pi / 12 + np.pi / 6 * np.arange(12), atol=1e-15)
+    np.testing.assert_allclose(speed, 0.25 + 0.5 * np.arange(12), rtol=1e-15)

@@ -145,3 +145,22 @@ def test_a_constant_restitution_misses_the_period_doubling_of_a_law_that_falls(e
     # A stiffer contact helps the one, and not the other.
     assert float(constant[1]) < 0.4 * float(constant[0])
     assert float(falling[1]) > float(falling[0])
+
+
+@pytest.mark.parametrize(
+    ("tolerance", "found"),
+    [
+        # The error falls from 4.1 % at 20 to 0.41 % at 200: it is always within the first,
+        # beyond the third even at the largest ratio, and crosses the second between the two.
+        (0.05, False),
+        (0.01, True),
+        (0.001, False),
+    ],
+)
+def test_there_is_a_threshold_only_where_the_error_crosses_the_tolerance(tolerance, found):
+    span = {"min": 20.0, "max": 200.0, "samples": 2}
+    parameters = LawErrors(**ONE, tolerance=tolerance, frequency_ratio=span)
+    errors, threshold = _errors("linear", parameters)
+    first, last = errors[0, 0]
+    assert (first > tolerance > last) == found
+    assert np.isfinite(threshold) == found and (not found or 20 < threshold < 200)

@@ -77,3 +77,16 @@ def test_a_ball_has_arrived_where_phase_and_velocity_agree(monkeypatch):
     asked = transients.Transients(**case, balls=10, impacts=50, confidence=0.95, seed=1)
     data = transients.transients(asked, Release.DISPLACEMENT)
     assert np.all(data.mean_life == 3)
+
+
+def test_the_limits_of_a_correlation_are_those_of_bonett_and_wright():
+    """In arctanh ρ the standard error is √((1 + ρ²/2)/(n - 3)); 28 pairs with one inversion."""
+    ranks = np.arange(28.0)
+    other = ranks.copy()
+    other[[0, 27]] = other[[27, 0]]
+    rho, low, high = correlation(ranks, other, 0.9)
+    # Spearman's 1 - 6 Σd²/(n(n² - 1)), with two differences of 27.
+    assert rho == pytest.approx(1 - 6 * 2 * 27**2 / (28 * (28**2 - 1)), rel=1e-14)
+    width = 1.6448536269514722 * ((1 + rho**2 / 2) / 25) ** 0.5
+    assert np.arctanh(high) - np.arctanh(rho) == pytest.approx(width, rel=1e-12)
+    assert np.arctanh(rho) - np.arctanh(low) == pytest.approx(width, rel=1e-12)

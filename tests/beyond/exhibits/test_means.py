@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.beyond.exhibits.means import DECISIONS, mean_motions, needed
+from bouncing_ball.beyond.exhibits.means import DECISIONS, MEANS, MeanMotions, mean_motions, needed
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.pipeline.configuration import typed
 
@@ -35,3 +35,23 @@ def test_errors_on_a_locked_orbit_decide_by_themselves():
     assert one.needed_ratio.isel(node) == RATIOS[np.flatnonzero(error > 0.01).max() + 1]
     # The next order contributes a share of 1/ϖ, times a coefficient of some units.
     assert error[2] / error[3] == pytest.approx(10, rel=0.1)
+
+
+def test_the_share_of_right_nodes_counts_the_nodes_that_have_a_number():
+    """Four nodes: one without a number, one right from the second ϖ on, one never, one always."""
+    given = {"amplitude": grid(1.0, 2.0), "restitution": grid(0.2, 0.4), "impacts": 200}
+    sizes = {"starts": 3, "samples": 50, "tolerance": 0.01, "confidence": 0.95, "seed": 7}
+    ratios = [10.0, 100.0, 1000.0]
+    errors = np.array([[np.nan, 0.2, 0.2, 1e-3], *[[1e-3, 1e-3, 0.2, 1e-3]] * 2])
+    found = {
+        "mean_error": np.tile(errors, (2, len(MEANS), 1, 1)),
+        "mean_margin": np.zeros((2, len(MEANS), 3, 4)),
+    }
+    parameters = MeanMotions(**given, **sizes, frequency_ratio=ratios)
+    data = mean_motions(parameters, Release.DISPLACEMENT, found)
+    assert np.all(data.right_nodes == 3)
+    assert data.right.values[0, 0] == pytest.approx([1 / 3, 2 / 3, 2 / 3])
+    words = data.decision.values[0, 0].ravel().tolist()
+    assert words == ["no number", "from this on", "not at any", "from this on"]
+    least = data.needed_ratio.values[0, 0].ravel()
+    np.testing.assert_array_equal(least, [np.nan, 100.0, np.nan, 10.0])

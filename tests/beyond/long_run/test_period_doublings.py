@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from mpmath import mp, mpf
 
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
 from bouncing_ball.beyond.long_run.destination import final_motions
@@ -36,6 +37,63 @@ def test_the_ratios_tend_to_feigenbaums(restitution):
     """By the theory their distance falls by a constant factor, which is about -0.12."""
     away = restitution.ratios() - FEIGENBAUM
     assert np.all(np.abs(away[1:]) < np.abs(away[:-1])) and abs(away[-1]) < 0.006
+
+
+def turned(phase, velocity, lam, flights):
+    """φ, δ′ and the time after a turn of the restitution model, in 60 digits; the flight times are
+    known in double precision.
+    """
+    time = mpf(0)
+    for flight in flights:
+        up = lam * mp.cos(phase) - R * velocity
+        s = mpf(float(flight))
+        for _ in range(3):
+            gap = up * s - s * s / 2 - lam * (mp.sin(phase + s) - mp.sin(phase))
+            s -= gap / (up - s - lam * mp.cos(phase + s))
+        phase += s
+        velocity = up - s - lam * mp.cos(phase)
+        time += s
+    return phase, velocity, time
+
+
+def defects(y, flights):
+    """The three equations of a doubling in 60 digits, with M by differences."""
+    small = mpf(10) ** -20
+    phase, velocity, lam = y
+    matrix = mp.matrix(2, 2)
+    for k, (turn, faster) in enumerate([(small, 0), (0, small)]):
+        later = turned(phase + turn, velocity + faster, lam, flights)
+        sooner = turned(phase - turn, velocity - faster, lam, flights)
+        for row in (0, 1):
+            matrix[row, k] = (later[row] - sooner[row]) / (2 * small)
+    _, after, time = turned(phase, velocity, lam, flights)
+    doubling = 1 + matrix[0, 0] + matrix[1, 1] + mp.det(matrix)
+    return mp.matrix([time - 2 * mp.pi * len(flights), after - velocity, doubling])
+
+
+@pytest.mark.parametrize("k", [1, 4])
+def test_doublings_are_right_to_the_last_digits(restitution, k):
+    """In 60 digits one step of Newton's method is left; the ratio of distances, which are 1e-3 of Λ
+    and less, needs all digits of Λ.
+    """
+    phase, relative = float(restitution.phase[k]), float(restitution.velocity[k])
+    amplitude = float(restitution.amplitude[k])
+    start = relative + amplitude * np.cos(phase)
+    impacts = RestitutionModel(R).simulate(amplitude, phase, start, 2**k + 1)
+    flights = np.diff(impacts.time)
+    with mp.workdps(60):
+        y = mp.matrix([phase, relative, amplitude])
+        step = mpf(10) ** -12
+        matrix = mp.matrix(3, 3)
+        for column in range(3):
+            moved = mp.matrix(3, 1)
+            moved[column] = step
+            change = defects(y + moved, flights) - defects(y - moved, flights)
+            matrix[:, column] = change / (2 * step)
+        missed = mp.lu_solve(matrix, defects(y, flights))
+        # A few units in the last place of Λ; with the time of the turn in place of the phase it
+        # was 1e-14.
+        assert abs(missed[2]) < 8 * np.finfo(float).eps
 
 
 def test_a_ball_at_a_doubling_returns_after_2_to_the_k_impacts_in_the_simulation(restitution):

@@ -96,3 +96,28 @@ def test_the_accepted_datasets_give_the_accepted_verdicts(verdicts, recorded):
     found = compare_datasets("claims", recorded["claims"], verdicts)
     moved = [row for row in found if row.name != "header" and not row.outcome.agrees]
     assert {row.name for row in found} >= {*verdicts.variables} and moved == []
+
+
+@pytest.mark.parametrize(
+    ("away", "broken"),
+    # At a bifurcation itself, and within the rounding of a grid, rounding decides.
+    [(0.0, False), (1e-10, False), (-1e-10, False), (1e-8, True), (-1e-8, True)],
+)
+@pytest.mark.parametrize("bifurcation", [0.5, 1.1])
+def test_one_orbit_of_the_wrong_stability_breaks_the_rule_of_figure_3(bifurcation, away, broken):
+    stable_between = next(claim for claim in CLAIMS if claim.id == "stable between")
+    amplitude = np.array([0.6, bifurcation * (1 + away), 2.0])
+    is_between = (amplitude > 0.5) & (amplitude < 1.1)
+    stable = np.where([False, True, False], ~is_between, is_between)
+    orbits = xr.Dataset(
+        {
+            "amplitude": ("point", amplitude),
+            "phase": ("point", [0.1, 0.2, 0.3]),
+            "stable": ("point", stable),
+            "saddle_node_amplitude": 0.5,
+            "period_doubling_amplitude": ("impact_map", [1.1]),
+        },
+        coords={"impact_map": ["exact"]},
+    )
+    verdict = stable_between.decide({"fig03": orbits}).verdict
+    assert verdict == ("contradicted" if broken else "reproduced")

@@ -6,12 +6,15 @@ import numpy as np
 import pytest
 
 from bouncing_ball.datasets.parameters import Span
+from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.paper.contact.damping import damping_ratio
+from bouncing_ball.paper.exhibits import apparent_restitution_figures as figures
 from bouncing_ball.paper.exhibits.apparent_restitution import (
     Case,
     Cases,
     apparent_restitution,
     frequency_sweep,
+    poincare_map,
 )
 from bouncing_ball.pipeline.configuration import typed
 
@@ -93,3 +96,28 @@ def test_the_orbits_of_a_sweep_tend_to_those_of_the_restitution_model(described)
     assert last.phase.values == pytest.approx(last.restitution_phase.values, abs=5e-3)
     assert last.bounce_velocity.values == pytest.approx(np.full(2, 2 * np.pi), abs=5e-3)
     assert last.impact_velocity.values == pytest.approx(np.full(2, -2 * np.pi), abs=5e-3)
+
+
+COMPLIANT = {"frequency_ratio": {"min": 0.1, "max": 0.2, "samples": 3}}
+
+
+def test_a_figure_without_any_orbit_says_so_in_one_line(refusal):
+    cases = CASES | {"cases": CASES["cases"][1:2]} | COMPLIANT
+    said = "for any ϖ from 0.1 to 0.2; stiffer contacts, of a larger ϖ, have one"
+    with refusal(NoOrbitError, f"nothing to draw: no 1-T orbit at Λ = 1 {said}"):
+        apparent_restitution(cases, "displacement")
+    sweep = {"n": 2, "restitution": 0.85, "amplitude": [0.6, 1.1]} | COMPLIANT
+    for study in (frequency_sweep, typed(poincare_map)):
+        with refusal(NoOrbitError, f"nothing to draw: no 2-T orbit at Λ = 0.6, 1.1 {said}"):
+            study(sweep, "displacement")
+
+
+def test_a_curve_without_any_orbit_is_named_as_such():
+    sweep = {"n": 1, "restitution": 0.65, "amplitude": [1.0, 900.0]} | COMPLIANT
+    data = typed(poincare_map)(sweep, "displacement").assign_attrs(n=1, restitution=0.65)
+    assert data.phase.isnull().all("frequency_ratio").values.tolist() == [True, False]
+    title = figures.poincare_map(data).axes[0].get_title()
+    assert title.endswith(r"$\Lambda=1$ (no orbit), $\Lambda=900$")
+    legend = figures.bounce_velocity(data).axes[0].get_legend()
+    names = [text.get_text() for text in legend.get_texts()]
+    assert [name.endswith("(no orbit)") for name in names] == [True, False]

@@ -131,6 +131,25 @@ def test_the_special_points_are_the_bifurcations(figure_8):
     assert np.all(np.diff(durations[:5]) < 0)  # in order of the branch
 
 
+def test_special_points_lie_between_their_neighbours_along_the_branch(figure_8):
+    last = figure_8.sizes["point"] - 1
+    for ratio in figure_8.frequency_ratio:
+        row = figure_8.sel(frequency_ratio=ratio)
+        known = row.special_kind.values != ""
+        at = row.special_arclength.values[known] * last
+        assert np.all(np.diff(at) > 0) and np.all((at > 0) & (at < last))
+        before = np.floor(at).astype(int)
+        for name in ("phase", "contact_duration"):
+            points = row[name].values
+            special = row[f"special_{name}"].values[known]
+            low = np.minimum(points[before], points[before + 1])
+            high = np.maximum(points[before], points[before + 1])
+            assert np.all((low <= special) & (special <= high))
+        # The stability changes there, and nowhere else.
+        changes = np.flatnonzero(np.diff(row.stable.values.astype(int)))
+        assert changes.tolist() == before.tolist()
+
+
 @pytest.mark.slow
 def test_the_ends_of_a_stability_range_are_a_saddle_node_and_a_period_doubling(
     continuation_settings, described

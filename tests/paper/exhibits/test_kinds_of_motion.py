@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.exhibits.kinds_of_motion import (
     Path,
     follow,
@@ -79,3 +80,9 @@ def test_states_that_differ_by_more_than_rounding_do_not_repeat():
     phase = np.tile([[0.5], [0.7]], (100, 1))
     drift = phase + 1e-9 * np.arange(200)[:, np.newaxis]
     assert impacts_until_repetition(Path(drift, phase, phase, phase, phase)).tolist() == [0]
+
+
+def test_a_ball_that_comes_to_rest_for_ever_is_refused(refusal):
+    said = "comes to rest on the table after", "only above Λ = 1 does the table throw it off"
+    with refusal(ModelError, "the ball at Λ = 0.5", *said):
+        typed(kinds_of_motion)(PARAMETERS | {"amplitude": [1.2, 0.5]})

@@ -45,3 +45,9 @@ def test_a_family_whose_period_doubling_only_rises_has_no_lowest_one():
     data = typed(lowest_period_doublings)(stiff, "displacement")
     assert np.isnan(data.period_doubling_turn).all()
     assert np.isnan(data.period_doubling_amplitude).all()
+
+
+def test_the_two_ends_of_a_scan_bound_no_lowest_period_doubling():
+    """Warnings are errors in tests: no minimum is looked for without a bracket."""
+    ends = PARAMETERS | {"n": [20], "frequency_ratio": {"min": 2.0, "max": 1e3, "samples": 2}}
+    assert np.isnan(typed(lowest_period_doublings)(ends, "displacement").period_doubling_turn)

@@ -102,9 +102,13 @@ def at_release(
     grip_by_rate = np.where(panel.surfaced, 0.0, grip_by_rate)
     grip_by_load = np.where(panel.surfaced, 0.0, grip_by_load)
     turning = -start.amplitude * np.cos(angle)
-    falls = grip_by_root * rate + grip_by_rate * panel.final + grip_by_load * turning * lever
-    # If the force has a step at the release, the rate of change of the grip has a step too.
+    # Up to the release the force is that of the law; the panel's F at its end is extrapolated
+    # from the nodes, with an error of the order of the last Legendre coefficients and not of their
+    # squares.
     force = law.loaded_force(root**m, rate, load)
+    final = lever * (load - force)
+    falls = grip_by_root * rate + grip_by_rate * final + grip_by_load * turning * lever
+    # If the force has a step at the release, the rate of change of the grip has a step too.
     step = np.where(grip_by_rate == 0, 0.0, grip_by_rate * lever * force)
     by_root, by_rate, by_time = (by[:, k] for k in range(3))
     by_load = turning[:, np.newaxis] * by_time
@@ -120,6 +124,6 @@ def at_release(
     ends = [
         by_time + column(lever) * later,
         column(lever) * (by_root + column(rate) * later),
-        by_rate + column(panel.final) * later,
+        by_rate + column(final) * later,
     ]
     return np.stack(ends, axis=1), np.exp(strain) * falls / (falls + step)

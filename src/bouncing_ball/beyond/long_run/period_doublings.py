@@ -110,6 +110,16 @@ class Turns:
         phase, velocity, time, *entries = found.reshape(7, *shape)
         return phase, velocity, time, Jacobian(*entries)
 
+    def _late(self, turned: np.ndarray, time: np.ndarray) -> np.ndarray:
+        """How much later than after m n periods of the table a turn ends.
+
+        It is the angle by which the phase has turned, apart from whole turns, because the time of
+        up to 256 periods has three digits less.
+        """
+        late = time - 2 * np.pi * np.asarray(self.orbits.n) * self.impacts
+        turned = reduce_angle(turned)
+        return turned + 2 * np.pi * np.rint((late - turned) / (2 * np.pi))
+
     def system(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The differences in time and velocity between Pᵐ(s) and s, and 1 + tr M + det M, shape
         (..., 3), with their Jacobian; central differences give the entries that do not follow
@@ -118,8 +128,8 @@ class Turns:
         steps = _DIFFERENCE * np.concatenate([np.zeros((1, 3)), np.eye(3), -np.eye(3)])
         leading_axes = tuple(range(1, y.ndim))
         moved = y + np.expand_dims(steps, leading_axes)
-        _, velocity, time, m = self.after(moved)
-        late = time - 2 * np.pi * np.asarray(self.orbits.n) * self.impacts
+        phase, velocity, time, m = self.after(moved)
+        late = self._late(phase - moved[..., 0], time)
         doubling = 1 + m.a + m.d + m.a * m.d - m.b * m.c
         values = np.stack([late, velocity - moved[..., 1], doubling], axis=-1)
         matrix = np.moveaxis(values[1:4] - values[4:], 0, -1) / (2 * _DIFFERENCE)

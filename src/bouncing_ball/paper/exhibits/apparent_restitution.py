@@ -11,7 +11,11 @@ from bouncing_ball.datasets.parameters import Amplitude, Family, Many, Parameter
 from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.exhibits.orbit_parameters import OrbitAmplitude, require_orbit
+from bouncing_ball.paper.exhibits.orbit_parameters import (
+    OrbitAmplitude,
+    require_any_orbit,
+    require_orbit,
+)
 from bouncing_ball.paper.orbits.observables import OBSERVED, columns
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
@@ -92,10 +96,17 @@ def with_round_values(ratios: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def _sweep(
     n: int, restitution: ArrayLike, amplitude: ArrayLike, ratios: np.ndarray, release: Release
 ) -> xr.Dataset:
-    """Orbits on the stable side, shape (case, ϖ); NaN where there is none."""
+    """Orbits on the stable side, shape (case, ϖ); NaN where there is none.
+
+    Raises
+    ------
+    NoOrbitError
+        If there is no orbit at all.
+    """
     r, lam = np.broadcast_arrays(restitution, amplitude)
     contact = SpringDamper.from_restitution(r[:, np.newaxis], ratios, release)
     orbits = SpringDamperModel(contact).orbit(n, lam[:, np.newaxis])
+    require_any_orbit(orbits.exists, n, lam, ratios)
     found = columns(orbits, *OBSERVED, "max_height")
     dims = ("case", "frequency_ratio")
     return xr.Dataset(
@@ -114,6 +125,11 @@ def apparent_restitution(parameters: Cases, release: Release) -> xr.Dataset:
     The dataset has ``apparent_restitution``, the other observables of the stable orbit,
     ``max_height``, ``stable`` and ``admissible``, shape (case, ϖ), NaN where there is no orbit;
     ``restitution`` and ``amplitude``, shape (case,). Phases are in rad.
+
+    Raises
+    ------
+    NoOrbitError
+        If there is no orbit in any case and at any ϖ.
     """
     restitution = [case.restitution for case in parameters.cases]
     amplitude = [case.amplitude for case in parameters.cases]
@@ -127,6 +143,11 @@ def frequency_sweep(parameters: Sweep, release: Release) -> xr.Dataset:
 
     The dataset has the variables of :func:`apparent_restitution`; ``restitution_phase`` (case,) in
     rad, and the numbers ``restitution_bounce_velocity`` = nπ and ``restitution_impact_velocity``.
+
+    Raises
+    ------
+    NoOrbitError
+        If there is no orbit in any case and at any ϖ.
     """
     dataset = _with_limits(parameters, parameters.frequency_ratio.grid(), release)
     return describe(dataset, variables=VARIABLES)
@@ -148,6 +169,11 @@ def poincare_map(parameters: Sweep, release: Release) -> xr.Dataset:
     """Orbits along ϖ that includes round values, which are labelled in Fig. 13.
 
     The dataset has the variables of :func:`frequency_sweep`, and ``labelled`` (ϖ,), a mask.
+
+    Raises
+    ------
+    NoOrbitError
+        If there is no orbit in any case and at any ϖ.
     """
     ratios, labelled = with_round_values(parameters.frequency_ratio.grid())
     dataset = _with_limits(parameters, ratios, release)

@@ -63,9 +63,17 @@ def poincare_map(data: xr.Dataset) -> Figure:
     axes.set(xlabel=r"phase of the table over $\pi$", ylabel=r"velocity of the ball, $z′/\pi$")
     axes.margins(x=0.14)
     legend_below(figure, ncols=2)
-    amplitudes = [rf"$\Lambda={number(x)}$" for x in data["amplitude"].values]
+    amplitudes = [
+        rf"$\Lambda={number(float(curve['amplitude']))}${_absence(curve)}"
+        for curve in each(data, "case")
+    ]
     axes.set_title(", ".join([parameters(data, "n", "restitution"), *amplitudes]))
     return figure
+
+
+def _absence(curve: xr.Dataset) -> str:
+    """The words for a curve that has no orbit at any ϖ; otherwise empty."""
+    return " (no orbit)" if curve.phase.isnull().all() else ""
 
 
 def _draw_cases(axes: Axes, data: xr.Dataset, name: str, ylabel: str) -> None:
@@ -73,7 +81,7 @@ def _draw_cases(axes: Axes, data: xr.Dataset, name: str, ylabel: str) -> None:
     for (one, colour), dashes in zip(coloured(data, "case"), cycle(_DASHES), strict=False):
         r = number(float(one["restitution"]))
         lam = number(float(one["amplitude"]))
-        label = rf"$r={r}$, $\Lambda={lam}$"
+        label = rf"$r={r}$, $\Lambda={lam}${_absence(one)}"
         look: Look = {"color": colour, "linestyle": dashes, "label": label}
         draw_curve(axes, one.frequency_ratio, one[name], one.admissible, **look)
     logarithmic(axes, data.frequency_ratio, ylabel=ylabel)

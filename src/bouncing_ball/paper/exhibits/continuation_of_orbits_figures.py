@@ -12,9 +12,10 @@ from matplotlib.figure import Figure
 from bouncing_ball.datasets import CASE, SADDLE_NODE
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.drawing.branches import (
+    SpecialPoints,
     draw_branch,
+    draw_rigid_branch,
     label_branch_axes,
-    mark_named_orbits,
     mark_orbits,
 )
 from bouncing_ball.drawing.canvas import WIDE, canvas, coloured, legend_below
@@ -46,7 +47,7 @@ def over_amplitude(
     _name_curves(axes, [name for name in names if name])
     # Both phases of a curve have its colour.
     for curve, colour in coloured(rows, CASE):
-        _draw_spring_damper(axes, shown(curve), colour, colour)
+        _draw_spring_damper(axes, shown(_placed(curve)), colour, colour)
     touching = bool((rows.contact_duration > 0).any())
     above = r", and above it $\varphi+\tau_b$" if touching else ""
     axes.set(xlabel=r"amplitude $\Lambda$", title=title(data), xlim=(0.0, data.amplitude.max()))
@@ -67,10 +68,9 @@ def both_domains(data: xr.Dataset) -> Figure:
         r"spring-damper, $\varphi+\tau_b$",
     ]
     _name_curves(axes, names)
-    draw_branch(axes, rigid, rigid.phase, COLOURS[0])
-    mark_named_orbits(axes, data, COLOURS[0])
+    draw_rigid_branch(axes, rigid, data, COLOURS[0])
     curve = data.squeeze("frequency_ratio")
-    _draw_spring_damper(axes, curve, COLOURS[1], COLOURS[2])
+    _draw_spring_damper(axes, _placed(curve), COLOURS[1], COLOURS[2])
     # If the contact has no such branch, all its values are NaN.
     lowest = float(curve.amplitude.fillna(data.saddle_node_amplitude).min())
     title = parameters(data, "n", "restitution", "frequency_ratio")
@@ -111,6 +111,11 @@ def _name_curves(axes: Axes, names: list[str]) -> None:
         axes.plot([], [], color=colour, label=name)
 
 
+def _placed(curve: xr.Dataset) -> xr.Dataset:
+    """The branch with the place of each point, as a share of its arclength: the steps are equal."""
+    return curve.assign(arclength=("point", np.linspace(0.0, 1.0, curve.sizes["point"])))
+
+
 def _draw_spring_damper(axes: Axes, curve: xr.Dataset, start: str, end: str) -> None:
     """The phases at the start and at the end of contact, with the special points."""
     _draw_phase(axes, curve, curve.phase, curve.special_phase, start)
@@ -122,7 +127,13 @@ def _draw_phase(
     axes: Axes, curve: xr.Dataset, phase: xr.DataArray, special: xr.DataArray, colour: str
 ) -> None:
     """One phase along a branch, and the same phase of its special points."""
-    draw_branch(axes, curve, phase, colour)
+    points = SpecialPoints(
+        kind=curve.special_kind.values,
+        along=curve.special_arclength.values,
+        amplitude=curve.special_amplitude.values,
+        phase=special.values,
+    )
+    draw_branch(axes, curve, curve.arclength.values, phase, points, colour)
     for kind in MARKS:
         there = special.where(curve.special_kind == kind)
         mark_orbits(axes, kind, curve.special_amplitude, there, colour)

@@ -2,18 +2,20 @@
 
 from typing import Annotated
 
-import numpy as np
 import xarray as xr
 from pydantic import Strict
 
 from bouncing_ball.datasets.parameters import Many, Tolerance
 from bouncing_ball.datasets.variables import Variable, describe
-from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.paper.comparison.errors import Quantity
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.errors_along_ratio import errors_along_ratio
-from bouncing_ball.paper.exhibits.orbit_parameters import OrbitErrors, OrbitsAlongRatio
+from bouncing_ball.paper.exhibits.orbit_parameters import (
+    OrbitErrors,
+    OrbitsAlongRatio,
+    require_any_orbit,
+)
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 
@@ -81,11 +83,7 @@ def height_error(parameters: OrbitErrors, release: Release) -> xr.Dataset:
     )
     contact = SpringDamper.from_restitution(parameters.restitution, ratios, release)
     orbit = SpringDamperModel(contact).orbit(n, lam)
-    if not np.any(orbit.exists):
-        raise NoOrbitError(
-            f"nothing to draw: no {n}-T orbit at Λ = {lam:g} for any ϖ from {ratios[0]:g} to "
-            f"{ratios[-1]:g}; stiffer contacts, of a larger ϖ, have one"
-        )
+    require_any_orbit(orbit.exists, n, lam, ratios)
     for name in ("max_height", "phase", "contact_duration", "impact_velocity"):
         dataset[name] = ("frequency_ratio", getattr(orbit, name))
     dataset["admissible"] = ("frequency_ratio", orbit.is_admissible())

@@ -17,8 +17,10 @@ import xarray as xr
 
 from bouncing_ball.datasets.parameters import Amplitude, Many, Parameters, Restitution, number
 from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.errors import ModelError
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.motion.restitution import RestitutionDynamics
+from bouncing_ball.paper.motion.sequence import Status
 
 VARIABLES = {
     "stickings": Variable("number of impacts after which the ball sticks to the table"),
@@ -68,15 +70,21 @@ def follow(dynamics: RestitutionDynamics, phase: float, speed: float, impacts: i
     """The motions of balls and of their small deviations, without the first impact.
 
     ``dynamics`` has one entry for each ball; all balls start at the phase φ with δ′ = -``speed``.
+
+    Raises
+    ------
+    ModelError
+        If a ball comes to rest on the table for ever, so that it has too few impacts.
     """
     balls = dynamics.amplitude.size
     impact = dynamics.start(np.full(balls, phase), np.full(balls, -speed))
     # The deviation (dφ, dδ′) has length 1 after each impact.
     along = np.ones(balls)
     across = np.zeros(balls)
-    rows = []
+    rows: list[Path] = []
     for _ in range(impacts):
         departure = dynamics.depart(impact, differentiate=True)
+        _require_bouncing(departure.status, dynamics.amplitude, len(rows))
         after, passed = dynamics.fly(departure)
         derivative = dynamics.jacobian(impact, departure, after, passed)
         along, across = derivative.apply(along, across)
@@ -89,6 +97,15 @@ def follow(dynamics: RestitutionDynamics, phase: float, speed: float, impacts: i
         rows.append(Path(after.phase, after.velocity, passed, growth, departure.sticks))
         impact = after
     return Path(*map(np.array, zip(*rows, strict=True)))
+
+
+def _require_bouncing(status: np.ndarray, amplitude: np.ndarray, impacts: int) -> None:
+    resting = np.flatnonzero(status != Status.BOUNCING)
+    if resting.size:
+        raise ModelError(
+            f"the ball at Λ = {amplitude[resting[0]]:g} comes to rest on the table after "
+            f"{impacts + 1} impacts, and stays there: only above Λ = 1 does the table throw it off"
+        )
 
 
 def impacts_until_repetition(path: Path) -> np.ndarray:

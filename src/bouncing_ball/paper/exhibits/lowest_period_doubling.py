@@ -51,12 +51,14 @@ def lowest_along_ratio(
         return model.period_doubling(n).amplitude
 
     lowest = np.argmin(np.where(np.isnan(amplitude), np.inf, amplitude), axis=-1)
-    inside = np.clip(lowest, 1, ratios.size - 2)
-    # Where the middle one of three samples is not the lowest they are no bracket, which
-    # find_minimum reports as a failure.
-    bracket = tuple(np.log(ratios[inside + k]) for k in (-1, 0, 1))
-    found = find_minimum(doubling, bracket, args=(n,))
-    return np.where(found.success, np.exp(found.x), np.nan)
+    # Elsewhere the neighbours of the lowest sample are no bracket of a minimum.
+    inside = np.flatnonzero((lowest > 0) & (lowest < ratios.size - 1))
+    turns = np.full(lowest.shape, np.nan)
+    if inside.size:
+        bracket = tuple(np.log(ratios[lowest[inside] + k]) for k in (-1, 0, 1))
+        found = find_minimum(doubling, bracket, args=(n[inside],))
+        turns[inside] = np.where(found.success, np.exp(found.x), np.nan)
+    return turns
 
 
 def lowest_period_doublings(parameters: FamiliesAlongRatio, release: Release) -> xr.Dataset:

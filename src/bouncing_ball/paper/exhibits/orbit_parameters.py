@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Annotated
 
 import numpy as np
+from numpy.typing import ArrayLike
 from pydantic import AfterValidator, ValidationInfo
 
 from bouncing_ball.datasets.parameters import (
@@ -20,6 +21,7 @@ from bouncing_ball.datasets.parameters import (
     Tolerance,
     number,
 )
+from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.paper.orbits.restitution_branch import saddle_node
 
 
@@ -45,6 +47,29 @@ def require_orbit(amplitude: float, n: int, restitution: float) -> float:
             f"r = {restitution:g} (Eq. 7)"
         )
     return amplitude
+
+
+def require_any_orbit(exists: np.ndarray, n: int, amplitude: ArrayLike, ratios: np.ndarray) -> None:
+    """Raise an error if none of the orbits along the frequency ratios exists.
+
+    Raises
+    ------
+    NoOrbitError
+        One line with the amplitudes and the range of ϖ.
+
+    Examples
+    --------
+    >>> require_any_orbit(np.array([False]), 1, [0.6, 1.0], np.array([0.1, 0.2]))
+    Traceback (most recent call last):
+    bouncing_ball.errors.NoOrbitError: nothing to draw: no 1-T orbit at Λ = 0.6, 1 for any ϖ from \
+0.1 to 0.2; stiffer contacts, of a larger ϖ, have one
+    """
+    if not np.any(exists):
+        levels = ", ".join(f"{x:g}" for x in np.unique(amplitude))
+        raise NoOrbitError(
+            f"nothing to draw: no {n}-T orbit at Λ = {levels} for any ϖ from {ratios[0]:g} to "
+            f"{ratios[-1]:g}; stiffer contacts, of a larger ϖ, have one"
+        )
 
 
 def _has_orbits(families: Callable[[np.ndarray], int]) -> AfterValidator:

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from bouncing_ball.drawing.branches import draw_branch, label_branch_axes, mark_named_orbits
+from bouncing_ball.drawing.branches import draw_rigid_branch, label_branch_axes
 from bouncing_ball.drawing.canvas import canvas, coloured, legend_below
 from bouncing_ball.drawing.labels import parameters
 from bouncing_ball.drawing.style import COLOURS, TABLE
@@ -27,8 +27,7 @@ def restitution_families(data: xr.Dataset) -> Figure:
     """Fig. 3: the restitution model's branch for each family."""
     figure, axes = canvas(4.6, height=3.6)
     for family, colour in coloured(data, "n"):
-        draw_branch(axes, family, family.phase, colour)
-        mark_named_orbits(axes, family.sel(impact_map="exact"), colour)
+        draw_rigid_branch(axes, family, family.sel(impact_map="exact"), colour)
         # The name is beside the branch, because five colours cannot be distinguished in grey.
         top = family.isel(point=family.phase.fillna(-np.inf).argmax("point"))
         end = (top.amplitude, top.phase / np.pi)

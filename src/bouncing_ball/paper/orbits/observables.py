@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.datasets import GRAZING
 from bouncing_ball.datasets.variables import Variable
 from bouncing_ball.numerics.continuation import Branch, resample
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
@@ -27,6 +28,11 @@ VARIABLES = {
     ),
     "special_contact_duration": Variable(
         "contact duration at the special point", symbol="τ_b", equation="Eq. 23", budget=1e-12
+    ),
+    "special_arclength": Variable(
+        "arclength of the branch up to the special point, over that of the whole branch",
+        budget=1e-4,
+        scale="1",
     ),
     "special_residual": Variable(
         "residual of the extended system at the special point", budget=1e-12, scale="1"
@@ -54,9 +60,6 @@ OBSERVED = (
 PLACE = ("amplitude", "phase", "contact_duration")
 """The quantities of special orbits that the datasets contain."""
 
-GRAZING = "grazing"
-"""The kind of the special orbits that graze the table."""
-
 
 def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:
     """The named quantities of orbits, with the stability and the admissibility of the orbits.
@@ -77,8 +80,8 @@ def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:
 def branch_columns(system: OrbitSystem, branch: Branch, count: int) -> xr.Dataset:
     """A branch at ``count`` points with equal steps of arclength, and its special orbits.
 
-    The variables are those of :func:`orbits_in_columns`; grazing orbits are found between the
-    points.
+    The variables are those of :func:`orbits_in_columns`, and ``special_arclength``, the place of
+    each special orbit among the points; grazing orbits are found between the points.
 
     Raises
     ------
@@ -95,9 +98,34 @@ def branch_columns(system: OrbitSystem, branch: Branch, count: int) -> xr.Datase
     for point in system.grazing(y):
         points.append(point)
         kinds.append(GRAZING)
-    special_orbits = system.orbit(np.array(points).reshape(-1, y.shape[-1]))
+    special = np.array(points).reshape(-1, y.shape[-1])
+    place = _places(special, y)
+    order = np.argsort(place)
+    special_orbits = system.orbit(special[order])
     ends = [str(branch.start), str(branch.end)]
-    return orbits_in_columns(system.orbit(y), special_orbits, kinds, ends)
+    found = orbits_in_columns(system.orbit(y), special_orbits, [kinds[k] for k in order], ends)
+    return found.assign(special_arclength=("special", place[order]))
+
+
+def _places(special: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """The places of special points among the points of a branch, which have equal steps, as shares
+    of its arclength.
+
+    A special point lies between the two neighbours to which it makes the smallest detour.
+
+    Examples
+    --------
+    >>> y = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]])
+    >>> _places(np.array([[0.5, 0.0], [1.0, 1.0]]), y).tolist()
+    [0.25, 1.0]
+    """
+    distance = np.linalg.norm(special[:, np.newaxis] - y, axis=-1)
+    step = np.linalg.norm(np.diff(y, axis=0), axis=-1)
+    before = np.argmin(distance[:, :-1] + distance[:, 1:] - step, axis=-1)
+    row = np.arange(len(special))
+    behind = distance[row, before]
+    ahead = distance[row, before + 1]
+    return (before + behind / (behind + ahead)) / (len(y) - 1)
 
 
 def orbits_in_columns(
@@ -129,7 +157,8 @@ def no_branch(count: int, error: Exception) -> xr.Dataset:
     """A dataset like that of :func:`branch_columns`, of NaN, with the error as its end reasons."""
     system = OrbitSystem(1, SpringDamper(1.0, 0.0), SpringDamperOrbit.at)
     none = system.orbit(np.full((count, 4), np.nan))
-    return orbits_in_columns(none, none[:0], [], [str(error)] * 2)
+    found = orbits_in_columns(none, none[:0], [], [str(error)] * 2)
+    return found.assign(special_arclength=("special", np.empty(0)))
 
 
 def joined(branches: list[xr.Dataset], dim: str) -> xr.Dataset:

@@ -23,7 +23,9 @@ RIGID = rigid(restitution=0.85)
 TSUJI = contact_law("tsuji", stiffness=900.0, damping=0.1)
 
 
-@pytest.mark.parametrize(("page", "least"), [("README.md", 3), ("docs/python.md", 14)])
+@pytest.mark.parametrize(
+    ("page", "least"), [("README.md", 3), ("docs/python.md", 14), ("docs/error-law.md", 8)]
+)
 def test_the_examples_print_what_the_pages_say(page, least):
     result = doctest.testfile(str(ROOT / page), module_relative=False)
     assert result.failed == 0

@@ -275,8 +275,9 @@ def law_thresholds(
 ) -> ByQuantity:
     """The ϖ at which each error falls to a tolerance ε by the law, |K|/ε or √(|K₂|/ε).
 
-    These are estimates and no bounds, because the law neglects the terms of order 1/ϖ². Arguments and errors are those of :func:`coefficients`. The result has one array for each of the
-    seven quantities.
+    These are estimates and no bounds, because the law neglects the terms of order 1/ϖ². Arguments
+    and errors are those of :func:`coefficients`. The result has one array for each of the seven
+    quantities.
 
     Examples
     --------

@@ -167,8 +167,8 @@ def corrected_cascades(data):
 
 @claim("cascades")
 def cascade_moves_as_a_whole(data):
-    """for n = 1 and the displacement release, the coefficients K_k of the shift of a cascade seem to
-    tend to a limit
+    """for n = 1 and the displacement release, the coefficients K_k of the shift of a cascade seem
+    to tend to a limit
 
     Condition: for every r the last one differs from the one before by less than a hundredth
 

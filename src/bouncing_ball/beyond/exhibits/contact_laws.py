@@ -52,7 +52,10 @@ VARIABLES = {
     "centroid_ratio": Variable(
         "π over D + κ of the free impact, which stands for the frequency ratio", symbol="π/(D+κ)"
     ),
-    "calibration": Variable("orbit at whose impact speed the contact has the given r and centroid"),
+    "calibration": Variable(
+        "orbit at whose relative impact speed |δ′_i| the contact has the given r and centroid"
+    ),
+    "error_calibration": Variable("calibration of the contacts of the relative errors"),
     "stable_at_threshold": Variable("whether the orbit at the threshold is stable and admissible"),
 }
 
@@ -247,11 +250,11 @@ def law_errors(parameters: LawErrors) -> xr.Dataset:
     """Errors of the restitution model and of the corrected one on all laws, along π/(D + κ).
 
     The dataset has ``relative_error`` (law, model, quantity, centroid_ratio), the modulus, on
-    contacts calibrated as its attribute ``errors_calibrated_at`` says; and ``error_threshold``
-    (case, calibration, law), the π/(D + κ) from which on the greatest height of the restitution
-    model is within the tolerance, NaN where there is none on the grid, with
-    ``stable_at_threshold``. The first case is the orbit of the errors, the others are the
-    ``further`` orbits, with ``n``, ``restitution`` and ``amplitude`` (case,).
+    contacts calibrated as ``error_calibration`` says; and ``error_threshold`` (case, calibration,
+    law), the π/(D + κ) from which on the greatest height of the restitution model is within the
+    tolerance, NaN where there is none on the grid, with ``stable_at_threshold``. The first case is
+    the orbit of the errors, the others are the ``further`` orbits, with ``n``, ``restitution`` and
+    ``amplitude`` (case,).
 
     Raises
     ------
@@ -277,6 +280,7 @@ def law_errors(parameters: LawErrors) -> xr.Dataset:
                 ("law", "model", "quantity", "centroid_ratio"),
                 np.array([_errors(name, parameters) for name in NAMES]),
             ),
+            "error_calibration": str(Calibration.CONTACT),
             "error_threshold": (by_case, threshold),
             "stable_at_threshold": (by_case, stable),
             "n": ("case", [case.n for case in cases]),
@@ -291,4 +295,4 @@ def law_errors(parameters: LawErrors) -> xr.Dataset:
             "calibration": list(map(str, Calibration)),
         },
         variables=VARIABLES,
-    ).assign_attrs(errors_calibrated_at=str(Calibration.CONTACT))
+    )

@@ -175,8 +175,17 @@ _WORDS = {
 }
 
 
+_GROUPS = {
+    "restored formula": "formulas",
+    "number": "printed numbers",
+    "statement": "statements",
+}
+
+
 def tally(decided: xr.Dataset) -> str:
-    """The numbers of claims and of verdicts in one line, without restatements.
+    """The numbers of claims and of verdicts, one line for each group, without restatements.
+
+    Groups are not added up, because a formula, a number and a statement are not of equal weight.
 
     Parameters
     ----------
@@ -185,15 +194,26 @@ def tally(decided: xr.Dataset) -> str:
 
     Examples
     --------
-    >>> decided = xr.Dataset({"verdict": ("claim", ["close", "close", "reproduced"]),
-    ...                       "group": ("claim", ["number", "restatement", "number"]),
-    ...                       "explained": ("claim", [True, True, True])})
-    >>> tally(decided)
-    '2 claims of the paper: 1 reproduced, 1 reproduced closely'
+    >>> decided = xr.Dataset({"verdict": ("claim", ["close", "close", "close", "reproduced"]),
+    ...                       "group": ("claim", ["number", "restatement", "number", "statement"]),
+    ...                       "explained": ("claim", [True, True, False, True])})
+    >>> print(tally(decided))
+    2 printed numbers: 2 reproduced closely, 1 without explanation
+    1 statements: 1 reproduced
     """
-    verdicts = decided.verdict.values[decided.group.values != "restatement"]
+    lines = []
+    for group, words in _GROUPS.items():
+        of_group = decided.isel(claim=decided.group.values == group)
+        if of_group.sizes["claim"]:
+            lines.append(f"{of_group.sizes['claim']} {words}: {_counted(of_group)}")
+    return "\n".join(lines)
+
+
+def _counted(decided: xr.Dataset) -> str:
+    """How many claims have each verdict, and how many have no explanation."""
+    verdicts = decided.verdict.values
     found = [one for one in Verdict if str(one) in verdicts]
     counts = [f"{np.sum(verdicts == str(one))} {_WORDS.get(one, one)}" for one in found]
     unexplained = int(np.sum(~decided.explained.values.astype(bool)))
     counts += [f"{unexplained} without explanation"] if unexplained else []
-    return f"{verdicts.size} claims of the paper: {', '.join(counts)}"
+    return ", ".join(counts)

@@ -28,7 +28,9 @@ VARIABLES = {
         "largest relative error of an orbit among stiff contacts", budget=1e-12
     ),
     "short_of_lift": Variable("smallest 1 - Λ sin φ of Fig. 6, with φ of Eq. 6", budget=1e-11),
-    "inadmissible_orbits": Variable("orbits drawn that do not have one impact per period"),
+    "inadmissible_orbits": Variable(
+        "orbits in our versions of the figures that do not have one impact per period"
+    ),
     "range_error": Variable("relative error of the ends of the stability range", budget=1e-12),
     "printed_slight_move": Variable(
         "largest relative move of a printed end from the stiffest row to the next",

@@ -58,7 +58,10 @@ def no_analytical_solution(data):
 def one_impact_per_period(data):
     """the orbits that are drawn have one impact per period
 
-    Condition: all of them are admissible, so that no earlier impact or release occurs on them
+    Condition: all orbits in our versions of these figures are admissible, so that no earlier impact
+    or release occurs on them
+
+    Remark: the orbits are those that we computed, as the figures of the paper were not available
     """
     return at_most(evidence.inadmissible_orbits(data), 0)
 

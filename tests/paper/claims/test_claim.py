@@ -130,6 +130,17 @@ def test_readings_that_differ_leave_a_claim_open(data):
     assert row(replace(two_readings, meant=True), data)["verdict"] == "contradicted"
 
 
+def test_a_definition_is_checked_and_not_counted_as_reproduced(data):
+    sure = replace(rising, definition=True)
+    # It is contradicted if its check fails.
+    assert row(sure, data)["verdict"] == "contradicted"
+    data["fig"]["rise"] = ("n", [0.5, 0.25, 1.0])
+    assert row(rising, data)["verdict"] == "reproduced"
+    found = row(sure, data)
+    assert (found["verdict"], found["found"], found["explained"]) == ("definition", 0.25, True)
+    assert tally(assess([sure], data)) == "1 statements: 1 true by definition"
+
+
 def test_each_claim_is_counted_in_its_group(data):
     assert row(right, data)["verdict"] == "reproduced"
     assert [

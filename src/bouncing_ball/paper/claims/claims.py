@@ -58,7 +58,9 @@ VARIABLES = {
     "found": Variable("the number found", budget=math.inf),
     "deviation_units": Variable("deviation in units of the last printed digit", budget=math.inf),
     "deviation": Variable("relative deviation", budget=math.inf),
-    "verdict": Variable("reproduced, qualified, close, contradicted, undecidable or not asked"),
+    "verdict": Variable(
+        "reproduced, definition, qualified, close, contradicted, undecidable or not asked"
+    ),
     "printed_table": Variable("the printed table whose entry the claim is"),
     "explained_by": Variable("name of the explanation"),
     "explained": Variable("neither close nor contradicted, or explained by checks that hold"),
@@ -172,6 +174,7 @@ def claims(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
 
 
 _WORDS = {
+    Verdict.DEFINITION: "true by definition",
     Verdict.QUALIFIED: "reproduced in one reading only",
     Verdict.CLOSE: "reproduced closely",
 }

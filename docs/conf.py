@@ -58,7 +58,13 @@ PARTS = {
         "docs/contact-laws",
         "docs/atlas",
     ],
-    "Theory": ["docs/impact-as-an-instant", "docs/error-law", "docs/closed-form", "docs/proofs"],
+    "Theory": [
+        "docs/how-an-orbit-is-found",
+        "docs/impact-as-an-instant",
+        "docs/error-law",
+        "docs/closed-form",
+        "docs/proofs",
+    ],
     "Replication": [
         "paper",
         "supplement",

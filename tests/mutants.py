@@ -35,7 +35,7 @@ PACKAGE = Path("src/bouncing_ball")
 # The modules that compute: both wings with what they stand on, and the comparison with the record,
 # but no pictures.
 COMPUTING = ("numerics", "paper", "beyond", "pipeline/diff")
-PICTURES = "*_figures.py"
+PICTURES = "*figures.py"
 # Folders whose folders are tried one by one, because they have many tests.
 WINGS = ("paper", "beyond")
 QUICK = "not long and not slow and not cluster and not engines and not docs"

@@ -18,8 +18,8 @@ FOLDERS = "src|tests|docs|config|workflow|figures|profiles"
 PATH = re.compile(rf"(?<![\w/.-])(?:{FOLDERS})/[\w./-]*\w")
 MODULE = re.compile(r"\bbouncing_ball(?:\.\w+)+")
 LINK = re.compile(r"\]\(([^):\s#]+)[^):\s]*\)")
-# The figure that the recipes of CONTRIBUTING make.
-MADE = re.compile("heights")
+# The figure and the study that the recipes of CONTRIBUTING make.
+MADE = re.compile("heights|height_levels")
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

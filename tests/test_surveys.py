@@ -6,14 +6,8 @@ import xarray as xr
 from scipy.optimize import brentq
 
 import bouncing_ball as bb
-from bouncing_ball.calls.results import (
-    Branches,
-    History,
-    Limits,
-    Orbits,
-    PermanentContact,
-    Simulation,
-)
+from bouncing_ball.calls.over_time_on_grid import History, Simulation
+from bouncing_ball.calls.periodic_on_grid import Branches, Limits, Orbits, PermanentContact
 from bouncing_ball.calls.thresholds import Thresholds
 
 CONTACT = bb.spring_damper(restitution=0.85, frequency_ratio=10.0)

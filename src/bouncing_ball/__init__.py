@@ -26,18 +26,18 @@ Everything is dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g, and
 in radians. NaN stands for a number that does not exist, such as the phase of an orbit below its
 saddle-node.
 
-The package consists of layers, each of which imports only from the layers above it in this list:
+The package consists of floors, each of which imports only from those below it in this list:
 
-``errors``      what a user reads, ranges of numbers
-``numerics``    independent of the ball: continuation, certified first zeros, rows of an array
-``datasets``    variables with units and budgets, labelled results, netCDF files
-``drawing``     what all pictures share: style, canvas, labels, tables
-``paper``       the paper, whole: contact, motion, orbits, comparison, exhibits, claims
-``beyond``      what is built on it: laws, corrected model, long run, engines, calculator, atlas
-``pipeline``    the configuration, jobs, the record and its comparison; knows no balls
-``calls``       the balls and the functions that are imported from here
-``explorer``    the page with sliders
 ``cli``         the command line, ``bouncing-ball``
+``explorer``    the page with sliders
+``calls``       the balls and the functions that are imported from here
+``pipeline``    the configuration, jobs, the record and its comparison; knows no balls
+``beyond``      what is built on the paper: laws, corrected model, long run, engines, calculator
+``paper``       the paper, whole: contact, motion, orbits, comparison, exhibits, claims
+``drawing``     what all pictures share: style, canvas, labels, tables
+``datasets``    variables with units and budgets, labelled results, netCDF files
+``numerics``    independent of the ball: continuation, certified first zeros, rows of an array
+``errors``      what a user reads, ranges of numbers
 """
 
 from typing import TYPE_CHECKING, Any

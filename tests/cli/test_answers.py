@@ -39,7 +39,8 @@ FIELDS = [*OBSERVABLES[1:], "multipliers", "is_stable", "is_admissible", "residu
     ],
 )
 def test_an_orbit_is_that_of_the_call_in_full_precision(ask, side, options, ball):
-    answer = ask(*ORBIT, *options, "--side", side)
+    command = (*ORBIT, *options, "--side", side)
+    answer = ask(*command)
     of_contact = ["measured_restitution", "damping_ratio"] if options else []
     assert list(answer) == FIELDS + of_contact
     orbit = bouncing_ball.orbit(ball, amplitude=1.0, side=side)
@@ -155,8 +156,9 @@ def test_a_law_by_its_free_impact_has_it_at_the_speed_in_question(ask):
     assert limits["at_impact_speed"] == pytest.approx(2 * math.pi / 1.65, rel=1e-12)
     assert limits["free_duration"] == pytest.approx(0.1, rel=1e-12)
     # The first impact, of a speed Λ cos φ - z′.
-    start = ("--amplitude", "1", "--velocity", "-2")
-    run = ask("simulate", *FREE, *start, "--impacts", "3")
+    start = ("simulate", "--amplitude", "1", "--velocity", "-2", "--impacts", "3")
+    command = (*start, *FREE)
+    run = ask(*command)
     assert run["at_impact_speed"] == 3.0
     assert run["free_duration"] == pytest.approx(0.1, rel=1e-12)
 
@@ -245,8 +247,9 @@ def test_a_mistake_exits_2_with_one_line(refused, arguments, said):
     start = {"@": ORBIT, "law": ("orbit", "--amplitude", "1", "--law")}
     start["contact"] = ("orbit", "--amplitude", "9", "--frequency-ratio", "10")
     start["free"] = ("orbit", "--amplitude", "1", *FREE)
-    command = start.get(words[0], words[:1]) if words else ()
-    status, line = refused(*command, *words[1:])
+    begin = start.get(words[0], words[:1]) if words else ()
+    command = (*begin, *words[1:])
+    status, line = refused(*command)
     assert status == 2
     assert said in line
 
@@ -261,9 +264,11 @@ def test_a_mistake_exits_2_with_one_line(refused, arguments, said):
 )
 def test_no_traceback_and_no_warning_ever(outcome, ratio, release, r, amplitude, n, side):
     # Warnings are errors in this suite.
-    contact = [] if ratio is None else ["--frequency-ratio", str(ratio), "--release", release]
-    call = ["orbit", "--restitution", str(r), "--amplitude", str(amplitude), "--n", str(n)]
-    status, out, err = outcome(*call, *contact, "--side", side, "--json")
+    command = ["orbit", "--restitution", str(r), "--amplitude", str(amplitude), "--n", str(n)]
+    command += ["--side", side, "--json"]
+    if ratio is not None:
+        command += ["--frequency-ratio", str(ratio), "--release", release]
+    status, out, err = outcome(*command)
     if amplitude < 1e-12:
         assert status == 2 and len(err.splitlines()) == 1
         return

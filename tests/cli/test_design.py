@@ -15,7 +15,7 @@ from bouncing_ball.paper.comparison.errors import Quantity
 
 CASE = ("design", "--mass", "20 g", "--frequency", "50 Hz", "--acceleration", "0.8 g",
         "--restitution", "0.85")  # fmt: skip
-STIFF = ("--stiffness", "1e7 N/m")
+STIFF = (*CASE, "--stiffness", "1e7 N/m")
 UNIT = {"mass": 1.0, "angular_frequency": 1.0, "gravity": 1.0, "acceleration": 1.0,
         "restitution": 0.65, "n": 1}  # fmt: skip
 
@@ -35,14 +35,14 @@ def test_json_is_the_answer_of_the_call(ask):
     found = design(
         mass="20 g", frequency="50 Hz", acceleration="0.8 g", restitution=0.85, stiffness="1e7 N/m"
     )
-    assert ask(*CASE, *STIFF) == json.loads(json.dumps(asdict(found)))
+    assert ask(*STIFF) == json.loads(json.dumps(asdict(found)))
     # The saddle-node of an elastic ball is at Λ = 0, and an infinite error is null.
     case = "design --mass 1 --frequency 1 --acceleration 5 --restitution 1 --stiffness 1e5 --n 1"
     assert ask(*case.split())["orbits"][0]["errors"]["saddle_node"] is None
 
 
 def test_the_text_begins_with_the_verdict(said):
-    text = said(*CASE, *STIFF, "--all")
+    text = said(*STIFF, "--all")
     lines = text.splitlines()
     assert lines[0].startswith("The 1-T orbit is stable")
     assert lines[1].startswith("The restitution model") and lines[2].startswith("Reason: ")
@@ -54,18 +54,19 @@ def test_the_text_begins_with_the_verdict(said):
 
 
 def test_without_a_family_each_has_one_line(said):
-    short = said(*CASE, *STIFF).splitlines()
+    short = said(*STIFF).splitlines()
     assert [line.split()[:2] for line in short[-4:-1]] == [[f"{n}-T", "yes"] for n in (1, 2, 3)]
     assert "--n 1 prints all" in short[-1] and "--all for all" in short[-1]
     assert len(short) < 35
-    one = said(*CASE, *STIFF, "--n", "2")
+    one = said(*STIFF, "--n", "2")
     assert "2-T orbit" in one and "period doubling at Λ" in one and "3-T" not in one
 
 
 def test_what_was_given_is_said_again_with_its_units(said):
     given = "Given: mass 20 g, frequency 50 Hz, acceleration 7.845 m/s^2, stiffness 10 MN/m"
-    assert said(*CASE, *STIFF).splitlines()[3] == f"{given}, restitution 0.85."
-    heavy = said("design", "--mass", "20 kg", "--stiffness", "1e5", "--damping", "8 N s/m")
+    assert said(*STIFF).splitlines()[3] == f"{given}, restitution 0.85."
+    command = ("design", "--mass", "20 kg", "--stiffness", "1e5", "--damping", "8 N s/m")
+    heavy = said(*command)
     assert heavy.startswith("Given: mass 20 kg, stiffness 100 kN/m, damping 8 N s/m.")
 
 
@@ -108,7 +109,8 @@ def test_choosing(said):
 )
 def test_mistakes_are_one_line(refused, monkeypatch, data, arguments, status, says):
     monkeypatch.setattr("bouncing_ball.beyond.calculator.page_data.page", lambda found: data)
-    code, line = refused(*CASE, *STIFF, *arguments)
+    command = (*STIFF, *arguments)
+    code, line = refused(*command)
     assert code == status and says in line
 
 
@@ -166,7 +168,7 @@ def test_a_page_for_an_orbit_that_one_model_lacks(monkeypatch):
 
 def test_the_command_writes_the_page_and_answers_as_without(tmp_path, said, monkeypatch, data):
     monkeypatch.setattr("bouncing_ball.beyond.calculator.page_data.page", lambda found: data)
-    assert said(*CASE, *STIFF, "--plot", str(tmp_path / "page.png")) == said(*CASE, *STIFF)
+    assert said(*STIFF, "--plot", str(tmp_path / "page.png")) == said(*STIFF)
     with Image.open(tmp_path / "page.png") as picture:
         # A4 upright, with ink in it.
         assert picture.height / picture.width == pytest.approx(2**0.5, abs=0.01)

@@ -167,6 +167,7 @@ def test_the_branch_ends_where_the_corrector_fails_with_the_smallest_step():
     branch = along(problem, 0.0, 0.0, control=control)
     assert str(branch.end).startswith("step too small (")
     assert str(branch.end).endswith("the corrector fails with residual nan")
+    assert branch.end.finished
     # The last step tried was below twice the smallest.
     assert 1 - 2 * np.sqrt(2) * 1e-6 < branch.points[-1, 1] <= 1
 

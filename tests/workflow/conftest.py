@@ -28,9 +28,8 @@ ROOT = Path(__file__).resolve().parents[2]
 # No run takes as many seconds, unless it hangs.
 HANGING = 3600
 # A fresh clone: neither results nor the state of earlier runs.
-IGNORED = shutil.ignore_patterns(
-    ".git", ".venv*", "results", ".snakemake", "tests", "*.egg-info", "__pycache__", ".*_cache"
-)
+OTHERS = ".git .venv* results .snakemake tests *.egg-info __pycache__ .*_cache"
+IGNORED = shutil.ignore_patterns(*OTHERS.split())
 
 
 @dataclass(frozen=True)

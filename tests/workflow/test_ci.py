@@ -59,11 +59,18 @@ def test_without_the_set_up_nothing_runs(tmp_path):
     assert status != 0 and called == ["setup"]
 
 
+def number_of_line(part, lines):
+    """The first line with this part."""
+    found = [k for k, line in enumerate(lines) if part in line]
+    assert found, f"make newest runs no command with {part!r}: {lines}"
+    return found[0]
+
+
 def test_the_newest_versions_run_what_the_locked_ones_do():
     lines = [line for line in dry("newest").splitlines() if not line.startswith("make[")]
     assert not any("requirements" in line for line in lines)
     order = ["--editable", "rm -rf results", "snakemake --cores 2", "--cores 2 diff", "pytest"]
-    found = [next(k for k, line in enumerate(lines) if part in line) for part in order]
+    found = [number_of_line(part, lines) for part in order]
     assert found == sorted(found)
     assert all(".venv-newest/bin/" in lines[k] for k in found if k != found[1])
 

@@ -55,7 +55,7 @@ def test_a_drifted_record_turns_diff_red_and_is_replaced_by_accept(recorded, mon
     named = [line for line in lines if line.startswith("fig")]
     assert named == ["fig12: a file is not in the record", "fig11: numbers moved"]
     assert lines[-1].startswith("1 extra, 1 drifted, ")
-    last = "diff: the results differ from the record, see results/diff/index.html"
+    last = "diff: the results differ from the record (exit status 1), see results/diff/index.html"
     assert done.stderr.splitlines()[-1] == last and "Error" not in done.stderr
     after = recorded.contents("results/diff")
     assert before.keys() == after.keys() and not any(before[n] == after[n] for n in after)
@@ -84,8 +84,8 @@ def test_one_artifact_is_made_and_compared_alone_and_its_parameter_is_named(reco
     made = [line.split()[1] for line in lines if line.startswith("made ")]
     assert made == ["results/figures/fig11.nc", "results/figures/fig11.png"]
     assert "fig11: parameter changed, restitution 0.65 → 0.7" in lines
-    assert lines[-1] == "1 changed parameters. The new artifacts differ from the record."
-    last = "diff: the results differ from the record, see results/diff/fig11.html"
+    assert lines[-1] == "1 with changed parameters. The new artifacts differ from the record."
+    last = "diff: the results differ from the record (exit status 1), see results/diff/fig11.html"
     assert done.returncode == 1 and done.stderr.splitlines()[-1] == last
     reports = recorded.path / "results" / "diff"
     assert {path.name for path in reports.iterdir()} == {"fig11.txt", "fig11.html"}

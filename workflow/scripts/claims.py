@@ -2,6 +2,7 @@
 
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.drawing.tables import texts
+from bouncing_ball.paper.claims.claims import tally
 from bouncing_ball.paper.claims.tables import Claims, claims
 from bouncing_ball.pipeline.article import render_article
 from bouncing_ball.pipeline.jobs import logged, read_input
@@ -12,4 +13,5 @@ with logged(snakemake) as lines:
     words = render_article(snakemake.params.words, {"claims": data}, {}, Claims(data))
     write_text(snakemake.output.csv, table[".csv"])
     write_text(snakemake.output.md, f"{words}\n{table['.md']}")
-    lines += snakemake.output
+    lines += [*snakemake.output, tally(data)]
+    print(tally(data), flush=True)

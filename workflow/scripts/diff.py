@@ -19,4 +19,4 @@ with logged(snakemake) as lines:
     write_text(page, to_html(comparison))
     print(report, end="", flush=True)
     if comparison.outcome.status:
-        conclude(f"diff: the results differ from the record, see {page}")
+        conclude(f"diff: the results differ from the record (exit status 1), see {page}")

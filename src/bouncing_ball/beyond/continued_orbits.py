@@ -167,7 +167,6 @@ def orbit_at(model: Any, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Any:
     True
     """
     side = Side(side)
-    side = Side(side)
     search, (lam,), shape = _Search.of(model, n, amplitude)
     psi = corrected.instant_phase(search.n, search.instant, lam, side is Side.STABLE)
     # Next to the fold, the given Λ may lie below the fold of the corrected model.

@@ -25,10 +25,8 @@ _HUES = dict(zip(KINDS, (*COLOURS[:4], "#9a9a9a", "#d9b8d9"), strict=True))
 _AREAS = ("#3F96CC", "#000000", "#E8B04A", "#AA3A00", "#B7DDF2", "#5B5B5B", "#F4E3B5", "#D9D9D9")
 
 
-def shown(
-    draw: Callable[[xr.Dataset], Figure], data: xr.Dataset, path: str | Path | None, name: str
-) -> Figure:
-    """A figure of a dataset in the common style, which is written to ``path`` if it is given.
+def shown(draw: Callable[[], Figure], path: str | Path | None, name: str) -> Figure:
+    """A figure in the common style, which is written to ``path`` if it is given.
 
     ``name`` is that of the command or of the call, for the description of the file.
 
@@ -38,7 +36,7 @@ def shown(
         If the suffix of the path is not that of a picture, or the file cannot be written.
     """
     with style():
-        figure = draw(data)
+        figure = draw()
         if path is not None:
             write(figure, Path(path), f"bouncing-ball {name}")
     return figure

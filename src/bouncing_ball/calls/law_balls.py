@@ -9,7 +9,7 @@ itself.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
@@ -59,13 +59,14 @@ class FreeImpactBall(Ball):
     restitution: float
     duration: Any
     is_corrected: bool = False
+    parameters: Mapping[str, Any] = field(init=False)
 
     is_known = False
 
-    @property
-    def parameters(self) -> Mapping[str, Any]:  # type: ignore[override]
+    def __post_init__(self):
         found = {"law": self.law.name, "restitution": self.restitution, "duration": self.duration}
-        return found | ({"model": "corrected"} if self.is_corrected else {})
+        corrected = {"model": "corrected"} if self.is_corrected else {}
+        object.__setattr__(self, "parameters", found | corrected)
 
     def at_speed(self, speed: ArrayLike) -> ModelBall:
         return self._with(law_of_impact(self.law, self.restitution, self.duration, speed))

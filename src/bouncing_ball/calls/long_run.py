@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,73 +22,77 @@ from bouncing_ball.calls.arguments import (
     checked_number,
 )
 from bouncing_ball.calls.balls import Ball, a_ball, a_single_ball
-from bouncing_ball.calls.results import model_of_starts
-from bouncing_ball.datasets.labelled import Grid, Labelled
-from bouncing_ball.errors import ParameterError, extra
+from bouncing_ball.calls.drawn import Drawn
+from bouncing_ball.calls.over_time_on_grid import model_of_starts
+from bouncing_ball.datasets.labelled import Grid
+from bouncing_ball.errors import ParameterError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-class LongRun(Labelled):
-    """The motions on which balls end, over the axes of the arguments."""
+class LongRun(Drawn):
+    """The motions on which balls end, over the axes of the arguments.
+
+    The figure shows the periods of the motions over an argument.
+    """
 
     __slots__ = ()
 
-    def plot(self, path: str | Path | None = None) -> Figure:  # type: ignore[override]
-        """Periods of the motions over an argument, as a figure, which is written to ``path`` if it
-        is given.
+    maker = "motion"
 
-        Raises
-        ------
-        ModelError
-            If the suffix of the path is not that of a picture, or the file cannot be written.
-        """
-        with extra("plot"):
-            from bouncing_ball.calls import figures
-        return figures.shown(figures.motions, self, path, "motion")
+    def _figure(self) -> Figure:
+        from bouncing_ball.calls import figures
+
+        return figures.motions(self)
 
 
-class Exponents(Labelled):
-    """Largest Lyapunov exponents over the axes of the arguments."""
+class Exponents(Drawn):
+    """Largest Lyapunov exponents over the axes of the arguments.
+
+    The figure shows them with their standard errors.
+    """
 
     __slots__ = ()
 
-    def plot(self, path: str | Path | None = None) -> Figure:  # type: ignore[override]
-        """The exponents with their standard errors, as a figure; for the path see
-        :meth:`LongRun.plot`.
-        """
-        with extra("plot"):
-            from bouncing_ball.calls import figures
-        return figures.shown(figures.exponent, self, path, "exponent")
+    maker = "exponent"
+
+    def _figure(self) -> Figure:
+        from bouncing_ball.calls import figures
+
+        return figures.exponent(self)
 
 
-class OrbitDiagram(Labelled):
-    """Attractors over Λ, with the impacts of each."""
+class OrbitDiagram(Drawn):
+    """Attractors over Λ, with the impacts of each.
 
-    __slots__ = ()
-
-    def plot(self, path: str | Path | None = None) -> Figure:  # type: ignore[override]
-        """Phase and speed of the impacts over Λ, as a figure; for the path see
-        :meth:`LongRun.plot`.
-        """
-        with extra("plot"):
-            from bouncing_ball.calls import figures
-        return figures.shown(figures.orbit_diagram, self, path, "diagram")
-
-
-class Basins(Labelled):
-    """The motions on which a grid of first impacts ends, with their shares."""
+    The figure shows the phase and the speed of the impacts over Λ.
+    """
 
     __slots__ = ()
 
-    def plot(self, path: str | Path | None = None) -> Figure:  # type: ignore[override]
-        """The motion of each start in a colour, as a figure; for the path see
-        :meth:`LongRun.plot`.
-        """
-        with extra("plot"):
-            from bouncing_ball.calls import figures
-        return figures.shown(figures.basins, self, path, "basins")
+    maker = "diagram"
+
+    def _figure(self) -> Figure:
+        from bouncing_ball.calls import figures
+
+        return figures.orbit_diagram(self)
+
+
+class Basins(Drawn):
+    """The motions on which a grid of first impacts ends, with their shares.
+
+    The figure shows the motion of each start in a colour.
+    """
+
+    __slots__ = ()
+
+    maker = "basins"
+
+    def _figure(self) -> Figure:
+        from bouncing_ball.calls import figures
+
+        return figures.basins(self)
 
 
 def motion_of(

@@ -24,7 +24,7 @@ from bouncing_ball.calls.arguments import (
 from bouncing_ball.calls.balls import Ball, a_ball
 
 if TYPE_CHECKING:
-    from bouncing_ball.calls.results import History, Simulation
+    from bouncing_ball.calls.over_time_on_grid import History, Simulation
 
 
 def simulate(
@@ -76,7 +76,7 @@ def simulate(
     count = checked_number("impacts", impacts, IMPACTS)
     a_ball(ball)
     # Imported here, because the command line needs no labels.
-    from bouncing_ball.calls.results import impacts_on_grid
+    from bouncing_ball.calls.over_time_on_grid import impacts_on_grid
 
     return impacts_on_grid(ball, lam, phi, before, count)
 
@@ -132,7 +132,7 @@ def history(
     length = checked_number("periods", periods, PERIODS)
     count = checked_number("samples", samples, SAMPLES)
     a_ball(ball)
-    from bouncing_ball.calls.results import history_on_grid
+    from bouncing_ball.calls.over_time_on_grid import history_on_grid
 
     return history_on_grid(ball, lam, phi, before, length, count)
 
@@ -188,6 +188,6 @@ def drop(
     length = checked_number("periods", periods, PERIODS)
     count = checked_number("samples", samples, SAMPLES)
     a_ball(ball)
-    from bouncing_ball.calls.results import drop_on_grid
+    from bouncing_ball.calls.over_time_on_grid import drop_on_grid
 
     return drop_on_grid(ball, start, lam, phi, length, count)

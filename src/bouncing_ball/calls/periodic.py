@@ -31,7 +31,7 @@ from bouncing_ball.paper.orbits.orbit import OBSERVABLES, Orbit
 from bouncing_ball.paper.orbits.stability import Side
 
 if TYPE_CHECKING:
-    from bouncing_ball.calls.results import Branches, Limits, Orbits, PermanentContact
+    from bouncing_ball.calls.periodic_on_grid import Branches, Limits, Orbits, PermanentContact
 
 
 @dataclass(frozen=True, repr=False)
@@ -212,7 +212,7 @@ release='displacement')
     if _is_grid(a_ball(ball), family, lam):
         # Imported here, because a single orbit needs no labels, and importing xarray takes longer
         # than computing the orbit.
-        from bouncing_ball.calls.results import orbits_on_grid
+        from bouncing_ball.calls.periodic_on_grid import orbits_on_grid
 
         return orbits_on_grid(ball, family, lam, branch_side)
     model = ball.at_orbit(family, lam, branch_side).model
@@ -285,7 +285,7 @@ def limits(ball: Ball, n: Family = 1) -> TwoLimits | Limits:
     """
     family = checked("n", n, FAMILY)
     if _is_grid(a_ball(ball), family):
-        from bouncing_ball.calls.results import limits_on_grid
+        from bouncing_ball.calls.periodic_on_grid import limits_on_grid
 
         return limits_on_grid(ball, family)
     model = ball.at_limits(family).model
@@ -340,7 +340,7 @@ def branch(
     if amplitude_max is not None:
         top = checked_number("amplitude_max", amplitude_max, POSITIVE)
     a_ball(ball)
-    from bouncing_ball.calls.results import branches_on_grid
+    from bouncing_ball.calls.periodic_on_grid import branches_on_grid
 
     return branches_on_grid(ball, family, top, count)
 
@@ -372,7 +372,7 @@ def permanent_contact(ball: Ball) -> float | PermanentContact:
     """
     known = a_known_ball(ball)
     if _is_grid(known):
-        from bouncing_ball.calls.results import permanent_contact_on_grid
+        from bouncing_ball.calls.periodic_on_grid import permanent_contact_on_grid
 
         return permanent_contact_on_grid(known)
     return float(known.model.permanent_contact_threshold())

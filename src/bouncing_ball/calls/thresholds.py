@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,10 +22,11 @@ from bouncing_ball.calls.arguments import (
     chosen,
 )
 from bouncing_ball.calls.balls import Ball, a_known_ball
+from bouncing_ball.calls.drawn import Drawn
 from bouncing_ball.datasets import CASE
-from bouncing_ball.datasets.labelled import Grid, Labelled
+from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.datasets.variables import described
-from bouncing_ball.errors import ParameterError, extra
+from bouncing_ball.errors import ParameterError
 from bouncing_ball.paper.comparison.errors import Quantity
 from bouncing_ball.paper.contact.damping import Release, damping_ratio
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
@@ -35,23 +35,20 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-class Thresholds(Labelled):
-    """Thresholds ϖ of errors; the last axes are the ``simple`` model and the ``quantity``."""
+class Thresholds(Drawn):
+    """Thresholds ϖ of errors; the last axes are the ``simple`` model and the ``quantity``.
+
+    The figure shows the thresholds of each quantity.
+    """
 
     __slots__ = ()
 
-    def plot(self, path: str | Path | None = None) -> Figure:  # type: ignore[override]
-        """The thresholds of each quantity, as a figure, which is written to ``path`` if it is
-        given.
+    maker = "error_thresholds"
 
-        Raises
-        ------
-        ModelError
-            If the suffix of the path is not that of a picture, or the file cannot be written.
-        """
-        with extra("plot"):
-            from bouncing_ball.calls import figures
-        return figures.shown(figures.error_thresholds, self, path, "error_thresholds")
+    def _figure(self) -> Figure:
+        from bouncing_ball.calls import figures
+
+        return figures.error_thresholds(self)
 
 
 def error_thresholds(

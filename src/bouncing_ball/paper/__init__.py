@@ -14,7 +14,7 @@ Eqs. 17-27   n-T orbits                                   :mod:`.orbits.orbit`
 Eqs. 28-36   permanent contact, Λ_SD and its inverse      :mod:`.contact.permanent_contact`
 Eqs. 37-38   errors                                       :mod:`.comparison.errors`
 ..           their thresholds, ϖ_h and ϖ_PC               :mod:`.comparison.thresholds`
-Figs., Table what each shows, from parameters to pictures :mod:`.exhibits`
+Figs., Table one module for each, listed at their top     :mod:`.exhibits`
 in words     what is claimed, with a verdict              :mod:`.claims`
 ============ ============================================ =========================================
 

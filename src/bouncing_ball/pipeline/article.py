@@ -217,6 +217,42 @@ def with_citations(markdown: str, folder: str | Path) -> str:
 
 # Markdown.
 
+# A paragraph with one of these at the start of a line is no prose: a heading, table, quotation,
+# formula, element of HTML, list or fence.
+_NO_PROSE = re.compile(r"^(#|\||>|\$\$|<|- |\d+\. |```)", re.MULTILINE)
+_PICTURE = re.compile(r"(!\[[^\n]*\n)?(.*)", re.DOTALL)
+# The end of a sentence, but not of an initial, which is a capital letter with a full stop.
+_SENTENCE_END = re.compile(r"(?<=[.!?:;])(?<![\s(*-][A-Z]\.) (?=[A-Z$(*\[])")
+
+
+def by_sentence(text: str) -> str:
+    """The text with a line for each sentence of its paragraphs, whatever numbers were filled in.
+
+    A change of a number then changes one line, in a comparison of two versions of the text. The
+    parts of a sentence before a colon or a semicolon are lines of their own if a capital letter,
+    a formula or a bracket follows.
+
+    Examples
+    --------
+    >>> print(by_sentence("The error\\nis small. It\\nfalls. A. Ball says so.\\n"))
+    The error is small.
+    It falls.
+    A. Ball says so.
+    <BLANKLINE>
+    """
+    return "\n\n".join(_by_sentence(block) for block in text.split("\n\n"))
+
+
+def _by_sentence(block: str) -> str:
+    """One block of text between blank lines."""
+    if _NO_PROSE.search(block):
+        return block
+    found = _PICTURE.fullmatch(block)
+    assert found is not None
+    picture, prose = found.groups("")
+    end = "\n" if prose.endswith("\n") else ""
+    return picture + _SENTENCE_END.sub("\n", " ".join(prose.split())) + end
+
 
 def render_article(
     template: str | Path,
@@ -226,9 +262,9 @@ def render_article(
 ) -> str:
     """The text of a template with numbered sections, figures, tables and citations.
 
-    A template may include other templates of its folder. Templates can use ``data`` and ``tables``
-    by name, ``claims``, and the functions in :data:`FORMATS`. Citations have the syntax of pandoc,
-    ``[@key]``.
+    Each sentence has a line. A template may include other templates of its folder. Templates can
+    use ``data`` and ``tables`` by name, ``claims``, and the functions in :data:`FORMATS`. Citations
+    have the syntax of pandoc, ``[@key]``.
 
     Raises
     ------
@@ -247,7 +283,7 @@ def render_article(
     )
     environment.globals.update(FORMATS, data=data, tables=tables, claims=claims)
     text = environment.get_template(Path(template).name).render()
-    with_formulas = numbered(text).replace("Λ_SD", r"$\Lambda_{SD}$")
+    with_formulas = by_sentence(numbered(text)).replace("Λ_SD", r"$\Lambda_{SD}$")
     return with_citations(with_formulas, folder)
 
 

@@ -36,9 +36,9 @@ class ConfigurationError(ModelError):
         super().__init__(escaped(text))
 
 
-class _Loader(_BASE):  # type: ignore[misc, valid-type]
-    """A loader of the safe subset of YAML that refuses duplicate keys in a mapping, and numbers
-    that do not mean what they seem to mean.
+class _Constructor(yaml.constructor.SafeConstructor):
+    """The safe subset of YAML, without duplicate keys in a mapping, and without numbers that do not
+    mean what they seem to mean.
     """
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict:
@@ -72,8 +72,10 @@ class _Loader(_BASE):  # type: ignore[misc, valid-type]
         return value
 
 
-_Loader.add_constructor("tag:yaml.org,2002:int", _Loader.construct_yaml_int)
-_Loader.add_constructor("tag:yaml.org,2002:float", _Loader.construct_yaml_float)
+_Constructor.add_constructor("tag:yaml.org,2002:int", _Constructor.construct_yaml_int)
+_Constructor.add_constructor("tag:yaml.org,2002:float", _Constructor.construct_yaml_float)
+# The class of which it is the first base is known at run time only.
+_Loader = type("_Loader", (_Constructor, _BASE), {})
 
 # The largest number of mappings and lists within each other; a configuration has five.
 _DEEPEST = 30

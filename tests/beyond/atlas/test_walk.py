@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.beyond.atlas.walk import REACHED, extrapolated, stiff_start, walk
-from bouncing_ball.paper.orbits import spring_damper_bifurcations as limits
+from bouncing_ball.paper.orbits import spring_damper_bifurcations as bifurcations
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
 from bouncing_ball.paper.orbits.spring_damper_branch import branch_point
 
@@ -28,7 +28,7 @@ def test_the_walk_gives_the_orbits_that_root_finding_gives(small, every_node):
                 contact = nodes.contact(step.frequency_ratio[k])
                 # At the Λ where the walk is, so that both have the same orbit.
                 lam = np.where(np.isnan(off[k]), nodes.amplitude, orbit.amplitude)
-                found = limits.orbit_at(contact, nodes.n, lam)
+                found = bifurcations.orbit_at(contact, nodes.n, lam)
                 assert np.array_equal(found.exists, orbit.exists)
                 # The phase turns by a root of Λ next to the saddle-node.
                 assert np.nanmax(orbit.distance(found)) < 1e-8

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.beyond.corrected.orbits import CorrectedModel
 from bouncing_ball.beyond.corrected.signature import Signature
 from bouncing_ball.beyond.laws.hertzian import Tsuji, tsuji_damping
 from bouncing_ball.beyond.laws.linear import LinearLaw
@@ -18,9 +19,9 @@ LAWS = [
     SpringDamperModel(SpringDamper.from_restitution(0.7, 30.0, "force")),
     # Here one contact in ten resumes below the table's level.
     SpringDamperModel(SpringDamper(2.0, 0.9, "force")),
-    Signature(LinearLaw.of(SpringDamper.from_restitution(0.7, 30.0))),
+    CorrectedModel(Signature(LinearLaw.of(SpringDamper.from_restitution(0.7, 30.0)))),
     Tsuji(2000.0, tsuji_damping(0.7)),
-    Signature(Tsuji(2000.0, tsuji_damping(0.7))),
+    CorrectedModel(Signature(Tsuji(2000.0, tsuji_damping(0.7)))),
 ]
 
 

@@ -261,8 +261,13 @@ def bounces(name, case, found, skipped, kept):
     period = 2 * np.pi * n
     cycles = skipped + kept
     trial = Trial(
-        *(found, 1.0, float(height), velocity + back),
-        *(int(cycles * period / step), 1.0, amplitude),
+        settings=found,
+        mass=1.0,
+        height=float(height),
+        speed=velocity + back,
+        steps=int(cycles * period / step),
+        gravity=1.0,
+        amplitude=amplitude,
     )
     above, spent = RUN[name](trial)
     ball = above - amplitude * np.cos(trial.times)

@@ -8,7 +8,14 @@ from bouncing_ball.beyond.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball.beyond.laws.hertzian import HuntCrossley, KuwabaraKono, Tsuji
 from bouncing_ball.beyond.laws.impedance import Impedance
 from bouncing_ball.beyond.laws.law_of_impact import law_of_impact
-from bouncing_ball.beyond.laws.permanent_contact import _holds, _touching, holds, permanent_contact
+from bouncing_ball.beyond.laws.permanent_contact import (
+    _holds,
+    _Steady,
+    _touching,
+    holds,
+    permanent_contact,
+)
+from bouncing_ball.beyond.laws.scales import rest
 from bouncing_ball.errors import ModelError
 
 
@@ -67,6 +74,23 @@ def test_more_nodes_do_not_change_a_threshold(law, monkeypatch):
 @pytest.mark.parametrize("law", [ElastoBacklash(3.0, 0.5), Impedance(5.0, 0.2, 0.3)])
 def test_steady_contacts_have_the_thresholds_of_the_closed_forms(law):
     assert _touching(law, law.feels_load) == pytest.approx(permanent_contact(law), rel=1e-10)
+
+
+def test_the_grip_changes_at_the_rate_that_depth_speed_and_load_give_it():
+    # The grip of this law depends on the load, which changes at the rate -Λ cos φ.
+    law = Impedance(5.0, 0.2, 0.9, 0.45, width=0.1)
+    steady = _Steady(law, rest(law))
+    z = np.array([0.3, 0.7])
+    first = np.array([0.8, 0.2])
+    _, rate = steady.release(first, z)
+    step = 1e-6
+    moved = [first + sign * step * steady.rates(0.0, first, z) for sign in (1, -1)]
+    after, before = (
+        steady.grip(*steady.state(sign * step, y, z))
+        for sign, y in zip((1, -1), moved, strict=True)
+    )
+    # Central differences of values of order one: the rounding 1e-16 over the step.
+    assert rate == pytest.approx((after - before) / (2 * step), rel=1e-8)
 
 
 def test_an_impedance_by_depth_touches_the_surface_at_its_threshold():

@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
-from bouncing_ball.beyond.corrected.signature import Signature
-from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.motions import Kind, Reason
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
@@ -105,7 +103,7 @@ def test_an_answer_does_not_depend_on_the_other_balls():
     [
         RestitutionModel(0.5),
         SpringDamperModel(contact(0.5, 30.0)),
-        Signature(LinearLaw.of(contact(0.5, 30.0))),
+        CorrectedModel.of_contact(contact(0.5, 30.0)),
     ],
 )
 def test_a_ball_on_a_slow_table_comes_to_rest(law):
@@ -152,7 +150,7 @@ def test_laps_that_rounding_alone_makes_alike_are_no_sample():
     [
         RestitutionModel(0.85),
         SpringDamperModel(contact(0.85, 80.0)),
-        pytest.param(Signature(LinearLaw.of(contact(0.85, 80.0))), marks=pytest.mark.long),
+        pytest.param(CorrectedModel.of_contact(contact(0.85, 80.0)), marks=pytest.mark.long),
     ],
 )
 def test_chaos_has_the_exponent_of_the_paths_side_by_side(law):

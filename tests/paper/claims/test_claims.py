@@ -56,13 +56,23 @@ def test_the_readme_has_the_tally_of_the_accepted_verdicts(verdicts):
     ],
 )
 def test_a_ball_is_chaotic_only_if_its_neighbours_separate_and_it_never_sticks(change, verdict):
+    assert verdict_on_kinds([1, 2], change) == verdict
+
+
+def test_two_subharmonic_balls_and_a_chaotic_one_are_not_all_kinds_of_motion():
+    assert verdict_on_kinds([2, 2], {}) == "contradicted"
+    assert verdict_on_kinds([1, 1], {}) == "contradicted"
+
+
+def verdict_on_kinds(repetitions, change):
+    """The verdict for two balls that repeat after so many impacts, and a chaotic one, changed."""
     kinds = next(claim for claim in CLAIMS if claim.id == "kinds of motion")
-    known = {"impacts": [1, 2], "periods": [1, 2], "stickings": [0, 0]}
+    known = {"impacts": repetitions, "periods": repetitions, "stickings": [0, 0]}
     known |= {"lyapunov_exponent": [np.nan] * 2, "lyapunov_error": [np.nan] * 2}
     last = {"impacts": 0, "periods": 0, "stickings": 0}
     last |= {"lyapunov_exponent": 0.4, "lyapunov_error": 0.01} | change
     balls = xr.Dataset({name: ("amplitude", [*two, last[name]]) for name, two in known.items()})
-    assert kinds.decide({"three_balls": balls}).verdict == verdict
+    return kinds.decide({"three_balls": balls}).verdict
 
 
 def test_an_explanation_fails_with_its_checks(data):

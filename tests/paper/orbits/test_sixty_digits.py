@@ -8,7 +8,7 @@ from sixty_digits import Exact
 
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.orbits import spring_damper_bifurcations as limits
+from bouncing_ball.paper.orbits import spring_damper_bifurcations as bifurcations
 from bouncing_ball.paper.orbits.spring_damper_branch import branch_point
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 
@@ -45,7 +45,7 @@ def test_the_branch_agrees_with_sixty_digits():
 def check_bifurcation(contact: SpringDamper, n: int, kind: str, closed: float = 1e3 * EPS) -> bool:
     """Whether a reported bifurcation is one in 60 digits; False if none is reported."""
     sign = 1 if kind == "saddle_node" else -1
-    excess = float(getattr(limits, kind)(contact, n))
+    excess = float(getattr(bifurcations, kind)(contact, n))
     if np.isnan(excess):
         return False
     exact = Exact(contact, n)

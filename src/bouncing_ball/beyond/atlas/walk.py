@@ -30,7 +30,7 @@ import numpy as np
 from bouncing_ball.beyond.atlas.plan import Nodes
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits import restitution_branch as restitution_orbit
-from bouncing_ball.paper.orbits import spring_damper_bifurcations as limits
+from bouncing_ball.paper.orbits import spring_damper_bifurcations as bifurcations
 from bouncing_ball.paper.orbits.spring_damper_branch import BranchPoint, branch_point
 from bouncing_ball.paper.orbits.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.paper.orbits.stability import is_stable
@@ -156,7 +156,7 @@ def walk(nodes: Nodes, ratios: np.ndarray) -> Iterator[Step]:
 def _replaced(orbit: SpringDamperOrbit, sought: np.ndarray, contact: SpringDamper, nodes: Nodes):
     """The orbits, where those that the walk did not reach are computed by the root finder."""
     asked = np.broadcast_to(nodes.amplitude, sought.shape)[sought]
-    found = limits.orbit_at(contact[sought], nodes.n, asked)
+    found = bifurcations.orbit_at(contact[sought], nodes.n, asked)
     names = ("amplitude", "phase", "contact_duration", "impact_velocity")
     columns = [np.array(getattr(orbit, name)) for name in names]
     for column, name in zip(columns, names, strict=True):

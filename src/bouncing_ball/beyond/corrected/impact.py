@@ -19,16 +19,14 @@ All quantities are dimensionless; all functions broadcast.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.beyond.corrected.instant import Instant
+from bouncing_ball.beyond.corrected.signature import Signature
 from bouncing_ball.numerics.elementary import sine_and_cosine
-
-if TYPE_CHECKING:
-    from bouncing_ball.beyond.corrected.signature import Signature
 
 # Iterations of ψ = φ + t_c(v), for laws whose delay depends on the speed. Each iteration
 # multiplies the error by a factor a dt_c/dv, of the order of a D/v.

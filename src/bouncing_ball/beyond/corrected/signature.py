@@ -55,20 +55,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
 from bouncing_ball.beyond.corrected.instant import Instant
-from bouncing_ball.beyond.corrected.motion import CorrectedDynamics
 from bouncing_ball.beyond.laws.collocation import contacts
+from bouncing_ball.beyond.laws.force_law import ForceLaw
 from bouncing_ball.errors import ModelError
 from bouncing_ball.numerics.arrays import Batch
-
-if TYPE_CHECKING:
-    from bouncing_ball.beyond.laws.contact_law import ContactLaw
 
 # Width of a panel in ln v, and its number of nodes: with a pole of r(v) at ln v = x ± iπ, like
 # that of 1/(1 + C v), the interpolation error is of the order of 6⁻²⁴.
@@ -80,7 +76,7 @@ _PARTS = 16
 _SLOWEST, _FASTEST = 1e-30, 1e30
 
 
-def free_impact(law: ContactLaw, speed: ArrayLike) -> Instant:
+def free_impact(law: ForceLaw, speed: ArrayLike) -> Instant:
     """The signature at impact speeds v > 0, by one collocation for each speed.
 
     A signature in closed form is used instead if the law has one. Of the derivatives with respect
@@ -128,13 +124,13 @@ def free_impact(law: ContactLaw, speed: ArrayLike) -> Instant:
     )
 
 
-def _width(law: ContactLaw) -> float:
+def _width(law: ForceLaw) -> float:
     """Width of a panel of the interpolation, in ln v."""
     return _WIDTH / _PARTS if law.has_kink and law.lag is None else _WIDTH
 
 
 @lru_cache(maxsize=4096)
-def _panel(law: ContactLaw, number: int) -> np.ndarray:
+def _panel(law: ForceLaw, number: int) -> np.ndarray:
     """Chebyshev coefficients of t_c, r, σ and D over a panel, shape (nodes, 4)."""
     x = chebyshev.chebpts1(_NODES)
     instant = free_impact(law, np.exp((number + (x + 1) / 2) * _width(law)))
@@ -149,7 +145,7 @@ class Signature(Batch):
 
     Parameters
     ----------
-    law : ContactLaw
+    law : ForceLaw
         A single law, unless its signature has a closed form.
 
     Raises
@@ -173,7 +169,7 @@ class Signature(Batch):
     [0.7, 0.7, 0.7]
     """
 
-    law: ContactLaw
+    law: ForceLaw
 
     def __post_init__(self):
         if not self.is_constant and self.law.shape:
@@ -188,16 +184,6 @@ class Signature(Batch):
     def is_constant(self) -> bool:
         """Whether the signature is the same at every impact speed, as for a linear contact."""
         return self._known is not None
-
-    def dynamics(self, amplitude: ArrayLike) -> CorrectedDynamics:
-        """The impacts and flights of the corrected model on a table of amplitude Λ.
-
-        Raises
-        ------
-        ModelError
-            If Λ is outside its range.
-        """
-        return CorrectedDynamics.of(self, amplitude)
 
     @property
     def label(self) -> str:

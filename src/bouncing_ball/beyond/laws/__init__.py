@@ -3,7 +3,9 @@
 A law is a subclass of :class:`~bouncing_ball.beyond.laws.contact_law.ContactLaw`: the paper's in
 :mod:`.linear`, others in :mod:`.hertzian`, :mod:`.elasto_backlash` and :mod:`.impedance`, and their
 names in :mod:`.registry`. :mod:`.law_of_impact` finds the law with a given restitution coefficient
-and duration. :mod:`.panel` and :mod:`.collocation` compute contacts, :mod:`.motion` simulates balls
-on them, :mod:`.orbits` finds their n-T orbits, and :mod:`.permanent_contact` the largest Λ at which
+and duration. :mod:`.force_law` is what the numerical methods know of a law.
+:mod:`.panel`, :mod:`.sweeps`, :mod:`.march` and :mod:`.linearised` compute contacts and their
+derivatives, :mod:`.collocation` answers questions about them, :mod:`.motion` simulates balls on
+them, :mod:`.orbits` finds their n-T orbits, and :mod:`.permanent_contact` the largest Λ at which
 a ball stays on the table.
 """

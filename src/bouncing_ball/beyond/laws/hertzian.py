@@ -51,7 +51,8 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.beyond.laws.contact_law import ContactLaw, Unit
+from bouncing_ball.beyond.laws.contact_law import ContactLaw
+from bouncing_ball.beyond.laws.force_law import Unit
 from bouncing_ball.errors import require
 from bouncing_ball.paper.contact.damping import Release, check_damping, check_positive
 

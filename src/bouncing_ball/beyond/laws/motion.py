@@ -7,7 +7,7 @@ lag κ, κ follows from the slopes of its grip at the release, and the grip of s
 until they are above the table; a return of the grip between two samples would be missed. A ball
 that meets no force at p = 0, because the load pulls it, is followed in the same way while it sinks.
 
-The motion in contact is computed by :func:`bouncing_ball.beyond.laws.collocation.march`; for an
+The motion in contact is computed by :func:`bouncing_ball.beyond.laws.march.march`; for an
 underdamped spring-damper it has a closed form (:mod:`bouncing_ball.paper.motion.linear_contact`).
 A contact without a release in two periods of the table, or in hundreds of oscillations, is
 permanent if a steady contact at Λ does not release the ball, which is no proof, and undecided
@@ -17,12 +17,13 @@ otherwise. Landings are proved to be the first for every law.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from bouncing_ball.beyond.corrected.signature import Signature
-from bouncing_ball.beyond.laws.collocation import MOST_PANELS, ContactEnds, march
+from bouncing_ball.beyond.laws.force_law import ForceLaw
+from bouncing_ball.beyond.laws.march import MOST_PANELS, ContactEnds, march
 from bouncing_ball.beyond.laws.panel import Start, slopes_of
 from bouncing_ball.beyond.laws.permanent_contact import holds
 from bouncing_ball.beyond.laws.scales import rest
@@ -36,9 +37,6 @@ from bouncing_ball.paper.motion.resumption import (
     of_slow_balls,
 )
 from bouncing_ball.paper.motion.sequence import Status
-
-if TYPE_CHECKING:
-    from bouncing_ball.beyond.laws.contact_law import ContactLaw
 
 # Panels of two periods of the table on a contact with up to some twenty oscillations in one, and
 # the depth of the ball at rest, over g/Ω², from which on a contact has so few.
@@ -150,7 +148,7 @@ class ContactDynamics(ResumingDynamics):
         return self.landed(released, departure, after, passed)
 
 
-def sampled_resumption(flight: Flight, law: ContactLaw) -> tuple[np.ndarray, np.ndarray]:
+def sampled_resumption(flight: Flight, law: ForceLaw) -> tuple[np.ndarray, np.ndarray]:
     """The result of :func:`~bouncing_ball.paper.motion.resumption.resumption` for a law without a
     lag, whose grip is sampled along the flights of slow balls.
     """
@@ -165,7 +163,7 @@ def sampled_resumption(flight: Flight, law: ContactLaw) -> tuple[np.ndarray, np.
     )
 
 
-def _sampled(flight: Flight, law: ContactLaw) -> tuple[np.ndarray, np.ndarray]:
+def _sampled(flight: Flight, law: ForceLaw) -> tuple[np.ndarray, np.ndarray]:
     """The time at which the grip returns or δ reaches 0, and whether the grip returns first."""
 
     def held(time):

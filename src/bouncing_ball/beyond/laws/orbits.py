@@ -15,9 +15,10 @@ from numpy.typing import ArrayLike
 from bouncing_ball.beyond.continued_orbits import ContinuedModel, orbit_at, orbits_at
 from bouncing_ball.beyond.corrected.instant import Instant
 from bouncing_ball.beyond.corrected.signature import free_impact
-from bouncing_ball.beyond.laws.collocation import ContactEnds, contacts, path
+from bouncing_ball.beyond.laws.collocation import contacts, path
 from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.beyond.laws.law_of_impact import law_of_impact
+from bouncing_ball.beyond.laws.march import ContactEnds
 from bouncing_ball.beyond.laws.permanent_contact import permanent_contact
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.paper.orbits.orbit import Orbit

@@ -34,17 +34,15 @@ All quantities are dimensionless.
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.beyond.laws.force_law import ForceLaw
 from bouncing_ball.beyond.laws.scales import depth, rest
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.contact.damping import Release
-
-if TYPE_CHECKING:
-    from bouncing_ball.beyond.laws.contact_law import ContactLaw
 
 _PERIOD = 2 * np.pi
 # The largest size of the grid and the tolerance of the relative residual. The error of Λ is below
@@ -72,7 +70,7 @@ _STEP = 1e-20j
 class _Steady(NamedTuple):
     """The equations of a steady contact of one law, with its depth at rest as the unit of p."""
 
-    law: ContactLaw
+    law: ForceLaw
     unit: float
 
     def grip(self, p: np.ndarray, u: np.ndarray, load: Any) -> np.ndarray:
@@ -107,7 +105,7 @@ class _Steady(NamedTuple):
         return bool(found.success and np.min(held) > -_SLACK)
 
 
-def _touching(law: ContactLaw, at_surface: bool) -> float:
+def _touching(law: ForceLaw, at_surface: bool) -> float:
     """Λ of the steady contact that just reaches its release, or that touches the surface; NaN if
     none was found.
     """
@@ -133,7 +131,7 @@ def _touching(law: ContactLaw, at_surface: bool) -> float:
     return abs(float(found.p[1]))
 
 
-def _holds(law: ContactLaw, amplitude: float) -> bool:
+def _holds(law: ForceLaw, amplitude: float) -> bool:
     """Whether the steady contact at Λ that is next to a slow motion never releases the ball."""
     from scipy.integrate import solve_bvp
 
@@ -153,7 +151,7 @@ def _holds(law: ContactLaw, amplitude: float) -> bool:
     return steady.is_held(found, z)
 
 
-def permanent_contact(law: ContactLaw) -> float:
+def permanent_contact(law: ForceLaw) -> float:
     """The largest Λ of permanent contact of a single law.
 
     Raises
@@ -184,7 +182,7 @@ def permanent_contact(law: ContactLaw) -> float:
 
 
 @lru_cache(maxsize=1024)
-def known_threshold(law: ContactLaw) -> float:
+def known_threshold(law: ForceLaw) -> float:
     """The result of :func:`permanent_contact`, or NaN where no threshold was found.
 
     Examples
@@ -200,7 +198,7 @@ def known_threshold(law: ContactLaw) -> float:
 
 
 @lru_cache(maxsize=4096)
-def holds(law: ContactLaw, amplitude: float) -> bool:
+def holds(law: ForceLaw, amplitude: float) -> bool:
     """Whether a steady contact of a single law at Λ was found that never releases the ball.
 
     Λ is compared with the threshold. If that was not found, the steady contact at Λ itself is

@@ -6,14 +6,12 @@ results depend on them only within the error of the methods.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from bouncing_ball.beyond.laws.force_law import ForceLaw
 from bouncing_ball.errors import ModelError
-
-if TYPE_CHECKING:
-    from bouncing_ball.beyond.laws.contact_law import ContactLaw
 
 # Limit and tolerance of Newton's method for ln p, which takes one step for a power law and a few
 # for a sum of powers.
@@ -31,7 +29,7 @@ class Scales(NamedTuple):
     speed: np.ndarray
 
 
-def depth(law: ContactLaw, rate: np.ndarray, power: float, wanted: np.ndarray) -> np.ndarray:
+def depth(law: ForceLaw, rate: np.ndarray, power: float, wanted: np.ndarray) -> np.ndarray:
     """The penetration p at which f(p, p′) p^power = ``wanted``, of the shape of ``wanted``.
 
     Raises
@@ -60,7 +58,7 @@ def depth(law: ContactLaw, rate: np.ndarray, power: float, wanted: np.ndarray) -
     )
 
 
-def rest(law: ContactLaw) -> float:
+def rest(law: ForceLaw) -> float:
     """The penetration of one law under the weight of a ball at rest, ``f(p, 0) = 1``.
 
     Examples
@@ -88,7 +86,7 @@ def rest(law: ContactLaw) -> float:
     return brentq(surplus, 0.0, 2 * deepest)
 
 
-def scales(law: ContactLaw, speed: np.ndarray, load: np.ndarray) -> Scales:
+def scales(law: ForceLaw, speed: np.ndarray, load: np.ndarray) -> Scales:
     """Scales of contacts with a given impact speed, under a load of at most ``load``.
 
     ``f(P, V) P = V²``. V² is the square of the impact speed, plus the load times the penetration at

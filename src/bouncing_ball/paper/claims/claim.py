@@ -56,7 +56,7 @@ def paragraphs(function: Callable[..., Any]) -> dict[str, Any]:
     >>> paragraphs(stiff)
     {'statement': 'the contact is stiff', 'condition': 'ϖ is above 100'}
     '''
-    first, *others = inspect.getdoc(function).split("\n\n")  # type: ignore[union-attr]
+    first, *others = (inspect.getdoc(function) or "").split("\n\n")
     parts = (" ".join(other.split()).partition(": ") for other in others)
     return {"statement": " ".join(first.split()), **{key.lower(): text for key, _, text in parts}}
 

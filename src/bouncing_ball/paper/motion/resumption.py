@@ -67,6 +67,14 @@ def leaves_fast(flight: Flight, lag: Any, lag_of_load: Any = 0.0) -> np.ndarray:
 
     ``lag`` is κ, and ``lag_of_load`` is κ_a, for a grip that depends on the load a; |a′| is at
     most Λ.
+
+    Examples
+    --------
+    At Λ = 1 and κ = 0.1 a ball that rises fast leaves, and one that rises slowly or falls may not:
+
+    >>> speeds = np.array([2.0, 0.1, -2.0])
+    >>> leaves_fast(Flight(np.full(3, -0.01), speeds, 1.0, 0.0, 1.0), 0.1).tolist()
+    [True, False, False]
     """
     square = flight.level_speed_squared()
     table = flight.amplitude

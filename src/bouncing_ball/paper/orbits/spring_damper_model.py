@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.paper.contact.permanent_contact import permanent_contact_threshold
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.orbits import spring_damper_bifurcations as limits
+from bouncing_ball.paper.orbits import spring_damper_bifurcations as bifurcations
 from bouncing_ball.paper.orbits.model import ImpactModel
 from bouncing_ball.paper.orbits.orbit import Orbit
 from bouncing_ball.paper.orbits.spring_damper_branch import nearest_excess
@@ -57,14 +57,14 @@ class SpringDamperModel(ImpactModel):
 
         Arguments, shape and errors are those of :meth:`.ImpactModel.orbit`.
         """
-        return limits.orbit_at(self.contact, n, amplitude, side)
+        return bifurcations.orbit_at(self.contact, n, amplitude, side)
 
     def orbits(self, n: int, amplitude: float) -> SpringDamperOrbit:
         """All n-T orbits of one contact at one Λ, in order of contact duration, shape (count,).
 
         See :func:`~bouncing_ball.paper.orbits.spring_damper_bifurcations.orbits_at`.
         """
-        return limits.orbits_at(self.contact, n, amplitude)
+        return bifurcations.orbits_at(self.contact, n, amplitude)
 
     def saddle_node(self, n: ArrayLike) -> SpringDamperOrbit:
         """The orbits at the saddle-node; NaN where the branch has no saddle-node.
@@ -78,7 +78,7 @@ class SpringDamperModel(ImpactModel):
         >>> SpringDamperModel(SpringDamper(10.0, 0.0)).saddle_node([1, 2]).amplitude.tolist()
         [0.0, 0.0]
         """
-        excess = limits.saddle_node(self.contact, n)
+        excess = bifurcations.saddle_node(self.contact, n)
         found = SpringDamperOrbit.on_branch(excess, self.contact, n)
         rounding = _UNITS * np.spacing(np.abs(found.impact_velocity))
         lam = np.where(found.amplitude <= rounding, 0.0, found.amplitude)
@@ -89,7 +89,7 @@ class SpringDamperModel(ImpactModel):
 
         Arguments, shape and errors are those of :meth:`.ImpactModel.period_doubling`.
         """
-        excess = limits.period_doubling(self.contact, n)
+        excess = bifurcations.period_doubling(self.contact, n)
         return SpringDamperOrbit.on_branch(excess, self.contact, n)
 
     def nearest(self, orbit: SpringDamperOrbit) -> SpringDamperOrbit:

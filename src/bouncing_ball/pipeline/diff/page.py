@@ -18,6 +18,9 @@ _SENTENCES = (
     "Some artifacts could not be compared.",
 )
 
+# These outcomes are no adjectives: one artifact with changed parameters.
+_NOUNS = (Outcome.STRUCTURE, Outcome.PARAMETERS)
+
 
 def sentence(comparison: Whole) -> str:
     """The number of artifacts with each outcome, worst first, and the result as a sentence.
@@ -26,10 +29,17 @@ def sentence(comparison: Whole) -> str:
     --------
     >>> sentence(Whole("", (Whole("fig01"), Whole("fig02"))))
     '2 identical. The new artifacts agree with the record.'
+    >>> row = Row("parameter n", Outcome.PARAMETERS, "1", "2")
+    >>> sentence(Whole("", (Whole("fig01", (row,)),)))
+    '1 with changed parameters. The new artifacts differ from the record.'
     """
     outcomes = [artifact.outcome for artifact in comparison.parts]
     found = [(outcomes.count(outcome), outcome) for outcome in reversed(Outcome)]
-    counts = ", ".join(f"{count} {outcome}" for count, outcome in found if count)
+    counts = ", ".join(
+        f"{count} {'with ' if outcome in _NOUNS else ''}{outcome}"
+        for count, outcome in found
+        if count
+    )
     return f"{counts}. {_SENTENCES[comparison.outcome.status]}"
 
 

@@ -1,0 +1,226 @@
+"""Labelled results of periodic orbits, computed on the grid of arguments.
+
+All quantities are dimensionless, and times are in units of 1/Ω. The axes of the arguments come
+first in every result.
+"""
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.calls.balls import Ball, ModelBall
+from bouncing_ball.calls.drawn import Drawn
+from bouncing_ball.datasets import CASE
+from bouncing_ball.datasets.labelled import Grid
+from bouncing_ball.datasets.variables import describe
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.numerics.continuation import ContinuationError
+from bouncing_ball.paper.orbits import observables
+from bouncing_ball.paper.orbits.branch import whole_branch
+from bouncing_ball.paper.orbits.model import ImpactModel
+from bouncing_ball.paper.orbits.observables import branch_columns, columns, joined, no_branch
+from bouncing_ball.paper.orbits.orbit import OBSERVABLES
+from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
+from bouncing_ball.paper.orbits.stability import Side
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_LARGEST_STEP = 0.1
+
+
+class Orbits(Drawn):
+    """Orbits over the axes of the arguments: the observables, ``stable`` and ``admissible``.
+
+    The figure shows the phase of impact and the greatest height over the last axis.
+    """
+
+    __slots__ = ()
+
+    maker = "orbit"
+
+    def _figure(self) -> "Figure":
+        from bouncing_ball.calls import figures
+
+        return figures.orbits(self)
+
+
+class Limits(Drawn):
+    """Amplitude and phase of saddle-nodes and period doublings over the axes of the arguments.
+
+    The figure shows both limits over the last axis.
+    """
+
+    __slots__ = ()
+
+    maker = "limits"
+
+    def _figure(self) -> "Figure":
+        from bouncing_ball.calls import figures
+
+        return figures.limits(self)
+
+
+class PermanentContact(Drawn):
+    """The Λ up to which a ball stays on the table, over the axes of the arguments.
+
+    The figure shows this threshold over the last axis.
+    """
+
+    __slots__ = ()
+
+    maker = "permanent-contact"
+
+    def _figure(self) -> "Figure":
+        from bouncing_ball.calls import figures
+
+        return figures.permanent_contact(self)
+
+
+class Branches(Drawn):
+    """Branches of orbits over Λ; the variables are those of
+    :func:`~bouncing_ball.paper.orbits.observables.orbits_in_columns`.
+
+    The figure shows the phases of the branches over Λ.
+    """
+
+    __slots__ = ()
+
+    maker = "branch"
+
+    def _figure(self) -> "Figure":
+        from bouncing_ball.paper.exhibits.continuation_of_orbits_figures import over_amplitude
+
+        return over_amplitude(self)
+
+
+def orbits_on_grid(ball: Ball, n: Any, amplitude: Any, side: Side) -> Orbits:
+    """The orbit on one side of the saddle-node at each point of a grid; NaN where there is none."""
+
+    def found(one: Ball, n: Any, amplitude: Any) -> dict[str, np.ndarray]:
+        model = one.at_orbit(n, amplitude, side).model
+        return _observables(model, n, amplitude, side)
+
+    grid = Grid(n=n, amplitude=amplitude, **ball.parameters)
+    missing = _observables(RestitutionModel(1.0), 1, np.nan, Side.STABLE)
+    rows = _each_place(grid, ball, ("n", "amplitude"), found, missing)
+    return grid.unfold(describe(rows, observables.VARIABLES), Orbits)
+
+
+def _observables(model: ImpactModel, n: Any, amplitude: Any, side: Side) -> dict[str, np.ndarray]:
+    names = (name for name in OBSERVABLES if name != "amplitude")
+    return columns(model.orbit(n, amplitude, side), *names)
+
+
+def limits_on_grid(ball: Ball, n: Any) -> Limits:
+    """Amplitude and phase of the saddle-node and the period doubling at each point of a grid.
+
+    The values are NaN where a family has no such bifurcation.
+    """
+
+    def found(one: Ball, n: Any) -> dict[str, np.ndarray]:
+        model = one.at_limits(n).model
+        saddle_node = model.saddle_node(n)
+        period_doubling = model.period_doubling(n)
+        return {
+            "saddle_node_amplitude": saddle_node.amplitude,
+            "saddle_node_phase": saddle_node.phase,
+            "period_doubling_amplitude": period_doubling.amplitude,
+            "period_doubling_phase": period_doubling.phase,
+        }
+
+    grid = Grid(n=n, **ball.parameters)
+    rows = _each_place(grid, ball, ("n",), found, {})
+    return grid.unfold(describe(rows, observables.VARIABLES), Limits)
+
+
+def permanent_contact_on_grid(ball: ModelBall) -> PermanentContact:
+    """The Λ up to which a ball stays on the table, at each point of the grid of its parameters."""
+    grid = Grid(**ball.parameters)
+    threshold = ball.row(grid).model.permanent_contact_threshold()
+    rows = xr.Dataset({"threshold_amplitude": (CASE, threshold)})
+    return grid.unfold(describe(rows), PermanentContact)
+
+
+def _each_place(
+    grid: Grid,
+    ball: Ball,
+    names: Sequence[str],
+    found: Callable[..., dict[str, Any]],
+    missing: dict[str, Any],
+) -> xr.Dataset:
+    """The results at each place of a grid: those of the ball there and the named arguments.
+
+    They are one computation if the models are known. A law that is given by the r and D of a free
+    impact follows from a search at each place; where this finds no orbit, the result is
+    ``missing``.
+    """
+    if not ball.is_known:
+        return _by_place(
+            grid,
+            ball,
+            names,
+            found=lambda *given: xr.Dataset(found(*given)),
+            missing=lambda _: xr.Dataset(missing),
+        )
+    values = found(ball.row(grid), *(grid.flat[name] for name in names))
+    return xr.Dataset({name: (CASE, np.broadcast_to(x, grid.size)) for name, x in values.items()})
+
+
+def _by_place(
+    grid: Grid,
+    ball: Ball,
+    names: Sequence[str],
+    found: Callable[..., xr.Dataset],
+    missing: Callable[[NoOrbitError], xr.Dataset],
+    joined: Callable[..., xr.Dataset] = xr.concat,
+) -> xr.Dataset:
+    """The results at each place of a grid, computed one after another."""
+    balls = ball.row(grid)
+    rows = []
+    for number, place in enumerate(grid.cells()):
+        try:
+            rows.append(found(balls.take(number), *(place[name] for name in names)))
+        except NoOrbitError as error:
+            if not grid.shape:
+                raise
+            rows.append(missing(error))
+    return joined(rows, CASE)
+
+
+def branches_on_grid(ball: Ball, n: Any, amplitude_max: float | None, points: int) -> Branches:
+    """The branch at each point of a grid; NaN, with the reason, where there is no branch.
+
+    The axes of the grid come first.
+
+    Raises
+    ------
+    NoOrbitError
+        If the grid is a single point, and there is no branch.
+    """
+
+    def found(one: Ball, n: int) -> xr.Dataset:
+        return branch_of(one.at_limits(n).model, n, amplitude_max, points)
+
+    grid = Grid(n=n, **ball.parameters)
+    whole = _by_place(grid, ball, ("n",), found, partial(no_branch, points), joined)
+    branches = grid.unfold(describe(whole, observables.VARIABLES), Branches)
+    return branches if amplitude_max is None else branches.assign_attrs(amplitude_max=amplitude_max)
+
+
+def branch_of(model: Any, n: int, amplitude_max: float | None, points: int) -> xr.Dataset:
+    """The branch of n-T orbits of a single model up to some Λ, shape (point,).
+
+    Raises
+    ------
+    NoOrbitError
+        If the branch begins above this Λ, or if it cannot be followed.
+    """
+    try:
+        found = whole_branch(model, n, amplitude_max, _LARGEST_STEP)
+        return branch_columns(model.system(n), found, points)
+    except ContinuationError as error:
+        raise NoOrbitError(f"the branch of {n}-T orbits for {model.label}: {error}") from None

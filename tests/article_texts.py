@@ -6,11 +6,13 @@ import pytest
 
 from bouncing_ball.beyond.atlas.figures import shares
 from bouncing_ball.beyond.exhibits import (
+    certified_verdicts_figures,
     contact_laws_figures,
     corrected_model_figures,
     engine_steps_figures,
     proofs_figures,
 )
+from bouncing_ball.beyond.exhibits.certified_verdicts import certified_verdicts
 from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.drawing.tables import to_csv, to_markdown
 from bouncing_ball.paper.claims import tables as rows
@@ -27,12 +29,13 @@ TABLES = {
     "ext_laws": contact_laws_figures.ext_laws,
     "ext_engines": engine_steps_figures.ext_engines,
     "ext_proofs": proofs_figures.ext_proofs,
+    "ext_verdicts": certified_verdicts_figures.ext_verdicts,
     "formulas": rows.formulas,
     "forensics": rows.forensics,
     "witness": rows.witness,
     "claims": rows.claims,
 }
-DERIVED = ("claims",)
+DERIVED = ("claims", "ext_verdicts")
 
 
 @pytest.fixture(scope="session")
@@ -44,6 +47,7 @@ def record(recorded):
 def all_texts(data):
     """All tables in all formats, the article and its supplement."""
     data = {**data, "claims": claims(data)}
+    data["ext_verdicts"] = certified_verdicts(data)
     made = {}
     for name, draw in TABLES.items():
         table = draw(data[name])

@@ -33,8 +33,8 @@ def test_a_commit_runs_nothing_again_and_a_change_what_it_decides(complete):
         *("fig08", "Drawing fig08"),
         *("fig09", "Drawing fig09"),
         *("fig15", "Drawing fig15"),
-        # The proofs are about the printed entries of the table.
-        *("ext_proofs", "Setting ext_proofs"),
+        # The certified verdicts are about the printed entries of the table.
+        *("ext_verdicts", "Setting ext_verdicts"),
         *("formulas", "Setting formulas"),
         # Every orbit shown is followed by the comparison of the three routes.
         *("witness", "Setting witness"),

@@ -200,9 +200,23 @@ use rule study as proofs with:
         artifact=stage(
             "beyond.exhibits.proofs",
             ext_proofs=dict(
-                title="Table 1 and the thresholds, certified by ball arithmetic",
+                title="Printed numbers and the thresholds of Table 2, certified by ball arithmetic",
                 study="proofs",
                 table="ext_proofs",
+            ),
+        ),
+
+
+use rule study as certified_verdicts with:
+    """The verdicts on printed numbers, decided by certified intervals."""
+    wildcard_constraints:
+        artifact=stage(
+            "beyond.exhibits.certified_verdicts",
+            ext_verdicts=dict(
+                title="Verdicts on the printed numbers by certified intervals",
+                study="certified_verdicts",
+                table="ext_verdicts",
+                reads=("ext_proofs", "claims"),
             ),
         ),
 

@@ -35,7 +35,7 @@ _SIDE = (
 _DIGITS = count(100, low=10)
 _CERTIFY = (
     "Prove both limits by ball arithmetic, and print this number of decimal digits of Λ with a "
-    "bound of the error. The numbers given are taken as exact decimal numbers."
+    "bound of the error. Numbers of up to 15 digits are taken as exact decimal numbers."
 )
 _INDEX = 'Number, from 1, of one orbit in the list of side "all".'
 
@@ -172,11 +172,13 @@ def _certified(
         raise ParameterError("{certify} needs {frequency_ratio}: it is for spring-damper contacts")
     with extra("proofs"):
         from bouncing_ball.beyond.proofs import certificates
+        from bouncing_ball.beyond.proofs.balls import exactly
+        from bouncing_ball.beyond.proofs.problem import Problem
 
-    problem = certificates.Problem(
-        certificates.exactly(frequency_ratio),
-        restitution=None if restitution is None else certificates.exactly(restitution),
-        damping_ratio=None if damping_ratio is None else certificates.exactly(damping_ratio),
+    problem = Problem(
+        exactly(frequency_ratio),
+        restitution=None if restitution is None else exactly(restitution),
+        damping_ratio=None if damping_ratio is None else exactly(damping_ratio),
         n=n,
         release=Release(release or "displacement"),
     )

@@ -1,29 +1,38 @@
-"""The certified numbers of the paper: they agree with double precision and with the verdicts."""
+"""The certified numbers of the paper, and the verdicts on printed numbers that they decide."""
 
 import numpy as np
 import pytest
 import xarray as xr
 
+from bouncing_ball.beyond.exhibits.certified_verdicts import (
+    PARAMETERS,
+    certified_interval,
+    certified_verdicts,
+)
+from bouncing_ball.beyond.exhibits.certified_verdicts_figures import ext_verdicts
 from bouncing_ball.beyond.exhibits.proofs import Proofs, proofs
-from bouncing_ball.paper.exhibits.printed_table1 import printed_text
+from bouncing_ball.datasets.files import parameter_attributes
+from bouncing_ball.errors import ModelError
+from bouncing_ball.paper.claims.claims import CLAIMS
 
-GIVEN = {
-    "n": (1, 2, 3),
-    "restitution": 0.85,
-    "frequency_ratio": (1e4, 10.0, 2.0),
-    "thresholds": {"n": 1, "restitution": 0.65, "amplitude": 1.0, "tolerance": 0.01},
-    "digits": 30,
-}
+GIVEN = {**PARAMETERS["ext_proofs"], "digits": 30}
+PRINTED = [claim for claim in CLAIMS if claim.printed]
+
+
+def certified(given) -> xr.Dataset:
+    """The dataset with its parameters as attributes, as a run makes it."""
+    return proofs(Proofs(**given)).assign_attrs(parameter_attributes(given))
 
 
 @pytest.fixture(scope="module")
 def data() -> xr.Dataset:
-    return proofs(Proofs(**GIVEN))
+    return certified(GIVEN)
 
 
 def test_every_number_is_certified_to_its_digits(data, described):
     described(data)
     assert (data.certified_what != "").all() and (data.certified != "").all()
+    assert (data.certified_bits > 300).all()
     radius = data.certified_radius.astype(float) / data.certified_approximation
     assert radius.max() < 1e-28
 
@@ -50,33 +59,73 @@ def test_the_thresholds_are_those_of_double_precision(data, recorded):
         assert abs(float(found.sel(quantity=quantity)) / exact - 1) < 1e-9
 
 
-def test_the_verdicts_on_printed_numbers_are_certain(data, recorded):
-    """No verdict of the ledger would change if double precision were exact."""
-    claims = recorded["claims"]
-    certain = dict(zip(data.certificate.values, data.certified_print.values, strict=True))
-    verdicts = {"reproduced": {"reproduced"}, "contradicted": {"close", "contradicted"}}
-    checked = 0
-    for ratio in GIVEN["frequency_ratio"]:
-        for n in GIVEN["n"]:
-            for bound in ("saddle-node", "period doubling"):
-                printed = printed_text(ratio, n, bound)
-                exact = float(
-                    data.certified.sel(certificate=f"Λ of the {bound}, ϖ = {ratio:g}, n = {n}")
-                )
-                verdict = certain[f"Λ of the {bound}, ϖ = {ratio:g}, n = {n}"]
-                same = (claims.printed_text == printed) & (abs(claims.found - exact) < 1e-9)
-                assert same.sum() >= 1
-                assert {*claims.verdict.values[same.values]} <= verdicts[verdict]
-                checked += 1
-    assert checked == 18
-    for name, printed in (("ϖ for 1% of max height", "82"), ("ϖ of permanent contact", "6")):
-        exact = float(data.certified.sel(certificate=name))
-        same = (claims.printed_text == printed) & (abs(claims.found - exact) < 1e-6)
-        assert {*claims.verdict.values[same.values]} <= verdicts[certain[name]]
-        assert same.sum() >= 1
+def test_both_columns_of_the_error_thresholds_are_certified(data, recorded):
+    found = recorded["ext_orders"]
+    for quantity in found["quantity"].values:
+        words = str(quantity).replace("_", " ")
+        place = found.sel(quantity=quantity)
+        names = {
+            f"ϖ for 1% of {words}": place.error_threshold.sel(model="restitution"),
+            f"ϖ for 1% of {words}, corrected model": place.error_threshold.sel(model="corrected"),
+            f"ϖ where the error of {words} is 0": place.error_zero,
+        }
+        for name, double in names.items():
+            if np.isfinite(double):
+                exact = float(data.certified.sel(certificate=name))
+                assert abs(float(double) / exact - 1) < 1e-9
+        assert (f"ϖ where the error of {words} is 0" in data.certificate) == np.isfinite(
+            place.error_zero
+        )
 
 
-def test_other_parameters_have_nothing_printed():
-    other = proofs(Proofs(**(GIVEN | {"restitution": 0.7, "n": (1,), "frequency_ratio": (10.0,)})))
-    assert (other.certified_printed_text[:2] == "").all()
+def test_every_printed_number_has_one_certificate_around_the_number_of_its_claim(data, recorded):
+    found = recorded["claims"].found
+    for claim in PRINTED:
+        value, low, high = certified_interval({"ext_proofs": data}, claim.id)
+        assert low < value < high and high - low < 5e-16 * abs(value)
+        # The least accurate number of double precision is a threshold, to 1e-9.
+        assert abs(float(found.sel(claim=claim.id)) / value - 1) < 1e-9
+
+
+def test_the_certified_verdicts_are_those_of_the_ledger(data, recorded):
+    found = certified_verdicts({"ext_proofs": data, "claims": recorded["claims"]})
+    assert [*found.claim.values] == [claim.id for claim in PRINTED]
+    assert (found.verdict == recorded["claims"].verdict.sel(claim=found.claim)).all()
+    assert {*found.verdict.values} == {"reproduced", "close", "contradicted"}
+    header, body = ext_verdicts(found)
+    assert len(body) == len(PRINTED) and len(header) == 6
+
+
+def test_a_verdict_that_differs_from_the_ledger_stops_the_run(data, recorded):
+    verdict = recorded["claims"].verdict.copy()
+    verdict.loc["height threshold"] = "close"
+    ledger = recorded["claims"].assign(verdict=verdict)
+    said = "'height threshold': reproduced by its certified interval, but close in the ledger"
+    with pytest.raises(ModelError, match=said):
+        certified_verdicts({"ext_proofs": data, "claims": ledger})
+
+
+def test_a_wide_interval_decides_nothing_and_stops_the_run(data, recorded):
+    radius = data.certified_radius.astype(object)
+    radius[(data.certified_claim == "height threshold").values] = "1.0"
+    wide = data.assign(certified_radius=radius)
+    with pytest.raises(ModelError, match="not decided by its certified interval"):
+        certified_verdicts({"ext_proofs": wide, "claims": recorded["claims"]})
+
+
+def test_a_printed_number_without_a_certificate_stops_the_run(data, recorded):
+    some = data.isel(certificate=data.certified_claim.values != "height threshold")
+    with pytest.raises(ModelError, match="0 certificates instead of one"):
+        certified_verdicts({"ext_proofs": some, "claims": recorded["claims"]})
+    text = data.certified.astype(object)
+    text[(data.certified_claim == "height threshold").values] = ""
+    refused = data.assign(certified=text)
+    with pytest.raises(ModelError, match="not certified"):
+        certified_verdicts({"ext_proofs": refused, "claims": recorded["claims"]})
+
+
+def test_with_other_parameters_no_verdict_is_certified(recorded):
+    other = certified(GIVEN | {"restitution": 0.7, "n": [1], "frequency_ratio": [10.0]})
     assert np.isfinite(other.certified_approximation).all()
+    found = certified_verdicts({"ext_proofs": other, "claims": recorded["claims"]})
+    assert (found.verdict == "not asked").all()

@@ -9,23 +9,24 @@ from flint import arb
 from mpmath import mp, mpf
 from sixty_digits import Exact
 
-from bouncing_ball.beyond.proofs import certificates
-from bouncing_ball.beyond.proofs.branch import Contact, point
+from bouncing_ball.beyond.proofs import certificates, newton
+from bouncing_ball.beyond.proofs.balls import ProofError, decimal, precision, rational
+from bouncing_ball.beyond.proofs.branch import Contact, Point, point
 from bouncing_ball.beyond.proofs.certificates import (
-    Problem,
-    ProofError,
     Proved,
-    certified_zero,
     doubling_test,
     fold_test,
     orbit_at,
     period_doubling,
-    precision,
     saddle_node,
 )
-from bouncing_ball.beyond.proofs.return_map import return_map
+from bouncing_ball.beyond.proofs.newton import certified_zero
+from bouncing_ball.beyond.proofs.problem import Problem
+from bouncing_ball.beyond.proofs.return_map import ReturnMap, flip_coefficient, return_map
 from bouncing_ball.beyond.proofs.series import Series
 from bouncing_ball.paper.contact.damping import Release
+from bouncing_ball.paper.orbits import spring_damper_bifurcations as double
+from bouncing_ball.paper.orbits.stability import Side
 
 TABLE_1 = [(ratio, n) for ratio in (10_000, 10, 2) for n in (1, 2, 3)]
 
@@ -105,9 +106,9 @@ def test_random_certificates_are_right_or_refused_with_the_reason():
 
 
 @pytest.mark.long
-def test_a_thousand_random_certificates_are_right_or_refused_with_the_reason():
-    certified, refused = outcomes(39, 500)
-    assert certified + len(refused) == 1000 and certified > 700
+def test_both_limits_of_a_thousand_random_balls_are_right_or_refused_with_the_reason():
+    certified, refused = outcomes(39, 1000)
+    assert certified + len(refused) == 2000 and certified > 1400
 
 
 def test_an_orbit_at_a_given_amplitude_has_this_amplitude():
@@ -152,57 +153,248 @@ def test_a_function_without_a_zero_is_not_certified():
         certify(lambda *given: fold_test(*given) * fold_test(*given) + 1)
 
 
-def test_a_box_that_is_too_wide_is_not_certified(monkeypatch):
-    monkeypatch.setattr(certificates, "_WIDER", (2**300,))
+def test_a_ball_that_is_too_wide_is_not_certified(monkeypatch):
+    monkeypatch.setattr(newton, "_WIDER", (2**300,))
     with pytest.raises(ProofError, match="mapped into its interior"):
         certify(fold_test)
 
 
-@pytest.mark.parametrize("shift", [-3.0, 0.5, 2.0])
-def test_a_shifted_start_is_refused_or_leads_to_the_same_saddle_node(monkeypatch, shift):
-    same = saddle_node(GIVEN)
+@pytest.mark.parametrize("shift", [-3.0, 0.01, 0.5, 2.0])
+@pytest.mark.parametrize("proof", [saddle_node, period_doubling])
+def test_a_shifted_start_is_refused(monkeypatch, proof, shift):
     start = certificates._start
     monkeypatch.setattr(certificates, "_start", lambda *given: start(*given) + shift)
-    try:
-        found = saddle_node(GIVEN)
-    except ProofError:
-        return
-    assert found.excess.overlaps(same.excess)
-
-
-@pytest.mark.parametrize(
-    ("name", "proof"), [("fold_test", saddle_node), ("doubling_test", period_doubling)]
-)
-def test_a_wrong_sign_in_the_test_function_contradicts_the_return_map(monkeypatch, name, proof):
-    right = getattr(certificates, name)
-
-    def wrong(*given):
-        # The zeros of this function are no bifurcations.
-        return right(*given) - arb("0.001")
-
-    monkeypatch.setattr(certificates, name, wrong)
-    with pytest.raises(ProofError, match=r"contradicts|proved|excluded"):
+    with pytest.raises(ProofError, match=r"another solution|did not converge|singular"):
         proof(GIVEN)
 
 
-def test_a_wrong_sign_of_the_damping_is_noticed():
-    # With a negative damping the determinant exceeds 1.
+TESTS = [("fold_test", saddle_node), ("doubling_test", period_doubling)]
+
+
+@pytest.mark.parametrize(("name", "proof"), TESTS)
+def test_the_return_map_contradicts_a_wrong_test_function(monkeypatch, name, proof):
+    right = getattr(certificates, name)
+    # The zeros of this function lie near the bifurcations, and are none.
+    monkeypatch.setattr(certificates, name, lambda *given: right(*given) - arb("0.001"))
+    monkeypatch.setattr(newton, "_NEAR", 1.0)
+    with pytest.raises(ProofError, match="contradicts the multiplier"):
+        proof(GIVEN)
+
+
+@pytest.mark.parametrize("release", Release)
+def test_the_return_map_contradicts_a_wrong_sign_in_the_period_doubling(monkeypatch, release):
+    def wrong(contact, n, excess):
+        # 1 + tr + det with the wrong sign of its second term.
+        found = point(contact, n, excess)
+        determinant = (-2 * contact.decay * found.duration).exp().truncated(1)
+        return 4 * (determinant + 1) - doubling_test(contact, n, excess)
+
+    monkeypatch.setattr(certificates, "doubling_test", wrong)
+    monkeypatch.setattr(newton, "_NEAR", 100.0)
+    problem = Problem(Fraction(10), restitution=Fraction(85, 100), release=release)
+    with pytest.raises(ProofError, match="is not certified"):
+        period_doubling(problem)
+
+
+def test_the_return_map_contradicts_a_wrong_sign_of_the_damping_force(monkeypatch):
+    right = Contact.acceleration
+
+    def wrong(self, gap, rate, push):
+        return right(self, gap, rate, push) + 4 * self.decay * rate
+
+    monkeypatch.setattr(Contact, "acceleration", wrong)
+    monkeypatch.setattr(newton, "_NEAR", 100.0)
+    problem = Problem(Fraction(10), restitution=Fraction(85, 100), release=Release.FORCE)
+    with pytest.raises(ProofError, match="contradicts"):
+        period_doubling(problem)
+
+
+def test_a_flight_that_begins_or_ends_in_the_wrong_direction_is_noticed():
+    """Above a table that falls at ten times gravity, the gap is -t²/2 + rate t + 10(1 - cos t)."""
+    numbers = dict.fromkeys(Point._fields, arb(0)) | {"y": arb(10), "flight": arb("4.5")}
+    leaving = Point(**numbers | {"rate": arb("0.001")})
+    with precision(80):
+        contact = GIVEN.contact()
+        assert certificates.flight_is_free(contact, leaving)
+        # The ball would first sink below the table, or end its flight upwards.
+        assert not certificates.flight_is_free(contact, leaving._replace(rate=arb("-0.001")))
+        assert not certificates.flight_is_free(contact, leaving._replace(flight=arb(2)))
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        ({"matrix": arb("0 +/- 1")}, "linear system"),
+        ({"duration": arb(0)}, "contact's duration"),
+        ({"flight": arb(0)}, "flight time"),
+        ({"u": arb("-0.1 +/- 0.2")}, "approach the table"),
+        ({"rate": arb("nan")}, "leave the table"),
+    ],
+)
+def test_an_orbit_that_may_be_singular_or_graze_is_refused(change, reason):
+    orbit = saddle_node(GIVEN).orbit
+    certificates._require_regular(orbit)
+    with pytest.raises(ProofError, match=reason):
+        certificates._require_regular(orbit._replace(**change))
+
+
+@pytest.mark.parametrize("entry", [arb("nan"), arb(2)])
+def test_a_return_map_without_the_determinant_of_the_branch_is_refused(monkeypatch, entry):
+    found = saddle_node(GIVEN)
+    with precision(found.bits):
+        contact = GIVEN.contact()
+        right = return_map(contact, found.orbit, 1)
+        velocity = Series([arb(0), entry, entry], 1)
+        with pytest.raises(ProofError, match="determinant"):
+            certificates._require_multiplier(
+                contact, found.orbit, right._replace(velocity=velocity), 1
+            )
+
+
+def test_an_inadmissible_bifurcation_is_refused(monkeypatch):
+    for name in ("contact_holds", "flight_is_free"):
+        monkeypatch.setattr(certificates, name, lambda *given: False)
+        for proof in (saddle_node, period_doubling):
+            with pytest.raises(ProofError, match="may be inadmissible"):
+                proof(GIVEN)
+        monkeypatch.undo()
+
+
+@pytest.mark.parametrize("name", ["fold_test", "doubling_test"])
+def test_a_period_doubling_whose_multiplier_may_touch_is_refused(monkeypatch, name):
+    found = period_doubling(GIVEN)
+    right = getattr(certificates, name)
+    monkeypatch.setattr(certificates, name, lambda *given: right(*given) * arb("0 +/- 1"))
+    with precision(found.bits), pytest.raises(ProofError, match="without crossing"):
+        certificates.period_doubling_properties(GIVEN.contact(), 1, found.excess)
+
+
+def test_at_a_saddle_node_an_orbit_is_called_neither_stable_nor_unstable():
+    found = saddle_node(GIVEN)
+    with precision(found.bits):
+        proved = certificates.orbit_properties(GIVEN.contact(), 1, found.excess)
+    assert proved == [Proved.ADMISSIBLE]
+
+
+@pytest.mark.parametrize("x", [arb("0 +/- 1e-9"), arb("nan"), arb("inf")])
+def test_an_amplitude_that_may_be_zero_or_infinite_is_refused(x):
+    orbit = saddle_node(GIVEN).orbit
+    with pytest.raises(ProofError, match="0 or infinite"):
+        certificates._amplitude(orbit._replace(x=x, y=arb(0)))
+
+
+@pytest.mark.parametrize("slope", ["1 +/- 0.99999999", "0 +/- 1"])
+def test_a_ball_on_which_the_slope_varies_too_much_is_not_certified(slope):
     with precision(200):
-        zeta = -GIVEN.damping()
-        wrong = Contact(arb(10), zeta, arb(0))
+        # Just below the size at which Newton's method ends, 2^-150.
+        error = (arb(2) ** -150).union(-(arb(2) ** -150)) * arb("0.8")
+
+        def uncertain(x):
+            """x with an error, whose derivative is 1 at a point and uncertain in a ball."""
+            at_a_point = x.value.is_exact()
+            return Series([x.value + error, arb(1) if at_a_point else arb(slope), arb(0)], 1)
+
+        with pytest.raises(ProofError, match="mapped into its interior"):
+            certified_zero(uncertain, 1e-9)
+
+
+def test_a_criticality_of_unknown_sign_is_refused(monkeypatch):
+    monkeypatch.setattr(certificates, "flip_coefficient", lambda *given: arb("0 +/- 1"))
+    with pytest.raises(ProofError, match="cubic coefficient is not certain"):
+        period_doubling(GIVEN)
+
+
+@pytest.mark.parametrize(("a", "b"), [(0.5, 0.25), (0.5, -0.5), (0.0, 1.0)])
+def test_the_flip_coefficient_is_that_of_a_normal_form(a, b):
+    """x → -x + a x² + b x³ has c = a² + b, in other coordinates, too."""
+    with precision(100):
+        x, y = (Series.variable(arb(0), k, 3) for k in (0, 1))
+        # x = ξ + η/2 is the variable of the map, and the other direction contracts by a half.
+        along = x + y / 2
+        mapped = arb(a) * along * along + arb(b) * along * along * along - along
+        other = y / 2
+        found = ReturnMap(mapped - other / 2, other)
+        # The determinant is -1/2, and flip_coefficient takes it as the product of multipliers.
+        coefficient = flip_coefficient(found, arb(-1) / 2)
+        (p, q), (r, s) = found.monodromy
+        assert p == -1 and r == 0 and (p * s - q * r) == arb(-1) / 2
+        # The eigenvector's length, here that of (b, -1 - a) or (-1 - d, c), scales c by its square.
+        vector = q if not q.contains(0) else -1 - s
+        assert (coefficient / vector**2 - (a * a + b)).contains(0)
+
+
+def test_with_a_negative_damping_the_other_multiplier_is_not_inside_the_unit_circle():
+    with precision(200):
+        wrong = Contact(arb(10), -GIVEN.damping(), arb(0))
         orbit = point(wrong, 1, arb(0))
+        with pytest.raises(ProofError, match="other multiplier"):
+            certificates._other_multiplier(wrong, orbit)
+
+
+def test_a_fold_whose_second_derivative_may_vanish_is_refused():
+    found = saddle_node(GIVEN)
+    with precision(found.bits):
+        wide = found.excess.union(found.excess + arb("0.5"))
+        assert Proved.FOLD in certificates.saddle_node_properties(GIVEN.contact(), 1, found.excess)
         with pytest.raises(ProofError):
-            certificates._regular(wrong, orbit)
+            certificates.saddle_node_properties(GIVEN.contact(), 1, wide)
 
 
-def test_a_release_that_is_too_early_is_noticed():
+@pytest.mark.parametrize(("name", "proof"), TESTS)
+def test_a_degenerate_bifurcation_is_refused(monkeypatch, name, proof):
+    """The slopes that a genuine bifurcation needs are set to 0 in the last step of the proof."""
+    right = getattr(certificates, name)
+    found = proof(GIVEN)
+    reasons = {"fold_test": "second derivative", "doubling_test": "without crossing"}
+
+    def flat(*given):
+        series = right(*given)
+        return Series([series.value, *[arb(0)] * (len(series.terms) - 1)], series.order)
+
+    monkeypatch.setattr(certificates, name, flat)
+    properties = getattr(certificates, f"{proof.__name__}_properties")
+    with precision(found.bits), pytest.raises(ProofError, match=reasons[name]):
+        properties(GIVEN.contact(), 1, found.excess)
+
+
+@pytest.mark.parametrize("release", Release)
+def test_a_contact_that_has_been_released_earlier_is_noticed(release):
+    problem = Problem(Fraction(10), restitution=Fraction(85, 100), release=release)
+    found = saddle_node(problem)
+    with precision(80):
+        contact = problem.contact()
+        orbit = found.orbit
+        assert certificates.contact_holds(contact, orbit)
+        assert not certificates.contact_holds(contact, orbit._replace(duration=orbit.duration * 3))
+        # The equations of the orbit hold for the third zero of δ + κδ′, too.
+        third = point(contact, 1, 2 * arb.pi())
+        assert not certificates.contact_holds(contact, third)
+        with pytest.raises(ProofError):
+            certificates.orbit_properties(contact, 1, 2 * arb.pi())
+
+
+def test_a_contact_is_not_accepted_to_a_release_that_is_too_early():
+    """Before its release δ is negative, and does not rise towards 0 at every time."""
+    found = saddle_node(GIVEN)
+    with precision(80):
+        orbit = found.orbit
+        early = orbit._replace(duration=orbit.duration / 4)
+        assert not certificates.contact_holds(GIVEN.contact(), early)
+        # A ball that starts upwards is released at once.
+        upwards = orbit._replace(u=arb("1e-3"))
+        assert not certificates.contact_holds(GIVEN.contact(), upwards)
+
+
+def test_a_flight_in_which_the_ball_lands_earlier_is_noticed():
     found = saddle_node(GIVEN)
     with precision(80):
         contact = GIVEN.contact()
         orbit = found.orbit
-        early = orbit._replace(duration=orbit.duration * 3)
-        assert certificates.contact_holds(contact, orbit)
-        assert not certificates.contact_holds(contact, early)
+        assert certificates.flight_is_free(contact, orbit)
+        later = orbit._replace(flight=orbit.flight + 2 * arb.pi())
+        assert not certificates.flight_is_free(contact, later)
+        sinking = orbit._replace(rate=-orbit.rate)
+        assert not certificates.flight_is_free(contact, sinking)
 
 
 @pytest.mark.parametrize(
@@ -210,15 +402,57 @@ def test_a_release_that_is_too_early_is_noticed():
     [
         ({"restitution": Fraction(1)}, "without dissipation"),
         ({"damping_ratio": Fraction(0)}, "without dissipation"),
+        ({"damping_ratio": Fraction(0), "frequency_ratio": Fraction(1)}, "without dissipation"),
+        ({"restitution": Fraction(0)}, "between 0 and 1$"),
+        ({"damping_ratio": Fraction(1)}, "between 0 and 1$"),
+        ({"damping_ratio": Fraction(3, 2)}, "between 0 and 1$"),
         ({"restitution": Fraction(1, 2), "damping_ratio": Fraction(1, 10)}, "either"),
+        ({}, "either"),
         ({"restitution": Fraction(1, 2), "n": 0}, "at least 1"),
+        ({"restitution": Fraction(1, 2), "frequency_ratio": Fraction(0)}, "above 0"),
     ],
 )
 def test_what_cannot_be_proved_is_refused_with_the_reason(given, reason):
     with pytest.raises(ProofError, match=reason):
-        Problem(Fraction(10), **given)
+        Problem(**({"frequency_ratio": Fraction(10)} | given))
 
 
 def test_below_the_saddle_node_no_orbit_is_certified():
     with pytest.raises(ProofError, match="no 1-T orbit"):
         orbit_at(GIVEN, Fraction(1, 10))
+
+
+def test_beyond_the_last_admissible_orbit_nothing_is_certified():
+    def admissible(amplitude):
+        found = double.orbit_at(GIVEN.approximate(), 1, amplitude, Side.UNSTABLE)
+        return bool(found.is_admissible())
+
+    # The flight grazes the table at a Λ between these two.
+    low, high = 2.0, 3.0
+    while high - low > 1e-9:
+        middle = (low + high) / 2
+        low, high = (middle, high) if admissible(middle) else (low, middle)
+    assert admissible(2.0) and not admissible(3.0)
+    # Both sides of the last orbit are decided; nearer to it the search for an impact is too long.
+    assert Proved.ADMISSIBLE in orbit_at(GIVEN, Fraction(low - 1e-5), "unstable").proved
+    with pytest.raises(ProofError, match="may be inadmissible"):
+        orbit_at(GIVEN, Fraction(high + 1e-5), "unstable")
+
+
+@pytest.mark.parametrize("side", ["stable", "unstable"])
+def test_the_stability_of_an_orbit_is_certified(side):
+    proved = orbit_at(GIVEN, Fraction(1, 2), side).proved
+    assert (Proved.STABLE in proved) is (side == "stable")
+    assert (Proved.UNSTABLE in proved) is (side == "unstable")
+    beyond = orbit_at(GIVEN, Fraction(11, 10)).proved
+    assert Proved.UNSTABLE in beyond
+
+
+def test_the_radius_covers_the_rounding_of_the_decimal_number():
+    with precision(200):
+        for number in (arb(2) / 3, arb("0.1"), arb(10) ** 20 / 7, arb(1) / 4):
+            for digits in (1, 3, 10, 30):
+                text, radius = decimal(number, digits)
+                # Both texts are exact fractions; the number is a ball.
+                off = abs(rational(Fraction(text)) - number)
+                assert off <= rational(Fraction(radius)) + arb(2) ** -120

@@ -1,25 +1,28 @@
-"""Certified numbers of the paper: Table 1, thresholds of Figs. 14 and 16, and what is proved."""
+"""Certified numbers: Table 1, other printed numbers, thresholds, and what is proved."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from fractions import Fraction
+from itertools import product
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 from flint import arb
 
-from bouncing_ball.beyond.corrected.errors import search
+from bouncing_ball.beyond.corrected.errors import SIMPLE, errors, search
+from bouncing_ball.beyond.proofs.balls import ProofError, decimal, exactly, precision
 from bouncing_ball.beyond.proofs.certificates import (
-    Problem,
-    ProofError,
-    decimal,
-    exactly,
+    Proved,
+    orbit_at,
     period_doubling,
-    precision,
     saddle_node,
 )
+from bouncing_ball.beyond.proofs.problem import Problem, damping_of, working_bits
 from bouncing_ball.beyond.proofs.thresholds import (
-    CONDITIONS,
+    MEASURED,
+    CertifiedNumber,
+    Comparison,
+    apparent_restitution,
     error_threshold,
     permanent_contact_minimum,
     permanent_contact_threshold,
@@ -36,7 +39,7 @@ from bouncing_ball.datasets.parameters import (
 )
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.paper.contact.damping import Release, damping_ratio
-from bouncing_ball.paper.exhibits.printed_table1 import AXES, RESTITUTION, printed_text
+from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.stability import Bifurcation
 
 VARIABLES = {
@@ -44,10 +47,9 @@ VARIABLES = {
     "certified": Variable("decimal number in the certified interval"),
     "certified_radius": Variable("bound of the distance of the exact number from the decimal one"),
     "certified_bits": Variable("bits of the balls in the proof"),
-    "certified_what": Variable("what the proof shows"),
+    "certified_what": Variable("what the proof shows, or why there is none"),
     "certified_approximation": Variable("the certified number in double precision"),
-    "certified_print": Variable("what the certified interval says of the printed number"),
-    "certified_printed_text": Variable("the number that the paper prints, as a text"),
+    "certified_claim": Variable("claim of the paper whose number it is"),
 }
 
 # The grid of ϖ in which the thresholds are first sought in double precision.
@@ -63,13 +65,23 @@ class Thresholds(Parameters):
     tolerance: Tolerance
 
 
+class Apparent(Parameters):
+    """The orbit whose apparent restitution is certified."""
+
+    n: Family
+    restitution: LossyRestitution
+    amplitude: Amplitude
+    frequency_ratio: FrequencyRatio
+
+
 class Proofs(Parameters):
-    """The ends of stability ranges, and the orbit of the thresholds."""
+    """The ends of stability ranges, the orbit of the thresholds, and a compliant orbit."""
 
     n: Many[Family]
     restitution: LossyRestitution
     frequency_ratio: Many[FrequencyRatio]
     thresholds: Thresholds
+    apparent: Apparent
     digits: Annotated[int, number("certified decimal digits of each number", ge=10, le=100)]
 
 
@@ -80,145 +92,149 @@ class Row(NamedTuple):
     ball: arb | None
     bits: int
     what: str
-    printed: str = ""
+    claim: str
+
+
+def _row(name: str, prove: Callable[[], CertifiedNumber], claim: str = "") -> Row:
+    try:
+        found = prove()
+    except ProofError as error:
+        return Row(name, None, 0, str(error), claim)
+    return Row(name, found.ball, found.bits, "; ".join(found.proved), claim)
 
 
 def ends_of_table_1(parameters: Proofs) -> Iterator[Row]:
     """The saddle-nodes and period doublings of all contacts and families."""
     certify = {Bifurcation.SADDLE_NODE: saddle_node, Bifurcation.PERIOD_DOUBLING: period_doubling}
-    for ratio in parameters.frequency_ratio:
-        for n in parameters.n:
-            problem = Problem(exactly(ratio), restitution=exactly(parameters.restitution), n=n)
-            for kind, proof in certify.items():
-                name = f"Λ of the {kind}, ϖ = {ratio:g}, n = {n}"
-                printed = _printed(parameters.restitution, ratio, n, kind)
-                try:
-                    found = proof(problem, parameters.digits)
-                except ProofError as error:
-                    yield Row(name, None, 0, str(error), printed)
-                    continue
-                yield Row(name, found.amplitude, found.bits, "; ".join(found.proved), printed)
+    r = exactly(parameters.restitution)
+    for ratio, n, kind in product(parameters.frequency_ratio, parameters.n, certify):
+        problem = Problem(exactly(ratio), restitution=r, n=n)
+
+        def prove(problem: Problem = problem, kind: Bifurcation = kind) -> CertifiedNumber:
+            found = certify[kind](problem, parameters.digits)
+            return CertifiedNumber(found.amplitude, found.bits, found.proved)
+
+        name = f"Λ of the {kind}, ϖ = {ratio:g}, n = {n}"
+        yield _row(name, prove, f"Table 1: {ratio:g}, {n}, {kind}")
 
 
-def _printed(restitution: float, ratio: float, n: int, kind: Bifurcation) -> str:
-    there = ratio in AXES["frequency_ratio"] and n in AXES["n"] and restitution == RESTITUTION
-    return printed_text(ratio, n, kind) if there else ""
+def dampings(parameters: Proofs) -> Iterator[Row]:
+    """ζ of both restitution coefficients (Eq. 16)."""
+    bits = working_bits(Fraction(1), parameters.digits)
+    for r in (parameters.restitution, parameters.thresholds.restitution):
+
+        def prove(r: float = r) -> CertifiedNumber:
+            with precision(bits):
+                return CertifiedNumber(damping_of(exactly(r)), bits, (Proved.FORMULA,))
+
+        yield _row(f"ζ of r = {r:g}", prove, f"damping of {r:g}")
+
+
+def apparent(parameters: Apparent, digits: int) -> Row:
+    """The apparent restitution of an orbit at a given Λ."""
+    ratio = exactly(parameters.frequency_ratio)
+    r = exactly(parameters.restitution)
+    lam = parameters.amplitude
+    problem = Problem(ratio, restitution=r, n=parameters.n)
+
+    def prove() -> CertifiedNumber:
+        found = orbit_at(problem, exactly(lam), digits=digits)
+        with precision(found.bits):
+            ball = apparent_restitution(problem, found.excess)
+        return CertifiedNumber(ball, found.bits, found.proved)
+
+    name = (
+        f"apparent restitution of r = {parameters.restitution:g}, ϖ = {float(ratio):g}, Λ = {lam:g}"
+    )
+    return _row(name, prove, f"compliant end of {lam:g}")
+
+
+def comparisons(parameters: Thresholds) -> Iterator[tuple[str, Comparison, float, Fraction]]:
+    """The thresholds and zeros of the errors of both simple models (Eq. 37), as Table 2 has them.
+
+    Each has a name, the comparison, ϖ in double precision and the signed value of the error.
+    """
+    zeta = damping_ratio(parameters.restitution)
+    n = parameters.n
+    lam = parameters.amplitude
+    names = list(MEASURED)
+    found = search(
+        zeta,
+        Release.DISPLACEMENT,
+        n=n,
+        amplitude=lam,
+        ratios=_GRID,
+        tolerance=parameters.tolerance,
+        quantities=names,
+    )
+    for (model, simple), (k, quantity) in product(enumerate(SIMPLE), enumerate(names)):
+        comparison = Comparison(
+            quantity,
+            exactly(parameters.restitution),
+            n,
+            exactly(lam),
+            corrected=simple == "corrected",
+        )
+        words = quantity.replace("_", " ")
+        ending = ", corrected model" if comparison.corrected else ""
+        start = float(found.threshold[model, k, 0])
+        there = errors(SpringDamper(start, zeta, Release.DISPLACEMENT), n, lam, [quantity])
+        sign = int(np.sign(np.nan_to_num(there[model, 0])))
+        tolerated = sign * exactly(parameters.tolerance)
+        yield f"ϖ for {parameters.tolerance:.0%} of {words}{ending}", comparison, start, tolerated
+        zero = float(found.zero[k, 0])
+        if not comparison.corrected and np.isfinite(zero):
+            yield f"ϖ where the error of {words} is 0", comparison, zero, Fraction(0)
 
 
 def thresholds(parameters: Thresholds, digits: int) -> Iterator[Row]:
-    """The ϖ at which the errors of the restitution model fall to the tolerance (Eqs. 37, 38)."""
+    """The ϖ at which errors of the simple models have certain values, and permanent contact."""
+    for name, comparison, start, error in comparisons(parameters):
+
+        def prove(
+            comparison: Comparison = comparison, start: float = start, error: Fraction = error
+        ) -> CertifiedNumber:
+            if not np.isfinite(start):
+                raise ProofError("no threshold was found to start from")
+            return error_threshold(comparison, error, start, digits)
+
+        of_height = comparison.quantity == "max_height" and not comparison.corrected
+        yield _row(name, prove, "height threshold" if of_height else "")
     r = exactly(parameters.restitution)
-    lam = exactly(parameters.amplitude)
     tolerance = exactly(parameters.tolerance)
-    n = parameters.n
-    names = list(CONDITIONS)
-    found = search(
-        damping_ratio(parameters.restitution),
-        Release.DISPLACEMENT,
-        n=n,
-        amplitude=float(lam),
-        ratios=_GRID,
-        tolerance=float(tolerance),
-        quantities=names,
+    yield _row(
+        "ϖ of permanent contact",
+        lambda: permanent_contact_threshold(r, tolerance, digits),
+        "permanent contact threshold",
     )
-    starts = found.threshold[0, :, 0]
-    for quantity, start in zip(names, starts, strict=True):
-        name = f"ϖ for {float(tolerance):.0%} of {quantity.replace('_', ' ')}"
-        printed = "82" if quantity == "max_height" else ""
-        yield _threshold(
-            name,
-            quantity,
-            restitution=r,
-            n=n,
-            amplitude=lam,
-            tolerance=tolerance,
-            start=float(start),
-            digits=digits,
-            printed=printed,
-        )
-    try:
-        found = permanent_contact_threshold(r, tolerance, digits)
-    except ProofError as error:
-        yield Row("ϖ of permanent contact", None, 0, str(error), "6")
-    else:
-        what = "root of Eq. 34"
-        yield Row("ϖ of permanent contact", found.frequency_ratio, found.bits, what, "6")
-    problem = Problem(Fraction(10), restitution=r)
-    least = permanent_contact_minimum(problem, digits)
-    yield Row("least Λ of permanent contact", least, 0, "Eq. 36")
-
-
-def _threshold(
-    name: str,
-    quantity: str,
-    restitution: Fraction,
-    n: int,
-    amplitude: Fraction,
-    tolerance: Fraction,
-    start: float,
-    digits: int,
-    printed: str,
-) -> Row:
-    """The threshold of one quantity, for the sign of the error with which a solution is proved."""
-    reason = "no threshold was found to start from"
-    for sign in (-1, 1) if np.isfinite(start) else ():
-        try:
-            found = error_threshold(
-                quantity,
-                restitution,
-                n=n,
-                amplitude=amplitude,
-                error=sign * tolerance,
-                start=start,
-                digits=digits,
-            )
-        except ProofError as error:
-            reason = str(error)
-            continue
-        what = "exactly one solution"
-        return Row(name, found.frequency_ratio, found.bits, what, printed)
-    return Row(name, None, 0, reason, printed)
-
-
-def judged(ball: arb, printed: str) -> str:
-    """Whether an interval agrees with a printed number, whose last digit is rounded.
-
-    Examples
-    --------
-    >>> judged(arb("82.17"), "82"), judged(arb("9.81"), "6"), judged(arb("0.2385"), "0.238")
-    ('reproduced', 'contradicted', 'not decided')
-    """
-    unit = arb(10) ** -len(printed.partition(".")[2])
-    low = arb(printed) - unit / 2
-    high = arb(printed) + unit / 2
-    if ball > low and ball < high:
-        return "reproduced"
-    if ball < low or ball > high:
-        return "contradicted"
-    return "not decided"
+    yield _row("least Λ of permanent contact", lambda: permanent_contact_minimum(r, digits))
 
 
 def proofs(parameters: Proofs) -> xr.Dataset:
     """Certified numbers as decimal texts with their radii, over ``certificate``.
 
-    ``certified_what`` says what was proved, or why nothing was; ``certified_print`` is "reproduced"
-    if all numbers of the interval round to the printed one, "contradicted" if none does.
+    ``certified_what`` says what was proved, or why nothing was; ``certified_claim`` is the id of
+    the claim of the paper whose number it is if the parameters are the paper's.
     """
-    rows = [*ends_of_table_1(parameters), *thresholds(parameters.thresholds, parameters.digits)]
+    digits = parameters.digits
+    rows = [
+        *ends_of_table_1(parameters),
+        *dampings(parameters),
+        apparent(parameters.apparent, digits),
+        *thresholds(parameters.thresholds, digits),
+    ]
     columns: dict[str, Any] = {name: [] for name in VARIABLES if name != "certificate"}
     for row in rows:
-        text = radius = verdict = ""
-        with precision(max(row.bits, 256)):
-            if row.ball is not None:
-                text, radius = decimal(row.ball, parameters.digits)
-                verdict = judged(row.ball, row.printed) if row.printed else ""
+        text = radius = ""
+        if row.ball is not None:
+            with precision(row.bits):
+                text, radius = decimal(row.ball, digits)
         columns["certified"].append(text)
         columns["certified_radius"].append(radius)
         columns["certified_bits"].append(row.bits)
         columns["certified_what"].append(row.what)
         columns["certified_approximation"].append(float(text) if text else np.nan)
-        columns["certified_print"].append(verdict)
-        columns["certified_printed_text"].append(row.printed)
+        columns["certified_claim"].append(row.claim)
     return described(
         {name: ("certificate", np.array(values)) for name, values in columns.items()},
         coords={"certificate": [row.name for row in rows]},

@@ -1,9 +1,8 @@
 """Certificates: a bifurcation, or an orbit at a given Λ, in a ball that contains exactly one.
 
-A search in double precision gives a start, Newton's method with long numbers a midpoint, and an
-interval Newton step the proof: if the step ``m - F(m)/F′(I)`` of a ball I with midpoint m lies
-in the interior of I, the ball contains exactly one zero of F. The derivative F′(I) encloses the
-derivatives at all points of the ball.
+A search in double precision gives a start, and an interval Newton step the proof of existence and
+uniqueness (:mod:`bouncing_ball.beyond.proofs.newton`). The functions ``*_properties`` then prove
+for the ball what else belongs to a bifurcation or to an orbit.
 """
 
 import math
@@ -11,33 +10,23 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
+from typing import Any
 
-from flint import arb, ctx, fmpq
+from flint import arb
 
 from bouncing_ball.beyond.proofs.admissibility import contact_holds, flight_is_free
+from bouncing_ball.beyond.proofs.balls import ProofError, decimal, precision, rational
 from bouncing_ball.beyond.proofs.branch import Contact, Point, point
+from bouncing_ball.beyond.proofs.newton import certified_zero
+from bouncing_ball.beyond.proofs.problem import Problem, working_bits
 from bouncing_ball.beyond.proofs.return_map import ReturnMap, flip_coefficient, return_map
 from bouncing_ball.beyond.proofs.series import Series
-from bouncing_ball.errors import ModelError
-from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits import spring_damper_bifurcations as double
 from bouncing_ball.paper.orbits.stability import Side
 
-# Bits beyond the requested digits and those that stiff contacts cost by cancellation,
-# about log2(ϖ²). With so many the ball is far narrower than the last decimal digit, so that the
-# decimal number and its error are the same whatever the double precision of the start.
-_GUARD = 160
-# Largest number of Newton steps with long numbers: each doubles the digits of the start.
-_STEPS = 12
-# The ball of the proof is the last Newton step times these factors, tried in turn.
-_WIDER = (2**8, 2**16, 2**24)
 # Precision of the proofs that a function keeps its sign, which need no digits.
 _COARSE = 80
-
-
-class ProofError(ModelError):
-    """A number or an orbit cannot be certified; the message gives the reason."""
 
 
 class Proved(StrEnum):
@@ -49,7 +38,14 @@ class Proved(StrEnum):
     INSIDE = "other multiplier inside the unit circle"
     SUPERCRITICAL = "supercritical"
     SUBCRITICAL = "subcritical"
+    STABLE = "both multipliers inside the unit circle"
+    UNSTABLE = "a multiplier outside the unit circle"
     ADMISSIBLE = "admissible"
+    FALLS = "the error falls through the tolerance"
+    SIGN = "the error changes its sign"
+    ONLY = "the error stays below at every larger ϖ"
+    FORMULA = "value of a closed formula"
+    LEAST = "the least value of all ϖ"
 
 
 @dataclass(frozen=True)
@@ -71,116 +67,7 @@ class Certificate:
             return decimal(self.amplitude, digits)
 
 
-def decimal(ball: arb, digits: int) -> tuple[str, str]:
-    """A decimal number near the middle of a ball, and a bound of its distance to the ball's points.
-
-    Examples
-    --------
-    >>> with precision(100):
-    ...     text, radius = decimal(arb(2).sqrt(), 20)
-    >>> text, float(radius) < 1e-19
-    ('1.4142135623730950488', True)
-    """
-    text = arb(ball.mid()).str(digits, radius=False)
-    # Twice the bound covers the rounding of its text to three digits.
-    error = 2 * (arb(text) - ball).abs_upper()
-    return text, arb(error).str(3, radius=False)
-
-
-class precision:
-    """The number of bits of all balls within a ``with`` block."""
-
-    def __init__(self, bits: int) -> None:
-        self.bits = bits
-
-    def __enter__(self) -> None:
-        self.before = ctx.prec
-        ctx.prec = self.bits
-
-    def __exit__(self, *_: object) -> None:
-        ctx.prec = self.before
-
-
-@dataclass(frozen=True)
-class Problem:
-    """A contact with rational parameters and a family of orbits.
-
-    Parameters
-    ----------
-    frequency_ratio : Fraction
-        ϖ > 0.
-    restitution, damping_ratio : Fraction, optional
-        One of r in (0, 1) (Eq. 16) and ζ in [0, 1).
-    n : int
-        Index of the family.
-    release : Release
-
-    Raises
-    ------
-    ProofError
-        If a parameter is outside its range, or if not one of r and ζ is given.
-    """
-
-    frequency_ratio: Fraction
-    restitution: Fraction | None = None
-    damping_ratio: Fraction | None = None
-    n: int = 1
-    release: Release = Release.DISPLACEMENT
-
-    def __post_init__(self) -> None:
-        if (self.restitution is None) == (self.damping_ratio is None):
-            raise ProofError("give either the restitution r or the damping ratio ζ")
-        if self.frequency_ratio <= 0:
-            raise ProofError(f"frequency ratio ϖ = {self.frequency_ratio} must be above 0")
-        if self.n < 1:
-            raise ProofError(f"index of the family n = {self.n} must be at least 1")
-        if self.restitution is not None and not 0 < self.restitution < 1:
-            raise ProofError(
-                f"restitution r = {self.restitution} must lie between 0 and 1: without dissipation "
-                "both multipliers of a saddle-node are 1, and nothing is proved"
-            )
-        if self.damping_ratio is not None and not 0 < self.damping_ratio < 1:
-            raise ProofError(
-                f"damping ratio ζ = {self.damping_ratio} must lie between 0 and 1: without "
-                "dissipation both multipliers of a saddle-node are 1, and nothing is proved"
-            )
-
-    def damping(self) -> arb:
-        """ζ as a ball (Eq. 16)."""
-        if self.damping_ratio is not None:
-            return rational(self.damping_ratio)
-        decrement = -rational(self.restitution).log()
-        return decrement / (arb.pi() ** 2 + decrement**2).sqrt()
-
-    def contact(self) -> Contact:
-        """The contact with balls as parameters, at the present precision."""
-        zeta = self.damping()
-        sine = zeta if self.release is Release.FORCE else arb(0)
-        return Contact(rational(self.frequency_ratio), zeta, sine)
-
-    def approximate(self) -> SpringDamper:
-        """The contact in double precision."""
-        return SpringDamper(float(self.frequency_ratio), float(self.damping().mid()), self.release)
-
-
-def exactly(number: float) -> Fraction:
-    """The fraction that the shortest decimal text of a number means.
-
-    Examples
-    --------
-    >>> exactly(0.85)
-    Fraction(17, 20)
-    """
-    return Fraction(repr(float(number)))
-
-
-def rational(value: Fraction | None) -> arb:
-    assert value is not None
-    return arb(fmpq(value.numerator, value.denominator))
-
-
-Test = Callable[[Contact, int, Series], Series]
-"""A function of the branch that vanishes at the solution, as a series in ε of order 1."""
+# The equations that vanish at a bifurcation, as series in ε of order 1.
 
 
 def fold_test(contact: Contact, n: int, excess: Series) -> Series:
@@ -202,6 +89,9 @@ def doubling_test(contact: Contact, n: int, excess: Series) -> Series:
     return 2 * (determinant.truncated(along.order) + 1) + factor.truncated(along.order) * along
 
 
+# The certificates.
+
+
 def saddle_node(problem: Problem, digits: int = 30) -> Certificate:
     """The certified saddle-node of the family.
 
@@ -211,15 +101,7 @@ def saddle_node(problem: Problem, digits: int = 30) -> Certificate:
         If no saddle-node is found, or if a part of the proof fails; the message names it.
     """
     start = _start(problem, double.saddle_node, "saddle-node")
-    bits = working_bits(problem, digits)
-    with precision(bits):
-        contact = problem.contact()
-        excess = certified_zero(lambda e: fold_test(contact, problem.n, e), start)
-        # The derivative of ½ dΛ²/dε is not 0 on the ball, because its reciprocal was used.
-        orbit = point(contact, problem.n, excess)
-        proved = [Proved.UNIQUE, Proved.FOLD, *_regular(contact, orbit)]
-        _require_multiplier(contact, orbit, return_map(contact, orbit, 1), 1)
-        return _certificate(contact, excess, orbit, proved, bits)
+    return _certified(problem, digits, fold_test, start, saddle_node_properties, "saddle-node")
 
 
 def period_doubling(problem: Problem, digits: int = 30) -> Certificate:
@@ -230,51 +112,9 @@ def period_doubling(problem: Problem, digits: int = 30) -> Certificate:
     ProofError
         If no period doubling is found, or if a part of the proof fails; the message names it.
     """
-    start = _start(problem, double.period_doubling, "period doubling")
-    bits = working_bits(problem, digits)
-    with precision(bits):
-        contact = problem.contact()
-        excess = certified_zero(lambda e: doubling_test(contact, problem.n, e), start)
-        orbit = point(contact, problem.n, excess)
-        proved = [Proved.UNIQUE, *_regular(contact, orbit)]
-        along = fold_test(contact, problem.n, Series.variable(excess, 0, 2)).value
-        if along.contains(0):
-            raise ProofError("Λ may turn at the period doubling: its crossing is not proved")
-        proved.append(Proved.CROSSING)
-        proved.append(criticality(contact, orbit))
-        return _certificate(contact, excess, orbit, proved, bits)
-
-
-def criticality(contact: Contact, orbit: Point) -> Proved:
-    """Whether a period doubling is super- or subcritical.
-
-    Raises
-    ------
-    ProofError
-        If the sign of the coefficient is not certain.
-    """
-    found = return_map(contact, orbit)
-    determinant = _require_multiplier(contact, orbit, found, -1)
-    coefficient = flip_coefficient(found, determinant)
-    if coefficient > 0:
-        return Proved.SUPERCRITICAL
-    if coefficient < 0:
-        return Proved.SUBCRITICAL
-    raise ProofError("the sign of the period doubling's cubic coefficient is not certain")
-
-
-def _require_multiplier(contact: Contact, orbit: Point, found: ReturnMap, multiplier: int) -> arb:
-    """The determinant, after a check that the return map has it and the multiplier 1 or -1.
-
-    The return map is a second derivation: it shares only the flow with the equations of the branch.
-    """
-    determinant = (-2 * contact.decay * orbit.duration).exp()
-    (a, b), (c, d) = found.monodromy
-    if not (a * d - b * c).overlaps(determinant):
-        raise ProofError("the return map contradicts the determinant exp(-2ζϖD)")
-    if not (1 - multiplier * (a + d) + determinant).contains(0):
-        raise ProofError(f"the return map contradicts the multiplier {multiplier}")
-    return determinant
+    what = "period doubling"
+    start = _start(problem, double.period_doubling, what)
+    return _certified(problem, digits, doubling_test, start, period_doubling_properties, what)
 
 
 def orbit_at(
@@ -287,71 +127,43 @@ def orbit_at(
     ProofError
         If no orbit is found there, or if a part of the proof fails; the message names it.
     """
-    approximate = problem.approximate()
-    found = double.orbit_at(approximate, problem.n, float(amplitude), Side(side))
-    start = float(found.contact_duration) * float(approximate.damped_frequency)
-    start -= float(approximate.free_angle)
-    if not math.isfinite(start):
-        raise ProofError(f"no {problem.n}-T orbit was found at Λ = {amplitude} to start from")
-    bits = working_bits(problem, digits)
+    start = orbit_start(problem.approximate(), problem.n, float(amplitude), side)
+
+    def test(contact: Contact, n: int, excess: Series) -> Series:
+        return (point(contact, n, excess).square - rational(amplitude) ** 2).truncated(1)
+
+    what = f"orbit at Λ = {amplitude}"
+    return _certified(problem, digits, test, start, orbit_properties, what)
+
+
+Test = Callable[[Contact, int, Series], Series]
+"""A function of the branch that vanishes at the solution, as a series in ε of order 1."""
+
+Properties = Callable[[Contact, int, arb], list[Proved]]
+"""What is proved for all orbits whose ε lies in a ball; a :class:`ProofError` if that fails."""
+
+
+def _certified(
+    problem: Problem, digits: int, test: Test, start: float, properties: Properties, what: str
+) -> Certificate:
+    bits = working_bits(problem.frequency_ratio, digits)
     with precision(bits):
         contact = problem.contact()
-        square = rational(amplitude) ** 2
-
-        def test(excess: Series) -> Series:
-            return (point(contact, problem.n, excess).square - square).truncated(1)
-
-        excess = certified_zero(test, start)
-        orbit = point(contact, problem.n, excess)
-        proved = [Proved.UNIQUE, *_regular(contact, orbit, multiplier=False)]
-        return _certificate(contact, excess, orbit, proved, bits)
-
-
-def certified_zero(test: Callable[[Series], Series], start: float) -> arb:
-    """A ball that is proved to contain exactly one zero of a function, near a start.
-
-    Raises
-    ------
-    ProofError
-        If Newton's method does not converge, or if no ball is mapped into its own interior.
-    """
-    middle = arb(start)
-    step = arb(1)
-    for _ in range(_STEPS):
-        found = test(Series.variable(middle, 0, 2))
-        step = found.value / found.coefficient(1, 0)
-        if not step.is_finite():
-            raise ProofError("Newton's method met a singular point of the branch")
-        middle = arb((middle - step).mid())
-        if step.abs_upper() < _resolution(middle):
-            break
-    else:
-        raise ProofError("Newton's method did not converge from the start of double precision")
-    value = test(Series.variable(middle, 0, 2)).value
-    least = arb(step.abs_upper()) + arb(value.abs_upper()) + _resolution(middle)
-    for factor in _WIDER:
-        radius = least * factor
-        ball = (middle - radius).union(middle + radius)
-        slope = test(Series.variable(ball, 0, 2)).coefficient(1, 0)
-        if not slope.is_finite() or slope.contains(0):
-            continue
-        image = middle - value / slope
-        if ball.contains_interior(image):
-            return image
-    raise ProofError(
-        "no ball around the solution is mapped into its interior: it may be a tangency"
-    )
+        try:
+            excess = certified_zero(lambda e: test(contact, problem.n, e), start)
+            proved = properties(contact, problem.n, excess)
+            orbit = point(contact, problem.n, excess)
+            amplitude = _amplitude(orbit)
+        except ProofError as error:
+            raise ProofError(f"the {what} is not certified: {error}") from error
+        return Certificate(excess, orbit, amplitude, (Proved.UNIQUE, *proved), bits)
 
 
-def _resolution(middle: arb) -> arb:
-    """The size of a Newton step after which rounding dominates."""
-    return (abs(middle) + 1) * arb(2) ** (-ctx.prec * 3 // 4)
-
-
-def working_bits(problem: Problem, digits: int) -> int:
-    stiff = max(1.0, float(problem.frequency_ratio))
-    wanted = digits * math.log2(10) + 2 * math.log2(stiff)
-    return math.ceil((wanted + _GUARD) * 4 / 3)
+def _amplitude(orbit: Point) -> arb:
+    found = orbit.square.sqrt()
+    if not found.is_finite() or found.contains(0):
+        raise ProofError("Λ may be 0 or infinite")
+    return found
 
 
 def _start(problem: Problem, search: Callable, what: str) -> float:
@@ -361,34 +173,127 @@ def _start(problem: Problem, search: Callable, what: str) -> float:
     return found
 
 
-def _regular(contact: Contact, orbit: Point, *, multiplier: bool = True) -> list[Proved]:
-    """Check that an orbit is no pole and does not graze, and that the determinant is below 1."""
+def orbit_start(contact: SpringDamper, n: int, amplitude: float, side: str = "stable") -> float:
+    """The excess angle ε of the orbit at Λ in double precision.
+
+    Raises
+    ------
+    ProofError
+        If there is no such orbit.
+    """
+    found = double.orbit_at(contact, n, amplitude, Side(side))
+    excess = found.contact_duration * contact.damped_frequency - contact.free_angle
+    if not math.isfinite(float(excess)):
+        raise ProofError(f"no {n}-T orbit was found at Λ = {amplitude:g} to start from")
+    return float(excess)
+
+
+# What is proved for a ball that contains exactly one solution.
+
+
+def saddle_node_properties(contact: Contact, n: int, excess: arb) -> list[Proved]:
+    """The properties of a saddle-node: a quadratic fold of Λ, and one multiplier 1."""
+    orbit = point(contact, n, excess)
+    _require_regular(orbit)
+    if fold_test(contact, n, Series.variable(excess, 0, 2)).coefficient(1, 0).contains(0):
+        raise ProofError("the second derivative of Λ² along the branch may vanish")
+    _require_multiplier(contact, orbit, return_map(contact, orbit, 1), 1)
+    _require_admissible(contact, orbit)
+    return [Proved.FOLD, _other_multiplier(contact, orbit), Proved.ADMISSIBLE]
+
+
+def period_doubling_properties(contact: Contact, n: int, excess: arb) -> list[Proved]:
+    """The properties of a period doubling: a multiplier crosses -1, and the criticality."""
+    orbit = point(contact, n, excess)
+    _require_regular(orbit)
+    series = Series.variable(excess, 0, 2)
+    # The slopes of 1 + tr + det and of Λ² along the branch; their ratio is the speed of crossing.
+    speed = doubling_test(contact, n, series).coefficient(1, 0)
+    if speed.contains(0) or fold_test(contact, n, series).value.contains(0):
+        raise ProofError("the multiplier may touch -1 without crossing it")
+    inside = _other_multiplier(contact, orbit)
+    kind = criticality(contact, orbit)
+    _require_admissible(contact, orbit)
+    return [inside, Proved.CROSSING, kind, Proved.ADMISSIBLE]
+
+
+def orbit_properties(contact: Contact, n: int, excess: arb) -> list[Proved]:
+    """The properties of an orbit: admissible, and stable or unstable if that is certain."""
+    orbit = point(contact, n, excess)
+    _require_regular(orbit)
+    _require_admissible(contact, orbit)
+    determinant = _determinant(contact, orbit)
+    plus = doubling_test(contact, n, Series.variable(excess, 0, 1)).value
+    minus = 2 * (1 + determinant) - plus
+    if plus < 0 or minus < 0:
+        return [Proved.UNSTABLE, Proved.ADMISSIBLE]
+    if plus > 0 and minus > 0 and determinant < 1:
+        return [Proved.STABLE, Proved.ADMISSIBLE]
+    return [Proved.ADMISSIBLE]
+
+
+def criticality(contact: Contact, orbit: Point) -> Proved:
+    """Whether a period doubling is super- or subcritical.
+
+    Raises
+    ------
+    ProofError
+        If the sign of the coefficient is not certain.
+    """
+    found = return_map(contact, orbit)
+    _require_multiplier(contact, orbit, found, -1)
+    coefficient = flip_coefficient(found, _determinant(contact, orbit))
+    if coefficient > 0:
+        return Proved.SUPERCRITICAL
+    if coefficient < 0:
+        return Proved.SUBCRITICAL
+    raise ProofError("the sign of the period doubling's cubic coefficient is not certain")
+
+
+def _determinant(contact: Contact, orbit: Point) -> Any:
+    """The product of both multipliers, exp(-2ζϖD)."""
+    return (-2 * contact.decay * orbit.duration).exp()
+
+
+def _other_multiplier(contact: Contact, orbit: Point) -> Proved:
+    """Check that the product of both multipliers, of which one is 1 or -1, is below 1."""
+    if not _determinant(contact, orbit) < 1:
+        raise ProofError("the other multiplier may lie on the unit circle")
+    return Proved.INSIDE
+
+
+def _require_multiplier(contact: Contact, orbit: Point, found: ReturnMap, multiplier: int) -> None:
+    """Check that the return map has the determinant and the multiplier of the branch's formulas.
+
+    The return map is a second derivation: it shares only the flow with the equations of the branch.
+    """
+    determinant = _determinant(contact, orbit)
+    (a, b), (c, d) = found.monodromy
+    # A ball that is not a number overlaps every other one.
+    if not (a * d - b * c).is_finite() or not (a * d - b * c).overlaps(determinant):
+        raise ProofError("the return map contradicts the determinant exp(-2ζϖD)")
+    if not (1 - multiplier * (a + d) + determinant).contains(0):
+        raise ProofError(f"the return map contradicts the multiplier {multiplier}")
+
+
+def _require_regular(orbit: Point) -> None:
+    """Check that an orbit is no pole, does not graze, and has a contact and a flight."""
     checks = {
         "the linear system of the branch may be singular": not orbit.matrix.contains(0),
-        "the ball may not approach the table at the impact": bool(orbit.u < 0),
+        "the contact's duration may vanish": bool(orbit.duration > 0),
         "the flight time may vanish": bool(orbit.flight > 0),
+        "the ball may not approach the table at the impact": bool(orbit.u < 0),
         "the ball may not leave the table at the release": bool(orbit.rate > 0),
     }
     for reason, holds in checks.items():
         if not holds:
             raise ProofError(f"{reason}: the orbit is not proved to be regular")
-    if not multiplier:
-        return []
-    if not (contact.decay * orbit.duration > 0):
-        raise ProofError("the other multiplier may lie on the unit circle")
-    return [Proved.INSIDE]
 
 
-def _certificate(
-    contact: Contact, excess: arb, orbit: Point, proved: list[Proved], bits: int
-) -> Certificate:
+def _require_admissible(contact: Contact, orbit: Point) -> None:
     with precision(_COARSE):
         admissible = contact_holds(contact, orbit) and flight_is_free(contact, orbit)
     if not admissible:
         raise ProofError(
             "an earlier release or impact is not excluded: the orbit may be inadmissible"
         )
-    amplitude = orbit.square.sqrt()
-    if not amplitude.is_finite() or amplitude.contains(0):
-        raise ProofError("Λ may be 0 or infinite")
-    return Certificate(excess, orbit, amplitude, (*proved, Proved.ADMISSIBLE), bits)

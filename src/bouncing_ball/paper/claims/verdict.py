@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
+from fractions import Fraction
 
 import numpy as np
 import xarray as xr
@@ -37,7 +38,7 @@ class Verdict(StrEnum):
     CONFIRMED = "confirmed"
     """A statement of ours that holds in the whole interval of the number found."""
     NOT_DECIDED = "not decided"
-    """A statement of ours that holds in a part of the interval."""
+    """A statement of ours, or a verdict on a number, that holds in a part of the interval."""
 
 
 @dataclass(frozen=True)
@@ -174,30 +175,68 @@ def above(values, bound) -> Finding:
     return _condition(value, ">", limit, value > limit)
 
 
-def against_print(value: float, printed: str) -> Finding:
+def against_print(estimate: ArrayLike | xr.DataArray, printed: str) -> Finding:
     """The finding on a computed number, by its distance from a printed number in last digits.
+
+    ``estimate`` is a number, or a number with limits between which it certainly lies, shape (3,).
+    The verdict is then the one that all numbers between the limits have, so that the printed number
+    is reproduced only if all of them round to it and contradicted only if none does; if they have
+    several verdicts, nothing is decided. Limits are compared exactly.
 
     Raises
     ------
     ModelError
-        If the number is NaN.
+        If a number is NaN, or if the limits are infinite or do not contain the number.
 
     Examples
     --------
     >>> pairs = (82.177, "82"), (0.2395, "0.238"), (9.81, "6")
     >>> [str(against_print(*pair).verdict) for pair in pairs]
     ['reproduced', 'close', 'contradicted']
+    >>> [str(against_print([82.4, 82.3, high], "82").verdict) for high in (82.5, 82.6)]
+    ['reproduced', 'not decided']
     """
-    value = largest(value)
+    numbers = _finite(estimate).ravel()
     wanted = float(printed)
-    units = (value - wanted) * 10.0 ** len(printed.partition(".")[2])
-    if abs(units) <= 0.5 + _ROUNDING:
-        verdict = Verdict.REPRODUCED
-    elif abs(units) <= CLOSE_UNITS + _ROUNDING:
-        verdict = Verdict.CLOSE
+    value, low, high = map(float, np.broadcast_to(numbers, 3))
+    units = (value - wanted) * 10.0 ** _decimals(printed)
+    if numbers.size == 1:
+        verdict = _agreement(abs(units) - _ROUNDING, abs(units) - _ROUNDING)
+        low = high = np.nan
     else:
-        verdict = Verdict.CONTRADICTED
-    return Finding(value, verdict, printed, np.nan, units, (value - wanted) / abs(wanted))
+        if not -np.inf < low <= value <= high < np.inf:
+            raise ModelError(f"{low} to {high} is no interval around {value}")
+        ends = [
+            (Fraction(end) - Fraction(printed)) * 10 ** _decimals(printed) for end in (low, high)
+        ]
+        nearest = max(ends[0], -ends[1], Fraction(0))
+        verdict = _agreement(nearest, max(-ends[0], ends[1]))
+    relative = (value - wanted) / abs(wanted)
+    return Finding(
+        value,
+        verdict,
+        printed,
+        deviation_units=units,
+        deviation=relative,
+        low=low,
+        high=high,
+    )
+
+
+def _decimals(printed: str) -> int:
+    """The number of digits behind the point."""
+    return len(printed.partition(".")[2])
+
+
+def _agreement(nearest: float | Fraction, farthest: float | Fraction) -> Verdict:
+    """The verdict on numbers at these distances, in units of the last printed digit."""
+    if farthest <= 0.5:
+        return Verdict.REPRODUCED
+    if nearest > 0.5 and farthest <= CLOSE_UNITS:
+        return Verdict.CLOSE
+    if nearest > CLOSE_UNITS:
+        return Verdict.CONTRADICTED
+    return Verdict.NOT_DECIDED
 
 
 def decided(estimate: ArrayLike, *, above: float = -np.inf, below: float = np.inf) -> Finding:

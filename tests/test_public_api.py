@@ -26,7 +26,12 @@ TSUJI = contact_law("tsuji", stiffness=900.0, damping=0.1)
 
 @pytest.mark.parametrize(
     ("page", "least"),
-    [("README.md", 3), ("docs/python.md", 14), ("docs/how-an-orbit-is-found.md", 5)],
+    [
+        ("README.md", 3),
+        ("docs/python.md", 14),
+        ("docs/error-law.md", 8),
+        ("docs/how-an-orbit-is-found.md", 5),
+    ],
 )
 def test_the_examples_print_what_the_pages_say(page, least):
     result = doctest.testfile(str(ROOT / page), module_relative=False)

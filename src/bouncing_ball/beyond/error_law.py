@@ -273,10 +273,11 @@ def coefficients(
 def law_thresholds(
     n: ArrayLike, damping_ratio: ArrayLike, amplitude: ArrayLike, release: Release, tolerance: float
 ) -> ByQuantity:
-    """The ϖ above which each error is within a tolerance ε by the law, |K|/ε or √(|K₂|/ε).
+    """The ϖ at which each error falls to a tolerance ε by the law, |K|/ε or √(|K₂|/ε).
 
-    Arguments and errors are those of :func:`coefficients`. The result has one array for each of the
-    seven quantities.
+    These are estimates and no bounds, because the law neglects the terms of order 1/ϖ². Arguments
+    and errors are those of :func:`coefficients`. The result has one array for each of the seven
+    quantities.
 
     Examples
     --------

@@ -168,7 +168,8 @@ COMMANDS = {
         purpose="the error K/ϖ of the restitution model to first order",
         text=(
             "The error of the restitution model, relative to the contact, is K/ϖ to first order. "
-            "An error of at most ε therefore needs a frequency ratio ϖ of at least |K|/ε."
+            "To this order the error falls to ε at the frequency ratio ϖ = |K|/ε. This is an "
+            "estimate and no bound."
         ),
         examples=("error-law --amplitude 1 --restitution 0.65",),
         program=_error_law,

@@ -50,13 +50,21 @@ EXPECTED = {
     "law_exceeding": [4, 0],
     # The largest error is 0.7/(rϖ), with r from 0.5 on.
     "supremum": 0.014,
+    "supremum_restitution": 0.5,
+    "supremum_position": 0.0,
     "supremum_needed": 140.0,
+    "needed_restitution": 0.5,
     "failing_restitution": 0.7,
     "sought_orbits": 10,
     "orbits": 2 * 16 * 5,
     "restitution_edge": [0.5, 0.7, 0.9],
     "position_edge": [0.0, 0.5, 1.0],
 }
+
+
+def error_by_hand(_, row, kind, ratio, low, high=0.0):
+    """The error 0.7/(rϖ), which is largest at the smallest r."""
+    return suprema.Largest(0.7 / low / ratio, low, 0.0)
 
 
 @pytest.fixture(scope="module")
@@ -75,9 +83,7 @@ def made():
     # The same for all quantities, and for both families.
     atlas = xr.Dataset(data, coords).isel(quantity=[0] * 4, limit_quantity=[0] * 3, n=[0, 0])
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(
-            suprema, "largest", lambda _, row, kind, ratio, low, high=0.0: 0.7 / low / ratio
-        )
+        patch.setattr(suprema, "largest", error_by_hand)
         return summary(PLAN, atlas.isel(model=[0, 0]))
 
 

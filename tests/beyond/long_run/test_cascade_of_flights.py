@@ -175,3 +175,12 @@ def test_chattering_multiplies_the_openings_by_the_square_of_the_restitution(r, 
 def test_without_an_oscillation_that_dies_out_there_is_no_limit(zeta):
     with pytest.raises(ModelError, match=r"in \(0, 0.9\]"):
         stiff_openings(zeta, 1)
+
+
+def test_on_a_compliant_contact_the_orbit_loses_its_stability_before_an_opening():
+    # The search goes from stiff contacts to compliant ones.
+    ratio = np.geomspace(7.93, 200.0, 22)
+    found = openings(damping_ratio(np.array([0.65])), ratio, 2)
+    first, second = found.multiplier[0]
+    assert first[0] < 1 < second[0]
+    assert np.all(second[1:] < 1)

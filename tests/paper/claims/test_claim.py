@@ -130,6 +130,17 @@ def test_readings_that_differ_leave_a_claim_open(data):
     assert row(replace(two_readings, meant=True), data)["verdict"] == "contradicted"
 
 
+def test_a_definition_is_checked_and_not_counted_as_reproduced(data):
+    sure = replace(rising, definition=True)
+    # It is contradicted if its check fails.
+    assert row(sure, data)["verdict"] == "contradicted"
+    data["fig"]["rise"] = ("n", [0.5, 0.25, 1.0])
+    assert row(rising, data)["verdict"] == "reproduced"
+    found = row(sure, data)
+    assert (found["verdict"], found["found"], found["explained"]) == ("definition", 0.25, True)
+    assert tally(assess([sure], data)) == "1 statements: 1 true by definition"
+
+
 def test_each_claim_is_counted_in_its_group(data):
     assert row(right, data)["verdict"] == "reproduced"
     assert [
@@ -187,10 +198,13 @@ def test_what_is_missing_is_an_error_in_one_line(data, change, said, one_line):
     assert str(error.value).startswith(("'rises': ", "'it turns': "))
 
 
-def test_the_tally_counts_verdicts_without_restatements(data):
+def test_the_tally_counts_verdicts_by_group_without_restatements(data):
     some = [rising, two_readings, height_threshold, right]
-    assert tally(assess(some, data)) == "3 claims of the paper: 2 reproduced, 1 contradicted"
+    formulas = "1 formulas: 1 reproduced"
+    lines = [formulas, "1 printed numbers: 1 reproduced", "1 statements: 1 contradicted"]
+    assert tally(assess(some, data)).splitlines() == lines
     data["fig"]["rise"] = ("n", [0.5, 0.25, -1.0])
     assert tally(assess(some, data)).endswith(", 1 without explanation")
     data["fig"].attrs["n"] = 2
-    assert ", 2 not asked" in tally(assess(some, data))
+    of_figure = ["1 printed numbers: 1 not asked", "1 statements: 1 not asked"]
+    assert tally(assess(some, data)).splitlines() == [formulas, *of_figure]

@@ -4,24 +4,37 @@ It contains the frequency ratio needed for one tolerance over r, Λ and n; the s
 for which a rule of thumb holds; the suprema of the errors over all orbits in the range of the
 atlas, including those between nodes; and the accuracy of the error law.
 
-For a supremum, the modulus of an error is maximised over r and over the whole stable range, on a
-grid that is refined around its largest value. Next to the saddle-node, p = 0, where most errors are
-largest, they vary with √p; the grid is therefore even in √p.
+For a supremum, the modulus of an error is maximised over r and over all Λ at which both the contact
+and the simple model have the orbit, up to the restitution model's period doubling. This common
+range begins at the higher one of the two saddle-nodes. For the corrected model it reaches below the
+saddle-node of the restitution model, and so below the nodes of the atlas. The position in this
+range is called p here. Next to the saddle-node, p = 0, where most errors are largest, they vary
+with √p; the grid, which is refined around its largest value, is therefore even in √p.
 """
 
 from collections.abc import Callable
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.beyond.atlas.plan import Plan
+from bouncing_ball.beyond.atlas.plan import Nodes, Plan
 from bouncing_ball.beyond.atlas.shards import VARIABLES as OF_SHARDS
-from bouncing_ball.beyond.corrected.errors import SIMPLE, errors
+from bouncing_ball.beyond.corrected.errors import SIMPLE, exact_and_simple_models
 from bouncing_ball.beyond.error_law import coefficients
 from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball.paper.comparison.errors import OF_LIMITS, OF_ORBITS, Quantity, modulus
+from bouncing_ball.paper.comparison.errors import (
+    OF_LIMITS,
+    OF_ORBITS,
+    Quantity,
+    modulus,
+    relative,
+    values,
+)
 from bouncing_ball.paper.comparison.thresholds import thresholds
+from bouncing_ball.paper.orbits import restitution_branch as restitution_orbit
+from bouncing_ball.paper.orbits.model import ImpactModel
 
 VARIABLES = {
     "needed": Variable("ϖ from which the error of all nodes of a tile is tolerated", symbol="ϖ"),
@@ -35,8 +48,15 @@ VARIABLES = {
     ),
     "unstable_share": Variable("share of nodes whose exact orbit is not stable"),
     "supremum": Variable("supremum of the relative error where the rule of thumb begins"),
+    "supremum_restitution": Variable("r at which the error has its supremum", symbol="r"),
+    "supremum_position": Variable(
+        "place of this supremum in the range of Λ in which both models have the orbit"
+    ),
     "supremum_quantity": Variable("quantity of an orbit, or limit"),
     "supremum_needed": Variable("ϖ from which the error of all orbits is tolerated", symbol="ϖ"),
+    "needed_restitution": Variable(
+        "r of the last orbit whose error exceeds the tolerance as ϖ rises", symbol="r"
+    ),
     "restitution_edge": Variable("ends of the ranges of r", symbol="r"),
     "position_edge": Variable("ends of the ranges of positions"),
     "law_coefficient": Variable(
@@ -55,7 +75,8 @@ _ROUNDS = 5
 # Smallest √p, next to the saddle-node.
 _NEAREST = 1e-6
 # The phase of the restitution model is 0 at the saddle-node, so that its relative error grows as
-# 1/√p. No other error of an existing orbit exceeds this bound.
+# 1/√p. No other error of an existing orbit exceeds this bound, unless the phase of the simple model
+# passes through zero.
 _UNBOUNDED = 1e3
 TOLERANCE = 0.01
 """The tolerance of charts and tables."""
@@ -71,13 +92,58 @@ _BELOW = 1 - 1e-9
 _SCANNED = 12
 
 
+class Largest(NamedTuple):
+    """The largest error, and the r and the p of its orbit."""
+
+    error: float
+    restitution: float
+    position: float
+
+
+def compared(plan: Plan, row: int, model: str, ratio: float, r: np.ndarray) -> list[ImpactModel]:
+    """The exact and a simple model of the contacts of a row that have r, at one ϖ."""
+    contact = plan.placed(row, r, np.zeros_like(r)).contact(ratio)
+    exact, *simple = exact_and_simple_models(contact)
+    return [exact, simple[SIMPLE.index(model)]]
+
+
+def in_common_range(
+    plan: Plan, row: int, model: str, ratio: float, r: np.ndarray, p: np.ndarray
+) -> Nodes:
+    """Nodes in the range of Λ in which the contact and a simple model have stable orbits.
+
+    The range begins at the higher saddle-node of the two and ends at the period doubling of the
+    restitution model. A branch without a saddle-node does not limit it.
+
+    Parameters
+    ----------
+    plan : Plan
+    row : int
+        A row, of which the rule and the n are used.
+    model : str
+        One of :data:`SIMPLE`.
+    ratio : float
+        ϖ.
+    r, p : ndarray
+        Restitution coefficients and positions in the range, arrays of one shape.
+    """
+    each, where = np.unique(r, return_inverse=True)
+    nodes = plan.placed(row, r, np.zeros_like(r))
+    exact, simple = (
+        one.saddle_node(nodes.n).amplitude for one in compared(plan, row, model, ratio, each)
+    )
+    low = np.fmax(exact, simple)[where.reshape(r.shape)]
+    high = restitution_orbit.period_doubling(nodes.n, r)
+    return Nodes(nodes.release, nodes.n, r, low + p * (high - low))
+
+
 def largest(
     plan: Plan, row: int, kind: tuple[str, Quantity], ratio: float, low: float, high: float = 0.0
-) -> float:
+) -> Largest:
     """The largest error at ϖ over p and a range of r, or at one r, for the rule and n of a row.
 
-    ``kind`` is the model and the quantity. The result is infinite if the error is unbounded, or if
-    a model lacks an orbit.
+    ``kind`` is the model and the quantity. The error is infinite if it is unbounded, or if there is
+    no common range of Λ.
     """
     model, quantity = kind
     # The bifurcations and the permanent contact do not depend on p.
@@ -85,18 +151,26 @@ def largest(
     # The corners of the range of (r, √p).
     start = np.array([low, first])
     end = np.array([high or low, 1.0])
+    unbounded = False
     for _ in range(_ROUNDS):
         along_r, along_root = np.linspace(start, end, _POINTS).T
-        r, root = np.meshgrid(np.unique(along_r), np.unique(along_root))
-        nodes = plan.placed(row, r.ravel(), root.ravel() ** 2)
-        every = errors(nodes.contact(ratio), nodes.n, nodes.amplitude, [quantity])
-        size = modulus(every[SIMPLE.index(model), 0])
+        r, root = map(np.ravel, np.meshgrid(np.unique(along_r), np.unique(along_root)))
+        nodes = in_common_range(plan, row, model, ratio, r, root**2)
+        exact, simple = (
+            values(one, nodes.n, nodes.amplitude, [quantity])[0]
+            for one in compared(plan, row, model, ratio, r)
+        )
+        size = modulus(relative(exact, simple))
         best = int(size.argmax())
-        place = np.array([r.ravel()[best], root.ravel()[best]])
+        # A value that passes through zero makes the relative error infinite.
+        passes_zero = bool(np.any(simple < 0) and np.any(simple > 0))
+        unbounded |= passes_zero or size[best] >= _UNBOUNDED
+        place = np.array([r[best], root[best]])
         step = (end - start) / (_POINTS - 1)
         start = np.maximum(start, place - step)
         end = np.minimum(end, place + step)
-    return float(size[best]) if size[best] < _UNBOUNDED else np.inf
+    error = np.inf if unbounded else float(size[best])
+    return Largest(error, float(place[0]), float(place[1]) ** 2)
 
 
 def tolerated(error: Callable[[float], float], grid: np.ndarray, tolerance: float) -> float:
@@ -117,35 +191,46 @@ def tolerated(error: Callable[[float], float], grid: np.ndarray, tolerance: floa
     return thresholds(each, grid, each(grid, None)[np.newaxis], tolerance).ratio.item()
 
 
+def _error(find: Callable[[float], Largest]) -> Callable[[float], float]:
+    return lambda place: find(place).error
+
+
 def suprema(plan: Plan, rule: float, tolerance: float) -> dict[str, tuple]:
     """The suprema at one ϖ, and the ϖ and r above which they are within the tolerance.
 
     Over (release, n, model, supremum_quantity) the variables are ``supremum``, at the ϖ of the
-    rule, and ``supremum_needed``, the ϖ above which all orbits are within the tolerance. Over
-    (release, n) the variable is ``failing_restitution``: at the ϖ of the rule, the error of the
-    greatest height of the restitution model exceeds the tolerance below this r. The last two
-    variables are computed by :func:`tolerated`.
+    rule, with its place in ``supremum_restitution`` and ``supremum_position``; and
+    ``supremum_needed``, the ϖ above which all orbits are within the tolerance, with the r of the
+    last orbit that is not, ``needed_restitution``. Over (release, n) the variable is
+    ``failing_restitution``: at the ϖ of the rule, the error of the greatest height of the
+    restitution model exceeds the tolerance below this r. The ϖ and this r are computed by
+    :func:`tolerated`.
     """
     rules, families, tiles = plan.shape
     quantities = tuple(Quantity)
-    supremum = np.empty((rules, families, len(SIMPLE), len(quantities)))
-    needed = np.empty_like(supremum)
+    shape = rules, families, len(SIMPLE), len(quantities)
+    names = "supremum", "supremum_restitution", "supremum_position"
+    found = {name: np.empty(shape) for name in (*names, "supremum_needed", "needed_restitution")}
     failing = np.empty((rules, families))
     scanned = np.geomspace(plan.ratios[0], plan.ratios[-1], _SCANNED)
     for place in np.ndindex(rules, families):
         rows = np.ravel_multi_index((*place, np.arange(tiles)), plan.shape)
         edges = _BELOW * plan.edges[np.append(np.isin(rows, plan.rows), True)]
-        for model, quantity in np.ndindex(supremum.shape[2:]):
-            error = partial(largest, plan, rows[0], (SIMPLE[model], quantities[quantity]))
-            along_ratio = partial(error, low=edges[0], high=edges[-1])
-            supremum[*place, model, quantity] = along_ratio(rule)
-            needed[*place, model, quantity] = tolerated(along_ratio, scanned, tolerance)
-        of_height = partial(largest, plan, rows[0], ("restitution", Quantity.MAX_HEIGHT))
-        failing[place] = tolerated(partial(of_height, rule), edges, tolerance)
+        for model, quantity in np.ndindex(shape[2:]):
+            at = (*place, model, quantity)
+            worst = partial(largest, plan, rows[0], (SIMPLE[model], quantities[quantity]))
+            along_ratio = partial(worst, low=edges[0], high=edges[-1])
+            for name, value in zip(names, along_ratio(rule), strict=True):
+                found[name][at] = value
+            needed = tolerated(_error(along_ratio), scanned, tolerance)
+            last = along_ratio(needed).restitution if np.isfinite(needed) else np.nan
+            found["supremum_needed"][at] = needed
+            found["needed_restitution"][at] = last
+        of_height = partial(largest, plan, rows[0], ("restitution", Quantity.MAX_HEIGHT), rule)
+        failing[place] = tolerated(_error(of_height), edges, tolerance)
     dims = ("release", "n", "model", "supremum_quantity")
     return {
-        "supremum": (dims, supremum),
-        "supremum_needed": (dims, needed),
+        **{name: (dims, every) for name, every in found.items()},
         "failing_restitution": (("release", "n"), failing),
     }
 

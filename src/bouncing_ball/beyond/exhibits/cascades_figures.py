@@ -66,7 +66,7 @@ def cascades(data: xr.Dataset) -> Figure:
         law.plot(data.doubling, one, "o", color=colour, linestyle=dashes, markersize=3, label=name)
     law.axhline(0, color="#8c8c8c", linewidth=0.6)
     law.set(xlabel=r"$k$ of the orbit of $2^k$ impacts", ylabel=r"$K_k$ of the error $K_k/\varpi$")
-    law.set(title="$K_k$ has a limit: the cascade shifts as a whole", xticks=data.doubling)
+    law.set(title="$K_k$ changes less and less with $k$", xticks=data.doubling)
     law.legend(loc="best")
     legend_below(figure, lines, labels=[f"{x} model" for x in data["model"].values], ncols=2)
     return figure

@@ -1,16 +1,26 @@
 """The paper's comparison for contact laws that engineers use (beyond the paper).
 
 All laws have the same restitution coefficient r and the same centroid t_c of the force of the free
-impact, at the impact speed of the orbit in question. If D is the duration of the free impact and
-κ = -δ_b/δ′_b at its end, t_c = r (D + κ)/(1 + r) for every law, and to first order the errors
-depend on D only through t_c. A Hertz contact has no ϖ. It is replaced by π/(D + κ), the ϖ of the
-elastic linear contact with the same D + κ. Errors are relative to the simple model as in
-Eqs. 37-38.
+impact. If D is the duration of the free impact and κ = -δ_b/δ′_b at its end,
+t_c = r (D + κ)/(1 + r) for every law, and to first order the errors depend on D only through t_c. A
+Hertz contact has no ϖ. It is replaced by π/(D + κ), the ϖ of the elastic linear contact with the
+same D + κ. Errors are relative to the simple model as in Eqs. 37-38.
+
+For most laws r and t_c depend on the impact speed, so that a contact must be *calibrated*: it gets
+the given r and t_c at one speed. This is the relative speed |δ′_i| at which the ball hits the
+contact on the orbit in question, which is found together with the contact. Thresholds are also
+given for contacts that are calibrated at the impact speed of the restitution model's orbit,
+v₀ = 2nπ/(1 + r). Both speeds differ by a term of order 1/ϖ. If r depends on the speed, this changes
+the error of the restitution model in its first order, and so a threshold by a share that does not
+vanish for small tolerances.
 """
 
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import dataclass
+from enum import StrEnum
 from functools import lru_cache
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -25,14 +35,15 @@ from bouncing_ball.beyond.corrected.signature import Signature
 from bouncing_ball.beyond.laws.law_of_impact import law_of_impact
 from bouncing_ball.beyond.laws.orbits import LawModel, law_at_orbit
 from bouncing_ball.beyond.laws.registry import LAWS
-from bouncing_ball.datasets.parameters import LawRestitution, Tolerance
+from bouncing_ball.datasets.parameters import LawRestitution, Many, Tolerance
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.paper.comparison.errors import Quantity, relative, values
 from bouncing_ball.paper.contact.damping import Release, damping_ratio
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.exhibits.orbit_parameters import OrbitsAlongRatio
+from bouncing_ball.paper.exhibits.orbit_parameters import OrbitParameters, OrbitsAlongRatio
 from bouncing_ball.paper.orbits.model import ImpactModel
+from bouncing_ball.paper.orbits.restitution_branch import rigid_speed
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 
@@ -41,7 +52,23 @@ VARIABLES = {
     "centroid_ratio": Variable(
         "π over D + κ of the free impact, which stands for the frequency ratio", symbol="π/(D+κ)"
     ),
+    "calibration": Variable(
+        "orbit at whose relative impact speed |δ′_i| the contact has the given r and centroid"
+    ),
+    "error_calibration": Variable("calibration of the contacts of the relative errors"),
+    "stable_at_threshold": Variable("whether the orbit at the threshold is stable and admissible"),
 }
+
+
+class Calibration(StrEnum):
+    """The orbit at whose impact speed a contact has the given r and centroid."""
+
+    CONTACT = "orbit on the contact"
+    """At |δ′_i| of the orbit on the contact itself."""
+    RESTITUTION = "orbit of the restitution model"
+    """At v₀ = 2nπ/(1 + r)."""
+
+
 HERTZ = ("hunt-crossley", "tsuji", "kuwabara-kono")
 LINEAR = {"linear": Release.DISPLACEMENT, "linear, force release": Release.FORCE}
 NAMES = (*LINEAR, *HERTZ)
@@ -51,13 +78,21 @@ _BESIDE = np.linspace(-0.02, 0.02, 5)
 QUANTITIES = (Quantity.MAX_HEIGHT, Quantity.BOUNCE_VELOCITY, Quantity.PHASE, *BOUNDS)
 
 
+class LawOrbit(OrbitParameters):
+    """An orbit on contacts of all laws."""
+
+    restitution: LawRestitution
+
+
 class LawErrors(OrbitsAlongRatio):
     """One orbit on contacts of several durations, and the tolerated relative error of its greatest
-    height; ``frequency_ratio`` stands for π/(D + κ).
+    height; ``frequency_ratio`` stands for π/(D + κ). Of ``further`` orbits only the thresholds of
+    the height are computed.
     """
 
     restitution: LawRestitution
     tolerance: Tolerance
+    further: Many[LawOrbit]
 
 
 @lru_cache
@@ -108,39 +143,83 @@ def exact_model(
     return LawModel(law_of_impact(LAWS[name], restitution, duration, speed))
 
 
-def own_models(name: str, orbit: LawErrors, ratios: np.ndarray) -> Any:
-    """The exact models of contacts with r and π/(D + κ) at the impact speeds of their orbits.
+@dataclass(frozen=True)
+class CalibratedContacts:
+    """Contacts of one law with the r of an orbit and with several π/(D + κ), at one impact speed.
 
-    ``ratios`` are the values of π/(D + κ), shape (m,).
-
-    Raises
-    ------
-    NoOrbitError, ModelError
-        If a contact has no such orbit, for example because D exceeds the cycle.
+    ``law`` is one of :data:`NAMES`.
     """
-    r = orbit.restitution
-    duration = np.pi / ratios * share_in_contact(name, r)
-    if name in LINEAR:
-        return exact_model(name, r, duration, 1.0)
-    return LawModel(law_at_orbit(LAWS[name], r, duration, orbit.n, orbit.amplitude))
 
+    law: str
+    orbit: OrbitParameters
+    calibration: Calibration = Calibration.CONTACT
 
-def along(name: str, orbit: LawErrors, value: Callable[[Any], np.ndarray]) -> np.ndarray:
-    """A quantity of the exact models along π/(D + κ), shape (..., ϖ).
+    def models(self, ratios: np.ndarray) -> Any:
+        """The exact models of the contacts; ``ratios`` are π/(D + κ), shape (m,).
 
-    It is NaN for contacts below the smallest π/(D + κ) above which all contacts have the orbit.
+        Raises
+        ------
+        NoOrbitError, ModelError
+            If a contact has no such orbit, for example because D exceeds the cycle.
+        """
+        orbit = self.orbit
+        r = orbit.restitution
+        duration = np.pi / ratios * share_in_contact(self.law, r)
+        # A linear contact has the same r and D at every speed.
+        if self.law in LINEAR or self.calibration is Calibration.RESTITUTION:
+            return exact_model(self.law, r, duration, rigid_speed(orbit.n, r))
+        return LawModel(law_at_orbit(LAWS[self.law], r, duration, orbit.n, orbit.amplitude))
 
-    Raises
-    ------
-    NoOrbitError
-        If no contact has the orbit.
-    """
-    ratios = orbit.frequency_ratio.grid()
-    for first in range(ratios.size):
-        with suppress(ModelError, NoOrbitError):
-            found = value(own_models(name, orbit, ratios[first:]))
-            return np.concatenate([np.full((*found.shape[:-1], first), np.nan), found], axis=-1)
-    raise NoOrbitError(f"no {name} contact has the {orbit.n}-T orbit at Λ = {orbit.amplitude:g}")
+    def along(self, ratios: np.ndarray, value: Callable[[Any], np.ndarray]) -> np.ndarray:
+        """A quantity of the exact models along π/(D + κ), shape (..., m).
+
+        It is NaN for contacts below the smallest π/(D + κ) above which all contacts have the orbit.
+
+        Raises
+        ------
+        NoOrbitError
+            If no contact has the orbit.
+        """
+        for first in range(ratios.size):
+            with suppress(ModelError, NoOrbitError):
+                found = value(self.models(ratios[first:]))
+                return np.concatenate([np.full((*found.shape[:-1], first), np.nan), found], axis=-1)
+        one = self.orbit
+        raise NoOrbitError(
+            f"no {self.law} contact has the {one.n}-T orbit at Λ = {one.amplitude:g}"
+        )
+
+    def height_error(self, ratios: np.ndarray) -> np.ndarray:
+        """Moduli of the relative errors of the restitution model's greatest height, shape (m,)."""
+        one = self.orbit
+        simple = RestitutionModel(one.restitution).orbit(one.n, one.amplitude).max_height
+        exact = self.along(ratios, lambda x: x.orbit(one.n, one.amplitude).max_height)
+        return np.abs(relative(exact, simple))
+
+    def threshold(self, ratios: np.ndarray, tolerance: float) -> float:
+        """The π/(D + κ) at which the error of the greatest height is the tolerance.
+
+        It is searched for along ``ratios``, which increase, and NaN if it is not among them.
+        """
+        error = self.height_error(ratios)
+        outside = np.flatnonzero(error > tolerance)
+        if not outside.size or outside[-1] == ratios.size - 1:
+            return np.nan
+        # ln(error/tolerance) is nearly a straight line in ln ϖ. Its zero is first interpolated
+        # between two nodes, and then by the polynomial through nearby orbits, which is exact to
+        # rounding.
+        sides = outside[-1] + np.arange(2)
+        guess = np.interp(0, -np.log(error[sides] / tolerance), np.log(ratios[sides]))
+        nearby = self.height_error(np.exp(guess + _BESIDE))
+        line = Polynomial.fit(np.log(nearby / tolerance), _BESIDE, _BESIDE.size - 1)
+        return float(np.exp(guess + line(0.0)))
+
+    def is_stable(self, ratio: float) -> bool:
+        """Whether the orbit at one π/(D + κ) is stable and admissible; False for NaN."""
+        if np.isnan(ratio):
+            return False
+        found = self.models(np.array([ratio])).orbit(self.orbit.n, self.orbit.amplitude)
+        return bool(np.all(found.is_stable() & found.is_admissible()))
 
 
 def corrected_values(exact: Any, *asked: Any) -> np.ndarray:
@@ -151,12 +230,8 @@ def corrected_values(exact: Any, *asked: Any) -> np.ndarray:
     return np.stack([values(model, *asked) for model in each], axis=-1)
 
 
-def _errors(name: str, parameters: LawErrors) -> tuple[np.ndarray, float]:
-    """Relative errors of both simple models, and a threshold.
-
-    The errors are moduli, shape (model, quantity, ratio); the threshold is the π/(D + κ) from which
-    on the error of the restitution model's greatest height is tolerable.
-    """
+def _errors(name: str, parameters: LawErrors) -> np.ndarray:
+    """Moduli of the relative errors of both simple models, shape (model, quantity, ratio)."""
     n = parameters.n
     lam = parameters.amplitude
     rigid = RestitutionModel(parameters.restitution)
@@ -167,58 +242,57 @@ def _errors(name: str, parameters: LawErrors) -> tuple[np.ndarray, float]:
         corrected = corrected_values(exact, n, lam, QUANTITIES)
         return np.abs([relative(wanted, constant), relative(wanted, corrected)])
 
-    errors = along(name, parameters, of_both_models)
-    return errors, _threshold(name, parameters, errors[0, 0], rigid)
-
-
-def _threshold(
-    name: str, parameters: LawErrors, error: np.ndarray, rigid: RestitutionModel
-) -> float:
-    """The π/(D + κ) at which the error of the greatest height is the tolerance, NaN if none.
-
-    ``error`` is that of the restitution model along π/(D + κ).
-    """
-    ratios = parameters.frequency_ratio.grid()
-    outside = np.flatnonzero(error > parameters.tolerance)
-    if not outside.size or outside[-1] == ratios.size - 1:
-        return np.nan
-    # ln(error/tolerance) is nearly a straight line in ln ϖ. Its zero is first interpolated between
-    # two nodes, and then by the polynomial through nearby orbits, which is exact to rounding.
-    sides = outside[-1] + np.arange(2)
-    guess = np.interp(0, -np.log(error[sides] / parameters.tolerance), np.log(ratios[sides]))
-    nearby = own_models(name, parameters, np.exp(guess + _BESIDE))
-    exact_height = nearby.orbit(parameters.n, parameters.amplitude).max_height
-    simple_height = rigid.orbit(parameters.n, parameters.amplitude).max_height
-    near_error = np.abs(relative(exact_height, simple_height))
-    line = Polynomial.fit(np.log(near_error / parameters.tolerance), _BESIDE, _BESIDE.size - 1)
-    return float(np.exp(guess + line(0.0)))
+    contacts = CalibratedContacts(name, parameters)
+    return contacts.along(parameters.frequency_ratio.grid(), of_both_models)
 
 
 def law_errors(parameters: LawErrors) -> xr.Dataset:
     """Errors of the restitution model and of the corrected one on all laws, along π/(D + κ).
 
-    The dataset has ``relative_error`` (law, model, quantity, centroid_ratio), the modulus, and
-    ``error_threshold`` (law,), the π/(D + κ) from which the greatest height of the restitution
-    model is within the tolerance; NaN where there is none on the grid.
+    The dataset has ``relative_error`` (law, model, quantity, centroid_ratio), the modulus, on
+    contacts calibrated as ``error_calibration`` says; and ``error_threshold`` (case, calibration,
+    law), the π/(D + κ) from which on the greatest height of the restitution model is within the
+    tolerance, NaN where there is none on the grid, with ``stable_at_threshold``. The first case is
+    the orbit of the errors, the others are the ``further`` orbits, with ``n``, ``restitution`` and
+    ``amplitude`` (case,).
 
     Raises
     ------
     NoOrbitError
-        If a law has the orbit at no π/(D + κ).
+        If a law has an orbit at no π/(D + κ).
     """
-    found = [_errors(name, parameters) for name in NAMES]
-    errors = np.array([error for error, _ in found])
-    thresholds = [threshold for _, threshold in found]
+    ratios = parameters.frequency_ratio.grid()
+    cases: list[OrbitParameters] = [parameters, *parameters.further]
+    shape = len(cases), len(Calibration), len(NAMES)
+    threshold = np.empty(shape)
+    stable = np.empty(shape, dtype=bool)
+    for place, (case, calibration, name) in zip(
+        np.ndindex(shape), product(cases, Calibration, NAMES), strict=True
+    ):
+        contacts = CalibratedContacts(name, case, calibration)
+        found = contacts.threshold(ratios, parameters.tolerance)
+        threshold[place] = found
+        stable[place] = contacts.is_stable(found)
+    by_case = ("case", "calibration", "law")
     return described(
         {
-            "relative_error": (("law", "model", "quantity", "centroid_ratio"), errors),
-            "error_threshold": ("law", thresholds),
+            "relative_error": (
+                ("law", "model", "quantity", "centroid_ratio"),
+                np.array([_errors(name, parameters) for name in NAMES]),
+            ),
+            "error_calibration": str(Calibration.CONTACT),
+            "error_threshold": (by_case, threshold),
+            "stable_at_threshold": (by_case, stable),
+            "n": ("case", [case.n for case in cases]),
+            "restitution": ("case", [case.restitution for case in cases]),
+            "amplitude": ("case", [case.amplitude for case in cases]),
         },
         coords={
             "law": list(NAMES),
             "model": list(SIMPLE),
             "quantity": list(QUANTITIES),
-            "centroid_ratio": parameters.frequency_ratio.grid(),
+            "centroid_ratio": ratios,
+            "calibration": list(map(str, Calibration)),
         },
         variables=VARIABLES,
     )

@@ -61,5 +61,5 @@ def ext_laws(data: xr.Dataset) -> Table:
 def _threshold(part: xr.Dataset) -> str:
     """The threshold of the greatest height; the other quantities have none."""
     if part["quantity"] == "max_height":
-        return entry_of(part.error_threshold, ".4g")
+        return entry_of(part.error_threshold.isel(case=0, calibration=0), ".4g")
     return "–"

@@ -167,9 +167,12 @@ def corrected_cascades(data):
 
 @claim("cascades")
 def cascade_moves_as_a_whole(data):
-    """the coefficients K_k of the shift of a cascade have a limit
+    """for n = 1 and the displacement release, the coefficients K_k of the shift of a cascade seem
+    to tend to a limit
 
     Condition: for every r the last one differs from the one before by less than a hundredth
+
+    Remark: a few values cannot prove a limit
     """
     before, last = data["ext_cascades"].cascade_coefficient.values[:, -2:].T
     return decided(np.max(np.abs(last / before - 1)), below=0.01)

@@ -13,7 +13,8 @@ returns the finding that decides the claim::
 
 The id of a claim is the name of the function, unless another id is given. If a claim can be read in
 several ways, the function returns a mapping from the name of each reading to its finding. If it is
-clear which reading the paper means, this reading comes first, and the claim is ``meant``.
+clear which reading the paper means, this reading comes first, and the claim is ``meant``. A
+statement that cannot fail, whatever the equations are, is a ``definition``.
 '''
 
 import inspect
@@ -113,6 +114,9 @@ class Claim:
         A possible answer of the authors to a verdict other than reproduced.
     meant : bool
         Whether the paper means the first reading.
+    definition : bool
+        Whether the statement follows from the meaning of its words. It is checked as all others,
+        but its verdict is no evidence and is not counted as reproduced.
     explanation : callable, optional
         The reason why the claim is not reproduced: named conditions on the datasets.
     restates : Claim, optional
@@ -129,6 +133,7 @@ class Claim:
     remark: str = ""
     answer: str = ""
     meant: bool = False
+    definition: bool = False
     explanation: Explanation | None = None
     restates: "Claim | None" = None
 
@@ -149,6 +154,8 @@ class Claim:
         readings = {"": found} if isinstance(found, Finding) else found
         first, *others = readings.values()
         if all(other.verdict is first.verdict for other in others):
+            if self.definition and first.verdict is Verdict.REPRODUCED:
+                return replace(first, verdict=Verdict.DEFINITION), ""
             return first, ""
         words = "; ".join(f"{name}: {one.verdict} ({one})" for name, one in readings.items())
         if self.meant and first.verdict is Verdict.REPRODUCED:

@@ -28,7 +28,9 @@ VARIABLES = {
         "largest relative error of an orbit among stiff contacts", budget=1e-12
     ),
     "short_of_lift": Variable("smallest 1 - Λ sin φ of Fig. 6, with φ of Eq. 6", budget=1e-11),
-    "inadmissible_orbits": Variable("orbits drawn that do not have one impact per period"),
+    "inadmissible_orbits": Variable(
+        "orbits in our versions of the figures that do not have one impact per period"
+    ),
     "range_error": Variable("relative error of the ends of the stability range", budget=1e-12),
     "printed_slight_move": Variable(
         "largest relative move of a printed end from the stiffest row to the next",
@@ -56,7 +58,9 @@ VARIABLES = {
     "found": Variable("the number found", budget=math.inf),
     "deviation_units": Variable("deviation in units of the last printed digit", budget=math.inf),
     "deviation": Variable("relative deviation", budget=math.inf),
-    "verdict": Variable("reproduced, qualified, close, contradicted, undecidable or not asked"),
+    "verdict": Variable(
+        "reproduced, definition, qualified, close, contradicted, undecidable or not asked"
+    ),
     "printed_table": Variable("the printed table whose entry the claim is"),
     "explained_by": Variable("name of the explanation"),
     "explained": Variable("neither close nor contradicted, or explained by checks that hold"),
@@ -170,13 +174,23 @@ def claims(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
 
 
 _WORDS = {
+    Verdict.DEFINITION: "true by definition",
     Verdict.QUALIFIED: "reproduced in one reading only",
     Verdict.CLOSE: "reproduced closely",
 }
 
 
+_GROUPS = {
+    "restored formula": "formulas",
+    "number": "printed numbers",
+    "statement": "statements",
+}
+
+
 def tally(decided: xr.Dataset) -> str:
-    """The numbers of claims and of verdicts in one line, without restatements.
+    """The numbers of claims and of verdicts, one line for each group, without restatements.
+
+    Groups are not added up, because a formula, a number and a statement are not of equal weight.
 
     Parameters
     ----------
@@ -185,15 +199,26 @@ def tally(decided: xr.Dataset) -> str:
 
     Examples
     --------
-    >>> decided = xr.Dataset({"verdict": ("claim", ["close", "close", "reproduced"]),
-    ...                       "group": ("claim", ["number", "restatement", "number"]),
-    ...                       "explained": ("claim", [True, True, True])})
-    >>> tally(decided)
-    '2 claims of the paper: 1 reproduced, 1 reproduced closely'
+    >>> decided = xr.Dataset({"verdict": ("claim", ["close", "close", "close", "reproduced"]),
+    ...                       "group": ("claim", ["number", "restatement", "number", "statement"]),
+    ...                       "explained": ("claim", [True, True, False, True])})
+    >>> print(tally(decided))
+    2 printed numbers: 2 reproduced closely, 1 without explanation
+    1 statements: 1 reproduced
     """
-    verdicts = decided.verdict.values[decided.group.values != "restatement"]
+    lines = []
+    for group, words in _GROUPS.items():
+        of_group = decided.isel(claim=decided.group.values == group)
+        if of_group.sizes["claim"]:
+            lines.append(f"{of_group.sizes['claim']} {words}: {_counted(of_group)}")
+    return "\n".join(lines)
+
+
+def _counted(decided: xr.Dataset) -> str:
+    """How many claims have each verdict, and how many have no explanation."""
+    verdicts = decided.verdict.values
     found = [one for one in Verdict if str(one) in verdicts]
     counts = [f"{np.sum(verdicts == str(one))} {_WORDS.get(one, one)}" for one in found]
     unexplained = int(np.sum(~decided.explained.values.astype(bool)))
     counts += [f"{unexplained} without explanation"] if unexplained else []
-    return f"{verdicts.size} claims of the paper: {', '.join(counts)}"
+    return ", ".join(counts)

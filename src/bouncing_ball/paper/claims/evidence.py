@@ -113,7 +113,7 @@ def amplitude_matters_below(data: Data) -> float:
 
 
 def inadmissible_orbits(data: Data) -> int:
-    """Number of orbits drawn in the paper's figures that are inadmissible."""
+    """Number of inadmissible orbits in our versions of the paper's figures."""
     figures = ("fig03", "fig05", "fig06", "fig08", "fig09", "fig10", "fig13", "fig14", "fig15")
     return sum(int((~data[name].admissible.astype(bool)).sum()) for name in figures)
 

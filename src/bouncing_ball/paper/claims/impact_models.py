@@ -58,11 +58,14 @@ def kinds_of_motion(data):
     return at_least(sum(bool(kind.any()) for kind in (periodic, subharmonic, chaotic)), 3)
 
 
-@claim("Abstract and Introduction")
+@claim("Abstract and Introduction", definition=True)
 def contact_shortens(data):
     """the contact gets shorter as its stiffness increases
 
     Condition: the contact duration falls from every contact of Fig. 13 to the next stiffer one
+
+    Remark: the frequency ratio is the natural frequency of the contact, whose half period is the
+    time that a contact takes, so that the statement is a definition of stiffness
     """
     return below(data["fig13"].contact_duration.diff("frequency_ratio"), 0)
 
@@ -187,9 +190,12 @@ CONTACT = [
 ]
 
 
-@claim("after Eq. 16")
+@claim("after Eq. 16", definition=True)
 def no_damping(data):
-    """a restitution coefficient of 1 leads to no damping"""
+    """a restitution coefficient of 1 leads to no damping
+
+    Remark: an impact without loss is one without damping, whatever the equation is
+    """
     return of_formula(data, "Eq. 16, r = 1")
 
 

@@ -24,6 +24,8 @@ class Verdict(StrEnum):
 
     REPRODUCED = "reproduced"
     """Within half a unit of the last printed digit; a condition that holds."""
+    DEFINITION = "definition"
+    """A statement that holds by definition, so that its check could not have failed."""
     QUALIFIED = "qualified"
     """Reproduced in the reading that the paper means, but not in the others."""
     CLOSE = "close"

@@ -211,9 +211,9 @@ def test_a_constant_restitution_misses_the_period_doubling_of_a_law_that_falls(e
     ],
 )
 def test_there_is_a_threshold_only_where_the_error_crosses_the_tolerance(tolerance, found):
-    span = {"min": 20.0, "max": 200.0, "samples": 2}
-    parameters = LawErrors(**ONE, tolerance=tolerance, frequency_ratio=span)
-    errors, threshold = _errors("linear", parameters)
-    first, last = errors[0, 0]
+    contacts = CalibratedContacts("linear", LawOrbit(**ONE))
+    ratios = np.array([20.0, 200.0])
+    first, last = contacts.height_error(ratios)
+    threshold = contacts.threshold(ratios, tolerance)
     assert (first > tolerance > last) == found
     assert np.isfinite(threshold) == found and (not found or 20 < threshold < 200)

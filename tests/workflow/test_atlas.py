@@ -44,6 +44,10 @@ def made(cloned, tmp_path_factory):
     return tree
 
 
+def test_the_first_run_in_a_fresh_clone_may_be_the_atlas(fresh):
+    assert "Atlas" in fresh.planned("atlas")
+
+
 @pytest.mark.long
 def test_a_killed_atlas_is_resumed_without_loss(made, fresh):
     prepared(fresh)

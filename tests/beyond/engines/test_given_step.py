@@ -86,7 +86,7 @@ def test_the_stiffest_contact_is_within_the_error_and_a_stiffer_one_is_not(schem
 def test_the_answer_about_an_unstable_solref_says_so(said, ask):
     unstable = ("design", "--from", "mujoco", "--solref", "0.001 0.1", "--mass", "1")
     text = said(*unstable, "--time-step", "2 ms")
-    assert "At a time step of 2 ms the given contact, of 0.5912 steps, is unstable in" in text
+    assert "At a time step of 2 ms the given contact, of 0.1478 steps, is unstable in" in text
     assert "raises the time constant of 0.001 s to 0.004 s, two time steps (refsafe)" in text
     found = ask(*unstable, "--time-step", "2 ms")["at_step"]
     assert found["is_stable"] is False and found["most"] == pytest.approx(25)
@@ -138,6 +138,19 @@ def test_a_time_step_needs_an_engine(refusal):
         design(mass=1, stiffness=1e5, restitution=0.8, time_step="1 ms")
 
 
+def test_a_time_step_is_for_a_contact_whose_r_has_no_speed(refusal):
+    crossley = {"point_contact_stiffness": 2e5, "hunt_crossley_dissipation": 0.5}
+    with refusal(ModelError, "time_step is given for a spring and a damper"):
+        design(mass=0.5, from_engine="drake", parameters=crossley, time_step="1 ms")
+    table = {"mass": 0.5, "frequency": "20 Hz", "acceleration": "0.8 g", "n": 1}
+    law = {"law": "hunt-crossley", "contact_time": "2 ms", "restitution": 0.8}
+    with refusal(ModelError, "time_step is given for a spring and a damper"):
+        design(**table, **law, engine="drake", time_step="1 ms")
+    with refusal(ModelError, "time_step and parameters time_step give the same"):
+        given = {"contactStiffness": 1e5, "contactDamping": 1.0, "time_step": 1e-3}
+        design(mass=0.5, from_engine="pybullet", parameters=given, time_step="1 ms")
+
+
 def in_engine(name, text, time_step, mass, contact_time):
     """r of free impacts in an engine, which begin at fractions of a step."""
     settings = ENGINES[name].settings(Physical(mass, 1e4, 1.0))
@@ -156,6 +169,52 @@ def by_scheme(at, contact, release):
     after = 1 - np.array(FRACTIONS)
     scheme = ENGINES[at.engine].scheme
     return impacts_in_steps(scheme, contact.damping_ratio, release, h, after)
+
+
+@pytest.mark.parametrize(("name", "stiff", "lossy"), [("pybullet", 2e5, 5.0), ("drake", 2e5, 4e-5)])
+def test_parameters_that_were_not_made_for_a_step_are_compared_with_small_steps(name, stiff, lossy):
+    engine = ENGINES[name]
+    values = dict(zip(engine.names, (stiff, lossy), strict=True))
+    limit = engine.read(values, 0.5)
+    r = limit.restitution(engine.release())
+    fine = engine.at_step_of(values, 0.5, 1e-7)
+    assert fine.is_within and fine.restitution == r
+    coarse = engine.at_step_of(values, 0.5, 4e-3)
+    # Implicit Euler by hand: (1 + c h/m + k h²/m) v⁺ = v - h k x/m, or a flight.
+    m, k, c = limit
+    h = 4e-3
+    found = []
+    for fraction in FRACTIONS:
+        x = -h * fraction
+        v = -1.0
+        while x < 0:
+            pushed = (v - h * k * x / m) / (1 + h * c / m + h * h * k / m)
+            v = max(v, pushed)
+            x += h * v
+        found.append(v)
+    assert coarse.restitution == r and not coarse.is_within
+    assert coarse.least - 1e-9 <= min(found) <= coarse.least + 0.05
+    assert coarse.most - 0.05 <= max(found) <= coarse.most + 1e-9
+
+
+@pytest.mark.engines
+@pytest.mark.filterwarnings("default")
+@pytest.mark.parametrize("time_step", [1e-3, 4e-3])
+def test_pybullet_does_with_parameters_what_the_answer_says(time_step):
+    only_if_installed("pybullet")
+    found = ENGINES["pybullet"].at_step_of(
+        {"contactStiffness": 2e5, "contactDamping": 5.0}, 0.5, time_step
+    )
+    text = (
+        f"pybullet.setPhysicsEngineParameter(fixedTimeStep={time_step}, numSubSteps=1,"
+        " contactSlop=0)\n"
+        "for body in (ball, table):\n"
+        "    pybullet.changeDynamics(body, -1, contactStiffness=2e5, contactDamping=5.0,"
+        " restitution=0, linearDamping=0, angularDamping=0, contactProcessingThreshold=0)\n"
+    )
+    measured = in_engine("pybullet", text, time_step, 0.5, 7e-3)
+    assert found.least - 2e-3 <= measured.min() <= found.least + 0.05
+    assert found.most - 0.05 <= measured.max() <= found.most + 2e-3
 
 
 SOLREFS = [
@@ -187,7 +246,8 @@ def test_mujoco_does_with_a_solref_what_the_answer_says(solref, time_step):
         f'<option timestep="{found.time_step!r}"/>'
         f'<default><geom condim="1" solref="{solref}" solimp="1e-4 1e-4 0.001"/></default>'
     )
-    measured = in_engine("mujoco", text, found.time_step, 1.0, found.steps * found.time_step)
+    lasts = contact.contact_time(Release.FORCE)
+    measured = in_engine("mujoco", text, found.time_step, 1.0, lasts)
     # MuJoCo's solver and the impedance 1e-4 leave this much.
     assert measured == pytest.approx(by_scheme(found, contact, Release.FORCE), rel=1e-3, abs=1e-3)
     assert found.least - 1e-3 <= measured.min() and measured.max() <= found.most * (1 + 1e-3)

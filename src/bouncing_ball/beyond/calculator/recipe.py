@@ -28,6 +28,9 @@ from bouncing_ball.errors import ParameterError
 
 # Largest number of times that the damping of a drop test is fitted to the stiffest contact.
 _REFITS = 12
+_OF_A_LAW = (
+    "{time_step} is given for a spring and a damper: the r of this contact depends on the speed"
+)
 
 
 def write_contact(
@@ -119,6 +122,8 @@ def settings_on_table(found: Assessment, simulation: Simulation) -> EngineSettin
     """The settings for a contact on a table, and the orbit that the engine will show."""
     engine = engine_named(simulation.engine)
     if found.law is not None:
+        if simulation.time_step is not None:
+            raise ParameterError(_OF_A_LAW)
         engine = engine.with_law(found.law)
     contact = Physical(found.case.mass, found.stiffness, found.damping)
     release = str(found.case.contact.release)
@@ -140,7 +145,7 @@ def at_given_step(found: Ready, time_step: float, error: float) -> AtStep:
     Raises
     ------
     ModelError
-        If no engine is named.
+        If no engine is named, or r depends on the speed.
     """
     if found.source is None:
         raise ParameterError(
@@ -148,6 +153,8 @@ def at_given_step(found: Ready, time_step: float, error: float) -> AtStep:
             "engines step in different ways"
         )
     source = found.source
+    if found.needs_speed:
+        raise ParameterError(_OF_A_LAW)
     if "time_step" in source.parameters:
         raise ParameterError("{time_step} and {parameters} time_step give the same: give one")
     release = found.contact.release

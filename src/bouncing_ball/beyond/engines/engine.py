@@ -298,15 +298,20 @@ class Engine(ABC):
     ) -> AtStep:
         """What the engine does with parameters and a time step in s.
 
+        Parameters that are not made for this step are damped by it: r is then compared with the
+        limit of small steps.
+
         Raises
         ------
         ModelError
             See :meth:`read`.
         """
-        values = dict(parameters)
+        asked = self.read(parameters, mass)
+        contact = asked
         if self.scheme is Scheme.COMPENSATED:
-            values["time_step"] = time_step
-        return self.at_step(self.contact(values, mass), self.release(release), time_step, error)
+            contact = self.contact({**parameters, "time_step": time_step}, mass)
+        rule = self.release(release)
+        return at_step(self.name, self.scheme, contact, rule, time_step, error, asked=asked)
 
     def _given(self, parameters: Mapping[str, Any], mass: float | None) -> float:
         """The mass in kg, after a check of it and of the names of all parameters."""

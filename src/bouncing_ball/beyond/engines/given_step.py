@@ -98,6 +98,7 @@ def at_step(
     release: Release,
     time_step: float,
     error: float,
+    asked: Physical | None = None,
 ) -> AtStep:
     """What a contact does in an engine's scheme with a time step in s.
 
@@ -112,6 +113,8 @@ def at_step(
         Δt in s.
     error : float
         Largest error of r that is allowed, above 0.
+    asked : Physical, optional
+        The contact that was asked for, if the engine changes it at this step.
 
     Raises
     ------
@@ -126,8 +129,9 @@ def at_step(
     >>> found.is_stable, found.is_within
     (False, False)
     """
-    zeta = contact.damping_ratio
-    duration, r = free_impact(zeta, release)
+    wanted = asked or contact
+    r = wanted.restitution(release)
+    duration = contact.contact_time(release) * contact.angular_frequency
     step = contact.angular_frequency * time_step
     if not _FEWEST <= duration / step <= _MOST:
         raise ModelError(
@@ -135,15 +139,17 @@ def at_step(
             f"{duration / step:.3g} time steps of {time_step:.3g} s, which is not between "
             f"{_FEWEST:g} and {_MOST:g}: check the units"
         )
+    zeta = contact.damping_ratio
     found = np.maximum(impacts_in_steps(scheme, zeta, release, step), 0.0)
     found = np.where(found < _STAYS, 0.0, found)
     off = float(np.max(np.abs(found - r)))
     stable = is_stable(scheme, zeta, step)
-    most, fewest = stiffest_contact(scheme, contact.mass, zeta, release, time_step, error)
+    same = wanted.damping_ratio
+    most, fewest = stiffest_contact(scheme, contact.mass, same, release, time_step, error)
     return AtStep(
         engine=engine,
         time_step=time_step,
-        steps=duration / step,
+        steps=wanted.contact_time(release) / time_step,
         is_stable=stable,
         restitution=r,
         least=float(found.min()),

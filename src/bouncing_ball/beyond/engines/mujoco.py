@@ -178,7 +178,8 @@ class MuJoCo(Engine):
         """
         rule = self.release(release)
         first, second = _numbers("solref", parameters.get("solref", ()), range(2, 3))
-        contact = self.read(parameters, mass)
+        asked = self.read(parameters, mass)
+        contact = asked
         remarks: tuple[str, ...] = ()
         safe = _SAFE * time_step
         if 0 < first < safe:
@@ -192,7 +193,7 @@ class MuJoCo(Engine):
             remarks += (
                 f"this holds for impacts much deeper than {law.width:g} m, the width of solimp",
             )
-        found = at_step(self.name, self.scheme, contact, rule, time_step, error)
+        found = at_step(self.name, self.scheme, contact, rule, time_step, error, asked=asked)
         return replace(found, remarks=remarks)
 
     def remarks(self, parameters: Mapping[str, Any]) -> tuple[str, ...]:

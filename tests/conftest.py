@@ -283,7 +283,8 @@ def continuation_settings():
 @pytest.fixture
 def short_runs(monkeypatch):
     """The calculator follows few impacts: long runs are those of calculator/test_motion.py."""
-    monkeypatch.setattr("bouncing_ball.beyond.calculator.motion._IMPACTS", 20)
+    for impacts in ("_IMPACTS", "_IMPACTS_OF_LAW"):
+        monkeypatch.setattr(f"bouncing_ball.beyond.calculator.motion.{impacts}", 20)
     for samples in ("_SAMPLES", "_SAMPLES_OF_LAW"):
         monkeypatch.setattr(f"bouncing_ball.beyond.calculator.motion.{samples}", (4, 1, 12, 4))
 

@@ -22,8 +22,15 @@ the branch of orbits over Λ, the motion on which a ball ends::
     bouncing_ball.branch(ball, n=[1, 2]).plot()
     bouncing_ball.motion_of(simple, amplitude=1.1)
 
-Everything is dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g, and phases and angles are
-in radians. NaN stands for a number that does not exist, such as the phase of an orbit below its
+An engineer's contact has units. Whether a restitution coefficient is good enough for it, how stiff
+it must be, and what one writes into a physics engine are three questions::
+
+    table = bouncing_ball.Table(frequency="50 Hz", acceleration="0.8 g")
+    contact = bouncing_ball.Contact(mass="20 g", stiffness="1e7 N/m", restitution=0.85)
+    bouncing_ball.assess_contact(table, contact)
+
+Everything else is dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g, and phases and angles
+are in radians. NaN stands for a number that does not exist, such as the phase of an orbit below its
 saddle-node.
 
 The package consists of floors, each of which imports only from those below it in this list:
@@ -43,7 +50,11 @@ The package consists of floors, each of which imports only from those below it i
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from bouncing_ball.beyond.calculator.assess import assess_contact
+    from bouncing_ball.beyond.calculator.choose import choose_contact
     from bouncing_ball.beyond.calculator.design import design
+    from bouncing_ball.beyond.calculator.given import Contact, Question, Simulation, Table
+    from bouncing_ball.beyond.calculator.recipe import write_contact
     from bouncing_ball.calls.balls import corrected, rigid, spring_damper
     from bouncing_ball.calls.law_balls import contact_law
     from bouncing_ball.calls.long_run import basins, lyapunov_exponent, motion_of, orbit_diagram
@@ -58,13 +69,19 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "Contact",
     "ModelError",
     "NoOrbitError",
+    "Question",
     "RestitutionModel",
+    "Simulation",
     "SpringDamper",
     "SpringDamperModel",
+    "Table",
+    "assess_contact",
     "basins",
     "branch",
+    "choose_contact",
     "contact_law",
     "corrected",
     "design",
@@ -81,6 +98,7 @@ __all__ = [
     "rigid",
     "simulate",
     "spring_damper",
+    "write_contact",
 ]
 
 
@@ -106,6 +124,14 @@ def __getattr__(name: str) -> Any:
             from bouncing_ball.calls import thresholds as module
         case "design":
             from bouncing_ball.beyond.calculator import design as module
+        case "assess_contact":
+            from bouncing_ball.beyond.calculator import assess as module
+        case "choose_contact":
+            from bouncing_ball.beyond.calculator import choose as module
+        case "write_contact":
+            from bouncing_ball.beyond.calculator import recipe as module
+        case "Contact" | "Question" | "Simulation" | "Table":
+            from bouncing_ball.beyond.calculator import given as module
         case "SpringDamper":
             from bouncing_ball.paper.contact import spring_damper as module
         case "SpringDamperModel":

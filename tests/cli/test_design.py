@@ -1,7 +1,7 @@
 """``bouncing-ball design``: keys, texts, exit statuses, and the page to print."""
 
 import json
-from dataclasses import asdict
+import time
 
 import numpy as np
 import pytest
@@ -10,6 +10,8 @@ from PIL import Image
 from bouncing_ball import design
 from bouncing_ball.beyond.calculator.page_data import page
 from bouncing_ball.beyond.calculator.page_figures import draw
+from bouncing_ball.beyond.calculator.rows import document
+from bouncing_ball.cli import design as calculator
 from bouncing_ball.drawing.labels import QUANTITIES
 from bouncing_ball.paper.comparison.errors import Quantity
 
@@ -35,7 +37,12 @@ def test_json_is_the_answer_of_the_call(ask):
     found = design(
         mass="20 g", frequency="50 Hz", acceleration="0.8 g", restitution=0.85, stiffness="1e7 N/m"
     )
-    assert ask(*STIFF) == json.loads(json.dumps(asdict(found)))
+    answer = ask(*STIFF)
+    question = answer.pop("question")
+    of_call = document(found)
+    assert [of_call.pop(name) for name in ("dropped", "engine", "at_step")] == [None] * 3
+    assert answer == json.loads(json.dumps(of_call))
+    assert (question["mass"], question["stiffness"], question["law"]) == (0.02, 1e7, None)
     # The saddle-node of an elastic ball is at Λ = 0, and an infinite error is null.
     case = "design --mass 1 --frequency 1 --acceleration 5 --restitution 1 --stiffness 1e5 --n 1"
     assert ask(*case.split())["orbits"][0]["errors"]["saddle_node"] is None
@@ -138,19 +145,52 @@ def test_the_motion_is_the_orbit_in_its_units(found, data):
     assert float(data.gap.sel(model="restitution").min()) >= -1e-12
 
 
+def test_the_axes_of_the_page_are_in_seconds_and_metres():
+    """A table that is not in the units of g = Ω = 1."""
+    real = design(
+        mass="20 g", frequency="50 Hz", acceleration="0.8 g", stiffness="2e5 N/m",
+        restitution=0.65, n=1,
+    )  # fmt: skip
+    shown = page(real)
+    one = real.judged
+    # One cycle and a quarter of a period, of 20 ms.
+    assert [float(shown.time[k]) for k in (0, -1)] == pytest.approx([0, 0.025], rel=1e-12)
+    amplitude = 0.8 * 9.80665 / (100 * np.pi) ** 2
+    times = shown.time.values
+    assert shown.table.values == pytest.approx(
+        amplitude * np.sin(100 * np.pi * times), abs=1e-12 * amplitude
+    )
+    ball = shown.ball.sel(model="spring-damper")
+    assert float(ball.max()) == pytest.approx(one.max_height, rel=1e-5)
+    # In flight the ball falls with g.
+    top = int(np.argmax(ball.values))
+    second = np.diff(ball.values[top - 20 : top + 20], 2) / np.diff(times)[0] ** 2
+    assert second == pytest.approx(np.full(38, -9.80665), rel=1e-4)
+    gap = shown.gap.sel(model="spring-damper")
+    assert float(-gap.min()) == pytest.approx(one.greatest_compression, rel=1e-5)
+    begins, ends = shown.since.values[[0, -1]]
+    assert ends - begins == pytest.approx(3 * real.contact_time, rel=1e-12)
+    assert begins == pytest.approx(-0.75 * real.contact_time, rel=1e-12)
+    # The ball arrives with the impact speed.
+    before = np.flatnonzero(shown.since.values < 0)[-2:]
+    speed = np.diff(gap.values[before])[0] / np.diff(shown.since.values[before])[0]
+    assert -speed == pytest.approx(one.impact_speed, rel=1e-3)
+
+
 def test_the_page_shows_the_case(found, data):
-    figure = draw(asdict(found), data, [("stiffness", "36 N/m")])
+    figure = draw(document(found), data, [("stiffness", "36 N/m")])
     star = next(line for line in figure.axes[0].lines if line.get_label() == "this contact")
     assert star.get_xydata().tolist() == [[0.65, found.frequency_ratio]]
     labels = [label.get_text() for label in figure.axes[1].get_yticklabels()]
     assert labels == [QUANTITIES[quantity] for quantity in Quantity]
     texts = " ".join(" ".join(text.get_text().split()) for text in figure.texts)
     assert found.verdict in texts and found.reason in texts
+    assert found.notes and all(f"Note: {note}." in texts for note in found.notes)
 
 
 def test_a_page_without_errors_and_with_a_long_reason(found, data):
     """Every quantity has its row, and a line does not begin with a percent sign."""
-    asked = asdict(found)
+    asked = document(found)
     for errors in (asked["orbits"][0][f"{x}errors"] for x in ("", "law_", "corrected_")):
         errors.update(dict.fromkeys(tuple(errors)[:3]))
     figure = draw(asked | {"reason": 33 * "so " + "long: 0.1 %"}, data, [])
@@ -163,7 +203,7 @@ def test_a_page_for_an_orbit_that_one_model_lacks(monkeypatch):
     monkeypatch.setattr("bouncing_ball.beyond.calculator.page_data._CHART", 2)
     shown = page(lonely)
     assert shown.ball.sel(model="restitution").isnull().all()
-    assert draw(asdict(lonely), shown, []).axes
+    assert draw(document(lonely), shown, []).axes
 
 
 def test_the_command_writes_the_page_and_answers_as_without(tmp_path, said, monkeypatch, data):
@@ -173,3 +213,37 @@ def test_the_command_writes_the_page_and_answers_as_without(tmp_path, said, monk
         # A4 upright, with ink in it.
         assert picture.height / picture.width == pytest.approx(2**0.5, abs=0.01)
         assert np.mean(np.asarray(picture.convert("L")) < 128) > 0.005
+
+
+def test_a_page_in_a_folder_that_does_not_exist_is_refused_and_makes_none(tmp_path, refused):
+    _, line = refused(*STIFF, "--plot", str(tmp_path / "new" / "page.png"))
+    assert "is no folder that can be written to" in line
+    assert not (tmp_path / "new").exists()
+
+
+def test_the_text_says_which_model_has_no_orbit(said):
+    # Between the saddle-nodes of the contact and of the restitution model.
+    lonely = ("design", "--mass", "20 g", "--frequency", "50 Hz", "--acceleration", "0.247 g",
+              "--stiffness", "2e5 N/m", "--restitution", "0.85")  # fmt: skip
+    short = said(*lonely).splitlines()
+    assert "no orbit (restitution)" in short[-2] and "none" not in short[-2]
+    assert "no orbit" in short[-5]
+    whole = said(*lonely, "--n", "1").splitlines()
+    (height,) = [line for line in whole if line.startswith("    greatest height")]
+    assert height.split("greatest height")[1].split() == "no orbit no orbit +0.042 %".split()
+    faint = said(*STIFF, "--acceleration", "0.1 g")
+    assert "no orbit (contact)" in faint
+
+
+@pytest.mark.parametrize("terminal", [True, False])
+def test_an_answer_that_takes_long_says_on_a_terminal_what_is_faster(terminal, capsys, monkeypatch):
+    monkeypatch.setattr(calculator, "_PATIENCE", 0.01)
+    monkeypatch.setattr("sys.stderr.isatty", lambda: terminal, raising=False)
+    with calculator._patience():
+        time.sleep(0.3)
+    assert ("a single family (--n)" in capsys.readouterr().err) is terminal
+    # An answer that takes less says nothing.
+    monkeypatch.setattr(calculator, "_PATIENCE", 60.0)
+    with calculator._patience():
+        pass
+    assert capsys.readouterr().err == ""

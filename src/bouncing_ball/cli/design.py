@@ -1,28 +1,40 @@
 """``bouncing-ball design``: the calculator's answer, as JSON or as text."""
 
-from collections.abc import Mapping
-from dataclasses import asdict
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
+from threading import Timer
 from typing import Any, NamedTuple
 
 from bouncing_ball.beyond.calculator import design as calculator
-from bouncing_ball.beyond.calculator.results import Contact, Design, Family, rows
+from bouncing_ball.beyond.calculator import rows
+from bouncing_ball.beyond.calculator.given import quantities
+from bouncing_ball.beyond.calculator.results import Design, Errors, Family, LoneContact, Needed
 from bouncing_ball.beyond.calculator.units import percent, shown, signed
+from bouncing_ball.beyond.engines.given_step import AtStep
 from bouncing_ball.cli.options import Parser, add_file, add_parameters, option
 from bouncing_ball.datasets.files import PICTURES, require_writable
 from bouncing_ball.errors import NoOrbitError, ParameterError, extra
-from bouncing_ball.paper.comparison.errors import OF_IMPACTS, QUANTITIES, Quantity
+from bouncing_ball.paper.comparison.errors import OF_IMPACTS, OF_ORBITS, QUANTITIES, Quantity
 from bouncing_ball.paper.comparison.thresholds import ThresholdStatus
 
 _SIMPLE = "error law", "corrected"
+# Seconds after which a user is told that the answer takes longer.
+_PATIENCE = 8.0
+# The row that an engine's time step takes the place of.
+_STEP = "largest time step"
 # What has a default, and is said in the answer.
 _NOT_ECHOED = {"quantity", "tolerance", "restitution_error"}
 
 
 class Answer(NamedTuple):
-    """The result of the calculator, and whether all numbers of each family are printed."""
+    """The result of the calculator, the arguments of the call with quantities in SI units, and
+    whether all numbers of each family are printed.
+    """
 
-    found: Design | Contact
+    found: Design | LoneContact
+    question: dict[str, Any]
     whole: bool = True
 
 
@@ -48,13 +60,35 @@ def design(*, plot: Path | None, all_families: bool, **given: Any) -> Answer:
         If the page has another name or cannot be written.
     """
     require_writable(plot, PICTURES)
-    found = calculator.design(**given)
+    with _patience():
+        found = calculator.design(**given)
     if plot is not None:
-        if isinstance(found, Contact):
+        if isinstance(found, LoneContact):
             raise ParameterError("{plot} needs a table, such as {frequency} and {acceleration}")
         _draw(found, plot)
     whole = all_families or given.get("n") is not None
-    return Answer(found, whole)
+    return Answer(found, given | calculator.in_si(given), whole)
+
+
+@contextmanager
+def _patience() -> Iterator[None]:
+    """If the answer takes long, say so on a terminal, and what would make it faster."""
+    slow = Timer(_PATIENCE, _say_slow)
+    slow.daemon = True
+    slow.start()
+    try:
+        yield
+    finally:
+        slow.cancel()
+
+
+def _say_slow() -> None:
+    if sys.stderr.isatty():
+        print(
+            "bouncing-ball: the motion of the ball is still being followed; a single family "
+            f"({option('n')}) and a spring and a damper in place of a law are faster",
+            file=sys.stderr,
+        )
 
 
 def _draw(found: Design, path: Path) -> None:
@@ -67,7 +101,8 @@ def _draw(found: Design, path: Path) -> None:
         from bouncing_ball.drawing.files import write
         from bouncing_ball.drawing.style import style
     with style():
-        figure = draw(asdict(found), page(found), rows(found) + rows(found.judged))
+        numbers = rows.texts(found) + rows.texts(found.judged)
+        figure = draw(rows.document(found), page(found), numbers)
         write(figure, path, "bouncing-ball design")
 
 
@@ -76,32 +111,69 @@ def _line(name: str, *columns: str) -> str:
 
 
 def _error(one: Family, quantity: Quantity) -> str:
-    errors = (of[quantity] for of in (one.errors, one.law_errors, one.corrected_errors))
-    return _line(f"    {QUANTITIES[quantity]}", *map(signed, errors))
+    """The errors of a quantity in all models, or which of them has no orbit."""
+    found = []
+    for model, errors in (
+        ("restitution", one.errors),
+        ("error law", one.law_errors),
+        ("corrected", one.corrected_errors),
+    ):
+        missing = _without(one, quantity, model)
+        if errors[quantity] is None and missing:
+            found.append("no contact orbit" if missing == "contact" else "no orbit")
+        else:
+            found.append(signed(errors[quantity]))
+    return _line(f"    {QUANTITIES[quantity]}", *found)
+
+
+def _without(one: Family, quantity: str, model: str) -> str:
+    """The first of contact and model that lacks the orbit of a quantity; empty if both have it."""
+    if model == "error law":
+        # The law starts from an orbit of the restitution model, for the limits of orbits as well.
+        return "" if one.standing["restitution"].exists else "restitution"
+    if quantity not in OF_ORBITS:
+        return ""
+    if not one.exists:
+        return "contact"
+    return "" if one.standing[model].exists else model
+
+
+def _off(one: Family, need: Needed, model: str, errors: Errors) -> str:
+    """The error of the judged quantity, or the reason why there is none."""
+    error = errors[need.quantity]
+    missing = _without(one, need.quantity, model)
+    if error is None and missing:
+        return f"no orbit ({missing})"
+    return signed(error, need.tolerance)
 
 
 def _family_lines(one: Family) -> list[str]:
     lines = ["", f"{one.n}-T orbit", _line("", *one.standing)]
-    for columns in zip(*map(rows, one.standing.values()), strict=True):
+    for columns in zip(*map(rows.texts, one.standing.values()), strict=True):
         lines.append(_line(f"  {columns[0][0]}", *(text for _, text in columns)))
     if one.exists:
-        lines += [_line(f"  {name}", text) for name, text in rows(one)]
+        lines += [_line(f"  {name}", text) for name, text in rows.texts(one)]
     holds = "error law" if one.law_holds else "law, out of range"
     lines.append(_line("  relative error", "restitution", holds, "corrected"))
     return lines + [_error(one, quantity) for quantity in OF_IMPACTS]
 
 
 def document(given: Answer) -> dict[str, Any]:
-    """The answer as plain values for JSON, with the settings of an engine if one is named."""
-    found = given.found
-    answer = asdict(found)
-    if found.question["engine"]:
-        answer["engine"] = asdict(found.engine_settings())
-    return answer
+    """The answer as plain values for JSON, with the arguments of the call."""
+    answer = rows.document(given.found)
+    # What was not asked for has no key.
+    for name in ("dropped", "engine", "at_step"):
+        if answer[name] is None:
+            del answer[name]
+    return answer | {"question": given.question}
 
 
-def _engine_lines(found: Design | Contact) -> list[str]:
-    engine = found.engine_settings()
+def _engine_lines(found: Design | LoneContact) -> list[str]:
+    """The settings of an engine, if one is named, and what it does at the time step given."""
+    at = [] if found.at_step is None else _step_lines(found.at_step)
+    engine = found.engine
+    if engine is None:
+        return at
     speed = found.slowed_speed
     slowed = "" if speed is None else f" of a fast impact, 1 % less at {shown(speed, 'm/s')}"
     expected = [
@@ -110,6 +182,7 @@ def _engine_lines(found: Design | Contact) -> list[str]:
         ("penetration", engine.penetration, "m"),
     ]
     return [
+        *at,
         "",
         f"For {engine.name}, with the {engine.release} release "
         f"(r = {engine.restitution:.4g}{slowed}, within {engine.error:g} in {engine.steps} steps "
@@ -122,22 +195,40 @@ def _engine_lines(found: Design | Contact) -> list[str]:
     ]
 
 
+def _step_lines(at: AtStep) -> list[str]:
+    allowed = f"the same r within {at.allowed:g}"
+    return [
+        "",
+        f"At a time step of {shown(at.time_step, 's')} the given contact, of {at.steps:.4g} steps, "
+        f"is {at.verdict}.",
+        f"The stiffest contact with {allowed} has {shown(at.stiffest, 'N/m')}, with a damping of "
+        f"{shown(at.stiffest_damping, 'N s/m')} and a contact time of "
+        f"{shown(at.stiffest_contact_time, 's')} ({at.stiffest_steps:.4g} steps).",
+        *(f"Note: {remark}." for remark in at.remarks),
+    ]
+
+
 def _short(found: Design) -> list[str]:
     """One line for each family, and a line on the options that print the other results."""
-    quantity = found.needed.quantity
-    least = found.needed.tolerance
-    error = f"{QUANTITIES[Quantity(quantity)]} off by"
+    need = found.needed
+    error = f"{QUANTITIES[Quantity(need.quantity)]} off by"
     head = (
         f"{'orbit':<9}{'stable':<9}{'greatest height':<18}{'peak force':<13}{error:<40}corrected by"
     )
-    rows = [
-        f"{f'{one.n}-T':<9}{('no', 'yes')[one.is_stable]:<9}{shown(one.max_height, 'm'):<18}"
-        f"{shown(one.peak_force, 'N'):<13}{signed(one.errors[quantity], least):<40}"
-        f"{signed(one.corrected_errors[quantity], least)}"
-        for one in found.orbits
-    ]
     about = f"{option('n')} {found.n} prints all results for one, {option('all_families')} for all"
-    return ["", head, *rows, f"({about}.)"]
+    return ["", head, *(_one_line(one, need) for one in found.orbits), f"({about}.)"]
+
+
+def _one_line(one: Family, need: Needed) -> str:
+    of_contact = {row.key: row.text for row in rows.rows(one) if row.words}
+    height, force = (
+        of_contact[name,] if one.exists else "no orbit" for name in ("max_height", "peak_force")
+    )
+    return (
+        f"{f'{one.n}-T':<9}{('no', 'yes')[one.is_stable]:<9}{height:<18}{force:<13}"
+        f"{_off(one, need, 'restitution', one.errors):<40}"
+        f"{_off(one, need, 'corrected', one.corrected_errors)}"
+    )
 
 
 def _whole(found: Design) -> list[str]:
@@ -170,7 +261,7 @@ def _law_lines(found: Design) -> list[str]:
 
 def _echo(question: Mapping[str, Any]) -> str:
     """The parameters that were given, with their units."""
-    kinds = calculator.quantities()
+    kinds = quantities(calculator.design)
     said = []
     for name, value in question.items():
         if value is None or name in _NOT_ECHOED:
@@ -192,32 +283,44 @@ def _plain(value: Any) -> str:
     return str(value)
 
 
+def _ratio(value: float | None, status: str) -> str:
+    """The ϖ that is needed, or the reason why there is none: the model may have no orbit."""
+    return status if value is None else shown(value)
+
+
 def lines(given: Answer) -> list[str]:
     """The answer as text, with the verdict first."""
     found = given.found
-    engine = _engine_lines(found) if found.question["engine"] else []
-    if isinstance(found, Contact):
-        about = [_line(*row) for row in rows(found)]
+    engine = _engine_lines(found)
+    if isinstance(found, LoneContact):
+        about = [_line(*row) for row in rows.texts(found)]
         about += [_line("release", found.release), *(f"Note: {note}." for note in found.notes)]
-        return [_echo(found.question), *about, *engine]
+        return [_echo(given.question), *about, *engine]
     need = found.needed
     always = ThresholdStatus.ALWAYS_WITHIN
     asked = f"ϖ for {percent(need.tolerance)} in the {QUANTITIES[Quantity(need.quantity)]}"
-    exact = "any" if need.status == always else shown(need.frequency_ratio)
-    corrected = "any" if need.corrected_status == always else shown(need.corrected)
+    exact, corrected = (
+        "any" if status == always else _ratio(value, status)
+        for value, status in (
+            (need.frequency_ratio, need.status),
+            (need.corrected, need.corrected_status),
+        )
+    )
+    by_law = _ratio(need.by_law, need.status)
+    by_engine = found.engine is not None
     return [
         found.headline,
         found.verdict,
         f"Reason: {found.reason}.",
-        _echo(found.question),
+        _echo(given.question),
         *(f"Note: {note}." for note in found.notes),
         *engine,
         "",
-        *(_line(*row) for row in rows(found) if not engine or row[0] != "largest time step"),
-        *([] if engine else [f"Time step: {found.time_step.rule}."]),
+        *(_line(*row) for row in rows.texts(found) if not by_engine or row[0] != _STEP),
+        *([] if by_engine else [f"Time step: {found.time_step.rule}."]),
         *_law_lines(found),
         "",
         _line(asked, "exact", *_SIMPLE),
-        _line("", exact, shown(need.by_law), corrected),
+        _line("", exact, by_law, corrected),
         *(_whole(found) if given.whole else _short(found)),
     ]

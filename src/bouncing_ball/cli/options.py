@@ -40,16 +40,19 @@ class Parser(argparse.ArgumentParser):
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
         namespace, unknown = super().parse_known_args(args, namespace)
         for text in unknown:
-            meant = did_you_mean(text.partition("=")[0], self._option_string_actions)
+            meant = _meant(text.partition("=")[0], self._option_string_actions)
             if text.startswith("--") and meant:
                 self.error(f"unrecognized arguments: {' '.join(unknown)}{meant}")
+            if not text.startswith("-"):
+                quoted = 'a value with a space is one argument in quotes, such as "20 g"'
+                self.error(f"unrecognized arguments: {' '.join(unknown)}: {quoted}")
         return namespace, unknown
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         try:
             super()._check_value(action, value)
         except argparse.ArgumentError as error:
-            error.message += did_you_mean(value, map(str, action.choices or ()))
+            error.message += _meant(value, list(map(str, action.choices or ())))
             raise
 
     def _print_message(self, message: str, file: Any = None) -> None:
@@ -58,6 +61,20 @@ class Parser(argparse.ArgumentParser):
             say(message.rstrip("\n"))
         else:
             super()._print_message(message, file)
+
+
+def _meant(text: str, known: Iterable[str]) -> str:
+    """A clause that suggests the known name that a wrong one resembles or is the end of.
+
+    Examples
+    --------
+    >>> _meant("--amplitude", ["--acceleration", "--table-amplitude"])
+    '; did you mean --table-amplitude?'
+    """
+    names = list(known)
+    end = text.removeprefix("--").replace("_", "-")
+    longer = [name for name in names if name.replace("_", "-").endswith(f"-{end}")]
+    return did_you_mean(text, names) or did_you_mean("".join(longer[:1]), longer)
 
 
 def option(name: str) -> str:

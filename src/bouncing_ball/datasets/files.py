@@ -33,8 +33,9 @@ def require_writable(path: Path | None, suffixes: Sequence[str] = ()) -> None:
     Raises
     ------
     ModelError
-        If the path has none of the suffixes, or the lowest folder on it that exists is not
-        writable.
+        If the path has none of the suffixes, or its folder is not writable. For a file with
+        suffixes, a picture that a user asked for, the folder must exist; for any other file the
+        lowest folder on its path that exists counts, because the others are made.
 
     Examples
     --------
@@ -47,7 +48,11 @@ def require_writable(path: Path | None, suffixes: Sequence[str] = ()) -> None:
         return
     if suffixes and path.suffix not in suffixes:
         raise ModelError(f"'{path}' does not end in {' or '.join(suffixes)}")
-    folder = next(each for each in path.absolute().parents if os.path.exists(each))
+    folders = path.absolute().parents
+    if suffixes:
+        folder = folders[0]
+    else:
+        folder = next(each for each in folders if os.path.exists(each))
     if not folder.is_dir() or not os.access(folder, os.W_OK):
         raise ModelError(f"{path} cannot be written: {folder} is no folder that can be written to")
 

@@ -7,8 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from bouncing_ball.beyond.calculator.case import PhysicalCase, Table
+from bouncing_ball.beyond.calculator.case import PhysicalCase, TableMotion
 from bouncing_ball.beyond.calculator.contact_data import case_of, hertz
+from bouncing_ball.beyond.calculator.given import Contact
 from bouncing_ball.beyond.corrected.signature import free_impact
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.contact.damping import Release
@@ -22,11 +23,11 @@ STEEL_ON_GLASS = {
     "table_poissons_ratio": 0.2,
 }
 MASS = 0.02
-TABLE = Table(300.0, 1e-4, 9.81)
+TABLE = TableMotion(300.0, 1e-4, 9.81)
 
 
 def found(release=Release.DISPLACEMENT, **given):
-    case = case_of(given | {"mass": MASS}, TABLE, release, [1])
+    case = case_of(Contact(**given, mass=MASS, release=release), TABLE, [1])
     return case.in_si()["stiffness"], case.in_si()["damping"]
 
 
@@ -122,10 +123,7 @@ def test_a_drop_test_that_returns_to_its_height_has_no_damping():
 def test_both_bodies_of_a_hertz_contact_yield_by_boussinesq():
     radius, depth = 5e-3, 1e-6
     law = case_of(
-        {**STEEL_ON_GLASS, "radius": radius, "restitution": 0.9, "mass": MASS},
-        TABLE,
-        Release.DISPLACEMENT,
-        [1],
+        Contact(**STEEL_ON_GLASS, radius=radius, restitution=0.9, mass=MASS), TABLE, [1]
     ).law
     # The law is in units of g/Ω² and of the weight.
     force = MASS * TABLE.gravity * float(law.stiffness) * (depth / TABLE.length) ** 1.5

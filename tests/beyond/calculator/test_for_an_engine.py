@@ -1,8 +1,12 @@
 """Designs for an engine: its release, its parameters, and the orbit that it will show."""
 
+import math
+
 import pytest
 
 from bouncing_ball import design
+from bouncing_ball.beyond.engines.choice import ENGINES
+from bouncing_ball.beyond.engines.physical import Physical
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
 
@@ -18,7 +22,7 @@ STIFF = TABLE | {"stiffness": 1e6}
 )
 def test_a_restitution_that_is_asked_for_is_met_under_the_engines_release(name, release, has):
     asked = design(**STIFF, restitution=0.75, engine=name, release=release)
-    settings = asked.engine_settings()
+    settings = asked.engine
     assert (settings.name, settings.release) == (name, has)
     assert settings.restitution == pytest.approx(0.75, rel=1e-12)
     # The orbit is that of this contact.
@@ -33,7 +37,7 @@ def test_a_restitution_that_is_asked_for_is_met_under_the_engines_release(name, 
 def test_a_drop_test_and_a_contact_time_are_met():
     drop = {"contact_time": "2 ms", "drop_height": 1.0, "rebound_height": 0.49}
     found = design(**TABLE, **drop, engine="drake")
-    settings = found.engine_settings()
+    settings = found.engine
     # The package's own simulation, on a table at rest.
     length = found.case.table.length
     run = SpringDamperModel(found.case.contact).simulate(0.0, 0.0, -((2 / length) ** 0.5), 1)
@@ -47,7 +51,7 @@ def test_a_drop_test_and_a_contact_time_are_met():
 def test_hunt_and_crossleys_contact_is_written_for_drake():
     asked = {"contact_time": "2 ms", "restitution": 0.8, "law": "hunt-crossley"}
     found = design(**TABLE, **asked, engine="drake")
-    settings = found.engine_settings()
+    settings = found.engine
     law = found.law
     assert law["name"] == "hunt-crossley-linear" and settings.restitution == pytest.approx(0.8)
     both = {"point_contact_stiffness": 2 * law["stiffness"]}
@@ -63,7 +67,7 @@ def test_hunt_and_crossleys_contact_is_written_for_drake():
     got = again.measured_restitution, again.contact_time, again.judged.max_height
     assert got == pytest.approx((0.8, 2e-3, found.judged.max_height), rel=1e-10)
     # For another engine the linear contact of this speed is written.
-    linear = design(**TABLE, **read, engine="lammps").engine_settings()
+    linear = design(**TABLE, **read, engine="lammps").engine
     assert linear.restitution == pytest.approx(0.8, rel=1e-10)
     with pytest.raises(ModelError, match="from_engine drake needs a table"):
         design(mass=0.5, **read, engine="lammps")
@@ -80,7 +84,7 @@ def test_a_strongly_damped_contact_of_drake_has_the_saddle_node_of_its_restituti
 
 
 def test_a_damper_is_kept_and_its_restitution_is_the_engines():
-    settings = design(**STIFF, damping=100.0, engine="mujoco").engine_settings()
+    settings = design(**STIFF, damping=100.0, engine="mujoco").engine
     assert settings.parameters["solref"] == [-2e6, -200.0]
     own = design(**STIFF, damping=100.0)
     assert settings.restitution == pytest.approx(own.restitution["force"], rel=1e-10)
@@ -89,20 +93,20 @@ def test_a_damper_is_kept_and_its_restitution_is_the_engines():
 
 def test_a_contact_that_is_chosen_has_settings_too():
     chosen = design(**TABLE, restitution=0.75, tolerance="5 %", engine="lammps")
-    settings = chosen.engine_settings()
+    settings = chosen.engine
     assert settings.parameters["kn"] == pytest.approx(chosen.stiffness, rel=1e-11)
 
 
 def test_a_contact_without_a_table_is_that_of_one_with_it():
     asked = {"restitution": 0.75, "engine": "mujoco", "restitution_error": "1 %"}
     found = design(mass=0.5, stiffness=1e6, **asked)
-    alone = found.engine_settings()
-    with_table = design(**STIFF, **asked).engine_settings()
+    alone = found.engine
+    with_table = design(**STIFF, **asked).engine
     assert alone.parameters["solref"] == pytest.approx(with_table.parameters["solref"])
     assert alone.steps == with_table.steps
     assert alone.error == 0.01 and alone.max_height is None
     finer = design(mass=0.5, stiffness=1e6, **asked | {"restitution_error": 0.001})
-    assert finer.engine_settings().steps > 9 * alone.steps
+    assert finer.engine.steps > 9 * alone.steps
     assert found.measured_restitution == pytest.approx(0.75)
 
 
@@ -110,9 +114,10 @@ def test_a_contact_without_a_table_is_that_of_one_with_it():
 def test_from_one_engine_to_another_of_another_release(table):
     given = {"mass": 0.5, "from_engine": "lammps", "parameters": {"kn": 1e5, "gamma_n": 20}}
     found = design(**table | given)
-    assert found.question["release"] is None
+    release = found.case.contact.release if table else found.release
+    assert release == "displacement"
     written = design(**table | given, engine="mujoco")
-    assert written.engine_settings().parameters["solref"] == pytest.approx([-2e5, -20])
+    assert written.engine.parameters["solref"] == pytest.approx([-2e5, -20])
     before = design(**table | given).measured_restitution
     why = "because contacts end by displacement in lammps, and by force in mujoco"
     changed = f"r changes from {before:.4f} to {written.measured_restitution:.4f}, {why}"
@@ -158,3 +163,58 @@ def test_a_solref_that_no_simulation_has_is_refused_with_what_was_meant(solref, 
 def test_a_mistake_is_one_line_that_says_what_is_allowed(given, says, refusal):
     with refusal(ModelError, says):
         design(**{"engine": "mujoco", "mass": 1.0, "stiffness": 1e5, "restitution": 0.8} | given)
+
+
+def test_an_engine_takes_each_restitution_as_measured_and_refuses_both(refusal):
+    """The release of MuJoCo is that of the force, whose r is larger for the same damping."""
+    bare = {"mass": 0.5, "stiffness": 1e5}
+    given = design(**bare, restitution=0.75, engine="mujoco")
+    measured = design(**bare, measured_restitution=0.75, engine="mujoco")
+    assert given.engine == measured.engine
+    assert given.measured_restitution == pytest.approx(0.75, rel=1e-12)
+    # Without an engine it is that of Eq. 16, for the displacement release.
+    plain = design(**bare, restitution=0.75, release="force")
+    assert plain.measured_restitution > 0.76
+    with refusal(ModelError, "restitution and measured_restitution contradict each other"):
+        design(**bare, restitution=0.75, measured_restitution=0.75, engine="mujoco")
+    # Neither of them: the damping ratio is kept.
+    for loss in ({"damping_ratio": 0.1}, {"damping": 2 * 0.1 * (0.5 * 1e5) ** 0.5}):
+        kept = design(**bare, **loss, engine="mujoco")
+        assert kept.damping_ratio == pytest.approx(0.1, rel=1e-12)
+    with refusal(ModelError, "the loss of the contact is missing"):
+        design(**bare, engine="mujoco")
+
+
+@pytest.mark.parametrize("name", ENGINES)
+@pytest.mark.parametrize("mass", [0.0, -1.0, math.inf, math.nan])
+def test_an_engine_reads_parameters_of_a_ball_with_a_mass_only(name, mass, refusal):
+    engine = ENGINES[name]
+    found = dict(engine.parameters(Physical(2.0, 200.0, 4.0)))
+    found.pop("mass", None)
+    assert engine.read(found, 2.0) == pytest.approx((2.0, 200.0, 4.0), rel=1e-12)
+    with refusal(ModelError, "is not a positive number of kg"):
+        engine.read(found, mass)
+    with refusal(ModelError, "the mass is missing"):
+        engine.read(found, None)
+    with refusal(ModelError, f"{name} has no 'colour'"):
+        engine.read(found | {"colour": 1.0}, 2.0)
+
+
+@pytest.mark.parametrize("name", sorted(set(ENGINES) - {"mujoco"}))
+def test_an_engine_reads_its_two_parameters_in_their_ranges(name, refusal):
+    engine = ENGINES[name]
+    stiff, lossy = engine.names
+    good = {stiff: 100.0, lossy: 0.0}
+    assert engine.read(good, 1.0).damping == 0
+    for change, says in (
+        ({stiff: 0.0}, f"{stiff} = 0.0 is not positive"),
+        ({stiff: -1.0}, f"{stiff} = -1.0 is not a number of at least 0"),
+        ({lossy: -1.0}, f"{lossy} = -1.0 is not a number of at least 0"),
+        ({lossy: math.inf}, f"{lossy} = inf is not a number of at least 0"),
+    ):
+        with refusal(ModelError, says):
+            engine.read(good | change, 1.0)
+    for missing in (stiff, lossy):
+        rest = {key: value for key, value in good.items() if key != missing}
+        with refusal(ModelError, f"{missing} is missing: the parameters of {name} are"):
+            engine.read(rest, 1.0)

@@ -193,3 +193,22 @@ LOCKED = ("locked", "locked")
 def test_the_verdict_on_a_motion(found, good, says):
     verdict = judged_by_motion(found, 0.05, 1)
     assert verdict.is_good_enough is good and says in verdict.verdict
+
+
+def test_the_heights_of_a_motion_are_in_metres():
+    """The same dimensionless case in other units has heights in the ratio of the lengths g/Ω²."""
+    given = {"acceleration": 1.1, "stiffness": 5000.0, "tolerance": "20 %"}
+    unit = design(**UNIT, **given)
+    omega = 2 * np.pi * 20
+    real = {"mass": 0.3, "angular_frequency": omega, "restitution": 0.85, "n": 1}
+    found = design(**real, acceleration="1.1 g", stiffness=0.3 * 5000 * omega**2, tolerance="20 %")
+    assert found.motion.kind == unit.motion.kind == "subharmonic"
+    length = 9.80665 / omega**2
+    for name, height in found.motion.greatest.items():
+        assert height == pytest.approx(length * unit.motion.greatest[name], rel=1e-6)
+    # Greatest heights by a simulation of the restitution model, over both impacts of the motion.
+    model = RestitutionModel(0.85)
+    run = model.simulate(1.1, 1.2, -3.0, 4000)
+    late = slice(-4, None)
+    tops = 1.1 * np.sin(run.phase[late]) + run.bounce_velocity[late] ** 2 / 2
+    assert unit.motion.greatest["restitution"] == pytest.approx(tops.max(), rel=1e-6)

@@ -7,11 +7,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bouncing_ball.beyond.calculator.design import quantities
+from bouncing_ball.beyond.calculator.design import design
+from bouncing_ball.beyond.calculator.given import quantities
 from bouncing_ball.beyond.calculator.units import number, shown
 from bouncing_ball.errors import ModelError
 
-KINDS = quantities()
+KINDS = quantities(design)
 
 
 def read(name, value):

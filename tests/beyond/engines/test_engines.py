@@ -32,7 +32,7 @@ def test_the_parameters_of_a_contact_are_read_back_as_this_contact(name, mass, s
     engine = ENGINES[name]
     assert engine.name == name and repr(engine) == f"{type(engine).__name__}()"
     made = design(mass=mass, stiffness=stiffness, restitution=r, engine=name)
-    settings = made.engine_settings()
+    settings = made.engine
     parameters = dict(settings.parameters)
     if engine.scheme is Scheme.COMPENSATED:
         (note,) = design(mass=mass, from_engine=name, parameters=parameters).notes

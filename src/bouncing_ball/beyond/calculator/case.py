@@ -1,5 +1,6 @@
 """A ball, a vibrating table and a contact between them, in SI units."""
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -25,10 +26,12 @@ from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
 # Restitution coefficients that differ by less are taken for equal, because a contact law is fitted
 # to a free impact, and its signature interpolated, to 1e-12.
 _SAME = 1e-9
+# The loss 1 - r below which a contact law is hardly damped.
+_HARDLY = 1e-6
 
 
 @dataclass(frozen=True)
-class Table:
+class TableMotion:
     """The table with its motion A sin Ωt, and the acceleration of gravity.
 
     Parameters
@@ -40,7 +43,7 @@ class Table:
 
     Examples
     --------
-    >>> Table(angular_frequency=2.0, table_amplitude=2.0, gravity=8.0).amplitude
+    >>> TableMotion(angular_frequency=2.0, table_amplitude=2.0, gravity=8.0).amplitude
     1.0
     """
 
@@ -75,7 +78,7 @@ class PhysicalCase:
     ----------
     mass : float
         m in kg.
-    table : Table
+    table : TableMotion
     contact : SpringDamper
         ϖ, ζ and the release rule.
     law : ContactLaw, optional
@@ -84,13 +87,13 @@ class PhysicalCase:
 
     Examples
     --------
-    >>> case = PhysicalCase(1.0, Table(1.0, 1.0, 1.0), SpringDamper(10.0, 0.1))
+    >>> case = PhysicalCase(1.0, TableMotion(1.0, 1.0, 1.0), SpringDamper(10.0, 0.1))
     >>> case.in_si()["stiffness"], case.in_si()["damping"]
     (100.0, 2.0)
     """
 
     mass: float
-    table: Table
+    table: TableMotion
     contact: SpringDamper
     law: ContactLaw | None = None
 
@@ -153,5 +156,11 @@ class PhysicalCase:
 
     @cached_property
     def permanent_contact(self) -> float:
-        """Λ up to which the ball stays on the table; NaN if no such threshold was found."""
+        """Λ up to which the ball stays on the table; NaN if no such threshold was found.
+
+        It is not searched for under a law that is hardly damped, because its oscillation on the
+        table would have to be integrated over millions of periods.
+        """
+        if self.law is not None and 1 - float(self.contact.restitution) < _HARDLY:
+            return math.nan
         return known_threshold(self.exact_law)

@@ -1,4 +1,4 @@
-r"""The case that given data determine: a table, and a contact by its stiffness and its loss.
+r"""The case that given data determine: the stiffness and the loss of a contact.
 
 A free impact ends at the angle π - 2α (:mod:`bouncing_ball.paper.contact.damping`), so that ::
 
@@ -13,26 +13,24 @@ determine it. For two elastic bodies, the ball and the table (Hertz), ::
 
     1/E* = (1 - ν₁²)/E₁ + (1 - ν₂²)/E₂
 
-The parameters of a physics engine give a contact, too: :func:`read_engine` finds the stiffness k
-and the damping c that the engine computes with. All quantities are in SI units.
+All quantities are in SI units.
 """
 
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.beyond.calculator.case import PhysicalCase, Table
+from bouncing_ball.beyond.calculator.case import PhysicalCase, TableMotion
 from bouncing_ball.beyond.calculator.drop_test import fitted_damping_ratio
-from bouncing_ball.beyond.calculator.units import SIParameter, number
+from bouncing_ball.beyond.calculator.given import STANDARD_GRAVITY, Contact, given, single
 from bouncing_ball.beyond.corrected.signature import Signature, free_impact
-from bouncing_ball.beyond.engines.choice import engine_named
-from bouncing_ball.beyond.engines.engine import Engine, Physical
 from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.beyond.laws.hertzian import Tsuji, tsuji_damping
 from bouncing_ball.beyond.laws.law_of_impact import law_of_impact
+from bouncing_ball.beyond.laws.linear import LinearLaw
+from bouncing_ball.beyond.laws.registry import law_named
 from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.paper.contact.damping import Release, damping_ratio
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
@@ -46,30 +44,62 @@ MATERIALS = ("youngs_modulus", "poissons_ratio", "table_youngs_modulus", "table_
 # Parameters that determine its loss; the height of a rebound needs that of the drop, too.
 LOSSY = ("damping", "damping_ratio", "restitution", "measured_restitution", "rebound_height")
 _PAIRS = {"rebound_height": "drop_height"}
-# Parameters of MuJoCo that are lists; each of them is a separate argument.
-_OF_MUJOCO = ("solref", "solimp")
 Given = Mapping[str, float]
-STANDARD_GRAVITY = 9.80665
-"""Standard acceleration of gravity, in m/s²."""
+# What a contact of a law is not given by, because its parameters follow from a free impact.
+_NOT_OF_A_LAW = ("stiffness", "damping", "damping_ratio", "reduced_modulus", "youngs_modulus")
 
 
-def _one_of(given: Given, names: tuple[str, ...], what: str, give: str = "") -> str:
-    """Name of the single one of these parameters that is given.
+def require_own_release(contact: Contact) -> None:
+    """Refuse a release that is given with a law, which has its own.
 
-    If none of them is given, the result is an empty text, or, where ``give`` names the parameters
-    to give, an error.
+    Raises
+    ------
+    ModelError
+        If a release and a law other than the linear one are given.
     """
-    found = [name for name in names if name in given]
-    if len(found) > 1:
-        both = " and ".join(f"{{{name}}}" for name in found)
-        raise ParameterError(f"{both} contradict each other, because each gives {what}: give one")
-    if give and not found:
-        raise ParameterError(f"{what} is missing: give {give}")
-    return found[0] if found else ""
+    if contact.release is not None and contact.law not in (None, LinearLaw.name):
+        raise ParameterError(
+            f"{{release}} is not allowed with {{law}} {contact.law}, which has its own"
+        )
+
+
+def law_type(contact: Contact) -> type[ContactLaw] | None:
+    """The type of the contact law that is named; None for the linear contact.
+
+    Raises
+    ------
+    ModelError
+        If there is no such law, or if it is given by other parameters than those of an impact.
+
+    Examples
+    --------
+    >>> law_type(Contact(law="hunt-crossley", contact_time="1 ms")).name
+    'hunt-crossley'
+    """
+    name = contact.law
+    if name is None:
+        return None
+    if name.casefold() in ("hertz", "hertzian"):
+        raise ParameterError(
+            f"{{law}} {name} has no damper: Hertz's spring with a damper is {{law}} tsuji, or give "
+            "{radius} and {reduced_modulus} in place of {law}"
+        )
+    kind = law_named(name)
+    if kind is LinearLaw:
+        return None
+    for other in _NOT_OF_A_LAW:
+        if getattr(contact, other) is not None:
+            instead = "give {contact_time} and {restitution}"
+            raise ParameterError(f"{{{other}}} is not allowed with {{law}} {name}: {instead}")
+    if contact.contact_time is None:
+        raise ParameterError(
+            f"{{law}} {name} needs {{contact_time}}, the duration of a free impact"
+        )
+    return kind
 
 
 def loss(
-    given: Given,
+    data: Given,
     release: Release,
     omega_of: Callable[[float], float] | None = None,
     gravity: float = STANDARD_GRAVITY,
@@ -90,20 +120,20 @@ def loss(
     >>> loss({"drop_height": 4.0, "rebound_height": 4.0}, Release.DISPLACEMENT)
     0.0
     """
-    single = ", ".join(f"{{{name}}}" for name in LOSSY[:-1])
-    ways = f"one of {single}, or {{drop_height}} and {{rebound_height}}"
-    name = _one_of(given, LOSSY, "the loss of the contact", ways)
+    others = ", ".join(f"{{{name}}}" for name in LOSSY[:-1])
+    ways = f"one of {others}, or {{drop_height}} and {{rebound_height}}"
+    name = single(data, LOSSY, "the loss of the contact", ways)
     if name == "damping":
         raise ParameterError(
             "{damping} needs {stiffness}: give it, or {restitution} in place of {damping}"
         )
     if name == "damping_ratio":
-        return _oscillating(given[name], release, "{damping_ratio}")
+        return _oscillating(data[name], release, "{damping_ratio}")
     if name != "rebound_height":
         rule = Release.DISPLACEMENT if name == "restitution" else release
-        return float(damping_ratio(given[name], rule))
-    height = given["rebound_height"]
-    drop = given["drop_height"]
+        return float(damping_ratio(data[name], rule))
+    height = data["rebound_height"]
+    drop = data["drop_height"]
     if height > drop:
         raise ParameterError(f"{{rebound_height}} {height:g} m is above {{drop_height}} {drop:g} m")
     if omega_of is not None:
@@ -121,7 +151,7 @@ def _oscillating(zeta: float, release: Release, name: str) -> float:
     return zeta
 
 
-def reduced_modulus(given: Given) -> float | None:
+def reduced_modulus(data: Given) -> float | None:
     """E* of a Hertz contact in Pa, given or computed from the materials of both bodies.
 
     None if the contact is not a Hertz contact.
@@ -142,71 +172,43 @@ def reduced_modulus(given: Given) -> float | None:
     >>> round(reduced_modulus(same | {"youngs_modulus": 2.0, "table_youngs_modulus": 1e12}), 9)
     2.0
     """
-    known = [name for name in MATERIALS if name in given]
+    known = [name for name in MATERIALS if name in data]
     if known:
-        missing = " and ".join(f"{{{name}}}" for name in MATERIALS if name not in given)
+        missing = " and ".join(f"{{{name}}}" for name in MATERIALS if name not in data)
         if missing:
             raise ParameterError(
                 f"{{{known[0]}}} needs {missing}: both bodies are elastic, each with E and ν"
             )
     elastic = "youngs_modulus" if known else "reduced_modulus"
-    if (elastic in given) != ("radius" in given):
+    if (elastic in data) != ("radius" in data):
         ways = "{reduced_modulus}, or {youngs_modulus} and the other data of both materials"
         raise ParameterError(
             f"{{{elastic}}} needs {{radius}}, the radius of curvature at the contact"
-            if elastic in given
+            if elastic in data
             else f"{{radius}} of a Hertz contact needs {ways}"
         )
     if not known:
-        return given.get("reduced_modulus")
-    ball, ball_ratio, table, table_ratio = (given[name] for name in MATERIALS)
+        return data.get("reduced_modulus")
+    ball, ball_ratio, table, table_ratio = (data[name] for name in MATERIALS)
     return 1 / ((1 - ball_ratio**2) / ball + (1 - table_ratio**2) / table)
 
 
-def hertz(mass: float, modulus: float, radius: float, restitution: float, table: Table) -> Tsuji:
+def hertz(
+    mass: float, modulus: float, radius: float, restitution: float, table: TableMotion
+) -> Tsuji:
     """The dimensionless law of a Hertz contact with E* in Pa and R in m.
 
     Its stiffness is K = k √g/(mΩ³), and its damping C follows from r.
 
     Examples
     --------
-    >>> law = hertz(1.0, 0.75, 4.0, 1.0, Table(1.0, 1.0, 1.0))
+    >>> law = hertz(1.0, 0.75, 4.0, 1.0, TableMotion(1.0, 1.0, 1.0))
     >>> float(law.stiffness), float(law.damping)
     (2.0, 0.0)
     """
     stiffness = 4 / 3 * modulus * math.sqrt(radius)
     unit = mass * table.angular_frequency**3 / math.sqrt(table.gravity)
     return Tsuji(stiffness / unit, float(tsuji_damping(restitution)))
-
-
-def table_of(given: Given) -> Table:
-    """The table, from one parameter for the frequency and one for the amplitude of its motion.
-
-    Raises
-    ------
-    ModelError
-        If one of them is missing or given twice.
-
-    Examples
-    --------
-    >>> table_of({"period": 2 * math.pi, "acceleration": 3.0, "gravity": 1.0}).table_amplitude
-    3.0
-    """
-    fast = ("frequency", "angular_frequency", "period")
-    rate = _one_of(given, fast, "the frequency of the table", "{frequency}, such as 50 Hz")
-    ways = "{acceleration}, such as 2 g, or {table_amplitude}, such as 0.1 mm"
-    far = _one_of(given, ("table_amplitude", "acceleration"), "the amplitude of the table", ways)
-    if rate == "frequency":
-        omega = 2 * math.pi * given["frequency"]
-    elif rate == "period":
-        omega = 2 * math.pi / given["period"]
-    else:
-        omega = given["angular_frequency"]
-    if far == "table_amplitude":
-        moved = given["table_amplitude"]
-    else:
-        moved = given["acceleration"] / omega**2
-    return Table(omega, moved, given.get("gravity", STANDARD_GRAVITY))
 
 
 def meant(asked: Sequence[int], restitution: float | np.ndarray, amplitude: float) -> int:
@@ -232,7 +234,7 @@ def with_law(case: PhysicalCase, law: ContactLaw, asked: Sequence[int]) -> Physi
 
     Examples
     --------
-    >>> case = PhysicalCase(1.0, Table(1.0, 1.0, 1.0), SpringDamper(1.0, 0.0))
+    >>> case = PhysicalCase(1.0, TableMotion(1.0, 1.0, 1.0), SpringDamper(1.0, 0.0))
     >>> found = with_law(case, Tsuji(50.0, tsuji_damping(0.8)), [1])
     >>> round(float(found.contact.restitution), 12)
     0.8
@@ -251,25 +253,16 @@ def with_law(case: PhysicalCase, law: ContactLaw, asked: Sequence[int]) -> Physi
     return replace(case, contact=replace(unit, frequency_ratio=ratio), law=law)
 
 
-def case_of(
-    given: Given,
-    table: Table,
-    release: Release,
-    asked: Sequence[int],
-    kind: type[ContactLaw] | None = None,
-) -> PhysicalCase | None:
-    """The case with the contact that is given; None if no parameter gives a stiffness.
+def case_of(contact: Contact, table: TableMotion, families: Sequence[int]) -> PhysicalCase:
+    """The case of a contact that is given, on a table.
 
     Parameters
     ----------
-    given : mapping of str to float
-        Parameters in SI units, by name.
-    table : Table
-    release : Release
-    asked : sequence of int
+    contact : Contact
+        One of its parameters gives the stiffness.
+    table : TableMotion
+    families : sequence of int
         Families n. The impact speed of a nonlinear contact is that of the first stable family.
-    kind : type of ContactLaw, optional
-        A contact law, whose parameters follow from r, the contact time and the impact speed.
 
     Raises
     ------
@@ -278,52 +271,78 @@ def case_of(
 
     Examples
     --------
-    >>> given = {"mass": 1.0, "stiffness": 4.0, "damping": 0.4}
-    >>> case_of(given, Table(1.0, 1.0, 1.0), Release.DISPLACEMENT, [1]).contact.damping_ratio
+    >>> contact = Contact(mass=1.0, stiffness=4.0, damping=0.4)
+    >>> case_of(contact, TableMotion(1.0, 1.0, 1.0), [1]).contact.damping_ratio
     0.1
     """
-    for first, second in _PAIRS.items():
-        if (first in given) != (second in given):
-            raise ParameterError(f"{{{first}}} and {{{second}}} are needed together")
-    if "mass" not in given:
-        raise ParameterError("the mass is missing: give {mass}, such as 20 g")
-    stiff = _one_of(given, STIFF, "the stiffness of the contact")
-    modulus = reduced_modulus(given)
+    kind = law_type(contact)
+    # The parameters of a law follow from a free impact, so that r counts as measured.
+    data = given(contact if kind is None else contact.with_measured_restitution())
+    rule = rule_of(contact)
+    require_pairs(data)
+    stiff = single(data, STIFF, "the stiffness of the contact")
+    modulus = reduced_modulus(data)
     if not stiff:
-        return None
+        raise ParameterError("no stiffness: give {stiffness}, or {contact_time}")
     if stiff == "stiffness":
-        return _of_stiffness(given, table, release)
+        return _of_stiffness(data, table, rule)
     # A contact with ω = 1; its free duration over the given one is ϖ.
     if modulus is None and kind is None:
-        zeta = loss(given, release, _omega_of_time(given["contact_time"], release), table.gravity)
+        zeta = loss(data, rule, _omega_of_time(data["contact_time"], rule), table.gravity)
     else:
-        zeta = loss(given, release)
-    unit = SpringDamper(1.0, zeta, release)
-    if modulus is not None and release is not Release.DISPLACEMENT:
+        zeta = loss(data, rule)
+    unit = SpringDamper(1.0, zeta, rule)
+    if modulus is not None and rule is not Release.DISPLACEMENT:
         raise ModelError("a Hertz contact with Tsuji's damping has the displacement release only")
     r = float(unit.restitution)
-    speed = rigid_speed(meant(asked, r, table.amplitude), r)
+    speed = rigid_speed(meant(families, r, table.amplitude), r)
     law: ContactLaw | None = None
     if modulus is not None:
-        law = hertz(given["mass"], modulus, given["radius"], r, table)
+        law = hertz(data["mass"], modulus, data["radius"], r, table)
         duration = float(free_impact(law, speed).duration)
     else:
-        duration = given["contact_time"] / table.time
+        duration = data["contact_time"] / table.time
         if kind is not None:
             law = law_of_impact(kind, r, duration, speed)
-    contact = replace(unit, frequency_ratio=float(unit.free_duration) / duration)
-    return PhysicalCase(given["mass"], table, contact, law)
+    linear = replace(unit, frequency_ratio=float(unit.free_duration) / duration)
+    return PhysicalCase(data["mass"], table, linear, law)
 
 
-def _of_stiffness(given: Given, table: Table, release: Release) -> PhysicalCase:
+def rule_of(contact: Contact) -> Release:
+    """The release rule of a contact, by default that of the displacement.
+
+    Raises
+    ------
+    ModelError
+        If there is no such rule.
+    """
+    return Release.of(contact.release or Release.DISPLACEMENT)
+
+
+def require_pairs(data: Given) -> None:
+    """Refuse a drop test of which one height is missing, and a contact without a mass.
+
+    Raises
+    ------
+    ModelError
+        The message names what is missing.
+    """
+    for first, second in _PAIRS.items():
+        if (first in data) != (second in data):
+            raise ParameterError(f"{{{first}}} and {{{second}}} are needed together")
+    if "mass" not in data:
+        raise ParameterError("the mass is missing: give {mass}, such as 20 g")
+
+
+def _of_stiffness(data: Given, table: TableMotion, release: Release) -> PhysicalCase:
     """The case of a linear contact whose stiffness is given, with its loss."""
-    mass = given["mass"]
-    omega = math.sqrt(given["stiffness"] / mass)
-    if _one_of(given, LOSSY, "the loss of the contact") == "damping":
-        zeta = given["damping"] / (2 * mass * omega)
+    mass = data["mass"]
+    omega = math.sqrt(data["stiffness"] / mass)
+    if single(data, LOSSY, "the loss of the contact") == "damping":
+        zeta = data["damping"] / (2 * mass * omega)
         zeta = _oscillating(zeta, release, "damping ratio ζ of the contact")
     else:
-        zeta = loss(given, release, same_omega(omega), table.gravity)
+        zeta = loss(data, release, same_omega(omega), table.gravity)
     contact = SpringDamper(omega / table.angular_frequency, zeta, release)
     return PhysicalCase(mass, table, contact)
 
@@ -336,67 +355,3 @@ def same_omega(omega: float) -> Callable[[float], float]:
 def _omega_of_time(duration: float, release: Release) -> Callable[[float], float]:
     """√(k/m) in rad/s, as a function of ζ, of contacts whose free impacts last as long as given."""
     return lambda zeta: float(SpringDamper(1.0, zeta, release).free_duration) / duration
-
-
-class Source(NamedTuple):
-    """An engine, the given parameters of its contact, and the spring and damper of these."""
-
-    engine: Engine
-    parameters: dict[str, Any]
-    contact: Physical
-
-    def case(self, case: PhysicalCase, asked: Sequence[int], written: bool) -> PhysicalCase:
-        """The case with the law of this contact, or with its linear contact if this is written."""
-        law = self.engine.law(self.parameters, case.mass, case.table.time, case.table.length)
-        if law is not None and self.engine.needs_speed:
-            case = with_law(case, law, asked)
-        return replace(case, law=None if written else law)
-
-    def remarks(self, written: str | None, release: Release) -> tuple[str, ...]:
-        """Sentences on how the contact differs from a spring and a damper, and on how r changes if
-        it is written for the engine with this name and release.
-        """
-        found = self.engine.remarks(self.parameters)
-        own_release = self.engine.release()
-        same = written is None or own_release is release
-        if same or not 0 < self.contact.damping_ratio < 1:
-            return found
-        before = f"{self.contact.restitution(own_release):.4f}"
-        after = f"{self.contact.restitution(release):.4f}"
-        why = f"contacts end by {own_release} in {self.engine.name}, and by {release} in {written}"
-        return (*found, f"r changes from {before} to {after}, because {why}")
-
-
-def read_engine(arguments: Mapping[str, Any]) -> tuple[Source | None, dict[str, Any]]:
-    """The engine whose parameters are given, and the arguments with these as k and c.
-
-    Without such an engine, None and the arguments unchanged.
-    """
-    values = _engine_values(arguments)
-    name = arguments.get("from_engine")
-    if name is None:
-        if values:
-            first = next(iter(values))
-            what = f"{{{first}}}" if first in _OF_MUJOCO else f"{{parameters}} {first}"
-            raise ParameterError(f"{what} needs {{from_engine}}, the name of the engine")
-        return None, dict(arguments)
-    engine = engine_named(name).reader(values)
-    for other in (*STIFF, *LOSSY, "law"):
-        if arguments.get(other) is not None:
-            raise ParameterError(f"{{{other}}} is not allowed with {{from_engine}}")
-    mass = arguments.get("mass")
-    if mass is not None:
-        mass = number("mass", mass, SIParameter("kg", "20 g"))
-    source = Source(engine, values, engine.contact(values, mass))
-    rule = arguments.get("release")
-    # Written for another engine, the contact ends as there; otherwise as here, or as a law's.
-    if not arguments.get("engine") and not engine.needs_speed:
-        rule = str(engine.release(rule))
-    return source, {**arguments, **source.contact._asdict(), "mass": mass, "release": rule}
-
-
-def _engine_values(arguments: Mapping[str, Any]) -> dict[str, Any]:
-    """The parameters of an engine that are given, by name."""
-    values = {name: arguments.get(name) for name in _OF_MUJOCO}
-    values |= arguments.get("parameters") or {}
-    return {name: value for name, value in values.items() if value is not None}

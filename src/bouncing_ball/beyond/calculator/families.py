@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.beyond import error_law
-from bouncing_ball.beyond.calculator.case import PhysicalCase, Table
+from bouncing_ball.beyond.calculator.case import PhysicalCase, TableMotion
 from bouncing_ball.beyond.calculator.results import Errors, Family, Needed, Standing
 from bouncing_ball.beyond.corrected.errors import search
 from bouncing_ball.beyond.error_law import law_thresholds
@@ -99,9 +99,9 @@ def by_error_law(case: PhysicalCase, n: np.ndarray) -> tuple[np.ndarray, np.ndar
 
     Examples
     --------
-    >>> from bouncing_ball.beyond.calculator.case import Table
+    >>> from bouncing_ball.beyond.calculator.case import TableMotion
     >>> from bouncing_ball.paper.contact.spring_damper import SpringDamper
-    >>> case = PhysicalCase(1.0, Table(1.0, 1.0, 1.0), SpringDamper(10.0, 0.0))
+    >>> case = PhysicalCase(1.0, TableMotion(1.0, 1.0, 1.0), SpringDamper(10.0, 0.0))
     >>> by_error_law(case, np.array([1]))[0][-1].tolist()
     [0.01]
     """
@@ -151,9 +151,9 @@ def families(
 
     Examples
     --------
-    >>> from bouncing_ball.beyond.calculator.case import Table
+    >>> from bouncing_ball.beyond.calculator.case import TableMotion
     >>> from bouncing_ball.paper.contact.spring_damper import SpringDamper
-    >>> case = PhysicalCase(1.0, Table(1.0, 0.5, 1.0), SpringDamper(10.0, 0.1))
+    >>> case = PhysicalCase(1.0, TableMotion(1.0, 0.5, 1.0), SpringDamper(10.0, 0.1))
     >>> [family.n for family in families(case, [1, 2, 3])]
     [1]
     """
@@ -256,7 +256,7 @@ def _family(
     )
 
 
-def _units(table: Table) -> np.ndarray:
+def _units(table: TableMotion) -> np.ndarray:
     """The SI units of the quantities, in their order: m, m/s, and 1 for the others."""
     units = np.ones(len(Quantity))
     order = list(Quantity)

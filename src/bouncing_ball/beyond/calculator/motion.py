@@ -28,8 +28,10 @@ from bouncing_ball.paper.motion.sequence import ImpactSequence, Status
 
 # Relative change of an orbit's impact velocity for a start beside the orbit.
 _BESIDE = 1e-3
-# Number of impacts after which the search for a repetition ends.
+# Number of impacts after which the search for a repetition ends. A contact law is integrated in
+# time, which takes several milliseconds for an impact, so that it is followed for fewer.
 _IMPACTS = 600
+_IMPACTS_OF_LAW = 250
 # Balls in a round, the largest number of rounds, impacts of each ball, and the number of first
 # impacts left out of the means. A step of a contact law takes much longer than one of a linear
 # contact, though hardly longer for many balls than for a few.
@@ -67,10 +69,11 @@ def of_family(case: PhysicalCase, family: Family, tolerance: float) -> FinalMoti
     if orbit is not None and _is_elliptic(case, family, orbit):
         return FinalMotion(str(Kind.UNDECIDED), 0, 0)
     start = _start(case, orbit)
+    followed = _followed(case)
     # The exact model and the restitution model.
     found = {
         name: final_motions(
-            case.models[name], case.table.amplitude, start.phase, start.velocity, impacts=_IMPACTS
+            case.models[name], case.table.amplitude, start.phase, start.velocity, impacts=followed
         )
         for name in list(case.models)[:2]
     }
@@ -99,6 +102,11 @@ def of_family(case: PhysicalCase, family: Family, tolerance: float) -> FinalMoti
         restitution_impacts=simple.impacts,
         **values,
     )
+
+
+def _followed(case: PhysicalCase) -> int:
+    """Number of impacts of a ball in the search for its final motion."""
+    return _IMPACTS if case.law is None else _IMPACTS_OF_LAW
 
 
 def _first_orbit(case: PhysicalCase, n: int) -> Any | None:
@@ -133,7 +141,8 @@ def _laid(case: PhysicalCase, family: Family) -> str | None:
     lam = case.table.amplitude
     if lam <= case.permanent_contact:
         return str(Kind.PERMANENT_CONTACT)
-    found = final_motions(next(iter(case.models.values())), lam, 0.0, lam, impacts=_IMPACTS)
+    followed = _followed(case)
+    found = final_motions(next(iter(case.models.values())), lam, 0.0, lam, impacts=followed)
     same = found.kind == Kind.ORBIT and (int(found.periods), int(found.impacts)) == (family.n, 1)
     return None if same else str(found.kind)
 

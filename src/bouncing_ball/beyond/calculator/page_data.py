@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.beyond.calculator.families import RATIOS, against_contact
-from bouncing_ball.beyond.calculator.results import Design
+from bouncing_ball.beyond.calculator.results import Assessment
 from bouncing_ball.beyond.corrected.errors import SIMPLE, search
 from bouncing_ball.paper.comparison.thresholds import ThresholdStatus
 from bouncing_ball.paper.contact.damping import Release, damping_ratio
@@ -18,7 +18,7 @@ _SAMPLES = 1201
 _BEFORE, _SHOWN = 0.75, 3.0
 
 
-def page(design: Design) -> xr.Dataset:
+def page(design: Assessment) -> xr.Dataset:
     """The validity chart over r, heights over one cycle, and the gap in one contact, in SI units.
 
     The dataset has ``needed`` (simple, restitution), the ϖ needed; ``table`` (time,) and ``ball``

@@ -50,12 +50,14 @@ def draw(design: Mapping[str, Any], data: xr.Dataset, values: Sequence[tuple[str
 
 
 def _title(figure: Figure, design: Mapping[str, Any]) -> float:
-    """Write the motion, the verdict and the reason; the result is the height below these texts."""
+    """Write motion, verdict, reason and notes; the result is the height below these texts."""
     top = 0.972
+    notes = [(f"Note: {note}.", 128, 8, "normal", 0.015) for note in design["notes"]]
     for text, width, size, weight, step in (
         (design["headline"], 112, 9.5, "normal", 0.0175),
         (design["verdict"], 88, 12, "bold", 0.0215),
         (f"Reason: {design['reason']}.", 112, 9.5, "normal", 0.0175),
+        *notes,
     ):
         # A number and its percent sign stay in one line.
         lines = textwrap.wrap(text.replace(" %", "\u00a0%"), width)

@@ -1,66 +1,22 @@
 """The results of the calculator; each is defined once, with its description and its unit.
 
-A result is a field of a dataclass, in SI units. JSON has all fields under their names. The text and
-the page list those that are annotated with a :class:`Listed`, in the order of their definition, by
-:func:`rows`.
+A result is a field of a dataclass, in SI units. The text and the page list those that are annotated
+with a :class:`~.rows.Listed`, in the order of their definition; JSON has all of them
+(:mod:`bouncing_ball.beyond.calculator.rows`). No result holds the call that made it.
 """
 
-from dataclasses import dataclass, is_dataclass, replace
-from typing import Annotated, Any, NamedTuple, get_type_hints
+from dataclasses import dataclass
+from typing import Annotated, Any
 
 from bouncing_ball.beyond.calculator.case import PhysicalCase
-from bouncing_ball.beyond.calculator.units import shown
-from bouncing_ball.beyond.engines.choice import engine_named
-from bouncing_ball.beyond.engines.engine import EngineSettings, Physical
+from bouncing_ball.beyond.calculator.rows import Listed
+from bouncing_ball.beyond.engines.engine import EngineSettings
+from bouncing_ball.beyond.engines.given_step import AtStep
 from bouncing_ball.paper.orbits.stability import Bifurcation
 
 Errors = dict[str, float | None]
 """Relative errors by quantity, (q - q_SD)/q_SD with the value q_SD of the contact; None where one
 of the values does not exist, or that of the contact is zero."""
-
-
-class Listed(NamedTuple):
-    """How a result is listed: its description, and its unit for :func:`~.units.shown`."""
-
-    words: str
-    unit: str = ""
-
-
-def rows(result: Any) -> list[tuple[str, str]]:
-    """Description and value, as texts, of each result that is listed, including nested results.
-
-    A field that holds a dict has one description for each of its values.
-
-    Parameters
-    ----------
-    result : dataclass instance
-        Such as a :class:`Design`, a :class:`Contact`, a :class:`Family` or a :class:`Standing`.
-
-    Returns
-    -------
-    list of (str, str)
-        Numbers have four digits and a prefix of their unit (:func:`~.units.shown`).
-
-    Examples
-    --------
-    >>> rows(TimeStep(2e-6, "a rule"))
-    [('largest time step', '2 µs')]
-    """
-    found = []
-    for name, hint in get_type_hints(type(result), include_extras=True).items():
-        value = getattr(result, name)
-        values = value.values() if isinstance(value, dict) else [value]
-        for listed, each in zip(getattr(hint, "__metadata__", ()), values, strict=False):
-            found.append((listed.words, _text(each, listed.unit)))
-        if is_dataclass(value):
-            found += rows(value)
-    return found
-
-
-def _text(value: float | bool | None, unit: str) -> str:
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    return shown(value, unit)
 
 
 @dataclass(frozen=True)
@@ -189,24 +145,33 @@ class Corrected:
     load: Annotated[float, Listed("corrected model, load σ", "s")]
 
 
-def _settings(
-    question: dict[str, Any], contact: Physical, release: str, law: dict[str, Any] | None = None
-) -> EngineSettings:
-    """The settings of the engine in the arguments of the call, for a contact or its law."""
-    engine = engine_named(question["engine"])
-    if law is not None:
-        engine = engine.with_law(law)
-    return engine.settings(contact, release, question["restitution_error"])
+@dataclass(frozen=True)
+class Dropped:
+    """A ball that is dropped onto a table at rest, in SI units.
+
+    ``restitution`` is √(h′/h), the square root of the height of the rebound over that of the drop.
+    It is smaller than the r of a free impact, because gravity acts in the contact. A ball that does
+    not rebound has 0.
+    """
+
+    speed: Annotated[float, Listed("impact speed of a drop", "m/s")]
+    drop_height: Annotated[float, Listed("  dropped from", "m")]
+    rebound_height: Annotated[float, Listed("  rises to", "m")]
+    restitution: Annotated[float, Listed("  restitution √(h′/h) with gravity")]
+    at_half: Annotated[float, Listed("  the same at half the speed")]
+    at_tenth: Annotated[float, Listed("  the same at a tenth of the speed")]
 
 
 @dataclass(frozen=True)
-class Contact:
+class LoneContact:
     """A contact without a table, in SI units.
 
     ``natural_frequency`` is ω = √(k/m) in rad/s: on a table that moves with Ω it gives ϖ = ω/Ω.
-    ``question`` holds the arguments of the call. What depends on the impact speed is None. The r of
-    a free impact holds at speeds above ``slowed_speed``: there, on a table at rest, gravity lowers
-    √(h′/h) by 1 %, and at slower impacts by more. It is None without damping.
+    What depends on the impact speed is None. The r of a free impact holds at speeds above
+    ``slowed_speed``: there, on a table at rest, gravity lowers √(h′/h) by 1 %, and at slower
+    impacts by more. It is None without damping. ``dropped`` is a drop with the speed that was
+    asked for, ``engine`` the contact written for an engine, and ``at_step`` what it does with the
+    time step that is given; they are None if nothing was asked about them.
     """
 
     mass: Annotated[float, Listed("mass in kg")]
@@ -219,26 +184,46 @@ class Contact:
     measured_restitution: Annotated[float | None, Listed("restitution of a free impact")]
     slowed_speed: Annotated[float | None, Listed("gravity lowers r by 1 % at", "m/s")]
     notes: tuple[str, ...]
-    question: dict[str, Any]
-
-    def engine_settings(self) -> EngineSettings:
-        """The settings to write into the engine that was named, and their effect."""
-        # A contact whose damping depends on the speed has no settings.
-        contact = Physical(self.mass, self.stiffness, self.damping or 0.0)
-        return _settings(self.question, contact, self.release)
+    dropped: Dropped | None = None
+    engine: EngineSettings | None = None
+    at_step: AtStep | None = None
 
 
 @dataclass(frozen=True)
-class Design:
-    """The answer of the calculator about a contact; times are in s, lengths in m, forces in N.
+class Choice:
+    """The most compliant contact whose restitution model is within a tolerance, in SI units.
+
+    ``n`` is the family of the orbit, and ``needed`` the ϖ that the tolerance needs. The verdict
+    says what a simulation needs, and ``reason`` gives the reason.
+    """
+
+    mass: Annotated[float, Listed("mass in kg")]
+    stiffness: Annotated[float, Listed("stiffness", "N/m")]
+    damping: Annotated[float, Listed("damping", "N s/m")]
+    frequency_ratio: Annotated[float, Listed("frequency ratio ϖ")]
+    damping_ratio: Annotated[float, Listed("damping ratio ζ")]
+    contact_time: Annotated[float, Listed("contact time", "s")]
+    release: str
+    measured_restitution: Annotated[float, Listed("restitution of a free impact")]
+    n: int
+    needed: Needed
+    verdict: str
+    reason: str
+    notes: tuple[str, ...]
+    case: PhysicalCase
+
+
+@dataclass(frozen=True)
+class Assessment:
+    """The assessment of a contact on a table; times are in s, lengths in m, forces in N.
 
     ``frequency_ratio``, ``damping_ratio`` and ``amplitude`` are ϖ, ζ and Λ. ``restitution`` has the
     r of a free impact for each release rule, and ``measured_restitution`` is that for the rule of
     this contact; it holds at impacts faster than ``slowed_speed``, at which, on a table at rest,
     gravity lowers √(h′/h) by 1 %, None without damping or for another law. ``n`` is the family of
-    the verdict, and ``question`` holds the arguments of the call. Up to Λ = ``permanent_contact`` a
-    ball may stay on the table; None if no such threshold was found. ``law`` has the ``name`` of a
-    contact law and its parameters, whose units are powers of kg, m and s.
+    the verdict. Up to Λ = ``permanent_contact`` a ball may stay on the table; None if no such
+    threshold was found. ``law`` has the ``name`` of a contact law and its parameters, whose units
+    are powers of kg, m and s.
     """
 
     frequency_ratio: Annotated[float, Listed("frequency ratio ϖ")]
@@ -269,21 +254,21 @@ class Design:
     notes: tuple[str, ...]
     case: PhysicalCase
     n: int
-    question: dict[str, Any]
-
-    def engine_settings(self) -> EngineSettings:
-        """The settings to write into the engine that was named, and the orbit of the verdict, which
-        the engine will show.
-        """
-        contact = Physical(self.case.mass, self.stiffness, self.damping)
-        return replace(
-            _settings(self.question, contact, self.case.contact.release, self.law),
-            max_height=self.judged.max_height,
-            contact_duration=self.judged.contact_duration,
-            penetration=self.judged.greatest_compression,
-        )
 
     @property
     def judged(self) -> Family:
         """The result for the family of the verdict."""
         return next(one for one in self.orbits if one.n == self.n)
+
+
+@dataclass(frozen=True)
+class Design(Assessment):
+    """The answers to all questions of one call: an assessment, and what else was asked.
+
+    ``dropped``, ``engine`` and ``at_step`` are as in a :class:`LoneContact`; with an engine, the
+    time step is that of the engine.
+    """
+
+    dropped: Dropped | None = None
+    engine: EngineSettings | None = None
+    at_step: AtStep | None = None

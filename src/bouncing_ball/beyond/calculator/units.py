@@ -15,9 +15,9 @@ import textwrap
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Any, NamedTuple
 
-from bouncing_ball.errors import FAMILY, ParameterError, Range
+from bouncing_ball.errors import ParameterError, Range
 
 # Units as they are written, by the SI unit of a parameter, for hints on a wrong spelling.
 _SPELLINGS = {
@@ -26,14 +26,18 @@ _SPELLINGS = {
     "rad/s": ("rad/s", "Hz", "rpm"),
     "s": ("s", "ms", "us", "ns"),
     "m": ("m", "cm", "mm", "um"),
+    "m/s": ("m/s", "mm/s", "km/h"),
     "m/s^2": ("m/s^2", "mm/s^2", "g"),
     "N/m": ("N/m", "kN/m", "MN/m", "N/mm", "kN/mm"),
     "N*s/m": ("N s/m", "kN s/m", "N s/mm", "kg/s"),
     "Pa": ("Pa", "kPa", "MPa", "GPa"),
 }
 _BETWEEN = re.compile(r"[\s·*.^]")
-# A number with a decimal comma, and its unit.
-_COMMA = re.compile(r"([+-]?\d+),(\d+)(.*)", re.DOTALL)
+# Units that mean something else than what a user of SI units means.
+_FALSE_FRIENDS = {"gr": "g", "gm": "g"}
+# A number with one decimal comma and its unit, and one whose thousands are grouped by commas.
+_COMMA = re.compile(r"([+-]?\d+),(\d+)([^,]*)", re.DOTALL)
+_GROUPS = re.compile(r"[+-]?\d{1,3}(?:,\d{3})+(?!\d).*", re.DOTALL)
 # A number, and the rest of the text.
 _TEXT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
 # Letters, products, quotients and powers of one digit. A power of a power is refused, because pint
@@ -103,10 +107,8 @@ write it as '50 Hz'
         return ParameterError(f"{{{name}}} = {{}} {why}", said)
 
     if isinstance(value, str):
-        comma = _COMMA.fullmatch(value.strip()[:60])
-        if comma is not None:
-            whole, part, rest = comma.groups()
-            raise wrong(f"has a comma: write {f'{whole}.{part}{rest}'!r}, with a decimal point")
+        if comma := _without_comma(value.strip()[:60]):
+            raise wrong(f"has a comma: write {comma}")
         found = _TEXT.fullmatch(value.strip())
         if found is None:
             raise wrong(f"does not begin with a number: {example}", repr(short))
@@ -127,8 +129,30 @@ write it as '50 Hz'
     return found_value
 
 
+def _without_comma(text: str) -> str:
+    """How a number with commas is written without them; empty if the text is none.
+
+    Examples
+    --------
+    >>> _without_comma("0,65"), _without_comma("1,000,000 N/m"), _without_comma("1,500 N")
+    ("'0.65', with a decimal point", "'1000000 N/m'", "'1.500 N' or '1500 N'")
+    """
+    plain = repr(text.replace(",", ""))
+    comma = _COMMA.fullmatch(text)
+    grouped = _GROUPS.fullmatch(text) is not None
+    if comma is None:
+        return plain if grouped else ""
+    whole, part, rest = comma.groups()
+    decimal = repr(f"{whole}.{part}{rest}")
+    if grouped and whole.strip("+-") != "0":
+        return f"{decimal} or {plain}"
+    return f"{decimal}, with a decimal point"
+
+
 def _spelling(unit: str, kind: SIParameter) -> str:
     """The unit that was meant, if a common one has the same letters; otherwise an empty text."""
+    if kind.name == "kg" and unit in _FALSE_FRIENDS:
+        return _FALSE_FRIENDS[unit]
     typed = _BETWEEN.sub("", unit).casefold()
     for spelling in _SPELLINGS.get(kind.name, ()):
         if _BETWEEN.sub("", spelling).casefold() == typed:
@@ -145,6 +169,8 @@ def _converted(value: float, unit: str, kind: SIParameter) -> tuple[float, str]:
     why = "has an unknown unit"
     if (kind.name, unit) == ("m/s^2", "g"):
         unit = "standard_gravity"
+    if kind.name == "kg" and unit in _FALSE_FRIENDS:
+        return math.nan, "is in grains, or in no unit of mass"
     # Pint also raises the errors of its tokenizer, which are of many types.
     unit = _POWER.sub("^", unit)
     with suppress(Exception):
@@ -243,7 +269,3 @@ def in_place_of(predicted: float | None, true: float | None, unit: str = "") -> 
         name = f"{_PREFIXES[power]}{unit}"
         texts = [f"{value / 10**power:.{digits}g} {name}" for value in (predicted, true)]
     return " in place of ".join(texts)
-
-
-Index = Annotated[int, FAMILY]
-Rule = Literal["displacement", "force"]

@@ -7,18 +7,14 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.resources import files
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar
 
 import numpy as np
 
 from bouncing_ball.beyond.corrected.signature import free_impact as law_impact
-from bouncing_ball.beyond.engines.scheme import (
-    Scheme,
-    compensated,
-    free_impact,
-    represented,
-    steps_for,
-)
+from bouncing_ball.beyond.engines.given_step import AtStep, at_step
+from bouncing_ball.beyond.engines.physical import Physical
+from bouncing_ball.beyond.engines.scheme import Scheme, compensated, represented, steps_for
 from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.errors import ModelError, require
 from bouncing_ball.paper.contact.damping import Release
@@ -26,6 +22,8 @@ from bouncing_ball.paper.contact.damping import Release
 ERROR = 0.001
 """The default of the largest error of a free impact's r that the time step may cause."""
 
+# A whole number of steps is not rounded down.
+_ALMOST = 1 + 1e-9
 _PLACE = re.compile(r"@([\w.]+)@")
 Parameters = Mapping[str, float | list[float]]
 
@@ -33,51 +31,6 @@ Parameters = Mapping[str, float | list[float]]
 def written(value: float) -> float:
     """A number with twelve digits, so that the rounding errors of products are not written."""
     return float(f"{value:.12g}")
-
-
-class Physical(NamedTuple):
-    """A ball of mass m and the linear contact k p + c p′ between it and a wall, in SI units.
-
-    Examples
-    --------
-    >>> contact = Physical(mass=2.0, stiffness=200.0, damping=4.0)
-    >>> contact.angular_frequency, contact.damping_ratio
-    (10.0, 0.1)
-    """
-
-    mass: float
-    stiffness: float
-    damping: float
-
-    @property
-    def angular_frequency(self) -> float:
-        """ω = √(k/m) of the contact, in rad/s."""
-        return math.sqrt(self.stiffness / self.mass)
-
-    @property
-    def damping_ratio(self) -> float:
-        """ζ = c/(2mω) of the contact."""
-        return self.damping / (2 * self.mass * self.angular_frequency)
-
-    def restitution(self, release: Release) -> float:
-        """r of a free impact under a release rule.
-
-        Raises
-        ------
-        ModelError
-            If ζ ≥ 1 with the displacement release, under which the ball does not come back.
-        """
-        return free_impact(self.damping_ratio, release)[1]
-
-    def contact_time(self, release: Release) -> float:
-        """Duration of a free impact under a release rule, in s.
-
-        Raises
-        ------
-        ModelError
-            If ζ ≥ 1 with the displacement release.
-        """
-        return free_impact(self.damping_ratio, release)[0] / self.angular_frequency
 
 
 @dataclass(frozen=True)
@@ -89,7 +42,8 @@ class EngineSettings:
     ``restitution`` of a free impact is met within ``error``. ``restitutions`` has the r of the same
     contact under each release that the engine has.
     ``max_height`` and ``penetration`` in m and ``contact_duration`` in s belong to the orbit of a
-    design; they are None if there is no orbit.
+    design; they are None if there is no orbit. ``at_step`` is what the contact does at a time step
+    that is given, None if the time step follows from the contact.
     """
 
     name: str
@@ -105,6 +59,7 @@ class EngineSettings:
     max_height: float | None = None
     contact_duration: float | None = None
     penetration: float | None = None
+    at_step: AtStep | None = None
 
 
 def text_of(name: str) -> str:
@@ -272,21 +227,44 @@ class Engine(ABC):
         return {rule: contact.restitution(rule) for rule in rules}
 
     def settings(
-        self, contact: Physical, release: str | None = None, error: float = ERROR
+        self,
+        contact: Physical,
+        release: str | None = None,
+        error: float = ERROR,
+        time_step: float | None = None,
     ) -> EngineSettings:
         """The settings for a contact, with a time step that changes r by at most ``error``.
+
+        With a ``time_step`` in s they are for this step: for the contact, if the step resolves it,
+        and otherwise for the stiffest contact with the same r that it resolves.
 
         Raises
         ------
         ModelError
             If the engine has no such release, the contact does not bounce, or the error is not
             positive.
+
+        Examples
+        --------
+        >>> from bouncing_ball.beyond.engines.mujoco import MuJoCo
+        >>> found = MuJoCo().settings(Physical(1.0, 1e6, 200.0), error=0.01, time_step=2e-4)
+        >>> found.at_step.is_within, found.time_step, found.parameters["solref"][0] > -1e6
+        (False, 0.0002, True)
         """
         rule = self.release(release)
         contact = Physical(*map(written, contact))
         restitution = contact.restitution(rule)
-        steps = steps_for(self.scheme, contact.damping_ratio, rule, error)
-        step = written(contact.contact_time(rule) / steps)
+        at = None
+        if time_step is None:
+            steps = steps_for(self.scheme, contact.damping_ratio, rule, error)
+            step = written(contact.contact_time(rule) / steps)
+        else:
+            step = time_step
+            at = self.at_step(contact, rule, step, error)
+            if not at.is_within:
+                stiffest = (contact.mass, at.stiffest, at.stiffest_damping)
+                contact = Physical(*map(written, stiffest))
+            steps = math.floor(contact.contact_time(rule) / step * _ALMOST)
         text = self.snippet(contact, rule, step)
         found = self.parameters(self.for_step(contact, step))
         by_rule = {str(one): r for one, r in self.restitutions(contact, rule).items()}
@@ -301,7 +279,39 @@ class Engine(ABC):
             error=error,
             scheme=str(self.scheme),
             snippet=text,
+            at_step=at,
         )
+
+    def at_step(
+        self, contact: Physical, release: Release, time_step: float, error: float
+    ) -> AtStep:
+        """What a contact that is written for the engine does with a time step in s."""
+        return at_step(self.name, self.scheme, contact, release, time_step, error)
+
+    def at_step_of(
+        self,
+        parameters: Mapping[str, Any],
+        mass: float | None,
+        time_step: float,
+        error: float = ERROR,
+        release: str | None = None,
+    ) -> AtStep:
+        """What the engine does with parameters and a time step in s.
+
+        Parameters that are not made for this step are damped by it: r is then compared with the
+        limit of small steps.
+
+        Raises
+        ------
+        ModelError
+            See :meth:`read`.
+        """
+        asked = self.read(parameters, mass)
+        contact = asked
+        if self.scheme is Scheme.COMPENSATED:
+            contact = self.contact({**parameters, "time_step": time_step}, mass)
+        rule = self.release(release)
+        return at_step(self.name, self.scheme, contact, rule, time_step, error, asked=asked)
 
     def _given(self, parameters: Mapping[str, Any], mass: float | None) -> float:
         """The mass in kg, after a check of it and of the names of all parameters."""

@@ -16,12 +16,14 @@ and the smallest d that MuJoCo allows is 10⁻⁴. Contacts with any impedance a
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from bouncing_ball.beyond.corrected.signature import free_impact
-from bouncing_ball.beyond.engines.engine import Engine, Physical, at_speeds
+from bouncing_ball.beyond.engines.engine import ERROR, Engine, Physical, at_speeds
+from bouncing_ball.beyond.engines.given_step import AtStep, at_step
 from bouncing_ball.beyond.engines.scheme import Scheme
 from bouncing_ball.beyond.laws.impedance import Impedance
 from bouncing_ball.errors import ModelError
@@ -34,6 +36,8 @@ _LEAST = 1e-4
 _MOST = 0.9999
 # A contact with an impedance up to this value is treated as a spring and damper.
 _FELT = 0.01
+# The smallest time constant that MuJoCo allows by default, in time steps.
+_SAFE = 2
 # The longest time constant in s that is taken for one; more is a stiffness without its sign.
 _LONGEST = 100.0
 
@@ -153,6 +157,44 @@ class MuJoCo(Engine):
             midpoint=midpoint,
             power=power,
         )
+
+    def at_step_of(
+        self,
+        parameters: Mapping[str, Any],
+        mass: float | None,
+        time_step: float,
+        error: float = ERROR,
+        release: str | None = None,
+    ) -> AtStep:
+        """What MuJoCo does with parameters and a time step in s.
+
+        By default MuJoCo raises a positive time constant to two time steps (``refsafe``).
+
+        Examples
+        --------
+        >>> found = MuJoCo().at_step_of({"solref": "0.001 0.1"}, 1.0, 0.002)
+        >>> found.is_stable, found.remarks[0]
+        (False, 'MuJoCo raises the time constant of 0.001 s to 0.004 s, two time steps (refsafe)')
+        """
+        rule = self.release(release)
+        first, second = _numbers("solref", parameters.get("solref", ()), range(2, 3))
+        asked = self.read(parameters, mass)
+        contact = asked
+        remarks: tuple[str, ...] = ()
+        safe = _SAFE * time_step
+        if 0 < first < safe:
+            contact = self.read({**parameters, "solref": [safe, second]}, mass)
+            remarks = (
+                f"MuJoCo raises the time constant of {first:g} s to {safe:g} s, two time steps "
+                "(refsafe)",
+            )
+        law = self.law(parameters)
+        if law is not None and law.has_kink:
+            remarks += (
+                f"this holds for impacts much deeper than {law.width:g} m, the width of solimp",
+            )
+        found = at_step(self.name, self.scheme, contact, rule, time_step, error, asked=asked)
+        return replace(found, remarks=remarks)
 
     def remarks(self, parameters: Mapping[str, Any]) -> tuple[str, ...]:
         law = self.law(parameters)

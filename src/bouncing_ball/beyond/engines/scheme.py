@@ -85,7 +85,12 @@ def represented(stiffness: float, damping: float, step: float) -> tuple[float, f
 _FRACTIONS = np.linspace(1e-9, 1.0, 33)
 # With this number N of steps or more, the error falls at least as 1/N.
 _ASYMPTOTIC = 4096
-_FEWEST = 8
+# How exactly a real number of steps is found.
+_FINE = 1e-6
+FEWEST = 8
+"""The smallest number of steps that resolve a contact."""
+# An undamped contact has eigenvalues of the amount 1, to rounding of a double root.
+_ROUNDING = 1e-7
 
 
 class Scheme(StrEnum):
@@ -117,7 +122,7 @@ def free_impact(damping_ratio: float, release: Release) -> tuple[float, float]:
     zeta = float(damping_ratio)
     if zeta < 1 or release is Release.DISPLACEMENT:
         r = float(restitution_coefficient(zeta, release))
-        return float(release.free_angle(zeta)) / np.sqrt((1 - zeta) * (1 + zeta)), r
+        return float(release.free_angle(zeta) / np.sqrt((1 - zeta) * (1 + zeta))), r
     root = np.sqrt((zeta - 1) * (zeta + 1))
     duration = 2 * np.arcsinh(root) / root if root > 0 else 2.0
     return float(duration), float(np.exp(-zeta * duration))
@@ -176,24 +181,91 @@ def restitution_in_steps(
     >>> round(float(r.mean()), 2)
     0.91
     """
-    if steps < _FEWEST:
-        raise ModelError(f"{steps} steps in a contact are too few: use at least {_FEWEST}")
+    if steps < FEWEST:
+        raise ModelError(f"{steps} steps in a contact are too few: use at least {FEWEST}")
     zeta = float(damping_ratio)
-    h = free_impact(zeta, release)[0] / steps
-    step, lag = _step(scheme, 2 * zeta, h)
+    return impacts_in_steps(scheme, zeta, release, free_impact(zeta, release)[0] / steps, fraction)
+
+
+def impacts_in_steps(
+    scheme: Scheme,
+    damping_ratio: float,
+    release: Release,
+    step: float,
+    fraction: ArrayLike = _FRACTIONS,
+) -> np.ndarray:
+    """Restitution of free impacts computed with a step h = ωΔt of any length.
+
+    The arguments are those of :func:`restitution_in_steps`, with the step in units of 1/ω. A ball
+    that does not leave within twice the duration of the contact has r = -1.
+
+    Examples
+    --------
+    >>> h = free_impact(0.1, Release.FORCE)[0] / 50
+    >>> many = impacts_in_steps(Scheme.SEMI_IMPLICIT, 0.1, Release.FORCE, h)
+    >>> bool(np.all(many == restitution_in_steps(Scheme.SEMI_IMPLICIT, 0.1, Release.FORCE, 50)))
+    True
+
+    Beyond the limit of stability an impact gains energy:
+
+    >>> bool(impacts_in_steps(Scheme.SEMI_IMPLICIT, 0.1, Release.FORCE, 5.0).max() > 20)
+    True
+    """
+    zeta = float(damping_ratio)
+    matrix, lag = _step(scheme, 2 * zeta, step)
     start = np.asarray(fraction, dtype=float).ravel()
     grip = np.array([1.0, lag if release is Release.FORCE else 0.0])
-    state = np.stack([-h * start, -np.ones_like(start)])
-    further = 2 * steps
-    # A contact ends once within so many further steps, or the ball stays and r is -1. The number
-    # is halved by a power of the matrix.
+    state = np.stack([-step * start, -np.ones_like(start)])
+    steps = free_impact(zeta, release)[0] / step
+    if steps < FEWEST:
+        found = _step_by_step(matrix, grip, state, step)
+    else:
+        found = _by_powers(matrix, grip, state, 2 * round(steps))
+    return found.reshape(np.shape(fraction))
+
+
+def _by_powers(matrix: np.ndarray, grip: np.ndarray, state: np.ndarray, further: int) -> np.ndarray:
+    """Velocities at the end of contacts that end once within so many further steps."""
+    # The number of steps is halved by a power of the matrix.
     while further > 1:
         half = further // 2
-        later = np.linalg.matrix_power(step, half) @ state
+        later = np.linalg.matrix_power(matrix, half) @ state
         state = np.where(grip @ later < 0, later, state)
         further -= half
-    state = step @ state
-    return np.where(grip @ state < 0, -1.0, state[1]).reshape(np.shape(fraction))
+    state = matrix @ state
+    return np.where(grip @ state < 0, -1.0, state[1])
+
+
+# A ball that has not left within so many coarse steps does not leave.
+_PATIENCE = 200
+
+
+def _step_by_step(
+    matrix: np.ndarray, grip: np.ndarray, state: np.ndarray, step: float
+) -> np.ndarray:
+    """Velocities at the end of contacts of few steps, in which the force may stop and act again."""
+    free = np.array([[1.0, step], [0.0, 1.0]])
+    for _ in range(_PATIENCE):
+        inside = state[0] < 0
+        if not inside.any():
+            break
+        pushed = np.where(grip @ state < 0, matrix @ state, free @ state)
+        state = np.where(inside, pushed, state)
+    return np.where(state[0] < 0, -1.0, state[1])
+
+
+def is_stable(scheme: Scheme, damping_ratio: float, step: float) -> bool:
+    """Whether the steps h = ωΔt of a lasting contact do not grow: no eigenvalue of a step above 1.
+
+    For semi-implicit Euler the limit is ``h = 2(√(1 + ζ²) - ζ)``; the others have none.
+
+    Examples
+    --------
+    >>> [is_stable(Scheme.SEMI_IMPLICIT, 0.75, h) for h in (0.999, 1.001)]
+    [True, False]
+    """
+    matrix, _ = _step(scheme, 2 * float(damping_ratio), step)
+    return bool(np.abs(np.linalg.eigvals(matrix)).max() <= 1 + _ROUNDING)
 
 
 def error_in_steps(scheme: Scheme, damping_ratio: float, release: Release, steps: int) -> float:
@@ -234,11 +306,38 @@ def steps_for(scheme: Scheme, damping_ratio: float, release: Release, error: flo
     if last > error:
         return int(np.ceil(_ASYMPTOTIC * last / error))
     good = _ASYMPTOTIC
-    bad = _FEWEST - 1
+    bad = FEWEST - 1
     while good - bad > 1:
         # Halve until the number is bracketed, because the error at few steps follows no simple law.
-        middle = max(good // 2, bad + 1) if bad < _FEWEST else (good + bad) // 2
+        middle = max(good // 2, bad + 1) if bad < FEWEST else (good + bad) // 2
         if error_in_steps(scheme, damping_ratio, release, middle) <= error:
+            good = middle
+        else:
+            bad = middle
+    return good
+
+
+def fewest_steps(scheme: Scheme, damping_ratio: float, release: Release, error: float) -> float:
+    """The smallest real number of steps in a contact for which r is within an error.
+
+    The step of a simulation is given, and the contact is as stiff as it can be. The number is
+    between the whole numbers N - 1 and N of :func:`steps_for`, or eight.
+
+    Examples
+    --------
+    >>> round(fewest_steps(Scheme.SEMI_IMPLICIT, 0.1, Release.FORCE, 0.0025), 1)
+    98.3
+    """
+    good = float(steps_for(scheme, damping_ratio, release, error))
+    if good in (FEWEST, _ASYMPTOTIC) or good > _ASYMPTOTIC:
+        return good
+    duration = free_impact(damping_ratio, release)[0]
+    exact = free_impact(damping_ratio, release)[1]
+    bad = good - 1
+    while good - bad > _FINE:
+        middle = (good + bad) / 2
+        computed = impacts_in_steps(scheme, damping_ratio, release, duration / middle)
+        if np.max(np.abs(computed - exact)) <= error:
             good = middle
         else:
             bad = middle

@@ -30,6 +30,10 @@ _TWO = np.array(2.0)
 # Below the first exponent e^x is 0; above the second it is not computed.
 _LEAST_EXPONENT = np.array(-746.0)
 _LARGEST_EXPONENT = np.array(709.0)
+# The bits of a double: the smallest power of two, its bias, and the number of places below it.
+_LEAST_POWER = np.array(-1023.0)
+_BIAS = np.array(1023)
+_PLACES = np.array(52)
 
 
 def _arrays(*rows: Sequence[float]) -> list[list[np.ndarray]]:
@@ -111,7 +115,7 @@ def sine_and_cosine(angle: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     ([0.0, 0.0], [1.0, -1.0])
     """
     sine, versine = sine_and_versine(angle)
-    return sine, 1 - versine
+    return sine, _ONE - versine
 
 
 def exponential(x: ArrayLike) -> np.ndarray:
@@ -129,7 +133,7 @@ def exponential(x: ArrayLike) -> np.ndarray:
     odd = rest * _polynomial(_EXP[0], square)
     value = _ONE + _TWO * (odd / (_polynomial(_EXP[1], square) - odd))
     # 2^power is assembled from its bits.
-    scale = ((np.maximum(power, -1023.0).astype(np.int64) + 1023) << 52).view(np.float64)
+    scale = ((np.maximum(power, _LEAST_POWER).astype(np.int64) + _BIAS) << _PLACES).view(np.float64)
     return value * scale
 
 

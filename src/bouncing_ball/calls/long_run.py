@@ -98,7 +98,7 @@ def motion_of(
     amplitude: Amplitude,
     phase: State = 0.0,
     velocity: State = -math.pi,
-    impacts: Followed = 4000,
+    impacts: Followed = 1500,
 ) -> LongRun:
     """The motion on which a ball ends, after a first impact as in
     :func:`bouncing_ball.simulate`.
@@ -154,7 +154,7 @@ def lyapunov_exponent(
     amplitude: Amplitude,
     phase: State = 0.0,
     velocity: State = -math.pi,
-    impacts: Followed = 4000,
+    impacts: Followed = 1500,
 ) -> Exponents:
     """The largest Lyapunov exponent of the motion on which a ball ends, per period of the table.
 

@@ -22,7 +22,7 @@ _AMPLITUDES = count(100_000, low=2)
 
 def motion_options(parser: Parser) -> None:
     """Add the options of :func:`motion`."""
-    add_start(parser, FOLLOWED, meanings(long_run.motion_of), impacts=4000)
+    add_start(parser, FOLLOWED, meanings(long_run.motion_of), impacts=1500)
     add_ball(parser)
 
 

@@ -98,8 +98,9 @@ class Stretching(NamedTuple):
         """
         self.section_growth[:] += grown
         self.growth[:] += grown
-        for values in (self.growth, self.least, self.lowest):
-            values[forgot] = 0
+        if forgot.size:
+            for values in (self.growth, self.least, self.lowest):
+                values[forgot] = 0
         np.minimum(self.least, self.growth, out=self.least)
         np.maximum(self.most, self.growth - self.least, out=self.most)
         np.minimum(self.lowest, self.growth, out=self.lowest)

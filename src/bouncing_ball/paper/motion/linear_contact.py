@@ -256,7 +256,7 @@ class LinearContactDynamics(ResumingDynamics):
 
     def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
         """The end of each contact, or permanent contact if it is proved never to end."""
-        x, y = table(impact.phase, self.amplitude)
+        x, y = self.table_at(impact)
         kind = ClosedFormMotion if self._has_closed_form else ResonantMotion
         motion = kind(self.law, self.amplitude, impact.displacement, impact.velocity, x, y)
         end = first_zero(motion, motion.earliest_release())
@@ -300,7 +300,7 @@ class LinearContactDynamics(ResumingDynamics):
         def acceleration(displacement, velocity, y):
             return (y - _ONE) - loss * velocity - stiffness * displacement
 
-        _, y = table(impact.phase, self.amplitude)
+        _, y = self.table_at(impact)
         rate = impact.velocity
         speed = flight.velocity
         first = acceleration(impact.displacement, rate, y)

@@ -127,7 +127,7 @@ class RestitutionDynamics(Dynamics):
         """The flight after each impact (Eq. 2), or the rest on the table after chattering."""
         r, _ = self._rebound_of(impact)
         velocity = -r * impact.velocity
-        x, y = table(impact.phase, self.amplitude)
+        x, y = self.table_at(impact)
         none = np.zeros(x.shape)
         flight = Flight(none, velocity, x, y, self.amplitude)
         sticks, settling = chattering(velocity, r, x, y, self.amplitude)

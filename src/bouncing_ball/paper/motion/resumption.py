@@ -120,4 +120,4 @@ class ResumingDynamics(Dynamics):
             time[resumed] = start[resumed]
             displacement[resumed], velocity[resumed], *_ = (x[resumed] for x in flight.gap(time))
         impact = Impact(reduce_angle(departure.phase + time), displacement, velocity)
-        return impact, departure.duration + time
+        return self.with_table(impact), departure.duration + time

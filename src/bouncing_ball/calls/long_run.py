@@ -192,7 +192,7 @@ def orbit_diagram(
     amplitudes: Amplitude,
     starts: Samples = 6,
     samples: Samples = 64,
-    impacts: Followed = 1000,
+    impacts: Followed = 300,
 ) -> OrbitDiagram:
     """The attractors over Λ, reached from several starts and by following balls in Λ.
 

@@ -47,7 +47,7 @@ def diagram_options(parser: Parser) -> None:
     add_file(parser, "plot", "A figure: .pdf, .png or .svg.")
     add_number(parser, "starts", SAMPLES, texts["starts"], default=6)
     add_number(parser, "samples", SAMPLES, texts["samples"], default=64)
-    add_number(parser, "impacts", FOLLOWED, texts["impacts"], default=1000)
+    add_number(parser, "impacts", FOLLOWED, texts["impacts"], default=300)
     add_ball(parser)
 
 

@@ -68,8 +68,7 @@ class LongTransients(Nodes):
 
 def seems_chaotic(found: Motions) -> np.ndarray:
     """Whether doubles show no repetition, but an exponential growth of deviations."""
-    unresolved = (found.kind == Kind.LOCKED) & (found.periods == 0)
-    return unresolved | (found.kind == Kind.CHAOTIC)
+    return found.is_unresolved() | (found.kind == Kind.CHAOTIC)
 
 
 def transients_at_nodes(parameters: LongTransients, part: Part = np.asarray) -> Arrays:

@@ -108,7 +108,7 @@ def store_ends(found: Motions, balls: Balls, impact: Impact, going: np.ndarray) 
     phase = impact.phase[last]
     relative = impact.velocity[last]
     # The computed lap of a ball that locks on an unknown period is not the true one.
-    unresolved = (found.kind[lane] == Kind.LOCKED) & (found.periods[lane] == 0)
+    unresolved = found.is_unresolved()[lane]
     phase = np.where(unresolved, balls.sticking.phase[last], phase)
     relative = np.where(unresolved, balls.sticking.velocity[last], relative)
     phase[found.kind[lane] == Kind.PERMANENT_CONTACT] = np.nan

@@ -16,6 +16,7 @@ from bouncing_ball.beyond.exhibits.motion_maps import (
     PERIODS,
     RATES,
     draw_shares,
+    kinds_shown,
     legend_of_kinds,
     node_map,
 )
@@ -28,6 +29,7 @@ def locking(data: xr.Dataset) -> Figure:
     """Period of the locked orbit and largest exponent over (Λ, r) for each model; below, the share
     of nodes on which the contact agrees with each simple model along ϖ.
     """
+    data = data.assign(kind=kinds_shown(data))
     figure, (maps, exponents, below) = stacked(8.0, (2.8, 2.8, 2.4))
     kinds = maps.subplots(1, data.sizes["model"], sharex=True, sharey=True)
     rates = exponents.subplots(1, data.sizes["model"], sharex=True, sharey=True)

@@ -122,8 +122,6 @@ def record(path: np.ndarray, balls: Balls, impact: Impact) -> None:
     path[:, balls.seen, balls.lane] = balls.time, impact.phase, velocity
 
 
-def absolute_velocity(
-    phase: np.ndarray, relative: np.ndarray, amplitude: np.ndarray
-) -> np.ndarray:
+def absolute_velocity(phase: np.ndarray, relative: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
     """z′ of balls with δ′ at phases of the table; NaN where the phase is NaN."""
     return relative + table(phase, amplitude)[0]

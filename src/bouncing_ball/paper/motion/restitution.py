@@ -31,7 +31,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.paper.contact.damping import check_restitution
 from bouncing_ball.paper.motion.deviations import Deviation, Jacobian
 from bouncing_ball.paper.motion.dynamics import Departure, Dynamics, Impact
-from bouncing_ball.paper.motion.flight import Flight, table
+from bouncing_ball.paper.motion.flight import Flight
 from bouncing_ball.paper.motion.sticking import lifted, pressed, stay
 
 # Bound of Λ T₀/g and T₀/g below which chattering is summed up.

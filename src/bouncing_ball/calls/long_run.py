@@ -113,7 +113,8 @@ def motion_of(
     velocity : float or array
         Absolute velocity of the ball before the first impact.
     impacts : int
-        Number of impacts after which the search for a repetition ends.
+        Number of impacts after which the search for a repetition ends. With more of them, long
+        transients before a motion that repeats are not called chaotic.
 
     Returns
     -------
@@ -121,8 +122,10 @@ def motion_of(
         ``kind``, one of "orbit", "subharmonic", "locked", "permanent contact", "chaotic" and
         "undecided" (:class:`bouncing_ball.beyond.long_run.motions.Kind`), the ``periods`` of the
         table and the ``impacts`` until the motion repeats, its ``lyapunov_exponent`` per period of
-        the table with ``lyapunov_error``, the ``reason`` if it is undecided, and one of its
-        impacts.
+        the table with ``lyapunov_error``, the ``reason`` if it is undecided or if it is locked with
+        an unknown period, and one of its impacts. ``followed`` is the number of impacts for which
+        it was followed, and ``digits_lost`` the number of decimal digits of the start that were
+        lost on the way: a double has 16.
 
     Raises
     ------

@@ -19,6 +19,7 @@ from bouncing_ball.beyond.exhibits.motion_samples import (
     with_limits,
 )
 from bouncing_ball.beyond.long_run.destination import final_motions
+from bouncing_ball.beyond.long_run.grids import VARIABLES as OF_GRIDS
 from bouncing_ball.beyond.long_run.many_digits import Table
 from bouncing_ball.beyond.long_run.motions import Kind, Motions
 from bouncing_ball.datasets.parameters import LossyRestitution, Many, Seed, number
@@ -27,7 +28,6 @@ from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
 
 VARIABLES = {
-    "followed": Variable("number of impacts for which balls are followed"),
     "band": Variable("range of restitution coefficients"),
     "band_nodes": Variable("nodes of the range at which the ball seems chaotic"),
     "band_low": Variable("lower end of the range of restitution coefficients", symbol="r"),
@@ -178,7 +178,7 @@ def long_transients(parameters: LongTransients, found: Found = None) -> xr.Datas
             "lap_digits": ("sample", found["lap_digits"][sample]),
         },
         coords={"followed": list(parameters.followed)},
-        variables=VARIABLES,
+        variables=VARIABLES | {"followed": OF_GRIDS["followed"]},
     )
 
 

@@ -151,11 +151,11 @@ def mean_motions(parameters: MeanMotions, release: Release, found: Found = None)
     ``mean_error`` (simple, mean, ϖ, restitution, amplitude) is (contact - simple)/simple of the
     power, height, flights per period and exponent, and ``mean_margin`` half the width of its
     interval. The margin is infinite where a ball is locked and rounding errors decide on the
-    period, because the means are then over another lap than the true one. ``needed_ratio`` (simple,
-    mean, restitution, amplitude) is the smallest of the given ϖ above which all errors are within the
-    tolerance, NaN where ``decision`` is not "from this on"; see :data:`DECISIONS`. ``right``
-    (simple, mean, ϖ) is the share of the nodes at which the mean is known to be accurate above this
-    ϖ, among the nodes where the value of the simple model is finite. ``right_low`` and
+    period, because the means are then over another lap than the true one. ``needed_ratio``
+    (simple, mean, restitution, amplitude) is the smallest of the given ϖ above which all errors are
+    within the tolerance, NaN where ``decision`` is not "from this on"; see :data:`DECISIONS`.
+    ``right`` (simple, mean, ϖ) is the share of the nodes at which the mean is known to be accurate
+    above this ϖ, among the nodes where the value of the simple model is finite. ``right_low`` and
     ``right_high`` are its Wilson limits, and ``right_nodes`` is the number of nodes.
     """
     ratios = np.array(parameters.frequency_ratio)

@@ -62,11 +62,13 @@ def long_periods_differ(data):
 
 @claim("locking")
 def prediction_ranks(data):
-    """S/W ranks random places by the ϖ from which on the contact has their locked orbit
+    """max(S/W, P) ranks random places by the ϖ from which on the contact has their locked orbit
 
     Condition: the rank correlation is above 0.9
     """
-    return decided(limits(data["ext_locked"], "rank_correlation", predictor="S/w"), above=0.9)
+    return decided(
+        limits(data["ext_locked"], "rank_correlation", predictor="max(S/w, P)"), above=0.9
+    )
 
 
 @claim("locking")

@@ -203,13 +203,15 @@ def test_chaos_has_the_exponent_of_the_paths_side_by_side(law):
     assert grown.size > 0.9 * balls
     rates = 2 * np.pi * grown / time
     found = final_motions(law, lam, np.linspace(-3, 3, 28), -9.0, impacts=500)
-    assert set(found.kind) == {Kind.CHAOTIC}
-    error = np.hypot(
-        np.std(rates) / np.sqrt(rates.size), np.mean(found.exponent_error) / np.sqrt(28)
-    )
-    assert abs(np.mean(found.exponent) - 2 * np.pi * grown.sum() / time.sum()) < 5 * error
+    # A ball that has stuck once has an exponent of its few impacts since then only.
+    chaotic = found.kind == Kind.CHAOTIC
+    assert chaotic.sum() >= 26 and set(found.kind) <= {Kind.CHAOTIC, Kind.UNDECIDED}
+    exponent = found.exponent[chaotic]
+    of_one = np.mean(found.exponent_error[chaotic])
+    error = np.hypot(np.std(rates) / np.sqrt(rates.size), of_one / np.sqrt(exponent.size))
+    assert abs(np.mean(exponent) - 2 * np.pi * grown.sum() / time.sum()) < 5 * error
     # And its error is that by which the balls differ.
-    assert 0.4 < np.std(found.exponent, ddof=1) / np.mean(found.exponent_error) < 2
+    assert 0.4 < np.std(exponent, ddof=1) / of_one < 2
 
 
 def test_the_last_digit_of_the_start_decides_only_where_the_others_are_lost():

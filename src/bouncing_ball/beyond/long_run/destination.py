@@ -259,14 +259,15 @@ def _advance(
     sticking.number[:] += sticks
     grown = stretch.grow(change)
     forgot = stretch.forgetting(grown, sticks)
-    first = forgot
     if forgot.size:
         again = forgot[sticking.impact[forgot] >= 0]
         balls.doubt[again[stretch.lost()[again]]] = ROUNDING
         first = sticking.store(forgot, impact, balls.seen)
     balls.seen[:] += 1
     balls.time[:] += passed
-    stretch.add(grown, forgot, first, balls.time, balls.seen)
+    stretch.add(grown, forgot, balls.time, balls.seen)
+    if forgot.size:
+        stretch.restart(first, balls.time)
 
 
 def _ending(

@@ -6,8 +6,8 @@ growth to the mean time, over sections of 32 impacts, so that its standard error
 
 The digits that a motion has lost follow from the same growth. They are counted anew when the ball
 forgets: when a contact shrinks the deviation so far that less than a rounding error is left of its
-growth. The exponent contains these contractions, except for the first: a ball that sticks once may
-be on the way to a motion that does not stick.
+growth. The exponent contains these contractions, except for the first, because what was before it
+does not belong to the motion on which the ball ends.
 """
 
 from typing import NamedTuple, Self
@@ -89,25 +89,18 @@ class Stretching(NamedTuple):
         return np.flatnonzero(sticks & (self.growth + grown < self.least - DIGITS))
 
     def add(
-        self,
-        grown: np.ndarray,
-        forgot: np.ndarray,
-        first: np.ndarray,
-        time: np.ndarray,
-        seen: np.ndarray,
+        self, grown: np.ndarray, forgot: np.ndarray, time: np.ndarray, seen: np.ndarray
     ) -> None:
         """Add the growth at an impact.
 
-        ``forgot`` are the indices of the balls that forget there, ``first`` of those that do so for
-        the first time; ``time`` and ``seen`` are the time of the impact and its number.
+        ``forgot`` are the indices of the balls that forget there, ``time`` and ``seen`` the time of
+        the impact and its number.
         """
         self.section_growth[:] += grown
         self.growth[:] += grown
         if forgot.size:
             for values in (self.growth, self.least, self.lowest):
                 values[forgot] = 0
-            self.section_growth[first] = 0
-            self.section_start[first] = time[first]
         np.minimum(self.least, self.growth, out=self.least)
         np.maximum(self.most, self.growth - self.least, out=self.most)
         np.minimum(self.lowest, self.growth, out=self.lowest)
@@ -121,6 +114,12 @@ class Stretching(NamedTuple):
             terms = np.stack([np.ones_like(t), g, t, g * g, g * t, t * t], axis=1)
             counts = seen[at] > _TRANSIENT * _BATCH
             self.sums[at[counts]] += terms[counts]
+
+    def restart(self, which: np.ndarray, time: np.ndarray) -> None:
+        """Begin the exponent again for balls that have forgotten for the first time."""
+        self.section_growth[which] = 0
+        self.section_start[which] = time[which]
+        self.sums[which] = 0
 
     def lost(self) -> np.ndarray:
         """Whether a rounding error has grown too much since the ball last forgot."""

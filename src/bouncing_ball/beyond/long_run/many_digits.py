@@ -95,11 +95,14 @@ class Table(NamedTuple):
 
         Examples
         --------
-        The locked orbit of 13 periods, and one of which doubles find another:
+        A locked orbit that doubles find as well, and one on which 195 digits are lost:
 
         >>> stop = Table(0.6, 3.0).after_lift_off(100)
         >>> stop.impacts, round(stop.time / (2 * math.pi))
-        (40, 13)
+        (33, 13)
+        >>> stop = Table(0.4, 2.1).after_lift_off(400)
+        >>> stop.impacts, round(stop.time / (2 * math.pi))
+        (311, 259)
         """
         return self._sticking(impacts, None)
 

@@ -21,6 +21,9 @@ PLACES = {
     # Here a ball ends on another motion if it starts from the fourth amplitude beside its own.
     "ext_diagram": {"restitution": 0.2, "amplitude": HIGH, "samples": 10},
     "ext_locking": GRID,
+    "ext_chaos": GRID
+    | {"restitution": {"min": 0.5, "max": 0.6, "samples": 2}}
+    | {"followed": [200, 300], "bands": [0.55], "resolved": 1.0, "resolved_impacts": 200},
     "ext_means": GRID | {"starts": 5, "samples": 10},
     "ext_locked": LOW | {"nodes": 20},
     "ext_lives": {"balls": 12, "impacts": 50},

@@ -47,7 +47,7 @@ def locking(data: xr.Dataset) -> Figure:
     bar: Look = {"location": "bottom", "aspect": 60, "shrink": 0.6, "extend": "both"}
     label = r"largest Lyapunov exponent $\lambda$ per period of the table"
     exponents.colorbar(shown, ax=list(rates), label=label, **bar)
-    legend_below(maps, legend_of_kinds(data), ncols=7, fontsize=7)
+    legend_below(maps, legend_of_kinds(data), ncols=5, fontsize=7)
     title = "contact against the {} model"
     draw_shares(below, data, "agreement", "motion_group", GROUP_LOOKS, title)
     below.axes[0].set_ylabel("share of nodes with the\nsame kind and period")

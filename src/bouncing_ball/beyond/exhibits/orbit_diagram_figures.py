@@ -11,8 +11,8 @@ from bouncing_ball.drawing.labels import parameters
 from bouncing_ball.drawing.style import GUIDE, MODELS, Look
 
 # Area of a point in square points, and the largest share of the impacts whose point is not black.
-_POINT = 0.35
-_DARK = 0.25
+_POINT = 0.25
+_DARK = 0.1
 
 
 def orbit_diagrams(data: xr.Dataset) -> Figure:
@@ -50,8 +50,8 @@ def _draw_phases(axes: Axes, one: xr.Dataset) -> None:
         one.bin_phase.values[phase] / np.pi,
         s=_POINT,
         c=shade,
-        cmap="gist_heat_r",
-        vmin=-0.25,
+        cmap="binary",
+        vmin=-0.5,
         vmax=1.0,
         linewidths=0,
         rasterized=True,

@@ -1,5 +1,6 @@
 """The dataset of a study is the same, to the last bit, from three shards as from one job."""
 
+from inspect import signature
 from pathlib import Path
 
 import pytest
@@ -37,6 +38,8 @@ def test_shards_give_the_dataset_of_one_job(name, recorded, tmp_path, refusal):
     places = typed(function(artifact.module, artifact.places))
     study = typed(STUDIES[name])
     given = {"parameters": GIVEN[name] | PLACES[name], "release": "displacement"}
+    # The restitution model has no release.
+    given = {key: given[key] for key in given.keys() & signature(places).parameters.keys()}
     parts = []
     read = {"data": recorded} if artifact.reads else {}
     for shard in shard_names(3):

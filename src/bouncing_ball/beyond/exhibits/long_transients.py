@@ -83,8 +83,9 @@ def transients_at_nodes(parameters: LongTransients, part: Part = np.asarray) -> 
         are -1 at all other nodes.
     """
     random = np.random.default_rng(parameters.seed)
-    drawn = random.random(parameters.places().shape[1]) < parameters.resolved
-    r, lam, drawn = part(np.concatenate([parameters.places(), drawn[np.newaxis]]))
+    places = parameters.places()
+    drawn = np.where(random.random(places.shape[1]) < parameters.resolved, 1.0, 0.0)
+    r, lam, drawn = part(np.vstack([places, drawn]))
     phase = parameters.phase
     velocity = lam * np.cos(phase) - parameters.impact_speed
     few = min(parameters.followed)
@@ -137,9 +138,9 @@ def long_transients(parameters: LongTransients, found: Found = None) -> xr.Datas
     exponential growth of deviations. ``locked_share`` (band, followed) is the share of these balls
     that have stuck twice within so many impacts, for all r and for ranges of r from ``band_low`` to
     ``band_high``, and ``band_nodes`` (band) is their number. A random sample of them is followed
-    with as many digits as needed: ``resolved_share`` is the share that has stuck twice within
-    ``resolved_impacts``, and ``double_share`` the share of the same balls by doubles. Each has a
-    lower and an upper limit, ``_low`` and ``_high``. Over ``sample`` there are ``restitution``,
+    with as many digits as needed: ``resolved_share`` is the share that is known to have stuck twice
+    within ``resolved_impacts``, and ``double_share`` the share of the same balls by doubles. Each
+    has a lower and an upper limit, ``_low`` and ``_high``. Over ``sample`` there are ``restitution``,
     ``amplitude``, and the results with many digits: ``lap_impacts`` until the ball has stuck twice,
     the ``lap_periods`` of the locked orbit and the ``lap_digits`` lost in it.
     """

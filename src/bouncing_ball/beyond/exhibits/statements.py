@@ -146,7 +146,7 @@ def seeming_chaos_locks(data):
     """
     followed = data["ext_chaos"].sel(followed=10000)
     inside = followed.where((followed.band_low >= 0.5) & (followed.band_high <= 0.8), drop=True)
-    fewest = inside.isel(band=int(inside.locked_share.argmin()))
+    fewest = inside.isel(band=int(inside.locked_share.argmin("band")))
     return decided(limits(fewest, "locked_share"), above=0.9)
 
 

@@ -179,8 +179,8 @@ class Table(NamedTuple):
 
     def _in_doubles(self, ball: _Ball) -> float:
         """The landing of a ball whose state is rounded to doubles."""
-        row = (np.array([float(value.mid())]) for value in (ball.rate, ball.x, ball.y))
-        flight = Flight(np.zeros(1), *row, self.amplitude)
+        rate, x, y = (np.array([float(value.mid())]) for value in (ball.rate, ball.x, ball.y))
+        flight = Flight(np.zeros(1), rate, x, y, self.amplitude)
         return float(land(flight, flight.earliest_landing()).time[0])
 
     def _settling(self, ball: _Ball) -> float | None:

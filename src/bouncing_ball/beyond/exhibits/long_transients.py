@@ -35,7 +35,6 @@ VARIABLES = {
     "locked_share": Variable("share of the balls that seem chaotic and lock within these impacts"),
     "locked_share_low": Variable("lower limit of the confidence interval of the share that locks"),
     "locked_share_high": Variable("upper limit of the confidence interval of the share that locks"),
-    "sample": Variable("node at which the ball is followed with many digits"),
     "lap_periods": Variable("periods of the locked orbit by many digits, 0 if none was found"),
     "lap_impacts": Variable("impacts until the ball locks by many digits, 0 if it did not"),
     "lap_digits": Variable("decimal digits that are lost in one period of the locked orbit"),
@@ -140,9 +139,10 @@ def long_transients(parameters: LongTransients, found: Found = None) -> xr.Datas
     ``band_high``, and ``band_nodes`` (band) is their number. A random sample of them is followed
     with as many digits as needed: ``resolved_share`` is the share that is known to have stuck twice
     within ``resolved_impacts``, and ``double_share`` the share of the same balls by doubles. Each
-    has a lower and an upper limit, ``_low`` and ``_high``. Over ``sample`` there are ``restitution``,
-    ``amplitude``, and the results with many digits: ``lap_impacts`` until the ball has stuck twice,
-    the ``lap_periods`` of the locked orbit and the ``lap_digits`` lost in it.
+    has a lower and an upper limit, ``_low`` and ``_high``. Over ``sample``, the nodes of this
+    sample, there are ``restitution``, ``amplitude``, and the results with many digits:
+    ``lap_impacts`` until the ball has stuck twice, the ``lap_periods`` of the locked orbit and the
+    ``lap_digits`` lost in it.
     """
     found = found or transients_at_nodes(parameters)
     level = parameters.confidence

@@ -23,7 +23,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 # Targets run one after another, because clean, run and compare share results/.
 .NOTPARALLEL:
-.PHONY: all setup lint test quick test-cluster test-long setup-engines test-engines docs test-docs gallery mutants diff accept report clean ci setup-newest newest config-docs lock
+.PHONY: all setup lint test quick test-cluster test-long setup-engines test-engines docs test-docs gallery mutants diff accept samples report clean ci setup-newest newest config-docs lock
 
 all: $(SETUP)
 	$(BIN)/snakemake --cores 2 $(QUIETLY)
@@ -115,6 +115,13 @@ diff: $(SETUP)
 export ONLY
 accept: $(SETUP)
 	$(BIN)/snakemake --cores 1 accept $(QUIETLY)
+
+# Make the accepted samples of motions in config/ again, or only some, as in ONLY=ext_means. They
+# take some minutes each.
+SAMPLES = $(or $(ONLY),ext_basins ext_chaos ext_diagram ext_lives ext_locking ext_means)
+samples: $(SETUP)
+	$(BIN)/snakemake --cores 2 $(SAMPLES:%=results/figures/%.nc) $(QUIETLY)
+	cp $(SAMPLES:%=results/figures/%.nc) config/
 
 report: all
 	$(BIN)/snakemake --report results/report.html

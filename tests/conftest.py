@@ -164,14 +164,10 @@ def coarse():
     At their whole size they are compared with the record by `make diff`, and weekly.
     """
     return {
-        ("ext_basins", "starts"): 20,
-        ("ext_basins", "random"): 100,
         ("ext_cascades", "samples"): 5,
         ("ext_cascades", "doublings"): 4,
-        ("ext_diagram", "samples"): 10,
         ("ext_laws", "samples"): 4,
         ("ext_locked", "nodes"): 15,
-        ("ext_locking", "samples"): 6,
     }
 
 

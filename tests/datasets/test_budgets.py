@@ -29,7 +29,7 @@ MOVED = ("restitution", "amplitude", "amplitude_max")
 # sweep at round ϖ, too; and openings are followed from ϖ to ϖ as far as Newton's method converges.
 NOT_NESTED = (
     *("ext_orders", "explorer", "formulas", "fig07", "fig12", "fig13", "ext_instant"),
-    *("ext_flights", "ext_locking", "ext_diagram", "ext_means", "ext_locked"),
+    *("ext_flights", "ext_locked"),
 )
 
 
@@ -87,13 +87,13 @@ def results(coarse, recorded):
     found = {}
     for artifact, study in STUDIES.items():
         made = typed(study)
-        # What is made of other datasets moves as they do, but for one; two take minutes.
+        # What is made of other datasets moves as they do, but for one; samples take minutes.
         reads = "data" in inspect.signature(study).parameters and artifact != "ext_locked"
-        if reads or artifact in ("ext_means", "ext_lives"):
+        if reads or ARTIFACTS[artifact].accepted:
             continue
-        # The last doublings move most, and a share of 36 exponents decides nothing.
+        # The last doublings move most.
         fewer = {key: number for (name, key), number in coarse.items() if name == artifact}
-        fewer = {} if artifact in ("ext_cascades", "ext_diagram") else fewer
+        fewer = {} if artifact == "ext_cascades" else fewer
         given = mapped(
             arguments(study, ARTIFACTS[artifact].wing, artifact, RUN),
             lambda key, x, fewer=fewer: fewer.get(key, x),

@@ -1,7 +1,7 @@
 # The stages beyond the paper, in the same form as those of the paper. `places`, if a study can be
 # divided into shards, is the function that computes the arrays of some of its places. A dataset
-# with `accepted` is not part of a run: figures and texts read this file, and
-# `snakemake results/figures/NAME.nc` makes it again if it has a study.
+# with `accepted` is not part of a run: figures and texts read this file. If it has a study, it is a
+# sample that takes longer than a run should, and `make samples ONLY=NAME` makes it again.
 
 # Datasets that no study makes: what physics engines computed (`make test-engines`), and the summary
 # of the atlas (workflow/rules/atlas.smk).
@@ -98,6 +98,7 @@ use rule study as orbit_diagram with:
                 study="orbit_diagrams",
                 places="phases_of_impacts",
                 drawing="orbit_diagrams",
+                accepted="config/ext_diagram.nc",
             ),
         ),
 
@@ -112,6 +113,21 @@ use rule study as locking with:
                 study="locking",
                 places="motions_at_nodes",
                 drawing="locking",
+                accepted="config/ext_locking.nc",
+            ),
+        ),
+
+
+use rule study as long_transients with:
+    """Whether balls that seem chaotic lock after long transients."""
+    wildcard_constraints:
+        artifact=stage(
+            "beyond.exhibits.long_transients",
+            ext_chaos=dict(
+                title="How many balls of the restitution model that seem chaotic lock after long transients",
+                study="long_transients",
+                places="transients_at_nodes",
+                accepted="config/ext_chaos.nc",
             ),
         ),
 
@@ -147,6 +163,7 @@ use rule study as basins with:
                 study="basins",
                 places="destinations",
                 drawing="basins",
+                accepted="config/ext_basins.nc",
             ),
         ),
 
@@ -231,6 +248,7 @@ use rule study as statements_study with:
                 study="statements",
                 reads=(
                     "ext_locking",
+                    "ext_chaos",
                     "ext_locked",
                     "ext_lives",
                     "ext_cascades",

@@ -52,6 +52,8 @@ rule study:
         study=lambda w: ARTIFACTS[w.artifact].study,
         title=lambda w: ARTIFACTS[w.artifact].title,
         arguments=lambda w: arguments_of(ARTIFACTS[w.artifact]),
+        # An accepted sample is in the repository.
+        compressed=lambda w: ARTIFACTS[w.artifact].accepted is not None,
     log:
         "results/logs/stages/{artifact}.log",
     script:

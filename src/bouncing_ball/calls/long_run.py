@@ -101,7 +101,7 @@ def motion_of(
     amplitude: Amplitude,
     phase: State = 0.0,
     velocity: State = -math.pi,
-    impacts: Followed = 4000,
+    impacts: Followed = 1500,
 ) -> LongRun:
     """The motion on which a ball ends, after a first impact as in
     :func:`bouncing_ball.simulate`.
@@ -116,7 +116,8 @@ def motion_of(
     velocity : float or array
         Absolute velocity of the ball before the first impact.
     impacts : int
-        Number of impacts after which the search for a repetition ends.
+        Number of impacts after which the search for a repetition ends. With more of them, long
+        transients before a motion that repeats are not called chaotic.
 
     Returns
     -------
@@ -124,8 +125,10 @@ def motion_of(
         ``kind``, one of "orbit", "subharmonic", "locked", "permanent contact", "chaotic" and
         "undecided" (:class:`bouncing_ball.beyond.long_run.motions.Kind`), the ``periods`` of the
         table and the ``impacts`` until the motion repeats, its ``lyapunov_exponent`` per period of
-        the table with ``lyapunov_error``, the ``reason`` if it is undecided, and one of its
-        impacts.
+        the table with ``lyapunov_error``, the ``reason`` if it is undecided or if it is locked with
+        an unknown period, and one of its impacts. ``followed`` is the number of impacts for which
+        it was followed, and ``digits_lost`` the number of decimal digits of the start that were
+        lost on the way: a double has 16.
 
     Raises
     ------
@@ -157,7 +160,7 @@ def lyapunov_exponent(
     amplitude: Amplitude,
     phase: State = 0.0,
     velocity: State = -math.pi,
-    impacts: Followed = 4000,
+    impacts: Followed = 1500,
 ) -> Exponents:
     """The largest Lyapunov exponent of the motion on which a ball ends, per period of the table.
 
@@ -195,7 +198,7 @@ def orbit_diagram(
     amplitudes: Amplitude,
     starts: Samples = 6,
     samples: Samples = 64,
-    impacts: Followed = 1000,
+    impacts: Followed = 300,
 ) -> OrbitDiagram:
     """The attractors over Λ, reached from several starts and by following balls in Λ.
 

@@ -200,8 +200,10 @@ COMMANDS = {
         text=(
             "The motion is an orbit, if it repeats; subharmonic, if it repeats only after a "
             "multiple of the period of an orbit, as beyond a period doubling; locked, if it "
-            "repeats and the ball sticks to the table in between; permanent contact; chaotic, if "
-            "it never repeats; or undecided."
+            "repeats and the ball sticks to the table in between, with 0 periods if rounding "
+            "errors decide on their number; permanent contact; chaotic, if it has not repeated as "
+            "long as it was followed and its neighbours separate; or undecided. Without --phase "
+            "and --velocity the shares of other starts that end on each motion are listed too."
         ),
         examples=(
             "motion --amplitude 1.1 --restitution 0.85",

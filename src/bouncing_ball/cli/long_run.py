@@ -8,34 +8,74 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball.calls import long_run
-from bouncing_ball.calls.arguments import AMPLITUDE, FOLLOWED, SAMPLES
+from bouncing_ball.calls.arguments import AMPLITUDE, FOLLOWED, SAMPLES, STATE
+from bouncing_ball.calls.balls import Ball
 from bouncing_ball.cli.impact import add_ball, ball_of
 from bouncing_ball.cli.options import Parser, add_file, add_interval, add_number, meanings
 from bouncing_ball.cli.periodic import Answer
-from bouncing_ball.cli.simulate import add_start
 from bouncing_ball.datasets.files import PICTURES, require_writable
 from bouncing_ball.errors import ParameterError, count
 
 _MOTION = ("kind", "periods", "impacts", "reason")
 _AMPLITUDES = count(100_000, low=2)
+# The start of a ball if none is given: the phase, and the absolute velocity before the impact.
+_START = {"phase": 0.0, "velocity": -math.pi}
+# Other starts, along each axis, and the impacts for which each of their balls is followed.
+_OTHER_STARTS = 10
+_FOLLOWED = 300
 
 
 def motion_options(parser: Parser) -> None:
     """Add the options of :func:`motion`."""
-    add_start(parser, FOLLOWED, meanings(long_run.motion_of), impacts=4000)
+    texts = meanings(long_run.motion_of)
+    add_number(parser, "amplitude", AMPLITUDE, texts["amplitude"], required=True)
+    add_number(parser, "phase", STATE, f"{texts['phase']} By default 0.")
+    add_number(parser, "velocity", STATE, f"{texts['velocity']} By default -π.")
+    add_number(parser, "impacts", FOLLOWED, texts["impacts"], default=1500)
     add_ball(parser)
 
 
 def motion(
-    *, amplitude: float, phase: float, velocity: float, impacts: int, **impact: Any
+    *,
+    amplitude: float,
+    phase: float | None,
+    velocity: float | None,
+    impacts: int,
+    **impact: Any,
 ) -> Answer:
-    """The motion on which the ball ends, with null for an exponent that is infinite or unknown."""
-    found = long_run.motion_of(
-        ball_of(**impact), amplitude=amplitude, phase=phase, velocity=velocity, impacts=impacts
-    )
-    exponents = {name: float(found[name]) for name in ("lyapunov_exponent", "lyapunov_error")}
+    """The motion on which the ball ends, with null for an exponent that is infinite or unknown.
+
+    Without a start, the answer names the start that was taken, and the motions on which balls with
+    other starts end, with their shares.
+    """
+    ball = ball_of(**impact)
+    given = {"phase": phase, "velocity": velocity}
+    start = _START | {name: x for name, x in given.items() if x is not None}
+    found = long_run.motion_of(ball, amplitude=amplitude, impacts=impacts, **start)
     answer: Answer = {name: x for name in _MOTION if (x := found[name].item()) != ""}
-    return answer | {name: x if math.isfinite(x) else None for name, x in exponents.items()}
+    exponents = {name: float(found[name]) for name in ("lyapunov_exponent", "lyapunov_error")}
+    answer |= {name: x if math.isfinite(x) else None for name, x in exponents.items()}
+    answer["impacts_followed"] = found.followed.item()
+    lost = found.digits_lost.item()
+    answer["digits_lost"] = lost if math.isfinite(lost) else None
+    if phase is None and velocity is None:
+        answer["start"] = _START
+        answer["share_of_other_starts"] = _ends_of_other_starts(ball, amplitude)
+    return answer
+
+
+def _ends_of_other_starts(ball: Ball, amplitude: float) -> Answer:
+    """The motions on which balls from an even grid of starts end, with their shares."""
+    found = long_run.basins(
+        ball, amplitude=amplitude, starts=_OTHER_STARTS, impacts=_FOLLOWED
+    ).sortby("share", ascending=False)
+    shares = {}
+    for k in range(found.sizes["motion"]):
+        one = found.isel(motion=k)
+        period = f" {one.motion_periods.item()}/{one.motion_impacts.item()}"
+        name = one.motion_kind.item() + (period if one.motion_impacts.item() else "")
+        shares[name] = one.share.item()
+    return shares
 
 
 def diagram_options(parser: Parser) -> None:
@@ -47,7 +87,7 @@ def diagram_options(parser: Parser) -> None:
     add_file(parser, "plot", "A figure: .pdf, .png or .svg.")
     add_number(parser, "starts", SAMPLES, texts["starts"], default=6)
     add_number(parser, "samples", SAMPLES, texts["samples"], default=64)
-    add_number(parser, "impacts", FOLLOWED, texts["impacts"], default=1000)
+    add_number(parser, "impacts", FOLLOWED, texts["impacts"], default=300)
     add_ball(parser)
 
 

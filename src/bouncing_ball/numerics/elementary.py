@@ -25,11 +25,21 @@ _LN2_HIGH = np.array(0.693145751953125)
 _LN2_LOW = np.array(1.42860682030941723212e-6)
 _LOG2E = np.array(1 / math.log(2))
 _QUARTER = np.array(0.25)
+_ZERO = np.array(0.0)
 _ONE = np.array(1.0)
 _TWO = np.array(2.0)
 # Below the first exponent e^x is 0; above the second it is not computed.
 _LEAST_EXPONENT = np.array(-746.0)
 _LARGEST_EXPONENT = np.array(709.0)
+# The slope above which an angle is computed from that of the diagonal, and fractions of a turn.
+_STEEP = np.array(0.66)
+_EIGHTH_TURN = np.array(np.pi / 4)
+_QUARTER_TURN = np.array(np.pi / 2)
+_HALF_TURN = np.array(np.pi)
+# The bits of a double: the smallest power of two, its bias, and the number of places below it.
+_LEAST_POWER = np.array(-1023.0)
+_BIAS = np.array(1023)
+_PLACES = np.array(52)
 
 
 def _arrays(*rows: Sequence[float]) -> list[list[np.ndarray]]:
@@ -111,7 +121,7 @@ def sine_and_cosine(angle: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     ([0.0, 0.0], [1.0, -1.0])
     """
     sine, versine = sine_and_versine(angle)
-    return sine, 1 - versine
+    return sine, _ONE - versine
 
 
 def exponential(x: ArrayLike) -> np.ndarray:
@@ -129,7 +139,7 @@ def exponential(x: ArrayLike) -> np.ndarray:
     odd = rest * _polynomial(_EXP[0], square)
     value = _ONE + _TWO * (odd / (_polynomial(_EXP[1], square) - odd))
     # 2^power is assembled from its bits.
-    scale = ((np.maximum(power, -1023.0).astype(np.int64) + 1023) << 52).view(np.float64)
+    scale = ((np.maximum(power, _LEAST_POWER).astype(np.int64) + _BIAS) << _PLACES).view(np.float64)
     return value * scale
 
 
@@ -163,13 +173,13 @@ def arctangent(y: ArrayLike, x: ArrayLike) -> np.ndarray:
     along = np.abs(x)
     large = np.maximum(up, along)
     small = np.minimum(up, along)
-    steep = small > 0.66 * large
+    steep = small > _STEEP * large
     above = np.where(steep, small - large, small)
     below = np.where(steep, small + large, large)
-    t = above / np.where(below > 0, below, 1.0)
+    t = above / np.where(below > _ZERO, below, _ONE)
     square = t * t
     angle = t + t * (square * _polynomial(_ATAN[0], square) / _polynomial(_ATAN[1], square))
-    angle = np.where(steep, np.pi / 4 + angle, angle)
-    angle = np.where(up > along, np.pi / 2 - angle, angle)
-    angle = np.where(np.asarray(x) < 0, np.pi - angle, angle)
+    angle = np.where(steep, _EIGHTH_TURN + angle, angle)
+    angle = np.where(up > along, _QUARTER_TURN - angle, angle)
+    angle = np.where(np.asarray(x) < _ZERO, _HALF_TURN - angle, angle)
     return np.copysign(angle, y)

@@ -39,6 +39,7 @@ _REACH = np.array(4.0)
 # the shortest time scale of the function, so that these are hundreds of oscillations.
 _MAX_STEPS = 3000
 _ZERO = np.array(0.0)
+_HALF = np.array(0.5)
 _QUARTER = np.array(0.25)
 _THIRD = np.array(1 / 3)
 # Added to what is divided by; rates of up to 1e28 do not overflow over it.
@@ -144,8 +145,9 @@ def safe_step(state: State) -> tuple[np.ndarray, np.ndarray]:
     first = start.root(state.second_bound)
     step = _prolonged(first, start, state)
     # From y = y′ = 0 with y″ < 0 on, y ≤ y″ h²/2 + J h³/6.
-    sinking = -3 * state.second / (state.third_bound + _TINY)
-    step = np.maximum(step, np.where(start.rising, _ZERO, sinking))
+    if not start.rising.all():
+        sinking = -3 * state.second / (state.third_bound + _TINY)
+        step = np.maximum(step, np.where(start.rising, _ZERO, sinking))
     bend = (np.abs(state.third) + state.fourth_bound * first) * (first * first)
     simple = state.second_bound * start.twice <= _SIMPLE * start.square
     return step, (bend <= _CLOSE * state.rate) & simple & start.rising
@@ -180,7 +182,8 @@ def first_zero(motion: Motion, start: np.ndarray) -> Zero:
     ``start`` and rises, ``start`` is the result. The arrays are one-dimensional.
     """
     time = np.array(start, dtype=float)
-    ended, undecided = np.zeros((2, *time.shape), dtype=bool)
+    ended = np.zeros(time.shape, dtype=bool)
+    undecided = np.zeros(time.shape, dtype=bool)
     active: Any = slice(None)
     part = motion
     now = time.copy()
@@ -189,10 +192,13 @@ def first_zero(motion: Motion, start: np.ndarray) -> Zero:
         step, last = safe_step(state)
         here = _zero_here(state)
         if state.ended is not None:
-            stop = state.ended & ~(last | here)
-            ended[active] = stop
-            here |= stop
-        later = np.where(here, now, part.skip(now + step, steps))
+            if state.ended.any():
+                stop = state.ended & ~(last | here)
+                ended[active] = stop
+                here |= stop
+        later = part.skip(now + step, steps)
+        if here.any():
+            later = np.where(here, now, later)
         done = last | (later == now)
         time[active] = later
         left = (~done).nonzero()[0]
@@ -228,4 +234,4 @@ def _to_the_last_digit(motion: Motion, time: np.ndarray) -> tuple[np.ndarray, np
     # If the zero may be multiple, because y touches zero, the time is not changed.
     simple = (rate > _ZERO) & (state.second_bound * np.abs(twice) <= square)
     step = np.where(simple, twice / (rate + root + _TINY), _ZERO)
-    return time + step, rate + step * (acceleration + 0.5 * step * state.third)
+    return time + step, rate + step * (acceleration + _HALF * step * state.third)

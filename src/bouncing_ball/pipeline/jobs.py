@@ -256,7 +256,8 @@ def make_dataset(snakemake: Any, study: Callable[..., xr.Dataset]) -> list[str]:
     for name, variable in dataset.variables.items():
         if "units" not in variable.attrs:
             raise ModelError(f"{name} has no unit: the study ends with described(...)")
-    publish(snakemake, dataset, dataset.attrs or recorded(given))
+    parameters = dataset.attrs or recorded(given)
+    publish(snakemake, dataset, parameters, compressed=snakemake.params.get("compressed", False))
     sizes = ", ".join(f"{name} {size}" for name, size in dataset.sizes.items())
     lines = [f"{snakemake.output.data}: {sizes}"]
     if "end_reason" in dataset:

@@ -17,11 +17,8 @@ RUN = read_yaml(CONFIG / "config.yaml")
 # More than two seconds each: `make test` takes theirs from its run of the pipeline
 # (tests/workflow/test_runs.py).
 SLOW = {
-    "ext_basins",
-    "ext_diagram",
     "ext_laws",
     "ext_locked",
-    "ext_locking",
 }
 
 

@@ -19,14 +19,15 @@ FALSE = {
     "compliant contacts throw": ("ext_basins", "basin_share", 0.02),
     "fractal boundaries": ("ext_basins", "uncertainty_exponent", 1.0),
     "smooth when stiffer": ("ext_basins", "uncertainty_exponent", 0.8),
-    "lasting chaos": ("ext_lives", "mean_life", 1e6),
+    "stiff contacts lock": ("ext_lives", "chaotic_share", 0.01),
+    "seeming chaos locks": ("ext_chaos", "locked_share", 0.9),
     "chaos beside locking": ("ext_lives", "chaotic_share", 0.01),
     "cascade moves as a whole": ("ext_cascades", "cascade_coefficient", [1, 2] * 3),
     "end of the first order": ("ext_cascades", "cascade_error", 0.1),
     "corrected cascades": ("ext_cascades", "cascade_second_order", 1.0),
     "feigenbaum": ("ext_cascades", "contact_cascade_ratio", 4.5),
     "measured doublings": ("ext_cascades", "restitution_cascade", 1.5),
-    "longer transients": ("ext_lives", "mean_life", 50.0),
+    "transients alike": ("ext_lives", "mean_life", 50.0),
 }
 CLAIMS = {one.id: one for one in defined_in(whole_motion)}
 

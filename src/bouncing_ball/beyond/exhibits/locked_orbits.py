@@ -18,7 +18,7 @@ from bouncing_ball.beyond.exhibits.motion_samples import (
     with_limits,
 )
 from bouncing_ball.beyond.long_run.destination import final_motions
-from bouncing_ball.beyond.long_run.lift_off import returns
+from bouncing_ball.beyond.long_run.lift_off import Return, returns
 from bouncing_ball.beyond.long_run.motions import Kind
 from bouncing_ball.datasets.parameters import (
     Amplitude,
@@ -41,6 +41,15 @@ VARIABLES = {
         "derivative of the phase at which chattering ends by 1/ϖ, its magnitude", symbol="S"
     ),
     "wait": Variable("phase from the end of chattering to the lift-off", symbol="w"),
+    "peak": Variable(
+        "largest derivative of a phase of impact by 1/ϖ on the way, its magnitude", symbol="P"
+    ),
+    "scale": Variable("scale of the needed frequency ratio"),
+    "quantile": Variable("share of the places below this value"),
+    "needed_over_scale": Variable("quantiles of the needed frequency ratio over a scale"),
+    "beyond_scale": Variable("share of the places that need a larger frequency ratio than a scale"),
+    "beyond_scale_low": Variable("lower limit of the confidence interval of the share beyond"),
+    "beyond_scale_high": Variable("upper limit of the confidence interval of the share beyond"),
     "same": Variable(
         "share of the places at which the contact locks with the restitution model's period"
     ),
@@ -51,7 +60,7 @@ VARIABLES = {
         "upper limit of the confidence interval of the share with the same period"
     ),
     "predicted": Variable(
-        "frequency ratio over the predicted one, middle of a range", symbol="ϖ w/S"
+        "frequency ratio over its scale, middle of a range", symbol="ϖ/max(S/w, P)"
     ),
     "same_by_prediction": Variable("share with the same period by the prediction"),
     "same_by_prediction_low": Variable(
@@ -255,9 +264,12 @@ def transients(parameters: Transients, release: Release, found: Found = None) ->
     )
 
 
-# Edges of the ranges of ϖ w/S.
+# Edges of the ranges of ϖ over its scale.
 _EDGES = np.geomspace(1e-4, 1e4, 17)
-PREDICTORS = ("S/w", "periods")
+SCALES = ("max(S/w, P)", "S/w")
+PREDICTORS = (*SCALES, "periods")
+# Quantiles of the needed ϖ over a scale.
+_QUANTILES = (0.0, 0.05, 0.5, 0.95, 1.0)
 
 
 class LockedOrbits(ParameterPlane):
@@ -323,13 +335,16 @@ def locked_orbits(
     """The places at which a contact has the locked orbit of the restitution model, and predictors.
 
     The places are uniformly distributed in Λ and r. Over ``node`` the dataset has ``restitution``
-    and ``amplitude``, and ``periods``, ``sensitivity`` S and ``wait`` w of
+    and ``amplitude``, and ``periods``, ``sensitivity`` S, ``peak`` P and ``wait`` w of
     :func:`bouncing_ball.beyond.long_run.lift_off.returns`, which are 0 or NaN where the ball is not
     found to stick again; such places are left out of all shares. ``needed_ratio`` is the smallest
     of the given ϖ above which the contact locks with the same period after a rest on the table; it
     is infinite if the contact does not do so at the largest ϖ.
     ``same`` (frequency_ratio) is the share of places with the same period, and
-    ``same_by_prediction`` (predicted) this share in ranges of ϖ w/S, for all ϖ together.
+    ``same_by_prediction`` (predicted) this share in ranges of ϖ/max(S/w, P), for all ϖ together.
+    ``needed_over_scale`` (scale, quantile) has quantiles of the smallest ϖ over a scale, at the
+    places at which it is finite, and ``beyond_scale`` (scale) the share of them at which it is
+    larger than the scale.
     ``rank_correlation`` (predictor) is the correlation of a predictor with the smallest ϖ.
     ``jump_share`` (shift) is the share of places next to a discontinuity, at which the period
     changes, or is not found, if Λ changes by the shift, and ``uncertainty_exponent`` its exponent.
@@ -342,37 +357,45 @@ def locked_orbits(
     shifts = np.array(parameters.shifts)
     r, lam = parameters.places()
     period, *periods_beside = found["periods"]
-    sensitivity = found["sensitivity"][0]
-    wait = found["wait"][0]
+    unshifted = {name: found[name][0] for name in Return._fields}
+    back = Return(**unshifted)
     sticks = period > 0
     same = found["same"]
     changed = np.array(periods_beside) != period
     needed = _needed_ratio(ratios, same)
+    scales = [back.scale(), back.sensitivity / back.wait]
     correlations = [
-        correlation(predictor[sticks], needed[sticks], level)
-        for predictor in (sensitivity / wait, period)
+        correlation(predictor[sticks], needed[sticks], level) for predictor in (*scales, period)
     ]
+    known = sticks & np.isfinite(needed)
+    over_scales = [needed[known] / scale[known] for scale in scales]
     nodes = {
         "restitution": r,
         "amplitude": lam,
         "periods": period,
-        "sensitivity": sensitivity,
-        "wait": wait,
+        "sensitivity": back.sensitivity,
+        "peak": back.peak,
+        "wait": back.wait,
         "needed_ratio": np.where(sticks, needed, np.nan),
     }
-    by_prediction = _shares_by_prediction(
-        ratios[:, np.newaxis] * wait / sensitivity, same, sticks, level
-    )
+    by_prediction = _shares_by_prediction(ratios[:, np.newaxis] / scales[0], same, sticks, level)
     estimates = {
         "same": ("frequency_ratio", [share_with_limits(x[sticks], level) for x in same]),
         "same_by_prediction": ("predicted", by_prediction),
         "rank_correlation": ("predictor", correlations),
+        "beyond_scale": ("scale", [share_with_limits(x > 1, level) for x in over_scales]),
         "jump_share": ("shift", [share_with_limits(x[sticks], level) for x in changed]),
         "uncertainty_exponent": ((), uncertainty_exponent(changed[:, sticks].T, shifts, level)),
     }
+    quantiles = [np.quantile(x, _QUANTILES) for x in over_scales]
+    variables = {name: ("node", values) for name, values in nodes.items()}
     orbits = described(
-        {name: ("node", values) for name, values in nodes.items()} | with_limits(estimates),
+        variables
+        | with_limits(estimates)
+        | {"needed_over_scale": (("scale", "quantile"), np.array(quantiles))},
         coords={
+            "scale": list(SCALES),
+            "quantile": list(_QUANTILES),
             "frequency_ratio": ratios,
             "predicted": np.sqrt(_EDGES[1:] * _EDGES[:-1]),
             "predictor": list(PREDICTORS),
@@ -395,10 +418,10 @@ def _needed_ratio(ratios: np.ndarray, same: np.ndarray) -> np.ndarray:
 def _shares_by_prediction(
     predicted: np.ndarray, same: np.ndarray, sticks: np.ndarray, confidence: float
 ) -> list[tuple[float, float, float]]:
-    """The shares with the same period, and their limits, in each range of ϖ w/S.
+    """The shares with the same period, and their limits, in each range of ϖ over its scale.
 
-    ``predicted`` is ϖ w/S and ``same`` whether the period is the same, shape (ϖ, place); places at
-    which the ball does not stick again are left out.
+    ``predicted`` is ϖ/max(S/w, P) and ``same`` whether the period is the same, shape (ϖ, place);
+    places at which the ball does not stick again are left out.
     """
     place = np.digitize(predicted, _EDGES) - 1
     return [

@@ -16,8 +16,8 @@ _LOOK: Look = {"color": COLOURS[1], "marker": "o"}
 
 
 def locked_orbits(data: xr.Dataset) -> Figure:
-    """The share with the same period by ϖ W/S and by ϖ, the share next to a discontinuity, and the
-    survival of transients.
+    """The share with the same period by ϖ over its scale and by ϖ, the share next to a
+    discontinuity, and the survival of transients.
     """
     figure, ((by_place, by_ratio), (jumps, lives)) = canvas(WIDE, 5.4, rows=2, columns=2)
     _draw_predictions(by_place, by_ratio, data)
@@ -30,12 +30,13 @@ def _draw_predictions(by_place: Axes, by_ratio: Axes, data: xr.Dataset) -> None:
     """The share with the same period, by the prediction for all ϖ together and by ϖ."""
     bars(by_place, data.predicted.values, data, "same_by_prediction", **_LOOK)
     by_place.axvline(1.0, **GUIDE)
-    logarithmic(by_place, xlabel=r"$\varpi\,W/S$", ylim=(0, 1.03))
+    logarithmic(by_place, xlabel=r"$\varpi\,/\max(S/W, P)$", ylim=(0, 1.03))
     by_place.set_ylabel("share with the same\nlocked period")
     by_place.set_title(r"all $\varpi$ together, by the prediction")
-    wanted = np.sort((data.sensitivity / data.wait).dropna("node").values)
+    scale = np.maximum(data.sensitivity / data.wait, data.peak)
+    wanted = np.sort(scale.dropna("node").values)
     share = np.arange(1, wanted.size + 1) / wanted.size
-    by_ratio.plot(wanted, share, color=COLOURS[3], label=r"predicted: $\varpi\geq S/W$")
+    by_ratio.plot(wanted, share, color=COLOURS[3], label=r"$\varpi\geq\max(S/W, P)$")
     bars(by_ratio, data.frequency_ratio.values, data, "same", label="contact", **_LOOK, ls="none")
     by_ratio.set(
         xlabel=r"frequency ratio $\varpi$", ylim=(0, 1.03), xlim=(1, _BEYOND), xscale="log"

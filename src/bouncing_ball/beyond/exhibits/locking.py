@@ -21,6 +21,7 @@ from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.paper.contact.damping import Release
 
 VARIABLES = {
+    "kind_nodes": Variable("nodes at which the ball of a model ends on a motion of this group"),
     "motion_group": Variable("motions by what the simple model's ball ends on"),
     "agreement": Variable(
         "share of nodes at which the contact's ball ends on a motion of the same kind and "
@@ -43,9 +44,9 @@ class Locking(ParameterPlane):
 
 
 GROUPS = ("all", "orbit", "subharmonic", "locked", "locked, 1 to 4 T", "locked, above 10 T",
-          "chaotic")  # fmt: skip
+          "locked, unknown period", "chaotic")  # fmt: skip
 """Groups of nodes by the motion on which the ball of the simple model ends; ``all`` also contains
-permanent contact."""
+permanent contact. The period of a locked motion is unknown if rounding errors decide on it."""
 
 
 def group(found: Motions, name: str) -> np.ndarray:
@@ -53,24 +54,30 @@ def group(found: Motions, name: str) -> np.ndarray:
     if name == "all":
         return np.full(found.kind.shape, True)
     if name == "locked, 1 to 4 T":
-        return (found.kind == Kind.LOCKED) & (found.periods <= 4)
+        return (found.kind == Kind.LOCKED) & (found.periods >= 1) & (found.periods <= 4)
     if name == "locked, above 10 T":
         return (found.kind == Kind.LOCKED) & (found.periods > 10)
+    if name == "locked, unknown period":
+        return found.is_unresolved()
     return found.kind == name
 
 
 def agreement(simple: Motions, contact: Motions, confidence: float) -> np.ndarray:
     """Shares of the nodes at which two models have motions of one kind and period.
 
-    Nodes at which one of the motions is undecided are left out. The limits hold for independent
-    nodes; the nodes of a regular grid are spread more evenly.
+    Nodes at which one of the motions is undecided are left out, and those at which both are locked
+    and one of the periods is unknown. The limits hold for independent nodes; the nodes of a regular
+    grid are spread more evenly.
 
     Returns
     -------
     array
         :func:`share` for each of :data:`GROUPS`, shape (4, groups).
     """
-    known = (simple.kind != Kind.UNDECIDED) & (contact.kind != Kind.UNDECIDED)
+    undecided = (simple.kind == Kind.UNDECIDED) | (contact.kind == Kind.UNDECIDED)
+    both_lock = (simple.kind == Kind.LOCKED) & (contact.kind == Kind.LOCKED)
+    unknown = both_lock & (simple.is_unresolved() | contact.is_unresolved())
+    known = ~(undecided | unknown)
     same = (simple.kind == contact.kind) & (simple.periods == contact.periods)
     return np.array([share(same[known & group(simple, x)], confidence) for x in GROUPS]).T
 
@@ -109,8 +116,9 @@ def locking(parameters: Locking, release: Release, found: Found = None) -> xr.Da
     motion of the same kind and period as the ball of the simple model. ``agreement_low`` and
     ``agreement_high`` are the limits of its Wilson interval, and ``agreement_nodes`` is the number
     of nodes of the group at which both motions are known: see :func:`agreement`.
-    ``saddle_node_amplitude`` and ``period_doubling_amplitude`` (model, restitution) are those of
-    the 1-T orbit.
+    ``kind_nodes`` (model, frequency_ratio, motion_group) is the number of nodes at which the ball
+    of each model ends on a motion of the group. ``saddle_node_amplitude`` and
+    ``period_doubling_amplitude`` (model, restitution) are those of the 1-T orbit.
     """
     ratios = np.array(parameters.frequency_ratio)
     motions = Motions(**(found or motions_at_nodes(parameters, release)))
@@ -140,6 +148,7 @@ def locking(parameters: Locking, release: Release, found: Found = None) -> xr.Da
             "impacts": (dims, at_first_ratio["impacts"]),
             "lyapunov_exponent": (dims, at_first_ratio["exponent"]),
             "lyapunov_error": (dims, np.maximum(LEAST_ERROR, at_first_ratio["exponent_error"])),
+            "kind_nodes": (("model", "frequency_ratio", "motion_group"), _numbers(motions)),
             "saddle_node_amplitude": (("model", "restitution"), np.stack(saddle_nodes)),
             "period_doubling_amplitude": (("model", "restitution"), np.stack(period_doublings)),
             "agreement_nodes": (of_shares, nodes),
@@ -157,3 +166,8 @@ def locking(parameters: Locking, release: Release, found: Found = None) -> xr.Da
         },
         variables=VARIABLES,
     )
+
+
+def _numbers(motions: Motions) -> np.ndarray:
+    """The numbers of nodes in each of :data:`GROUPS`, from motions over (model, ϖ, node)."""
+    return np.stack([group(motions, name).sum(axis=-1) for name in GROUPS], axis=-1)

@@ -16,6 +16,7 @@ from bouncing_ball.beyond.exhibits.motion_maps import (
     PERIODS,
     RATES,
     draw_shares,
+    kinds_shown,
     legend_of_kinds,
     node_map,
 )
@@ -28,6 +29,7 @@ def locking(data: xr.Dataset) -> Figure:
     """Period of the locked orbit and largest exponent over (Λ, r) for each model; below, the share
     of nodes on which the contact agrees with each simple model along ϖ.
     """
+    data = data.assign(kind=kinds_shown(data))
     figure, (maps, exponents, below) = stacked(8.0, (2.8, 2.8, 2.4))
     kinds = maps.subplots(1, data.sizes["model"], sharex=True, sharey=True)
     rates = exponents.subplots(1, data.sizes["model"], sharex=True, sharey=True)
@@ -45,7 +47,7 @@ def locking(data: xr.Dataset) -> Figure:
     bar: Look = {"location": "bottom", "aspect": 60, "shrink": 0.6, "extend": "both"}
     label = r"largest Lyapunov exponent $\lambda$ per period of the table"
     exponents.colorbar(shown, ax=list(rates), label=label, **bar)
-    legend_below(maps, legend_of_kinds(data), ncols=7, fontsize=7)
+    legend_below(maps, legend_of_kinds(data), ncols=5, fontsize=7)
     title = "contact against the {} model"
     draw_shares(below, data, "agreement", "motion_group", GROUP_LOOKS, title)
     below.axes[0].set_ylabel("share of nodes with the\nsame kind and period")

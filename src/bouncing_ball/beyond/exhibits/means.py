@@ -9,6 +9,7 @@ from scipy.stats import t as student
 from bouncing_ball.beyond.exhibits.motion_samples import SIMPLE, ParameterPlane, share, three_models
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.means import means
+from bouncing_ball.beyond.long_run.motions import Kind
 from bouncing_ball.datasets.parameters import Seed, Tolerance, number
 from bouncing_ball.datasets.shards import Arrays, Found, Part
 from bouncing_ball.datasets.variables import Variable, described
@@ -111,6 +112,7 @@ def errors_at_nodes(parameters: MeanMotions, release: Release, part: Part = np.a
     """
     random = np.random.default_rng(parameters.seed)
     balls = parameters.starts
+    unresolved = []
     phase = random.uniform(-np.pi, np.pi, balls)
     speed = random.uniform(0.0, _FASTEST, balls)
     # Arrays over ϖ, the node and the ball.
@@ -121,7 +123,10 @@ def errors_at_nodes(parameters: MeanMotions, release: Release, part: Part = np.a
     for model in three_models(r, ratios, release):
         found = final_motions(model, lam, phase, velocity, impacts=parameters.impacts)
         flights, height, power, exponent = means(model, lam, found, parameters.samples)
-        exponent = np.where(found.periods > 0, found.exponent, exponent)
+        repeats = (found.periods > 0) | (found.kind == Kind.LOCKED)
+        exponent = np.where(repeats, found.exponent, exponent)
+        of_node = found.is_unresolved().any(axis=-1)
+        unresolved.append(np.broadcast_to(of_node, (ratios.size, lam.size)))
         values = np.stack([power, height, flights, exponent])
         # The restitution model has one ϖ.
         of_models.append(values.reshape((len(MEANS), -1, lam.size, balls)))
@@ -129,6 +134,11 @@ def errors_at_nodes(parameters: MeanMotions, release: Release, part: Part = np.a
     restitution_errors = _errors(restitution, contact, parameters.confidence)
     corrected_errors = _errors(corrected, contact, parameters.confidence)
     errors, margins = np.stack([restitution_errors, corrected_errors], axis=1)
+    # All balls are then on one lap, which is not the true one, so that their scatter is not the
+    # error of the mean.
+    *simple, of_contact = unresolved
+    for margin, of_simple in zip(margins, simple, strict=True):
+        margin[:, of_simple | of_contact] = np.inf
     return {"mean_error": errors, "mean_margin": margins}
 
 
@@ -140,12 +150,13 @@ def mean_motions(parameters: MeanMotions, release: Release, found: Found = None)
     means give the error of the simple model, and its interval by Student's distribution.
     ``mean_error`` (simple, mean, ϖ, restitution, amplitude) is (contact - simple)/simple of the
     power, height, flights per period and exponent, and ``mean_margin`` half the width of its
-    interval. ``needed_ratio`` (simple, mean, restitution, amplitude) is the smallest of the given ϖ
-    above which all errors are within the tolerance, NaN where ``decision`` is not "from this on";
-    see :data:`DECISIONS`. ``right`` (simple, mean, ϖ) is the share of the nodes at which the mean
-    is known to be accurate above this ϖ, among the nodes where the value of the simple model is
-    finite. ``right_low`` and ``right_high`` are its Wilson limits, and ``right_nodes`` is the
-    number of nodes.
+    interval. The margin is infinite where a ball is locked and rounding errors decide on the
+    period, because the means are then over another lap than the true one. ``needed_ratio``
+    (simple, mean, restitution, amplitude) is the smallest of the given ϖ above which all errors are
+    within the tolerance, NaN where ``decision`` is not "from this on"; see :data:`DECISIONS`.
+    ``right`` (simple, mean, ϖ) is the share of the nodes at which the mean is known to be accurate
+    above this ϖ, among the nodes where the value of the simple model is finite. ``right_low`` and
+    ``right_high`` are its Wilson limits, and ``right_nodes`` is the number of nodes.
     """
     ratios = np.array(parameters.frequency_ratio)
     found = found or errors_at_nodes(parameters, release)

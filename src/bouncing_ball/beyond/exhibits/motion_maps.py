@@ -17,7 +17,9 @@ from bouncing_ball.drawing.style import COLOURS, Look
 # The lowest period of each colour for locked motions.
 PERIODS = (1, 2, 3, 4, 5, 9, 17, 33)
 LOCKED = colormaps["viridis_r"](np.linspace(0.08, 1, len(PERIODS)))
+UNKNOWN_PERIOD = "locked, unknown period"
 OTHER_COLOURS = {
+    UNKNOWN_PERIOD: "#c994c7",
     "orbit": "#ffffff",
     "subharmonic": "#d9d9d9",
     "permanent contact": "#8c8c8c",
@@ -27,6 +29,7 @@ OTHER_COLOURS = {
 # Marks that also distinguish areas in greyscale: dots for motions that do not repeat, crosses for
 # unknown motions, and strokes for other areas whose grey level is that of a period.
 DOTS: dict[str, Look] = {
+    UNKNOWN_PERIOD: {"marker": "3", "markersize": 1.8, "markeredgewidth": 0.3},
     "chaotic": {"marker": ".", "markersize": 1.3, "color": "#AA3A00", "markeredgewidth": 0},
     "undecided": {"marker": "x", "markersize": 1.6, "color": "#000000", "markeredgewidth": 0.3},
     "permanent contact": {"marker": "_", "markersize": 2.5, "markeredgewidth": 0.4},
@@ -35,7 +38,8 @@ DOTS: dict[str, Look] = {
 # Largest number of restitution coefficients at which nodes are marked.
 _MARKED = 43
 UNKNOWN = {"not at any": "#000000", "undecided": "#ffffff", "no number": "#c8c8c8"}
-_HATCHES = {"chaotic": "......", "undecided": "xxxx", "subharmonic": "||||||"}
+_HATCHES = {UNKNOWN_PERIOD: "//////", "chaotic": "......"}
+_HATCHES |= {"undecided": "xxxx", "subharmonic": "||||||"}
 _HATCHES |= dict.fromkeys(("permanent contact", "no number"), "------")
 LOWEST_RATE = -1.5
 HIGHEST_RATE = 1.5
@@ -66,6 +70,14 @@ def node_map(
         axes.plot(lam, one.restitution, color="#000000", linewidth=0.9, linestyle=dashes)
     axes.set(xlim=xlim, ylim=ylim)
     return drawn
+
+
+def kinds_shown(data: xr.Dataset) -> xr.DataArray:
+    """The kinds of motion, of which those that are locked with an unknown period have a name of
+    their own.
+    """
+    unknown = (data.kind == "locked") & (data.periods == 0)
+    return data.kind.astype(object).where(~unknown, UNKNOWN_PERIOD)
 
 
 def mark_nodes(axes: Axes, one: xr.Dataset, chosen: xr.DataArray, look: Look) -> None:

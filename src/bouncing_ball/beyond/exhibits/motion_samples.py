@@ -70,13 +70,11 @@ class Restitutions(Even):
     max: Annotated[LossyRestitution, Field(description="largest r, above min")]
 
 
-class ParameterPlane(Sharded):
-    """A grid over the plane of (Λ, r), and contacts at several ϖ."""
+class Nodes(Sharded):
+    """A grid over the plane of (Λ, r)."""
 
     amplitude: Amplitudes
     restitution: Restitutions
-    frequency_ratio: Many[FrequencyRatio]
-    impacts: Impacts
     confidence: Confidence
 
     def places(self) -> np.ndarray:
@@ -88,6 +86,13 @@ class ParameterPlane(Sharded):
         """Values over all nodes, their last axis, over (restitution, amplitude)."""
         leading = values.shape[:-1]
         return values.reshape((*leading, self.restitution.samples, self.amplitude.samples))
+
+
+class ParameterPlane(Nodes):
+    """A grid over the plane of (Λ, r), and contacts at several ϖ."""
+
+    frequency_ratio: Many[FrequencyRatio]
+    impacts: Impacts
 
 
 MODELS = (*SIMPLE, "spring-damper")

@@ -21,6 +21,7 @@ VARIABLES = {
         "decimal digits of the start that the motion has lost on the way", budget=math.inf
     ),
     "end_velocity": Variable("velocity of the ball before that impact"),
+    "followed": Variable("number of impacts for which a ball is followed"),
     "start": Variable("start of a ball at one amplitude"),
     "impact": Variable("impact of the motion on which the ball ends"),
     "impact_phase": Variable(
@@ -72,8 +73,8 @@ def motions(
 ) -> xr.Dataset:
     """The motions on which a row of balls ends that start with the impacts (Λ, φ, z′_i).
 
-    The variables are the fields of :class:`~bouncing_ball.beyond.long_run.motions.Motions`, except
-    ``followed``, over the row, the dimension "case".
+    The variables are the fields of :class:`~bouncing_ball.beyond.long_run.motions.Motions`, over
+    the row, the dimension "case".
 
     Raises
     ------
@@ -88,11 +89,7 @@ def motions(
 def _variables(found: Motions, dims: tuple[str, ...]) -> dict[str, Any]:
     """The fields of motions as the variables of a dataset over these dimensions."""
     renamed = {"exponent": "lyapunov_exponent", "exponent_error": "lyapunov_error"}
-    return {
-        renamed.get(name, name): (dims, values)
-        for name, values in vars(found).items()
-        if name != "followed"
-    }
+    return {renamed.get(name, name): (dims, values) for name, values in vars(found).items()}
 
 
 def fastest(model: Any, amplitude: Any) -> np.ndarray:

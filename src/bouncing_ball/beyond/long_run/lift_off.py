@@ -14,7 +14,14 @@ chattering ends before the next sticking is then late by
     S/ϖ,    S = |Σ_j (product of the expansions after j) K_j|
 
 The ball misses the sticking if this delay exceeds the wait w until the table would release the
-ball: the locked orbit should be the same for ϖ > S/w.
+ball. The first order also fails if the deviation becomes large on the way, although it may contract
+before the ball sticks: at some impact the phase is early or late by P/ϖ,
+
+    P = max_j |e_j|,    e_j the deviation of the phase of impact j, times ϖ
+
+and if this is not small against one radian, the ball may meet the table in another flight. The
+scale of the ϖ from which on the locked orbit is the same is therefore max(S/w, P). It is no
+threshold: the constant before P is of order one and differs from orbit to orbit.
 """
 
 from typing import NamedTuple, Self
@@ -43,15 +50,21 @@ class Return(NamedTuple):
     """Returns from the lift-off, arrays of one shape; 0 or NaN for a ball that does not stick.
 
     ``periods`` and ``impacts`` are the numbers of periods of the table and of impacts until the
-    ball sticks. ``sensitivity`` is S, that of the phase at which the chattering ends, and ``wait``
-    is the time w from this phase to the next lift-off. An S that is too large for a number is
-    infinite.
+    ball sticks. ``sensitivity`` is S, that of the phase at which the chattering ends, ``peak`` is
+    P, the largest one of a phase of impact on the way, and ``wait`` is the time w from the end of
+    the chattering to the next lift-off. An S or P that is too large for a number is infinite. Where
+    S exceeds w by more than the digits of a double, rounding errors decide on the period.
     """
 
     periods: np.ndarray
     impacts: np.ndarray
     sensitivity: np.ndarray
+    peak: np.ndarray
     wait: np.ndarray
+
+    def scale(self) -> np.ndarray:
+        """max(S/w, P): the scale of the ϖ from which on a contact has the same locked orbit."""
+        return np.maximum(self.sensitivity / self.wait, self.peak)
 
 
 class _Balls(NamedTuple):
@@ -62,6 +75,8 @@ class _Balls(NamedTuple):
     time: np.ndarray
     # Shape (2, balls): the deviation of φ and that of δ′.
     deviation: np.ndarray
+    # The largest deviation of φ so far.
+    peak: np.ndarray
     impact: Impact
     # The same states in the corrected model.
     corrected_impact: Impact
@@ -72,6 +87,7 @@ class _Balls(NamedTuple):
             lane=self.lane[which],
             time=self.time[which],
             deviation=self.deviation[:, which],
+            peak=self.peak[which],
             impact=pick(self.impact, which),
             corrected_impact=pick(self.corrected_impact, which),
         )
@@ -87,6 +103,7 @@ def _store(
     found.periods[lane] = np.rint(time / (2 * np.pi))
     found.impacts[lane] = impacts
     found.sensitivity[lane] = np.nan_to_num(late, nan=np.inf, posinf=np.inf)
+    found.peak[lane] = balls.peak[sticks]
     found.wait[lane] = (departure.duration - departure.settling)[sticks]
 
 
@@ -112,9 +129,12 @@ def _next_impacts(
         with np.errstate(over="ignore", invalid="ignore"):
             change = dynamics.jacobian(impact, departure, after, passed)
             deviation = np.array(change.apply(*deviation))
+    deviation = deviation + _STIFF * shift
+    size = np.nan_to_num(np.abs(deviation[0]), nan=np.inf, posinf=np.inf)
     return balls._replace(
         time=balls.time + passed,
-        deviation=deviation + _STIFF * shift,
+        deviation=deviation,
+        peak=np.maximum(balls.peak, size),
         impact=after,
         corrected_impact=corrected.at_section(after.phase, after.velocity),
     )
@@ -143,12 +163,14 @@ def returns(restitution: ArrayLike, amplitude: ArrayLike, impacts: int) -> Retur
         periods=np.zeros(r.size, dtype=int),
         impacts=np.zeros(r.size, dtype=int),
         sensitivity=np.full(r.size, np.nan),
+        peak=np.full(r.size, np.nan),
         wait=np.full(r.size, np.nan),
     )
     balls = _Balls(
         lane=np.arange(r.size),
         time=np.zeros(r.size),
         deviation=np.zeros((2, r.size)),
+        peak=np.zeros(r.size),
         impact=dynamics.start(*state),
         corrected_impact=corrected.start(*state),
     )

@@ -20,16 +20,20 @@ class Kind(StrEnum):
     """The motion repeats only after m n periods and m k impacts, m > 1, without sticking: for
     example m = 2 beyond the period doubling of an n-T orbit."""
     LOCKED = "locked"
-    """The motion repeats, and the ball sticks to the table in each repetition."""
+    """The motion repeats, and the ball sticks to the table in each repetition: after an instant it
+    rests on the table until the lift-off, or a contact lasts longer than one of its damped
+    oscillations. The period is 0 if the ball sticks again and again, but after a number of impacts
+    that rounding errors decide."""
     PERMANENT_CONTACT = "permanent contact"
     CHAOTIC = "chaotic"
-    """The motion has not repeated before rounding errors have grown to its size, and neighbouring
-    motions separate from it at an exponential rate."""
+    """The motion has not repeated as long as it was followed, nor stuck to the table in a way that
+    makes it repeat, and neighbouring motions separate from it at an exponential rate. If it is
+    followed for longer, it may turn out to be a long transient."""
     UNDECIDED = "undecided"
 
 
 class Reason(StrEnum):
-    """Why a motion is undecided."""
+    """Why a motion is undecided, or why the period of a locked motion is not known."""
 
     NONE = ""
     # The reason that is given if nothing else is known.
@@ -47,19 +51,22 @@ class Motions(Batch):
     ----------
     kind : array of Kind
     periods : array of int
-        Periods of the table after which the motion repeats; 0 if it does not repeat.
+        Periods of the table after which the motion repeats; 0 if it does not repeat, or if it is
+        locked and rounding errors decide after how many periods.
     impacts : array of int
         Impacts after which the motion repeats. In the restitution model the infinitely many impacts
-        that are summed up before the ball sticks are not counted. 0 in permanent contact.
+        that are summed up before the ball sticks are not counted. 0 in permanent contact, and where
+        the number of periods is 0.
     exponent : array
         Largest Lyapunov exponent per period of the table. For a motion that repeats it follows from
         the larger multiplier, and is -∞ if the multiplier is zero; NaN where it is not known.
     exponent_error : array
         Standard error of the exponent; 0 for a motion that repeats, and NaN where it is not known.
     reason : array of Reason
-        The reason for which a motion is undecided.
+        The reason for which a motion is undecided, or the period of a locked motion not known.
     followed : array of int
-        Impacts after which the kind was known.
+        Impacts after which the kind was known; those of a chaotic or undecided motion are all for
+        which it was followed.
     end_phase, end_velocity : array
         Table phase φ and absolute velocity z′_i before the last of these impacts: a start from
         which the ball is on the motion at once. NaN in permanent contact.
@@ -107,6 +114,10 @@ class Motions(Batch):
             end_velocity=unknowns(),
             digits_lost=unknowns(),
         )
+
+    def is_unresolved(self) -> np.ndarray:
+        """Whether motions are locked, and rounding errors decide on the period."""
+        return (self.kind == Kind.LOCKED) & (self.periods == 0)
 
     def fill(self, index: np.ndarray, **values: ArrayLike) -> None:
         """Store results of the balls with these indices."""

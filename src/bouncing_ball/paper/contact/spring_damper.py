@@ -20,6 +20,7 @@ All quantities are dimensionless: time Ωt, length Ω²y/g.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -134,12 +135,12 @@ class SpringDamper(Batch):
         zeta = damping_ratio(restitution, rule if measured else Release.DISPLACEMENT)
         return cls(check_positive(frequency_ratio, "frequency ratio ϖ"), zeta, rule)
 
-    @property
+    @cached_property
     def release_sine(self) -> np.ndarray:
         """sin α = κϖ/2: 0 for the displacement release, ζ for the force release."""
         return self.release.sine(self.damping_ratio)
 
-    @property
+    @cached_property
     def lag(self) -> np.ndarray:
         """κ: the contact ends where δ + κ δ′ = 0."""
         return 2 * self.release_sine / self.frequency_ratio
@@ -167,7 +168,7 @@ class SpringDamper(Batch):
         self._require_underdamped()
         return self.release.free_angle(self.damping_ratio)
 
-    @property
+    @cached_property
     def damped_frequency(self) -> np.ndarray:
         """ϖ_d = ϖ√(1 - ζ²).
 

@@ -15,6 +15,8 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
+_ONE = np.array(1.0)
+
 
 class Deviation(NamedTuple):
     """The deviations dφ, dδ and dδ′ of a ball; arrays with one entry per ball."""
@@ -48,7 +50,7 @@ class Deviation(NamedTuple):
             + self.phase * (x - x1 - y * time),
             velocity=self.velocity + self.phase * (y1 - y),
         )
-        return at_end.to_event(velocity, y1 - 1, lag)
+        return at_end.to_event(velocity, y1 - _ONE, lag)
 
 
 class Jacobian(NamedTuple):

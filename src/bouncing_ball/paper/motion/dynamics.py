@@ -23,18 +23,29 @@ from bouncing_ball.paper.motion.sequence import RECORDED, Cycle, ImpactSequence,
 _ROUNDING = 8 * np.finfo(float).eps
 
 
+class Level(NamedTuple):
+    """Λ cos φ and Λ sin φ, the table's velocity and height."""
+
+    x: np.ndarray
+    y: np.ndarray
+
+
 class Impact(NamedTuple):
-    """Starts of contact: the table's phase, δ and δ′, and further results of the model."""
+    """Starts of contact: the table's phase, δ and δ′, and further results of the model.
+
+    ``level`` is the table's state at this phase, if it is known.
+    """
 
     phase: np.ndarray
     displacement: np.ndarray
     velocity: np.ndarray
     known: Any = None
+    level: Level | None = None
 
     @classmethod
     def at_level(cls, phase: np.ndarray, velocity: np.ndarray, known: Any = None) -> "Impact":
         """Starts at the table's level, δ = 0."""
-        return cls(reduce_angle(phase), np.zeros_like(phase), velocity, known)
+        return cls(reduce_angle(phase), np.zeros(phase.shape), velocity, known)
 
 
 class Departure(NamedTuple):
@@ -97,7 +108,15 @@ class Dynamics(Batch, ABC):
 
     def start(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
         """First impacts, which start at phases φ with δ′ at the table's level."""
-        return Impact.at_level(phase, velocity)
+        return self.with_table(Impact.at_level(phase, velocity))
+
+    def with_table(self, impact: Impact) -> Impact:
+        """The impacts with the state of the table, which is used several times."""
+        return impact._replace(level=Level(*table(impact.phase, self.amplitude)))
+
+    def table_at(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
+        """Λ cos φ and Λ sin φ at impacts."""
+        return impact.level or table(impact.phase, self.amplitude)
 
     def at_section(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
         """The impacts with these states, in the coordinates of :meth:`section`."""
@@ -119,7 +138,7 @@ class Dynamics(Batch, ABC):
         """
         landing = land(departure.flight, departure.flight.earliest_landing())
         impact = Impact.at_level(departure.phase + landing.time, -landing.rate)
-        return impact, departure.duration + landing.time
+        return self.with_table(impact), departure.duration + landing.time
 
     @abstractmethod
     def jacobian(
@@ -148,7 +167,7 @@ class Dynamics(Batch, ABC):
         """
         flight = departure.flight
         start = flight.x, flight.y
-        end = table(after.phase, self.amplitude)
+        end = self.table_at(after)
         time = passed - departure.duration
         columns = (each.flown(start, end, time, after.velocity, lag) for each in released)
         return Jacobian.of_columns(*columns)

@@ -16,6 +16,12 @@ from bouncing_ball.errors import ModelError
 from bouncing_ball.numerics.elementary import sine_and_versine
 from bouncing_ball.numerics.first_zero import Motion, State, Zero, first_zero
 
+# Constants are arrays without an axis, as in :mod:`bouncing_ball.numerics.elementary`.
+_ZERO = np.array(0.0)
+_HALF = np.array(0.5)
+_ONE = np.array(1.0)
+_TWO = np.array(2.0)
+
 
 def table(phase: np.ndarray, amplitude: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
     """Λ cos φ and Λ sin φ: the table's velocity and height, or minus its jerk and acceleration.
@@ -26,7 +32,7 @@ def table(phase: np.ndarray, amplitude: np.ndarray | float) -> tuple[np.ndarray,
     [2.0, 0.0]
     """
     sine, versine = sine_and_versine(phase)
-    return amplitude * (1 - versine), amplitude * sine
+    return amplitude * (_ONE - versine), amplitude * sine
 
 
 class Flight(Motion):
@@ -49,8 +55,8 @@ class Flight(Motion):
         self.y = y
         self.amplitude = amplitude
         absolute = velocity + x
-        square = absolute * absolute + 2 * (displacement + (y - amplitude))
-        root = np.sqrt(np.maximum(square, 0.0))
+        square = absolute * absolute + _TWO * (displacement + (y - amplitude))
+        root = np.sqrt(np.maximum(square, _ZERO))
         # z > Λ between these two times; they are equal if z never exceeds Λ.
         self.above = absolute - root
         self.below = absolute + root
@@ -60,12 +66,12 @@ class Flight(Motion):
         sine, versine = sine_and_versine(time)
         x = self.x
         y = self.y
-        thrown = self.displacement + time * (self.velocity - 0.5 * time)
+        thrown = self.displacement + time * (self.velocity - _HALF * time)
         displacement = thrown + (y * versine + x * (time - sine))
         # The table's velocity has fallen by this much from Λ cos φ_b.
         slowing = y * sine + x * versine
         rate = (self.velocity - time) + slowing
-        second = y + (x * sine - y * versine) - 1
+        second = y + (x * sine - y * versine) - _ONE
         return displacement, rate, second, x - slowing
 
     def __call__(self, time: np.ndarray) -> State:
@@ -76,7 +82,7 @@ class Flight(Motion):
             rate=-rate,
             second=-second,
             third=-third,
-            second_bound=1 + lam,
+            second_bound=_ONE + lam,
             third_bound=lam,
             fourth_bound=lam,
         )
@@ -91,7 +97,7 @@ class Flight(Motion):
 
         If it is positive and v > 0, the ball certainly comes above this level.
         """
-        return self.velocity * self.velocity + 2 * (1 + self.amplitude) * self.displacement
+        return self.velocity * self.velocity + _TWO * (_ONE + self.amplitude) * self.displacement
 
     def earliest_landing(self) -> np.ndarray:
         """A time before which the ball has certainly not landed.
@@ -100,9 +106,9 @@ class Flight(Motion):
         relative gravity, 1 + Λ. For a ball at rest on a table with Y ≥ 1, which recedes, it
         follows from ``δ ≥ (Y - 1) s²/2 + X s³/6 - Λ s⁴/24``.
         """
-        speed = np.sqrt(np.maximum(self.level_speed_squared(), 0.0))
-        time = (self.velocity + speed) / (1 + self.amplitude)
-        if np.all(self.velocity):
+        speed = np.sqrt(np.maximum(self.level_speed_squared(), _ZERO))
+        time = (self.velocity + speed) / (_ONE + self.amplitude)
+        if self.velocity.all():
             return time
         x = self.x
         top = np.maximum(self.amplitude, 1.0)

@@ -20,6 +20,7 @@ bounds of the higher derivatives follow from the equation of motion.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -42,7 +43,15 @@ _RESONANCE = 1e-4
 # Number of steps after which the expensive bound of :meth:`ContactMotion.skip` is used.
 _PATIENCE = 12
 # Bound of the rounding errors of the three terms of the inequality above.
-_ROUNDING = 8 * np.finfo(float).eps
+_ROUNDING = np.array(8 * np.finfo(float).eps)
+# Constants are arrays without an axis, as in :mod:`bouncing_ball.numerics.elementary`.
+_ZERO = np.array(0.0)
+_ONE = np.array(1.0)
+_TWO = np.array(2.0)
+_PI = np.array(np.pi)
+_TURN = np.array(2 * np.pi)
+_LARGEST_GROWTH = np.array(690.0)
+_TINY = np.array(1e-300)
 
 
 def _resistance(contact: SpringDamper):
@@ -86,15 +95,15 @@ class ContactMotion(Motion):
         self.stiffness = self.omega * self.omega
         self.decay = self.zeta * self.omega
         # The amplitude of the forcing Λ sin τ + κ Λ cos τ of y, and its value at the start.
-        self.forcing = amplitude * np.sqrt(1 + self.lag * self.lag)
+        self.forcing = amplitude * np.sqrt(_ONE + self.lag * self.lag)
         self.push = y + self.lag * x
-        acceleration = (y - 1) - 2 * self.decay * velocity - self.stiffness * displacement
+        acceleration = (y - _ONE) - _TWO * self.decay * velocity - self.stiffness * displacement
         self.start = displacement + self.lag * velocity
         self.start_rate = velocity + self.lag * acceleration
 
     def release(self, rate, y):
         """δ and δ′ at a release with the rate y′, where ``y`` is the table's height Λ sin τ."""
-        velocity = rate - self.lag * (y - 1)
+        velocity = rate - self.lag * (y - _ONE)
         return -self.lag * velocity, velocity
 
     def earliest_release(self) -> np.ndarray:
@@ -106,21 +115,21 @@ class ContactMotion(Motion):
         negative where ``A′ cos θ + B′ sin θ < -e^{aπ/ϖ_d} P/ϖ²``; once it is
         positive it remains positive for longer than half a period.
         """
-        half = np.pi / self.damped
+        half = _PI / self.damped
         # Near critical damping the exponent is limited against overflow; a factor of this size
         # already makes the bound ineffective.
-        growth = exponential(np.minimum(self.decay * half, 690.0))
-        forcing = np.minimum(self.push + self.forcing * half, self.forcing) - 1
-        level = np.maximum(forcing, 0.0) / self.stiffness
+        growth = exponential(np.minimum(self.decay * half, _LARGEST_GROWTH))
+        forcing = np.minimum(self.push + self.forcing * half, self.forcing) - _ONE
+        level = np.maximum(forcing, _ZERO) / self.stiffness
         a = self.start - level
         b = (self.start_rate + self.decay * a) / self.damped
         radius = np.sqrt(a * a + b * b)
-        depth = np.minimum(growth * level / np.maximum(radius, 1e-300), 1.0)
+        depth = np.minimum(growth * level / np.maximum(radius, _TINY), _ONE)
         # The angle of (a, b), rotated by half a turn because that avoids a jump for a < 0, and the
         # angle whose cosine is ``depth``: their sum is within half a turn.
-        rest = np.sqrt((1 - depth) * (1 + depth))
+        rest = np.sqrt((_ONE - depth) * (_ONE + depth))
         angle = arctangent(-b * depth - a * rest, b * rest - a * depth)
-        angle = np.where((depth < 1) & (angle > 0), angle, 0.0)
+        angle = np.where((depth < _ONE) & (angle > _ZERO), angle, _ZERO)
         return angle / self.damped
 
 
@@ -137,7 +146,7 @@ class ClosedFormMotion(ContactMotion):
         self.steady = amplitude * np.sqrt(in_phase * in_phase + quadrature * quadrature)
         self.sine = in_phase * x - quadrature * y
         self.cosine = in_phase * y + quadrature * x
-        self.a = self.start + (1 / self.stiffness - self.cosine)
+        self.a = self.start + (_ONE / self.stiffness - self.cosine)
         self.b = (self.start_rate - self.sine + self.decay * self.a) / self.damped
         self.envelope = np.sqrt(self.a * self.a + self.b * self.b)
 
@@ -149,11 +158,12 @@ class ClosedFormMotion(ContactMotion):
         b = self.b * decay
         free = a * cosine + b * sine
         free_rate = self.damped * (b * cosine - a * sine) - self.decay * free
-        free_second = -2 * self.decay * free_rate - self.stiffness * free
-        free_third = -2 * self.decay * free_second - self.stiffness * free_rate
+        loss = _TWO * self.decay
+        free_second = -loss * free_rate - self.stiffness * free
+        free_third = -loss * free_second - self.stiffness * free_rate
         forced = self.sine * slow_sine + self.cosine * slow_cosine
         forced_rate = self.sine * slow_cosine - self.cosine * slow_sine
-        level = 1 / self.stiffness
+        level = _ONE / self.stiffness
         envelope = self.envelope * decay
         bound = self.stiffness * envelope
         return State(
@@ -240,31 +250,34 @@ class LinearContactDynamics(ResumingDynamics):
     :class:`~bouncing_ball.paper.contact.spring_damper.SpringDamper`.
     """
 
+    @cached_property
+    def _has_closed_form(self) -> bool:
+        return has_closed_form(self.law)
+
     def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
         """The end of each contact, or permanent contact if it is proved never to end."""
-        x, y = table(impact.phase, self.amplitude)
-        kind = ClosedFormMotion if has_closed_form(self.law) else ResonantMotion
+        x, y = self.table_at(impact)
+        kind = ClosedFormMotion if self._has_closed_form else ResonantMotion
         motion = kind(self.law, self.amplitude, impact.displacement, impact.velocity, x, y)
         end = first_zero(motion, motion.earliest_release())
-        # Where the search ended without a release, the contact is permanent.
-        status = np.where(end.ended, Status.PERMANENT_CONTACT, Status.BOUNCING)
-        status[end.undecided] = Status.UNDECIDED
-        forever = status != Status.BOUNCING
-        duration = np.where(forever, np.inf, end.time)
+        status = np.full(end.time.shape, int(Status.BOUNCING))
+        duration = end.time
         phase = impact.phase + end.time
         x, y = table(phase, self.amplitude)
         # If the ball just reaches the table's level, rounding may give it a downward velocity.
-        displacement, velocity = motion.release(np.maximum(end.rate, 0.0), y)
-        flight = Flight(
-            displacement=np.where(forever, np.nan, displacement),
-            velocity=np.where(forever, np.nan, velocity),
-            x=x,
-            y=y,
-            amplitude=self.amplitude,
-        )
+        displacement, velocity = motion.release(np.maximum(end.rate, _ZERO), y)
+        forever = end.ended | end.undecided
+        if forever.any():
+            # Where the search ended without a release, the contact is permanent.
+            status[end.ended] = Status.PERMANENT_CONTACT
+            status[end.undecided] = Status.UNDECIDED
+            duration = np.where(forever, np.inf, duration)
+            displacement = np.where(forever, np.nan, displacement)
+            velocity = np.where(forever, np.nan, velocity)
+        flight = Flight(displacement, velocity, x, y, self.amplitude)
         # An undamped contact that starts at zero speed under a constant load lasts exactly one
         # oscillation. A longer contact therefore ends because the load changes.
-        sticks = duration * self.law.damped_frequency > 2 * np.pi
+        sticks = duration * self.law.damped_frequency > _TURN
         return Departure(phase, duration, flight, status, sticks=sticks)
 
     def jacobian(
@@ -276,25 +289,27 @@ class LinearContactDynamics(ResumingDynamics):
         omega = contact.frequency_ratio
         stiffness = omega**2
         loss = 2 * contact.damping_ratio * omega
+        half = loss / _TWO
         # The impulse response g, g′, and g′ + 2ζϖ g, the response to a unit displacement.
         sine, versine = sine_and_versine(contact.damped_frequency * departure.duration)
-        decay = exponential(-loss / 2 * departure.duration)
+        decay = exponential(-half * departure.duration)
         impulse = decay * sine / contact.damped_frequency
-        impulse_rate = decay * (1 - versine) - loss / 2 * impulse
+        impulse_rate = decay * (_ONE - versine) - half * impulse
         level = impulse_rate + loss * impulse
 
         def acceleration(displacement, velocity, y):
-            return (y - 1) - loss * velocity - stiffness * displacement
+            return (y - _ONE) - loss * velocity - stiffness * displacement
 
-        _, y = table(impact.phase, self.amplitude)
+        _, y = self.table_at(impact)
         rate = impact.velocity
         speed = flight.velocity
         first = acceleration(impact.displacement, rate, y)
         last = acceleration(flight.displacement, speed, flight.y)
         # A contact that resumes starts, and the flight before it ends, at δ + κ δ′ = 0.
-        lag_before = np.where(impact.displacement < 0, contact.lag, 0.0)
-        lag_after = np.where(after.displacement < 0, contact.lag, 0.0)
-        one = np.ones_like(passed)
+        lag_before = contact.lag * (impact.displacement < _ZERO)
+        lag_after = contact.lag * (after.displacement < _ZERO)
+        one = np.ones(passed.shape)
+        none = np.zeros(passed.shape)
         # A deviation along the motion changes only the time. (1, 0, 0) is therefore (1, δ′, δ″),
         # which becomes (1, δ′, δ″) at the release, less (0, δ′, δ″).
         by_phase = Deviation(
@@ -303,7 +318,7 @@ class LinearContactDynamics(ResumingDynamics):
             velocity=last + stiffness * impulse * rate - impulse_rate * first,
         )
         by_velocity = Deviation(
-            phase=0 * one,
+            phase=none,
             displacement=impulse - lag_before * level,
             velocity=impulse_rate + lag_before * stiffness * impulse,
         )

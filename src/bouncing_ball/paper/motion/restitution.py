@@ -31,13 +31,16 @@ from numpy.typing import ArrayLike
 from bouncing_ball.paper.contact.damping import check_restitution
 from bouncing_ball.paper.motion.deviations import Deviation, Jacobian
 from bouncing_ball.paper.motion.dynamics import Departure, Dynamics, Impact
-from bouncing_ball.paper.motion.flight import Flight, table
+from bouncing_ball.paper.motion.flight import Flight
 from bouncing_ball.paper.motion.sticking import lifted, pressed, stay
 
 # Bound of Λ T₀/g and T₀/g below which chattering is summed up.
 _CHATTER = 1e-5
 # Where g is tiny (Λ near 1), chattering is also summed up if T₀ is below rounding.
 _INSTANT = np.finfo(float).eps
+# The smallest speed of an impact for which r is asked, and 1, as arrays without an axis.
+_SLOW = np.array(np.finfo(float).tiny)
+_ONE = np.array(1.0)
 
 
 def chattering(
@@ -61,6 +64,10 @@ def chattering(
     >>> sticks.tolist(), time.round(12).tolist()
     ([True, False, False], [4e-06, 0.0, 0.0])
     """
+    # T₀ > 2v/g, and g ≤ 1 + Λ: above this speed no ball of any r has a short T₀.
+    load = _ONE + amplitude
+    if (velocity > _CHATTER * load * load).all():
+        return np.zeros(x.shape, dtype=bool), np.zeros(x.shape)
     gravity = 1 - y
     down = pressed(x, y)
     # T₀ has no meaning where the relative gravity is not positive, or for r = 1.
@@ -114,14 +121,14 @@ class RestitutionDynamics(Dynamics):
 
     def _rebound_of(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
         # A ball that rests on the table has no impact speed; its r has no effect.
-        return self.rebound(np.maximum(-impact.velocity, np.finfo(float).tiny))
+        return self.rebound(np.maximum(-impact.velocity, _SLOW))
 
     def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
         """The flight after each impact (Eq. 2), or the rest on the table after chattering."""
         r, _ = self._rebound_of(impact)
         velocity = -r * impact.velocity
-        x, y = table(impact.phase, self.amplitude)
-        none = np.zeros_like(x)
+        x, y = self.table_at(impact)
+        none = np.zeros(x.shape)
         flight = Flight(none, velocity, x, y, self.amplitude)
         sticks, settling = chattering(velocity, r, x, y, self.amplitude)
         departure = Departure(
@@ -142,8 +149,8 @@ class RestitutionDynamics(Dynamics):
         It is zero if the ball sticks, because its later motion does not depend on the impact.
         """
         _, slope = self._rebound_of(impact)
-        none = np.zeros_like(passed)
-        free = np.where(departure.sticks, 0.0, 1.0)
+        none = np.zeros(passed.shape)
+        free = np.logical_not(departure.sticks).astype(float)
         by_phase = Deviation(free, none, none)
         by_velocity = Deviation(none, none, -slope * free)
         return self.landed((by_phase, by_velocity), departure, after, passed)

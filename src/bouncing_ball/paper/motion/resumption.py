@@ -57,7 +57,7 @@ def resumption(flight: Flight, lag: Any) -> tuple[np.ndarray, np.ndarray]:
         found = first_zero(_Unloaded(slow, pick(lag, which)), np.zeros_like(slow.velocity))
         return found.time, ~found.ended
 
-    if np.all(lag == 0):
+    if not np.any(lag):
         return flight.earliest_landing(), np.zeros(flight.velocity.shape, dtype=bool)
     return of_slow_balls(flight, np.flatnonzero(~leaves_fast(flight, lag)), certified)
 
@@ -123,9 +123,9 @@ class ResumingDynamics(Dynamics):
         landing = land(flight, start)
         time = landing.time
         velocity = -landing.rate
-        displacement = np.zeros_like(time)
+        displacement = np.zeros(time.shape)
         if resumed.any():
             time[resumed] = start[resumed]
             displacement[resumed], velocity[resumed], *_ = (x[resumed] for x in flight.gap(time))
         impact = Impact(reduce_angle(departure.phase + time), displacement, velocity)
-        return impact, departure.duration + time
+        return self.with_table(impact), departure.duration + time

@@ -85,5 +85,7 @@ def lifted(departure: Departure, amplitude: np.ndarray) -> Departure:
     at_rest = (departure.flight.velocity == 0) & (departure.flight.displacement == 0)
     (balls,) = at_rest.nonzero()
     sticks = at_rest
+    if not balls.size:
+        return departure._replace(sticks=sticks)
     sticks[balls] = departure.phase[balls] == lift_off_phase(pick(amplitude, balls))
     return departure._replace(sticks=sticks)

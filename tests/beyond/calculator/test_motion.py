@@ -10,6 +10,7 @@ from bouncing_ball.beyond.calculator.verdict import aside, judged_by_motion
 from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.means import means as means_of
+from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
@@ -141,7 +142,7 @@ def motion(kind, other, **more):
 def means(height, width):
     errors = {"height": Mean(height, width), "power": Mean(0.01, 0.0)}
     exact = dict.fromkeys(("spring-damper", "restitution"), Mean(1.0, 0.0))
-    given = {"mean_height": exact, "mean_power": exact, "mean_error": errors}
+    given = {"mean_height": exact, "mean_power": exact, "mean_error": errors, "balls": 256}
     return motion("chaotic", "locked", **given)
 
 
@@ -169,9 +170,9 @@ LOCKED = ("locked", "locked")
         (
             means(0.02, 0.005),
             True,
-            "1 m, +2 % ± 0.5 % and a mean power of 1 W in place of 1 W, +1 % ±",
+            "1 m, +2.0 % ± 0.5 % and a mean power of 1 W in place of 1 W, +1 %, within",
         ),
-        (means(-0.02, 0.005), True, "a mean height of 1 m in place of 1 m, -2 % ± 0.5 % and"),
+        (means(-0.02, 0.005), True, "a mean height of 1 m in place of 1 m, -2.0 % ± 0.5 % and"),
         (means(0.0, 0.02), True, "height of 1 m in place of 1 m, at most 2 % off and a mean power"),
         (
             means(0.009, 0.045),
@@ -186,13 +187,42 @@ LOCKED = ("locked", "locked")
         (
             means(-0.12, 0.005),
             False,
-            "enough: it predicts a mean height of 1 m in place of 1 m, -12 % ± 0.5",
+            "enough: it predicts a mean height of 1 m in place of 1 m, -12.0 % ± 0.5",
         ),
     ],
 )
 def test_the_verdict_on_a_motion(found, good, says):
     verdict = judged_by_motion(found, 0.05, 1)
     assert verdict.is_good_enough is good and says in verdict.verdict
+
+
+@pytest.mark.parametrize(
+    ("found", "advice"),
+    [
+        # An interval shrinks as the square root of the number: 256 (2/1)² = 1024.
+        (means(0.04, 0.02), "256 balls is too small to decide; with balls = 1100 (--balls 1100)"),
+        (means(0.0499, 0.02), "so is any up to 100000: the error is next to the tolerance"),
+    ],
+)
+def test_an_undecided_verdict_says_how_many_balls_would_decide(found, advice):
+    assert advice in judged_by_motion(found, 0.05, 1).reason
+
+
+def test_a_larger_sample_decides_what_a_smaller_one_leaves_open():
+    given = {"mass": "20 g", "frequency": "50 Hz", "acceleration": "2 g", "restitution": 0.5}
+    asked = given | {"stiffness": "1e7 N/m", "tolerance": 0.2465}
+    small = design(**asked, balls=256)
+    assert "not decided" in small.verdict and small.motion.balls == 256
+    large = design(**asked, balls=10_000)
+    assert "not decided" not in large.verdict and large.motion.balls > 256
+
+
+@pytest.mark.parametrize("balls", [0, 100_001, 2.5, "x"])
+def test_a_number_of_balls_out_of_range_is_refused(balls):
+    with pytest.raises(
+        ModelError, match=r"\{?balls\}? = .* is not a whole number from 1 to 100000"
+    ):
+        design(**UNIT, stiffness=5000.0, acceleration=2.0, balls=balls)
 
 
 def test_the_heights_of_a_motion_are_in_metres():

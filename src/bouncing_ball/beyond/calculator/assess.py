@@ -126,7 +126,7 @@ def of_case(
         need = choice.needed
         verdict = Verdict(True, choice.verdict, choice.reason)
         before = f"{choice.verdict} "
-    motion = of_family(case, one, need.tolerance)
+    motion = of_family(case, one, need.tolerance, question.balls)
     # A threshold, such as that of permanent contact, is not a property of one orbit.
     if need.quantity in OF_ORBITS:
         if motion.restitution_kind is None:

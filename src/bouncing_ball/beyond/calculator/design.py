@@ -56,6 +56,7 @@ def design(
     law: str | None = None,
     quantity: Annotated[str, Quantity] = "max_height",
     tolerance: data.Tolerance = 0.01,
+    balls: data.Balls | None = None,
     engine: str | None = None,
     restitution_error: data.RestitutionError = ERROR,
     time_step: data.TimeStep = None,
@@ -139,6 +140,9 @@ def design(
     tolerance
         Largest relative error of the restitution model's quantity against the contact's, such as
         "5 %" or 0.05.
+    balls
+        Largest number of balls whose means over time are compared if the motion does not repeat.
+        By default it takes some seconds.
     engine
         Physics engine for which the contact is written: generic, mujoco, lammps, liggghts,
         pybullet, drake or mercurydpm. The contact then ends as in this engine.
@@ -186,7 +190,7 @@ def design(
     call = locals()
     si = in_si(call)
     contact = Contact(**_of(Contact, call))
-    question = Question(n=n, quantity=quantity, tolerance=tolerance)
+    question = Question(n=n, quantity=quantity, tolerance=tolerance, balls=balls)
     found = ready(contact, engine)
     allowed = si["restitution_error"]
     simulation = None

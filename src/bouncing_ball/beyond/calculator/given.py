@@ -15,7 +15,7 @@ from bouncing_ball.beyond.calculator.units import SIParameter, number
 from bouncing_ball.beyond.engines.choice import engine_named
 from bouncing_ball.beyond.engines.engine import ERROR
 from bouncing_ball.beyond.laws.linear import LinearLaw
-from bouncing_ball.errors import FAMILY, ModelError, ParameterError, Range, one_of
+from bouncing_ball.errors import FAMILY, ModelError, ParameterError, Range, count, one_of
 from bouncing_ball.paper.comparison.errors import QUANTITIES
 
 STANDARD_GRAVITY = 9.80665
@@ -28,7 +28,9 @@ _SOFTEST = 1e4
 # The smallest restitution that may be one in percent.
 _PERCENT = 5
 _NONE_TOO = Range(0, 1e40, "[]")
+MOST_BALLS = count(100_000)
 Index = Annotated[int, FAMILY]
+Balls = Annotated[int, MOST_BALLS]
 Rule = Literal["displacement", "force"]
 Frequency = Annotated[Any, SIParameter("Hz", "50 Hz")]
 AngularFrequency = Annotated[Any, SIParameter("rad/s", "314 rad/s")]
@@ -198,6 +200,9 @@ class Question:
         Name of the quantity that must be accurate.
     tolerance
         Largest relative error of the restitution model's quantity against the contact's.
+    balls
+        Largest number of balls whose means over time are compared if the motion does not repeat;
+        None for a number that takes about three seconds.
 
     Raises
     ------
@@ -213,12 +218,15 @@ class Question:
     n: Index | None = None
     quantity: str = "max_height"
     tolerance: Tolerance = 0.01
+    balls: Balls | None = None
 
     def __post_init__(self) -> None:
         _convert(self)
         one_of("quantity", self.quantity, {str(each): each for each in QUANTITIES})
         if self.n is not None and self.n not in FAMILY:
             raise ModelError(f"index of the family n = {self.n} is not {FAMILY}")
+        if self.balls is not None and self.balls not in MOST_BALLS:
+            raise ParameterError(f"{{balls}} = {self.balls} is not {MOST_BALLS}")
 
     @property
     def families(self) -> Sequence[int]:

@@ -32,9 +32,9 @@ _BESIDE = 1e-3
 # time, which takes several milliseconds for an impact, so that it is followed for fewer.
 _IMPACTS = 600
 _IMPACTS_OF_LAW = 250
-# Balls in a round, the largest number of rounds, impacts of each ball, and the number of first
-# impacts left out of the means. A step of a contact law takes much longer than one of a linear
-# contact, though hardly longer for many balls than for a few.
+# Balls in a round, the number of rounds unless a number of balls is asked for, impacts of each
+# ball, and the number of first impacts left out of the means. A step of a contact law takes much
+# longer than one of a linear contact, though hardly longer for many balls than for a few.
 _SAMPLES = (256, 6, 500, 100)
 _SAMPLES_OF_LAW = (128, 2, 80, 40)
 # Quantities of which means over time are compared.
@@ -58,10 +58,13 @@ class _Start(NamedTuple):
     velocity: float
 
 
-def of_family(case: PhysicalCase, family: Family, tolerance: float) -> FinalMotion:
+def of_family(
+    case: PhysicalCase, family: Family, tolerance: float, balls: int | None = None
+) -> FinalMotion:
     """The motion of a ball that starts on the orbit of a family, or beside an unstable orbit.
 
-    Balls are added to the means over time until these decide about the tolerance.
+    Balls are added to the means over time until these decide about the tolerance, up to ``balls``,
+    rounded up to whole rounds.
     """
     if family.exists and family.is_stable and family.is_admissible:
         return FinalMotion(str(Kind.ORBIT), family.n, 1, laid=_laid(case, family))
@@ -92,7 +95,7 @@ def of_family(case: PhysicalCase, family: Family, tolerance: float) -> FinalMoti
         values["greatest"] = {name: _greatest(case, name, start, x) for name, x in found.items()}
     elif not rests:
         lengths = {name: kind.impacts for name, kind in kinds.items()}
-        values = _compared(case, lengths, start, tolerance)
+        values = _compared(case, lengths, start, tolerance, balls)
     return FinalMotion(
         kind=exact.kind,
         periods=exact.periods,
@@ -164,7 +167,11 @@ def _greatest(case: PhysicalCase, name: str, start: _Start, motion: Any) -> floa
 
 
 def _compared(
-    case: PhysicalCase, lengths: Mapping[str, int], start: _Start, tolerance: float
+    case: PhysicalCase,
+    lengths: Mapping[str, int],
+    start: _Start,
+    tolerance: float,
+    most: int | None,
 ) -> dict[str, Any]:
     """Means of both models over balls that start alike, in m and W, and their relative errors.
 
@@ -172,8 +179,10 @@ def _compared(
     that repeat are averaged over whole repetitions: all balls end on the same motion, so that the
     error of a part of a repetition would not show in their scatter.
     """
-    balls, rounds, impacts, before = _SAMPLES if case.law is None else _SAMPLES_OF_LAW
-    beside = 1 + _BESIDE * np.arange(1, rounds * balls + 1) / balls
+    balls, usual, impacts, before = _SAMPLES if case.law is None else _SAMPLES_OF_LAW
+    rounds = usual if most is None else -(-most // balls)
+    # However many balls there are, the last one starts as far from the orbit.
+    beside = 1 + _BESIDE * usual * np.arange(1, rounds * balls + 1) / (rounds * balls)
     # Means of height and power for the balls so far, shape (model, quantity, ball).
     means = np.zeros((2, 2, 0))
     for velocity in np.split(start.velocity * beside, rounds):
@@ -201,6 +210,7 @@ def _compared(
         "mean_error": {
             name: Mean(float(error[k]), float(margin[k])) for k, name in enumerate(_MEANS)
         },
+        "balls": means.shape[-1],
     }
 
 

@@ -85,8 +85,8 @@ class FinalMotion:
     ball laid on the table, None if it is the same. If the orbit is not stable, there are the same
     three values for the restitution model. For motions that repeat in the same way in both models
     there is then the ``greatest`` height in each model; for other motions there are means over
-    time of the height and of the power that the table transfers, with the signed relative errors
-    of the restitution model.
+    time of the height and of the power that the table transfers, over a number of ``balls``, with
+    the signed relative errors of the restitution model.
     """
 
     kind: str
@@ -100,6 +100,7 @@ class FinalMotion:
     mean_height: dict[str, Mean | None] | None = None
     mean_power: dict[str, Mean | None] | None = None
     mean_error: dict[str, Mean] | None = None
+    balls: int | None = None
 
 
 @dataclass(frozen=True)

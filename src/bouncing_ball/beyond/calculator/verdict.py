@@ -8,6 +8,7 @@ import numpy as np
 
 from bouncing_ball.beyond.calculator.case import PhysicalCase
 from bouncing_ball.beyond.calculator.families import NO_ORBIT, prediction_error
+from bouncing_ball.beyond.calculator.given import MOST_BALLS
 from bouncing_ball.beyond.calculator.results import Family, FinalMotion, Mean, Needed
 from bouncing_ball.beyond.calculator.units import in_place_of, percent, shown, signed
 from bouncing_ball.beyond.laws.contact_law import ContactLaw
@@ -146,7 +147,33 @@ def judged_by_motion(motion: FinalMotion, tolerance: float, n: int) -> Verdict:
     errors = motion.mean_error.values()
     least = max(abs(error.value) - error.half_width for error in errors)
     most = max(abs(error.value) + error.half_width for error in errors)
-    return _within(least, most, tolerance, found, f"{about}; means over time are compared")
+    why = f"{about}; means over time are compared"
+    return _within(least, most, tolerance, found, why, _larger_sample(motion, tolerance))
+
+
+def _larger_sample(motion: FinalMotion, tolerance: float) -> str:
+    """How many balls would decide, because an interval shrinks as the square root of their number.
+
+    The number is rounded up to two digits.
+    """
+    assert motion.mean_error is not None and motion.balls is not None
+    shares = [
+        error.half_width / abs(abs(error.value) - tolerance)
+        for error in motion.mean_error.values()
+        if error.half_width > abs(abs(error.value) - tolerance) > 0
+    ]
+    wanted = motion.balls * max(shares, default=2.0) ** 2
+    if wanted > MOST_BALLS.high:
+        return (
+            f"the sample of {motion.balls} balls is too small to decide, and so is any up to "
+            f"{MOST_BALLS.high}: the error is next to the tolerance"
+        )
+    digits = 10 ** max(len(f"{wanted:.0f}") - 2, 0)
+    enough = math.ceil(wanted / digits) * digits
+    return (
+        f"the sample of {motion.balls} balls is too small to decide; with balls = {enough} "
+        f"(--balls {enough}) it should be large enough"
+    )
 
 
 def _named(kind: str | None) -> str:
@@ -161,16 +188,29 @@ def _of_mean(name: str, of_models: Mapping[str, Mean | None] | None, error: Mean
     return f"a mean {name} of {both}, {_between(error)}"
 
 
+# A half-width below a hundredth of a per cent is not printed.
+_UNSEEN = 1e-4
+
+
 def _between(error: Mean) -> str:
     """An error with its interval, or its largest size where the interval contains zero."""
     size = abs(error.value)
     if error.half_width > size:
         return f"at most {shown(size + error.half_width, '%')} off"
-    return f"{signed(error.value)} ± {shown(error.half_width, '%')}"
+    if error.half_width < _UNSEEN:
+        return signed(error.value)
+    # As many decimals as the first digit of the half-width has.
+    decimals = max(-math.floor(math.log10(100 * error.half_width)), 0)
+    return f"{100 * error.value:+.{decimals}f} % ± {100 * error.half_width:.{decimals}f} %"
 
 
-def _within(least: float, most: float, tolerance: float, found: str, why: str) -> Verdict:
-    """The verdict on a largest error between two bounds, against a tolerance."""
+def _within(
+    least: float, most: float, tolerance: float, found: str, why: str, undecided: str = ""
+) -> Verdict:
+    """The verdict on a largest error between two bounds, against a tolerance.
+
+    ``undecided`` says what helps if the tolerance lies between the bounds.
+    """
     asked = percent(tolerance)
     if most <= tolerance:
         return Verdict(True, f"The restitution model is good enough: {found}, within {asked}.", why)
@@ -178,7 +218,7 @@ def _within(least: float, most: float, tolerance: float, found: str, why: str) -
         sentence = f"The restitution model is not good enough: {found}, beyond {asked}."
         return Verdict(False, sentence, why)
     sentence = f"Whether the restitution model is good enough is not decided at {asked}: {found}."
-    return Verdict(False, sentence, f"{why}; the sample is too small to decide")
+    return Verdict(False, sentence, f"{why}; {undecided}")
 
 
 def _instead(family: Family, needed: Needed) -> str:

@@ -1,6 +1,6 @@
 """Balls whose parameters are known by name, so that any of them can vary along a branch."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Self
 
@@ -82,17 +82,24 @@ class Family:
         return low, high
 
 
-def known(family: Family, varied: Mapping[str, np.ndarray]) -> tuple[Dynamics | None, np.ndarray]:
-    """The dynamics of a row of balls, and which of them are inside the ranges of all parameters.
+def known(
+    family: Family, given: Mapping[str, np.ndarray], varied: Sequence[str]
+) -> tuple[Dynamics | None, np.ndarray]:
+    """The dynamics of a row of balls, and which of them are inside the ranges.
 
-    The others have the values of the family itself. The dynamics is None if the model refuses the
-    parameters for another reason.
+    ``given`` are values of parameters, one for each ball; those in ``varied`` may be outside their
+    ranges. Such balls have the first value that is inside. The dynamics is None if there is none, or
+    if the model refuses the parameters for another reason.
     """
-    inside = np.ones(next(iter(varied.values())).shape, dtype=bool)
-    for name, value in varied.items():
+    inside = np.ones(next(iter(given.values())).shape, dtype=bool)
+    for name in varied:
         low, high = family.bounds(name)
-        inside &= (value >= low) & (value <= high)
-    safe = {name: np.where(inside, x, family.values[name]) for name, x in varied.items()}
+        inside &= (given[name] >= low) & (given[name] <= high)
+    if not inside.any():
+        return None, inside
+    safe = dict(given)
+    for name in varied:
+        safe[name] = np.where(inside, given[name], given[name][inside.argmax()])
     try:
         return family.dynamics(safe), inside
     except ModelError:

@@ -6,22 +6,31 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.beyond.periodic.problem import PeriodicOrbits
-from bouncing_ball.beyond.periodic.special import Special, events
+from bouncing_ball.beyond.periodic.problem import PeriodicOrbits, twice
+from bouncing_ball.beyond.periodic.special import MEANINGS, Special, events, turns_apart
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.continuation import (
     Branch,
     ContinuationError,
+    End,
     StepControl,
     continue_branch,
 )
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
+from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import Event, SpecialPoint
+from bouncing_ball.paper.orbits.stability import Bifurcation
 
 STEPS = StepControl(initial=0.01, smallest=1e-9, largest=0.1, max_angle=0.15)
 """Steps in arclength, over the phases, the velocities and arsinh of the parameter."""
 _PATIENT = NewtonSettings(max_iterations=20, longest=0.3)
 _BOUND = "bound"
+# A branch is followed up to this distance of the two turns of an orbit before they become equal.
+# If there is no period doubling near, it is followed up to a smaller distance, several times.
+_NEAR = 0.1
+_CLOSER = 0.1
+_TRIES = 4
+_HALVES = "the two turns of the orbit become nearly equal"
 # A test function this small at the last point is the reason why a branch cannot be followed.
 _CLOSE = 1e-4
 
@@ -166,21 +175,107 @@ def follow(
     (name,) = here.orbits.along
     if to is not None:
         increasing = to > here.parameters[name]
-    tests = events(here.orbits)
+    limits = bounds(here.orbits, to, increasing)
+    near = min(_NEAR, float(turns_apart(here.orbits, here.y)) / 2)
     with np.errstate(all="ignore"):
-        try:
-            branch = continue_branch(
-                here.orbits,
-                here.y,
-                increasing=increasing,
-                events=[*tests, *bounds(here.orbits, to, increasing)],
-                control=control,
-                max_points=most,
-            )
-        except ContinuationError as error:
-            raise NoOrbitError(str(error)) from None
-        end = _explained(branch, tests)
-    return Followed(here.orbits, replace(branch, end=end))
+        for _ in range(_TRIES):
+            branch = _followed(here, limits, near, increasing, control, most)
+            if branch.end.sentence != _HALVES:
+                break
+            whole = _up_to_halving(here.orbits, branch)
+            if whole is not None:
+                branch = whole
+                break
+            near *= _CLOSER
+        tests = events(here.orbits)
+        return Followed(here.orbits, replace(branch, end=_explained(branch, tests)))
+
+
+def _followed(
+    start: State,
+    limits: list[Event],
+    near: float,
+    increasing: bool,
+    control: StepControl,
+    most: int,
+) -> Branch:
+    """The branch from a solution on, at most up to where its turns are so near to each other."""
+    orbits = start.orbits
+
+    def two_turns(y: np.ndarray) -> np.ndarray:
+        return turns_apart(orbits, y) - near
+
+    # The first steps must not pass over a place nearby where the turns are equal. If a later step
+    # does, the branch is cut off there.
+    initial = min(control.initial, near * np.sqrt(2 * orbits.impacts) / 2)
+    halves = Event(_HALVES, two_turns, terminal=True, reason=_HALVES)
+    try:
+        branch = continue_branch(
+            orbits,
+            start.y,
+            increasing=increasing,
+            events=[*events(orbits), halves, *limits],
+            control=replace(control, initial=initial),
+            max_points=most,
+        )
+    except ContinuationError as error:
+        raise NoOrbitError(str(error)) from None
+    return _cut_off(orbits, branch)
+
+
+def _cut_off(orbits: PeriodicOrbits, branch: Branch) -> Branch:
+    """The branch up to the first step on which the difference of the two turns is reversed."""
+    if orbits.impacts % 2:
+        return branch
+    _, velocity = orbits.states(branch.points)
+    phase, _ = orbits.states(branch.points)
+    half = orbits.impacts // 2
+    turned = reduce_angle(phase - np.roll(phase, half, axis=-1))
+    difference = np.concatenate([turned, velocity - np.roll(velocity, half, axis=-1)], axis=-1)
+    reversed_at = np.flatnonzero(np.sum(difference[1:] * difference[:-1], axis=-1) < 0)
+    if not reversed_at.size:
+        return branch
+    count = int(reversed_at[0]) + 1
+    last = branch.points[count - 1]
+    before = [x for x in branch.special if (x.point - last) @ branch.tangents[count - 1] <= 0]
+    return replace(
+        branch,
+        points=branch.points[:count],
+        tangents=branch.tangents[:count],
+        special=tuple(before),
+        end=End(_HALVES),
+    )
+
+
+def _up_to_halving(orbits: PeriodicOrbits, branch: Branch) -> Branch | None:
+    """The branch up to the period halving, which is a period doubling of the orbit of half the
+    period; None if there is none near the end of the branch.
+
+    At the halving the equations have two directions of solutions, so that Newton's method fails.
+    """
+    k = orbits.impacts // 2
+    half = replace(orbits, impacts=k, periods=orbits.periods // 2)
+    last = branch.points[-1]
+    phase, velocity = orbits.states(last)
+    turned = np.concatenate([phase[:k], phase[k:] - 2 * np.pi * half.periods])
+    rows = (turned, velocity, orbits.durations(last))
+    means = (row.reshape(2, k).mean(axis=0) for row in rows)
+    guess = half.point(*means, **orbits.values(last))
+    kind = Bifurcation.PERIOD_DOUBLING
+    found = newton(half, guess, lambda y: half.bifurcation(kind, y), _PATIENT)
+    if not (found.converged and np.linalg.norm(found.point - guess) < _NEAR):
+        return None
+    _, halving = twice(half, found.point)
+    kind_here = Special.PERIOD_HALVING
+    special = SpecialPoint(kind_here, halving)
+    along = halving - last
+    return Branch(
+        points=np.concatenate([branch.points, [halving]]),
+        tangents=np.concatenate([branch.tangents, [along / np.linalg.norm(along)]]),
+        special=(*branch.special, special),
+        start=branch.start,
+        end=End(f"{kind_here}: {MEANINGS[kind_here]}"),
+    )
 
 
 def _explained(branch: Branch, tests) -> object:

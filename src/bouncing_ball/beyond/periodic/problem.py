@@ -42,9 +42,10 @@ from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.first_zero import Zero
 from bouncing_ball.paper.motion.deviations import Jacobian
-from bouncing_ball.paper.motion.dynamics import Departure, Dynamics, Impact
+from bouncing_ball.paper.motion.dynamics import Dynamics, Impact
 from bouncing_ball.paper.motion.flight import Flight, table
 from bouncing_ball.paper.motion.sequence import Status
+from bouncing_ball.paper.orbits.stability import Bifurcation
 
 # Step of the central differences, near the optimum ε^(1/3).
 _DIFFERENCE = 6e-6
@@ -73,9 +74,23 @@ class Legs(NamedTuple):
     tangent: Jacobian
     velocity: np.ndarray
     acceleration: np.ndarray
-    impact: Impact
-    departure: Departure
+    impact: Any
+    departure: Any
     passed: np.ndarray
+
+
+def _no_legs(shape: tuple[int, ...]) -> Legs:
+    none = np.full(shape, np.nan)
+    return Legs(
+        residual=np.full((*shape, 2), np.nan),
+        duration=none,
+        tangent=Jacobian(none, none, none, none),
+        velocity=none,
+        acceleration=none,
+        impact=None,
+        departure=None,
+        passed=none.ravel(),
+    )
 
 
 @dataclass(frozen=True)
@@ -160,8 +175,13 @@ class PeriodicOrbits:
 
     def dynamics(self, y: np.ndarray) -> tuple[Dynamics | None, np.ndarray]:
         """The dynamics of the legs in a row, and which legs are inside the ranges."""
-        each = {name: np.repeat(x.ravel(), self.impacts) for name, x in self.values(y).items()}
-        return known(self.family, each)
+        leading = y.shape[:-1]
+        given = self.family.values | self.values(y)
+        each = {}
+        for name, value in given.items():
+            if name in self.along or np.ndim(value):
+                each[name] = np.repeat(np.broadcast_to(value, leading).ravel(), self.impacts)
+        return known(self.family, each, self.along)
 
     def impact(self, dynamics: Dynamics, y: np.ndarray) -> Impact:
         """The impacts of the orbits in a row."""
@@ -179,8 +199,7 @@ class PeriodicOrbits:
         dynamics, inside = self.dynamics(y)
         shape = (*y.shape[:-1], self.impacts)
         if dynamics is None:
-            dynamics, inside = known(self.family, {"amplitude": np.full(inside.shape, np.nan)})
-        assert dynamics is not None
+            return _no_legs(shape)
         phase, velocity = self.states(y)
         interval = self.intervals(y).ravel()
         impact = self.impact(dynamics, y)
@@ -219,28 +238,23 @@ class PeriodicOrbits:
             return here
         return np.concatenate([here, self.durations(y) - legs.duration[0]], axis=-1)
 
-    def _around(self, y: np.ndarray) -> Legs:
+    def _around(self, y: np.ndarray, everywhere: bool = False) -> Legs:
         """The legs at y and beside it, with an additional first axis.
 
         Its entries are y itself, y moved by ± the step of the differences in each parameter, and, if
-        the durations are unknowns, y with all θ or all v moved: a duration depends on the state at
-        the start of its contact alone.
+        the durations are unknowns or ``everywhere`` is set, y with all θ or all v moved: a leg
+        depends on the state at its start alone.
         """
-        steps = np.zeros((1 + 2 * self._differences, y.shape[-1]))
         columns = [[self.equations + j] for j in range(len(self.along))]
-        if self.selects:
+        if self.selects or everywhere:
             states = np.arange(2 * self.impacts)
             columns += [list(states[::2]), list(states[1::2])]
+        steps = np.zeros((1 + 2 * len(columns), y.shape[-1]))
         for j, column in enumerate(columns):
             steps[1 + 2 * j, column] = _DIFFERENCE
             steps[2 + 2 * j, column] = -_DIFFERENCE
         leading = tuple(range(1, y.ndim))
         return self.legs(self._within(y + np.expand_dims(steps, leading)))
-
-    @property
-    def _differences(self) -> int:
-        """Number of directions in which there are central differences."""
-        return len(self.along) + (2 if self.selects else 0)
 
     def _within(self, y: np.ndarray) -> np.ndarray:
         """Points beside y, moved back to the ends of the ranges of the parameters."""
@@ -308,19 +322,41 @@ class PeriodicOrbits:
 
     def monodromy(self, y: np.ndarray) -> Jacobian:
         """The derivative of the map Pᵏ at the first impact; entries of the leading shape of y."""
-        legs = self._around(y)
-        steps = [
-            Jacobian(*(entry[0][..., i] for entry in legs.tangent)) for i in range(self.impacts)
-        ]
-        product = steps[0]
-        for step in steps[1:]:
-            product = step.after(product)
-        return product
+        product = _product(_matrices(self._around(y).tangent)[0])
+        return Jacobian(*(product[..., i, j] for i, j in ((0, 0), (0, 1), (1, 0), (1, 1))))
 
     def trace_and_determinant(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Trace and determinant of the monodromy, each with the leading shape of y."""
         m = self.monodromy(y)
         return m.a + m.d, m.a * m.d - m.b * m.c
+
+    def bifurcation(self, kind: Bifurcation, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The test function det(M - μ) of a bifurcation, μ = ±1, and its gradient.
+
+        The gradient is ``tr(adj(M - μ) dM)``, where the derivative of M is the sum over the legs of
+        ``M_k…M_{i+1} dM_i M_{i-1}…M_1``, and that of M_i is a central difference. The results have
+        the shapes (...,) and (..., N + parameters).
+        """
+        around = self._around(y, everywhere=True)
+        matrices = _matrices(around.tangent)
+        here = matrices[0]
+        whole = _product(here)
+        multiplier = 1.0 if kind is Bifurcation.SADDLE_NODE else -1.0
+        off = whole - multiplier * np.eye(2)
+        value = off[..., 0, 0] * off[..., 1, 1] - off[..., 0, 1] * off[..., 1, 0]
+        weights = _weights(here, _adjugate(off))
+        gradient = np.zeros(y.shape)
+        lengths = self._lengths(y)
+        for j in range(len(self.along) + 2):
+            change = matrices[1 + 2 * j] - matrices[2 + 2 * j]
+            # tr(W_i dM_i) for each leg.
+            of_legs = np.einsum("...ij,...ji->...", weights, change)
+            if j < len(self.along):
+                gradient[..., self.equations + j] = of_legs.sum(axis=-1) / lengths[j][..., 0]
+            else:
+                column = np.arange(j - len(self.along), 2 * self.impacts, 2)
+                gradient[..., column] = of_legs / (2 * _DIFFERENCE)
+        return value, gradient
 
     def is_admissible(self, y: np.ndarray) -> np.ndarray:
         """Whether a simulated ball follows the orbits, with the first releases and landings.
@@ -350,6 +386,38 @@ class PeriodicOrbits:
         at_level = after.displacement >= 0
         same[possible] = at_level & (np.maximum(np.abs(late), np.abs(longer)) < _SAME * interval)
         return same.reshape(shape).all(axis=-1)
+
+
+def _matrices(tangent: Jacobian) -> np.ndarray:
+    """The matrices of the legs, shape (..., k, 2, 2)."""
+    rows = np.stack(np.broadcast_arrays(*tangent), axis=-1)
+    return rows.reshape(*rows.shape[:-1], 2, 2)
+
+
+def _product(matrices: np.ndarray) -> np.ndarray:
+    """M_k … M_1 from matrices of shape (..., k, 2, 2)."""
+    product = matrices[..., 0, :, :]
+    for i in range(1, matrices.shape[-3]):
+        product = matrices[..., i, :, :] @ product
+    return product
+
+
+def _adjugate(m: np.ndarray) -> np.ndarray:
+    """adj m of matrices of shape (..., 2, 2)."""
+    rows = [[m[..., 1, 1], -m[..., 0, 1]], [-m[..., 1, 0], m[..., 0, 0]]]
+    return np.moveaxis(np.array(rows), (0, 1), (-2, -1))
+
+
+def _weights(matrices: np.ndarray, adjugate: np.ndarray) -> np.ndarray:
+    """W_i = (M_{i-1} … M_1) adj (M_k … M_{i+1}), shape (..., k, 2, 2)."""
+    count = matrices.shape[-3]
+    before = [np.broadcast_to(np.eye(2), matrices[..., 0, :, :].shape)]
+    after = [before[0]]
+    for i in range(count - 1):
+        before.append(matrices[..., i, :, :] @ before[-1])
+        after.append(after[-1] @ matrices[..., count - 1 - i, :, :])
+    weights = [before[i] @ adjugate @ after[count - 1 - i] for i in range(count)]
+    return np.stack(weights, axis=-3)
 
 
 def _near_landing(flight: Flight, time: np.ndarray) -> Zero:
@@ -405,3 +473,15 @@ def simulated(
     values = {name: family.values[name] for name in along}
     rows = (np.array(row) for row in (phases[:-1], velocities, durations))
     return problem, problem.point(*rows, **values)
+
+
+def twice(orbits: PeriodicOrbits, y: np.ndarray) -> tuple[PeriodicOrbits, np.ndarray]:
+    """The same orbits, taken twice: the problem with 2k impacts and its points."""
+    phase, velocity = orbits.states(y)
+    duration = orbits.durations(y)
+    whole = replace(orbits, impacts=2 * orbits.impacts, periods=2 * orbits.periods)
+    again = phase + 2 * np.pi * orbits.periods
+    phases = np.concatenate([phase, again], axis=-1)
+    velocities = np.concatenate([velocity, velocity], axis=-1)
+    durations = np.concatenate([duration, duration], axis=-1)
+    return whole, whole.point(phases, velocities, durations, **orbits.values(y))

@@ -50,6 +50,7 @@ class Special(StrEnum):
     GRAZING_IMPACT = "grazing of an impact"
     GRAZING_RELEASE = "grazing of a release"
     STICKING = "end of sticking"
+    PERIOD_HALVING = "period halving"
 
 
 MEANINGS = {
@@ -58,6 +59,7 @@ MEANINGS = {
     Special.GRAZING_FLIGHT: "a flight touches the table: beyond it there is one impact more",
     Special.GRAZING_IMPACT: "the ball lands with the speed of the table: an impact disappears",
     Special.GRAZING_RELEASE: "a contact touches its release: beyond it there is one flight more",
+    Special.PERIOD_HALVING: "the orbit merges with one of half its period, whose period doubles",
     Special.STICKING: "the ball comes to rest as the table leaves it behind",
 }
 """What each kind of special orbit is."""
@@ -68,6 +70,8 @@ def flight_margin(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
     of y; 1 where there is none.
     """
     legs = orbits.legs(y)
+    if legs.departure is None:
+        return np.full(y.shape[:-1], np.nan)
     flight = legs.departure.flight
     duration = np.where(np.isfinite(legs.duration.ravel()), legs.departure.duration, np.nan)
     with np.errstate(all="ignore"):
@@ -184,6 +188,8 @@ def sticking_margin(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
     """The shortest rest on the table of each orbit, 1 without rests; of the leading shape of y."""
     legs = orbits.legs(y)
     departure = legs.departure
+    if departure is None:
+        return np.full(y.shape[:-1], np.nan)
     rest = np.full(legs.passed.shape, _FAR)
     dynamics, _ = orbits.dynamics(y)
     if dynamics is not None and dynamics.forgets and departure.sticks is not None:
@@ -192,11 +198,29 @@ def sticking_margin(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
     return rest.reshape(legs.duration.shape).min(axis=-1)
 
 
+def turns_apart(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
+    """The distance of the two halves of each orbit, the root of the mean square over its impacts.
+
+    It vanishes for an orbit that repeats after half its period; 1 for odd k.
+    """
+    half, rest = divmod(orbits.impacts, 2)
+    if rest:
+        return np.full(y.shape[:-1], _FAR)
+    phase, velocity = orbits.states(y)
+    turned = reduce_angle(phase - np.roll(phase, half, axis=-1))
+    faster = velocity - np.roll(velocity, half, axis=-1)
+    return np.sqrt(np.mean(turned**2 + faster**2, axis=-1))
+
+
 def events(orbits: PeriodicOrbits) -> Sequence[Event]:
-    """The events along a branch; the last two end the branch."""
+    """The events along a branch, which ends where an impact grazes and where sticking ends."""
 
     def bifurcation(kind: Bifurcation) -> Event:
-        return Event(Special(kind), lambda y: kind.test(*orbits.trace_and_determinant(y)))
+        return Event(
+            Special(kind),
+            lambda y: kind.test(*orbits.trace_and_determinant(y)),
+            condition=lambda y: orbits.bifurcation(kind, y),
+        )
 
     def end(kind: Special, margin) -> Event:
         reason = f"{kind}: {MEANINGS[kind]}"

@@ -6,8 +6,8 @@ from the state s_i of impact i to P(s_i), which must be the state of the next im
 
     P(s_i) = s_{i+1},    s_{k+1} = s_1 + (2πm, 0)                                            (1)
 
-The landing is the one near the phase θ_{i+1} among the unknowns, found by Newton's method, and not
-the first one. The equations therefore are smooth where a flight grazes the table,
+The landing is the one near the phase θ_{i+1} among the unknowns, found by one step of
+Newton's method, and not the first one. The equations therefore are smooth where a flight grazes the table,
 and a branch can be followed beyond this point, where no ball follows the orbit. With the landing at
 the time t before θ_{i+1}, the two equations of a leg are multiplied by δ′ and combined ::
 
@@ -42,7 +42,7 @@ from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.first_zero import Zero
 from bouncing_ball.paper.motion.deviations import Jacobian
-from bouncing_ball.paper.motion.dynamics import Dynamics, Impact
+from bouncing_ball.paper.motion.dynamics import Departure, Dynamics, Impact
 from bouncing_ball.paper.motion.flight import Flight, table
 from bouncing_ball.paper.motion.sequence import Status
 from bouncing_ball.paper.orbits.stability import Bifurcation
@@ -52,11 +52,10 @@ _DIFFERENCE = 6e-6
 # Relative to its length, a leg of the simulation differs from that of the orbit by less than this
 # if both are the same; another landing or release differs by far more.
 _SAME = 1e-6
-# Further steps of Newton's method to a landing, and the largest time at which they are taken. In
-# the corrected model the landing precedes the instant by a time of second order in the duration of
-# the contact; in the other models a solution needs no further step.
-_STEPS = 3
-_NEAR = 0.1
+# Rounds that find the time from a landing to the section, and the change relative to the time of a
+# leg at which they end; each round doubles the number of digits.
+_ROUNDS = 6
+_SETTLED = 1e-15
 # Number of points at which the legs are known at the same time.
 _KEPT = 8
 
@@ -105,15 +104,17 @@ class PeriodicOrbits:
     ----------
     family : Family
         The balls, with the values of the parameters that do not vary.
-    impacts, periods : int
-        k and m.
+    impacts : int
+        k.
+    periods : int or array of int
+        m, also as an array of the leading shape of y.
     along : tuple of str
         The names of the parameters that vary.
     """
 
     family: Family
     impacts: int
-    periods: int
+    periods: Any
     along: tuple[str, ...]
 
     @cached_property
@@ -192,7 +193,7 @@ class PeriodicOrbits:
         """θ_{i+1} - θ_i, shape (..., k)."""
         phase, _ = self.states(y)
         after = np.roll(phase, -1, axis=-1)
-        after[..., -1] += 2 * np.pi * self.periods
+        after[..., -1] += 2 * np.pi * np.asarray(self.periods)
         return after - phase
 
     def _legs(self, y: np.ndarray) -> Legs:
@@ -206,11 +207,8 @@ class PeriodicOrbits:
         departure = dynamics.depart_after(impact, self.durations(y).ravel())
         bouncing = inside & (departure.status == Status.BOUNCING)
         duration = np.where(bouncing, departure.duration, np.nan)
-        after, passed = dynamics.arrive(
-            departure, _near_landing(departure.flight, interval - duration)
-        )
+        after, passed, late = _landed(dynamics, impact, departure, duration, interval)
         _, end_velocity = dynamics.section(after)
-        late = passed + _offset(dynamics, after) - _offset(dynamics, impact) - interval
         next_phase = np.roll(phase, -1, axis=-1).ravel()
         acceleration = table(reduce_angle(next_phase), dynamics.amplitude)[1] - 1
         too_fast = end_velocity - np.roll(velocity, -1, axis=-1).ravel()
@@ -320,9 +318,13 @@ class PeriodicOrbits:
             found.append(right - left)
         return found
 
+    def matrices(self, y: np.ndarray) -> np.ndarray:
+        """DP of the legs, shape (..., k, 2, 2)."""
+        return _matrices(self._around(y).tangent)[0]
+
     def monodromy(self, y: np.ndarray) -> Jacobian:
         """The derivative of the map Pᵏ at the first impact; entries of the leading shape of y."""
-        product = _product(_matrices(self._around(y).tangent)[0])
+        product = _product(self.matrices(y))
         return Jacobian(*(product[..., i, j] for i, j in ((0, 0), (0, 1), (1, 0), (1, 1))))
 
     def trace_and_determinant(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -420,17 +422,36 @@ def _weights(matrices: np.ndarray, adjugate: np.ndarray) -> np.ndarray:
     return np.stack(weights, axis=-3)
 
 
-def _near_landing(flight: Flight, time: np.ndarray) -> Zero:
-    """The landings of flights near given times, by Newton's method.
+def _landed(
+    dynamics: Dynamics,
+    impact: Impact,
+    departure: Departure,
+    duration: np.ndarray,
+    interval: np.ndarray,
+) -> tuple[Impact, np.ndarray, np.ndarray]:
+    """The impacts after flights that land near the time ``interval`` after the first impacts.
 
-    Only the first step is taken where it is long, so that Eq. 2 is smooth where δ′ vanishes.
+    The results are the impacts, the times of the legs, and the times by which the impacts are late
+    on the section. In the corrected model the section is some time after the landing, which is
+    found in a few rounds; in other models the first round is enough.
     """
+    before = _offset(dynamics, impact)
+    to_section = np.zeros_like(interval)
+    for _ in range(_ROUNDS):
+        landing = _near_landing(departure.flight, interval - duration - to_section)
+        after, passed = dynamics.arrive(departure, landing)
+        whole = passed + _offset(dynamics, after) - before
+        last = to_section
+        to_section = whole - duration - landing.time
+        if not np.any(np.abs(to_section - last) > _SETTLED * interval):
+            break
+    return after, passed, whole - interval
+
+
+def _near_landing(flight: Flight, time: np.ndarray) -> Zero:
+    """The landings of flights near given times, by one step of Newton's method."""
     gap, rate, acceleration, _ = flight.gap(time)
     later = -gap / rate
-    for _ in range(_STEPS):
-        time = np.where(np.abs(later) < _NEAR, time + later, time)
-        gap, rate, acceleration, _ = flight.gap(time)
-        later = -gap / rate
     none = np.zeros(time.shape, dtype=bool)
     return Zero(time + later, -(rate + later * acceleration), none, none)
 
@@ -480,7 +501,7 @@ def twice(orbits: PeriodicOrbits, y: np.ndarray) -> tuple[PeriodicOrbits, np.nda
     phase, velocity = orbits.states(y)
     duration = orbits.durations(y)
     whole = replace(orbits, impacts=2 * orbits.impacts, periods=2 * orbits.periods)
-    again = phase + 2 * np.pi * orbits.periods
+    again = phase + 2 * np.pi * np.asarray(orbits.periods)[..., np.newaxis]
     phases = np.concatenate([phase, again], axis=-1)
     velocities = np.concatenate([velocity, velocity], axis=-1)
     durations = np.concatenate([duration, duration], axis=-1)

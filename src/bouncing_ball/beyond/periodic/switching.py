@@ -1,8 +1,8 @@
 """From one branch to another: to the doubled orbit, and from a simulated motion to its branch.
 
 At a period doubling the orbit, taken twice, is also an orbit with 2k impacts, and there the
-equations of such orbits have two directions of solutions: along the old branch, and one along which
-the two turns move apart in opposite directions. The doubled branch leaves in the latter.
+equations of such orbits have two directions of solutions: along the old branch, and one in which
+the two turns move apart. The doubled branch leaves in the latter.
 """
 
 from typing import Any
@@ -18,27 +18,35 @@ from bouncing_ball.numerics.corrector import Correction, NewtonSettings, newton,
 
 ASIDE = 0.02
 """The distance of the first doubled orbit from the old one, in y."""
+# The distance at which the rise of the parameter is measured.
+_MEASURED = 1e-4
 _SETTINGS = NewtonSettings(max_iterations=20, longest=0.3)
 
 
-def apart(whole: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
-    """The unit direction in which two equal turns move apart, of the shape of y.
+def apart(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
+    """The unit direction in which two turns of orbits at their period doublings move apart.
 
-    Among the two null vectors of the Jacobian it is the one that changes its sign from turn to turn
-    and leaves the parameters as they are.
+    It is a direction of the doubled orbit's unknowns. The first impact moves along the eigenvector
+    of the multiplier -1, each leg maps its deviation to the next impact, and the second turn moves
+    against the first.
     """
-    _, _, vectors = np.linalg.svd(whole.jacobian(y))
-    null = vectors[..., -2:, :]
-    odd = np.zeros_like(null)
-    start = 0
-    for size in (2 * whole.impacts, whole.equations - 2 * whole.impacts):
-        part = null[..., start : start + size]
-        odd[..., start : start + size] = (part - np.roll(part, size // 2, axis=-1)) / 2
-        start += size
-    length = np.linalg.norm(odd, axis=-1, keepdims=True)
-    better = length.argmax(axis=-2)[..., np.newaxis]
-    chosen = np.take_along_axis(odd / length, better, axis=-2)
-    return chosen[..., 0, :]
+    product = orbits.monodromy(y)
+    first = np.stack([-1 - product.d, product.c], axis=-1)
+    second = np.stack([product.b, -1 - product.a], axis=-1)
+    longer = np.linalg.norm(first, axis=-1) > np.linalg.norm(second, axis=-1)
+    deviation = np.where(longer[..., np.newaxis], first, second)
+    deviations = []
+    for matrix in np.moveaxis(orbits.matrices(y), -3, 0):
+        deviations.append(deviation)
+        deviation = (matrix @ deviation[..., np.newaxis])[..., 0]
+    turn = np.concatenate(deviations, axis=-1)
+    # The equation of a duration says how it follows from the states.
+    rows = orbits.jacobian(y)[..., 2 * orbits.impacts :, : 2 * orbits.impacts]
+    longer_contacts = -(rows @ turn[..., np.newaxis])[..., 0]
+    parameters = np.zeros((*y.shape[:-1], len(orbits.along)))
+    parts = [turn, -turn, longer_contacts, -longer_contacts, parameters]
+    whole = np.concatenate(parts, axis=-1)
+    return whole / np.linalg.norm(whole, axis=-1, keepdims=True)
 
 
 def doubled(
@@ -46,9 +54,26 @@ def doubled(
 ) -> tuple[PeriodicOrbits, Correction]:
     """The orbits of twice the period at the distance ``aside`` from orbits at period doublings."""
     whole, at = twice(orbits, y)
-    direction = apart(whole, at)
+    direction = apart(orbits, y)
     guess = at + np.asarray(aside)[..., np.newaxis] * direction
     return whole, newton(whole, guess, plane(direction, guess), _SETTINGS)
+
+
+def ahead(orbits: PeriodicOrbits, y: np.ndarray, above: np.ndarray) -> np.ndarray:
+    """Orbits of twice the period, at a coordinate that exceeds that of their doublings by ``above``.
+
+    The coordinate of the last parameter rises with the square of the distance from the doubling,
+    by an amount that is measured at a small distance; Newton's method then corrects the orbits.
+    """
+    whole, at = twice(orbits, y)
+    _, near = doubled(orbits, y, np.full(y.shape[:-1], _MEASURED))
+    step = near.point - at
+    share = np.sqrt(np.abs(above / step[..., -1]))
+    guess = at + share[..., np.newaxis] * step
+    guess[..., -1] = at[..., -1] + above
+    axis = np.eye(guess.shape[-1])[-1]
+    found = newton(whole, guess, plane(axis, guess), _SETTINGS)
+    return np.where(found.converged[..., np.newaxis], found.point, guess)
 
 
 def switch(doubling: State, aside: float = ASIDE) -> State:

@@ -110,12 +110,13 @@ def _followed(row: Orbit, doublings: int) -> np.ndarray:
     dynamics = row.dynamics(row.law, row.amplitude)
     dynamics, start, _ = dynamics.in_a_row(row.phase, row.relative_impact_velocity)
     phase, velocity = dynamics.section(dynamics.start(*start))
-    state = (x[:, np.newaxis] for x in np.broadcast_arrays(phase, velocity, row.contact_duration))
-    n = np.broadcast_to(row.n, row.shape)
+    rows = np.broadcast_arrays(phase, velocity, row.contact_duration, row.amplitude, row.n)
+    phase, velocity, duration, amplitude, n = rows
     orbits = PeriodicOrbits(_family(row), 1, n, (AMPLITUDE,))
-    y = orbits.point(*state, amplitude=row.amplitude)
+    state = (x[:, np.newaxis] for x in (phase, velocity, duration))
+    y = orbits.point(*state, amplitude=amplitude)
     found = np.full((doublings, row.size, 3), np.nan)
-    found[0] = np.stack(np.broadcast_arrays(phase, velocity, row.amplitude), axis=-1)
+    found[0] = np.stack([phase, velocity, amplitude], axis=-1)
     gap = _FIRST * np.abs(np.sin(phase))
     which = np.arange(row.size)
     before = found[0, :, -1]

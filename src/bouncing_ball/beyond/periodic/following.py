@@ -1,13 +1,19 @@
 """A branch of periodic orbits, followed along a parameter from one orbit to a value or an end."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
 from bouncing_ball.beyond.periodic.problem import PeriodicOrbits, twice
-from bouncing_ball.beyond.periodic.special import MEANINGS, Special, events, turns_apart
+from bouncing_ball.beyond.periodic.special import (
+    MEANINGS,
+    Special,
+    events,
+    loss_of_release,
+    turns_apart,
+)
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.continuation import (
     Branch,
@@ -31,8 +37,11 @@ _NEAR = 0.1
 _CLOSER = 0.1
 _TRIES = 4
 _HALVES = "the two turns of the orbit become nearly equal"
-# A test function this small at the last point is the reason why a branch cannot be followed.
-_CLOSE = 1e-4
+# If the steps become too short, a test function this small, or a parameter this close to the end of
+# its range, is given as the reason. Close to an event the functions are of the order of the square
+# root of the distance.
+_CLOSE = 1e-2
+_AT_END = 1e-6
 
 
 class State(NamedTuple):
@@ -124,14 +133,17 @@ def corrected(state: State) -> State:
     return State(state.orbits, found.point)
 
 
-def bounds(orbits: PeriodicOrbits, to: float | None, increasing: bool) -> list[Event]:
-    """The ends of the branch at the ends of the parameter's range, and at the value ``to``."""
+def bounds(start: State, to: float | None) -> list[Event]:
+    """The ends of the branch at the ends of the parameter's range, at the value ``to``, and as far
+    beyond the start.
+    """
+    orbits = start.orbits
     (name,) = orbits.along
     low, high = orbits.family.bounds(name)
-    if to is not None and increasing:
-        high = min(high, to)
-    if to is not None and not increasing:
-        low = max(low, to)
+    if to is not None:
+        back = 2 * start.parameters[name] - to
+        low = max(low, min(to, back))
+        high = min(high, max(to, back))
     found = []
     for bound, sign in ((low, 1.0), (high, -1.0)):
         if np.isfinite(bound):
@@ -158,8 +170,8 @@ def follow(
     start : State
         An orbit, or an approximation to one, with a single parameter that varies.
     to : float, optional
-        The value at which the branch ends. The parameter first moves towards it; behind a
-        saddle-node it moves back, and beyond the value of the start.
+        The value at which the branch ends. The parameter first moves towards it. Behind a
+        saddle-node it moves back, at most as far beyond the start as the value is before it.
     increasing : bool
         The direction if ``to`` is not given.
     control : StepControl
@@ -175,7 +187,7 @@ def follow(
     (name,) = here.orbits.along
     if to is not None:
         increasing = to > here.parameters[name]
-    limits = bounds(here.orbits, to, increasing)
+    limits = bounds(here, to)
     near = min(_NEAR, float(turns_apart(here.orbits, here.y)) / 2)
     with np.errstate(all="ignore"):
         for _ in range(_TRIES):
@@ -187,8 +199,8 @@ def follow(
                 branch = whole
                 break
             near *= _CLOSER
-        tests = events(here.orbits)
-        return Followed(here.orbits, replace(branch, end=_explained(branch, tests)))
+        tests = [*events(here.orbits), loss_of_release(here.orbits)]
+        return Followed(here.orbits, replace(branch, end=explained(branch, tests, limits)))
 
 
 def _followed(
@@ -278,13 +290,19 @@ def _up_to_halving(orbits: PeriodicOrbits, branch: Branch) -> Branch | None:
     )
 
 
-def _explained(branch: Branch, tests) -> object:
+def explained(branch: Branch, tests: Sequence[Event], limits: Sequence[Event]) -> End:
     """The end of a branch, with the event that is near if the steps became too short."""
     end = branch.end
     if not end.sentence.startswith("step too small"):
         return end
     last = branch.points[-1]
-    near = [event.name for event in tests if abs(float(event.function(last))) < _CLOSE]
-    if not near:
+    for limit in limits:
+        if abs(float(limit.function(last))) < _AT_END:
+            return End(limit.reason)
+    if not tests:
         return end
-    return end._replace(sentence=f"{end.sentence}; the orbit is next to a {near[-1]}")
+    near = {event.name: abs(float(event.function(last))) for event in tests}
+    nearest = min(near, key=lambda name: near[name])
+    if not near[nearest] < _CLOSE:
+        return end
+    return End(f"the orbit is next to a {nearest}, where its equations are not smooth", True)

@@ -198,6 +198,22 @@ def sticking_margin(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
     return rest.reshape(legs.duration.shape).min(axis=-1)
 
 
+def loss_of_release(orbits: PeriodicOrbits) -> Event:
+    """The speed δ′ with which the ball leaves the table, the smallest of an orbit.
+
+    Where it vanishes, a flight disappears. The release then is a double zero and its time is not a
+    smooth function of the state, so that the place is the end of a branch, but is not located.
+    """
+
+    def speed(y: np.ndarray) -> np.ndarray:
+        legs = orbits.legs(y)
+        if legs.departure is None:
+            return np.full(y.shape[:-1], np.nan)
+        return legs.departure.flight.velocity.reshape(legs.duration.shape).min(axis=-1)
+
+    return Event("release without speed", speed)
+
+
 def turns_apart(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
     """The distance of the two halves of each orbit, the root of the mean square over its impacts.
 

@@ -139,9 +139,7 @@ def _followed(row: Orbit, doublings: int) -> np.ndarray:
         y = solved.point[good]
         before = amplitude[good]
         gap = step[good] / FEIGENBAUM
-        orbits = PeriodicOrbits(
-            _family(row), orbits.impacts, orbits.periods[good], orbits.along
-        )
+        orbits = PeriodicOrbits(_family(row), orbits.impacts, orbits.periods[good], orbits.along)
         phases, velocities = orbits.states(y)
         found[k, which] = np.stack([phases[:, 0], velocities[:, 0], before], axis=-1)
     return found

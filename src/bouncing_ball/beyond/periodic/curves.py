@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.beyond.periodic.following import STEPS, State, explained
+from bouncing_ball.beyond.periodic.following import STEPS, State, explained, limit
 from bouncing_ball.beyond.periodic.problem import PeriodicOrbits
 from bouncing_ball.beyond.periodic.special import (
     Special,
@@ -75,8 +75,8 @@ def condition_of(orbits: PeriodicOrbits, kind: Special) -> Condition:
     ParameterError
         If there is no curve of such orbits.
     """
-    if kind in list(Bifurcation):
-        bifurcation = Bifurcation(kind)
+    if str(kind) in list(map(str, Bifurcation)):
+        bifurcation = Bifurcation(str(kind))
         return lambda y: orbits.bifurcation(bifurcation, y)
     if kind not in _MARGINS:
         known = ", ".join([*Bifurcation, *_MARGINS])
@@ -216,14 +216,8 @@ def _limits(orbits: PeriodicOrbits, windows: dict[str, Window | None]) -> list[E
         column = orbits.equations + j
         for bound, sign in ((low, 1.0), (high, -1.0)):
             if np.isfinite(bound):
-                found.append(_limit(name, bound, sign, column))
+                found.append(limit(name, bound, sign, column))
     return found
-
-
-def _limit(name: str, bound: float, sign: float, column: int) -> Event:
-    at = np.arcsinh(bound)
-    reason = f"{name.replace('_', ' ')} = {bound:g} is reached"
-    return Event("bound", lambda y: sign * (y[..., column] - at), True, reason)
 
 
 def _null_vector(orbits: PeriodicOrbits, y: np.ndarray, reference: np.ndarray) -> np.ndarray:

@@ -88,8 +88,8 @@ def known(
     """The dynamics of a row of balls, and which of them are inside the ranges.
 
     ``given`` are values of parameters, one for each ball; those in ``varied`` may be outside their
-    ranges. Such balls have the first value that is inside. The dynamics is None if there is none, or
-    if the model refuses the parameters for another reason.
+    ranges. Such balls have the first value that is inside. The dynamics is None if there is none,
+    or if the model refuses the parameters for another reason.
     """
     inside = np.ones(next(iter(given.values())).shape, dtype=bool)
     for name in varied:

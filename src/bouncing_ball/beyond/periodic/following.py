@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 
@@ -25,6 +24,7 @@ from bouncing_ball.numerics.continuation import (
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import Event, SpecialPoint
+from bouncing_ball.paper.orbits import stability
 from bouncing_ball.paper.orbits.stability import Bifurcation
 
 STEPS = StepControl(initial=0.01, smallest=1e-9, largest=0.1, max_angle=0.15)
@@ -44,24 +44,68 @@ _CLOSE = 1e-2
 _AT_END = 1e-6
 
 
-class State(NamedTuple):
-    """One orbit of a branch: its unknowns y, and the problem that gives them a meaning."""
+@dataclass(frozen=True, eq=False)
+class State:
+    """One orbit with k impacts in m periods of the table.
+
+    Parameters
+    ----------
+    orbits : PeriodicOrbits
+        The equations, which give the unknowns a meaning.
+    y : array
+        The unknowns, and the coordinates of the parameters that vary.
+    """
 
     orbits: PeriodicOrbits
     y: np.ndarray
+
+    def __repr__(self) -> str:
+        impacts = f"{self.impacts} impact{'s' if self.impacts > 1 else ''}"
+        periods = f"{self.periods} period{'s' if self.periods > 1 else ''}"
+        values = ", ".join(f"{name} = {x:.10g}" for name, x in self.parameters.items())
+        return f"orbit with {impacts} in {periods}: {values}"
+
+    @property
+    def impacts(self) -> int:
+        """k."""
+        return self.orbits.impacts
+
+    @property
+    def periods(self) -> int:
+        """m."""
+        return int(self.orbits.periods)
 
     @property
     def parameters(self) -> dict[str, float]:
         """The values of the parameters that vary."""
         return {name: float(x) for name, x in self.orbits.values(self.y).items()}
 
-    def family_here(self):
-        """The balls with the parameters of this orbit."""
-        return self.orbits.family.at(self.parameters)
+    @property
+    def phase(self) -> np.ndarray:
+        """The phases of the impacts on the section, in [-π, π], shape (k,)."""
+        return reduce_angle(self.orbits.states(self.y)[0])
+
+    @property
+    def velocity(self) -> np.ndarray:
+        """δ′ of the impacts on the section, shape (k,)."""
+        return self.orbits.states(self.y)[1]
+
+    @property
+    def contact_duration(self) -> np.ndarray:
+        """The durations of the contacts, shape (k,)."""
+        return self.orbits.legs(self.y).duration
 
     def along(self, *names: str) -> "State":
-        """The same orbit with other parameters that vary."""
-        family = self.family_here()
+        """The same orbit with other parameters that vary.
+
+        Raises
+        ------
+        ParameterError
+            If the balls have no such parameter.
+        """
+        family = self.orbits.family.at(self.parameters)
+        for name in names:
+            family.bounds(name)
         orbits = replace(self.orbits, family=family, along=names)
         phase, velocity = self.orbits.states(self.y)
         durations = self.orbits.durations(self.y)
@@ -69,9 +113,20 @@ class State(NamedTuple):
         return State(orbits, orbits.point(phase, velocity, durations, **values))
 
     def multipliers(self) -> np.ndarray:
-        """The two Floquet multipliers."""
-        m = self.orbits.monodromy(self.y)
-        return np.linalg.eigvals(np.array([[m.a, m.b], [m.c, m.d]]))
+        """The two Floquet multipliers, complex; that of larger modulus comes first."""
+        return stability.multipliers(*self.orbits.trace_and_determinant(self.y))
+
+    def is_stable(self) -> bool:
+        """Whether both multipliers lie inside the unit circle."""
+        return bool(stability.is_stable(*self.orbits.trace_and_determinant(self.y)))
+
+    def is_admissible(self) -> bool:
+        """Whether a simulated ball follows the orbit, without an earlier release or landing."""
+        return bool(self.orbits.is_admissible(self.y))
+
+    def defect(self) -> float:
+        """Largest absolute value of the defects of the equations."""
+        return float(np.abs(self.orbits.residual(self.y)).max())
 
 
 @dataclass(frozen=True)
@@ -95,7 +150,8 @@ class Followed:
     def special(self) -> list[tuple[Special, State]]:
         """The special orbits in order, with their kinds."""
         return [
-            (Special(each.name), State(self.orbits, each.point)) for each in self.branch.special
+            (Special(each.name), State(self.orbits, each.point))
+            for each in self.branch.special
             if each.name in list(Special)
         ]
 
@@ -147,12 +203,17 @@ def bounds(start: State, to: float | None) -> list[Event]:
     found = []
     for bound, sign in ((low, 1.0), (high, -1.0)):
         if np.isfinite(bound):
-            at = np.arcsinh(bound)
-            reason = f"{name.replace('_', ' ')} = {bound:g} is reached"
-            found.append(
-                Event(_BOUND, lambda y, at=at, sign=sign: sign * (y[..., -1] - at), True, reason)
-            )
+            found.append(limit(name, bound, sign, orbits.equations))
     return found
+
+
+def limit(name: str, bound: float, sign: float, column: int) -> Event:
+    """The end of a branch where a parameter, an entry of y, reaches a bound: from above if the sign
+    is positive, otherwise from below.
+    """
+    at = np.arcsinh(bound)
+    reason = f"{name.replace('_', ' ')} = {bound:g} is reached"
+    return Event(_BOUND, lambda y: sign * (y[..., column] - at), True, reason)
 
 
 def follow(

@@ -6,10 +6,10 @@ from the state s_i of impact i to P(s_i), which must be the state of the next im
 
     P(s_i) = s_{i+1},    s_{k+1} = s_1 + (2πm, 0)                                            (1)
 
-The landing is the one near the phase θ_{i+1} among the unknowns, found by one step of
-Newton's method, and not the first one. The equations therefore are smooth where a flight grazes the table,
-and a branch can be followed beyond this point, where no ball follows the orbit. With the landing at
-the time t before θ_{i+1}, the two equations of a leg are multiplied by δ′ and combined ::
+The landing is the one near the phase θ_{i+1} among the unknowns, found by one step of Newton's
+method, and not the first one. The equations therefore are smooth where a flight grazes the table,
+and a branch can be followed beyond this point, where no ball follows the orbit. With a landing that
+is late by t, the two equations of a leg are multiplied by δ′ and combined ::
 
     δ′ t = 0,    (δ′ at the landing - v_{i+1}) - δ″ t = 0                                     (2)
 
@@ -134,9 +134,7 @@ class PeriodicOrbits:
 
     def values(self, y: np.ndarray) -> dict[str, np.ndarray]:
         """The values of the parameters that vary, each with the leading shape of y."""
-        return {
-            name: np.sinh(y[..., self.equations + j]) for j, name in enumerate(self.along)
-        }
+        return {name: np.sinh(y[..., self.equations + j]) for j, name in enumerate(self.along)}
 
     def durations(self, y: np.ndarray) -> np.ndarray:
         """The durations of the contacts, shape (..., k); 0 if they are no unknowns."""
@@ -177,7 +175,7 @@ class PeriodicOrbits:
     def dynamics(self, y: np.ndarray) -> tuple[Dynamics | None, np.ndarray]:
         """The dynamics of the legs in a row, and which legs are inside the ranges."""
         leading = y.shape[:-1]
-        given = self.family.values | self.values(y)
+        given = {**self.family.values, **self.values(y)}
         each = {}
         for name, value in given.items():
             if name in self.along or np.ndim(value):
@@ -239,8 +237,8 @@ class PeriodicOrbits:
     def _around(self, y: np.ndarray, everywhere: bool = False) -> Legs:
         """The legs at y and beside it, with an additional first axis.
 
-        Its entries are y itself, y moved by ± the step of the differences in each parameter, and, if
-        the durations are unknowns or ``everywhere`` is set, y with all θ or all v moved: a leg
+        Its entries are y itself, y moved by ± the step of the differences in each parameter, and,
+        if the durations are unknowns or ``everywhere`` is set, y with all θ or all v moved: a leg
         depends on the state at its start alone.
         """
         columns = [[self.equations + j] for j in range(len(self.along))]
@@ -373,7 +371,7 @@ class PeriodicOrbits:
         same = np.zeros(inside.shape, dtype=bool)
         possible = np.flatnonzero(inside & (velocity.ravel() < 0) & np.isfinite(velocity.ravel()))
         if not possible.size:
-            return same.reshape(shape).all(axis=-1)
+            return np.all(same.reshape(shape), axis=-1)
         part = dynamics.take(possible)
         impact = pick(self.impact(dynamics, y), possible)
         departure = part.depart(impact, differentiate=True)
@@ -387,7 +385,7 @@ class PeriodicOrbits:
         longer = longer if self.selects else np.zeros_like(late)
         at_level = after.displacement >= 0
         same[possible] = at_level & (np.maximum(np.abs(late), np.abs(longer)) < _SAME * interval)
-        return same.reshape(shape).all(axis=-1)
+        return np.all(same.reshape(shape), axis=-1)
 
 
 def _matrices(tangent: Jacobian) -> np.ndarray:

@@ -60,9 +60,9 @@ def doubled(
 
 
 def ahead(orbits: PeriodicOrbits, y: np.ndarray, above: np.ndarray) -> np.ndarray:
-    """Orbits of twice the period, at a coordinate that exceeds that of their doublings by ``above``.
+    """Orbits of twice the period, at a coordinate of the parameter ``above`` that of the doublings.
 
-    The coordinate of the last parameter rises with the square of the distance from the doubling,
+    The coordinate rises with the square of the distance from the doubling,
     by an amount that is measured at a small distance; Newton's method then corrects the orbits.
     """
     whole, at = twice(orbits, y)

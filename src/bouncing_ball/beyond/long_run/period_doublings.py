@@ -5,7 +5,7 @@ of twice the period branches off (:mod:`bouncing_ball.beyond.periodic.switching`
 finds the doubling of the new orbit from a point on its branch; many cascades are computed together.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -112,7 +112,8 @@ def _followed(row: Orbit, doublings: int) -> np.ndarray:
     phase, velocity = dynamics.section(dynamics.start(*start))
     rows = np.broadcast_arrays(phase, velocity, row.contact_duration, row.amplitude, row.n)
     phase, velocity, duration, amplitude, n = rows
-    orbits = PeriodicOrbits(_family(row), 1, n, (AMPLITUDE,))
+    selects = dynamics.continues and bool(np.nanmax(duration) > 0)
+    orbits = PeriodicOrbits(_family(row), 1, n, (AMPLITUDE,), selects)
     state = (x[:, np.newaxis] for x in (phase, velocity, duration))
     y = orbits.point(*state, amplitude=amplitude)
     found = np.full((doublings, row.size, 3), np.nan)
@@ -139,7 +140,7 @@ def _followed(row: Orbit, doublings: int) -> np.ndarray:
         y = solved.point[good]
         before = amplitude[good]
         gap = step[good] / FEIGENBAUM
-        orbits = PeriodicOrbits(_family(row), orbits.impacts, orbits.periods[good], orbits.along)
+        orbits = replace(orbits, family=_family(row), periods=orbits.periods[good])
         phases, velocities = orbits.states(y)
         found[k, which] = np.stack([phases[:, 0], velocities[:, 0], before], axis=-1)
     return found

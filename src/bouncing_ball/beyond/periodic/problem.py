@@ -110,17 +110,15 @@ class PeriodicOrbits:
         m, also as an array of the leading shape of y.
     along : tuple of str
         The names of the parameters that vary.
+    selects : bool
+        Whether the durations of the contacts are unknowns, which select their releases.
     """
 
     family: Family
     impacts: int
     periods: Any
     along: tuple[str, ...]
-
-    @cached_property
-    def selects(self) -> bool:
-        """Whether the durations of the contacts are unknowns, which select their releases."""
-        return self.family.dynamics({}).continues
+    selects: bool = False
 
     @property
     def equations(self) -> int:
@@ -488,7 +486,8 @@ def simulated(
         phases.append(phases[-1] + float(later[0]))
         impact = after
     periods = max(1, round((phases[-1] - phases[0]) / (2 * np.pi)))
-    problem = PeriodicOrbits(family, impacts, periods, tuple(along))
+    selects = dynamics.continues and max(durations) > 0
+    problem = PeriodicOrbits(family, impacts, periods, tuple(along), selects)
     values = {name: family.values[name] for name in along}
     rows = (np.array(row) for row in (phases[:-1], velocities, durations))
     return problem, problem.point(*rows, **values)

@@ -209,7 +209,11 @@ def loss_of_release(orbits: PeriodicOrbits) -> Event:
         legs = orbits.legs(y)
         if legs.departure is None:
             return np.full(y.shape[:-1], np.nan)
-        return legs.departure.flight.velocity.reshape(legs.duration.shape).min(axis=-1)
+        velocity = legs.departure.flight.velocity
+        # The bounces before a rest on the table become arbitrarily slow.
+        rests = np.any(legs.departure.sticks) if orbits.family.dynamics({}).forgets else False
+        lowest = velocity.reshape(legs.duration.shape).min(axis=-1)
+        return np.full(lowest.shape, _FAR) if rests else lowest
 
     return Event("release without speed", speed)
 

@@ -1,4 +1,4 @@
-"""Stability over the stiffness: where the 1-T, 2-T and 3-T orbits and their doublings are stable."""
+"""Stability over stiffness: where the 1-T, 2-T and 3-T orbits and their doublings are stable."""
 
 import matplotlib.pyplot as plt
 

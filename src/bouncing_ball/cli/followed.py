@@ -1,5 +1,6 @@
 """``bouncing-ball follow`` and ``curve``: periodic orbits along one parameter and two."""
 
+import math
 from pathlib import Path
 from typing import Any, get_args
 
@@ -94,9 +95,11 @@ def _start(
     ball = ball_of(**impact)
     if phase is None and velocity is None:
         return periodic.orbit(ball, n, amplitude=amplitude, side=side)
-    first = {"phase": phase, "velocity": velocity}
-    given = {name: value for name, value in first.items() if value is not None}
-    return calls.orbit_of_motion(ball, amplitude=amplitude, **given)
+    first_phase = 0.0 if phase is None else phase
+    first_velocity = -math.pi if velocity is None else velocity
+    return calls.orbit_of_motion(
+        ball, amplitude=amplitude, phase=first_phase, velocity=first_velocity
+    )
 
 
 def _branch(start: Any, along: str, to: float, doublings: int) -> calls.FollowedBranch:

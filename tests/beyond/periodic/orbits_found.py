@@ -35,7 +35,7 @@ def family(name, amplitude, restitution=0.5, frequency_ratio=10.0, stiffness=500
         values["restitution"] = restitution
         if name != "restitution":
             values["frequency_ratio"] = frequency_ratio
-    return Family(MAKERS[name], values, RANGES)
+    return Family(MAKERS[name], values, {each: RANGES[each] for each in values})
 
 
 def known_orbit(name, amplitude, along, n=1, side="stable"):

@@ -214,7 +214,10 @@ def _step(
     if not corrected.converged:
         raise _Rejected(f"the corrector fails with residual {corrected.residual:.1e}")
     point = corrected.point
-    ahead = tangent(problem.jacobian(point), state.tangent)
+    matrix = problem.jacobian(point)
+    if not np.all(np.isfinite(matrix)):
+        raise _Rejected("the Jacobian is not defined there")
+    ahead = tangent(matrix, state.tangent)
     angle = float(np.arccos(np.clip(ahead @ state.tangent, -1.0, 1.0)))
     if not angle <= max_angle:
         raise _Rejected(f"the tangent turns by more than {max_angle} rad")

@@ -1,14 +1,20 @@
 """Curves of special orbits in two parameters: against closed forms, with cusps and resonances."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from orbits_found import known_orbit
+from orbits_found import family, known_orbit
 
 import bouncing_ball
+from bouncing_ball.beyond.long_run.cascade_of_flights import openings
 from bouncing_ball.beyond.periodic.curves import Degenerate, Window, curve
-from bouncing_ball.beyond.periodic.following import State, follow
+from bouncing_ball.beyond.periodic.following import STEPS, State, follow
 from bouncing_ball.beyond.periodic.special import Special, flight_margin
+from bouncing_ball.beyond.periodic.switching import of_motion
 from bouncing_ball.errors import ModelError
+from bouncing_ball.paper.contact.damping import damping_ratio
+from bouncing_ball.paper.contact.permanent_contact import permanent_contact_threshold
 from bouncing_ball.paper.orbits import restitution_branch as formulas
 
 
@@ -79,3 +85,30 @@ def test_a_curve_of_an_unknown_kind_or_parameter_is_refused(refusal):
         curve(start, Special.PERIOD_DOUBLING, "stiffness")
     with refusal(ModelError, "'period halving' is not one of"):
         curve(start, Special.PERIOD_HALVING, "restitution")
+
+
+def test_the_cascade_of_flights_is_the_curve_on_which_a_long_contact_opens():
+    """Against the equations of long_run.cascade_of_flights, with the multipliers there."""
+    ratio = 20.0
+    zeta = float(damping_ratio(0.85))
+    known = openings([zeta], np.array([ratio]), 2)
+    held = float(permanent_contact_threshold(ratio, zeta))
+    for k, excess in enumerate((4.0, 15.0)):
+        lam = held + excess / ratio**2
+        phase = np.pi / 2 + 3 / ratio
+        velocity = lam * np.cos(phase) - 0.1 / ratio**2
+        balls = family("spring-damper", lam, 0.85, ratio)
+        state = of_motion(balls, phase, velocity, "amplitude")
+        assert state.impacts == k + 1
+        steps = replace(STEPS, initial=1e-3)
+        opening = follow(state, held + 80 / ratio**2, control=steps).first(Special.GRAZING_RELEASE)
+        assert opening.parameters["amplitude"] == pytest.approx(known.amplitude[0, k, 0], abs=1e-12)
+        largest = abs(opening.multipliers()[0])
+        assert largest == pytest.approx(known.multiplier[0, k, 0], abs=1e-9)
+        if k == 0:
+            window = Window(15.0, 25.0)
+            found = curve(opening, Special.GRAZING_RELEASE, "frequency_ratio", across_window=window)
+            values = found.orbits.values(found.branch.points)
+            order = values["frequency_ratio"].argsort()
+            there = openings([zeta], values["frequency_ratio"][order], 1).amplitude[0, 0]
+            assert np.abs(there - values["amplitude"][order]).max() < 1e-10

@@ -372,15 +372,20 @@ class PeriodicOrbits:
             return np.all(same.reshape(shape), axis=-1)
         part = dynamics.take(possible)
         impact = pick(self.impact(dynamics, y), possible)
+        expected = self.durations(y).ravel()[possible]
         departure = part.depart(impact, differentiate=True)
+        if self.selects and part.forgets:
+            # The bounces before a rest belong to the leg in which the ball comes to rest.
+            early = departure.sticks & (expected == 0)
+            departure = part.depart_after(impact, np.where(early, np.nan, expected))
         going = np.flatnonzero(departure.status == Status.BOUNCING)
         possible = possible[going]
+        expected = expected[going]
         part, impact, departure = part.kept(going, impact, departure)
         after, passed = part.fly(departure)
         interval = self.intervals(y).ravel()[possible]
         late = passed + _offset(part, after) - _offset(part, impact) - interval
-        longer = departure.duration - self.durations(y).ravel()[possible]
-        longer = longer if self.selects else np.zeros_like(late)
+        longer = departure.duration - expected if self.selects else np.zeros_like(late)
         at_level = after.displacement >= 0
         same[possible] = at_level & (np.maximum(np.abs(late), np.abs(longer)) < _SAME * interval)
         return np.all(same.reshape(shape), axis=-1)

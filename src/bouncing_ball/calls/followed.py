@@ -39,7 +39,7 @@ from bouncing_ball.errors import ParameterError, Range, extra
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.contact.damping import Release, damping_ratio, restitution_coefficient
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.orbits import stability
+from bouncing_ball.paper.orbits import observables, stability
 from bouncing_ball.paper.orbits.model import ImpactModel
 
 if TYPE_CHECKING:
@@ -51,20 +51,12 @@ _RANGES = {
     "restitution": RESTITUTION,
     "damping_ratio": DAMPING_RATIO,
 }
-VARIABLES = {
-    "impact_phase": Variable("phase of the table at the impact", symbol="φ", units="rad"),
-    "relative_velocity": Variable("relative velocity at the impact", symbol="δ′"),
+VARIABLES = {"relative_velocity": Variable("relative velocity at the impact", symbol="δ′")}
+_OF_IMPACTS = {
     "impact": Variable("number of the impact within the orbit"),
-    "multiplier": Variable("Floquet multiplier, the larger modulus first", symbol="μ"),
-    "multiplier_real": Variable("real part of the Floquet multiplier", symbol="Re μ"),
-    "multiplier_imag": Variable("imaginary part of the Floquet multiplier", symbol="Im μ"),
-    "residual": Variable("largest defect of the equations of the orbit"),
-    "special": Variable("special point, in order"),
-    "special_kind": Variable("kind of special point"),
-    "special_phase": Variable("phase of the first impact there", symbol="φ", units="rad"),
-    "end": Variable("end of the branch"),
-    "end_reason": Variable("why the branch ends there"),
+    "impact_phase": Variable("phase of the table at the impact", symbol="φ", units="rad"),
 }
+_ALL = observables.VARIABLES | _OF_IMPACTS | VARIABLES
 
 
 class FollowedBranch(Labelled):
@@ -187,7 +179,8 @@ def _state(orbit: Any, along: str) -> State:
         return orbit.along(along)
     if not isinstance(orbit, PeriodicOrbit):
         how = "orbit, orbit_of_motion, switch or by a branch"
-        raise ParameterError(f"the orbit = {{}} is not one that was made by {how}", repr(orbit))
+        kind = type(orbit).__name__
+        raise ParameterError(f"the orbit, a {kind}, is not one that was made by {how}")
     family = family_of(orbit.model, orbit.amplitude)
     family.bounds(along)
     return switching.of_impact(family, orbit.phase, orbit.impact_velocity, 1, along)
@@ -312,7 +305,7 @@ def switch(orbit: State) -> State:
     1.667131
     """
     if not isinstance(orbit, State):
-        raise ParameterError("switch needs an orbit of a branch, not {}", repr(orbit))
+        raise ParameterError("switch needs an orbit of a branch, not {}", type(orbit).__name__)
     return switching.switch(orbit)
 
 
@@ -368,7 +361,7 @@ def curve(
     True
     """
     if not isinstance(orbit, State):
-        raise ParameterError("curve needs an orbit of a branch, not {}", repr(orbit))
+        raise ParameterError("curve needs an orbit of a branch, not {}", type(orbit).__name__)
     if len(orbit.orbits.along) != 1 or across in orbit.orbits.along:
         raise ParameterError("{across} must be another parameter than that of the branch")
     name = chosen("kind", kind, [str(each) for each in Special])
@@ -425,7 +418,7 @@ def _columns(
     data["multiplier_real"] = ("point", "multiplier"), floquet.real
     data["multiplier_imag"] = ("point", "multiplier"), floquet.imag
     data["residual"] = "point", np.abs(orbits.residual(y)).max(axis=-1)
-    data["special_kind"] = "special", np.array([str(kind) for kind, _ in special], dtype=object)
+    data["special_kind"] = "special", np.array([str(kind) for kind, _ in special], dtype=str)
     for name in along:
         places = [state.parameters[name] for _, state in special]
         data[f"special_{name}"] = "special", np.array(places, dtype=float)
@@ -437,4 +430,4 @@ def _columns(
         f"special_{n}": v._replace(long_name=f"{v.long_name} there") for n, v in known.items()
     }
     coords = {"special": np.arange(len(special)), "end": ["start", "end"]}
-    return described(data, coords, variables=VARIABLES | known | places)
+    return described(data, coords, variables=_ALL | known | places)

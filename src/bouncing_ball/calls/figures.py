@@ -75,8 +75,7 @@ def special_curve(data: xr.Dataset) -> Figure:
 
 def _parameters_of(data: xr.Dataset) -> list[str]:
     """The parameters of a branch or a curve."""
-    names = (str(name).removeprefix("special_") for name in data if str(name) != "special_phase")
-    return [name for name in names if name in data and f"special_{name}" in data]
+    return [str(name) for name in data if f"special_{name}" in data]
 
 
 def _mark_special(axes: Axes, data: xr.Dataset, x: xr.DataArray, y: xr.DataArray) -> None:

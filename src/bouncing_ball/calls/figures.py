@@ -49,7 +49,10 @@ def followed(data: xr.Dataset) -> Figure:
     figure, axes = canvas(WIDE, 3.4)
     (along,) = _parameters_of(data)
     for k in range(data.sizes["impact"]):
+        # A phase that passes ±π goes on at the other edge.
         phase = data.impact_phase.isel(impact=k)
+        jumps = np.abs(np.diff(phase, prepend=phase[:1])) > np.pi
+        phase = phase.where(~jumps)
         draw_branch(axes, data, phase, COLOURS[k % len(COLOURS)], along)
     _mark_special(axes, data, data[f"special_{along}"], data.special_phase / np.pi)
     axes.set(

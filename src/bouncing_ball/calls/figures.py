@@ -1,7 +1,7 @@
 """Figures of the results of calls; they compute nothing."""
 
 from collections.abc import Callable, Iterator, Sequence
-from itertools import cycle
+from itertools import cycle, pairwise
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +13,6 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from bouncing_ball.datasets import CASE, PERIOD_DOUBLING, SADDLE_NODE
-from bouncing_ball.drawing.branches import draw_branch
 from bouncing_ball.drawing.canvas import WIDE, WIDTH, canvas, coloured, legend_below
 from bouncing_ball.drawing.files import write
 from bouncing_ball.drawing.labels import QUANTITIES, in_a_row, symbol, title
@@ -48,12 +47,18 @@ def followed(data: xr.Dataset) -> Figure:
     """The phases of the impacts of a branch over its parameter, with its special orbits."""
     figure, axes = canvas(WIDE, 3.4)
     (along,) = _parameters_of(data)
+    stability = np.where(data.stable, "stable", "unstable")
+    looks = np.where(data.admissible, stability, "inadmissible")
+    edges = [0, *(np.flatnonzero(looks[1:] != looks[:-1]) + 1), len(looks)]
     for k in range(data.sizes["impact"]):
+        phase = data.impact_phase.values[:, k] / np.pi
         # A phase that passes ±π goes on at the other edge.
-        phase = data.impact_phase.isel(impact=k)
-        jumps = np.abs(np.diff(phase, prepend=phase[:1])) > np.pi
-        phase = phase.where(~jumps)
-        draw_branch(axes, data, phase, COLOURS[k % len(COLOURS)], along)
+        jumps = np.abs(np.diff(phase, prepend=phase[:1])) > 1
+        shown = np.where(jumps, np.nan, phase)
+        for start, stop in pairwise(edges):
+            run = slice(start, stop + 1)
+            look = LINES[looks[start]] | {"color": COLOURS[k % len(COLOURS)]}
+            axes.plot(data[along].values[run], shown[run], label=looks[start], **look)
     _mark_special(axes, data, data[f"special_{along}"], data.special_phase / np.pi)
     axes.set(
         xlabel=symbol(along), ylabel=r"phases of impact $\varphi/\pi$", title=_orbit_title(data)

@@ -98,7 +98,7 @@ class FollowedBranch(Labelled):
         """
         with extra("plot"):
             from bouncing_ball.calls import figures
-        return figures.shown(figures.followed, self, path, "follow")
+        return figures.shown(lambda: figures.followed(self), path, "follow")
 
 
 class SpecialCurve(Labelled):
@@ -116,7 +116,7 @@ class SpecialCurve(Labelled):
         """
         with extra("plot"):
             from bouncing_ball.calls import figures
-        return figures.shown(figures.special_curve, self, path, "curve")
+        return figures.shown(lambda: figures.special_curve(self), path, "curve")
 
 
 def _numbers(law: Any) -> dict[str, float]:

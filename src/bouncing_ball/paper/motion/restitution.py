@@ -145,7 +145,7 @@ class RestitutionDynamics(Dynamics):
         elapsed = np.zeros_like(impact.phase)
         for _ in range(_BOUNCES):
             r, _ = self._rebound_of(impact)
-            x, y = table(impact.phase, self.amplitude)
+            x, y = self.table_at(impact)
             after = -r * impact.velocity
             flight = Flight(np.zeros(x.shape), after, x, y, self.amplitude)
             sticks, settling = chattering(after, r, x, y, self.amplitude)

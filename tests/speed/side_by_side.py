@@ -11,6 +11,7 @@ import platform
 import sys
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from statistics import median
 from typing import NamedTuple
@@ -20,7 +21,6 @@ import numpy as np
 import bouncing_ball
 from bouncing_ball.beyond.periodic.curves import CurveProblem, Window, condition_of, curve
 from bouncing_ball.beyond.periodic.following import follow
-from bouncing_ball.beyond.periodic.problem import PeriodicOrbits
 from bouncing_ball.beyond.periodic.special import Special
 from bouncing_ball.calls.followed import family_of
 from bouncing_ball.numerics.corrector import newton, plane
@@ -207,7 +207,7 @@ def batch_row() -> Row:
     start = bouncing_ball.orbit_of_motion(ball, amplitude=1.6, phase=1.0, velocity=-3.0)
     r = np.linspace(R - 0.01, R + 0.01, BRANCHES)
     family = family_of(ball.model, 1.6).at({"restitution": r})
-    orbits = PeriodicOrbits(family, 2, 2, ("amplitude",))
+    orbits = replace(start.orbits, family=family)
     first = np.tile(start.y, (BRANCHES, 1))
 
     def points() -> np.ndarray:

@@ -113,7 +113,7 @@ def _followed(row: Orbit, doublings: int) -> np.ndarray:
     rows = np.broadcast_arrays(phase, velocity, row.contact_duration, row.amplitude, row.n)
     phase, velocity, duration, amplitude, n = rows
     selects = dynamics.continues and bool(np.nanmax(duration) > 0)
-    orbits = PeriodicOrbits(_family(row), 1, n, (AMPLITUDE,), selects)
+    orbits = PeriodicOrbits(_family(row), 1, n[:, np.newaxis], (AMPLITUDE,), selects)
     state = (x[:, np.newaxis] for x in (phase, velocity, duration))
     y = orbits.point(*state, amplitude=amplitude)
     found = np.full((doublings, row.size, 3), np.nan)
@@ -140,7 +140,7 @@ def _followed(row: Orbit, doublings: int) -> np.ndarray:
         y = solved.point[good]
         before = amplitude[good]
         gap = step[good] / FEIGENBAUM
-        orbits = replace(orbits, family=_family(row), periods=orbits.periods[good])
+        orbits = replace(orbits, family=_family(row), turns=orbits.turns[good])
         phases, velocities = orbits.states(y)
         found[k, which] = np.stack([phases[:, 0], velocities[:, 0], before], axis=-1)
     return found

@@ -31,6 +31,8 @@ STEPS = StepControl(initial=0.01, smallest=1e-9, largest=0.1, max_angle=0.15)
 """Steps in arclength, over the phases, the velocities and arsinh of the parameter."""
 _PATIENT = NewtonSettings(max_iterations=20, longest=0.3)
 _BOUND = "bound"
+# Largest defect of a start of which the last Newton step is not small: a hundred roundings.
+_SATISFIED = 1e-13
 # A branch is followed up to this distance of the two turns of an orbit before they become equal.
 # If there is no period doubling near, it is followed up to a smaller distance, several times.
 _NEAR = 0.1
@@ -180,7 +182,8 @@ def corrected(state: State) -> State:
     axis = np.eye(state.y.size)[-1]
     with np.errstate(all="ignore"):
         found = newton(state.orbits, state.y, plane(axis, state.y), _PATIENT)
-    if not found.converged:
+    # Next to a bifurcation rounding moves the last step, although the equations are satisfied.
+    if not (found.converged or found.residual <= _SATISFIED):
         k = state.orbits.impacts
         raise NoOrbitError(
             f"no orbit with {k} impact{'s' if k > 1 else ''} was found near this motion: residual "
@@ -327,10 +330,14 @@ def _up_to_halving(orbits: PeriodicOrbits, branch: Branch) -> Branch | None:
     At the halving the equations have two directions of solutions, so that Newton's method fails.
     """
     k = orbits.impacts // 2
-    half = replace(orbits, impacts=k, periods=orbits.periods // 2)
     last = branch.points[-1]
     phase, velocity = orbits.states(last)
-    turned = np.concatenate([phase[:k], phase[k:] - 2 * np.pi * half.periods])
+    first = phase[:k]
+    turned = np.concatenate([first, first + reduce_angle(phase[k:] - first)])
+    turns = orbits.turns[:k].copy()
+    # The turn ends at the first impact of the first turn in place of the second.
+    turns[-1] += round(float(phase[k] - phase[0]) / (2 * np.pi))
+    half = replace(orbits, impacts=k, turns=turns)
     rows = (turned, velocity, orbits.durations(last))
     means = (row.reshape(2, k).mean(axis=0) for row in rows)
     guess = half.point(*means, **orbits.values(last))

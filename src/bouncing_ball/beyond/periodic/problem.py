@@ -106,8 +106,9 @@ class PeriodicOrbits:
         The balls, with the values of the parameters that do not vary.
     impacts : int
         k.
-    periods : int or array of int
-        m, also as an array of the leading shape of y.
+    turns : array of int
+        The whole turns of the table from each phase to the next among the unknowns, shape (..., k):
+        the phases themselves stay within a few turns, so that they keep their digits.
     along : tuple of str
         The names of the parameters that vary.
     selects : bool
@@ -116,9 +117,14 @@ class PeriodicOrbits:
 
     family: Family
     impacts: int
-    periods: Any
+    turns: Any
     along: tuple[str, ...]
     selects: bool = False
+
+    @property
+    def periods(self) -> Any:
+        """m, of the leading shape of y."""
+        return np.sum(self.turns, axis=-1)
 
     @property
     def equations(self) -> int:
@@ -188,9 +194,7 @@ class PeriodicOrbits:
     def intervals(self, y: np.ndarray) -> np.ndarray:
         """θ_{i+1} - θ_i, shape (..., k)."""
         phase, _ = self.states(y)
-        after = np.roll(phase, -1, axis=-1)
-        after[..., -1] += 2 * np.pi * np.asarray(self.periods)
-        return after - phase
+        return (np.roll(phase, -1, axis=-1) - phase) + 2 * np.pi * np.asarray(self.turns)
 
     def _legs(self, y: np.ndarray) -> Legs:
         dynamics, inside = self.dynamics(y)
@@ -479,7 +483,8 @@ def simulated(
     dynamics = family.dynamics({})
     dynamics, start, _ = dynamics.in_a_row([phase], [velocity])
     impact = dynamics.at_section(*start)
-    phases = [float(start[0][0])]
+    phases = [float(reduce_angle(start[0])[0])]
+    turns = []
     velocities = []
     durations = []
     for _ in range(impacts):
@@ -488,11 +493,14 @@ def simulated(
         velocities.append(float(dynamics.section(impact)[1][0]))
         durations.append(float(departure.duration[0]))
         later = passed + _offset(dynamics, after) - _offset(dynamics, impact)
-        phases.append(phases[-1] + float(later[0]))
+        last = phases[-1] + float(later[0])
+        phases.append(float(reduce_angle(np.array(last))))
+        turns.append(round((last - phases[-1]) / (2 * np.pi)))
         impact = after
-    periods = max(1, round((phases[-1] - phases[0]) / (2 * np.pi)))
+    # The last phase is replaced by the first one.
+    turns[-1] += round((phases[-1] - phases[0]) / (2 * np.pi))
     selects = dynamics.continues and max(durations) > 0
-    problem = PeriodicOrbits(family, impacts, periods, tuple(along), selects)
+    problem = PeriodicOrbits(family, impacts, np.array(turns), tuple(along), selects)
     values = {name: family.values[name] for name in along}
     rows = (np.array(row) for row in (phases[:-1], velocities, durations))
     return problem, problem.point(*rows, **values)
@@ -502,9 +510,9 @@ def twice(orbits: PeriodicOrbits, y: np.ndarray) -> tuple[PeriodicOrbits, np.nda
     """The same orbits, taken twice: the problem with 2k impacts and its points."""
     phase, velocity = orbits.states(y)
     duration = orbits.durations(y)
-    whole = replace(orbits, impacts=2 * orbits.impacts, periods=2 * orbits.periods)
-    again = phase + 2 * np.pi * np.asarray(orbits.periods)[..., np.newaxis]
-    phases = np.concatenate([phase, again], axis=-1)
+    turns = np.concatenate([orbits.turns, orbits.turns], axis=-1)
+    whole = replace(orbits, impacts=2 * orbits.impacts, turns=turns)
+    phases = np.concatenate([phase, phase], axis=-1)
     velocities = np.concatenate([velocity, velocity], axis=-1)
     durations = np.concatenate([duration, duration], axis=-1)
     return whole, whole.point(phases, velocities, durations, **orbits.values(y))

@@ -144,8 +144,11 @@ def peer(module: str) -> bool:
 
 
 def orbit_state(state) -> list[float]:
+    """The phases, which increase from impact to impact, and the velocities of an orbit."""
     phase, velocity = state.orbits.states(state.y)
-    return [float(x) for pair in zip(phase, velocity, strict=True) for x in pair]
+    before = np.concatenate([[0], np.cumsum(state.orbits.turns)[:-1]])
+    rising = phase + 2 * np.pi * before
+    return [float(x) for pair in zip(rising, velocity, strict=True) for x in pair]
 
 
 def branch_row(impacts: int, amplitude: float, to: float) -> Row:

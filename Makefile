@@ -23,7 +23,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 # Targets run one after another, because clean, run and compare share results/.
 .NOTPARALLEL:
-.PHONY: all setup lint test quick test-cluster test-long setup-engines test-engines docs test-docs gallery mutants diff accept samples report clean ci setup-newest newest config-docs lock
+.PHONY: all setup lint test quick speed test-cluster test-long setup-engines test-engines docs test-docs gallery mutants diff accept samples report clean ci setup-newest newest config-docs lock
 
 all: $(SETUP)
 	$(BIN)/snakemake --cores 2 $(QUIETLY)
@@ -61,6 +61,11 @@ test: $(SETUP)
 # Some of them read the accepted record, so that a new artifact fails here until it is accepted.
 quick: $(SETUP)
 	$(PYTEST) $(addprefix --ignore=tests/,workflow drawing) --deselect tests/beyond/exhibits/test_against_the_record.py -m "not long and not slow and not cluster and not engines and not docs"
+
+# One table of times against other programs: docs/speed.md. AUTO-07p is optional: `pip install
+# bifpy` in the environment, with gfortran. COLD=--cold adds a cold run of the pipeline.
+speed: $(SETUP)
+	OMP_NUM_THREADS=1 $(BIN)/python tests/speed/side_by_side.py $(COLD)
 
 # The atlas with Slurm, which the test starts: it mostly waits, and is skipped without Slurm.
 test-cluster: $(SETUP)

@@ -53,10 +53,12 @@ PARTS = {
         "docs/lesson",
         "docs/gallery",
         "docs/python",
+        "docs/periodic-orbits",
         "docs/design",
         "docs/engines",
         "docs/contact-laws",
         "docs/atlas",
+        "docs/speed",
     ],
     "Theory": [
         "docs/how-an-orbit-is-found",

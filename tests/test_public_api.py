@@ -30,6 +30,7 @@ TSUJI = contact_law("tsuji", stiffness=900.0, damping=0.1)
         ("README.md", 3),
         ("docs/python.md", 14),
         ("docs/error-law.md", 8),
+        ("docs/periodic-orbits.md", 14),
         ("docs/how-an-orbit-is-found.md", 5),
     ],
 )

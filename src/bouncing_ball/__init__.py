@@ -22,6 +22,11 @@ the branch of orbits over Λ, the motion on which a ball ends::
     bouncing_ball.branch(ball, n=[1, 2]).plot()
     bouncing_ball.motion_of(simple, amplitude=1.1)
 
+Any periodic orbit is followed along any parameter, with its bifurcations and its doubled orbits::
+
+    one = bouncing_ball.orbit(ball, n=1, amplitude=1.0)
+    bouncing_ball.follow(one, along="frequency_ratio", to=2.0).plot()
+
 An engineer's contact has units. Whether a restitution coefficient is good enough for it, how stiff
 it must be, and what one writes into a physics engine are three questions::
 
@@ -56,6 +61,7 @@ if TYPE_CHECKING:
     from bouncing_ball.beyond.calculator.given import Contact, Question, Simulation, Table
     from bouncing_ball.beyond.calculator.recipe import write_contact
     from bouncing_ball.calls.balls import corrected, rigid, spring_damper
+    from bouncing_ball.calls.followed import curve, follow, orbit_of_motion, switch
     from bouncing_ball.calls.law_balls import contact_law
     from bouncing_ball.calls.long_run import basins, lyapunov_exponent, motion_of, orbit_diagram
     from bouncing_ball.calls.over_time import drop, history, simulate
@@ -84,20 +90,24 @@ __all__ = [
     "choose_contact",
     "contact_law",
     "corrected",
+    "curve",
     "design",
     "drop",
     "error_thresholds",
+    "follow",
     "history",
     "limits",
     "lyapunov_exponent",
     "motion_of",
     "orbit",
     "orbit_diagram",
+    "orbit_of_motion",
     "orbits",
     "permanent_contact",
     "rigid",
     "simulate",
     "spring_damper",
+    "switch",
     "write_contact",
 ]
 
@@ -112,6 +122,8 @@ def __getattr__(name: str) -> Any:
     match name:
         case "corrected" | "rigid" | "spring_damper":
             from bouncing_ball.calls import balls as module
+        case "curve" | "follow" | "orbit_of_motion" | "switch":
+            from bouncing_ball.calls import followed as module
         case "contact_law":
             from bouncing_ball.calls import law_balls as module
         case "branch" | "limits" | "orbit" | "orbits" | "permanent_contact":

@@ -65,8 +65,8 @@ def cold_run(tree: Path) -> float:
     return time.perf_counter() - start
 
 
-def main() -> None:
-    repetitions = int(sys.argv[1]) if len(sys.argv) > 1 else 3
+def compared(repetitions: int) -> str:
+    """A sentence on the time of a cold run and of its imports."""
     with tempfile.TemporaryDirectory() as folder:
         whole = Path(folder, "whole")
         bare = Path(folder, "bare")
@@ -77,9 +77,11 @@ def main() -> None:
                 reduce_to_imports(script)
         times = [(cold_run(whole), cold_run(bare)) for _ in range(repetitions)]
     pipeline, imports = (statistics.median(column) for column in zip(*times, strict=True))
-    print(f"cold run {pipeline:.1f} s, imports only {imports:.1f} s")
-    print(f"ratio {pipeline / imports:.2f} (medians of {repetitions})")
+    return (
+        f"A cold run of the pipeline takes {pipeline:.1f} s and its imports alone {imports:.1f} s, "
+        f"a ratio of {pipeline / imports:.2f} (medians of {repetitions})."
+    )
 
 
 if __name__ == "__main__":
-    main()
+    print(compared(int(sys.argv[1]) if len(sys.argv) > 1 else 3))

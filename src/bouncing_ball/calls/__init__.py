@@ -2,6 +2,7 @@
 
 :mod:`~bouncing_ball.calls.balls` and :mod:`~bouncing_ball.calls.law_balls` make balls.
 :mod:`~bouncing_ball.calls.periodic` is about their n-T orbits,
+:mod:`~bouncing_ball.calls.followed` follows any periodic orbit along any parameter,
 :mod:`~bouncing_ball.calls.over_time` follows them, :mod:`~bouncing_ball.calls.long_run` finds the
 motions on which they end, and :mod:`~bouncing_ball.calls.thresholds` the ϖ above which a
 rigid ball replaces a contact within a tolerance.

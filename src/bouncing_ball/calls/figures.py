@@ -1,6 +1,7 @@
 """Figures of the results of calls; they compute nothing."""
 
 from collections.abc import Callable, Iterator, Sequence
+from itertools import cycle, pairwise
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,7 @@ from bouncing_ball.datasets import CASE, PERIOD_DOUBLING, SADDLE_NODE
 from bouncing_ball.drawing.canvas import WIDE, WIDTH, canvas, coloured, legend_below
 from bouncing_ball.drawing.files import write
 from bouncing_ball.drawing.labels import QUANTITIES, in_a_row, symbol, title
-from bouncing_ball.drawing.style import COLOURS, TABLE, Look, style
+from bouncing_ball.drawing.style import COLOURS, LINES, TABLE, Look, style
 
 KINDS = ("orbit", "subharmonic", "locked", "permanent contact", "chaotic", "undecided")
 """The kinds of motion in the order of their colours."""
@@ -40,6 +41,66 @@ def shown(draw: Callable[[], Figure], path: str | Path | None, name: str) -> Fig
         if path is not None:
             write(figure, Path(path), f"bouncing-ball {name}")
     return figure
+
+
+def followed(data: xr.Dataset) -> Figure:
+    """The phases of the impacts of a branch over its parameter, with its special orbits."""
+    figure, axes = canvas(WIDE, 3.4)
+    (along,) = _parameters_of(data)
+    stability = np.where(data.stable, "stable", "unstable")
+    looks = np.where(data.admissible, stability, "inadmissible")
+    edges = [0, *(np.flatnonzero(looks[1:] != looks[:-1]) + 1), len(looks)]
+    for k in range(data.sizes["impact"]):
+        phase = data.impact_phase.values[:, k] / np.pi
+        # A phase that passes ±π goes on at the other edge.
+        jumps = np.abs(np.diff(phase, prepend=phase[:1])) > 1
+        shown = np.where(jumps, np.nan, phase)
+        for start, stop in pairwise(edges):
+            run = slice(start, stop + 1)
+            look = LINES[looks[start]] | {"color": COLOURS[k % len(COLOURS)]}
+            axes.plot(data[along].values[run], shown[run], label=looks[start], **look)
+    _mark_special(axes, data, data[f"special_{along}"], data.special_phase / np.pi)
+    axes.set(
+        xlabel=symbol(along), ylabel=r"phases of impact $\varphi/\pi$", title=_orbit_title(data)
+    )
+    legend_below(figure, ncols=4)
+    return figure
+
+
+def special_curve(data: xr.Dataset) -> Figure:
+    """A curve of special orbits in the plane of its two parameters, with its special points."""
+    figure, axes = canvas(WIDTH, 3.2)
+    first, second = _parameters_of(data)
+    shown = data.admissible
+    look: Look = {"color": COLOURS[1], "label": data.attrs["curve_kind"]}
+    axes.plot(data[second], data[first], **look | LINES["inadmissible"] | {"label": None})
+    axes.plot(data[second], data[first].where(shown), **look)
+    _mark_special(axes, data, data[f"special_{second}"], data[f"special_{first}"])
+    axes.set(xlabel=symbol(second), ylabel=symbol(first), title=_orbit_title(data))
+    legend_below(figure, ncols=3)
+    return figure
+
+
+def _parameters_of(data: xr.Dataset) -> list[str]:
+    """The parameters of a branch or a curve."""
+    return [str(name) for name in data if f"special_{name}" in data]
+
+
+def _mark_special(axes: Axes, data: xr.Dataset, x: xr.DataArray, y: xr.DataArray) -> None:
+    """The special points of each kind."""
+    kinds = dict.fromkeys(data.special_kind.values.tolist())
+    for kind, marker in zip(kinds, cycle("osDv^P"), strict=False):
+        here = data.special_kind == kind
+        look: Look = {"linestyle": "none", "markersize": 5, "markerfacecolor": "none"}
+        look |= {"color": "black"}
+        axes.plot(x[here], y[here], marker=marker, label=kind, zorder=4, **look)
+
+
+def _orbit_title(data: xr.Dataset) -> str:
+    impacts = data.attrs["impacts"]
+    periods = data.attrs["periods"]
+    orbit = f"{impacts} impact{'s' if impacts > 1 else ''} in {periods} T"
+    return ", ".join(x for x in (orbit, title(data)) if x)
 
 
 def _kinds_legend(figure: Figure, found: set[str]) -> None:

@@ -88,6 +88,20 @@ def _permanent_contact() -> Program:
     return Program(periodic.permanent_contact_options, periodic.permanent_contact, lines)
 
 
+def _follow() -> Program:
+    from bouncing_ball.cli import followed
+    from bouncing_ball.cli.output import lines
+
+    return Program(followed.follow_options, followed.follow, lines)
+
+
+def _curve() -> Program:
+    from bouncing_ball.cli import followed
+    from bouncing_ball.cli.output import lines
+
+    return Program(followed.curve_options, followed.curve, lines)
+
+
 def _simulate() -> Program:
     from bouncing_ball.cli import simulate
     from bouncing_ball.cli.output import lines
@@ -182,6 +196,38 @@ COMMANDS = {
         ),
         examples=("permanent-contact --restitution 0.65 --frequency-ratio 6",),
         program=_permanent_contact,
+    ),
+    "follow": Command(
+        purpose="any periodic orbit along any parameter, with its bifurcations",
+        text=(
+            "The orbit is the n-T orbit, or that on which a simulated ball ends. Its branch is "
+            "followed along a parameter up to a value; the special orbits on the way and the "
+            "reason for the end of the branch are printed."
+        ),
+        examples=(
+            "follow --amplitude 1 --restitution 0.85 --to 1.3",
+            "follow --amplitude 1 --restitution 0.85 --to 1.3 --doublings 2",
+            (
+                "follow --amplitude 1 --restitution 0.85 --frequency-ratio 10 --along "
+                "frequency-ratio --to 2"
+            ),
+            "follow --amplitude 1.6 --restitution 0.5 --phase 1 --velocity -3 --to 1.8",
+        ),
+        program=_follow,
+    ),
+    "curve": Command(
+        purpose="a curve of saddle-nodes, period doublings or grazing orbits in two parameters",
+        text=(
+            "A branch is followed as by follow. The curve in two parameters goes through the first "
+            "special orbit of the kind on this branch. Its cusps and resonances are printed."
+        ),
+        examples=(
+            (
+                "curve --amplitude 1 --restitution 0.85 --frequency-ratio 10 --to 1.3 --kind "
+                "period-doubling --across frequency-ratio --low 2 --high 100"
+            ),
+        ),
+        program=_curve,
     ),
     "simulate": Command(
         purpose="a sequence of impacts from any initial impact",

@@ -17,6 +17,9 @@ import numpy as np
 from bouncing_ball.numerics.corrector import NewtonSettings, Problem, newton, plane, tangent
 from bouncing_ball.numerics.events import Event, SpecialPoint, changes_of_sign, locate_all
 
+# Largest defect of a start of which the last Newton step is not small: a hundred roundings.
+_SATISFIED = 1e-13
+
 
 class ContinuationError(RuntimeError):
     """The continuation finds no solution to start from, or a branch cannot be resampled."""
@@ -130,7 +133,8 @@ def solve_at(problem: Problem, guess: np.ndarray) -> np.ndarray:
     axis = np.zeros_like(guess)
     axis[-1] = 1.0
     found = newton(problem, guess, plane(axis, guess))
-    if not found.converged:
+    # Next to a bifurcation rounding moves the last step, although the equations are satisfied.
+    if not (found.converged or found.residual <= _SATISFIED):
         raise ContinuationError(
             f"no solution near the starting guess {np.array2string(guess, precision=4)}: "
             f"residual {found.residual:.1e} after {found.iterations} Newton iterations"
@@ -214,7 +218,10 @@ def _step(
     if not corrected.converged:
         raise _Rejected(f"the corrector fails with residual {corrected.residual:.1e}")
     point = corrected.point
-    ahead = tangent(problem.jacobian(point), state.tangent)
+    matrix = problem.jacobian(point)
+    if not np.all(np.isfinite(matrix)):
+        raise _Rejected("the Jacobian is not defined there")
+    ahead = tangent(matrix, state.tangent)
     angle = float(np.arccos(np.clip(ahead @ state.tangent, -1.0, 1.0)))
     if not angle <= max_angle:
         raise _Rejected(f"the tangent turns by more than {max_angle} rad")

@@ -42,12 +42,15 @@ class Event:
         Whether the branch ends at a zero. The function is then positive inside the domain.
     reason : str
         The reason why the branch ends at a terminal event, as a sentence.
+    condition : callable, optional
+        g(y) with its gradient; by default the gradient is a central difference.
     """
 
     name: str
     function: Callable[[np.ndarray], np.ndarray]
     terminal: bool = False
     reason: str = ""
+    condition: Condition | None = None
 
 
 class SpecialPoint(NamedTuple):
@@ -104,7 +107,8 @@ def locate(
     after = float(event.function(right))
     chord = right - left
     guess = left + before / (before - after) * chord
-    found = newton(problem, guess, vanishing(event.function), _PATIENT)
+    condition = event.condition or vanishing(event.function)
+    found = newton(problem, guess, condition, _PATIENT)
     progress = (found.point - left) @ chord / (chord @ chord)
     if not (found.converged and -_SLACK <= progress <= 1 + _SLACK):
         return None

@@ -38,6 +38,10 @@ _REACH = np.array(4.0)
 # Number of steps after which the search ends as undecided. Each step is a considerable part of
 # the shortest time scale of the function, so that these are hundreds of oscillations.
 _MAX_STEPS = 3000
+# Newton's steps to a zero that is known to three digits or better, and the largest last step
+# relative to the time: the error that is left is of the order of its square.
+_NEWTON_STEPS = 5
+_SETTLED = 1e-6
 _ZERO = np.array(0.0)
 _HALF = np.array(0.5)
 _QUARTER = np.array(0.25)
@@ -212,6 +216,30 @@ def first_zero(motion: Motion, start: np.ndarray) -> Zero:
     undecided[active] = left.size > 0
     time, rate = _to_the_last_digit(motion, time)
     return Zero(np.maximum(time, start), rate, ended, undecided)
+
+
+def nearest_zero(motion: Motion, about: np.ndarray) -> Zero:
+    """The zero of each motion near a time, by Newton's method, whether it is the first or not.
+
+    ``undecided`` marks the motions for which the last step was not small against the time.
+
+    Examples
+    --------
+    >>> class Parabola(Motion):
+    ...     def __call__(self, time):
+    ...         one = np.ones_like(time)
+    ...         return State(time**2 - 4, 2 * time, 2 * one, 0 * one, 2 * one, 0 * one, 0 * one)
+    >>> nearest_zero(Parabola(), np.array([1.9, 2.2])).time.tolist()
+    [2.0, 2.0]
+    """
+    time = np.array(about, dtype=float)
+    for _ in range(_NEWTON_STEPS):
+        state = motion(time)
+        step = state.value / state.rate
+        time = time - step
+    rate = state.rate - step * state.second
+    none = np.zeros(time.shape, dtype=bool)
+    return Zero(time, rate, none, ~(np.abs(step) <= _SETTLED * np.abs(time)))
 
 
 def _zero_here(state: State) -> np.ndarray:

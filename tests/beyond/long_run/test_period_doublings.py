@@ -6,7 +6,7 @@ from mpmath import mp, mpf
 
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
 from bouncing_ball.beyond.long_run.destination import final_motions
-from bouncing_ball.beyond.long_run.period_doublings import FEIGENBAUM, Turns, cascade
+from bouncing_ball.beyond.long_run.period_doublings import FEIGENBAUM, cascade
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
@@ -113,16 +113,6 @@ def test_the_period_of_what_attracts_doubles_there(model, found):
     motion = final_motions(model, lam, phase, relative + lam * np.cos(phase), impacts=5000)
     expected = 2 ** (np.arange(3)[:, np.newaxis] + np.arange(2)[:, np.newaxis, np.newaxis])
     np.testing.assert_array_equal(motion.impacts, np.broadcast_to(expected, lam.shape))
-
-
-def test_the_derivatives_are_those_of_differences(model):
-    turns = Turns(model.period_doubling(1), 3)
-    y = np.stack(np.broadcast_arrays(0.4, -4.4, np.full(RATIOS.size, 1.6)), axis=-1)
-    step = 1e-6
-    for c in range(3):
-        moved = np.eye(3)[c] * step
-        slope = (turns.system(y + moved)[0] - turns.system(y - moved)[0]) / (2 * step)
-        assert np.allclose(turns.system(y)[1][..., c], slope, rtol=1e-6, atol=1e-6)
 
 
 def test_a_contact_shifts_the_cascade_by_the_first_order_and_corrected_by_the_second(

@@ -24,6 +24,7 @@ import numpy as np
 
 from bouncing_ball.beyond.corrected import impact as corrected_map
 from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.numerics.first_zero import Zero
 from bouncing_ball.paper.motion.deviations import Deviation, Jacobian
 from bouncing_ball.paper.motion.dynamics import Departure, Dynamics, Impact
 from bouncing_ball.paper.motion.flight import Flight, emerge, land, table
@@ -74,6 +75,11 @@ class CorrectedDynamics(Dynamics):
         """The start of the next contact, and the time from the last start to it."""
         flight = departure.flight
         landing = land(flight, np.maximum(departure.aloft, flight.earliest_landing()))
+        return self.arrive(departure, landing)
+
+    def arrive(self, departure: Departure, landing: Zero) -> tuple[Impact, np.ndarray]:
+        """The start of the contact after a landing, and the time from the last start to it."""
+        flight = departure.flight
         at_level = departure.phase + landing.time
         flown = landing.time + self._descent(at_level, -landing.rate)
         instant = reduce_angle(departure.phase + flown)

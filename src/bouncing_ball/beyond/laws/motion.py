@@ -21,7 +21,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.corrected.signature import Signature, free_impact
 from bouncing_ball.beyond.laws.force_law import ForceLaw
 from bouncing_ball.beyond.laws.march import MOST_PANELS, ContactEnds, march
 from bouncing_ball.beyond.laws.panel import Start, slopes_of
@@ -121,7 +121,9 @@ class ContactDynamics(ResumingDynamics):
         twice as long as a free impact; the contact of these balls lasts longer.
         """
         speed = np.maximum(-impact.velocity, np.finfo(float).tiny)
-        of_free_impact = Signature(self.law)(speed).duration
+        # A signature is tabulated for a single law only.
+        impact_of = free_impact(self.law, speed) if self.law.shape else Signature(self.law)(speed)
+        of_free_impact = impact_of.duration
         return departure._replace(sticks=departure.duration > 2 * of_free_impact)
 
     def resumption(self, flight: Flight) -> tuple[np.ndarray, np.ndarray]:

@@ -1,32 +1,29 @@
 """Cascades of period doublings of the n-T orbits, for every model.
 
-An orbit with m = 2ᵏ impacts repeats after m n periods of the table. It is a fixed point of the
-m-th iterate of the map P from impact to impact. Its period doubles where a multiplier is -1:
-
-    Pᵐ(s) = s,    1 + tr M + det M = 0,    M = DPᵐ(s).
-
-Newton's method solves these equations together for the orbit and Λ. At the doubling, the orbit of
-twice the period branches off along the eigenvector of that multiplier. Because this orbit is
-attracting, iterating the map leads to a point near it.
+An orbit with 2ᵏ impacts repeats after 2ᵏ n periods of the table. At its period doubling the orbit
+of twice the period branches off (:mod:`bouncing_ball.beyond.periodic.switching`). Newton's method
+finds the doubling of the new orbit from a point on its branch; many cascades are computed together.
 """
 
-from dataclasses import dataclass
-from typing import Any, NamedTuple
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import require
-from bouncing_ball.numerics.corrector import NewtonSettings, solve
+from bouncing_ball.beyond.periodic.family import AMPLITUDE, Family
+from bouncing_ball.beyond.periodic.problem import PeriodicOrbits
+from bouncing_ball.beyond.periodic.switching import ahead, twice
+from bouncing_ball.errors import Range, require
+from bouncing_ball.numerics.corrector import NewtonSettings, newton
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.paper.motion.deviations import Jacobian
-from bouncing_ball.paper.motion.sequence import Status
+from bouncing_ball.paper.motion.dynamics import Dynamics
 from bouncing_ball.paper.orbits.orbit import Orbit
+from bouncing_ball.paper.orbits.stability import Bifurcation
 
 FEIGENBAUM = 4.669201609102990
 """Limit of the ratio of successive distances between period doublings of a dissipative map
 (M. J. Feigenbaum, 1978)."""
-# Step of the central differences; it affects only the convergence of Newton's method.
-_DIFFERENCE = 1e-6
 _SETTINGS = NewtonSettings(max_iterations=25, longest=0.3)
 # The doubled orbit is computed at this share of the estimated distance in Λ to its next doubling.
 # Nearly elastic impacts nearly preserve areas; the ratio of distances then tends to 8.72 first
@@ -36,11 +33,6 @@ _SHARE = 0.4
 # family (Eq. 6) and doublings occur at nearly the same Λ sin φ for all n, so that
 # dΛ = sin φ d(Λ sin φ). The later estimates follow from Feigenbaum's number.
 _FIRST = 0.15
-# The map starts beside the old orbit, at this number times the square root of the distance in Λ.
-_ASIDE = 0.2
-# The map is iterated over this number of impacts, and at least this number of turns.
-_IMPACTS = 48
-_TURNS = 20
 MOST = 8
 """Largest number of doublings that double precision resolves."""
 
@@ -61,81 +53,6 @@ class Cascade(NamedTuple):
         """Ratios (Λ_k - Λ_{k-1})/(Λ_{k+1} - Λ_k), shape (doublings - 2, ...)."""
         steps = np.diff(self.amplitude, axis=0)
         return steps[:-1] / steps[1:]
-
-
-@dataclass(frozen=True)
-class Turns:
-    """Orbits with m impacts in m n periods at their period doublings: equations for y = (φ, δ′, Λ).
-
-    Parameters
-    ----------
-    orbits : Orbit
-        n-T orbits with the law and the mean number n of table periods from one impact to the next:
-        one for all, or a row with one entry for each point.
-    impacts : int
-        m, the number of impacts in one turn.
-    """
-
-    orbits: Orbit
-    impacts: int
-
-    def after(self, y: np.ndarray, differentiate: bool = True) -> tuple[Any, Any, Any, Jacobian]:
-        """φ, δ′ and the time after m impacts, and M, which is only computed with ``differentiate``;
-        each has the leading shape of y, and is NaN where the ball is not released before.
-        """
-        phase, velocity, amplitude = np.moveaxis(y, -1, 0)
-        # Newton's steps may lead to Λ < 0, where no doubling is accepted.
-        dynamics = self.orbits.dynamics(self.orbits.law, np.abs(amplitude))
-        dynamics, (phase, velocity), shape = dynamics.in_a_row(phase, velocity)
-        impact = dynamics.at_section(phase, velocity)
-        change = Jacobian.identity(phase.size)
-        time = np.zeros(phase.size)
-        moving = np.arange(phase.size)
-        found = np.full((7, phase.size), np.nan)
-        for _ in range(self.impacts):
-            departure = dynamics.depart(impact, differentiate=differentiate)
-            going = np.flatnonzero(departure.status == Status.BOUNCING)
-            if going.size < moving.size:
-                rows = impact, departure, change, time, moving
-                dynamics, impact, departure, change, time, moving = dynamics.kept(going, *rows)
-            after, passed = dynamics.fly(departure)
-            if differentiate:
-                change = dynamics.jacobian(impact, departure, after, passed).after(change)
-            # The time between two instants differs from the time between two contacts.
-            start_phase, _ = dynamics.section(impact)
-            end_phase, end_velocity = dynamics.section(after)
-            time += passed + reduce_angle(end_phase - start_phase - passed)
-            impact = after
-        found[:, moving] = end_phase, end_velocity, time, *change
-        phase, velocity, time, *entries = found.reshape(7, *shape)
-        return phase, velocity, time, Jacobian(*entries)
-
-    def _late(self, turned: np.ndarray, time: np.ndarray) -> np.ndarray:
-        """How much later than after m n periods of the table a turn ends.
-
-        It is the angle by which the phase has turned, apart from whole turns, because the time of
-        up to 256 periods has three digits less.
-        """
-        late = time - 2 * np.pi * np.asarray(self.orbits.n) * self.impacts
-        turned = reduce_angle(turned)
-        return turned + 2 * np.pi * np.rint((late - turned) / (2 * np.pi))
-
-    def system(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The differences in time and velocity between Pᵐ(s) and s, and 1 + tr M + det M, shape
-        (..., 3), with their Jacobian; central differences give the entries that do not follow
-        from M.
-        """
-        steps = _DIFFERENCE * np.concatenate([np.zeros((1, 3)), np.eye(3), -np.eye(3)])
-        leading_axes = tuple(range(1, y.ndim))
-        moved = y + np.expand_dims(steps, leading_axes)
-        phase, velocity, time, m = self.after(moved)
-        late = self._late(phase - moved[..., 0], time)
-        doubling = 1 + m.a + m.d + m.a * m.d - m.b * m.c
-        values = np.stack([late, velocity - moved[..., 1], doubling], axis=-1)
-        matrix = np.moveaxis(values[1:4] - values[4:], 0, -1) / (2 * _DIFFERENCE)
-        by_state = np.stack([entry[0] for entry in m], axis=-1).reshape(*y.shape[:-1], 2, 2)
-        matrix[..., :2, :2] = by_state - np.eye(2)
-        return values[0], matrix
 
 
 def cascade(orbit: Orbit, doublings: int) -> Cascade:
@@ -170,21 +87,50 @@ def cascade(orbit: Orbit, doublings: int) -> Cascade:
     return Cascade(amplitude, reduce_angle(phase), velocity)
 
 
+@dataclass(frozen=True)
+class _Rows:
+    """The balls on some orbits of a row, each at its own Λ."""
+
+    orbits: Orbit
+
+    def dynamics(self, amplitude: ArrayLike) -> Dynamics:
+        return self.orbits.dynamics(self.orbits.law, amplitude)
+
+
+def _family(row: Orbit) -> Family:
+    """The balls of a row of orbits, which differ by their number in the row."""
+    values = {AMPLITUDE: row.amplitude, "number": np.arange(row.size)}
+    return Family(
+        lambda given: _Rows(row.take(given["number"])), values, {AMPLITUDE: Range(0, 1e8)}
+    )
+
+
 def _followed(row: Orbit, doublings: int) -> np.ndarray:
-    """Points y at the doublings of a one-dimensional array of orbits, (doublings, orbits, 3)."""
+    """φ, δ′ and Λ at the doublings of a one-dimensional array of orbits, (doublings, orbits, 3)."""
     dynamics = row.dynamics(row.law, row.amplitude)
     dynamics, start, _ = dynamics.in_a_row(row.phase, row.relative_impact_velocity)
     phase, velocity = dynamics.section(dynamics.start(*start))
-    y = np.stack(np.broadcast_arrays(phase, velocity, row.amplitude), axis=-1)
-    found = np.full((doublings, *y.shape), np.nan)
-    found[0] = y
+    rows = np.broadcast_arrays(phase, velocity, row.contact_duration, row.amplitude, row.n)
+    phase, velocity, duration, amplitude, n = rows
+    selects = dynamics.continues and bool(np.nanmax(duration) > 0)
+    orbits = PeriodicOrbits(_family(row), 1, n[:, np.newaxis], (AMPLITUDE,), selects)
+    state = (x[:, np.newaxis] for x in (phase, velocity, duration))
+    y = orbits.point(*state, amplitude=amplitude)
+    found = np.full((doublings, row.size, 3), np.nan)
+    found[0] = np.stack([phase, velocity, amplitude], axis=-1)
     gap = _FIRST * np.abs(np.sin(phase))
-    which = np.arange(len(y))
+    which = np.arange(row.size)
+    before = found[0, :, -1]
     for k in range(1, doublings):
-        old = Turns(row, 2 ** (k - 1))
-        turns = Turns(row, 2**k)
-        solved = solve(turns.system, _doubled(old, turns, y, _SHARE * gap), _SETTINGS)
-        step = solved.point[:, -1] - y[:, -1]
+        if not which.size:
+            break
+        with np.errstate(all="ignore"):
+            # The coordinate is arsinh Λ.
+            guess = ahead(orbits, y, _SHARE * gap / np.hypot(1, before))
+            orbits, _ = twice(orbits, y)
+            solved = newton(orbits, guess, _condition(orbits), _SETTINGS)
+        amplitude = orbits.values(solved.point)[AMPLITUDE]
+        step = amplitude - before
         # Λ rises along a cascade; a doubling at or below the previous Λ is that of the old orbit.
         # Feigenbaum's number underestimates a distance by a factor of at most 1.8 in all cascades
         # that were tried; a doubling farther away is that of another orbit.
@@ -192,21 +138,14 @@ def _followed(row: Orbit, doublings: int) -> np.ndarray:
         row = row.take(good)
         which = which[good]
         y = solved.point[good]
-        found[k, which] = y
+        before = amplitude[good]
         gap = step[good] / FEIGENBAUM
+        orbits = replace(orbits, family=_family(row), turns=orbits.turns[good])
+        phases, velocities = orbits.states(y)
+        found[k, which] = np.stack([phases[:, 0], velocities[:, 0], before], axis=-1)
     return found
 
 
-def _doubled(old: Turns, turns: Turns, y: np.ndarray, above: np.ndarray) -> np.ndarray:
-    """Points of the attracting orbits of twice the period, at Λ a little above the doubling."""
-    _, _, _, change = old.after(y)
-    # The eigenvector of an eigenvalue μ is (μ - d, c), here with μ = -1.
-    along = np.stack([-1 - change.d, change.c], axis=-1)
-    length = np.hypot(along[..., 0], along[..., 1])
-    aside = _ASIDE * np.sqrt(above) / length
-    y = y + np.concatenate([along * aside[:, np.newaxis], above[:, np.newaxis]], axis=-1)
-    for _ in range(max(_TURNS, _IMPACTS // turns.impacts)):
-        phase, velocity, _, _ = turns.after(y, differentiate=False)
-        moved = np.stack([reduce_angle(phase), velocity], axis=-1)
-        y[:, :2] = np.where(np.isnan(moved), y[:, :2], moved)
-    return y
+def _condition(orbits: PeriodicOrbits):
+    """The condition that the period of the orbits doubles."""
+    return lambda y: orbits.bifurcation(Bifurcation.PERIOD_DOUBLING, y)

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.errors import ModelError, require
 from bouncing_ball.numerics.arrays import BLOCK, Batch, as_numbers, blocks, pick
 from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.numerics.first_zero import Zero
 from bouncing_ball.paper.contact.contact import Contact
 from bouncing_ball.paper.motion.deviations import Deviation, Jacobian
 from bouncing_ball.paper.motion.flight import Flight, land, table
@@ -85,6 +86,8 @@ class Dynamics(Batch, ABC):
     block: ClassVar[int] = BLOCK
     forgets: ClassVar[bool] = False
     """Whether the state in which a ball leaves after sticking is independent of earlier impacts."""
+    continues: ClassVar[bool] = False
+    """Whether :meth:`depart_after` can continue a contact beyond its first end."""
 
     @classmethod
     def of(cls, law: Any, amplitude: ArrayLike) -> Self:
@@ -128,6 +131,13 @@ class Dynamics(Batch, ABC):
         balls stick, and what :meth:`jacobian` needs.
         """
 
+    def depart_after(self, impact: Impact, duration: np.ndarray) -> Departure:
+        """The ends of the contacts nearest to given durations, with their derivatives.
+
+        It is the first end, as in :meth:`depart`, unless the model :attr:`continues` contacts.
+        """
+        return self.depart(impact, differentiate=True)
+
     def fly(self, departure: Departure) -> tuple[Impact, np.ndarray]:
         """The next impact of balls that leave, and the time from the last impact to it.
 
@@ -137,6 +147,10 @@ class Dynamics(Batch, ABC):
             If a flight is too long for floating-point numbers.
         """
         landing = land(departure.flight, departure.flight.earliest_landing())
+        return self.arrive(departure, landing)
+
+    def arrive(self, departure: Departure, landing: Zero) -> tuple[Impact, np.ndarray]:
+        """The next impact after a landing, and the time from the last impact to it."""
         impact = Impact.at_level(departure.phase + landing.time, -landing.rate)
         return self.with_table(impact), departure.duration + landing.time
 

@@ -21,6 +21,7 @@ bounds of the higher derivatives follow from the equation of motion.
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
@@ -30,7 +31,7 @@ from bouncing_ball.numerics.elementary import (
     sine_and_cosine,
     sine_and_versine,
 )
-from bouncing_ball.numerics.first_zero import Motion, State, first_zero
+from bouncing_ball.numerics.first_zero import Motion, State, Zero, first_zero, nearest_zero
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.motion.deviations import Deviation, Jacobian
 from bouncing_ball.paper.motion.dynamics import Departure, Impact
@@ -250,16 +251,29 @@ class LinearContactDynamics(ResumingDynamics):
     :class:`~bouncing_ball.paper.contact.spring_damper.SpringDamper`.
     """
 
+    continues: ClassVar[bool] = True
+
     @cached_property
     def _has_closed_form(self) -> bool:
         return has_closed_form(self.law)
 
     def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
         """The end of each contact, or permanent contact if it is proved never to end."""
+        motion = self._motion(impact)
+        return self._ended(impact, motion, first_zero(motion, motion.earliest_release()))
+
+    def depart_after(self, impact: Impact, duration: np.ndarray) -> Departure:
+        """The ends of the contacts nearest to given durations, also beyond an earlier end."""
+        motion = self._motion(impact)
+        return self._ended(impact, motion, nearest_zero(motion, duration))
+
+    def _motion(self, impact: Impact) -> ContactMotion:
         x, y = self.table_at(impact)
         kind = ClosedFormMotion if self._has_closed_form else ResonantMotion
-        motion = kind(self.law, self.amplitude, impact.displacement, impact.velocity, x, y)
-        end = first_zero(motion, motion.earliest_release())
+        return kind(self.law, self.amplitude, impact.displacement, impact.velocity, x, y)
+
+    def _ended(self, impact: Impact, motion: ContactMotion, end: Zero) -> Departure:
+        """The departures of contacts that end at these zeros of their motion."""
         status = np.full(end.time.shape, int(Status.BOUNCING))
         duration = end.time
         phase = impact.phase + end.time

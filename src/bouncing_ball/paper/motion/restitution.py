@@ -28,6 +28,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.numerics.first_zero import nearest_zero
 from bouncing_ball.paper.contact.damping import check_restitution
 from bouncing_ball.paper.motion.deviations import Deviation, Jacobian
 from bouncing_ball.paper.motion.dynamics import Departure, Dynamics, Impact
@@ -36,6 +37,8 @@ from bouncing_ball.paper.motion.sticking import lifted, pressed, stay
 
 # Bound of Λ T₀/g and T₀/g below which chattering is summed up.
 _CHATTER = 1e-5
+# The largest number of bounces before a rest that are followed one by one.
+_BOUNCES = 60
 # Where g is tiny (Λ near 1), chattering is also summed up if T₀ is below rounding.
 _INSTANT = np.finfo(float).eps
 # The smallest speed of an impact for which r is asked, and 1, as arrays without an axis.
@@ -103,6 +106,7 @@ class RestitutionDynamics(Dynamics):
     """
 
     forgets: ClassVar[bool] = True
+    continues: ClassVar[bool] = True
 
     @classmethod
     def of(cls, law: Any, amplitude: ArrayLike) -> Self:
@@ -128,18 +132,50 @@ class RestitutionDynamics(Dynamics):
         r, _ = self._rebound_of(impact)
         velocity = -r * impact.velocity
         x, y = self.table_at(impact)
-        none = np.zeros(x.shape)
-        flight = Flight(none, velocity, x, y, self.amplitude)
         sticks, settling = chattering(velocity, r, x, y, self.amplitude)
+        flight = Flight(np.zeros(x.shape), velocity, x, y, self.amplitude)
+        departure = self._left(impact, flight, sticks, settling)
+        return lifted(departure, self.amplitude) if differentiate else departure
+
+    def depart_after(self, impact: Impact, duration: np.ndarray) -> Departure:
+        """The rest on the table where the duration is positive, otherwise the flight.
+
+        The bounces before the rest that are too long to be summed up follow one by one.
+        """
+        elapsed = np.zeros_like(impact.phase)
+        for _ in range(_BOUNCES):
+            r, _ = self._rebound_of(impact)
+            x, y = self.table_at(impact)
+            after = -r * impact.velocity
+            flight = Flight(np.zeros(x.shape), after, x, y, self.amplitude)
+            sticks, settling = chattering(after, r, x, y, self.amplitude)
+            bounces = (duration > 0) & ~sticks & pressed(x, y) & (after > 0)
+            if not bounces.any():
+                break
+            landing = nearest_zero(flight, np.where(bounces, 2 * after / (1 - y), 1.0))
+            flown = np.where(bounces, landing.time, 0.0)
+            elapsed = elapsed + flown
+            velocity = np.where(bounces, -landing.rate, impact.velocity)
+            impact = Impact(impact.phase + flown, impact.displacement, velocity)
+        rests = sticks & (duration > 0)
+        departure = self._left(impact, flight, rests, np.where(rests, settling, 0.0))
+        whole = departure._replace(
+            duration=departure.duration + elapsed, settling=departure.settling + elapsed
+        )
+        return lifted(whole, self.amplitude)
+
+    def _left(
+        self, impact: Impact, flight: Flight, sticks: np.ndarray, settling: np.ndarray
+    ) -> Departure:
+        """The flights after the impacts, or after the rest of the balls that stick."""
         departure = Departure(
             phase=impact.phase + settling,
             duration=settling,
             flight=flight,
-            status=none,
+            status=np.zeros(settling.shape),
             settling=settling,
         )
-        departure = stay(departure, sticks, self.amplitude)
-        return lifted(departure, self.amplitude) if differentiate else departure
+        return stay(departure, sticks, self.amplitude)
 
     def jacobian(
         self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray

@@ -1,0 +1,518 @@
+r"""The equations of a periodic orbit with k impacts in m periods of the table.
+
+An impact has the state (θ, v) on the Poincaré section of the model: for most models the phase of
+the table and δ′ at the start of the contact. A leg is a contact and the flight after it. It leads
+from the state s_i of impact i to P(s_i), which must be the state of the next impact::
+
+    P(s_i) = s_{i+1},    s_{k+1} = s_1 + (2πm, 0)                                            (1)
+
+The landing is the one near the phase θ_{i+1} among the unknowns, found by one step of Newton's
+method, and not the first one. The equations therefore are smooth where a flight grazes the table,
+and a branch can be followed beyond this point, where no ball follows the orbit. With a landing that
+is late by t, the two equations of a leg are multiplied by δ′ and combined ::
+
+    δ′ t = 0,    (δ′ at the landing - v_{i+1}) - δ″ t = 0                                     (2)
+
+These are the height and the velocity at the phase θ_{i+1}, which are smooth where v_{i+1} vanishes,
+whereas t is not.
+
+If a model can continue its contacts beyond their first release (:meth:`.Dynamics.depart_after`),
+the duration D_i of each contact is a further unknown. It selects the release near D_i, and nothing
+else depends on it: its equation is that D_i is the duration of the contact. The equations of such a
+model are smooth also where a contact grazes the release.
+
+The derivatives of Eq. 2 with respect to the states follow from the tangent maps of the models,
+exactly at a solution. Those of the durations, and those with respect to a parameter, are central
+differences, whose error of 1e-9 only affects how fast Newton's method converges and not the
+solution.
+
+A parameter p enters as arsinh p, which is p for small p and ln 2p for large p, so that steps along
+ϖ = 2…1000 are as long as those along Λ.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from bouncing_ball.beyond.periodic.family import Family, known
+from bouncing_ball.numerics.arrays import pick
+from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.numerics.first_zero import Zero
+from bouncing_ball.paper.motion.deviations import Jacobian
+from bouncing_ball.paper.motion.dynamics import Departure, Dynamics, Impact
+from bouncing_ball.paper.motion.flight import Flight, table
+from bouncing_ball.paper.motion.sequence import Status
+from bouncing_ball.paper.orbits.stability import Bifurcation
+
+# Step of the central differences, near the optimum ε^(1/3).
+_DIFFERENCE = 6e-6
+# Relative to its length, a leg of the simulation differs from that of the orbit by less than this
+# if both are the same; another landing or release differs by far more.
+_SAME = 1e-6
+# Rounds that find the time from a landing to the section, and the change relative to the time of a
+# leg at which they end; each round doubles the number of digits.
+_ROUNDS = 6
+_SETTLED = 1e-15
+# Number of points at which the legs are known at the same time.
+_KEPT = 8
+
+
+class Legs(NamedTuple):
+    """The legs of orbits, arrays of shape (..., k).
+
+    ``residual`` are the two sides of Eq. 2, shape (..., k, 2), and ``duration`` the durations of
+    the contacts. ``tangent`` is DP, and ``velocity`` and ``acceleration`` are δ′ and δ″ at the
+    landing. ``impact``, ``departure`` and ``passed``, the time of the leg, are flat.
+    """
+
+    residual: np.ndarray
+    duration: np.ndarray
+    tangent: Jacobian
+    velocity: np.ndarray
+    acceleration: np.ndarray
+    impact: Any
+    departure: Any
+    passed: np.ndarray
+
+
+def _no_legs(shape: tuple[int, ...]) -> Legs:
+    none = np.full(shape, np.nan)
+    return Legs(
+        residual=np.full((*shape, 2), np.nan),
+        duration=none,
+        tangent=Jacobian(none, none, none, none),
+        velocity=none,
+        acceleration=none,
+        impact=None,
+        departure=None,
+        passed=none.ravel(),
+    )
+
+
+@dataclass(frozen=True)
+class PeriodicOrbits:
+    """Orbits with k impacts in m periods as a :class:`~bouncing_ball.numerics.corrector.Problem`.
+
+    The last axis of y holds θ_1, v_1, θ_2, …, v_k, the durations D_1, …, D_k if they are unknowns,
+    and the coordinates arsinh p of the parameters in ``along``. With two of them the
+    solutions are a surface.
+
+    Parameters
+    ----------
+    family : Family
+        The balls, with the values of the parameters that do not vary.
+    impacts : int
+        k.
+    turns : array of int
+        The whole turns of the table from each phase to the next among the unknowns, shape (..., k):
+        the phases themselves stay within a few turns, so that they keep their digits.
+    along : tuple of str
+        The names of the parameters that vary.
+    selects : bool
+        Whether the durations of the contacts are unknowns, which select their releases.
+    """
+
+    family: Family
+    impacts: int
+    turns: Any
+    along: tuple[str, ...]
+    selects: bool = False
+
+    @property
+    def periods(self) -> Any:
+        """m, of the leading shape of y."""
+        return np.sum(self.turns, axis=-1)
+
+    @property
+    def equations(self) -> int:
+        """N, the number of equations."""
+        return self.impacts * (3 if self.selects else 2)
+
+    def states(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """θ and v of the impacts, each of shape (..., k)."""
+        state = y[..., : 2 * self.impacts].reshape(*y.shape[:-1], self.impacts, 2)
+        return state[..., 0], state[..., 1]
+
+    def values(self, y: np.ndarray) -> dict[str, np.ndarray]:
+        """The values of the parameters that vary, each with the leading shape of y."""
+        return {name: np.sinh(y[..., self.equations + j]) for j, name in enumerate(self.along)}
+
+    def durations(self, y: np.ndarray) -> np.ndarray:
+        """The durations of the contacts, shape (..., k); 0 if they are no unknowns."""
+        if not self.selects:
+            return np.zeros((*y.shape[:-1], self.impacts))
+        return y[..., 2 * self.impacts : 3 * self.impacts]
+
+    def point(
+        self, phase: np.ndarray, velocity: np.ndarray, duration: np.ndarray, **values: Any
+    ) -> np.ndarray:
+        """y of orbits from θ, v and D, shape (..., k), and the parameters that vary."""
+        state = np.stack([phase, velocity], axis=-1).reshape(*phase.shape[:-1], -1)
+        coordinates = [np.arcsinh(np.asarray(values[name])) for name in self.along]
+        of_parameters = np.stack(np.broadcast_arrays(*coordinates), axis=-1)
+        parts = [state, of_parameters]
+        if self.selects:
+            parts.insert(1, duration)
+        return np.concatenate(parts, axis=-1)
+
+    def with_parameters(self, *along: str) -> "PeriodicOrbits":
+        """The same orbits with other parameters that vary."""
+        return replace(self, along=along)
+
+    @cached_property
+    def _cached(self) -> Any:
+        # A step along a branch evaluates the residual, the Jacobian and the events at the same
+        # points.
+        def legs(shape: tuple[int, ...], entries: bytes) -> Legs:
+            with np.errstate(all="ignore"):
+                return self._legs(np.frombuffer(entries).reshape(shape))
+
+        return lru_cache(maxsize=_KEPT)(legs)
+
+    def legs(self, y: np.ndarray) -> Legs:
+        """The legs of the orbits at points y of shape (..., N + parameters)."""
+        return self._cached(y.shape, y.tobytes())
+
+    def dynamics(self, y: np.ndarray) -> tuple[Dynamics | None, np.ndarray]:
+        """The dynamics of the legs in a row, and which legs are inside the ranges."""
+        leading = y.shape[:-1]
+        given = {**self.family.values, **self.values(y)}
+        each = {}
+        for name, value in given.items():
+            if name in self.along or np.ndim(value):
+                each[name] = np.repeat(np.broadcast_to(value, leading).ravel(), self.impacts)
+        return known(self.family, each, self.along)
+
+    def impact(self, dynamics: Dynamics, y: np.ndarray) -> Impact:
+        """The impacts of the orbits in a row."""
+        phase, velocity = self.states(y)
+        return dynamics.at_section(reduce_angle(phase.ravel()), velocity.ravel().copy())
+
+    def intervals(self, y: np.ndarray) -> np.ndarray:
+        """θ_{i+1} - θ_i, shape (..., k)."""
+        phase, _ = self.states(y)
+        return (np.roll(phase, -1, axis=-1) - phase) + 2 * np.pi * np.asarray(self.turns)
+
+    def _legs(self, y: np.ndarray) -> Legs:
+        dynamics, inside = self.dynamics(y)
+        shape = (*y.shape[:-1], self.impacts)
+        if dynamics is None:
+            return _no_legs(shape)
+        phase, velocity = self.states(y)
+        interval = self.intervals(y).ravel()
+        impact = self.impact(dynamics, y)
+        departure = dynamics.depart_after(impact, self.durations(y).ravel())
+        bouncing = inside & (departure.status == Status.BOUNCING)
+        duration = np.where(bouncing, departure.duration, np.nan)
+        after, passed, late = _landed(dynamics, impact, departure, duration, interval)
+        _, end_velocity = dynamics.section(after)
+        next_phase = np.roll(phase, -1, axis=-1).ravel()
+        acceleration = table(reduce_angle(next_phase), dynamics.amplitude)[1] - 1
+        too_fast = end_velocity - np.roll(velocity, -1, axis=-1).ravel()
+        residual = np.stack([end_velocity * late, too_fast - acceleration * late], axis=-1)
+        tangent = dynamics.jacobian(impact, departure, after, passed)
+        return Legs(
+            residual=residual.reshape(*shape, 2),
+            duration=duration.reshape(shape),
+            tangent=Jacobian(*(entry.reshape(shape) for entry in tangent)),
+            velocity=end_velocity.reshape(shape),
+            acceleration=acceleration.reshape(shape),
+            impact=impact,
+            departure=departure,
+            passed=passed,
+        )
+
+    def residual(self, y: np.ndarray) -> np.ndarray:
+        """Both sides of Eq. 2, and the errors of the durations, shape (..., N)."""
+        legs = self._around(y)
+        return self._residual(y, legs)
+
+    def _residual(self, y: np.ndarray, legs: Legs) -> np.ndarray:
+        here = legs.residual[0].reshape(*y.shape[:-1], -1)
+        if not self.selects:
+            return here
+        return np.concatenate([here, self.durations(y) - legs.duration[0]], axis=-1)
+
+    def _around(self, y: np.ndarray, everywhere: bool = False) -> Legs:
+        """The legs at y and beside it, with an additional first axis.
+
+        Its entries are y itself, y moved by ± the step of the differences in each parameter, and,
+        if the durations are unknowns or ``everywhere`` is set, y with all θ or all v moved: a leg
+        depends on the state at its start alone.
+        """
+        columns = [[self.equations + j] for j in range(len(self.along))]
+        if self.selects or everywhere:
+            states = np.arange(2 * self.impacts)
+            columns += [list(states[::2]), list(states[1::2])]
+        steps = np.zeros((1 + 2 * len(columns), y.shape[-1]))
+        for j, column in enumerate(columns):
+            steps[1 + 2 * j, column] = _DIFFERENCE
+            steps[2 + 2 * j, column] = -_DIFFERENCE
+        leading = tuple(range(1, y.ndim))
+        return self.legs(self._within(y + np.expand_dims(steps, leading)))
+
+    def _within(self, y: np.ndarray) -> np.ndarray:
+        """Points beside y, moved back to the ends of the ranges of the parameters."""
+        for j, name in enumerate(self.along):
+            low, high = np.arcsinh(self.family.bounds(name))
+            here = y[0, ..., self.equations + j]
+            beside = np.clip(y[1:, ..., self.equations + j], low, high)
+            # A point that is itself outside the range is left where it is.
+            outside = (here < low) | (here > high)
+            y[1:, ..., self.equations + j] = np.where(outside, here, beside)
+        return y
+
+    def jacobian(self, y: np.ndarray) -> np.ndarray:
+        """Jacobian of the residual, shape (..., N, N + parameters)."""
+        legs = self._around(y)
+        k = self.impacts
+        matrix = np.zeros((*y.shape[:-1], self.equations, y.shape[-1]))
+        first = np.arange(k)
+        after = (first + 1) % k
+        speed = legs.velocity[0]
+        pull = legs.acceleration[0]
+        a, b, c, d = (entry[0] for entry in legs.tangent)
+        height = 2 * first
+        rate = height + 1
+        matrix[..., height, 2 * first] += speed * a
+        matrix[..., height, 2 * first + 1] += speed * b
+        matrix[..., rate, 2 * first] += c - pull * a
+        matrix[..., rate, 2 * first + 1] += d - pull * b
+        matrix[..., height, 2 * after] -= speed
+        matrix[..., rate, 2 * after] += pull
+        matrix[..., rate, 2 * after + 1] -= 1
+        for j, length in enumerate(self._lengths(y)):
+            change = legs.residual[1 + 2 * j] - legs.residual[2 + 2 * j]
+            slope = change.reshape(*y.shape[:-1], -1) / length
+            matrix[..., : 2 * k, self.equations + j] = slope
+        if self.selects:
+            self._fill_durations(matrix, legs, y)
+        return matrix
+
+    def _fill_durations(self, matrix: np.ndarray, legs: Legs, y: np.ndarray) -> None:
+        """The rows of the Jacobian that belong to the durations."""
+        contact = np.arange(self.impacts)
+        row = 2 * self.impacts + contact
+        matrix[..., row, row] = 1
+        count = len(self.along)
+        for j, length in enumerate(self._lengths(y)):
+            longer = legs.duration[1 + 2 * j] - legs.duration[2 + 2 * j]
+            matrix[..., row, self.equations + j] = -longer / length
+        for j in range(2):
+            longer = legs.duration[1 + 2 * (count + j)] - legs.duration[2 + 2 * (count + j)]
+            matrix[..., row, 2 * contact + j] = -longer / (2 * _DIFFERENCE)
+
+    def _lengths(self, y: np.ndarray) -> list[np.ndarray]:
+        """The lengths of the central differences in each parameter, shape (..., 1): shorter where
+        the range of the parameter ends.
+        """
+        found = []
+        for j, name in enumerate(self.along):
+            low, high = np.arcsinh(self.family.bounds(name))
+            here = y[..., [self.equations + j]]
+            right = np.clip(here + _DIFFERENCE, low, high)
+            left = np.clip(here - _DIFFERENCE, low, high)
+            found.append(right - left)
+        return found
+
+    def matrices(self, y: np.ndarray) -> np.ndarray:
+        """DP of the legs, shape (..., k, 2, 2)."""
+        return _matrices(self._around(y).tangent)[0]
+
+    def monodromy(self, y: np.ndarray) -> Jacobian:
+        """The derivative of the map Pᵏ at the first impact; entries of the leading shape of y."""
+        product = _product(self.matrices(y))
+        return Jacobian(*(product[..., i, j] for i, j in ((0, 0), (0, 1), (1, 0), (1, 1))))
+
+    def trace_and_determinant(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Trace and determinant of the monodromy, each with the leading shape of y."""
+        m = self.monodromy(y)
+        return m.a + m.d, m.a * m.d - m.b * m.c
+
+    def bifurcation(self, kind: Bifurcation, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The test function det(M - μ) of a bifurcation, μ = ±1, and its gradient.
+
+        The gradient is ``tr(adj(M - μ) dM)``, where the derivative of M is the sum over the legs of
+        ``M_k…M_{i+1} dM_i M_{i-1}…M_1``, and that of M_i is a central difference. The results have
+        the shapes (...,) and (..., N + parameters).
+        """
+        around = self._around(y, everywhere=True)
+        matrices = _matrices(around.tangent)
+        here = matrices[0]
+        whole = _product(here)
+        multiplier = 1.0 if kind is Bifurcation.SADDLE_NODE else -1.0
+        off = whole - multiplier * np.eye(2)
+        value = off[..., 0, 0] * off[..., 1, 1] - off[..., 0, 1] * off[..., 1, 0]
+        weights = _weights(here, _adjugate(off))
+        gradient = np.zeros(y.shape)
+        lengths = self._lengths(y)
+        for j in range(len(self.along) + 2):
+            change = matrices[1 + 2 * j] - matrices[2 + 2 * j]
+            # tr(W_i dM_i) for each leg.
+            of_legs = np.einsum("...ij,...ji->...", weights, change)
+            if j < len(self.along):
+                gradient[..., self.equations + j] = of_legs.sum(axis=-1) / lengths[j][..., 0]
+            else:
+                column = np.arange(j - len(self.along), 2 * self.impacts, 2)
+                gradient[..., column] = of_legs / (2 * _DIFFERENCE)
+        return value, gradient
+
+    def is_admissible(self, y: np.ndarray) -> np.ndarray:
+        """Whether a simulated ball follows the orbits, with the first releases and landings.
+
+        The events of the simulation are certified (:mod:`bouncing_ball.numerics.first_zero`).
+        """
+        dynamics, inside = self.dynamics(y)
+        shape = (*y.shape[:-1], self.impacts)
+        if dynamics is None:
+            return np.zeros(y.shape[:-1], dtype=bool)
+        _, velocity = self.states(y)
+        same = np.zeros(inside.shape, dtype=bool)
+        possible = np.flatnonzero(inside & (velocity.ravel() < 0) & np.isfinite(velocity.ravel()))
+        if not possible.size:
+            return np.all(same.reshape(shape), axis=-1)
+        part = dynamics.take(possible)
+        impact = pick(self.impact(dynamics, y), possible)
+        expected = self.durations(y).ravel()[possible]
+        departure = part.depart(impact, differentiate=True)
+        if self.selects and part.forgets:
+            # The bounces before a rest belong to the leg in which the ball comes to rest.
+            early = departure.sticks & (expected == 0)
+            departure = part.depart_after(impact, np.where(early, np.nan, expected))
+        going = np.flatnonzero(departure.status == Status.BOUNCING)
+        possible = possible[going]
+        expected = expected[going]
+        part, impact, departure = part.kept(going, impact, departure)
+        after, passed = part.fly(departure)
+        interval = self.intervals(y).ravel()[possible]
+        late = passed + _offset(part, after) - _offset(part, impact) - interval
+        longer = departure.duration - expected if self.selects else np.zeros_like(late)
+        at_level = after.displacement >= 0
+        same[possible] = at_level & (np.maximum(np.abs(late), np.abs(longer)) < _SAME * interval)
+        return np.all(same.reshape(shape), axis=-1)
+
+
+def _matrices(tangent: Jacobian) -> np.ndarray:
+    """The matrices of the legs, shape (..., k, 2, 2)."""
+    rows = np.stack(np.broadcast_arrays(*tangent), axis=-1)
+    return rows.reshape(*rows.shape[:-1], 2, 2)
+
+
+def _product(matrices: np.ndarray) -> np.ndarray:
+    """M_k … M_1 from matrices of shape (..., k, 2, 2)."""
+    product = matrices[..., 0, :, :]
+    for i in range(1, matrices.shape[-3]):
+        product = matrices[..., i, :, :] @ product
+    return product
+
+
+def _adjugate(m: np.ndarray) -> np.ndarray:
+    """adj m of matrices of shape (..., 2, 2)."""
+    rows = [[m[..., 1, 1], -m[..., 0, 1]], [-m[..., 1, 0], m[..., 0, 0]]]
+    return np.moveaxis(np.array(rows), (0, 1), (-2, -1))
+
+
+def _weights(matrices: np.ndarray, adjugate: np.ndarray) -> np.ndarray:
+    """W_i = (M_{i-1} … M_1) adj (M_k … M_{i+1}), shape (..., k, 2, 2)."""
+    count = matrices.shape[-3]
+    before = [np.broadcast_to(np.eye(2), matrices[..., 0, :, :].shape)]
+    after = [before[0]]
+    for i in range(count - 1):
+        before.append(matrices[..., i, :, :] @ before[-1])
+        after.append(after[-1] @ matrices[..., count - 1 - i, :, :])
+    weights = [before[i] @ adjugate @ after[count - 1 - i] for i in range(count)]
+    return np.stack(weights, axis=-3)
+
+
+def _landed(
+    dynamics: Dynamics,
+    impact: Impact,
+    departure: Departure,
+    duration: np.ndarray,
+    interval: np.ndarray,
+) -> tuple[Impact, np.ndarray, np.ndarray]:
+    """The impacts after flights that land near the time ``interval`` after the first impacts.
+
+    The results are the impacts, the times of the legs, and the times by which the impacts are late
+    on the section. In the corrected model the section is some time after the landing, which is
+    found in a few rounds; in other models the first round is enough.
+    """
+    before = _offset(dynamics, impact)
+    to_section = np.zeros_like(interval)
+    for _ in range(_ROUNDS):
+        landing = _near_landing(departure.flight, interval - duration - to_section)
+        after, passed = dynamics.arrive(departure, landing)
+        whole = passed + _offset(dynamics, after) - before
+        last = to_section
+        to_section = whole - duration - landing.time
+        if not np.any(np.abs(to_section - last) > _SETTLED * interval):
+            break
+    return after, passed, whole - interval
+
+
+def _near_landing(flight: Flight, time: np.ndarray) -> Zero:
+    """The landings of flights near given times, by one step of Newton's method."""
+    gap, rate, acceleration, _ = flight.gap(time)
+    later = -gap / rate
+    none = np.zeros(time.shape, dtype=bool)
+    return Zero(time + later, -(rate + later * acceleration), none, none)
+
+
+def _offset(dynamics: Dynamics, impact: Impact) -> np.ndarray:
+    """The time from the start of the contact to the section, as an angle."""
+    phase, _ = dynamics.section(impact)
+    return reduce_angle(phase - impact.phase)
+
+
+def simulated(
+    family: Family, phase: float, velocity: float, impacts: int, along: Sequence[str]
+) -> tuple[PeriodicOrbits, np.ndarray]:
+    """The problem and the guess y of an orbit with k impacts near a simulated impact.
+
+    ``phase`` and ``velocity`` are those of an impact on the section. The number of periods is the
+    whole number nearest to the time of k legs.
+
+    Raises
+    ------
+    ModelError
+        If the parameters are outside their ranges.
+    """
+    dynamics = family.dynamics({})
+    dynamics, start, _ = dynamics.in_a_row([phase], [velocity])
+    impact = dynamics.at_section(*start)
+    phases = [float(reduce_angle(start[0])[0])]
+    turns = []
+    velocities = []
+    durations = []
+    for _ in range(impacts):
+        departure = dynamics.depart(impact)
+        after, passed = dynamics.fly(departure)
+        velocities.append(float(dynamics.section(impact)[1][0]))
+        durations.append(float(departure.duration[0]))
+        later = passed + _offset(dynamics, after) - _offset(dynamics, impact)
+        last = phases[-1] + float(later[0])
+        phases.append(float(reduce_angle(np.array(last))))
+        turns.append(round((last - phases[-1]) / (2 * np.pi)))
+        impact = after
+    # The last phase is replaced by the first one.
+    turns[-1] += round((phases[-1] - phases[0]) / (2 * np.pi))
+    selects = dynamics.continues and max(durations) > 0
+    problem = PeriodicOrbits(family, impacts, np.array(turns), tuple(along), selects)
+    values = {name: family.values[name] for name in along}
+    rows = (np.array(row) for row in (phases[:-1], velocities, durations))
+    return problem, problem.point(*rows, **values)
+
+
+def twice(orbits: PeriodicOrbits, y: np.ndarray) -> tuple[PeriodicOrbits, np.ndarray]:
+    """The same orbits, taken twice: the problem with 2k impacts and its points."""
+    phase, velocity = orbits.states(y)
+    duration = orbits.durations(y)
+    turns = np.concatenate([orbits.turns, orbits.turns], axis=-1)
+    whole = replace(orbits, impacts=2 * orbits.impacts, turns=turns)
+    phases = np.concatenate([phase, phase], axis=-1)
+    velocities = np.concatenate([velocity, velocity], axis=-1)
+    durations = np.concatenate([duration, duration], axis=-1)
+    return whole, whole.point(phases, velocities, durations, **orbits.values(y))

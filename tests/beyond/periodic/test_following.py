@@ -1,0 +1,167 @@
+"""Branches along any parameter, their events, and the doubled branches."""
+
+import numpy as np
+import pytest
+from orbits_found import FOUND, family, found_family, known_orbit
+
+from bouncing_ball.beyond.long_run.destination import final_motions
+from bouncing_ball.beyond.periodic.following import State, follow
+from bouncing_ball.beyond.periodic.special import Special
+from bouncing_ball.beyond.periodic.switching import of_impact, of_motion, switch
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.paper.motion.flight import Flight, table
+from bouncing_ball.paper.orbits.branch import whole_branch
+from bouncing_ball.paper.orbits.observables import GRAZING, branch_columns
+
+CLOSED = ["restitution", "spring-damper", "force release", "corrected"]
+
+
+def start(name, along="amplitude", amplitude=1.3):
+    _, problem, y = known_orbit(name, amplitude, (along,))
+    return State(problem, y)
+
+
+@pytest.mark.parametrize("name", CLOSED)
+def test_the_bifurcations_of_one_impact_are_those_of_the_closed_form(name):
+    model = start(name).orbits.family
+    closed = model.make(model.values)
+    down = follow(start(name), 0.1).first(Special.SADDLE_NODE)
+    up = follow(start(name), 2.0).first(Special.PERIOD_DOUBLING)
+    assert down.parameters["amplitude"] == pytest.approx(
+        float(closed.saddle_node(1).amplitude), abs=1e-12
+    )
+    assert up.parameters["amplitude"] == pytest.approx(
+        float(closed.period_doubling(1).amplitude), abs=1e-12
+    )
+
+
+@pytest.mark.parametrize(("name", "along", "to"), [
+    ("restitution", "restitution", 0.8), ("spring-damper", "frequency_ratio", 3.0),
+    ("force release", "restitution", 0.7), ("corrected", "frequency_ratio", 100.0),
+])  # fmt: skip
+def test_a_branch_along_any_parameter_is_the_closed_form_at_each_point(name, along, to):
+    found = follow(start(name, along), to)
+    assert str(found.branch.end) == f"{along.replace('_', ' ')} = {to:g} is reached"
+    for state in list(found)[::4]:
+        balls = state.orbits.family.at(state.parameters)
+        orbit = balls.make(balls.values).orbit(1, 1.3)
+        offset = np.abs(orbit.trace_and_determinant()[0] - state.orbits.trace_and_determinant(
+            state.y)[0])  # fmt: skip
+        assert offset < 1e-11
+
+
+def test_a_grazing_flight_is_where_the_lowest_point_of_the_flight_is_on_the_table():
+    found = follow(start("restitution", amplitude=2.0), 0.9)
+    grazing = found.first(Special.GRAZING_FLIGHT)
+    lam = grazing.parameters["amplitude"]
+    x, y = table(np.array(grazing.phase[0]), lam)
+    flight = Flight(0.0, -0.5 * grazing.velocity[0], x, y, lam)
+    time = np.linspace(1.0, 6.2, 400_001)
+    gap = flight.gap(time)[0]
+    inside = (time > 1.0) & (time < 6.2)
+    assert abs(gap[inside].min()) < 1e-9
+
+
+@pytest.mark.parametrize("name", ["restitution", "spring-damper"])
+def test_grazing_orbits_are_those_that_bisection_finds(name):
+    balls = family(name, 1.3)
+    model = balls.make(balls.values)
+    branch = whole_branch(model, 1, 6.0, 0.1)
+    columns = branch_columns(model.system(1), branch, 100)
+    expected = columns.special_amplitude.values[columns.special_kind.values == GRAZING]
+    ours = []
+    for to in (5.9, 0.05):
+        found = follow(start(name), to)
+        ours += [s.parameters["amplitude"] for kind, s in found.special
+                 if kind is Special.GRAZING_FLIGHT]  # fmt: skip
+    assert expected.size and all(np.abs(np.array(ours) - x).min() < 1e-12 for x in expected
+                                 if 0.1 < x < 2.5)  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["restitution", "spring-damper"])
+def test_generations_of_doubled_orbits_attract_balls_and_end_where_they_began(name):
+    state = start(name)
+    before = 0.0
+    for generation in range(4):
+        doubling = follow(state, 2.2).first(Special.PERIOD_DOUBLING)
+        lam = doubling.parameters["amplitude"]
+        assert doubling.impacts == 2**generation and lam > before
+        assert doubling.multipliers()[0] == pytest.approx(-1, abs=1e-9)
+        state = switch(doubling, 0.02 / 2.2**generation)
+        back = follow(state, 0.5)
+        halving = back.first(Special.PERIOD_HALVING)
+        assert halving.parameters["amplitude"] == pytest.approx(lam, abs=1e-12)
+        before = lam
+        balls = state.orbits.family.at(state.parameters)
+        model = balls.make(balls.values)
+        here = state.parameters["amplitude"]
+        velocity = state.velocity[0] + here * np.cos(state.phase[0])
+        motion = final_motions(model, here, state.phase[0], velocity, impacts=4000)
+        assert int(motion.impacts) == state.impacts
+
+
+def test_a_motion_starts_the_continuation_of_the_orbit_on_which_it_ends():
+    state = of_motion(family("restitution", 1.6), 1.0, -3.0, "amplitude")
+    assert (state.impacts, state.periods) == (2, 2)
+    doubling = follow(state, 1.8).first(Special.PERIOD_DOUBLING)
+    assert doubling.parameters["amplitude"] == pytest.approx(1.667130660770, abs=1e-11)
+
+
+def test_a_chaotic_motion_is_on_no_orbit(refusal):
+    with refusal(NoOrbitError, "ends on no orbit that could be followed: it is chaotic"):
+        of_motion(family("restitution", 2.0, restitution=0.85), 1.0, -3.0, "amplitude")
+
+
+def test_a_contact_law_is_followed_along_its_stiffness():
+    _, problem, y = known_orbit("tsuji", 1.0, ("stiffness",))
+    found = follow(State(problem, y), 800.0)
+    assert str(found.branch.end) == "stiffness = 800 is reached"
+    last = list(found)[-1]
+    balls = last.orbits.family.at(last.parameters)
+    orbit = balls.make(balls.values).orbit(1, 1.0)
+    assert float(orbit.phase) == pytest.approx(last.phase[0], abs=1e-11)
+
+
+def test_a_locked_orbit_is_followed_until_it_no_longer_sticks_or_an_impact_grazes():
+    state = of_motion(family("restitution", 2.5), 1.0, -3.0, "amplitude")
+    legs = state.orbits.legs(state.y)
+    assert legs.departure.sticks.sum() == 1
+    found = follow(state, 2.50002)
+    assert len(found) > 3 and np.all(found.orbits.is_admissible(found.branch.points))
+    m = found.orbits.monodromy(found.branch.points[-1])
+    assert max(map(abs, m)) == 0.0
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", CLOSED[:3])
+def test_two_hundred_random_orbits_are_followed_without_a_jump(name):
+    """Twenty small steps there and back again end at the orbit from which they began."""
+    random = np.random.default_rng(4)
+    count = 0
+    while count < 67:
+        lam, r, ratio = random.uniform([1.0, 0.3, 3.0], [3.0, 0.9, 60.0])
+        balls = family(name, lam, r, ratio)
+        phase, speed = random.uniform([-3.0, 1.0], [3.0, 6.0])
+        try:
+            state = of_motion(balls, phase, lam * np.cos(phase) - speed, "amplitude", 1500)
+        except NoOrbitError:
+            continue
+        if state.impacts > 12 or np.any(state.orbits.legs(state.y).departure.sticks & (
+                name == "restitution")):  # fmt: skip
+            continue
+        count += 1
+        there = follow(state, most=20)
+        last = there.branch.points[-1]
+        back = follow(State(there.orbits, last), state.parameters["amplitude"], most=60)
+        gap = np.linalg.norm(back.branch.points - state.y, axis=-1).min()
+        assert gap < 1e-9 or there.special
+
+
+@pytest.mark.parametrize("case", FOUND[:2])
+def test_states_of_a_branch_are_orbits_one_by_one(case):
+    name, impacts, _, *_, phase, velocity = case
+    state = of_impact(found_family(case), phase, velocity, impacts, "amplitude")
+    found = follow(state, 1.36)
+    states = list(found)
+    assert len(states) == len(found) and all(each.defect() < 1e-11 for each in states)
+    assert states[0].impacts == impacts and f"with {impacts} impacts" in repr(states[0]) and name

@@ -1,0 +1,75 @@
+"""``follow`` and ``curve``, from the command line and from Python."""
+
+import numpy as np
+import pytest
+
+import bouncing_ball
+from bouncing_ball.errors import ModelError, NoOrbitError
+
+RIGID = bouncing_ball.rigid(restitution=0.5)
+FOLLOW = ("follow", "--restitution", "0.5", "--amplitude", "1.4", "--to", "1.8")
+
+
+def test_the_command_prints_the_special_orbits_and_the_reason_for_the_end(ask):
+    answer = ask(*FOLLOW)
+    (doubling,) = answer["orbits"]
+    expected = bouncing_ball.limits(RIGID).period_doubling.amplitude
+    assert doubling["kind"] == "period doubling"
+    assert doubling["amplitude"] == pytest.approx(expected, abs=1e-12)
+    assert answer["end"] == "amplitude = 1.8 is reached" and answer["impacts"] == 1
+
+
+def test_the_command_follows_the_doubled_orbit_and_that_of_a_simulated_ball(ask):
+    doubled = ask(*FOLLOW, "--doublings", "1")
+    motion = ("follow", "--restitution", "0.5", "--amplitude", "1.6", "--to", "1.8")
+    simulated = ask(*motion, "--phase", "1", "--velocity", "-3")
+    places = [answer["orbits"][0]["amplitude"] for answer in (doubled, simulated)]
+    assert doubled["impacts"] == simulated["impacts"] == 2
+    assert places[0] == pytest.approx(places[1], abs=1e-12)
+
+
+def test_the_command_follows_a_curve_up_to_its_resonance(ask):
+    options = ("--kind", "period-doubling", "--across", "restitution", "--low", "0.4")
+    answer = ask("curve", *FOLLOW[1:], *options, "--high", "1")
+    (resonance,) = answer["orbits"]
+    assert resonance["kind"] == "1:2 resonance"
+    assert resonance["amplitude"] == pytest.approx(1.0, abs=1e-8)
+
+
+@pytest.mark.parametrize(("options", "words"), [
+    (("--along", "stiffness"), "'stiffness' is not one of restitution, amplitude"),
+    (("--to", "-1"), "to = -1.0 is not a number in"),
+])  # fmt: skip
+def test_a_mistake_is_one_line(refused, options, words):
+    _, line = refused(*FOLLOW, *options)
+    assert words.replace("to =", "--to =") in line
+
+
+def test_results_are_labelled_and_drawn_and_iterated(tmp_path, described):
+    one = bouncing_ball.orbit(RIGID, amplitude=1.4)
+    found = bouncing_ball.follow(one, to=1.8)
+    described(found)
+    assert found.impact_phase.dims == ("point", "impact") and found.attrs["restitution"] == 0.5
+    states = list(found.states())
+    assert len(states) == found.sizes["point"]
+    assert np.allclose([each.parameters["amplitude"] for each in states], found.amplitude)
+    found.plot(tmp_path / "branch.png")
+    doubling = found.first("period doubling")
+    curve = bouncing_ball.curve(doubling, kind="period doubling", across="restitution",
+                                across_range=(0.4, 0.6))  # fmt: skip
+    described(curve)
+    curve.plot(tmp_path / "curve.png")
+    assert {path.name for path in tmp_path.iterdir()} == {"branch.png", "curve.png"}
+
+
+def test_mistakes_in_python_are_one_line(refusal):
+    one = bouncing_ball.orbit(RIGID, amplitude=1.4)
+    found = bouncing_ball.follow(one, to=1.5)
+    with refusal(ModelError, "switch needs an orbit of a branch"):
+        bouncing_ball.switch(one)
+    with refusal(ModelError, "kind = 'fold' is not one of saddle-node"):
+        found.first("fold")
+    with refusal(NoOrbitError, "the branch has no saddle-node; it ends because amplitude = 1.5"):
+        found.first("saddle-node")
+    with refusal(ModelError, "across must be another parameter"):
+        bouncing_ball.curve(next(found.states()), kind="saddle-node", across="amplitude")

@@ -29,8 +29,10 @@ def test_the_command_follows_the_doubled_orbit_and_that_of_a_simulated_ball(ask)
 
 
 def test_the_command_follows_a_curve_up_to_its_resonance(ask):
-    options = ("--kind", "period-doubling", "--across", "restitution", "--low", "0.4")
-    answer = ask("curve", *FOLLOW[1:], *options, "--high", "1")
+    command = ("curve", *FOLLOW[1:], "--kind", "period-doubling")
+    between = ("--low", "0.4", "--high", "1")
+    command = (*command, "--across", "restitution", *between)
+    answer = ask(*command)
     (resonance,) = answer["orbits"]
     assert resonance["kind"] == "1:2 resonance"
     assert resonance["amplitude"] == pytest.approx(1.0, abs=1e-8)
@@ -41,7 +43,8 @@ def test_the_command_follows_a_curve_up_to_its_resonance(ask):
     (("--to", "-1"), "to = -1.0 is not a number in"),
 ])  # fmt: skip
 def test_a_mistake_is_one_line(refused, options, words):
-    _, line = refused(*FOLLOW, *options)
+    command = (*FOLLOW, *options)
+    _, line = refused(*command)
     assert words.replace("to =", "--to =") in line
 
 

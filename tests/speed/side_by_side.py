@@ -76,7 +76,8 @@ def flights(state, amplitude: float, restitution: float, periods: int) -> list[f
     found = []
     legs = len(state) // 2
     for leg in range(legs):
-        phase, velocity = state[2 * leg], state[2 * leg + 1]
+        phase = state[2 * leg]
+        velocity = state[2 * leg + 1]
         last = leg == legs - 1
         then = state[0] + 2 * math.pi * periods if last else state[2 * leg + 2]
         after = state[1] if last else state[2 * leg + 3]
@@ -99,8 +100,10 @@ def doubling(state, amplitude: float, restitution: float) -> float:
         then = state[0] if leg == legs - 1 else state[2 * leg + 2]
         periods = 2 * math.pi * legs if leg == legs - 1 else 0.0
         aloft = then + periods - phase
-        x, y = amplitude * math.cos(phase), amplitude * math.sin(phase)
-        x1, y1 = amplitude * math.cos(then), amplitude * math.sin(then)
+        x = amplitude * math.cos(phase)
+        y = amplitude * math.sin(phase)
+        x1 = amplitude * math.cos(then)
+        y1 = amplitude * math.sin(then)
         columns = []
         for d_phase, d_velocity in ((1.0, 0.0), (0.0, -restitution)):
             gap = d_velocity * aloft + d_phase * (x - x1 - y * aloft)

@@ -148,7 +148,8 @@ def test_a_ball_that_sticks_twice_is_locked_though_rounding_decides_when():
 
 def test_a_stiff_contact_that_sticks_again_and_again_has_no_positive_exponent():
     # Sticking shrinks a deviation by e^(-ζϖD), which is more than all laps let it grow.
-    lam, phase = 2.1, np.linspace(-3, 3, 8)
+    lam = 2.1
+    phase = np.linspace(-3, 3, 8)
     contacts = SpringDamperModel(contact(0.4, [[1e4], [10.0]]))
     stiff, compliant = final_motions(contacts, lam, phase, -9.0, impacts=600)
     assert stiff.is_unresolved().sum() >= 6

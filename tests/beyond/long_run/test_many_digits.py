@@ -44,7 +44,8 @@ def landing(height, speed, phase, lam):
 def lap(r, lam, digits, most=400):
     """Impacts and periods from the lift-off to the next one, in absolute coordinates."""
     with mpmath.workdps(digits):
-        r, lam = mpmath.mpf(r), mpmath.mpf(lam)
+        r = mpmath.mpf(r)
+        lam = mpmath.mpf(lam)
         phase = mpmath.asin(1 / lam)
         speed = lam * mpmath.cos(phase)
         lift = phase

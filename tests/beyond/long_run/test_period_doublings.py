@@ -76,7 +76,8 @@ def test_doublings_are_right_to_the_last_digits(restitution, k):
     """In 60 digits one step of Newton's method is left; the ratio of distances, which are 1e-3 of Λ
     and less, needs all digits of Λ.
     """
-    phase, relative = float(restitution.phase[k]), float(restitution.velocity[k])
+    phase = float(restitution.phase[k])
+    relative = float(restitution.velocity[k])
     amplitude = float(restitution.amplitude[k])
     start = relative + amplitude * np.cos(phase)
     impacts = RestitutionModel(R).simulate(amplitude, phase, start, 2**k + 1)

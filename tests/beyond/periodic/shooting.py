@@ -63,7 +63,13 @@ def turn(phase, velocity, impacts, name, restitution, ratio, amplitude):
         else:
             by_force = name == "force release"
             time, height, velocity = contact(
-                time, height, velocity, amplitude, ratio, zeta, by_force
+                time,
+                height,
+                velocity,
+                amplitude=amplitude,
+                ratio=ratio,
+                zeta=zeta,
+                by_force=by_force,
             )
         time, height, velocity = flown(time, height, velocity, amplitude)
     return time, velocity
@@ -73,7 +79,8 @@ def orbit(phase, velocity, impacts, periods, *ball):
     """φ and z′ of the orbit near an impact."""
 
     def missed(state):
-        time, after = turn(*state, impacts, *ball)
-        return [time - state[0] - 2 * np.pi * periods, after - state[1]]
+        start, before = state
+        time, after = turn(start, before, impacts, *ball)
+        return [time - start - 2 * np.pi * periods, after - before]
 
     return fsolve(missed, [phase, velocity], xtol=1e-10)

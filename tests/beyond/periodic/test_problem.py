@@ -77,7 +77,8 @@ def test_the_gradient_of_a_bifurcation_is_that_of_differences(name, kind):
 def test_an_orbit_with_several_impacts_is_that_of_shooting_with_another_integrator(case):
     name, impacts, periods, r, ratio, amplitude, phase, velocity = case
     state = found_orbit(case)
-    expected = shooting.orbit(phase, velocity, impacts, periods, name, r, ratio, amplitude)
+    ball = (name, r, ratio, amplitude)
+    expected = shooting.orbit(phase, velocity, impacts, periods, *ball)
     relative = expected[1] - amplitude * np.cos(expected[0])
     assert state.phase[0] == pytest.approx(expected[0], abs=1e-8)
     assert state.velocity[0] == pytest.approx(relative, abs=1e-8)

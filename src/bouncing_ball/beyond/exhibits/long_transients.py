@@ -39,8 +39,8 @@ VARIABLES = {
     "lap_impacts": Variable("impacts until the ball locks by many digits, 0 if it did not"),
     "lap_digits": Variable("decimal digits that are lost in one period of the locked orbit"),
     "resolved_share": Variable("share of the sample that locks by many digits"),
-    "resolved_share_low": Variable("lower limit of the confidence interval of this share"),
-    "resolved_share_high": Variable("upper limit of the confidence interval of this share"),
+    "resolved_share_low": Variable("lower limit of the confidence interval of the locked share"),
+    "resolved_share_high": Variable("upper limit of the confidence interval of the locked share"),
     "double_share": Variable("share of the same sample that locks by doubles"),
     "double_share_low": Variable(
         "lower limit of the confidence interval of the share that locks by doubles"

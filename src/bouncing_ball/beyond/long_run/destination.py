@@ -304,7 +304,13 @@ def _returning(
     """
     mark = balls.mark
     seen = returns_to_marks(
-        mark, near, shifts, balls.seen, balls.time, balls.amplitude, balls.stretch.worst
+        mark,
+        near,
+        shifts,
+        seen=balls.seen,
+        time=balls.time,
+        amplitude=balls.amplitude,
+        worst=balls.stretch.worst,
     )
     balls.doubt[near[seen.marginal]] = MARGINAL
     first = near[seen.first]

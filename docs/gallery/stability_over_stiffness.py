@@ -12,10 +12,11 @@ for n, colour in ((1, "#0072B2"), (2, "#C77C00"), (3, "#AA3A00")):
     fold = bouncing_ball.follow(orbit, to=0.1).first("saddle-node")
     doubling = bouncing_ball.follow(orbit, to=1.6).first("period doubling")
     twice = bouncing_ball.follow(bouncing_ball.switch(doubling), to=1.6).first("period doubling")
-    for start, line in ((fold, "-"), (doubling, "--"), (twice, ":")):
+    ends = ((fold, "-", "saddle-node"), (doubling, "--", "doubling"), (twice, ":", "next doubling"))
+    for start, line, name in ends:
         kind = "saddle-node" if start is fold else "period doubling"
         curve = bouncing_ball.curve(start, kind=kind, **window)
-        label = f"{start.periods}-T orbits, {kind}"
+        label = f"{n}-T orbit: {name}"
         axes.semilogx(curve.frequency_ratio, curve.amplitude, line, color=colour, label=label)
 axes.set(xlabel="frequency ratio ϖ of the contact", ylabel="amplitude Λ", title="r = 0.85")
 axes.legend(fontsize=7, ncols=3, loc="upper center", bbox_to_anchor=(0.5, -0.15))

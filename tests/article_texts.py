@@ -44,10 +44,13 @@ def record(recorded):
     return {name: data for name, data in recorded.items() if name not in DERIVED}
 
 
-def all_texts(data):
-    """All tables in all formats, the article and its supplement."""
+def all_texts(data, verdicts=None):
+    """All tables in all formats, the article and its supplement.
+
+    ``verdicts`` are those by certified intervals; by default they are computed.
+    """
     data = {**data, "claims": claims(data)}
-    data["ext_verdicts"] = certified_verdicts(data)
+    data["ext_verdicts"] = certified_verdicts(data) if verdicts is None else verdicts
     made = {}
     for name, draw in TABLES.items():
         table = draw(data[name])

@@ -32,6 +32,7 @@ TSUJI = contact_law("tsuji", stiffness=900.0, damping=0.1)
         ("docs/error-law.md", 8),
         ("docs/periodic-orbits.md", 14),
         ("docs/how-an-orbit-is-found.md", 5),
+        ("docs/proofs.md", 7),
     ],
 )
 def test_the_examples_print_what_the_pages_say(page, least):

@@ -1,9 +1,13 @@
 """``limits --certify``: proved digits, and one line for what cannot be proved."""
 
+import re
+import shlex
 from decimal import Decimal
+from pathlib import Path
 
 import pytest
 
+PAGE = (Path(__file__).parents[2] / "docs" / "proofs.md").read_text(encoding="utf-8")
 GIVEN = ("limits", "--restitution", "0.85", "--frequency-ratio", "10")
 
 
@@ -44,3 +48,15 @@ def test_fewer_digits_are_the_rounded_ones(ask):
 def test_what_cannot_be_certified_is_refused_in_one_line(refused, options, says):
     _, line = refused(*options)
     assert says in line
+
+
+def test_a_missing_bifurcation_has_the_same_exit_status_as_without_a_proof(refused):
+    without = ("limits", "--restitution", "1e-9", "--frequency-ratio", "10")
+    for command in (without, (*without, "--certify")):
+        status, line = refused(*command)
+        assert status == 1 and "no saddle-node" in line
+
+
+def test_the_command_prints_what_the_page_shows(said):
+    [(command, shown)] = re.findall(r"```\n\$ bouncing-ball (.*)\n([^`]*)…\n```", PAGE)
+    assert said(*shlex.split(command)).startswith(shown)

@@ -4,11 +4,15 @@ from fractions import Fraction
 
 from flint import arb, ctx, fmpq
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball.errors import ModelError, NoOrbitError
 
 
 class ProofError(ModelError):
     """A number or an orbit cannot be certified; the message gives the reason."""
+
+
+class NoStartError(ProofError, NoOrbitError):
+    """There is no orbit in double precision from which a proof could start."""
 
 
 class precision:

@@ -15,7 +15,13 @@ from typing import Any
 from flint import arb
 
 from bouncing_ball.beyond.proofs.admissibility import contact_holds, flight_is_free
-from bouncing_ball.beyond.proofs.balls import ProofError, decimal, precision, rational
+from bouncing_ball.beyond.proofs.balls import (
+    NoStartError,
+    ProofError,
+    decimal,
+    precision,
+    rational,
+)
 from bouncing_ball.beyond.proofs.branch import Contact, Point, point
 from bouncing_ball.beyond.proofs.newton import certified_zero
 from bouncing_ball.beyond.proofs.problem import Problem, working_bits
@@ -169,7 +175,7 @@ def _amplitude(orbit: Point) -> arb:
 def _start(problem: Problem, search: Callable, what: str) -> float:
     found = float(search(problem.approximate(), problem.n))
     if not math.isfinite(found):
-        raise ProofError(f"no {what} of the {problem.n}-T orbit was found to start from")
+        raise NoStartError(f"no {what} of the {problem.n}-T orbit was found to start from")
     return found
 
 
@@ -178,13 +184,13 @@ def orbit_start(contact: SpringDamper, n: int, amplitude: float, side: str = "st
 
     Raises
     ------
-    ProofError
+    NoStartError
         If there is no such orbit.
     """
     found = double.orbit_at(contact, n, amplitude, Side(side))
     excess = found.contact_duration * contact.damped_frequency - contact.free_angle
     if not math.isfinite(float(excess)):
-        raise ProofError(f"no {n}-T orbit was found at Λ = {amplitude:g} to start from")
+        raise NoStartError(f"no {n}-T orbit was found at Λ = {amplitude:g} to start from")
     return float(excess)
 
 

@@ -7,7 +7,12 @@ import pytest
 from scipy.stats import norm
 
 from bouncing_ball.beyond.exhibits import locked_orbits as transients
-from bouncing_ball.beyond.exhibits.locked_orbits import correlation, locked_orbits, mean_life
+from bouncing_ball.beyond.exhibits.locked_orbits import (
+    correlation,
+    correlation_gain,
+    locked_orbits,
+    mean_life,
+)
 from bouncing_ball.beyond.exhibits.motion_samples import ThreeModels, uncertainty_exponent
 from bouncing_ball.beyond.long_run.lift_off import returns
 from bouncing_ball.beyond.long_run.motions import Kind
@@ -58,6 +63,8 @@ def test_a_contact_agrees_where_the_prediction_says():
     assert (
         data.same[1] == right[data.periods > 0].mean() and data.jump_share[0] >= data.jump_share[1]
     )
+    finite = np.isfinite(data.needed_ratio[data.periods > 0])
+    assert data.reached_share == finite.mean()
     assert np.all(data.survival.isel(life=0) == 1) and np.all(data.mean_life_low < data.mean_life)
 
 
@@ -90,3 +97,23 @@ def test_the_limits_of_a_correlation_are_those_of_bonett_and_wright():
     width = 1.6448536269514722 * ((1 + rho**2 / 2) / 25) ** 0.5
     assert np.arctanh(high) - np.arctanh(rho) == pytest.approx(width, rel=1e-12)
     assert np.arctanh(rho) - np.arctanh(low) == pytest.approx(width, rel=1e-12)
+
+
+def test_the_gain_of_a_correlation_is_known_where_the_errors_of_both_predictors_are():
+    """For normal pairs Spearman's correlation is (6/π) arcsin(ρ/2); ρ is 1/√(1 + σ²)."""
+    random = np.random.default_rng(7)
+    found, better, worse = random.normal(size=(3, 400))
+    noise = np.array([0.5, 1.0])
+    good, bad = 6 / np.pi * np.arcsin(0.5 / np.sqrt(1 + noise**2))
+    _, low, high = correlation_gain(
+        found + noise[0] * better, found + noise[1] * worse, found, 0.95
+    )
+    assert 0 < low < good - bad < high and high - low < 0.12
+    _, low, high = correlation_gain(found + better, found + worse, found, 0.95)
+    assert low < 0 < high
+
+
+def test_tied_values_are_not_ranked():
+    ranks = np.arange(6.0)
+    assert np.isnan(correlation(ranks, np.full(6, 10.0), 0.95)).all()
+    assert np.isnan(correlation_gain(ranks, ranks, np.repeat([10.0, 18.0], 3), 0.95)).all()

@@ -6,6 +6,7 @@ from scipy.stats import norm
 from bouncing_ball.beyond.exhibits.locking import GROUPS, agreement, locking
 from bouncing_ball.beyond.exhibits.motion_samples import three_models
 from bouncing_ball.beyond.long_run.destination import final_motions
+from bouncing_ball.beyond.long_run.motions import Kind, Motions
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
 from bouncing_ball.pipeline.configuration import typed
@@ -44,6 +45,17 @@ def test_a_model_agrees_with_itself_and_wilsons_limits_are_closed_forms():
     assert nodes[GROUPS.index("all")] == np.sum(balls.kind != "undecided")
     assert np.all(share[known] == 1) and np.all(high[known] == 1)
     assert np.allclose(low[known], nodes[known] / (nodes[known] + z**2))
+
+
+def test_nodes_with_an_unknown_period_are_left_out_whether_or_not_the_contact_locks():
+    simple = Motions.unknown(4)
+    simple.fill(np.arange(4), kind=Kind.LOCKED, periods=[0, 0, 2, 2])
+    contact = Motions.unknown(4)
+    contact.fill(np.arange(4), kind=[Kind.CHAOTIC, *[Kind.LOCKED] * 3], periods=[0, 3, 0, 2])
+    nodes, share, *_ = agreement(simple, contact, 0.95)
+    unresolved = GROUPS.index("locked, unknown period")
+    assert nodes[unresolved] == 0 and np.isnan(share[unresolved])
+    assert nodes[GROUPS.index("locked")] == 1 and share[GROUPS.index("locked")] == 1
 
 
 def test_rounding_may_decide_at_few_nodes_only(recorded):

@@ -77,6 +77,27 @@ VARIABLES = {
     "rank_correlation_high": Variable(
         "upper limit of the confidence interval of the rank correlation"
     ),
+    "reached_share": Variable("share of the places whose needed frequency ratio is finite"),
+    "reached_share_low": Variable("lower limit of the confidence interval of the share reached"),
+    "reached_share_high": Variable("upper limit of the confidence interval of the share reached"),
+    "reached_correlation": Variable(
+        "rank correlation of a predictor with the needed frequency ratio where this is finite"
+    ),
+    "reached_correlation_low": Variable(
+        "lower limit of the confidence interval of the rank correlation where it is finite"
+    ),
+    "reached_correlation_high": Variable(
+        "upper limit of the confidence interval of the rank correlation where it is finite"
+    ),
+    "correlation_gain": Variable(
+        "rank correlation of a scale less that of the locked period, where the ratio is finite"
+    ),
+    "correlation_gain_low": Variable(
+        "lower limit of the confidence interval of the difference of rank correlations"
+    ),
+    "correlation_gain_high": Variable(
+        "upper limit of the confidence interval of the difference of rank correlations"
+    ),
     "jump_share": Variable("share of the places whose locked period changes with the amplitude"),
     "jump_share_low": Variable(
         "lower limit of the confidence interval of the share next to a discontinuity"
@@ -299,12 +320,62 @@ def correlation(one: np.ndarray, other: np.ndarray, confidence: float) -> np.nda
     Returns
     -------
     array, shape (3,)
-        The correlation, its lower limit and its upper limit.
+        The correlation, its lower limit and its upper limit; NaN if one or other has fewer than
+        three different values, which does not rank them.
     """
+    if not _rank(one, other):
+        return np.full(3, np.nan)
     rho = spearmanr(one, other).statistic
     width = norm.ppf((1 + confidence) / 2) * np.sqrt((1 + rho**2 / 2) / (one.size - 3))
     low, high = np.tanh(np.arctanh(rho) + width * np.array([-1, 1]))
     return np.array([rho, low, high])
+
+
+def correlation_gain(
+    predictor: np.ndarray, baseline: np.ndarray, found: np.ndarray, confidence: float
+) -> np.ndarray:
+    """How much better a predictor ranks values than a baseline does: the difference of their rank
+    correlations with what was found.
+
+    Both correlations are from the same places and so not independent. The standard error of their
+    difference is therefore that of the jackknife, which leaves out one place after another.
+
+    Parameters
+    ----------
+    predictor, baseline, found : array, shape (count,)
+        Triples of values, of which only the ranks count.
+    confidence : float
+        The probability with which the interval contains the difference, in (0, 1).
+
+    Returns
+    -------
+    array, shape (3,)
+        The difference, its lower limit and its upper limit; NaN if one of the three has fewer than
+        three different values.
+
+    Examples
+    --------
+    >>> found = np.arange(5.0)
+    >>> correlation_gain(found**2, found, found, 0.95).tolist()
+    [0.0, 0.0, 0.0]
+    """
+    if not _rank(predictor, baseline, found):
+        return np.full(3, np.nan)
+
+    def gain(kept: np.ndarray) -> float:
+        ranked = (spearmanr(x[kept], found[kept]).statistic for x in (predictor, baseline))
+        return next(ranked) - next(ranked)
+
+    everywhere = np.arange(found.size)
+    without_one = np.array([gain(np.delete(everywhere, k)) for k in everywhere])
+    error = np.sqrt((found.size - 1) * without_one.var())
+    width = norm.ppf((1 + confidence) / 2) * error
+    return gain(everywhere) + width * np.array([0, -1, 1])
+
+
+def _rank(*values: np.ndarray) -> bool:
+    """Whether arrays have enough different values for a rank correlation and its limits."""
+    return min(np.unique(x).size for x in values) > 2 and values[0].size > 3
 
 
 def returns_at_places(
@@ -345,7 +416,11 @@ def locked_orbits(
     ``needed_over_scale`` (scale, quantile) has quantiles of the smallest ϖ over a scale, at the
     places at which it is finite, and ``beyond_scale`` (scale) the share of them at which it is
     larger than the scale.
-    ``rank_correlation`` (predictor) is the correlation of a predictor with the smallest ϖ.
+    ``rank_correlation`` (predictor) is the correlation of a predictor with the smallest ϖ. In it
+    all places at which this is infinite are one tie. ``reached_share`` is therefore the share of
+    the places at which it is finite, ``reached_correlation`` (predictor) the correlation at these
+    places only, and ``correlation_gain`` (scale) by how much that of a scale exceeds that of the
+    period of the locked orbit.
     ``jump_share`` (shift) is the share of places next to a discontinuity, at which the period
     changes, or is not found, if Λ changes by the shift, and ``uncertainty_exponent`` its exponent.
     Each has a lower and an upper limit, ``_low`` and ``_high``. The variables of
@@ -368,6 +443,8 @@ def locked_orbits(
         correlation(predictor[sticks], needed[sticks], level) for predictor in (*scales, period)
     ]
     known = sticks & np.isfinite(needed)
+    reached = [correlation(x[known], needed[known], level) for x in (*scales, period)]
+    gains = [correlation_gain(x[known], period[known], needed[known], level) for x in scales]
     over_scales = [needed[known] / scale[known] for scale in scales]
     nodes = {
         "restitution": r,
@@ -383,6 +460,9 @@ def locked_orbits(
         "same": ("frequency_ratio", [share_with_limits(x[sticks], level) for x in same]),
         "same_by_prediction": ("predicted", by_prediction),
         "rank_correlation": ("predictor", correlations),
+        "reached_share": ((), share_with_limits(np.isfinite(needed[sticks]), level)),
+        "reached_correlation": ("predictor", reached),
+        "correlation_gain": ("scale", gains),
         "beyond_scale": ("scale", [share_with_limits(x > 1, level) for x in over_scales]),
         "jump_share": ("shift", [share_with_limits(x[sticks], level) for x in changed]),
         "uncertainty_exponent": ((), uncertainty_exponent(changed[:, sticks].T, shifts, level)),

@@ -65,9 +65,12 @@ def group(found: Motions, name: str) -> np.ndarray:
 def agreement(simple: Motions, contact: Motions, confidence: float) -> np.ndarray:
     """Shares of the nodes at which two models have motions of one kind and period.
 
-    Nodes at which one of the motions is undecided are left out, and those at which both are locked
-    and one of the periods is unknown. The limits hold for independent nodes; the nodes of a regular
-    grid are spread more evenly.
+    Nodes at which one of the motions is undecided are left out, and those at which the simple model
+    locks after an unknown period, whatever the contact does, because otherwise only its nodes with
+    a contact that does not lock would count. Those at which both lock, and the contact after an
+    unknown period, are left out as well. The share of the group whose period is unknown therefore
+    is NaN, with no nodes. The limits hold for independent nodes; the nodes of a regular grid are
+    spread more evenly.
 
     Returns
     -------
@@ -76,7 +79,7 @@ def agreement(simple: Motions, contact: Motions, confidence: float) -> np.ndarra
     """
     undecided = (simple.kind == Kind.UNDECIDED) | (contact.kind == Kind.UNDECIDED)
     both_lock = (simple.kind == Kind.LOCKED) & (contact.kind == Kind.LOCKED)
-    unknown = both_lock & (simple.is_unresolved() | contact.is_unresolved())
+    unknown = simple.is_unresolved() | (both_lock & contact.is_unresolved())
     known = ~(undecided | unknown)
     same = (simple.kind == contact.kind) & (simple.periods == contact.periods)
     return np.array([share(same[known & group(simple, x)], confidence) for x in GROUPS]).T

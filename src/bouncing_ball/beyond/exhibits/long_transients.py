@@ -1,9 +1,9 @@
 """Whether balls of the restitution model that seem chaotic lock after long transients.
 
-A. Mehta and J. M. Luck conclude that in the restitution model every ball locks in the end. After
-some hundreds of impacts many balls have neither repeated nor stuck to the table twice, or have
-stuck twice, and doubles do not tell after how many periods they do so again. Here these balls are
-followed further, and a sample of them with as many digits as needed.
+After some hundreds of impacts many balls of the restitution model have neither repeated nor stuck
+to the table twice, or have stuck twice, and doubles do not tell after how many periods they do so
+again. Here these balls are followed further, and a sample of them with as many digits as needed.
+Whether all of them lock in the end is not decided by any number of impacts.
 """
 
 from typing import Annotated, Any

@@ -8,8 +8,9 @@ restitution model changes from impact j to impact j + 1 by ::
     e ← M_j e + K_j/ϖ
 
 where M_j is the Jacobian of the flight, and K_j/ϖ the difference between the maps of the corrected
-and the restitution model. The lift-off itself is the same up to 1/ϖ². The phase at which the
-chattering ends before the next sticking is then late by
+and the restitution model. The flight after the lift-off is the same up to 1/ϖ², although with the
+displacement release it begins later by 2ζ/ϖ. The phase at which the chattering ends before the next
+sticking is then late by
 
     S/ϖ,    S = |Σ_j (product of the expansions after j) K_j|
 

@@ -6,6 +6,7 @@ from orbits_found import FOUND, family, found_family, known_orbit
 
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.periodic.following import State, follow
+from bouncing_ball.beyond.periodic.simulation import is_admissible
 from bouncing_ball.beyond.periodic.special import Special
 from bouncing_ball.beyond.periodic.switching import of_impact, of_motion, switch
 from bouncing_ball.errors import NoOrbitError
@@ -127,7 +128,7 @@ def test_a_locked_orbit_is_followed_until_it_no_longer_sticks_or_an_impact_graze
     legs = state.orbits.legs(state.y)
     assert legs.departure.sticks.sum() == 1
     found = follow(state, 2.50002)
-    assert len(found) > 3 and np.all(found.orbits.is_admissible(found.branch.points))
+    assert len(found) > 3 and np.all(is_admissible(found.orbits, found.branch.points))
     m = found.orbits.monodromy(found.branch.points[-1])
     assert max(map(abs, m)) == 0.0
 

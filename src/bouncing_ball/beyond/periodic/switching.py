@@ -12,7 +12,8 @@ import numpy as np
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.periodic.family import AMPLITUDE, Family
 from bouncing_ball.beyond.periodic.following import State, corrected
-from bouncing_ball.beyond.periodic.problem import PeriodicOrbits, simulated, twice
+from bouncing_ball.beyond.periodic.problem import PeriodicOrbits, twice
+from bouncing_ball.beyond.periodic.simulation import simulated
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.corrector import Correction, NewtonSettings, newton, plane
 

@@ -13,8 +13,10 @@ is late by t, the two equations of a leg are multiplied by δ′ and combined ::
 
     δ′ t = 0,    (δ′ at the landing - v_{i+1}) - δ″ t = 0                                     (2)
 
-These are the height and the velocity at the phase θ_{i+1}, which are smooth where v_{i+1} vanishes,
-whereas t is not.
+These are the height, with the opposite sign, and the velocity at the phase θ_{i+1}, which are
+smooth where v_{i+1} vanishes, whereas t is not. Because δ′ t must be this height also before Newton's
+method has converged, the factor δ′ and the matrix in the Jacobian are those at the phase θ_{i+1}. Those of the monodromy
+are at the landing, so that they depend on θ_i and v_i alone.
 
 If a model can continue its contacts beyond their first release (:meth:`.Dynamics.depart_after`),
 the duration D_i of each contact is a further unknown. It selects the release near D_i, and nothing
@@ -167,22 +169,26 @@ class PeriodicOrbits:
         departure = dynamics.depart_after(impact, self.durations(y).ravel())
         bouncing = inside & (departure.status == Status.BOUNCING)
         duration = np.where(bouncing, departure.duration, np.nan)
-        after, passed, late = landed(dynamics, impact, departure, duration, interval)
-        _, end_velocity = dynamics.section(after)
+        landing = landed(dynamics, impact, departure, duration, interval)
+        _, end_velocity = dynamics.section(landing.near)
+        _, landing_velocity = dynamics.section(landing.after)
         next_phase = np.roll(phase, -1, axis=-1).ravel()
         acceleration = table(reduce_angle(next_phase), dynamics.amplitude)[1] - 1
-        too_fast = end_velocity - np.roll(velocity, -1, axis=-1).ravel()
-        residual = np.stack([end_velocity * late, too_fast - acceleration * late], axis=-1)
-        tangent = dynamics.jacobian(impact, departure, after, passed)
+        too_fast = landing_velocity - np.roll(velocity, -1, axis=-1).ravel()
+        height = end_velocity * landing.late
+        residual = np.stack([height, too_fast - acceleration * landing.late], axis=-1)
+        tangent = dynamics.jacobian(impact, departure, landing.after, landing.passed)
+        near = dynamics.jacobian(impact, departure, landing.near, landing.passed_near)
         return Legs(
             residual=residual.reshape(*shape, 2),
             duration=duration.reshape(shape),
             tangent=Jacobian(*(entry.reshape(shape) for entry in tangent)),
+            near=Jacobian(*(entry.reshape(shape) for entry in near)),
             velocity=end_velocity.reshape(shape),
             acceleration=acceleration.reshape(shape),
             impact=impact,
             departure=departure,
-            passed=passed,
+            passed=landing.passed,
         )
 
     def residual(self, y: np.ndarray) -> np.ndarray:
@@ -234,7 +240,7 @@ class PeriodicOrbits:
         after = (first + 1) % k
         speed = legs.velocity[0]
         pull = legs.acceleration[0]
-        a, b, c, d = (entry[0] for entry in legs.tangent)
+        a, b, c, d = (entry[0] for entry in legs.near)
         height = 2 * first
         rate = height + 1
         matrix[..., height, 2 * first] += speed * a

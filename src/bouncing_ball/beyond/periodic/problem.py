@@ -14,9 +14,9 @@ is late by t, the two equations of a leg are multiplied by δ′ and combined ::
     δ′ t = 0,    (δ′ at the landing - v_{i+1}) - δ″ t = 0                                     (2)
 
 These are the height, with the opposite sign, and the velocity at the phase θ_{i+1}, which are
-smooth where v_{i+1} vanishes, whereas t is not. Because δ′ t must be this height also before Newton's
-method has converged, the factor δ′ and the matrix in the Jacobian are those at the phase θ_{i+1}. Those of the monodromy
-are at the landing, so that they depend on θ_i and v_i alone.
+smooth where v_{i+1} vanishes, whereas t is not. Because δ′ t must be this height also before
+Newton's method has converged, the factor δ′ and the matrix in the Jacobian are those at the phase
+θ_{i+1}. Those of the monodromy are at the landing, so that they depend on θ_i and v_i alone.
 
 If a model can continue its contacts beyond their first release (:meth:`.Dynamics.depart_after`),
 the duration D_i of each contact is a further unknown. It selects the release near D_i, and nothing

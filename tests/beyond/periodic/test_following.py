@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from orbits_found import FOUND, family, found_family, known_orbit
 
+import bouncing_ball
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.periodic.following import State, follow
 from bouncing_ball.beyond.periodic.simulation import is_admissible
@@ -11,6 +12,7 @@ from bouncing_ball.beyond.periodic.special import Special
 from bouncing_ball.beyond.periodic.switching import of_impact, of_motion, switch
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.corrector import newton, plane
+from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.motion.flight import Flight, table
 from bouncing_ball.paper.orbits.branch import whole_branch
 from bouncing_ball.paper.orbits.observables import GRAZING, branch_columns
@@ -132,6 +134,30 @@ def test_a_locked_orbit_is_followed_until_it_no_longer_sticks_or_an_impact_graze
     assert len(found) > 3 and np.all(is_admissible(found.orbits, found.branch.points))
     m = found.orbits.monodromy(found.branch.points[-1])
     assert max(map(abs, m)) == 0.0
+
+
+@pytest.mark.parametrize(("amplitude", "impacts", "periods"), [(2.2, 17, 11), (2.5, 18, 9)])
+def test_a_locked_orbit_of_a_stiff_contact_is_followed_along_the_stiffness(
+    amplitude, impacts, periods
+):
+    """The ball rests in a long contact once per orbit; a simulation ends on the same impacts."""
+    ball = bouncing_ball.spring_damper(restitution=0.5, frequency_ratio=100.0)
+    start = bouncing_ball.orbit_of_motion(ball, amplitude=amplitude, phase=1.0, velocity=-3.0)
+    state = start.along("frequency_ratio")
+    assert (state.impacts, state.periods) == (impacts, periods)
+    assert state.orbits.legs(state.y).departure.sticks.sum() == 1
+    found = follow(state, 110.0, most=20)
+    states = [each for each in found if each.is_admissible()]
+    assert len(states) > 5
+    ratios = [each.parameters["frequency_ratio"] for each in states]
+    assert min(ratios) == ratios[0] and ratios[-1] > ratios[0] + 1e-4
+    for each in states[:: len(states) - 1]:
+        balls = each.orbits.family.at(each.parameters)
+        motion = final_motions(balls.make(balls.values), amplitude, 1.0, -3.0)
+        assert int(motion.impacts) == impacts and int(motion.periods) == periods
+        relative = motion.end_velocity - table(motion.end_phase, amplitude)[0]
+        away = np.hypot(reduce_angle(each.phase - motion.end_phase), each.velocity - relative)
+        assert away.min() < 1e-10
 
 
 def passes_through(found, state):

@@ -16,6 +16,7 @@ from bouncing_ball.beyond.periodic.curves import Curve, Window
 from bouncing_ball.beyond.periodic.family import AMPLITUDE as LAMBDA
 from bouncing_ball.beyond.periodic.family import Family
 from bouncing_ball.beyond.periodic.following import Followed, State
+from bouncing_ball.beyond.periodic.simulation import is_admissible
 from bouncing_ball.beyond.periodic.special import Special
 from bouncing_ball.calls.arguments import (
     AMPLITUDE_OF_ORBIT,
@@ -414,7 +415,7 @@ def _columns(
     data["relative_velocity"] = rows, velocity
     data["contact_duration"] = rows, orbits.legs(y).duration
     data["stable"] = "point", stability.is_stable(trace, determinant)
-    data["admissible"] = "point", orbits.is_admissible(y)
+    data["admissible"] = "point", is_admissible(orbits, y)
     data["multiplier_real"] = ("point", "multiplier"), floquet.real
     data["multiplier_imag"] = ("point", "multiplier"), floquet.imag
     data["residual"] = "point", np.abs(orbits.residual(y)).max(axis=-1)

@@ -237,7 +237,11 @@ def _step(
     if passage.terminal is not None:
         end = _end_at(passage.terminal)
         point = passage.special[-1].point
-        reached = _State(point, tangent(problem.jacobian(point), ahead), [])
+        matrix = problem.jacobian(point)
+        # At the end of its domain the derivative may be undefined; the branch keeps its direction.
+        if np.all(np.isfinite(matrix)):
+            ahead = tangent(matrix, ahead)
+        reached = _State(point, ahead, [])
     return _Step(reached, passage.special, end, corrected.iterations, angle)
 
 

@@ -95,7 +95,11 @@ def vanishing(function: Callable[[np.ndarray], np.ndarray]) -> Condition:
 
 
 def locate(
-    problem: Problem, event: Event, left: np.ndarray, right: np.ndarray
+    problem: Problem,
+    event: Event,
+    left: np.ndarray,
+    right: np.ndarray,
+    settings: NewtonSettings = _PATIENT,
 ) -> SpecialPoint | None:
     """The zero of an event between two points of the branch, each of shape (N + 1,).
 
@@ -108,7 +112,7 @@ def locate(
     chord = right - left
     guess = left + before / (before - after) * chord
     condition = event.condition or vanishing(event.function)
-    found = newton(problem, guess, condition, _PATIENT)
+    found = newton(problem, guess, condition, settings)
     progress = (found.point - left) @ chord / (chord @ chord)
     if not (found.converged and -_SLACK <= progress <= 1 + _SLACK):
         return None

@@ -4,7 +4,7 @@ from bouncing_ball.beyond.corrected.orbits import CorrectedModel
 from bouncing_ball.beyond.laws.hertzian import Tsuji
 from bouncing_ball.beyond.laws.orbits import LawModel
 from bouncing_ball.beyond.periodic.family import Family
-from bouncing_ball.beyond.periodic.problem import simulated
+from bouncing_ball.beyond.periodic.simulation import simulated
 from bouncing_ball.errors import FREQUENCY_RATIO, RESTITUTION, Range
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel

@@ -4,14 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from orbits_found import family, known_orbit
+from orbits_found import FOUND, family, found_family, known_orbit
 
 import bouncing_ball
 from bouncing_ball.beyond.long_run.cascade_of_flights import openings
 from bouncing_ball.beyond.periodic.curves import Degenerate, Window, curve
 from bouncing_ball.beyond.periodic.following import STEPS, State, follow
 from bouncing_ball.beyond.periodic.special import Special, flight_margin
-from bouncing_ball.beyond.periodic.switching import of_motion
+from bouncing_ball.beyond.periodic.switching import of_impact, of_motion
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.contact.damping import damping_ratio
 from bouncing_ball.paper.contact.permanent_contact import permanent_contact_threshold
@@ -53,6 +53,25 @@ def test_the_curve_of_doublings_ends_at_a_1_to_2_resonance_without_dissipation()
     assert kind is Degenerate.ONE_TO_TWO
     assert state.parameters["amplitude"] == pytest.approx(1.0, abs=1e-8)
     assert "restitution = 1 is reached" in (str(found.branch.start), str(found.branch.end))
+
+
+def test_without_dissipation_a_curve_of_saddle_nodes_ends_at_a_1_to_1_resonance():
+    """With det M = r^{2k}, a saddle-node has the multipliers 1 and r^{2k}, both 1 at r = 1 only."""
+    case = next(x for x in FOUND if x[:2] == ("restitution", 3))
+    start = of_impact(found_family(case), *case[-2:], case[1], "amplitude")
+    fold = follow(start, 0.5).first(Special.SADDLE_NODE)
+    kind = Special.SADDLE_NODE
+    found = curve(fold, kind, "restitution", across_window=Window(0.2, 1.0))
+    trace, determinant = found.orbits.trace_and_determinant(found.branch.points)
+    r = found.orbits.values(found.branch.points)["restitution"]
+    size = np.abs(trace) + 1
+    assert np.abs(determinant - r**6).max() < 1e-11 * size.max()
+    assert np.abs(trace - 1 - r**6).max() < 1e-11 * size.max()
+    (named, state), = found.special  # fmt: skip
+    assert named is Degenerate.ONE_TO_ONE
+    assert state.parameters["restitution"] == pytest.approx(1, abs=1e-9)
+    # A double multiplier moves by the square root of rounding.
+    assert np.abs(state.multipliers() - 1).max() < 1e-6
 
 
 def test_two_folds_of_a_compliant_contact_meet_at_a_cusp():

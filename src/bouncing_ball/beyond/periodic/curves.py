@@ -44,6 +44,8 @@ from bouncing_ball.paper.orbits.stability import Bifurcation
 # multiplier the multipliers differ by the square root of rounding.
 _RESONANT = 1e-6
 _PATIENT = NewtonSettings(max_iterations=20, longest=0.3)
+# The test function of a cusp is a central difference, whose rounding moves the last step by 1e-11.
+_BY_DIFFERENCES = NewtonSettings(tolerance=1e-9, max_iterations=20)
 _MARGINS = {
     Special.GRAZING_FLIGHT: flight_margin,
     Special.GRAZING_RELEASE: release_margin,
@@ -242,7 +244,7 @@ def _cusps(problem: CurveProblem, branch: Branch, kind: Special) -> list[Special
         right = branch.points[k + 1]
         reference = _null_vector(orbits, left, branch.tangents[k, : orbits.equations])
         test = _quadratic(problem, reference[: orbits.equations])
-        cusp = locate(problem, Event(Degenerate.CUSP, test), left, right)
+        cusp = locate(problem, Event(Degenerate.CUSP, test), left, right, _BY_DIFFERENCES)
         if cusp is not None:
             found.append(cusp)
     return found

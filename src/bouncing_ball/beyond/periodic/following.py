@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bouncing_ball.beyond.periodic.problem import PeriodicOrbits, twice
+from bouncing_ball.beyond.periodic.simulation import is_admissible
 from bouncing_ball.beyond.periodic.special import (
     MEANINGS,
     Special,
@@ -124,7 +125,7 @@ class State:
 
     def is_admissible(self) -> bool:
         """Whether a simulated ball follows the orbit, without an earlier release or landing."""
-        return bool(self.orbits.is_admissible(self.y))
+        return bool(is_admissible(self.orbits, self.y))
 
     def defect(self) -> float:
         """Largest absolute value of the defects of the equations."""

@@ -13,8 +13,10 @@ is late by t, the two equations of a leg are multiplied by δ′ and combined ::
 
     δ′ t = 0,    (δ′ at the landing - v_{i+1}) - δ″ t = 0                                     (2)
 
-These are the height and the velocity at the phase θ_{i+1}, which are smooth where v_{i+1} vanishes,
-whereas t is not.
+These are the height, with the opposite sign, and the velocity at the phase θ_{i+1}, which are
+smooth where v_{i+1} vanishes, whereas t is not. Because δ′ t must be this height also before
+Newton's method has converged, the factor δ′ and the matrix in the Jacobian are those at the phase
+θ_{i+1}. Those of the monodromy are at the landing, so that they depend on θ_i and v_i alone.
 
 If a model can continue its contacts beyond their first release (:meth:`.Dynamics.depart_after`),
 the duration D_i of each contact is a further unknown. It selects the release near D_i, and nothing
@@ -30,66 +32,26 @@ A parameter p enters as arsinh p, which is p for small p and ln 2p for large p, 
 ϖ = 2…1000 are as long as those along Λ.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from bouncing_ball.beyond.periodic.family import Family, known
-from bouncing_ball.numerics.arrays import pick
+from bouncing_ball.beyond.periodic.legs import Legs, landed, no_legs
+from bouncing_ball.beyond.periodic.products import matrices_of, product_of, shifted_determinant
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.numerics.first_zero import Zero
 from bouncing_ball.paper.motion.deviations import Jacobian
-from bouncing_ball.paper.motion.dynamics import Departure, Dynamics, Impact
-from bouncing_ball.paper.motion.flight import Flight, table
+from bouncing_ball.paper.motion.dynamics import Dynamics, Impact
+from bouncing_ball.paper.motion.flight import table
 from bouncing_ball.paper.motion.sequence import Status
 from bouncing_ball.paper.orbits.stability import Bifurcation
 
 # Step of the central differences, near the optimum ε^(1/3).
 _DIFFERENCE = 6e-6
-# Relative to its length, a leg of the simulation differs from that of the orbit by less than this
-# if both are the same; another landing or release differs by far more.
-_SAME = 1e-6
-# Rounds that find the time from a landing to the section, and the change relative to the time of a
-# leg at which they end; each round doubles the number of digits.
-_ROUNDS = 6
-_SETTLED = 1e-15
 # Number of points at which the legs are known at the same time.
 _KEPT = 8
-
-
-class Legs(NamedTuple):
-    """The legs of orbits, arrays of shape (..., k).
-
-    ``residual`` are the two sides of Eq. 2, shape (..., k, 2), and ``duration`` the durations of
-    the contacts. ``tangent`` is DP, and ``velocity`` and ``acceleration`` are δ′ and δ″ at the
-    landing. ``impact``, ``departure`` and ``passed``, the time of the leg, are flat.
-    """
-
-    residual: np.ndarray
-    duration: np.ndarray
-    tangent: Jacobian
-    velocity: np.ndarray
-    acceleration: np.ndarray
-    impact: Any
-    departure: Any
-    passed: np.ndarray
-
-
-def _no_legs(shape: tuple[int, ...]) -> Legs:
-    none = np.full(shape, np.nan)
-    return Legs(
-        residual=np.full((*shape, 2), np.nan),
-        duration=none,
-        tangent=Jacobian(none, none, none, none),
-        velocity=none,
-        acceleration=none,
-        impact=None,
-        departure=None,
-        passed=none.ravel(),
-    )
 
 
 @dataclass(frozen=True)
@@ -200,29 +162,33 @@ class PeriodicOrbits:
         dynamics, inside = self.dynamics(y)
         shape = (*y.shape[:-1], self.impacts)
         if dynamics is None:
-            return _no_legs(shape)
+            return no_legs(shape)
         phase, velocity = self.states(y)
         interval = self.intervals(y).ravel()
         impact = self.impact(dynamics, y)
         departure = dynamics.depart_after(impact, self.durations(y).ravel())
         bouncing = inside & (departure.status == Status.BOUNCING)
         duration = np.where(bouncing, departure.duration, np.nan)
-        after, passed, late = _landed(dynamics, impact, departure, duration, interval)
-        _, end_velocity = dynamics.section(after)
+        landing = landed(dynamics, impact, departure, duration, interval)
+        _, end_velocity = dynamics.section(landing.near)
+        _, landing_velocity = dynamics.section(landing.after)
         next_phase = np.roll(phase, -1, axis=-1).ravel()
         acceleration = table(reduce_angle(next_phase), dynamics.amplitude)[1] - 1
-        too_fast = end_velocity - np.roll(velocity, -1, axis=-1).ravel()
-        residual = np.stack([end_velocity * late, too_fast - acceleration * late], axis=-1)
-        tangent = dynamics.jacobian(impact, departure, after, passed)
+        too_fast = landing_velocity - np.roll(velocity, -1, axis=-1).ravel()
+        height = end_velocity * landing.late
+        residual = np.stack([height, too_fast - acceleration * landing.late], axis=-1)
+        tangent = dynamics.jacobian(impact, departure, landing.after, landing.passed)
+        near = dynamics.jacobian(impact, departure, landing.near, landing.passed_near)
         return Legs(
             residual=residual.reshape(*shape, 2),
             duration=duration.reshape(shape),
             tangent=Jacobian(*(entry.reshape(shape) for entry in tangent)),
+            near=Jacobian(*(entry.reshape(shape) for entry in near)),
             velocity=end_velocity.reshape(shape),
             acceleration=acceleration.reshape(shape),
             impact=impact,
             departure=departure,
-            passed=passed,
+            passed=landing.passed,
         )
 
     def residual(self, y: np.ndarray) -> np.ndarray:
@@ -274,7 +240,7 @@ class PeriodicOrbits:
         after = (first + 1) % k
         speed = legs.velocity[0]
         pull = legs.acceleration[0]
-        a, b, c, d = (entry[0] for entry in legs.tangent)
+        a, b, c, d = (entry[0] for entry in legs.near)
         height = 2 * first
         rate = height + 1
         matrix[..., height, 2 * first] += speed * a
@@ -320,11 +286,11 @@ class PeriodicOrbits:
 
     def matrices(self, y: np.ndarray) -> np.ndarray:
         """DP of the legs, shape (..., k, 2, 2)."""
-        return _matrices(self._around(y).tangent)[0]
+        return matrices_of(self._around(y).tangent)[0]
 
     def monodromy(self, y: np.ndarray) -> Jacobian:
         """The derivative of the map Pᵏ at the first impact; entries of the leading shape of y."""
-        product = _product(self.matrices(y))
+        product = product_of(self.matrices(y))
         return Jacobian(*(product[..., i, j] for i, j in ((0, 0), (0, 1), (1, 0), (1, 1))))
 
     def trace_and_determinant(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -335,18 +301,13 @@ class PeriodicOrbits:
     def bifurcation(self, kind: Bifurcation, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The test function det(M - μ) of a bifurcation, μ = ±1, and its gradient.
 
-        The gradient is ``tr(adj(M - μ) dM)``, where the derivative of M is the sum over the legs of
-        ``M_k…M_{i+1} dM_i M_{i-1}…M_1``, and that of M_i is a central difference. The results have
-        the shapes (...,) and (..., N + parameters).
+        The derivatives of the matrices of the legs are central differences. The results have the
+        shapes (...,) and (..., N + parameters).
         """
         around = self._around(y, everywhere=True)
-        matrices = _matrices(around.tangent)
-        here = matrices[0]
-        whole = _product(here)
+        matrices = matrices_of(around.tangent)
         multiplier = 1.0 if kind is Bifurcation.SADDLE_NODE else -1.0
-        off = whole - multiplier * np.eye(2)
-        value = off[..., 0, 0] * off[..., 1, 1] - off[..., 0, 1] * off[..., 1, 0]
-        weights = _weights(here, _adjugate(off))
+        value, weights = shifted_determinant(matrices[0], multiplier)
         gradient = np.zeros(y.shape)
         lengths = self._lengths(y)
         for j in range(len(self.along) + 2):
@@ -359,151 +320,6 @@ class PeriodicOrbits:
                 column = np.arange(j - len(self.along), 2 * self.impacts, 2)
                 gradient[..., column] = of_legs / (2 * _DIFFERENCE)
         return value, gradient
-
-    def is_admissible(self, y: np.ndarray) -> np.ndarray:
-        """Whether a simulated ball follows the orbits, with the first releases and landings.
-
-        The events of the simulation are certified (:mod:`bouncing_ball.numerics.first_zero`).
-        """
-        dynamics, inside = self.dynamics(y)
-        shape = (*y.shape[:-1], self.impacts)
-        if dynamics is None:
-            return np.zeros(y.shape[:-1], dtype=bool)
-        _, velocity = self.states(y)
-        same = np.zeros(inside.shape, dtype=bool)
-        possible = np.flatnonzero(inside & (velocity.ravel() < 0) & np.isfinite(velocity.ravel()))
-        if not possible.size:
-            return np.all(same.reshape(shape), axis=-1)
-        part = dynamics.take(possible)
-        impact = pick(self.impact(dynamics, y), possible)
-        expected = self.durations(y).ravel()[possible]
-        departure = part.depart(impact, differentiate=True)
-        if self.selects and part.forgets:
-            # The bounces before a rest belong to the leg in which the ball comes to rest.
-            early = departure.sticks & (expected == 0)
-            departure = part.depart_after(impact, np.where(early, np.nan, expected))
-        going = np.flatnonzero(departure.status == Status.BOUNCING)
-        possible = possible[going]
-        expected = expected[going]
-        part, impact, departure = part.kept(going, impact, departure)
-        after, passed = part.fly(departure)
-        interval = self.intervals(y).ravel()[possible]
-        late = passed + _offset(part, after) - _offset(part, impact) - interval
-        longer = departure.duration - expected if self.selects else np.zeros_like(late)
-        at_level = after.displacement >= 0
-        same[possible] = at_level & (np.maximum(np.abs(late), np.abs(longer)) < _SAME * interval)
-        return np.all(same.reshape(shape), axis=-1)
-
-
-def _matrices(tangent: Jacobian) -> np.ndarray:
-    """The matrices of the legs, shape (..., k, 2, 2)."""
-    rows = np.stack(np.broadcast_arrays(*tangent), axis=-1)
-    return rows.reshape(*rows.shape[:-1], 2, 2)
-
-
-def _product(matrices: np.ndarray) -> np.ndarray:
-    """M_k … M_1 from matrices of shape (..., k, 2, 2)."""
-    product = matrices[..., 0, :, :]
-    for i in range(1, matrices.shape[-3]):
-        product = matrices[..., i, :, :] @ product
-    return product
-
-
-def _adjugate(m: np.ndarray) -> np.ndarray:
-    """adj m of matrices of shape (..., 2, 2)."""
-    rows = [[m[..., 1, 1], -m[..., 0, 1]], [-m[..., 1, 0], m[..., 0, 0]]]
-    return np.moveaxis(np.array(rows), (0, 1), (-2, -1))
-
-
-def _weights(matrices: np.ndarray, adjugate: np.ndarray) -> np.ndarray:
-    """W_i = (M_{i-1} … M_1) adj (M_k … M_{i+1}), shape (..., k, 2, 2)."""
-    count = matrices.shape[-3]
-    before = [np.broadcast_to(np.eye(2), matrices[..., 0, :, :].shape)]
-    after = [before[0]]
-    for i in range(count - 1):
-        before.append(matrices[..., i, :, :] @ before[-1])
-        after.append(after[-1] @ matrices[..., count - 1 - i, :, :])
-    weights = [before[i] @ adjugate @ after[count - 1 - i] for i in range(count)]
-    return np.stack(weights, axis=-3)
-
-
-def _landed(
-    dynamics: Dynamics,
-    impact: Impact,
-    departure: Departure,
-    duration: np.ndarray,
-    interval: np.ndarray,
-) -> tuple[Impact, np.ndarray, np.ndarray]:
-    """The impacts after flights that land near the time ``interval`` after the first impacts.
-
-    The results are the impacts, the times of the legs, and the times by which the impacts are late
-    on the section. In the corrected model the section is some time after the landing, which is
-    found in a few rounds; in other models the first round is enough.
-    """
-    before = _offset(dynamics, impact)
-    to_section = np.zeros_like(interval)
-    for _ in range(_ROUNDS):
-        landing = _near_landing(departure.flight, interval - duration - to_section)
-        after, passed = dynamics.arrive(departure, landing)
-        whole = passed + _offset(dynamics, after) - before
-        last = to_section
-        to_section = whole - duration - landing.time
-        if not np.any(np.abs(to_section - last) > _SETTLED * interval):
-            break
-    return after, passed, whole - interval
-
-
-def _near_landing(flight: Flight, time: np.ndarray) -> Zero:
-    """The landings of flights near given times, by one step of Newton's method."""
-    gap, rate, acceleration, _ = flight.gap(time)
-    later = -gap / rate
-    none = np.zeros(time.shape, dtype=bool)
-    return Zero(time + later, -(rate + later * acceleration), none, none)
-
-
-def _offset(dynamics: Dynamics, impact: Impact) -> np.ndarray:
-    """The time from the start of the contact to the section, as an angle."""
-    phase, _ = dynamics.section(impact)
-    return reduce_angle(phase - impact.phase)
-
-
-def simulated(
-    family: Family, phase: float, velocity: float, impacts: int, along: Sequence[str]
-) -> tuple[PeriodicOrbits, np.ndarray]:
-    """The problem and the guess y of an orbit with k impacts near a simulated impact.
-
-    ``phase`` and ``velocity`` are those of an impact on the section. The number of periods is the
-    whole number nearest to the time of k legs.
-
-    Raises
-    ------
-    ModelError
-        If the parameters are outside their ranges.
-    """
-    dynamics = family.dynamics({})
-    dynamics, start, _ = dynamics.in_a_row([phase], [velocity])
-    impact = dynamics.at_section(*start)
-    phases = [float(reduce_angle(start[0])[0])]
-    turns = []
-    velocities = []
-    durations = []
-    for _ in range(impacts):
-        departure = dynamics.depart(impact)
-        after, passed = dynamics.fly(departure)
-        velocities.append(float(dynamics.section(impact)[1][0]))
-        durations.append(float(departure.duration[0]))
-        later = passed + _offset(dynamics, after) - _offset(dynamics, impact)
-        last = phases[-1] + float(later[0])
-        phases.append(float(reduce_angle(np.array(last))))
-        turns.append(round((last - phases[-1]) / (2 * np.pi)))
-        impact = after
-    # The last phase is replaced by the first one.
-    turns[-1] += round((phases[-1] - phases[0]) / (2 * np.pi))
-    selects = dynamics.continues and max(durations) > 0
-    problem = PeriodicOrbits(family, impacts, np.array(turns), tuple(along), selects)
-    values = {name: family.values[name] for name in along}
-    rows = (np.array(row) for row in (phases[:-1], velocities, durations))
-    return problem, problem.point(*rows, **values)
 
 
 def twice(orbits: PeriodicOrbits, y: np.ndarray) -> tuple[PeriodicOrbits, np.ndarray]:

@@ -199,23 +199,26 @@ def sticking_margin(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
 
 
 def loss_of_release(orbits: PeriodicOrbits) -> Event:
-    """The speed δ′ with which the ball leaves the table, the smallest of an orbit.
+    """The speed δ′ with which the ball leaves the table relative to that of its impact, the
+    smallest of an orbit.
 
     Where it vanishes, a flight disappears. The release then is a double zero and its time is not a
-    smooth function of the state, so that the place is the end of a branch, but is not located.
+    smooth function of the state, so that the place is the end of a branch, but is not located. An
+    impact that grazes also has a slow release, but their ratio tends to 1.
     """
 
-    def speed(y: np.ndarray) -> np.ndarray:
+    def share(y: np.ndarray) -> np.ndarray:
         legs = orbits.legs(y)
         if legs.departure is None:
             return np.full(y.shape[:-1], np.nan)
-        velocity = legs.departure.flight.velocity
+        _, closing = orbits.states(y)
+        velocity = legs.departure.flight.velocity.reshape(closing.shape)
         # The bounces before a rest on the table become arbitrarily slow.
         rests = np.any(legs.departure.sticks) if orbits.family.dynamics({}).forgets else False
-        lowest = velocity.reshape(legs.duration.shape).min(axis=-1)
+        lowest = (velocity / np.abs(closing)).min(axis=-1)
         return np.full(lowest.shape, _FAR) if rests else lowest
 
-    return Event("release without speed", speed)
+    return Event("release without speed", share)
 
 
 def turns_apart(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:

@@ -12,9 +12,11 @@ import numpy as np
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.periodic.family import AMPLITUDE, Family
 from bouncing_ball.beyond.periodic.following import State, corrected
-from bouncing_ball.beyond.periodic.problem import PeriodicOrbits, simulated, twice
+from bouncing_ball.beyond.periodic.problem import PeriodicOrbits, twice
+from bouncing_ball.beyond.periodic.simulation import simulated
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.corrector import Correction, NewtonSettings, newton, plane
+from bouncing_ball.paper.motion.flight import table
 
 ASIDE = 0.02
 """The distance of the first doubled orbit from the old one, in y."""
@@ -137,6 +139,11 @@ def of_impact(family: Family, phase: float, velocity: float, impacts: int, along
         If there is no such orbit.
     """
     dynamics = family.dynamics({})
+    if velocity > float(table(np.asarray(phase), dynamics.amplitude)[0]):
+        raise NoOrbitError(
+            "in this orbit a contact resumes below the level of the table while the ball rises, "
+            "and no equations are defined for such a start"
+        )
     row, start, relative, _ = dynamics.first_impacts([phase], [velocity])
     section = row.section(row.start(start, relative))
     guess = simulated(family, float(section[0][0]), float(section[1][0]), impacts, (along,))

@@ -94,14 +94,11 @@ def _name(
     across = np.linspace(0.0, 1.0, _PLACES)
     bottom = np.clip(np.interp(across, place, bottom), 0.0, 1.0)
     top = np.clip(np.interp(across, place, top), 0.0, 1.0)
-    look: dict[str, Any] = {
-        "transform": axes.transAxes,
-        "fontsize": 8,
-        "ha": "center",
-        "va": "center",
-    }
+    look: dict[str, Any] = {"fontsize": 8, "ha": "center", "va": "center"}
     for between, angle in _FORMS:
-        text = axes.text(0, 0, between.join(words), rotation=angle, **look)
+        text = axes.text(
+            0, 0, between.join(words), rotation=angle, transform=axes.transAxes, **look
+        )
         box = text.get_window_extent().transformed(axes.transAxes.inverted())
         half = box.width / 2 + _MARGIN
         centres = across[(across >= half) & (across <= 1 - half)]

@@ -112,3 +112,8 @@ def test_a_prefix_keeps_four_digits(value):
     factor = {"G": 1e9, "M": 1e6, "k": 1e3, "m": 1e-3, "µ": 1e-6, "n": 1e-9}.get(unit[:-1], 1.0)
     assert float(digits) * factor == pytest.approx(value, rel=5.001e-4)
     assert 1 <= float(digits) < 1000 or not 1e-9 <= value < 1e12
+
+
+def test_a_whole_number_beyond_all_floats_is_refused_in_one_line():
+    with pytest.raises(ModelError, match=r"measured_restitution.* is not a finite number"):
+        read("measured_restitution", 10**400)

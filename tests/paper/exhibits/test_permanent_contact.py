@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.paper.exhibits import permanent_contact_figures
 from bouncing_ball.paper.exhibits.permanent_contact import permanent_contact
 from bouncing_ball.pipeline.configuration import typed
 
@@ -33,3 +34,24 @@ def test_the_force_release_lifts_off_earlier(described):
     dry = described(permanent_contact(PARAMETERS, "force"))
     assert np.all(dry.threshold_amplitude < paper.threshold_amplitude)
     assert float(dry.threshold_amplitude.min()) >= float(dry.minimum_threshold)
+
+
+@pytest.mark.parametrize(
+    ("low", "high"), [(0.5, 100.0), (0.1, 1.0), (0.1, 10.0), (0.1, 100.0), (3.0, 30.0)]
+)
+@pytest.mark.parametrize("restitution", [0.5, 0.65, 0.85])
+def test_each_region_has_its_name_inside(low, high, restitution):
+    span = {"min": low, "max": high, "samples": 401}
+    data = permanent_contact({"restitution": restitution, "frequency_ratio": span}, "displacement")
+    data.attrs["restitution"] = restitution
+    figure = permanent_contact_figures.permanent_contact(data)
+    figure.draw_without_rendering()
+    (axes,) = figure.axes
+    names = {" ".join(text.get_text().split()): text for text in axes.texts}
+    for name, sign in (("permanent contact", 1), ("the ball leaves the table", -1)):
+        box = names[name].get_window_extent().transformed(axes.transData.inverted())
+        assert low <= box.x0 < box.x1 <= high
+        assert 0 <= box.y0 < box.y1 <= 2
+        beside = data.sel(frequency_ratio=slice(box.x0, box.x1)).threshold_amplitude
+        edge = box.y1 if sign > 0 else box.y0
+        assert (sign * (beside - edge) > 0).all(), name

@@ -120,6 +120,8 @@ write it as '50 Hz'
         plain = float(value)
     except (TypeError, ValueError):
         raise wrong("is neither a number nor a text", repr(value)) from None
+    except OverflowError:
+        raise wrong("is not a finite number") from None
     found_value, why = _converted(plain, unit, kind) if unit else (plain, "")
     if why:
         meant = _spelling(unit, kind)

@@ -45,6 +45,9 @@ MOST_PANELS = 2000
 # Relative change of p in a panel up to which plain time is used: p = 0 is then more than a panel
 # away.
 _FAR = 0.7
+# The time since the start of a contact, over P/V, from which Newton's sweeps are used in plain
+# time: a free impact takes about three, and after it a ball that is still in contact settles.
+_SETTLING = 12.0
 # The speed over V that is given to a ball at rest on the table, because otherwise q would not
 # change.
 _AT_REST = 1e-9
@@ -70,10 +73,21 @@ class ContactEnds(NamedTuple):
 
 def _in_time(law: ForceLaw, start: Start, now: Balls, until: np.ndarray | None) -> Panel:
     """The next panel in plain time, which costs half as much and suffices if q hardly changes."""
+    return _in_plain_time(law, start, now, until, linearised=False)
+
+
+def _lying(law: ForceLaw, start: Start, now: Balls, until: np.ndarray | None) -> Panel:
+    """The next panel of balls that lie on their contacts: in plain time, with Newton's sweeps."""
+    return _in_plain_time(law, start, now, until, linearised=True)
+
+
+def _in_plain_time(
+    law: ForceLaw, start: Start, now: Balls, until: np.ndarray | None, *, linearised: bool
+) -> Panel:
     m = law.root
     lever = lever_of(m, now.root)
     now = now._replace(root=now.root**m, push=now.push / lever, step=now.step * lever)
-    panel = Sweeps(law, start, now, until, m=1).panel()
+    panel = Sweeps(law, start, now, until, m=1, linearised=linearised).panel()
     root = np.maximum(panel.root, 0.0) ** (1 / m)
     then = lever_of(m, root[-1])
     following = panel.following / np.where(panel.good, then, lever)
@@ -88,9 +102,11 @@ def _in_root(law: ForceLaw, start: Start, now: Balls, until: np.ndarray | None) 
 def _next(law: ForceLaw, start: Start, now: Balls, until: np.ndarray | None) -> Panel:
     """The next panels, each in plain time if that suffices and in s otherwise."""
     far = law.root * np.abs(now.rate) * now.step < _FAR * now.root
-    sides = [np.flatnonzero(far), np.flatnonzero(~far)]
+    # Up to given times, the ends of long panels would take more sweeps than are saved.
+    lies = far & (now.time * now.speed > _SETTLING * now.length) & (until is None)
+    sides = [np.flatnonzero(far & ~lies), np.flatnonzero(lies), np.flatnonzero(~far)]
     panels = []
-    for which, follow in zip(sides, (_in_time, _in_root), strict=True):
+    for which, follow in zip(sides, (_in_time, _lying, _in_root), strict=True):
         if which.size:
             limit = None if until is None else until[which]
             laws, starts, balls = part_of(which, law, start, now)

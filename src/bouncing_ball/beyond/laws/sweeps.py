@@ -8,7 +8,8 @@ Picard's iteration converges in panels of about a radian of the contact's oscill
 m = 1, which are nearly linear, the sweeps are therefore those of Newton's method with the slopes
 of the force at the start of the panel, unless derivatives are computed. In the eigenvectors of the
 integration over the nodes the linearised equations are one division for each. These panels may be
-as long as the nodes resolve.
+as long as the nodes resolve. A ball that lies on a contact with m > 1 for many of its oscillations
+hardly moves in each of them, so that its sweeps are Newton's, too.
 
 A panel is accepted if the sweeps have converged, if the last Legendre coefficients of the
 integrands are small, and if the grip is positive at all nodes; otherwise a shorter panel is tried.
@@ -130,6 +131,8 @@ class Sweeps:
     m : int, optional
         The root of the independent variable. With 1 it is plain time; by default it is that of the
         law.
+    linearised : bool
+        Whether the sweeps of a law with m > 1 are Newton's, in plain time.
     """
 
     def __init__(
@@ -140,6 +143,8 @@ class Sweeps:
         until: np.ndarray | None,
         count: int = NODES,
         m: int = 0,
+        *,
+        linearised: bool = False,
     ) -> None:
         self.m = m or law.root
         self.law = law.continued(now.root**self.m, now.side) if law.has_kink else law
@@ -167,7 +172,7 @@ class Sweeps:
         self.step = now.step
         self.next_step = now.step
         # Derivatives need short panels, for which Picard's sweeps suffice.
-        self.is_newton = law.root == 1 and count == NODES
+        self.is_newton = (law.root == 1 and count == NODES) or linearised
         self.kind = _NEWTON if self.is_newton else _PICARD
         if self.is_newton:
             # Under any load, because the slopes need not be exact.

@@ -1,5 +1,8 @@
 """Figures 11 and 16: thresholds of permanent contact."""
 
+from typing import Any
+
+import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -9,13 +12,34 @@ from bouncing_ball.drawing.labels import note, parameters
 from bouncing_ball.drawing.style import CONTACT, GUIDE, LIMIT
 from bouncing_ball.drawing.thresholds import draw_relative_error
 
+# The top of the axis of Λ.
+_HIGHEST = 2.0
+# The names of the regions below and above the threshold, and the forms in which a name is tried:
+# on one line, on two, and upright on two.
+_PERMANENT = ("permanent", "contact")
+_LEAVES = ("the ball leaves", "the table")
+_FORMS = ((" ", 0), ("\n", 0), ("\n", 90))
+# The space around a name, as a share of the axes, and the share of the greatest room at which a
+# place is as good as the best.
+_MARGIN = 0.01
+_NEARLY = 0.95
+# Number of places along the axis that are compared.
+_PLACES = 401
+# The share of the axis that the formula of the minimum takes.
+_OF_NOTE = 0.25
+
 
 def permanent_contact(data: xr.Dataset) -> Figure:
     """Fig. 11: Λ_SD and its minimum."""
     figure, axes = canvas(height=2.6)
     _draw_threshold(axes, data)
-    axes.text(0.3, 0.22, "permanent contact", transform=axes.transAxes, fontsize=8)
-    axes.text(0.42, 0.72, "the ball leaves the table", transform=axes.transAxes, fontsize=8)
+    # The places depend on the sizes of axes and texts, which are known after the layout.
+    figure.draw_without_rendering()
+    ratio = data.frequency_ratio.values
+    threshold = data.threshold_amplitude.values
+    lowest = np.full_like(threshold, float(data.minimum_threshold))
+    _name(axes, _PERMANENT, ratio, lowest, threshold)
+    _name(axes, _LEAVES, ratio, threshold, np.full_like(threshold, _HIGHEST))
     return figure
 
 
@@ -33,6 +57,7 @@ def permanent_contact_error(data: xr.Dataset) -> Figure:
 
 def _draw_threshold(axes: Axes, data: xr.Dataset) -> None:
     """Λ_SD, or Λ_F of the force release, with its minimum."""
+    low = float(data.frequency_ratio[0])
     high = float(data.frequency_ratio[-1])
     minimum = float(data.minimum_threshold)
     force = data.attrs.get("release") == "force"
@@ -41,7 +66,49 @@ def _draw_threshold(axes: Axes, data: xr.Dataset) -> None:
     axes.plot(data.frequency_ratio, data.threshold_amplitude, color=CONTACT, label=name)
     axes.axhline(minimum, **GUIDE)
     name = "minimum" if force else r"$2\zeta\sqrt{1-\zeta^2}$"
-    note(axes, name, (high, minimum), (0, 3), ha="right", fontsize=8)
+    # At the end where the curve is farther from the line of the minimum.
+    share = np.log(data.frequency_ratio / low) / np.log(high / low)
+    at_left = data.threshold_amplitude.where(share <= _OF_NOTE).min()
+    at_right = data.threshold_amplitude.where(share >= 1 - _OF_NOTE).min()
+    end, side = (low, "left") if at_left > at_right else (high, "right")
+    note(axes, name, (end, minimum), (0, 3), ha=side, fontsize=8)
     ylabel = f"threshold amplitude {symbol}"
     title = rf"{parameters(data, 'restitution')}, $\zeta={float(data.damping_ratio):.4f}$"
-    logarithmic(axes, data.frequency_ratio, ylabel=ylabel, ylim=(0, 2), title=title)
+    logarithmic(axes, data.frequency_ratio, ylabel=ylabel, ylim=(0, _HIGHEST), title=title)
+
+
+def _name(
+    axes: Axes,
+    words: tuple[str, str],
+    ratio: np.ndarray,
+    below: np.ndarray,
+    above: np.ndarray,
+) -> None:
+    """A name where the region between two curves is highest, in the first form that fits.
+
+    A region without room for its name has none.
+    """
+    to_axes = axes.transData + axes.transAxes.inverted()
+    place, bottom = to_axes.transform(np.stack([ratio, below], axis=1)).T
+    top = to_axes.transform(np.stack([ratio, above], axis=1))[:, 1]
+    across = np.linspace(0.0, 1.0, _PLACES)
+    bottom = np.clip(np.interp(across, place, bottom), 0.0, 1.0)
+    top = np.clip(np.interp(across, place, top), 0.0, 1.0)
+    look: dict[str, Any] = {"fontsize": 8, "ha": "center", "va": "center"}
+    for between, angle in _FORMS:
+        text = axes.text(
+            0, 0, between.join(words), rotation=angle, transform=axes.transAxes, **look
+        )
+        box = text.get_window_extent().transformed(axes.transAxes.inverted())
+        half = box.width / 2 + _MARGIN
+        centres = across[(across >= half) & (across <= 1 - half)]
+        beside = np.abs(across - centres[:, np.newaxis]) <= half
+        low = np.where(beside, bottom, 0.0).max(axis=1)
+        high = np.where(beside, top, 1.0).min(axis=1)
+        room = high - low
+        fitting = np.flatnonzero(room >= max(box.height + 2 * _MARGIN, _NEARLY * room.max()))
+        if fitting.size:
+            best = fitting[fitting.size // 2]
+            text.set_position((centres[best], (low[best] + high[best]) / 2))
+            return
+        text.remove()

@@ -23,7 +23,7 @@ def test_table_1_at_another_r_has_nothing_printed(other):
 
 
 def test_the_article_compares_no_entry_of_it(other, accepted):
-    compared = ("ends of stability ranges (Table 1)", "a bound that we chose")
+    compared = ("ends of stability ranges in Table 1", "a bound that we chose")
     abstracts = [
         " ".join(made["article"].partition("## 1. Introduction")[0].split())
         for made in (accepted, other)

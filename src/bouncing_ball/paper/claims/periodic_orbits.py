@@ -87,8 +87,9 @@ def apart_when_compliant(data):
 def period_doubling_turns(data):
     """The saddle-node does move to lower amplitudes. With decreasing ϖ the period doubling first
     moves down, turns at a moderate ϖ, and then moves up. In the printed table it rises at once:
-    for n = 1 and 2 because the upper ends of its stiffest row are those of Eq. 8, which is also the
-    cause of the verdict on Eq. 8, and for n = 3 because the printed end at ϖ = 10 is too high.
+    for the smaller two n because the upper ends of its stiffest row are those of Eq. 8, which is
+    also the cause of the verdict on Eq. 8, and for the largest n because the printed end of the
+    next row is too high.
     """
     move = evidence.row_shift(data)
     doubling = move.sel(bound=Bifurcation.PERIOD_DOUBLING)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass, replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -33,10 +32,10 @@ from bouncing_ball.calls.arguments import (
     chosen,
 )
 from bouncing_ball.calls.balls import Ball, a_ball, a_single_ball
+from bouncing_ball.calls.drawn import Drawn
 from bouncing_ball.calls.periodic import PeriodicOrbit
-from bouncing_ball.datasets.labelled import Labelled
 from bouncing_ball.datasets.variables import SHARED, Variable, described
-from bouncing_ball.errors import ParameterError, Range, extra
+from bouncing_ball.errors import ParameterError, Range
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.contact.damping import Release, damping_ratio, restitution_coefficient
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
@@ -60,14 +59,16 @@ _OF_IMPACTS = {
 _ALL = observables.VARIABLES | _OF_IMPACTS | VARIABLES
 
 
-class FollowedBranch(Labelled):
+class FollowedBranch(Drawn):
     """A branch of orbits with k impacts in m periods along a parameter.
 
     It can be iterated by :meth:`states`; a part of it, such as ``found.isel(point=0)``, has no
-    states.
+    states. The figure shows the phases of the impacts over the parameter.
     """
 
     __slots__ = ("_followed",)
+
+    maker = "follow"
 
     def states(self) -> Iterator[State]:
         """The orbits of the branch, one after another."""
@@ -88,36 +89,30 @@ class FollowedBranch(Labelled):
         name = chosen("kind", kind, [str(each) for each in Special])
         return self._followed.first(Special(name))
 
-    def plot(self, path: str | Path | None = None) -> Figure:  # type: ignore[override]
-        """Phases of the impacts over the parameter, as a figure, which is written to ``path`` if
-        it is given.
+    def _figure(self) -> Figure:
+        from bouncing_ball.calls import figures
 
-        Raises
-        ------
-        ModelError
-            If the suffix of the path is not that of a picture, or the file cannot be written.
-        """
-        with extra("plot"):
-            from bouncing_ball.calls import figures
-        return figures.shown(lambda: figures.followed(self), path, "follow")
+        return figures.followed(self)
 
 
-class SpecialCurve(Labelled):
-    """A curve of special orbits in two parameters; see :class:`FollowedBranch`."""
+class SpecialCurve(Drawn):
+    """A curve of special orbits in two parameters; see :class:`FollowedBranch`.
+
+    The figure shows the curve in the plane of the parameters.
+    """
 
     __slots__ = ("_curve",)
+
+    maker = "curve"
 
     def states(self) -> Iterator[State]:
         """The orbits of the curve, one after another."""
         return iter(self._curve)
 
-    def plot(self, path: str | Path | None = None) -> Figure:  # type: ignore[override]
-        """The curve in the plane of the parameters, as a figure; for the path see
-        :meth:`FollowedBranch.plot`.
-        """
-        with extra("plot"):
-            from bouncing_ball.calls import figures
-        return figures.shown(lambda: figures.special_curve(self), path, "curve")
+    def _figure(self) -> Figure:
+        from bouncing_ball.calls import figures
+
+        return figures.special_curve(self)
 
 
 def _numbers(law: Any) -> dict[str, float]:

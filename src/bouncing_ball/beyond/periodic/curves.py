@@ -13,14 +13,14 @@ At a cusp the tangent of the curve lies in the direction u of the null vector of
 equations alone. The cusp is therefore a zero of the derivative of g in the direction u.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.beyond.periodic.following import STEPS, State, explained, limit
+from bouncing_ball.beyond.periodic.following import STEPS, State, States, explained, limit
 from bouncing_ball.beyond.periodic.problem import PeriodicOrbits
 from bouncing_ball.beyond.periodic.special import (
     Special,
@@ -110,18 +110,10 @@ class CurveProblem:
 
 
 @dataclass(frozen=True)
-class Curve:
+class Curve(States):
     """A curve of special orbits of a kind in two parameters."""
 
     kind: Special
-    orbits: PeriodicOrbits
-    branch: Branch
-
-    def __len__(self) -> int:
-        return len(self.branch.points)
-
-    def __iter__(self) -> Iterator[State]:
-        return (State(self.orbits, y) for y in self.branch.points)
 
     @property
     def special(self) -> list[tuple[Degenerate, State]]:
@@ -187,7 +179,7 @@ def curve(
             start=explained(backwards, (), limits),
             end=explained(branch, (), limits),
         )
-    return Curve(kind, state.orbits, named)
+    return Curve(state.orbits, named, kind)
 
 
 def _corrected(problem: CurveProblem, y: np.ndarray) -> np.ndarray:

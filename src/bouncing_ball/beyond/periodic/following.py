@@ -133,8 +133,8 @@ class State:
 
 
 @dataclass(frozen=True)
-class Followed:
-    """A branch of orbits with k impacts in m periods along one parameter.
+class States:
+    """Orbits in order, one after another: a branch, or a curve of special orbits.
 
     ``branch`` has the points in order and the special points; ``branch.end`` gives the reason why
     the branch ends, in words.
@@ -148,6 +148,11 @@ class Followed:
 
     def __iter__(self) -> Iterator[State]:
         return (State(self.orbits, y) for y in self.branch.points)
+
+
+@dataclass(frozen=True)
+class Followed(States):
+    """A branch of orbits with k impacts in m periods along one parameter."""
 
     @property
     def special(self) -> list[tuple[Special, State]]:

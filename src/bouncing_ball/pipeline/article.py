@@ -221,8 +221,9 @@ def with_citations(markdown: str, folder: str | Path) -> str:
 # formula, element of HTML, list or fence.
 _NO_PROSE = re.compile(r"^(#|\||>|\$\$|<|- |\d+\. |```)", re.MULTILINE)
 _PICTURE = re.compile(r"(!\[[^\n]*\n)?(.*)", re.DOTALL)
-# The end of a sentence, but not of an initial, which is a capital letter with a full stop.
-_SENTENCE_END = re.compile(r"(?<=[.!?:;])(?<![\s(*-][A-Z]\.) (?=[A-Z$(*\[])")
+# The end of a sentence, but not of an initial, which is a capital letter with a full stop, nor of
+# "Eq." and "Eqs.".
+_SENTENCE_END = re.compile(r"(?<=[.!?:;])(?<![\s(*-][A-Z]\.)(?<!Eq\.)(?<!Eqs\.) (?=[A-Z$(*\[])")
 
 
 def by_sentence(text: str) -> str:
@@ -234,9 +235,9 @@ def by_sentence(text: str) -> str:
 
     Examples
     --------
-    >>> print(by_sentence("The error\\nis small. It\\nfalls. A. Ball says so.\\n"))
+    >>> print(by_sentence("The error\\nis small. It\\nfalls (Eq. R3). A. Ball says so.\\n"))
     The error is small.
-    It falls.
+    It falls (Eq. R3).
     A. Ball says so.
     <BLANKLINE>
     """

@@ -19,8 +19,9 @@ from bouncing_ball.drawing.tables import Table, words
 LEVELS = (3, 5, 10, 20, 50, 100, 200, 500, 1000)
 """Bounds between the colours; the last colour is for larger values."""
 
-_LAW_LEVELS = (20, 50, 100, 200, 500)
-_LAW: Look = {"colors": CORRECTED, "linewidths": 0.8, "linestyles": "--"}
+# More lines would lie too close together for labels.
+_LAW_LEVELS = (50, 100)
+_LAW: Look = {"colors": CORRECTED, "linewidths": 1.1, "linestyles": ("--", "-")}
 NEAR = 1
 """Ranges of positions next to the saddle-node, which the colours of the page do not include."""
 
@@ -98,12 +99,11 @@ def over_range(data: xr.Dataset, quantity: str = "max_height", n: int = 1) -> Fi
         middle = (data.position_edge[1:].values + data.position_edge[:-1].values) / 2
         law = np.ma.masked_invalid(law.transpose("position", "restitution"))
         lines = row[0].contour(data.restitution, middle, law, levels=_LAW_LEVELS, **_LAW)
-        row[0].clabel(lines, levels=_LAW_LEVELS[::2], fontsize=8, fmt="%g")
     bar = figure.colorbar(mesh, ax=slots, ticks=LEVELS, format="%g", pad=0.02, shrink=0.8)
     bar.set_label(rf"$\varpi$ from which the error is below {100 * tolerance:g} %")
     figure.suptitle(rf"{QUANTITIES[quantity]}: how stiff a contact must be, $n={n}$", fontsize=10)
-    name = r"error law, $|K|/\varepsilon$"
-    legend_below(figure, lines.legend_elements()[0][:1], labels=[name])
+    names = [rf"error law, $|K|/\varepsilon={level}$" for level in _LAW_LEVELS]
+    legend_below(figure, lines.legend_elements()[0], labels=names)
     return figure
 
 

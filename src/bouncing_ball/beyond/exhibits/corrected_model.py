@@ -49,13 +49,17 @@ VARIABLES = {
     "order": Variable(
         "order of convergence of the relative error in 1/ϖ", budget=0.0001, scale="1"
     ),
+    "order_frequency_ratio": Variable(
+        "two frequency ratios between which the orders are measured", symbol="ϖ"
+    ),
+    "pair": Variable("contact between which and another one the orders are measured"),
     "law_sample": Variable("random orbit on which the error law is tried"),
     "law_remainder": Variable(
         "remainder of the error law over its scale and δ", symbol="M", budget=0.0001, scale="1"
     ),
     "flight_before": Variable("flight before the contact, continued", symbol="z"),
     "flight_after": Variable("flight after the contact, continued backwards", symbol="z"),
-    "meeting_time": Variable("time at which the continued flights meet", symbol="t_c"),
+    "meeting_time": Variable("time at which the continued flights meet", symbol="t^*"),
     "meeting_height": Variable(
         "height at which the continued flights meet", symbol="z", budget=1e-12
     ),
@@ -146,6 +150,7 @@ def _of_random_orbits(sample: Orders, release: Release) -> dict[str, tuple]:
     remainder = error_law.remainder(n, instant, lam, of_restitution_model)
     return {
         "order": (("model", "quantity", "sample"), np.log2(once / twice)),
+        "order_frequency_ratio": ("pair", _TWO_STIFF.ravel()),
         "law_remainder": (("quantity", "law_sample"), remainder.factor),
     }
 
@@ -160,7 +165,8 @@ def orders(parameters: Orders, release: Release) -> xr.Dataset:
     changes its sign. ``permanent_coefficient``, ``permanent_law`` and ``permanent_threshold`` are
     the same numbers for the permanent contact, which has no impact to correct.
 
-    For random orbits it has the measured ``order`` (model, quantity, sample);
+    For random orbits it has the measured ``order`` (model, quantity, sample) between the two ϖ in
+    ``order_frequency_ratio`` (pair,), and
     ``law_remainder`` (quantity, law_sample), which is |error - K/ϖ|/(S δ) and at most M by the law.
     M was fitted to other orbits (:data:`~bouncing_ball.beyond.error_law.REMAINDER`).
     """

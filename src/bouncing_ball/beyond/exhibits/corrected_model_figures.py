@@ -44,7 +44,7 @@ def meeting_flights(data: xr.Dataset) -> Figure:
     below.fill_between(time[touching], force, facecolor="#bfdbec", edgecolor=CONTACT)
     for axes in (top, below):
         axes.axvline(meeting, **GUIDE)
-    note(below, "$t_c$", (meeting, 0), (3, 3), fontsize=9)
+    note(below, "$t^*$", (meeting, 0), (3, 3), fontsize=9)
     margin = float(data.table.values[touching].max()) - low
     title = parameters(data, "n", "restitution", "amplitude", "frequency_ratio")
     top.set(ylabel="height", ylim=(low - 0.12 * margin, low + 1.6 * margin), title=title)

@@ -132,17 +132,25 @@ use rule study as long_transients with:
         ),
 
 
-use rule study as locked_orbits with:
-    """How long balls take to lock, and what predicts a locked orbit."""
+use rule study as lives with:
+    """How long balls take to lock."""
     wildcard_constraints:
         artifact=stage(
-            "beyond.exhibits.locked_orbits",
+            "beyond.exhibits.lives",
             ext_lives=dict(
                 title="How long balls take to reach the motion on which they lock",
                 study="transients",
                 places="lives",
                 accepted="config/ext_lives.nc",
             ),
+        ),
+
+
+use rule study as locked_orbits with:
+    """What predicts a locked orbit."""
+    wildcard_constraints:
+        artifact=stage(
+            "beyond.exhibits.locked_orbits",
             ext_locked=dict(
                 title="What predicts the frequency ratio at which a contact has a locked orbit, and transients before it",
                 study="locked_orbits",

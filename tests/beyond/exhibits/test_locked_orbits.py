@@ -1,22 +1,17 @@
-"""Shares, correlations, mean lives and exponents against closed forms."""
-
-from types import SimpleNamespace
+"""Shares, correlations and exponents against closed forms."""
 
 import numpy as np
 import pytest
 from scipy.stats import norm
 
-from bouncing_ball.beyond.exhibits import locked_orbits as transients
+from bouncing_ball.beyond.exhibits.lives import transients
 from bouncing_ball.beyond.exhibits.locked_orbits import (
     correlation,
     correlation_gain,
     locked_orbits,
-    mean_life,
 )
-from bouncing_ball.beyond.exhibits.motion_samples import ThreeModels, uncertainty_exponent
+from bouncing_ball.beyond.exhibits.motion_samples import uncertainty_exponent
 from bouncing_ball.beyond.long_run.lift_off import returns
-from bouncing_ball.beyond.long_run.motions import Kind
-from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.pipeline.configuration import typed
 
 
@@ -27,10 +22,6 @@ def test_the_limits_of_estimates_contain_the_known_values():
     # Without a correlation its standard error is 1/√(n - 3).
     assert high - low == pytest.approx(2 * norm.ppf(0.975) / np.sqrt(1997), rel=0.01)
     assert low < 0 < high
-    life = random.exponential(30.0, 4000)
-    mean, low, high = mean_life(np.minimum(life, 40.0), life < 40.0, 0.95)
-    assert low < 30 < high and low < mean < high
-    assert mean_life(np.ones(5), np.zeros(5, dtype=bool), 0.95)[::2] == (np.inf, np.inf)
     size = 10.0 ** -np.arange(1, 5)
     changes = random.uniform(size=(4000, 1)) < size**0.3
     slope, low, high = uncertainty_exponent(changes, size, 0.95)
@@ -46,7 +37,7 @@ def test_a_contact_agrees_where_the_prediction_says():
     place = {"restitution": 0.5, "amplitude": 2.5}
     common = {"confidence": 0.95, "seed": 5}
     balls = {"cases": [place], "frequency_ratio": [1000.0], "balls": 20, "impacts": 250}
-    lives = typed(transients.transients)(balls | common, "displacement")
+    of_balls = typed(transients)(balls | common, "displacement")
     given = {
         "amplitude": {"min": 2.0, "max": 4.0, "samples": 2},
         "restitution": {"min": 0.2, "max": 0.5, "samples": 2},
@@ -55,7 +46,7 @@ def test_a_contact_agrees_where_the_prediction_says():
         "nodes": 40,
         "shifts": [1e-2, 1e-4],
     }
-    data = typed(locked_orbits)({"ext_lives": lives}, given | common, "displacement")
+    data = typed(locked_orbits)({"ext_lives": of_balls}, given | common, "displacement")
     stiff = 1000 * data.wait / data.sensitivity
     right = data.needed_ratio <= 1000
     # By chance a few of the others have the same period.
@@ -66,24 +57,6 @@ def test_a_contact_agrees_where_the_prediction_says():
     finite = np.isfinite(data.needed_ratio[data.periods > 0])
     assert data.reached_share == finite.mean()
     assert np.all(data.survival.isel(life=0) == 1) and np.all(data.mean_life_low < data.mean_life)
-
-
-def test_a_ball_has_arrived_where_phase_and_velocity_agree(monkeypatch):
-    # Impacts a period apart: at the phase of the end, at its velocity, and then at both.
-    times = 2 * np.pi * np.arange(1, 4)
-    kind = np.full((1, 1, 10), Kind.LOCKED)
-
-    def final_motions(*_, path, **__):
-        path[:, :3] = np.reshape([times, [1, 2, 1], [-5, -4, -4]], (3, 3, 1, 1, 1))
-        return SimpleNamespace(end_phase=1.0, end_velocity=-4.0, kind=kind)
-
-    model = SimpleNamespace(impact_law=None, shape=())
-    monkeypatch.setattr(transients, "three_models", lambda *_: ThreeModels(*[model] * 3))
-    monkeypatch.setattr(transients, "final_motions", final_motions)
-    case = {"cases": [{"restitution": 0.5, "amplitude": 2.5}], "frequency_ratio": [10.0]}
-    asked = transients.Transients(**case, balls=10, impacts=50, confidence=0.95, seed=1)
-    data = transients.transients(asked, Release.DISPLACEMENT)
-    assert np.all(data.mean_life == 3)
 
 
 def test_the_limits_of_a_correlation_are_those_of_bonett_and_wright():

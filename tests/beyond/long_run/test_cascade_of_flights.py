@@ -2,14 +2,12 @@
 
 import numpy as np
 import pytest
+from mpmath import mp, mpf
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
+from sixty_digits import Exact
 
-from bouncing_ball.beyond.long_run.cascade_of_flights import (
-    OpeningContacts,
-    openings,
-    stiff_openings,
-)
+from bouncing_ball.beyond.long_run.cascade_of_flights import openings, stiff_openings
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.contact.damping import damping_ratio
@@ -78,16 +76,66 @@ def test_the_ratio_of_openings_tends_to_one_over_r_squared_with_an_error_of_orde
     assert 0 < apart[-1] < 2e-3
 
 
-def test_the_derivatives_and_the_multipliers_are_those_of_the_motion():
-    law = SpringDamper(9.0, 0.12)
-    rng = np.random.default_rng(2)
-    problem = OpeningContacts(law, 2)
-    y = np.array([1.4, 1.2, 0.3, 0.5, 0.3, 0.4, 0.4, -0.3, 0.2, -0.2])
-    y = y * (1 + 0.01 * rng.normal(size=(3, 10)))
-    step = 1e-6 * np.eye(10)
-    around = [problem.system(y[:, np.newaxis] + sign * step)[0] for sign in (1, -1)]
-    slopes = np.moveaxis((around[0] - around[1]) / 2e-6, 1, -1)
-    np.testing.assert_allclose(problem.system(y)[1], slopes, atol=1e-8)
+def missed(exact, amplitude, touch, *impacts):
+    """The defects of an orbit whose last contact touches the level of the table at a time.
+
+    The impacts are θ, v and the duration of each contact, one after another.
+    """
+    found = []
+    for i in range(0, len(impacts), 3):
+        phase, velocity, duration = impacts[i : i + 3]
+        start = velocity, amplitude * mp.cos(phase), amplitude * mp.sin(phase)
+        height, rate = exact.state(duration, *start)
+        later = (*impacts[i + 3 :], impacts[0] + 2 * mp.pi, *impacts[1:])
+        time = later[0] - phase - duration
+        leaves = phase + duration
+        fallen = mp.sin(leaves) + time * mp.cos(leaves) - mp.sin(leaves + time)
+        slowed = mp.cos(leaves) - mp.cos(leaves + time)
+        landing = rate * time - time**2 / 2 + amplitude * fallen
+        found += [height, landing, rate - time + amplitude * slowed - later[1]]
+    return [*found, *exact.state(touch, *start)]
+
+
+@pytest.mark.parametrize(("r", "ratio", "k"), [(0.3, 100.0, 2), (0.5, 50.0, 3), (0.95, 60.0, 3)])
+def test_an_opening_is_that_of_its_equations_in_sixty_digits(r, ratio, k):
+    """By equations of their own: the touch is a time with δ = δ′ = 0 there, and an unknown."""
+    zeta = damping_ratio(r)
+    ratios = np.geomspace(ratio, 200.0, 13)
+    amplitude = openings([zeta], ratios, k).amplitude[0, k - 1, 0]
+    law = SpringDamper(ratio, zeta)
+    threshold = permanent_contact_threshold(ratio, zeta)
+    below = (1 - 1e-6) * (amplitude - threshold)
+    seen = motions(r, ratio, ratio**2 * below)
+    impacts = SpringDamperModel(law).simulate(
+        threshold + below, float(seen.end_phase), float(seen.end_velocity), k
+    )
+    rows = np.array([impacts.phase[0] + impacts.time, impacts.relative_velocity,
+                     impacts.contact_duration])  # fmt: skip
+    # The orbit starts with the impact after the longest contact.
+    last = int(rows[2].argmax())
+    rows[0, : last + 1] += 2 * np.pi
+    rows = np.roll(rows, -1 - last, axis=1)
+    time = np.linspace(0, 3 * np.pi / ratio, 10_001)
+    heights = law.flow(time, 0.0, rows[1, -1], rows[0, -1], amplitude).displacement
+    top = time[1:-1][(heights[1:-1] > heights[:-2]) & (heights[1:-1] >= heights[2:])][0]
+    with mp.workdps(60):
+        exact = Exact(law, 1)
+        y = mp.matrix([float(x) for x in (amplitude, top, *rows.T.ravel())])
+        step = mpf(10) ** -25
+        for _ in range(7):
+            here = mp.matrix(missed(exact, *y))
+            matrix = mp.matrix(len(y), len(y))
+            for column in range(len(y)):
+                moved = y.copy()
+                moved[column] += step
+                matrix[:, column] = (mp.matrix(missed(exact, *moved)) - here) / step
+            y -= mp.lu_solve(matrix, here)
+        assert mp.norm(mp.matrix(missed(exact, *y))) < 1e-50
+        # The budget of Λ in the record, in units of its range.
+        assert abs(y[0] - mpf(float(amplitude))) < 1e-14
+
+
+def test_the_multipliers_are_those_of_the_motion():
     zeta = damping_ratio(0.85)
     found = openings([zeta], np.array([20.0]), 2)
     excess = 400 * (found.amplitude - permanent_contact_threshold(20.0, zeta))
@@ -177,10 +225,20 @@ def test_without_an_oscillation_that_dies_out_there_is_no_limit(zeta):
         stiff_openings(zeta, 1)
 
 
-def test_on_a_compliant_contact_the_orbit_loses_its_stability_before_an_opening():
-    # The search goes from stiff contacts to compliant ones.
-    ratio = np.geomspace(7.93, 200.0, 22)
-    found = openings(damping_ratio(np.array([0.65])), ratio, 2)
-    first, second = found.multiplier[0]
-    assert first[0] < 1 < second[0]
-    assert np.all(second[1:] < 1)
+def test_on_a_weakly_damped_contact_the_orbit_loses_its_stability_between_two_openings():
+    """The ball leaves the orbit with two flights, and is on it again before the next opening."""
+    r = 0.95
+    ratio = np.geomspace(31.6, 200.0, 13)
+    zeta = damping_ratio(r)
+    found = openings([zeta], ratio, 2).amplitude[0, :, 0]
+    first, second = ratio[0] ** 2 * (found - permanent_contact_threshold(ratio[0], zeta))
+    seen = motions(r, ratio[0], [1.02 * first, (first + second) / 2, 0.999 * second])
+    assert seen.impacts[[0, 2]].tolist() == [2, 2]
+    assert np.exp(seen.exponent[1]) > 1 and (np.exp(seen.exponent[[0, 2]]) < 1).all()
+
+
+def test_on_a_compliant_contact_the_openings_end():
+    ratio = np.geomspace(2.0, 200.0, 31)
+    found = openings([damping_ratio(0.85)], ratio, 1).amplitude[0, 0]
+    exists = np.isfinite(found)
+    assert exists[-1] and not exists[0] and np.count_nonzero(np.diff(exists)) == 1

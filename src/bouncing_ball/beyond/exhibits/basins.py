@@ -5,7 +5,7 @@ from typing import Annotated
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.beyond.exhibits.locked_orbits import Place, columns
+from bouncing_ball.beyond.exhibits.lives import Place, columns
 from bouncing_ball.beyond.exhibits.motion_samples import (
     MODELS,
     Confidence,

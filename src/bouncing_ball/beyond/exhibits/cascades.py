@@ -96,10 +96,7 @@ def cascade_of_flights(parameters: Flights, release: Release) -> xr.Dataset:
     multiplier = np.full((zeta.size, most, ratio.size), np.nan)
     stiff = np.full((zeta.size, most), np.nan)
     if release is Release.DISPLACEMENT:
-        found = openings(zeta, ratio, most)
-        stable = found.multiplier < 1
-        amplitude = np.where(stable, found.amplitude, np.nan)
-        multiplier = np.where(stable, found.multiplier, np.nan)
+        amplitude, multiplier = openings(zeta, ratio, most)
         stiff = np.stack([stiff_openings(z, most) for z in zeta])
     dims = ("restitution", "flights", "frequency_ratio")
     threshold = SpringDamperModel(law).permanent_contact_threshold()

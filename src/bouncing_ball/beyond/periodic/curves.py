@@ -22,11 +22,11 @@ import numpy as np
 
 from bouncing_ball.beyond.periodic.following import STEPS, State, States, explained, limit
 from bouncing_ball.beyond.periodic.problem import PeriodicOrbits
+from bouncing_ball.beyond.periodic.release import release_condition
 from bouncing_ball.beyond.periodic.special import (
     Special,
     flight_margin,
     impact_margin,
-    release_margin,
     sticking_margin,
 )
 from bouncing_ball.errors import NoOrbitError, ParameterError
@@ -48,7 +48,6 @@ _PATIENT = NewtonSettings(max_iterations=20, longest=0.3)
 _BY_DIFFERENCES = NewtonSettings(tolerance=1e-9, max_iterations=20)
 _MARGINS = {
     Special.GRAZING_FLIGHT: flight_margin,
-    Special.GRAZING_RELEASE: release_margin,
     Special.GRAZING_IMPACT: impact_margin,
     Special.STICKING: sticking_margin,
 }
@@ -80,8 +79,10 @@ def condition_of(orbits: PeriodicOrbits, kind: Special) -> Condition:
     if str(kind) in list(map(str, Bifurcation)):
         bifurcation = Bifurcation(str(kind))
         return lambda y: orbits.bifurcation(bifurcation, y)
+    if kind is Special.GRAZING_RELEASE:
+        return lambda y: release_condition(orbits, y)
     if kind not in _MARGINS:
-        known = ", ".join([*Bifurcation, *_MARGINS])
+        known = ", ".join([*Bifurcation, Special.GRAZING_RELEASE, *_MARGINS])
         raise ParameterError(f"{{}} is not one of {known}", repr(str(kind)))
     margin = _MARGINS[kind]
     return vanishing(lambda y: margin(orbits, y))

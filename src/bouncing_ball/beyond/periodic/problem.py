@@ -75,6 +75,9 @@ class PeriodicOrbits:
         The names of the parameters that vary.
     selects : bool
         Whether the durations of the contacts are unknowns, which select their releases.
+    unit : float or array
+        The scale of each unknown, which broadcasts to y: the steps of the central differences are
+        proportional to it. The solutions do not depend on it.
     """
 
     family: Family
@@ -82,6 +85,7 @@ class PeriodicOrbits:
     turns: Any
     along: tuple[str, ...]
     selects: bool = False
+    unit: Any = 1.0
 
     @property
     def periods(self) -> Any:
@@ -193,32 +197,32 @@ class PeriodicOrbits:
 
     def residual(self, y: np.ndarray) -> np.ndarray:
         """Both sides of Eq. 2, and the errors of the durations, shape (..., N)."""
-        legs = self._around(y)
-        return self._residual(y, legs)
-
-    def _residual(self, y: np.ndarray, legs: Legs) -> np.ndarray:
+        legs = self.legs(self.around(y))
         here = legs.residual[0].reshape(*y.shape[:-1], -1)
         if not self.selects:
             return here
         return np.concatenate([here, self.durations(y) - legs.duration[0]], axis=-1)
 
-    def _around(self, y: np.ndarray, everywhere: bool = False) -> Legs:
-        """The legs at y and beside it, with an additional first axis.
+    def around(self, y: np.ndarray, everywhere: bool = False) -> np.ndarray:
+        """The points at which legs are compared: y and the points beside it, along a first axis.
 
-        Its entries are y itself, y moved by ± the step of the differences in each parameter, and,
-        if the durations are unknowns or ``everywhere`` is set, y with all θ or all v moved: a leg
-        depends on the state at its start alone.
+        They are y itself, y moved by ± the step of the differences in each parameter, and, if the
+        durations are unknowns or ``everywhere`` is set, y with all θ or all v moved: a leg depends
+        on the state at its start alone.
         """
-        columns = [[self.equations + j] for j in range(len(self.along))]
+        columns: list[Any] = [self.equations + j for j in range(len(self.along))]
         if self.selects or everywhere:
-            states = np.arange(2 * self.impacts)
-            columns += [list(states[::2]), list(states[1::2])]
-        steps = np.zeros((1 + 2 * len(columns), y.shape[-1]))
+            columns += [slice(0, 2 * self.impacts, 2), slice(1, 2 * self.impacts, 2)]
+        points = np.repeat(y[np.newaxis], 1 + 2 * len(columns), axis=0)
+        step = self._step(y)
         for j, column in enumerate(columns):
-            steps[1 + 2 * j, column] = _DIFFERENCE
-            steps[2 + 2 * j, column] = -_DIFFERENCE
-        leading = tuple(range(1, y.ndim))
-        return self.legs(self._within(y + np.expand_dims(steps, leading)))
+            points[1 + 2 * j, ..., column] += step[..., column]
+            points[2 + 2 * j, ..., column] -= step[..., column]
+        return self._within(points)
+
+    def _step(self, y: np.ndarray) -> np.ndarray:
+        """The steps of the central differences, of the shape of y."""
+        return np.broadcast_to(_DIFFERENCE * np.asarray(self.unit), y.shape)
 
     def _within(self, y: np.ndarray) -> np.ndarray:
         """Points beside y, moved back to the ends of the ranges of the parameters."""
@@ -233,7 +237,7 @@ class PeriodicOrbits:
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """Jacobian of the residual, shape (..., N, N + parameters)."""
-        legs = self._around(y)
+        legs = self.legs(self.around(y))
         k = self.impacts
         matrix = np.zeros((*y.shape[:-1], self.equations, y.shape[-1]))
         first = np.arange(k)
@@ -264,29 +268,28 @@ class PeriodicOrbits:
         row = 2 * self.impacts + contact
         matrix[..., row, row] = 1
         count = len(self.along)
+        step = self._step(y)
         for j, length in enumerate(self._lengths(y)):
             longer = legs.duration[1 + 2 * j] - legs.duration[2 + 2 * j]
             matrix[..., row, self.equations + j] = -longer / length
         for j in range(2):
             longer = legs.duration[1 + 2 * (count + j)] - legs.duration[2 + 2 * (count + j)]
-            matrix[..., row, 2 * contact + j] = -longer / (2 * _DIFFERENCE)
+            start = 2 * contact + j
+            matrix[..., row, start] = -longer / (2 * step[..., start])
 
     def _lengths(self, y: np.ndarray) -> list[np.ndarray]:
         """The lengths of the central differences in each parameter, shape (..., 1): shorter where
         the range of the parameter ends.
         """
-        found = []
-        for j, name in enumerate(self.along):
-            low, high = np.arcsinh(self.family.bounds(name))
-            here = y[..., [self.equations + j]]
-            right = np.clip(here + _DIFFERENCE, low, high)
-            left = np.clip(here - _DIFFERENCE, low, high)
-            found.append(right - left)
-        return found
+        points = self.around(y)
+        return [
+            points[1 + 2 * j][..., [column]] - points[2 + 2 * j][..., [column]]
+            for j, column in enumerate(range(self.equations, y.shape[-1]))
+        ]
 
     def matrices(self, y: np.ndarray) -> np.ndarray:
         """DP of the legs, shape (..., k, 2, 2)."""
-        return matrices_of(self._around(y).tangent)[0]
+        return matrices_of(self.legs(self.around(y)).tangent)[0]
 
     def monodromy(self, y: np.ndarray) -> Jacobian:
         """The derivative of the map Pᵏ at the first impact; entries of the leading shape of y."""
@@ -304,22 +307,31 @@ class PeriodicOrbits:
         The derivatives of the matrices of the legs are central differences. The results have the
         shapes (...,) and (..., N + parameters).
         """
-        around = self._around(y, everywhere=True)
+        around = self.legs(self.around(y, everywhere=True))
         matrices = matrices_of(around.tangent)
         multiplier = 1.0 if kind is Bifurcation.SADDLE_NODE else -1.0
         value, weights = shifted_determinant(matrices[0], multiplier)
+        # tr(W_i dM_i) for each leg.
+        change = [
+            np.einsum("...ij,...ji->...", weights, right - left)
+            for right, left in zip(matrices[1::2], matrices[2::2], strict=True)
+        ]
+        return value, self.gradient(y, np.array(change))
+
+    def gradient(self, y: np.ndarray, change: np.ndarray) -> np.ndarray:
+        """The gradient of a sum of a function over the legs, shape (..., N + parameters).
+
+        ``change`` are the differences of the function between the two points :meth:`around` y on
+        both sides, everywhere, shape (pairs of points, ..., k).
+        """
         gradient = np.zeros(y.shape)
-        lengths = self._lengths(y)
-        for j in range(len(self.along) + 2):
-            change = matrices[1 + 2 * j] - matrices[2 + 2 * j]
-            # tr(W_i dM_i) for each leg.
-            of_legs = np.einsum("...ij,...ji->...", weights, change)
-            if j < len(self.along):
-                gradient[..., self.equations + j] = of_legs.sum(axis=-1) / lengths[j][..., 0]
-            else:
-                column = np.arange(j - len(self.along), 2 * self.impacts, 2)
-                gradient[..., column] = of_legs / (2 * _DIFFERENCE)
-        return value, gradient
+        for j, length in enumerate(self._lengths(y)):
+            gradient[..., self.equations + j] = change[j].sum(axis=-1) / length[..., 0]
+        step = self._step(y)
+        for j in range(2):
+            column = slice(j, 2 * self.impacts, 2)
+            gradient[..., column] = change[len(self.along) + j] / (2 * step[..., column])
+        return gradient
 
 
 def twice(orbits: PeriodicOrbits, y: np.ndarray) -> tuple[PeriodicOrbits, np.ndarray]:

@@ -22,21 +22,16 @@ import numpy as np
 
 from bouncing_ball import datasets
 from bouncing_ball.beyond.periodic.problem import PeriodicOrbits
+from bouncing_ball.beyond.periodic.release import release_condition, release_margin
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import Event
-from bouncing_ball.paper.contact.contact import Contact, Span
 from bouncing_ball.paper.motion.flight import Flight
 from bouncing_ball.paper.orbits.stability import Bifurcation
 
 # A time is bisected until a minimum is known to 2⁻²⁶ of an interval of at most π; its height then
 # has an error of the order of the square.
 _BISECTIONS = 26
-# Samples of a contact: evenly, and in geometric progression from this fraction of the duration on,
-# because the oscillations after an impact decay.
-_EVEN, _GEOMETRIC, _FIRST = 160, 160, 1e-4
-# A maximum is refined by this many rounds of this many samples.
-_ROUNDS, _SAMPLES = 7, 9
 # The value of a function where there is no minimum or maximum, and thus no event near.
 _FAR = 1.0
 
@@ -118,66 +113,6 @@ def _bottom(flight: Flight, left: np.ndarray, right: np.ndarray) -> np.ndarray:
     return gap - rate * rate / (2 * second)
 
 
-def release_margin(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
-    """Minus the largest local maximum of δ + κ δ′ within the contacts of each orbit, of the leading
-    shape of y; 1 where there is none, where impacts are instants, and for laws without a κ.
-    """
-    legs = orbits.legs(y)
-    far = np.full(legs.duration.shape[:-1], _FAR)
-    dynamics, _ = orbits.dynamics(y)
-    if dynamics is None or dynamics.contact is None or dynamics.contact.lag is None:
-        return far
-    span = Span(
-        displacement=legs.impact.displacement,
-        velocity=legs.impact.velocity,
-        phase=legs.impact.phase,
-        amplitude=np.broadcast_to(dynamics.amplitude, legs.passed.shape),
-        duration=legs.duration.ravel(),
-        release_displacement=legs.departure.flight.displacement,
-        release_velocity=legs.departure.flight.velocity,
-    )
-    known = np.flatnonzero(np.isfinite(span.duration) & (span.duration > 0))
-    highest = np.full(legs.passed.shape, -_FAR)
-    if known.size:
-        contact = dynamics.contact.take(known) if dynamics.shape else dynamics.contact
-        with np.errstate(all="ignore"):
-            highest[known] = _highest(contact, Span(*(np.asarray(x)[known] for x in span)))
-    return -highest.reshape(legs.duration.shape).max(axis=-1)
-
-
-def _highest(contact: Contact, span: Span) -> np.ndarray:
-    """The largest local maximum of δ + κ δ′ within each contact, -1 if there is none."""
-    evenly = np.linspace(0, 1, _EVEN)[1:]
-    densely = np.geomspace(_FIRST, 1, _GEOMETRIC)
-    share = np.union1d(evenly, densely)
-    value = _at(contact, span, share[:, np.newaxis] * span.duration)
-    inner = value[1:-1]
-    is_top = (inner > value[:-2]) & (inner >= value[2:])
-    top = np.where(is_top, inner, -np.inf).argmax(axis=0)
-    found = is_top.any(axis=0)
-    left = share[top] * span.duration
-    right = share[top + 2] * span.duration
-    for _ in range(_ROUNDS):
-        time = left + (right - left) * np.linspace(0, 1, _SAMPLES)[:, np.newaxis]
-        value = _at(contact, span, time)
-        best = np.clip(value.argmax(axis=0), 1, _SAMPLES - 2)
-        rows = np.arange(best.size)
-        left = time[best - 1, rows]
-        right = time[best + 1, rows]
-    return np.where(found, value.max(axis=0), -_FAR)
-
-
-def _at(contact: Contact, span: Span, time: np.ndarray) -> np.ndarray:
-    """δ + κ δ′ at times of shape (samples, contacts)."""
-    samples = len(time)
-    whole = Span(*(np.tile(x, samples) for x in span))
-    shape = getattr(contact, "shape", ())
-    rows = np.tile(np.arange(time.shape[1]), samples)
-    several = contact.take(rows) if shape else contact
-    displacement, velocity = several.during(whole, time.ravel())
-    return (displacement + several.lag * velocity).reshape(time.shape)
-
-
 def impact_margin(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
     """The smallest closing speed -v of the impacts of each orbit, of the leading shape of y."""
     _, velocity = orbits.states(y)
@@ -253,7 +188,11 @@ def events(orbits: PeriodicOrbits) -> Sequence[Event]:
         bifurcation(Bifurcation.SADDLE_NODE),
         bifurcation(Bifurcation.PERIOD_DOUBLING),
         Event(Special.GRAZING_FLIGHT, lambda y: flight_margin(orbits, y)),
-        Event(Special.GRAZING_RELEASE, lambda y: release_margin(orbits, y)),
+        Event(
+            Special.GRAZING_RELEASE,
+            lambda y: release_margin(orbits, y),
+            condition=lambda y: release_condition(orbits, y),
+        ),
         end(Special.GRAZING_IMPACT, impact_margin),
         end(Special.STICKING, sticking_margin),
     )

@@ -27,7 +27,6 @@ from bouncing_ball.beyond.periodic.special import (
     flight_margin,
     impact_margin,
     release_margin,
-    sticking_margin,
 )
 from bouncing_ball.errors import NoOrbitError, ParameterError
 from bouncing_ball.numerics.continuation import (
@@ -50,7 +49,6 @@ _MARGINS = {
     Special.GRAZING_FLIGHT: flight_margin,
     Special.GRAZING_RELEASE: release_margin,
     Special.GRAZING_IMPACT: impact_margin,
-    Special.STICKING: sticking_margin,
 }
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from bouncing_ball.beyond.periodic.family import Family
 from bouncing_ball.beyond.periodic.legs import time_to_section
 from bouncing_ball.beyond.periodic.problem import PeriodicOrbits
+from bouncing_ball.beyond.periodic.special import sticking
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.motion.sequence import Status
@@ -87,4 +88,4 @@ def is_admissible(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
     longer = departure.duration - expected if orbits.selects else np.zeros_like(late)
     at_level = after.displacement >= 0
     same[possible] = at_level & (np.maximum(np.abs(late), np.abs(longer)) < _SAME * interval)
-    return np.all(same.reshape(shape), axis=-1)
+    return np.all(same.reshape(shape), axis=-1) & (sticking(orbits, y) > 0)

@@ -105,6 +105,7 @@ def test_sticking_ends_where_the_bounces_become_self_similar(along, amplitude, r
         # The bounces enlarge w - w*, so that only the last zeros are near enough to start from.
         while abs(zeros[-1] - zeros[-2]) > SETTLED:
             more = 3 * len(zeros)
+            assert more < 60
             beside = zeros[-1] + (zeros[-1] - zeros[-2]) / 100
             zeros.append(findroot(partial(excess, more=more), (zeros[-1], beside), tol=1e-30))
         # The phases of the impacts, and thus the place, have some roundings.

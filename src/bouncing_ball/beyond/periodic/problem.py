@@ -50,6 +50,10 @@ from bouncing_ball.paper.orbits.stability import Bifurcation
 
 # Step of the central differences, near the optimum ε^(1/3).
 _DIFFERENCE = 6e-6
+# Where the second difference of a side of Eq. 2 is larger than this and than half of the first one,
+# the side has no derivative but a jump. At an end of a range both differences are equal, and
+# smaller. A jump that is not noticed spoils a solution by 1e-7 of its size.
+_JUMP = 1e-3
 # Number of points at which the legs are known at the same time.
 _KEPT = 8
 
@@ -252,7 +256,9 @@ class PeriodicOrbits:
         matrix[..., rate, 2 * after + 1] -= 1
         for j, length in enumerate(self._lengths(y)):
             change = legs.residual[1 + 2 * j] - legs.residual[2 + 2 * j]
-            slope = change.reshape(*y.shape[:-1], -1) / length
+            bend = legs.residual[1 + 2 * j] + legs.residual[2 + 2 * j] - 2 * legs.residual[0]
+            jumps = (np.abs(bend) > _JUMP) & (np.abs(bend) > np.abs(change) / 2)
+            slope = np.where(jumps, np.nan, change).reshape(*y.shape[:-1], -1) / length
             matrix[..., : 2 * k, self.equations + j] = slope
         if self.selects:
             self._fill_durations(matrix, legs, y)

@@ -180,9 +180,11 @@ def _at(contact: Contact, span: Span, time: np.ndarray) -> np.ndarray:
 
 
 def impact_margin(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
-    """The smallest closing speed -v of the impacts of each orbit, of the leading shape of y."""
+    """The smallest speed of the impacts of each orbit, -v, or v where a contact resumes while the
+    ball rises; of the leading shape of y.
+    """
     _, velocity = orbits.states(y)
-    return -velocity.max(axis=-1)
+    return np.where(orbits.resuming, velocity, -velocity).min(axis=-1)
 
 
 def sticking(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:

@@ -53,6 +53,13 @@ def test_a_change_of_sign_without_a_zero_is_not_located(function):
     assert locate(Line(), event, np.array([0.0, 0.0]), np.array([1.0, 1.0])) is None
 
 
+def test_the_limit_of_a_sign_is_bisected():
+    event = Event("jump", lambda y: np.where(y[..., 1] < 0.3, 1.0, -1.0), is_sign=True)
+    for ends in (0.0, 1.0), (1.0, 0.0):
+        found = locate(Line(), event, *(np.full(2, p) for p in ends))
+        assert found.point == pytest.approx(np.full(2, 0.3), abs=1e-15)
+
+
 # The limits of a domain.
 
 

@@ -44,6 +44,9 @@ class Event:
         The reason why the branch ends at a terminal event, as a sentence.
     condition : callable, optional
         g(y) with its gradient; by default the gradient is a central difference.
+    is_sign : bool
+        Whether g(y) is only a sign, 1 inside a domain and -1 outside, whose limit is located by
+        bisection.
     """
 
     name: str
@@ -51,6 +54,7 @@ class Event:
     terminal: bool = False
     reason: str = ""
     condition: Condition | None = None
+    is_sign: bool = False
 
 
 class SpecialPoint(NamedTuple):
@@ -107,6 +111,9 @@ def locate(
     the method does not converge, or converges outside the bracket, because a step of the
     continuation was too long or because there is no zero.
     """
+    if event.is_sign:
+        last = domain_limits(problem, lambda y: event.function(y) > 0, np.stack([left, right]))
+        return SpecialPoint(event.name, last[0])
     before = float(event.function(left))
     after = float(event.function(right))
     chord = right - left

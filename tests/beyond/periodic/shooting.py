@@ -11,11 +11,15 @@ def table(time, amplitude):
     return amplitude * np.sin(time), amplitude * np.cos(time)
 
 
-def flown(time, height, velocity, amplitude):
-    """Time and velocity of the first landing, by the integrator's events."""
+def flown(time, height, velocity, amplitude, lag):
+    """Time, height and velocity of the first landing, by the integrator's events.
+
+    Below the table's level a contact resumes where its force, δ + lag δ′, becomes negative.
+    """
 
     def gap(t, y):
-        return y[0] - table(t, amplitude)[0]
+        level, rate = table(t, amplitude)
+        return max(y[0] - level, y[0] - level + lag * (y[1] - rate))
 
     gap.terminal = True
     gap.direction = -1
@@ -56,6 +60,7 @@ def turn(phase, velocity, impacts, name, restitution, ratio, amplitude):
     time = phase
     height, _ = table(time, amplitude)
     zeta = -np.log(restitution) / np.hypot(np.pi, np.log(restitution))
+    lag = 2 * zeta / ratio if name == "force release" else 0.0
     for _ in range(impacts):
         if name == "restitution":
             _, rate = table(time, amplitude)
@@ -71,7 +76,7 @@ def turn(phase, velocity, impacts, name, restitution, ratio, amplitude):
                 zeta=zeta,
                 by_force=by_force,
             )
-        time, height, velocity = flown(time, height, velocity, amplitude)
+        time, height, velocity = flown(time, height, velocity, amplitude, lag)
     return time, velocity
 
 

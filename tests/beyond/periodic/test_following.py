@@ -160,6 +160,33 @@ def test_a_locked_orbit_of_a_stiff_contact_is_followed_along_the_stiffness(
         assert away.min() < 1e-10
 
 
+def test_a_branch_ends_where_the_map_of_the_corrected_model_jumps():
+    """There a central difference is large, so that Newton's method seems to converge."""
+    model = bouncing_ball.spring_damper(restitution=0.6977, frequency_ratio=1.488)
+    ball = bouncing_ball.corrected(model)
+    start = {"amplitude": 1.21979, "phase": -2.9230134388176703, "velocity": -6.3303630330352965}
+    found = bouncing_ball.follow(bouncing_ball.orbit_of_motion(ball, **start), points=100)
+    assert found.sizes["point"] < 100 and "step too small" in str(found.end_reason[1].values)
+    assert found.residual.max() < 1e-12
+
+
+def test_a_contact_that_resumes_is_followed_until_the_ball_no_longer_rises():
+    case = FOUND[-2]
+    state = of_impact(found_family(case), *case[-2:], case[1], "frequency_ratio")
+    assert state.orbits.resuming.tolist() == [False, True]
+    found = follow(state, 20.0)
+    end = found.first(Special.GRAZING_IMPACT)
+    assert abs(end.velocity[1]) < 1e-12 and end.defect() < 1e-12
+    states = list(found)[:-1]
+    assert all(each.velocity[1] > 0 and each.is_admissible() for each in states)
+    # A start on such a contact gives the same orbit.
+    phase = state.phase[1]
+    lam = state.orbits.family.values["amplitude"]
+    risen = state.velocity[1] + lam * np.cos(phase)
+    other = of_impact(state.orbits.family, phase, risen, 2, "frequency_ratio")
+    assert np.abs(other.velocity[::-1] - state.velocity).max() < 1e-12
+
+
 def passes_through(found, state):
     """Whether a branch has a solution that is the state to rounding.
 

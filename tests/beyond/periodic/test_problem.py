@@ -28,7 +28,7 @@ def found_orbit(case, along="amplitude"):
     return state
 
 
-@pytest.fixture(params=FOUND, ids=lambda case: f"{case[0]}-{case[1]}")
+@pytest.fixture(params=FOUND, ids=lambda case: f"{case[0]}-{case[1]}-{case[2]}")
 def case(request):
     return request.param
 

@@ -27,7 +27,6 @@ from bouncing_ball.beyond.periodic.special import (
     Special,
     flight_margin,
     impact_margin,
-    sticking_margin,
 )
 from bouncing_ball.errors import NoOrbitError, ParameterError
 from bouncing_ball.numerics.continuation import (
@@ -49,7 +48,6 @@ _BY_DIFFERENCES = NewtonSettings(tolerance=1e-9, max_iterations=20)
 _MARGINS = {
     Special.GRAZING_FLIGHT: flight_margin,
     Special.GRAZING_IMPACT: impact_margin,
-    Special.STICKING: sticking_margin,
 }
 
 

@@ -343,7 +343,7 @@ def _up_to_halving(orbits: PeriodicOrbits, branch: Branch) -> Branch | None:
     turns = orbits.turns[:k].copy()
     # The turn ends at the first impact of the first turn in place of the second.
     turns[-1] += round(float(phase[k] - phase[0]) / (2 * np.pi))
-    half = replace(orbits, impacts=k, turns=turns)
+    half = replace(orbits, impacts=k, turns=turns, resumes=orbits.resuming[:k])
     rows = (turned, velocity, orbits.durations(last))
     means = (row.reshape(2, k).mean(axis=0) for row in rows)
     guess = half.point(*means, **orbits.values(last))

@@ -24,9 +24,9 @@ class Legs(NamedTuple):
 
     ``residual`` are the two sides of Eq. 2 of :mod:`bouncing_ball.beyond.periodic.problem`, shape
     (..., k, 2), and ``duration`` the durations of the contacts. ``tangent`` is DP. ``near`` is the
-    same matrix as if the ball were on the level of the table at the phase θ_{i+1}, and ``velocity``
-    and ``acceleration`` are δ′ and δ″ there. ``impact``, ``departure`` and ``passed``, the time of
-    the leg, are flat.
+    same matrix as if the contact began at the phase θ_{i+1}, and ``velocity`` and ``acceleration``
+    are y′ and δ″ there, with y = δ, or δ + κ δ′ where a contact resumes. ``impact``, ``departure``
+    and ``passed``, the time of the leg, are flat.
     """
 
     residual: np.ndarray
@@ -61,7 +61,7 @@ class Landing(NamedTuple):
 
     ``after`` are the impacts, ``passed`` the times from impact to impact, and ``late`` those by
     which the impacts are late on the section. ``near`` and ``passed_near`` are the impacts as if
-    the balls were on the level of the table at the given times, and their times.
+    the contacts began at the given times, and their times.
     """
 
     after: Impact
@@ -77,8 +77,10 @@ def landed(
     departure: Departure,
     duration: np.ndarray,
     interval: np.ndarray,
+    lag: np.ndarray,
 ) -> Landing:
-    """The landings near the time ``interval`` after the first impacts.
+    """The landings, where δ + κ δ′ = 0 with κ = ``lag``, near the time ``interval`` after the first
+    impacts.
 
     In the corrected model the section is some time after the landing, which is found in a few
     rounds; in other models the first round is enough.
@@ -91,16 +93,31 @@ def landed(
         gap, rate, acceleration, _ = departure.flight.gap(time)
         # One step of Newton's method. If the ball lands slowly, it may be far too long, and yet it
         # is the one with which the height is exactly δ′ t.
-        later = -gap / rate
+        later = -(gap + lag * rate) / (rate + lag * acceleration)
         landing = Zero(time + later, -(rate + later * acceleration), none, none)
-        after, passed = dynamics.arrive(departure, landing)
+        landed, passed = dynamics.arrive(departure, landing)
+        after = without_force(landed, lag)
         whole = passed + time_to_section(dynamics, after) - before
         last = to_section
         to_section = whole - duration - landing.time
         if not np.any(np.abs(to_section - last) > _SETTLED * interval):
             break
-    near, passed_near = dynamics.arrive(departure, Zero(time, -rate, none, none))
-    return Landing(after, passed, whole - interval, near, passed_near)
+    there, passed_near = dynamics.arrive(departure, Zero(time, -rate, none, none))
+    return Landing(after, passed, whole - interval, without_force(there, lag), passed_near)
+
+
+def lag_of(dynamics: Dynamics, resumes: np.ndarray) -> np.ndarray:
+    """κ of the contacts that resume below the level of the table, and 0 for others."""
+    if dynamics.contact is None or not resumes.any():
+        return np.zeros(resumes.shape)
+    return np.where(resumes, dynamics.contact.lag, 0.0)
+
+
+def without_force(impact: Impact, lag: np.ndarray) -> Impact:
+    """The impacts at δ = -κ δ′, where the force of the contact is zero; at δ = 0 for κ = 0."""
+    if not lag.any():
+        return impact
+    return impact._replace(displacement=-lag * impact.velocity)
 
 
 def time_to_section(dynamics: Dynamics, impact: Impact) -> np.ndarray:

@@ -18,6 +18,9 @@ smooth where v_{i+1} vanishes, whereas t is not. Because δ′ t must be this he
 Newton's method has converged, the factor δ′ and the matrix in the Jacobian are those at the phase
 θ_{i+1}. Those of the monodromy are at the landing, so that they depend on θ_i and v_i alone.
 
+After a release by force a contact may resume below the level of the table, with δ + κ δ′ = 0 and
+δ′ > 0. Its state is also (θ, δ′), and in Eq. 2 the factor δ′ of t becomes δ′ + κ δ″.
+
 If a model can continue its contacts beyond their first release (:meth:`.Dynamics.depart_after`),
 the duration D_i of each contact is a further unknown. It selects the release near D_i, and nothing
 else depends on it: its equation is that D_i is the duration of the contact. The equations of such a
@@ -39,7 +42,7 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball.beyond.periodic.family import Family, known
-from bouncing_ball.beyond.periodic.legs import Legs, landed, no_legs
+from bouncing_ball.beyond.periodic.legs import Legs, lag_of, landed, no_legs, without_force
 from bouncing_ball.beyond.periodic.products import matrices_of, product_of, shifted_determinant
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.motion.deviations import Jacobian
@@ -50,6 +53,10 @@ from bouncing_ball.paper.orbits.stability import Bifurcation
 
 # Step of the central differences, near the optimum ε^(1/3).
 _DIFFERENCE = 6e-6
+# Where the second difference of a side of Eq. 2 is larger than this and than half of the first one,
+# the side has no derivative but a jump. At an end of a range both differences are equal, and
+# smaller. A jump that is not noticed spoils a solution by 1e-7 of its size.
+_JUMP = 1e-3
 # Number of points at which the legs are known at the same time.
 _KEPT = 8
 
@@ -78,6 +85,8 @@ class PeriodicOrbits:
     unit : float or array
         The scale of each unknown, which broadcasts to y: the steps of the central differences are
         proportional to it. The solutions do not depend on it.
+    resumes : array of bool
+        Which contacts resume below the level of the table, shape (k,); by default none.
     """
 
     family: Family
@@ -86,6 +95,12 @@ class PeriodicOrbits:
     along: tuple[str, ...]
     selects: bool = False
     unit: Any = 1.0
+    resumes: Any = False
+
+    @property
+    def resuming(self) -> np.ndarray:
+        """Which contacts resume, shape (k,)."""
+        return np.broadcast_to(self.resumes, (self.impacts,))
 
     @property
     def periods(self) -> Any:
@@ -155,7 +170,9 @@ class PeriodicOrbits:
     def impact(self, dynamics: Dynamics, y: np.ndarray) -> Impact:
         """The impacts of the orbits in a row."""
         phase, velocity = self.states(y)
-        return dynamics.at_section(reduce_angle(phase.ravel()), velocity.ravel().copy())
+        start = dynamics.at_section(reduce_angle(phase.ravel()), velocity.ravel().copy())
+        resumes = np.broadcast_to(self.resuming, phase.shape).ravel()
+        return without_force(start, lag_of(dynamics, resumes))
 
     def intervals(self, y: np.ndarray) -> np.ndarray:
         """θ_{i+1} - θ_i, shape (..., k)."""
@@ -173,13 +190,16 @@ class PeriodicOrbits:
         departure = dynamics.depart_after(impact, self.durations(y).ravel())
         bouncing = inside & (departure.status == Status.BOUNCING)
         duration = np.where(bouncing, departure.duration, np.nan)
-        landing = landed(dynamics, impact, departure, duration, interval)
+        resumes = np.broadcast_to(np.roll(self.resuming, -1), shape).ravel()
+        lag = lag_of(dynamics, resumes)
+        landing = landed(dynamics, impact, departure, duration, interval, lag)
         _, end_velocity = dynamics.section(landing.near)
         _, landing_velocity = dynamics.section(landing.after)
         next_phase = np.roll(phase, -1, axis=-1).ravel()
         acceleration = table(reduce_angle(next_phase), dynamics.amplitude)[1] - 1
         too_fast = landing_velocity - np.roll(velocity, -1, axis=-1).ravel()
-        height = end_velocity * landing.late
+        speed = end_velocity + lag * acceleration
+        height = speed * landing.late
         residual = np.stack([height, too_fast - acceleration * landing.late], axis=-1)
         tangent = dynamics.jacobian(impact, departure, landing.after, landing.passed)
         near = dynamics.jacobian(impact, departure, landing.near, landing.passed_near)
@@ -188,7 +208,7 @@ class PeriodicOrbits:
             duration=duration.reshape(shape),
             tangent=Jacobian(*(entry.reshape(shape) for entry in tangent)),
             near=Jacobian(*(entry.reshape(shape) for entry in near)),
-            velocity=end_velocity.reshape(shape),
+            velocity=speed.reshape(shape),
             acceleration=acceleration.reshape(shape),
             impact=impact,
             departure=departure,
@@ -256,7 +276,9 @@ class PeriodicOrbits:
         matrix[..., rate, 2 * after + 1] -= 1
         for j, length in enumerate(self._lengths(y)):
             change = legs.residual[1 + 2 * j] - legs.residual[2 + 2 * j]
-            slope = change.reshape(*y.shape[:-1], -1) / length
+            bend = legs.residual[1 + 2 * j] + legs.residual[2 + 2 * j] - 2 * legs.residual[0]
+            jumps = (np.abs(bend) > _JUMP) & (np.abs(bend) > np.abs(change) / 2)
+            slope = np.where(jumps, np.nan, change).reshape(*y.shape[:-1], -1) / length
             matrix[..., : 2 * k, self.equations + j] = slope
         if self.selects:
             self._fill_durations(matrix, legs, y)
@@ -339,7 +361,8 @@ def twice(orbits: PeriodicOrbits, y: np.ndarray) -> tuple[PeriodicOrbits, np.nda
     phase, velocity = orbits.states(y)
     duration = orbits.durations(y)
     turns = np.concatenate([orbits.turns, orbits.turns], axis=-1)
-    whole = replace(orbits, impacts=2 * orbits.impacts, turns=turns)
+    resumes = np.tile(orbits.resuming, 2)
+    whole = replace(orbits, impacts=2 * orbits.impacts, turns=turns, resumes=resumes)
     phases = np.concatenate([phase, phase], axis=-1)
     velocities = np.concatenate([velocity, velocity], axis=-1)
     durations = np.concatenate([duration, duration], axis=-1)

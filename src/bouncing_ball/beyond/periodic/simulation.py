@@ -5,10 +5,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from bouncing_ball.beyond.periodic.family import Family
-from bouncing_ball.beyond.periodic.legs import time_to_section
+from bouncing_ball.beyond.periodic.legs import lag_of, time_to_section, without_force
 from bouncing_ball.beyond.periodic.problem import PeriodicOrbits
+from bouncing_ball.beyond.periodic.special import sticking
+from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.paper.motion.dynamics import Dynamics
 from bouncing_ball.paper.motion.sequence import Status
 
 # Relative to its length, a leg of the simulation differs from that of the orbit by less than this
@@ -21,26 +24,33 @@ def simulated(
 ) -> tuple[PeriodicOrbits, np.ndarray]:
     """The problem and the guess y of an orbit with k impacts near a simulated impact.
 
-    ``phase`` and ``velocity`` are those of an impact on the section. The number of periods is the
-    whole number nearest to the time of k legs.
+    ``phase`` and ``velocity`` are those of an impact on the section; with a positive velocity the
+    contact resumes. The number of periods is the whole number nearest to the time of k legs.
 
     Raises
     ------
     ModelError
         If the parameters are outside their ranges.
+    NoOrbitError
+        If a contact resumes, and its law has no fixed κ.
     """
     dynamics = family.dynamics({})
     dynamics, start, _ = dynamics.in_a_row([phase], [velocity])
     impact = dynamics.at_section(*start)
+    if velocity > 0:
+        _check_resumption(dynamics)
+        impact = without_force(impact, lag_of(dynamics, np.array([True])))
     phases = [float(reduce_angle(start[0])[0])]
     turns = []
     velocities = []
     durations = []
+    resumes = []
     for _ in range(impacts):
         departure = dynamics.depart(impact)
         after, passed = dynamics.fly(departure)
         velocities.append(float(dynamics.section(impact)[1][0]))
         durations.append(float(departure.duration[0]))
+        resumes.append(bool(impact.displacement[0] < 0))
         later = passed + time_to_section(dynamics, after) - time_to_section(dynamics, impact)
         last = phases[-1] + float(later[0])
         phases.append(float(reduce_angle(np.array(last))))
@@ -48,11 +58,28 @@ def simulated(
         impact = after
     # The last phase is replaced by the first one.
     turns[-1] += round((phases[-1] - phases[0]) / (2 * np.pi))
+    if any(resumes):
+        _check_resumption(dynamics)
     selects = dynamics.continues and max(durations) > 0
-    problem = PeriodicOrbits(family, impacts, np.array(turns), tuple(along), selects)
+    problem = PeriodicOrbits(
+        family=family,
+        impacts=impacts,
+        turns=np.array(turns),
+        along=tuple(along),
+        selects=selects,
+        resumes=np.array(resumes),
+    )
     values = {name: family.values[name] for name in along}
     rows = (np.array(row) for row in (phases[:-1], velocities, durations))
     return problem, problem.point(*rows, **values)
+
+
+def _check_resumption(dynamics: Dynamics) -> None:
+    if dynamics.contact is None or dynamics.contact.lag is None:
+        raise NoOrbitError(
+            "in this orbit a contact resumes below the level of the table while the ball rises, "
+            "and for its law no equations are defined for such a start"
+        )
 
 
 def is_admissible(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
@@ -66,7 +93,8 @@ def is_admissible(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
         return np.zeros(y.shape[:-1], dtype=bool)
     _, velocity = orbits.states(y)
     same = np.zeros(inside.shape, dtype=bool)
-    possible = np.flatnonzero(inside & (velocity.ravel() < 0) & np.isfinite(velocity.ravel()))
+    closing = np.where(orbits.resuming, -velocity, velocity).ravel()
+    possible = np.flatnonzero(inside & (closing < 0) & np.isfinite(closing))
     if not possible.size:
         return np.all(same.reshape(shape), axis=-1)
     part = dynamics.take(possible)
@@ -85,6 +113,7 @@ def is_admissible(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
     interval = orbits.intervals(y).ravel()[possible]
     late = passed + time_to_section(part, after) - time_to_section(part, impact) - interval
     longer = departure.duration - expected if orbits.selects else np.zeros_like(late)
-    at_level = after.displacement >= 0
-    same[possible] = at_level & (np.maximum(np.abs(late), np.abs(longer)) < _SAME * interval)
-    return np.all(same.reshape(shape), axis=-1)
+    resumes = np.broadcast_to(np.roll(orbits.resuming, -1), shape).ravel()[possible]
+    alike = (after.displacement < 0) == resumes
+    same[possible] = alike & (np.maximum(np.abs(late), np.abs(longer)) < _SAME * interval)
+    return np.all(same.reshape(shape), axis=-1) & (sticking(orbits, y) > 0)

@@ -1,7 +1,7 @@
 r"""Special orbits on a branch: where the orbit changes its stability, or meets another contact.
 
-Each event is a zero of a smooth function along the branch, which is located together with the
-equations of the orbit, to the accuracy of Newton's method:
+Each event except the last is a zero of a smooth function along the branch, which is located
+together with the equations of the orbit, to the accuracy of Newton's method:
 
 * a saddle-node and a period doubling, where a multiplier is 1 or -1;
 * the grazing of a flight: the ball touches the table in flight, at a local minimum of the height δ;
@@ -9,13 +9,14 @@ equations of the orbit, to the accuracy of Newton's method:
 * the grazing of a release: within a contact the release function y = δ + κ δ′ touches 0, at a local
   maximum, so that the contact opens there;
 * the end of sticking in the restitution model: the ball comes to rest just when the table leaves it
-  behind, so that it would no longer stick.
+  behind, so that it would no longer stick. It is bisected along the branch to the last digit.
 
 A minimum of δ in flight is unique in each interval in which Λ sin τ > 1, because δ″ = Λ sin τ - 1
 is positive there and nowhere else. All minima are therefore found.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from enum import StrEnum
 
 import numpy as np
@@ -114,23 +115,29 @@ def _bottom(flight: Flight, left: np.ndarray, right: np.ndarray) -> np.ndarray:
 
 
 def impact_margin(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
-    """The smallest closing speed -v of the impacts of each orbit, of the leading shape of y."""
+    """The smallest speed of the impacts of each orbit, -v, or v where a contact resumes while the
+    ball rises; of the leading shape of y.
+    """
     _, velocity = orbits.states(y)
-    return -velocity.max(axis=-1)
+    return np.where(orbits.resuming, velocity, -velocity).min(axis=-1)
 
 
-def sticking_margin(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
-    """The shortest rest on the table of each orbit, 1 without rests; of the leading shape of y."""
+def sticking(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
+    """1 for orbits whose balls come to rest wherever the equations say so, also for those without a
+    rest, and -1 for others; of the leading shape of y.
+
+    Next to the end of sticking the rest vanishes as a power of the distance with an exponent that
+    is no whole number, and infinitely many bounces precede it. No function of the state is smooth
+    there, whereas the equations of the orbit are, because the lift-off depends on Λ alone.
+    """
     legs = orbits.legs(y)
-    departure = legs.departure
-    if departure is None:
-        return np.full(y.shape[:-1], np.nan)
-    rest = np.full(legs.passed.shape, _FAR)
-    dynamics, _ = orbits.dynamics(y)
-    if dynamics is not None and dynamics.forgets and departure.sticks is not None:
-        waited = departure.duration - departure.settling
-        rest = np.where(departure.sticks, waited, rest)
-    return rest.reshape(legs.duration.shape).min(axis=-1)
+    dynamics, inside = orbits.dynamics(y)
+    if dynamics is None:
+        return np.ones(y.shape[:-1])
+    rests = np.flatnonzero(inside & (orbits.durations(y).ravel() > 0))
+    settles = np.ones(inside.shape, dtype=bool)
+    settles[rests] = dynamics.take(rests).settles(pick(legs.impact, rests))
+    return np.where(settles.reshape(legs.duration.shape).all(axis=-1), 1.0, -1.0)
 
 
 def loss_of_release(orbits: PeriodicOrbits) -> Event:
@@ -194,7 +201,7 @@ def events(orbits: PeriodicOrbits) -> Sequence[Event]:
             condition=lambda y: release_condition(orbits, y),
         ),
         end(Special.GRAZING_IMPACT, impact_margin),
-        end(Special.STICKING, sticking_margin),
+        replace(end(Special.STICKING, sticking), is_sign=True),
     )
 
 

@@ -139,12 +139,8 @@ def of_impact(family: Family, phase: float, velocity: float, impacts: int, along
         If there is no such orbit.
     """
     dynamics = family.dynamics({})
-    if velocity > float(table(np.asarray(phase), dynamics.amplitude)[0]):
-        raise NoOrbitError(
-            "in this orbit a contact resumes below the level of the table while the ball rises, "
-            "and no equations are defined for such a start"
-        )
-    row, start, relative, _ = dynamics.first_impacts([phase], [velocity])
-    section = row.section(row.start(start, relative))
+    relative = velocity - float(table(np.asarray(phase), dynamics.amplitude)[0])
+    row, (start, before), _ = dynamics.in_a_row([phase], [relative])
+    section = row.section(row.start(start, before))
     guess = simulated(family, float(section[0][0]), float(section[1][0]), impacts, (along,))
     return corrected(State(*guess))

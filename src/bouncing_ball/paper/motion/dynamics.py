@@ -138,6 +138,12 @@ class Dynamics(Batch, ABC):
         """
         return self.depart(impact, differentiate=True)
 
+    def settles(self, impact: Impact) -> np.ndarray:
+        """Whether a contact that :meth:`depart_after` ends at a given duration can begin with these
+        impacts; always, unless bounces must first end before the next lift-off.
+        """
+        return np.ones(impact.phase.shape, dtype=bool)
+
     def fly(self, departure: Departure) -> tuple[Impact, np.ndarray]:
         """The next impact of balls that leave, and the time from the last impact to it.
 

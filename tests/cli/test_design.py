@@ -1,7 +1,6 @@
 """``bouncing-ball design``: keys, texts, exit statuses, and the page to print."""
 
 import json
-import time
 
 import numpy as np
 import pytest
@@ -11,7 +10,6 @@ from bouncing_ball import design
 from bouncing_ball.beyond.calculator.page_data import page
 from bouncing_ball.beyond.calculator.page_figures import draw
 from bouncing_ball.beyond.calculator.rows import document
-from bouncing_ball.cli import design as calculator
 from bouncing_ball.drawing.labels import QUANTITIES
 from bouncing_ball.paper.comparison.errors import Quantity
 
@@ -233,17 +231,3 @@ def test_the_text_says_which_model_has_no_orbit(said):
     assert height.split("greatest height")[1].split() == "no orbit no orbit +0.042 %".split()
     faint = said(*STIFF, "--acceleration", "0.1 g")
     assert "no orbit (contact)" in faint
-
-
-@pytest.mark.parametrize("terminal", [True, False])
-def test_an_answer_that_takes_long_says_on_a_terminal_what_is_faster(terminal, capsys, monkeypatch):
-    monkeypatch.setattr(calculator, "_PATIENCE", 0.01)
-    monkeypatch.setattr("sys.stderr.isatty", lambda: terminal, raising=False)
-    with calculator._patience():
-        time.sleep(0.3)
-    assert ("a single family (--n)" in capsys.readouterr().err) is terminal
-    # An answer that takes less says nothing.
-    monkeypatch.setattr(calculator, "_PATIENCE", 60.0)
-    with calculator._patience():
-        pass
-    assert capsys.readouterr().err == ""

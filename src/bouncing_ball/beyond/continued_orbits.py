@@ -177,14 +177,20 @@ def orbit_at(model: Any, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Any:
     on_side = test > 0 if side is Side.STABLE else test < 0
     if np.all(on_side):
         return found
+    # The saddle-nodes of a single model, whose families have several Λ here.
+    folds: dict[int, Any] = {}
     for k in np.flatnonzero(~np.broadcast_to(on_side, shape).reshape(-1) & np.isfinite(lam)):
-        y[k] = _on_branch(search.model.take(k), int(search.n[k]), float(lam[k]), side)
+        one = search.model.take(k)
+        index = int(search.n[k])
+        if model.shape or index not in folds:
+            folds[index] = one.saddle_node(index)
+        y[k] = _on_branch(one, folds[index], float(lam[k]), side)
     return _shaped(model, n, y, shape)
 
 
-def _on_branch(model: Any, n: int, amplitude: float, side: Side) -> np.ndarray | float:
+def _on_branch(model: Any, fold: Any, amplitude: float, side: Side) -> np.ndarray | float:
     """The point at Λ on one side of the fold, on the part of the branch next to it, or NaN."""
-    fold = model.saddle_node(n)
+    n = int(fold.n)
     if not amplitude >= float(fold.amplitude):
         return np.nan
     y = _beside_fold(model.system(n), model.system(n).point(fold), amplitude, side)

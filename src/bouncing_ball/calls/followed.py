@@ -41,6 +41,7 @@ from bouncing_ball.paper.contact.damping import Release, damping_ratio, restitut
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits import observables, stability
 from bouncing_ball.paper.orbits.model import ImpactModel
+from bouncing_ball.patience import patience
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -212,7 +213,8 @@ def orbit_of_motion(
     before = checked_number("velocity", velocity, STATE)
     most = checked_number("impacts", impacts, FOLLOWED)
     family = family_of(a_single_ball(a_ball(ball)).model, lam)
-    return switching.of_motion(family, phi, before, LAMBDA, most)
+    with patience("fewer impacts"):
+        return switching.of_motion(family, phi, before, LAMBDA, most)
 
 
 def follow(
@@ -266,8 +268,9 @@ def follow(
     start = _state(orbit, along)
     most = checked_number("points", points, POINTS)
     value = None if to is None else checked_number("to", to, _within(start, along))
-    found = following.follow(start, value, most=most)
-    data = _columns(found, found.special, along)
+    with patience("a nearer value of to or fewer points"):
+        found = following.follow(start, value, most=most)
+        data = _columns(found, found.special, along)
     branch = FollowedBranch(data.data_vars, data.coords, _attributes(found.orbits))
     branch._followed = found
     return branch
@@ -302,7 +305,8 @@ def switch(orbit: State) -> State:
     """
     if not isinstance(orbit, State):
         raise ParameterError("switch needs an orbit of a branch, not {}", type(orbit).__name__)
-    return switching.switch(orbit)
+    with patience(""):
+        return switching.switch(orbit)
 
 
 def curve(
@@ -362,15 +366,16 @@ def curve(
         raise ParameterError("{across} must be another parameter than that of the branch")
     name = chosen("kind", kind, [str(each) for each in Special])
     most = checked_number("points", points, POINTS)
-    found = curves.curve(
-        orbit,
-        Special(name),
-        across,
-        along_window=_window("along_range", along_range),
-        across_window=_window("across_range", across_range),
-        most=most,
-    )
-    data = _columns(found, found.special, *found.orbits.along)
+    with patience("narrower ranges or fewer points"):
+        found = curves.curve(
+            orbit,
+            Special(name),
+            across,
+            along_window=_window("along_range", along_range),
+            across_window=_window("across_range", across_range),
+            most=most,
+        )
+        data = _columns(found, found.special, *found.orbits.along)
     attributes = _attributes(found.orbits) | {"curve_kind": name}
     result = SpecialCurve(data.data_vars, data.coords, attributes)
     result._curve = found

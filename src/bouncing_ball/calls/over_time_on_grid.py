@@ -196,6 +196,12 @@ def _followed(model: ImpactModel, starts: _Starts, time: np.ndarray) -> dict[str
     """
     sequence = _until(model, starts, time[:, -1])
     balls = [of_one_ball(sequence[k], each) for k, each in enumerate(time)]
+    for one in balls:
+        if np.any(one.touching & np.isnan(one.height)):
+            raise ModelError(
+                "a ball stays on its contact for longer than its motion is followed: use fewer "
+                "periods, or a contact of more damping or less stiffness"
+            )
     return {
         "ball": np.array([one.height for one in balls]),
         "ball_velocity": np.array([one.velocity for one in balls]),

@@ -30,6 +30,7 @@ from bouncing_ball.errors import ParameterError
 from bouncing_ball.paper.comparison.errors import Quantity
 from bouncing_ball.paper.contact.damping import Release, damping_ratio
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
+from bouncing_ball.patience import patience
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -111,7 +112,9 @@ def error_thresholds(
     rule = Release.of(chosen("release", release, [str(each) for each in Release]))
     asked = _names(quantities)
     grid = Grid(n=family, amplitude=lam, tolerance=level, **ball.parameters)
-    return grid.unfold(_on_grid(grid, asked, rule), Thresholds)
+    with patience("fewer balls or fewer quantities"):
+        found = _on_grid(grid, asked, rule)
+    return grid.unfold(found, Thresholds)
 
 
 def _on_grid(grid: Grid, quantities: list[str], release: Release) -> xr.Dataset:

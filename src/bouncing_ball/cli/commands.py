@@ -40,7 +40,8 @@ class Command:
     """A subcommand.
 
     ``examples`` are without the name of the program. ``program`` imports what the subcommand
-    needs, because the list of subcommands needs no numpy.
+    needs, because the list of subcommands needs no numpy. ``cheaper`` is what makes an answer
+    cheaper that no public function computes.
     """
 
     purpose: str
@@ -48,6 +49,7 @@ class Command:
     examples: tuple[str, ...]
     program: Callable[[], Program]
     has_symbols: bool = True
+    cheaper: str = ""
 
     def explanation(self) -> str:
         """The end of the help of the subcommand: explanation, symbols and examples."""
@@ -240,6 +242,7 @@ COMMANDS = {
             "simulate --amplitude 0 --restitution 0.5 --velocity -4 --impacts 5",
         ),
         program=_simulate,
+        cheaper="fewer impacts",
     ),
     "motion": Command(
         purpose="the motion on which a ball ends",

@@ -1,10 +1,7 @@
 """``bouncing-ball design``: the calculator's answer, as JSON or as text."""
 
-import sys
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from pathlib import Path
-from threading import Timer
 from typing import Any, NamedTuple
 
 from bouncing_ball.beyond.calculator import design as calculator
@@ -20,8 +17,6 @@ from bouncing_ball.paper.comparison.errors import OF_IMPACTS, OF_ORBITS, QUANTIT
 from bouncing_ball.paper.comparison.thresholds import ThresholdStatus
 
 _SIMPLE = "error law", "corrected"
-# Seconds after which a user is told that the answer takes longer.
-_PATIENCE = 8.0
 # The row that an engine's time step takes the place of.
 _STEP = "largest time step"
 # What has a default, and is said in the answer.
@@ -60,35 +55,13 @@ def design(*, plot: Path | None, all_families: bool, **given: Any) -> Answer:
         If the page has another name or cannot be written.
     """
     require_writable(plot, PICTURES)
-    with _patience():
-        found = calculator.design(**given)
+    found = calculator.design(**given)
     if plot is not None:
         if isinstance(found, LoneContact):
             raise ParameterError("{plot} needs a table, such as {frequency} and {acceleration}")
         _draw(found, plot)
     whole = all_families or given.get("n") is not None
     return Answer(found, given | calculator.in_si(given), whole)
-
-
-@contextmanager
-def _patience() -> Iterator[None]:
-    """If the answer takes long, say so on a terminal, and what would make it faster."""
-    slow = Timer(_PATIENCE, _say_slow)
-    slow.daemon = True
-    slow.start()
-    try:
-        yield
-    finally:
-        slow.cancel()
-
-
-def _say_slow() -> None:
-    if sys.stderr.isatty():
-        print(
-            "bouncing-ball: the motion of the ball is still being followed; a single family "
-            f"({option('n')}) and a spring and a damper in place of a law are faster",
-            file=sys.stderr,
-        )
 
 
 def _draw(found: Design, path: Path) -> None:

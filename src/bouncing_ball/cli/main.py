@@ -8,6 +8,10 @@ from bouncing_ball.cli.commands import COMMANDS, Program
 from bouncing_ball.cli.options import Parser, option
 from bouncing_ball.cli.output import fail, say
 from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError, extra
+from bouncing_ball.patience import patience
+
+INTERRUPTED = 130
+"""The exit status after Ctrl-C: 128 and the number of the signal."""
 
 
 def _program(command: str) -> Program:
@@ -40,11 +44,19 @@ def parser(arguments: list[str]) -> Parser:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Answer one subcommand; exit with 1 if there is no answer, and with 2 on a mistake.
+    """Answer one subcommand; exit with 1 if there is no answer, with 2 on a mistake, and with 130
+    if it is interrupted.
 
     For ``diff`` see :mod:`bouncing_ball.cli.diff`.
     """
-    arguments = sys.argv[1:] if arguments is None else arguments
+    try:
+        _answer(sys.argv[1:] if arguments is None else arguments)
+    except KeyboardInterrupt:
+        fail("interrupted", status=INTERRUPTED)
+
+
+def _answer(arguments: list[str]) -> None:
+    """Answer one subcommand."""
     top = parser(arguments)
     given = vars(top.parse_args(arguments))
     command = given.pop("command")
@@ -55,7 +67,7 @@ def main(arguments: list[str] | None = None) -> None:
     import numpy as np
 
     try:
-        with np.errstate(all="ignore"):
+        with np.errstate(all="ignore"), patience(COMMANDS[command].cheaper):
             answer = program.answer(**given)
             if as_json:
                 text = json.dumps(program.document(answer), allow_nan=False)

@@ -5,8 +5,9 @@ import pytest
 
 from bouncing_ball.beyond.laws import march as chapter
 from bouncing_ball.beyond.laws.hertzian import HuntCrossley, KuwabaraKono, Tsuji
-from bouncing_ball.beyond.laws.march import march
+from bouncing_ball.beyond.laws.march import march, march_through
 from bouncing_ball.beyond.laws.panel import Start
+from bouncing_ball.beyond.laws.scales import rest
 
 LAWS = [KuwabaraKono(8.4e5, 0.021), KuwabaraKono(3e4, 0.1), HuntCrossley(1e5, 3.0), Tsuji(1e6, 0.5)]
 
@@ -45,3 +46,36 @@ def test_a_lying_ball_takes_fewer_panels(monkeypatch):
         lying(LAWS[0])
     long, short = panels
     assert long < short / 2
+
+
+@pytest.mark.parametrize("law", LAWS, ids=repr)
+def test_the_states_of_a_contact_are_those_of_a_ball_for_each_time(law):
+    start = Start(*(np.full(1, x) for x in (0.0, 0.01, -0.5, 1.3, 1.0)))
+    time = np.linspace(0.0, float(march(law, start, 2000).duration[0]), 42)[1:-1]
+    found = march_through(law, start, np.zeros(time.size, dtype=int), time, 2000)
+    alone = march(law, Start(*(np.repeat(x, time.size) for x in start)), 2000, time)
+    # Ten times the error of a panel, over the depth and the speed.
+    assert found.penetration == pytest.approx(alone.penetration, abs=1e-11 * rest(law))
+    assert found.rate == pytest.approx(alone.rate, abs=1e-11)
+
+
+def test_several_contacts_have_their_own_times():
+    law = LAWS[1]
+    zero = np.zeros(2)
+    speed = np.array([0.01, 0.5])
+    start = Start(zero, speed, np.array([-0.5, 1.0]), zero + 1.3, zero + 1)
+    contact = np.array([1, 0, 1, 0, 0])
+    time = np.array([0.001, 0.7, 0.002, 50.0, 0.1])
+    found = march_through(law, start, contact, time, 2000)
+    alone = march(law, Start(*(row[contact] for row in start)), 2000, time)
+    # No state is known after the release.
+    assert np.isnan(found.rate).tolist() == [False, False, False, True, False]
+    assert found.rate[:3] == pytest.approx(alone.rate[:3], abs=1e-11)
+
+
+@pytest.mark.parametrize("law", LAWS, ids=repr)
+def test_a_ball_at_rest_is_followed_for_long(law):
+    start = Start(*(np.full(1, x) for x in (0.0, 0.01, 0.0, 0.0, 1.0)))
+    found = march_through(law, start, np.zeros(1, dtype=int), np.full(1, 1e4), 400)
+    assert float(found.penetration[0]) == pytest.approx(rest(law), rel=1e-12)
+    assert abs(float(found.rate[0])) < 1e-12

@@ -6,7 +6,7 @@ from bouncing_ball.beyond.calculator.case import PhysicalCase, TableMotion
 from bouncing_ball.beyond.calculator.contact_data import case_of
 from bouncing_ball.beyond.calculator.engine_data import Ready, ready
 from bouncing_ball.beyond.calculator.families import families, finite, needed
-from bouncing_ball.beyond.calculator.given import Contact, Question, Table
+from bouncing_ball.beyond.calculator.given import CHEAPER, Contact, Question, Table
 from bouncing_ball.beyond.calculator.lone_contact import drop_remarks, require_short, slowed
 from bouncing_ball.beyond.calculator.motion import of_family
 from bouncing_ball.beyond.calculator.results import (
@@ -27,6 +27,7 @@ from bouncing_ball.beyond.calculator.verdict import (
 from bouncing_ball.errors import ModelError, NoOrbitError, require
 from bouncing_ball.paper.comparison.errors import OF_ORBITS
 from bouncing_ball.paper.contact.damping import Release
+from bouncing_ball.patience import patience
 
 STEPS = 50
 """Time steps in one contact, for the rule of the largest time step."""
@@ -68,7 +69,8 @@ def assess_contact(table: Table, contact: Contact, question: Question | None = N
     (1, True, 0.0122)
     """
     asked = question or Question()
-    return of_contact(table.motion, ready(contact), asked)
+    with patience(CHEAPER):
+        return of_contact(table.motion, ready(contact), asked)
 
 
 def of_contact(table: TableMotion, given: Ready, question: Question) -> Assessment:

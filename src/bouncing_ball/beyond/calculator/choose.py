@@ -16,7 +16,7 @@ from bouncing_ball.beyond.calculator.contact_data import (
 )
 from bouncing_ball.beyond.calculator.engine_data import Ready, ready
 from bouncing_ball.beyond.calculator.families import RATIOS, needed
-from bouncing_ball.beyond.calculator.given import Contact, Question, Table, given
+from bouncing_ball.beyond.calculator.given import CHEAPER, Contact, Question, Table, given
 from bouncing_ball.beyond.calculator.lone_contact import drop_remarks
 from bouncing_ball.beyond.calculator.results import Choice, Needed
 from bouncing_ball.beyond.calculator.units import percent
@@ -26,6 +26,7 @@ from bouncing_ball.paper.comparison.errors import OF_ORBITS, QUANTITIES, Quantit
 from bouncing_ball.paper.comparison.thresholds import ThresholdStatus
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
+from bouncing_ball.patience import patience
 
 # Largest number of times that the damping of a drop test is fitted to the stiffness chosen.
 _REFITS = 12
@@ -57,7 +58,8 @@ def choose_contact(table: Table, contact: Contact, question: Question | None = N
     >>> f"{found.stiffness:.4g} N/m, {found.contact_time:.3g} s", round(found.frequency_ratio, 2)
     ('1.36e+07 N/m, 0.000122 s', 83.0)
     """
-    return of_loss(table.motion, ready(contact), question or Question())
+    with patience(CHEAPER):
+        return of_loss(table.motion, ready(contact), question or Question())
 
 
 def of_loss(table: TableMotion, ready: Ready, question: Question) -> Choice:

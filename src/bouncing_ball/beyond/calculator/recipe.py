@@ -11,6 +11,7 @@ from bouncing_ball.beyond.calculator.assess import of_contact
 from bouncing_ball.beyond.calculator.contact_data import loss, require_pairs, rule_of, same_omega
 from bouncing_ball.beyond.calculator.engine_data import Ready, ready
 from bouncing_ball.beyond.calculator.given import (
+    CHEAPER,
     STANDARD_GRAVITY,
     Contact,
     Question,
@@ -25,6 +26,7 @@ from bouncing_ball.beyond.engines.engine import EngineSettings
 from bouncing_ball.beyond.engines.given_step import AtStep, stiffest_contact
 from bouncing_ball.beyond.engines.physical import Physical
 from bouncing_ball.errors import ParameterError
+from bouncing_ball.patience import patience
 
 # Largest number of times that the damping of a drop test is fitted to the stiffest contact.
 _REFITS = 12
@@ -74,11 +76,13 @@ def write_contact(
     >>> found.at_step.is_within, f"{found.at_step.stiffest:.3g} N/m"
     (False, '74.1 N/m')
     """
-    found = ready(contact, simulation.engine)
-    if table is None:
-        found = resolved(found, simulation, None)
-        return settings_of(lone_contact(found, None), simulation)
-    return settings_on_table(of_contact(table.motion, found, question or Question()), simulation)
+    with patience(CHEAPER):
+        found = ready(contact, simulation.engine)
+        if table is None:
+            found = resolved(found, simulation, None)
+            return settings_of(lone_contact(found, None), simulation)
+        answer = of_contact(table.motion, found, question or Question())
+        return settings_on_table(answer, simulation)
 
 
 def resolved(ready: Ready, simulation: Simulation, gravity: float | None) -> Ready:

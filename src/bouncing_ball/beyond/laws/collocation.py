@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.beyond.laws.force_law import ForceLaw
-from bouncing_ball.beyond.laws.march import MOST_PANELS, ContactEnds, march
+from bouncing_ball.beyond.laws.march import MOST_PANELS, ContactEnds, march, march_through
 from bouncing_ball.beyond.laws.panel import Start, part_of
 
 # A time counts as the end of the contact if less than this part of the contact remains.
@@ -28,7 +28,11 @@ def states(
     """
     inside = np.flatnonzero((time > 0) & (time < (1 - _END) * end[0]))
     laws, own = part_of(inside, law, start)
-    found = march(laws, own, MOST_PANELS, time[inside])
+    rows, contact = np.unique(np.array(own), axis=1, return_inverse=True)
+    if laws.shape or 2 * rows.shape[1] > inside.size:
+        found = march(laws, own, MOST_PANELS, time[inside])
+    else:
+        found = march_through(laws, Start(*rows), contact, time[inside], MOST_PANELS)
     depth = np.where(time > 0, end[1], start.depth)
     rate = np.where(time > 0, end[2], start.rate)
     depth[inside] = found.penetration

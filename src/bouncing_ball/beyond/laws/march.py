@@ -86,7 +86,11 @@ def _in_plain_time(
 ) -> Panel:
     m = law.root
     lever = lever_of(m, now.root)
-    now = now._replace(root=now.root**m, push=now.push / lever, step=now.step * lever)
+    step = now.step * lever
+    # In plain time, the length of a panel that ends at a given time is known.
+    if until is not None and linearised:
+        step = np.minimum(step, until - now.time)
+    now = now._replace(root=now.root**m, push=now.push / lever, step=step)
     panel = Sweeps(law, start, now, until, m=1, linearised=linearised).panel()
     root = np.maximum(panel.root, 0.0) ** (1 / m)
     then = lever_of(m, root[-1])
@@ -102,8 +106,11 @@ def _in_root(law: ForceLaw, start: Start, now: Balls, until: np.ndarray | None) 
 def _next(law: ForceLaw, start: Start, now: Balls, until: np.ndarray | None) -> Panel:
     """The next panels, each in plain time if that suffices and in s otherwise."""
     far = law.root * np.abs(now.rate) * now.step < _FAR * now.root
-    # Up to given times, the ends of long panels would take more sweeps than are saved.
-    lies = far & (now.time * now.speed > _SETTLING * now.length) & (until is None)
+    settling = _SETTLING * now.length
+    lies = far & (now.time * now.speed > settling)
+    # Next to a given time, Picard's sweeps suffice.
+    if until is not None:
+        lies &= (until - now.time) * now.speed > settling
     sides = [np.flatnonzero(far & ~lies), np.flatnonzero(lies), np.flatnonzero(~far)]
     panels = []
     for which, follow in zip(sides, (_in_time, _lying, _in_root), strict=True):
@@ -120,8 +127,10 @@ def _longest(m: int, now: Balls, panel: Panel) -> np.ndarray:
     root = panel.root[-1]
     rate = panel.rate[-1]
     time = np.maximum(LONGER * (panel.time[-1] - now.time), _DOWN * now.length / now.speed)
-    deeper = (root**m + rate * time) ** (1 / m)
-    return np.where(rate > 0, (deeper - root) / rate, np.inf)
+    sunk = (root**m + rate * time) ** (1 / m) - root
+    # A ball that hardly sinks any more, whose q changes by less than its rounding, has dq = dp/λ.
+    length = np.where(sunk > 0, sunk / rate, time / lever_of(m, root))
+    return np.where(rate > 0, length, np.inf)
 
 
 def _integrals(law: ForceLaw, start: Start, panel: Panel) -> np.ndarray:
@@ -185,19 +194,39 @@ class _March:
         self.contraction = np.full(size, np.nan)
         self.integrals = np.full((size, 2), 0.0 if integrate else np.nan)
         self.done = np.zeros(size, dtype=bool)
+        self.states: list[tuple[np.ndarray, Balls]] | None = None
 
-    def run(self, panels: int) -> None:
-        """Follow the contacts until all have ended, for at most this number of panels."""
-        active = np.flatnonzero(np.isfinite(self.start).all(axis=0))
+    def begin(self) -> None:
+        """Set the balls to the starts of their contacts."""
+        active = self._known()
         is_newton = self.law.root == 1 and not self.differentiate
         law, start = part_of(active, self.law, self.start)
         begin = _begin(law, start, nodes=self.count * (1 + is_newton))
         for row, value in zip(self.balls, begin, strict=True):
             row[active] = value
+
+    def record(self) -> None:
+        """From now on, keep the states of the balls at the ends of their panels."""
+        self.states = []
+        self._record(self._known())
+
+    def _known(self) -> np.ndarray:
+        return np.flatnonzero(np.isfinite(self.start).all(axis=0))
+
+    def _record(self, here: np.ndarray) -> None:
+        if self.states is not None:
+            self.states.append((here, Balls(*(row[here] for row in self.balls))))
+
+    def run(self, panels: int, enough: np.ndarray) -> None:
+        """Follow the contacts until all have ended or have reached the times ``enough``, for at
+        most this number of panels.
+        """
+        active = self._known()
         for _ in range(panels if active.size else 0):
             for here in np.array_split(active, -(-active.size // _BLOCK)):
                 self._advance(here)
             active = active[~self.done[active]]
+            active = active[self.balls.time[active] < enough[active]]
             if not active.size:
                 break
 
@@ -227,6 +256,7 @@ class _March:
         self.balls.push[here] = panel.final
         self.balls.side[here[panel.turned]] *= -1
         self.done[here] = panel.last
+        self._record(here)
         if self.integrate:
             self.integrals[here] += _integrals(law, start, panel)
         if self.differentiate and here.size:
@@ -267,6 +297,7 @@ def march(
     *,
     differentiate: bool = False,
     integrate: bool = False,
+    longest: float = np.inf,
 ) -> ContactEnds:
     """A row of contacts, from states with p ≥ 0 to the release.
 
@@ -285,6 +316,8 @@ def march(
         Whether derivatives are computed, for contacts that start at p = 0; otherwise they are NaN.
     integrate : bool
         Whether the integrals are computed, for a table with gravity (w = 1).
+    longest : float
+        The time after which contacts are not followed any further.
 
     Examples
     --------
@@ -299,5 +332,67 @@ def march(
     np.empty(_KEPT, dtype=np.int8)
     contacts = _March(law, start, until, differentiate, integrate)
     with np.errstate(all="ignore"):
-        contacts.run(panels)
+        if start.rate.size:
+            contacts.begin()
+        contacts.run(panels, enough=np.full(start.rate.size, longest))
     return contacts.ends()
+
+
+def march_through(
+    law: ForceLaw, start: Start, contact: np.ndarray, time: np.ndarray, panels: int
+) -> ContactEnds:
+    """The states at several times of each contact; NaN if it was not followed to the last of them.
+
+    Each contact is followed once, and each time is reached from the last panel before it.
+
+    Parameters
+    ----------
+    law : ForceLaw
+        One law.
+    start : Start
+        The states at the starts of the contacts.
+    contact, time : array
+        The index of a start, and a time after it and before the release.
+    panels : int
+        The largest number of panels that are tried for each contact.
+
+    Examples
+    --------
+    >>> from bouncing_ball.beyond.laws.linear import LinearLaw
+    >>> zero = np.zeros(1)
+    >>> start = Start(zero, np.full(1, np.pi), zero, zero, zero)
+    >>> which = np.zeros(2, dtype=int)
+    >>> found = march_through(LinearLaw(np.pi, 0.0), start, which, np.array([0.25, 0.5]), 99)
+    >>> (found.penetration**2).round(12).tolist()
+    [0.5, 1.0]
+    """
+    np.empty(_KEPT, dtype=np.int8)
+    contacts = _March(law, start, None, differentiate=False, integrate=False)
+    last = np.zeros(start.rate.size)
+    np.maximum.at(last, contact, time)
+    single = Start(*(row[contact] for row in start))
+    samples = _March(law, single, time, differentiate=False, integrate=False)
+    with np.errstate(all="ignore"):
+        contacts.begin()
+        contacts.record()
+        contacts.run(panels, enough=last)
+        for row, value in zip(samples.balls, _before(contacts, contact, time), strict=True):
+            row[:] = value
+        # A contact that ends before the time has no state there.
+        too_late = contacts.balls.time[contact] < time
+        lost = ~contacts.done & (contacts.balls.time < last)
+        samples.start.rate[too_late | lost[contact]] = np.nan
+        samples.run(panels, enough=time)
+    return samples.ends()
+
+
+def _before(contacts: _March, contact: np.ndarray, time: np.ndarray) -> Balls:
+    """The last recorded states of contacts at or before given times."""
+    which = np.concatenate([here for here, _ in contacts.states or []])
+    columns = zip(*(balls for _, balls in contacts.states or []), strict=True)
+    rows = Balls(*map(np.concatenate, columns))
+    # Complex numbers are ordered by their real parts first.
+    place = which + 1j * rows.time
+    order = np.argsort(place, kind="stable")
+    found = order[np.searchsorted(place[order], contact + 1j * time, side="right") - 1]
+    return Balls(*(row[found] for row in rows))

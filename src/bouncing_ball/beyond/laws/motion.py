@@ -9,7 +9,7 @@ that meets no force at p = 0, because the load pulls it, is followed in the same
 
 The motion in contact is computed by :func:`bouncing_ball.beyond.laws.march.march`; for an
 underdamped spring-damper it has a closed form (:mod:`bouncing_ball.paper.motion.linear_contact`).
-A contact without a release in two periods of the table, or in hundreds of oscillations, is
+A contact without a release in twenty periods of the table, or in hundreds of oscillations, is
 permanent if a steady contact at Λ does not release the ball, which is no proof, and undecided
 otherwise. Landings are proved to be the first for every law.
 """
@@ -42,6 +42,9 @@ from bouncing_ball.paper.motion.sequence import Status
 # the depth of the ball at rest, over g/Ω², from which on a contact has so few.
 _SOME_PANELS = 400
 _COMPLIANT = 1 / 400
+# The time after which a contact is not followed any further. A contact that oscillates for so long
+# has more panels than are tried, so that its ball lies on the table.
+_LASTING = 20 * 2 * np.pi
 # Number of samples of the grip of a slow ball, and of bisections for the time of its return.
 _SAMPLES = 65
 _BISECTIONS = 60
@@ -107,7 +110,7 @@ class ContactDynamics(ResumingDynamics):
         compliant = not self.law.shape and rest(self.law) > _COMPLIANT
         attempts = (_SOME_PANELS, MOST_PANELS) if compliant else (MOST_PANELS,)
         for panels in attempts:
-            end = march(self.law, start, panels, differentiate=differentiate)
+            end = march(self.law, start, panels, differentiate=differentiate, longest=_LASTING)
             lost = np.flatnonzero(np.isnan(end.duration) & ~free)
             held = [int(k) for k in lost if holds(self.law.take(k), float(start.amplitude[k]))]
             if len(held) == lost.size:

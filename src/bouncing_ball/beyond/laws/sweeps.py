@@ -84,6 +84,9 @@ _CHANGE = 1e-3
 # The longest panel of Newton's sweeps, in radians of the linearised oscillation without damping:
 # neighbouring nodes are then at most a fifth of an oscillation apart.
 _LONGEST = 3 * np.pi
+# The decay, in powers of e, after which the oscillation since the impact is lost in rounding, so
+# that the nodes need not resolve it; the spectrum still limits the panel.
+_CALM = -np.log(np.finfo(float).eps)
 # Smallest ratio of successive lengths and its safety factor; the greatest ratio after a rejected
 # panel.
 _SHORTER = 0.3
@@ -372,6 +375,16 @@ class Sweeps:
             held &= smooth if self.until is None else smooth | self.last
         return held
 
+    def _is_calm(self) -> np.ndarray:
+        """Whether the contact's oscillation has decayed since its start to rounding.
+
+        The slower root of s² + f_u s + f_p decides, with the slopes f_u and f_p of the force.
+        """
+        half = self.slopes.by_rate / 2
+        oscillates = self.slopes.by_penetration >= half * half
+        root = np.sqrt(np.maximum(half * half - self.slopes.by_penetration, 0.0))
+        return np.where(oscillates, half, half - root) * self.now.time > _CALM
+
     def _following(self, good: np.ndarray, turned: np.ndarray, error: np.ndarray) -> np.ndarray:
         """The lengths of the next panels, from the errors and the convergence of these."""
         kind = self.kind
@@ -381,6 +394,7 @@ class Sweeps:
         factor = np.clip(_SAFETY * ratio, _SHORTER, kind.longer)
         if self.is_newton:
             longest = _LONGEST / np.sqrt(np.abs(self.slopes.by_penetration))
+            longest = np.where(self._is_calm(), np.inf, longest)
             factor = np.where(turned, 1.0, np.fmin(factor, longest / self.step))
         # The length of a panel that ends at a kink is unrelated to that of the next panel.
         taken = np.where(turned, self.now.step, self.step)

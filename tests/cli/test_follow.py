@@ -39,13 +39,26 @@ def test_the_command_follows_a_curve_up_to_its_resonance(ask):
 
 
 @pytest.mark.parametrize(("options", "words"), [
-    (("--along", "stiffness"), "'stiffness' is not one of restitution, amplitude"),
+    (("--along", "stiffness"), "these orbits have no 'stiffness': one of restitution, amplitude"),
     (("--to", "-1"), "to = -1.0 is not a number in"),
 ])  # fmt: skip
 def test_a_mistake_is_one_line(refused, options, words):
     command = (*FOLLOW, *options)
     _, line = refused(*command)
     assert words.replace("to =", "--to =") in line
+
+
+@pytest.mark.parametrize(("window", "words"), [
+    (("--low", "0.6", "--high", "0.9"), "restitution starts at 0.5, which is not between --low"),
+    (("--low", "0.9", "--high", "0.1"), "restitution starts at 0.5, which is not between --low"),
+    (("--low", "0.4"), "--low and --high are needed together"),
+])  # fmt: skip
+def test_a_curve_starts_between_its_limits(refused, window, words):
+    kind = ("--kind", "period-doubling", "--across", "restitution")
+    command = ("curve", *FOLLOW[1:], *kind)
+    command += window
+    status, line = refused(*command)
+    assert status == 2 and words in line
 
 
 def test_results_are_labelled_and_drawn_and_iterated(tmp_path, described):
@@ -76,3 +89,9 @@ def test_mistakes_in_python_are_one_line(refusal):
         found.first("saddle-node")
     with refusal(ModelError, "across must be another parameter"):
         bouncing_ball.curve(next(found.states()), kind="saddle-node", across="amplitude")
+    start = next(found.states())
+    outside = "across_range = 0.6 to 0.9 does not contain restitution = 0.5"
+    with refusal(ModelError, outside):
+        bouncing_ball.curve(
+            start, kind="saddle-node", across="restitution", across_range=(0.6, 0.9)
+        )

@@ -362,12 +362,16 @@ def curve(
         raise ParameterError("{across} must be another parameter than that of the branch")
     name = chosen("kind", kind, [str(each) for each in Special])
     most = checked_number("points", points, POINTS)
+    family = orbit.orbits.family
+    family.bounds(across)
+    at = {**family.values, **orbit.parameters}
+    along = orbit.orbits.along[0]
     found = curves.curve(
         orbit,
         Special(name),
         across,
-        along_window=_window("along_range", along_range),
-        across_window=_window("across_range", across_range),
+        along_window=_window("along_range", along_range, along, at[along]),
+        across_window=_window("across_range", across_range, across, at[across]),
         most=most,
     )
     data = _columns(found, found.special, *found.orbits.along)
@@ -377,7 +381,10 @@ def curve(
     return result
 
 
-def _window(name: str, given: Sequence[float] | None) -> Window | None:
+def _window(
+    name: str, given: Sequence[float] | None, parameter: str, start: float
+) -> Window | None:
+    """The range of a parameter on a curve, which contains its value at the start."""
     if given is None:
         return None
     numbers = [checked_number(name, value, FINITE) for value in given]
@@ -385,7 +392,13 @@ def _window(name: str, given: Sequence[float] | None) -> Window | None:
         raise ParameterError(
             f"{{{name}}} = {{}} is not two numbers of which the second is larger", repr(given)
         )
-    return Window(*numbers)
+    low, high = numbers
+    if not low <= start <= high:
+        raise ParameterError(
+            f"{{{name}}} = {low:g} to {high:g} does not contain {parameter} = {start:g}, at which "
+            "the curve starts"
+        )
+    return Window(low, high)
 
 
 def _attributes(orbits: Any) -> dict[str, Any]:

@@ -95,3 +95,24 @@ def test_mistakes_in_python_are_one_line(refusal):
         bouncing_ball.curve(
             start, kind="saddle-node", across="restitution", across_range=(0.6, 0.9)
         )
+
+
+def test_lines_change_from_solid_to_dashed_at_the_period_doubling():
+    one = bouncing_ball.orbit(RIGID, amplitude=1.4)
+    found = bouncing_ball.follow(one, to=1.8)
+    place = float(found.special_amplitude[0])
+    after = int(found.special_point[0])
+    assert found.amplitude[after] < place < found.amplitude[after + 1]
+    solid, dashed = (line for line in found.plot().axes[0].lines if line.get_linestyle() != "None")
+    assert (solid.get_linestyle(), dashed.get_linestyle()) == ("-", "--")
+    assert solid.get_xdata()[-1] == dashed.get_xdata()[0] == place
+
+
+@pytest.mark.parametrize("along", ["restitution", "damping_ratio"])
+def test_no_coefficient_that_varies_along_a_branch_is_called_constant(along):
+    ball = bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=10.0)
+    one = bouncing_ball.orbit(ball, amplitude=1.0)
+    start = float(one.law.damping_ratio) if along == "damping_ratio" else 0.85
+    found = bouncing_ball.follow(one, along=along, to=1.01 * start)
+    assert "frequency_ratio" in found.attrs
+    assert not {"restitution", "damping_ratio"} & set(found.attrs)

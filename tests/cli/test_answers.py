@@ -226,7 +226,11 @@ def test_a_missing_orbit_exits_1_with_the_reason(refused, outcome):
         ("orbit --amplitude 1 --restitution 0,85", "not a number in (0, 1]: did you mean 0.85?"),
         ("@ --n 2.0", "'2.0' is not a whole number from 1 to 1000: did you mean 2?"),
         ("contact --measured-restitution 0.1 --release force", "r = 0.1 is not in (e⁻², 1]"),
-        ("simulate --restitution 0.5 --amplitude 1 --velocity 9", "rises from the table"),
+        (
+            "simulate --restitution 0.5 --amplitude 1 --velocity 9",
+            "rises from the table has no impact: its velocity z′ = 9 is above that of the table, "
+            "w′ = 1",
+        ),
         ("law tsuji --restitution 0.65", "needs --set stiffness=NUMBER, --set damping=NUMBER, or"),
         (
             "law rubber",

@@ -216,9 +216,21 @@ def test_a_missing_orbit_exits_1_with_the_reason(refused, outcome):
         ("@ --release force", "--release has no meaning for --model restitution"),
         ("@ --side all --index 2", "not allowed with argument --side"),
         ("@ --side left", "invalid choice: 'left'"),
-        ("@ --tension 1", "unrecognized arguments: --tension 1"),
+        ("@ --tension 1", "unrecognized arguments: --tension 1: see bouncing-ball orbit --help"),
+        ("@ --frequency 50", "arguments: --frequency 50; did you mean --frequency-ratio?"),
+        ("@ 2", "unrecognized arguments: 2: see bouncing-ball orbit --help"),
+        ("@ --release Force", "(choose from 'displacement', 'force'); did you mean force?"),
+        ("orbit --amplitude 1g", "'1g' is not a number in [1e-12, 1e+08]: give it without a unit"),
+        ("orbit --amplitude 1 --restitution 85", "not a number in (0, 1]: did you mean 0.85?"),
+        ("orbit --amplitude 1 --restitution 85%", "not a number in (0, 1]: did you mean 0.85?"),
+        ("orbit --amplitude 1 --restitution 0,85", "not a number in (0, 1]: did you mean 0.85?"),
+        ("@ --n 2.0", "'2.0' is not a whole number from 1 to 1000: did you mean 2?"),
         ("contact --measured-restitution 0.1 --release force", "r = 0.1 is not in (e⁻², 1]"),
-        ("simulate --restitution 0.5 --amplitude 1 --velocity 9", "rises from the table"),
+        (
+            "simulate --restitution 0.5 --amplitude 1 --velocity 9",
+            "rises from the table has no impact: its velocity z′ = 9 is above that of the table, "
+            "w′ = 1",
+        ),
         ("law tsuji --restitution 0.65", "needs --set stiffness=NUMBER, --set damping=NUMBER, or"),
         (
             "law rubber",

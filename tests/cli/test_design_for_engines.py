@@ -103,7 +103,7 @@ def test_with_a_table_it_is_a_design(ask):
         ((*STIFF, "--engine", "unreal"), "unknown engine 'unreal': one of generic, mujoco"),
         ((*STIFF, "--engine", "drake", "--release", "displacement"), "drake has no displacement"),
         (FROM, "the mass is missing: the parameters of mujoco do not contain it"),
-        ((*FROM, "--mass", "5 m"), "mass = 5 m is of the dimension [length]"),
+        ((*FROM, "--mass", "5 m"), "mass = 5 m is in meter, not in kg"),
         (("design", *OTHER), "the mass is missing"),
         ((*BALL, *OTHER), "gamma_n is missing: the parameters of lammps are kn and gamma_n"),
         ((*BALL, *OTHER, "--set", "gamma=2"), "lammps has no 'gamma'"),

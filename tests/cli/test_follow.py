@@ -39,13 +39,26 @@ def test_the_command_follows_a_curve_up_to_its_resonance(ask):
 
 
 @pytest.mark.parametrize(("options", "words"), [
-    (("--along", "stiffness"), "'stiffness' is not one of restitution, amplitude"),
+    (("--along", "stiffness"), "these orbits have no 'stiffness': one of restitution, amplitude"),
     (("--to", "-1"), "to = -1.0 is not a number in"),
 ])  # fmt: skip
 def test_a_mistake_is_one_line(refused, options, words):
     command = (*FOLLOW, *options)
     _, line = refused(*command)
     assert words.replace("to =", "--to =") in line
+
+
+@pytest.mark.parametrize(("window", "words"), [
+    (("--low", "0.6", "--high", "0.9"), "restitution starts at 0.5, which is not between --low"),
+    (("--low", "0.9", "--high", "0.1"), "restitution starts at 0.5, which is not between --low"),
+    (("--low", "0.4"), "--low and --high are needed together"),
+])  # fmt: skip
+def test_a_curve_starts_between_its_limits(refused, window, words):
+    kind = ("--kind", "period-doubling", "--across", "restitution")
+    command = ("curve", *FOLLOW[1:], *kind)
+    command += window
+    status, line = refused(*command)
+    assert status == 2 and words in line
 
 
 def test_results_are_labelled_and_drawn_and_iterated(tmp_path, described):
@@ -76,3 +89,30 @@ def test_mistakes_in_python_are_one_line(refusal):
         found.first("saddle-node")
     with refusal(ModelError, "across must be another parameter"):
         bouncing_ball.curve(next(found.states()), kind="saddle-node", across="amplitude")
+    start = next(found.states())
+    outside = "across_range = 0.6 to 0.9 does not contain restitution = 0.5"
+    with refusal(ModelError, outside):
+        bouncing_ball.curve(
+            start, kind="saddle-node", across="restitution", across_range=(0.6, 0.9)
+        )
+
+
+def test_lines_change_from_solid_to_dashed_at_the_period_doubling():
+    one = bouncing_ball.orbit(RIGID, amplitude=1.4)
+    found = bouncing_ball.follow(one, to=1.8)
+    place = float(found.special_amplitude[0])
+    after = int(found.special_point[0])
+    assert found.amplitude[after] < place < found.amplitude[after + 1]
+    solid, dashed = (line for line in found.plot().axes[0].lines if line.get_linestyle() != "None")
+    assert (solid.get_linestyle(), dashed.get_linestyle()) == ("-", "--")
+    assert solid.get_xdata()[-1] == dashed.get_xdata()[0] == place
+
+
+@pytest.mark.parametrize("along", ["restitution", "damping_ratio"])
+def test_no_coefficient_that_varies_along_a_branch_is_called_constant(along):
+    ball = bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=10.0)
+    one = bouncing_ball.orbit(ball, amplitude=1.0)
+    start = float(one.law.damping_ratio) if along == "damping_ratio" else 0.85
+    found = bouncing_ball.follow(one, along=along, to=1.01 * start)
+    assert "frequency_ratio" in found.attrs
+    assert not {"restitution", "damping_ratio"} & set(found.attrs)

@@ -28,11 +28,11 @@ MISTAKES = """
 --mass "" --stiffness 1e6 --restitution 0.85
     --mass = '' does not begin with a number: write it as '20 g'
 --mass "20 g" --stiffness "1e6 N" --restitution 0.85
-    --stiffness = 1e6 N is of the dimension [mass] * [length] / [time] ** 2: write it as '1e6
+    --stiffness = 1e6 N is in newton, not in N/m: write it as '1e6 N/m'
 --mass "20 g" --stiffness "1e6 N/mm2" --restitution 0.85
-    --stiffness = 1e6 N/mm2 is of the dimension [mass] / [length] / [time] ** 2: write it as '1e6
+    --stiffness = 1e6 N/mm2 is in newton / millimeter ** 2, not in N/m: write it as '1e6 N/m'
 --mass "20 g" --stiffness "1 MN/M" --restitution 0.85
-    --stiffness = 1 MN/M is of the dimension [mass] * [length] ** 4 / [time] ** 2 / [substance]:
+    --stiffness = 1 MN/M is in meganewton / molar, not in N/m: did you mean '1 MN/m'?
 --mass "20 g" --stiffness "-1e6" --restitution 0.85
     --stiffness = -1e+06 N/m is not a number in [1e-40, 1e+40]
 --mass "20 g" --stiffness 0 --restitution 0.85
@@ -52,7 +52,7 @@ MISTAKES = """
 --mass "20 g" --stiffness 1e6 --damping 1e9
     damping ratio ζ of the contact = 3535533.90593 is too large: near the critical damping 1 and
 --mass "20 g" --stiffness 1e6 --damping "8 N/m"
-    --damping = 8 N/m is of the dimension [mass] / [time] ** 2: write it as '10 N s/m'
+    --damping = 8 N/m is in newton / meter, not in N s/m: write it as '10 N s/m'
 --mass "20 g" --stiffness 1e6 --drop-height "1 m"
     --rebound-height and --drop-height are needed together
 --mass "20 g" --stiffness 1e6 --drop-height "1 m" --rebound-height "1.2 m"
@@ -60,11 +60,11 @@ MISTAKES = """
 --mass "20 g" --stiffness 1e6 --drop-height "1" --rebound-height "70"
     --rebound-height 70 m is above --drop-height 1 m
 --mass "20 g" --contact-time "5 MS" --restitution 0.8 --engine lammps
-    --contact-time = 5 MS is of the dimension [current] ** 2 * [time] ** 3 / [mass] / [length] **
+    --contact-time = 5 MS is in megasiemens, not in s: did you mean '5 ms'?
 --mass "20 g" --contact-time 5 --stiffness 100 --restitution 0.8
     --stiffness and --contact-time contradict each other, because each gives the stiffness of the
 --mass "20 g" --frequency "50 1/s" --acceleration "0.8 g" --stiffness 1e6 --restitution 0.8
-    --frequency = 50 1/s is of the dimension 1 / [time]: write it as '50 Hz'
+    --frequency = 50 1/s does not say whether it counts turns or radians: write '50 Hz' or
 --mass "20 g" --frequency "50 hertz" --acceleration "0.8g's" --stiffness 1e6 --restitution 0.8
     --acceleration = 0.8g's has an unknown unit: write it as '2 g'
 --mass "20 g" --frequency "-50 Hz" --acceleration "0.8 g" --stiffness 1e6 --restitution 0.8
@@ -114,7 +114,7 @@ BALL --time-step "1 ms"
 BALL --engine mujoco --timestep "1 ms"
     unrecognized arguments: --timestep 1 ms; did you mean --time-step?
 BALL --engine mujoco --time-step "1 kHz"
-    --time-step = 1 kHz is of the dimension [angle] / [time]: write it as '1 ms'
+    --time-step = 1 kHz is in kilohertz, not in s: write it as '1 ms'
 BALL --engine mujoco --time-step 0
     --time-step = 0 s is not a number in [1e-40, 1e+40]
 --mass "20 g" --restitution 0.8 --engine mujoco
@@ -150,15 +150,15 @@ BALL --plot page
 BALL --speed 0
     --speed = 0 m/s is not a number in [1e-40, 1e+40]
 BALL --speed "1 m"
-    --speed = 1 m is of the dimension [length]: write it as '1 m/s'
+    --speed = 1 m is in meter, not in m/s: write it as '1 m/s'
 BALL --speed "1 ms"
-    --speed = 1 ms is of the dimension [time]: write it as '1 m/s'
+    --speed = 1 ms is in millisecond, not in m/s: write it as '1 m/s'
 --mass 20 g --stiffness 1e6 --restitution 0.8
     unrecognized arguments: g: a value with a space is one argument in quotes, such as "20 g"
 BALL --json --plot
     argument --plot: expected one argument
 -m 20
-    unrecognized arguments: -m 20: a value with a space is one argument in quotes, such as "20 g"
+    unrecognized arguments: -m 20: see bouncing-ball design --help
 --mass "20 g" --stifness 1e6 --restitution 0.8
     unrecognized arguments: --stifness 1e6; did you mean --stiffness?
 --gravity 0 BALL
@@ -166,11 +166,11 @@ BALL --json --plot
 --gravity "9,81" BALL
     --gravity = 9,81 has a comma: write '9.81', with a decimal point
 --gravity "9.81 m/s" BALL
-    --gravity = 9.81 m/s is of the dimension [length] / [time]: write it as '9.81 m/s^2'
+    --gravity = 9.81 m/s is in meter / second, not in m/s^2: write it as '9.81 m/s^2'
 --mass "20 g" --stiffness "1,000,000" --restitution 0.8
     --stiffness = 1,000,000 has a comma: write '1000000'
 --mass "1/2 kg" --stiffness 1e6 --restitution 0.8
-    --mass = 1/2 kg has an unknown unit: write it as '20 g'
+    --mass = 1/2 kg is a fraction: write '0.5 kg'
 --mass "20 g" --stiffness "10^6 N/m" --restitution 0.8
     --stiffness = 10^6 N/m has an unknown unit: write it as '1e6 N/m'
 --mass "20 g" --stiffness "5e6 N/m" --restitution "80 %" --damping-ratio 0.05
@@ -185,6 +185,36 @@ BALL --json --plot
     --mass = 20 gm is in grains, or in no unit of mass: did you mean '20 g'?
 --mass "20 g" --modulus 5
     unrecognized arguments: --modulus 5; did you mean --reduced-modulus?
+mass="20 g" --frequency "50 Hz"
+    unrecognized arguments: mass=20 g; did you mean --mass?
+--help-me
+    unrecognized arguments: --help-me: see bouncing-ball design --help
+BALL TABLE --rest 0.8
+    unrecognized arguments: --rest 0.8; did you mean --restitution?
+--mass "20 g" --stiffness "1 000 000 N/m" --restitution 0.8
+    --stiffness = 1 000 000 N/m has separated thousands: write '1000000 N/m'
+--mass "20 g" --stiffness "1_000_000" --restitution 0.8
+    --stiffness = 1_000_000 has separated thousands: write '1000000'
+--mass "20 g" --stiffness 1e6 --restitution "4/5"
+    --restitution = 4/5 is a fraction: write '0.8'
+BALL TABLE --tolerance "1 %%"
+    --tolerance = 1 %% has an unknown unit: write it as '1 %'
+--mass "20 g" --frequency "50 Hz" --acceleration "80 %" --stiffness 1e6 --restitution 0.8
+    --acceleration = 80 % is in percent, not in m/s^2: write it as '2 g'
+--mass "20 g" --frequency "3000 U/min" --acceleration "0.8 g" --stiffness 1e6 --restitution 0.8
+    --frequency = 3000 U/min is in enzyme unit / minute, not in Hz: write it as '50 Hz'
+--mass "20 g" --stiffness "1e7 Pa" --restitution 0.8
+    --stiffness = 1e7 Pa is in pascal, not in N/m: write it as '1e6 N/m'
+--mass "20 g" --stiffness 1e7k --restitution 0.8
+    --stiffness = 1e7k is in boltzmann constant, not in N/m: write it as '1e6 N/m'
+--mass "20 g" --stiffness 1e6 --restitution "0.85 m"
+    --restitution = 0.85 m is in meter, and not a plain number: write it as '0.85'
+--mass "20 g" --from mujoco --solref "[-10000, -20]"
+    solref = '[-10000, -20]' is not 2 numbers: write it plainly, '-10000 -20'
+--mass "20 g" --from mujoco --solref "-10000;-20"
+    solref = '-10000;-20' is not 2 numbers: write it plainly, '-10000 -20'
+--mass "20 g" --from mujoco --solref -10000 -20
+    unrecognized arguments: -20: a value with a space is one argument in quotes, such as "20 g"
 """.strip().splitlines()
 ROWS = [(typed, says.strip()) for typed, says in zip(MISTAKES[::2], MISTAKES[1::2], strict=True)]
 

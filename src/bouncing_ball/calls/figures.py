@@ -44,21 +44,30 @@ def shown(draw: Callable[[], Figure], path: str | Path | None, name: str) -> Fig
 
 
 def followed(data: xr.Dataset) -> Figure:
-    """The phases of the impacts of a branch over its parameter, with its special orbits."""
+    """The phases of the impacts of a branch over its parameter, with its special orbits.
+
+    Lines change their look at the special orbit between two points, if there is one.
+    """
     figure, axes = canvas(WIDE, 3.4)
     (along,) = _parameters_of(data)
     stability = np.where(data.stable, "stable", "unstable")
     looks = np.where(data.admissible, stability, "inadmissible")
     edges = [0, *(np.flatnonzero(looks[1:] != looks[:-1]) + 1), len(looks)]
+    borders = {int(data.special_point[j]) + 1: j for j in range(data.sizes["special"])}
     for k in range(data.sizes["impact"]):
-        phase = data.impact_phase.values[:, k] / np.pi
-        # A phase that passes ±π goes on at the other edge.
-        jumps = np.abs(np.diff(phase, prepend=phase[:1])) > 1
-        shown = np.where(jumps, np.nan, phase)
+        line = np.stack([data[along].values, data.impact_phase.values[:, k] / np.pi])
+        special = np.stack([data[f"special_{along}"], data.special_impact_phase[:, k] / np.pi])
+        first = line[:, :0]
         for start, stop in pairwise(edges):
-            run = slice(start, stop + 1)
+            # Without a special orbit the line changes at the next point.
+            j = borders.get(stop)
+            last = line[:, stop : stop + 1] if j is None else special[:, j : j + 1]
+            x, phase = np.concatenate([first, line[:, start:stop], last], axis=-1)
+            # A phase that passes ±π goes on at the other edge.
+            jumps = np.abs(np.diff(phase, prepend=phase[:1])) > 1
             look = LINES[looks[start]] | {"color": COLOURS[k % len(COLOURS)]}
-            axes.plot(data[along].values[run], shown[run], label=looks[start], **look)
+            axes.plot(x, np.where(jumps, np.nan, phase), label=looks[start], **look)
+            first = last
     _mark_special(axes, data, data[f"special_{along}"], data.special_phase / np.pi)
     axes.set(
         xlabel=symbol(along), ylabel=r"phases of impact $\varphi/\pi$", title=_orbit_title(data)
@@ -83,7 +92,8 @@ def special_curve(data: xr.Dataset) -> Figure:
 
 def _parameters_of(data: xr.Dataset) -> list[str]:
     """The parameters of a branch or a curve."""
-    return [str(name) for name in data if f"special_{name}" in data]
+    varied = (name for name in data if data[name].dims == ("point",))
+    return [str(name) for name in varied if f"special_{name}" in data]
 
 
 def _mark_special(axes: Axes, data: xr.Dataset, x: xr.DataArray, y: xr.DataArray) -> None:

@@ -56,6 +56,10 @@ VARIABLES = {"relative_velocity": Variable("relative velocity at the impact", sy
 _OF_IMPACTS = {
     "impact": Variable("number of the impact within the orbit"),
     "impact_phase": Variable("phase of the table at the impact", symbol="φ", units="rad"),
+    "special_impact_phase": Variable(
+        "phase of the table at the impact of the special orbit", symbol="φ", units="rad"
+    ),
+    "special_point": Variable("number of the last point of the branch before the special orbit"),
 }
 _ALL = observables.VARIABLES | _OF_IMPACTS | VARIABLES
 
@@ -366,13 +370,17 @@ def curve(
         raise ParameterError("{across} must be another parameter than that of the branch")
     name = chosen("kind", kind, [str(each) for each in Special])
     most = checked_number("points", points, POINTS)
+    family = orbit.orbits.family
+    family.bounds(across)
+    at = {**family.values, **orbit.parameters}
+    along = orbit.orbits.along[0]
     with patience("narrower ranges or fewer points"):
         found = curves.curve(
             orbit,
             Special(name),
             across,
-            along_window=_window("along_range", along_range),
-            across_window=_window("across_range", across_range),
+            along_window=_window("along_range", along_range, along, at[along]),
+            across_window=_window("across_range", across_range, across, at[across]),
             most=most,
         )
         data = _columns(found, found.special, *found.orbits.along)
@@ -382,7 +390,10 @@ def curve(
     return result
 
 
-def _window(name: str, given: Sequence[float] | None) -> Window | None:
+def _window(
+    name: str, given: Sequence[float] | None, parameter: str, start: float
+) -> Window | None:
+    """The range of a parameter on a curve, which contains its value at the start."""
     if given is None:
         return None
     numbers = [checked_number(name, value, FINITE) for value in given]
@@ -390,12 +401,35 @@ def _window(name: str, given: Sequence[float] | None) -> Window | None:
         raise ParameterError(
             f"{{{name}}} = {{}} is not two numbers of which the second is larger", repr(given)
         )
-    return Window(*numbers)
+    low, high = numbers
+    if not low <= start <= high:
+        raise ParameterError(
+            f"{{{name}}} = {low:g} to {high:g} does not contain {parameter} = {start:g}, at which "
+            "the curve starts"
+        )
+    return Window(low, high)
+
+
+def _before(points: np.ndarray, special: np.ndarray) -> int:
+    """The number of the last point of a branch before a special orbit, which makes the shortest
+    detour from this point to the next.
+    """
+    lengths = np.linalg.norm(points - special, axis=1)
+    chords = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    detours = lengths[:-1] + lengths[1:] - chords
+    return int(np.argmin(detours)) if detours.size else 0
+
+
+# Each of these follows from the other in a spring and a damper, so that both vary together.
+_OF_LOSS = {"restitution", "damping_ratio"}
 
 
 def _attributes(orbits: Any) -> dict[str, Any]:
     """The values of the parameters that do not vary, and k and m."""
-    fixed = {name: x for name, x in orbits.family.values.items() if name not in orbits.along}
+    varied = set(orbits.along)
+    if varied & _OF_LOSS:
+        varied |= _OF_LOSS
+    fixed = {name: x for name, x in orbits.family.values.items() if name not in varied}
     return {"impacts": orbits.impacts, "periods": int(orbits.periods), **fixed}
 
 
@@ -423,8 +457,11 @@ def _columns(
     for name in along:
         places = [state.parameters[name] for _, state in special]
         data[f"special_{name}"] = "special", np.array(places, dtype=float)
-    first = [state.phase[0] for _, state in special]
-    data["special_phase"] = "special", np.array(first, dtype=float)
+    phases = [state.phase for _, state in special]
+    at_impacts = reduce_angle(np.array(phases).reshape(len(special), phase.shape[1]))
+    data["special_phase"] = "special", at_impacts[:, 0]
+    data["special_impact_phase"] = ("special", "impact"), at_impacts
+    data["special_point"] = "special", np.array([_before(y, s.y) for _, s in special], dtype=int)
     data["end_reason"] = "end", [str(found.branch.start), str(found.branch.end)]
     known = {name: SHARED.get(name, Variable(name.replace("_", " "))) for name in along}
     places = {

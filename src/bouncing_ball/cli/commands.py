@@ -252,7 +252,8 @@ COMMANDS = {
             "repeats and the ball sticks to the table in between, with 0 periods if rounding "
             "errors decide on their number; permanent contact; chaotic, if it has not repeated as "
             "long as it was followed and its neighbours separate; or undecided. Without --phase "
-            "and --velocity the shares of other starts that end on each motion are listed too."
+            "and --velocity the shares of other starts that end on each motion are listed too; "
+            "orbit 2/1 is an orbit of two periods of the table with one impact."
         ),
         examples=(
             "motion --amplitude 1.1 --restitution 0.85",

@@ -19,6 +19,8 @@ from bouncing_ball.paper.comparison.thresholds import ThresholdStatus
 _SIMPLE = "error law", "corrected"
 # The row that an engine's time step takes the place of.
 _STEP = "largest time step"
+# More digits than a user types.
+_TYPED = 12
 # What has a default, and is said in the answer.
 _NOT_ECHOED = {"quantity", "tolerance", "restitution_error"}
 
@@ -243,9 +245,10 @@ def _echo(question: Mapping[str, Any]) -> str:
         if name not in kinds:
             said.append(f"{words} {_plain(value)}")
         elif name == "mass":
-            said.append(f"{words} {shown(1000 * value, 'g')}")
+            said.append(f"{words} {shown(1000 * value, 'g', digits=_TYPED)}")
         else:
-            said.append(f"{words} {shown(value, kinds[name].name.replace('*', ' '))}")
+            unit = kinds[name].name.replace("*", " ")
+            said.append(f"{words} {shown(value, unit, digits=_TYPED)}")
     return f"Given: {', '.join(said)}."
 
 

@@ -21,7 +21,7 @@ from bouncing_ball.cli.options import (
 )
 from bouncing_ball.cli.periodic import Answer
 from bouncing_ball.datasets.files import PICTURES, require_writable
-from bouncing_ball.errors import Range
+from bouncing_ball.errors import ParameterError, Range
 
 _DOUBLINGS = Range(0, 8, "[]", whole=True)
 _NAME = (
@@ -81,6 +81,22 @@ def follow(
     if plot is not None:
         found.plot(plot)
     return _answer(found.special_states(), found) | {"end": str(found.end_reason[1].values)}
+
+
+def _window(
+    low: float | None, high: float | None, name: str, start: float | None
+) -> tuple[float, float] | None:
+    """The range of the second parameter, which contains its value at the start of the curve."""
+    if low is None and high is None:
+        return None
+    if low is None or high is None:
+        raise ParameterError("{low} and {high} are needed together")
+    if start is not None and not low <= start <= high:
+        raise ParameterError(
+            f"{{across}} {option(name)[2:]} starts at {start:g}, which is not between "
+            f"{{low}} {low:g} and {{high}} {high:g}"
+        )
+    return low, high
 
 
 def _start(
@@ -161,9 +177,10 @@ def curve(
     orbit = {name: rest.pop(name) for name in ("n", "amplitude", "side", "phase", "velocity")}
     found = _branch(_start(**orbit, impact=rest), along, to, doublings)
     words = str(Special[kind.replace("-", "_").upper()])
-    window = None if low is None or high is None else (low, high)
     name = across.replace("-", "_")
     special = found.first(words)
+    other = name not in special.orbits.along
+    window = _window(low, high, name, special.orbits.family.values.get(name) if other else None)
     traced = calls.curve(special, kind=words, across=name, across_range=window)
     if plot is not None:
         traced.plot(plot)

@@ -21,6 +21,8 @@ from bouncing_ball.cli.output import say
 from bouncing_ball.errors import Range, did_you_mean, escaped
 
 _OTHER_NAMES = {"parameters": "set", "from_engine": "from", "all_families": "all"}
+# The command whose options have units.
+_WITH_UNITS = "design"
 _OTHER_NAMES |= {"amplitudes": "amplitude"}
 
 
@@ -30,6 +32,8 @@ class Parser(argparse.ArgumentParser):
     def __init__(self, *args: Any, **options: Any) -> None:
         # The line breaks of the explanation and of the examples are kept.
         options["formatter_class"] = argparse.RawDescriptionHelpFormatter
+        # The beginning of an option is none: --frequency in Hz is no --frequency-ratio.
+        options["allow_abbrev"] = False
         super().__init__(*args, **options)
         # A value such as -1e6 or -5N/m is no option, as in Python 3.14.
         self._negative_number_matcher = re.compile(r"-\.?\d")
@@ -39,14 +43,21 @@ class Parser(argparse.ArgumentParser):
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
         namespace, unknown = super().parse_known_args(args, namespace)
-        for text in unknown:
-            meant = _meant(text.partition("=")[0], self._option_string_actions)
-            if text.startswith("--") and meant:
-                self.error(f"unrecognized arguments: {' '.join(unknown)}{meant}")
-            if not text.startswith("-"):
-                quoted = 'a value with a space is one argument in quotes, such as "20 g"'
-                self.error(f"unrecognized arguments: {' '.join(unknown)}: {quoted}")
+        if unknown:
+            self.error(f"unrecognized arguments: {' '.join(unknown)}{self._advice(unknown[0])}")
         return namespace, unknown
+
+    def _advice(self, unknown: str) -> str:
+        """A clause on the first argument that is not recognized."""
+        name = unknown.partition("=")[0]
+        if f"--{name}" in self._option_string_actions:
+            return f"; did you mean --{name}?"
+        if meant := name.startswith("--") and _meant(name, self._option_string_actions):
+            return meant
+        is_option = name.startswith("-") and not self._negative_number_matcher.match(name)
+        if is_option or not self.prog.endswith(_WITH_UNITS):
+            return f": see {self.prog} --help"
+        return ': a value with a space is one argument in quotes, such as "20 g"'
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         try:
@@ -64,16 +75,23 @@ class Parser(argparse.ArgumentParser):
 
 
 def _meant(text: str, known: Iterable[str]) -> str:
-    """A clause that suggests the known name that a wrong one resembles or is the end of.
+    """A clause that suggests the known name that a wrong one resembles, begins or ends.
 
     Examples
     --------
     >>> _meant("--amplitude", ["--acceleration", "--table-amplitude"])
     '; did you mean --table-amplitude?'
+    >>> _meant("--frequency", ["--amplitude", "--frequency-ratio"])
+    '; did you mean --frequency-ratio?'
     """
     names = list(known)
-    end = text.removeprefix("--").replace("_", "-")
-    longer = [name for name in names if name.replace("_", "-").endswith(f"-{end}")]
+    part = text.removeprefix("--").replace("_", "-")
+    plain = {name: name.removeprefix("--").replace("_", "-") for name in names}
+    longer = [
+        name
+        for name, each in plain.items()
+        if each.endswith(f"-{part}") or (part and each.startswith(part))
+    ]
     return did_you_mean(text, names) or did_you_mean("".join(longer[:1]), longer)
 
 
@@ -141,10 +159,33 @@ def _within(allowed: Range) -> Callable[[str], Any]:
     def parse(text: str) -> Any:
         value = _number(text, int if allowed.whole else float)
         if value not in allowed:
-            raise argparse.ArgumentTypeError(f"{text!r} is not {allowed}")
+            raise argparse.ArgumentTypeError(f"{text!r} is not {allowed}{_plain(text, allowed)}")
         return value
 
     return parse
+
+
+def _plain(text: str, allowed: Range) -> str:
+    """A clause on how a number is written that was probably meant; empty if none was.
+
+    Examples
+    --------
+    >>> _plain("85 %", Range(0, 1, "(]")), _plain("0,85", Range(0, 1, "(]"))
+    (': did you mean 0.85?', ': did you mean 0.85?')
+    >>> _plain("50 Hz", Range(0)), _plain("x", Range(0))
+    (': give it without a unit', '')
+    """
+    share = text.strip().removesuffix("%")
+    in_percent = allowed.high == 1 and (share != text or 1 < _number(share) < _WHOLE)
+    for meant in (_number(text.replace(",", ".")), _number(share) / _WHOLE if in_percent else None):
+        if meant in allowed:
+            return f": did you mean {meant:g}?"
+    has_unit = re.match(r"\s*[+-]?\.?\d", text) and math.isnan(_number(text)) and "," not in text
+    return ": give it without a unit" if has_unit else ""
+
+
+# Percent in a whole.
+_WHOLE = 100
 
 
 def add_number(
@@ -193,7 +234,12 @@ def add_choice(
 ) -> None:
     """Add an option for one of several names."""
     parser.add_argument(
-        option(name), dest=name, choices=list(choices), default=default, help=_help(text, default)
+        option(name),
+        dest=name,
+        # The members of an enumeration are shown by their values.
+        choices=list(map(str, choices)),
+        default=default,
+        help=_help(text, default),
     )
 
 

@@ -52,12 +52,12 @@ def _rows(answer: dict[str, Any], prefix: str = "") -> list[str]:
         if isinstance(value, dict):
             rows += _rows(value, f"{name}, ")
         elif key == "proved":
-            rows.append(f"{name:<40}{'; '.join(value)}")
+            rows.append(f"{name:<39} {'; '.join(value)}")
         elif key == "multipliers":
             shown = "   ".join(f"{re:.10g} {im:+.10g}i" for re, im in value)
-            rows.append(f"{name:<40}{shown}")
+            rows.append(f"{name:<39} {shown}")
         else:
-            rows.append(f"{name:<40}{_value(value)}")
+            rows.append(f"{name:<39} {_value(value)}")
     return rows
 
 

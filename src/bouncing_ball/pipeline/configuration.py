@@ -369,7 +369,8 @@ def _sentence(model: type[BaseModel], error: Any) -> str:
         return _unknown_key(given, path, list(schemas[-2]["properties"]))
     if kind == "missing":
         what = "section" if len(path) == 1 and "properties" in schema else "key"
-        return f"missing {what} {name}: {description or schema.get('title')}"
+        meaning = description or str(schema.get("title"))
+        return f"missing {what} {name}" + ("" if meaning == name else f": {meaning}")
     if kind == "value_error":
         text = str(error["ctx"]["error"])
         return f"{given} {text}" if text.startswith("must") else f"{name}: {text}"

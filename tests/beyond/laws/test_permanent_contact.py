@@ -1,5 +1,7 @@
 """Permanent contact of any law against the closed form, and the motion at the threshold."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -8,6 +10,7 @@ from bouncing_ball.beyond.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball.beyond.laws.hertzian import HuntCrossley, KuwabaraKono, Tsuji
 from bouncing_ball.beyond.laws.impedance import Impedance
 from bouncing_ball.beyond.laws.law_of_impact import law_of_impact
+from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.laws.permanent_contact import (
     _holds,
     _Steady,
@@ -114,3 +117,13 @@ def test_an_impedance_by_depth_touches_the_surface_at_its_threshold():
     low = grip.min(axis=1) / 0.01
     # At the threshold the parabola's lowest point is within half a sample.
     assert low[0] > 1e-3 and abs(low[1]) < 1e-5
+
+
+@pytest.mark.parametrize("law", [Tsuji(1e3, 0.3), LinearLaw(2e3, 0.05, "force")])
+def test_the_rounding_that_is_allowed_is_a_share_of_the_grip_at_rest(law):
+    """A ball that is pulled by a thousandth of the grip at rest is not held."""
+    steady = _Steady(law, rest(law))
+    at_rest = np.array(steady.unit), np.array(0.0)
+    assert steady.grip(*at_rest, 1.0) == pytest.approx(1.0, rel=1e-14)
+    pulled = SimpleNamespace(success=True, x=0.0, y=np.array([-1e-3, 0.0]))
+    assert not steady.is_held(pulled, np.zeros(2))

@@ -100,7 +100,7 @@ def test_grazing_orbits_are_a_curve():
 
 def test_a_curve_of_an_unknown_kind_or_parameter_is_refused(refusal):
     start = special("restitution", Special.PERIOD_DOUBLING, 2.0)
-    with refusal(ModelError, "'stiffness' is not one of amplitude"):
+    with refusal(ModelError, "these orbits have no 'stiffness': one of amplitude"):
         curve(start, Special.PERIOD_DOUBLING, "stiffness")
     with refusal(ModelError, "'period halving' is not one of"):
         curve(start, Special.PERIOD_HALVING, "restitution")

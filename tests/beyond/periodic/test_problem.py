@@ -110,5 +110,5 @@ def test_parameters_outside_their_ranges_have_no_residual():
 
 
 def test_an_unknown_parameter_is_refused(refusal):
-    with refusal(ValueError, "'stiffness' is not one of"):
+    with refusal(ValueError, "these orbits have no 'stiffness': one of"):
         family("restitution", 1.0).__class__(dict, {}, {"amplitude": None}).bounds("stiffness")

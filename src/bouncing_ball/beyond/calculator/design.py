@@ -262,7 +262,7 @@ def in_si(call: Mapping[str, Any]) -> dict[str, float]:
 def _meant_in_g(acceleration: Any, table: Table) -> str:
     if acceleration is None or str(acceleration).strip().endswith("g"):
         return ""
-    return f"did you mean {table.acceleration:g} g?"
+    return f"perhaps {table.acceleration:g} g was meant"
 
 
 def _on_table(found: Ready, table: Table, question: Question, hint: str) -> Design:

@@ -32,12 +32,18 @@ _SPELLINGS = {
     "N*s/m": ("N s/m", "kN s/m", "N s/mm", "kg/s"),
     "Pa": ("Pa", "kPa", "MPa", "GPa"),
 }
+# A frequency in 1/s, which pint takes for no angle at all.
+_PER_TIME = "does not say whether it counts turns or radians"
 _BETWEEN = re.compile(r"[\s·*.^]")
 # Units that mean something else than what a user of SI units means.
 _FALSE_FRIENDS = {"gr": "g", "gm": "g"}
 # A number with one decimal comma and its unit, and one whose thousands are grouped by commas.
 _COMMA = re.compile(r"([+-]?\d+),(\d+)([^,]*)", re.DOTALL)
 _GROUPS = re.compile(r"[+-]?\d{1,3}(?:,\d{3})+(?!\d).*", re.DOTALL)
+# Thousands that are separated in another way, and two numbers with a stroke between them.
+_SEPARATED = re.compile(r"[+-]?\d{1,3}(?:['’_ ]\d{3})+(?!\d).*", re.DOTALL)
+_SEPARATOR = re.compile(r"(?<=\d)['’_ ](?=\d{3}(?!\d))")
+_FRACTION = re.compile(r"([+-]?\d+\.?\d*)/(\d+\.?\d*)((?!\d).*)", re.DOTALL)
 # A number, and the rest of the text.
 _TEXT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
 # Letters, products, quotients and powers of one digit. A power of a power is refused, because pint
@@ -96,7 +102,7 @@ def number(name: str, value: Any, kind: SIParameter) -> float:
     >>> number("frequency", "20 ms", frequency)
     Traceback (most recent call last):
     ...
-    bouncing_ball.errors.ParameterError: frequency = 20 ms is of the dimension [time]: \
+    bouncing_ball.errors.ParameterError: frequency = 20 ms is in millisecond, not in Hz: \
 write it as '50 Hz'
     """
     short = textwrap.shorten(str(value), 60, placeholder="…")
@@ -107,8 +113,8 @@ write it as '50 Hz'
         return ParameterError(f"{{{name}}} = {{}} {why}", said)
 
     if isinstance(value, str):
-        if comma := _without_comma(value.strip()[:60]):
-            raise wrong(f"has a comma: write {comma}")
+        if spelled := _plain_spelling(value.strip()[:60]):
+            raise wrong(spelled)
         found = _TEXT.fullmatch(value.strip())
         if found is None:
             raise wrong(f"does not begin with a number: {example}", repr(short))
@@ -125,6 +131,8 @@ write it as '50 Hz'
     found_value, why = _converted(plain, unit, kind) if unit else (plain, "")
     if why:
         meant = _spelling(unit, kind)
+        if why == _PER_TIME:
+            raise wrong(f"{why}: write '{value} Hz' or '{value} rad/s'")
         raise wrong(f"{why}: did you mean '{value} {meant}'?" if meant else f"{why}: {example}")
     if not math.isfinite(found_value):
         raise wrong("is not a finite number")
@@ -149,6 +157,26 @@ def _without_comma(text: str) -> str:
     if grouped and whole.strip("+-") != "0":
         return f"{decimal} or {plain}"
     return f"{decimal}, with a decimal point"
+
+
+def _plain_spelling(text: str) -> str:
+    """Why a number is not read as it is written, and how to write it; empty if it is plain.
+
+    Examples
+    --------
+    >>> _plain_spelling("0,65")
+    "has a comma: write '0.65', with a decimal point"
+    >>> _plain_spelling("1 000 000 N/m"), _plain_spelling("1/2 kg")
+    ("has separated thousands: write '1000000 N/m'", "is a fraction: write '0.5 kg'")
+    """
+    if comma := _without_comma(text):
+        return f"has a comma: write {comma}"
+    if _SEPARATED.fullmatch(text):
+        return f"has separated thousands: write {_SEPARATOR.sub('', text)!r}"
+    fraction = _FRACTION.fullmatch(text)
+    if fraction and float(fraction[2]):
+        return f"is a fraction: write '{float(fraction[1]) / float(fraction[2]):.6g}{fraction[3]}'"
+    return ""
 
 
 def _spelling(unit: str, kind: SIParameter) -> str:
@@ -176,12 +204,22 @@ def _converted(value: float, unit: str, kind: SIParameter) -> tuple[float, str]:
     # Pint also raises the errors of its tokenizer, which are of many types.
     unit = _POWER.sub("^", unit)
     with suppress(Exception):
-        if _UNIT.fullmatch(unit.replace("**", "^")):
+        # A percentage of a percentage is a slip of the keyboard.
+        if _UNIT.fullmatch(unit.replace("**", "^")) and unit.count("%") < 2:
             one = registry.Quantity(value, registry.parse_units(unit))
-            why = f"is of the dimension {one.dimensionality}"
+            why = _in_another_unit(str(one.units).replace("_", " "), kind)
             # Fifteen digits keep all digits that a user wrote, without the rounding error.
             return float(f"{one.m_as(kind.name):.15g}"), ""
     return math.nan, why
+
+
+def _in_another_unit(unit: str, kind: SIParameter) -> str:
+    """A clause on a unit of another dimension, by the name of the unit."""
+    if kind.name in ("Hz", "rad/s") and unit == "1 / second":
+        return _PER_TIME
+    if not kind.name:
+        return f"is in {unit}, and not a plain number"
+    return f"is in {unit}, not in {kind.name.replace('*', ' ')}"
 
 
 _PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n"}

@@ -15,6 +15,7 @@ and the smallest d that MuJoCo allows is 10⁻⁴. Contacts with any impedance a
 :mod:`bouncing_ball.beyond.laws.impedance`.
 """
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -29,6 +30,8 @@ from bouncing_ball.beyond.laws.impedance import Impedance
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.contact.damping import Release
 
+# What is written between numbers and around them elsewhere.
+_BETWEEN = re.compile(r"[\s,;()\[\]]+")
 # The defaults of MuJoCo: dmin, dmax, width in m, midpoint and power.
 _DEFAULT = (0.9, 0.95, 0.001, 0.5, 2.0)
 # The limits that MuJoCo imposes on an impedance.
@@ -52,8 +55,9 @@ def _numbers(name: str, value: str | Sequence[float], counts: range) -> list[flo
         found = [np.nan]
     if len(found) not in counts or not np.all(np.isfinite(found)):
         shown = value if isinstance(value, str) else " ".join(map(str, parts))
-        apart = " ".join(shown.replace(",", " ").split())
-        hint = f": write it without commas, {apart!r}" if "," in shown else ""
+        apart = " ".join(_BETWEEN.sub(" ", shown).split())
+        how = "without commas" if apart == " ".join(shown.replace(",", " ").split()) else "plainly"
+        hint = "" if apart == shown else f": write it {how}, {apart!r}"
         raise ModelError(f"{name} = {shown!r} is not {allowed}{hint}")
     return found
 

@@ -6,7 +6,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from bouncing_ball.errors import ModelError, ParameterError, Range
+from bouncing_ball.errors import ModelError, ParameterError, Range, did_you_mean
 from bouncing_ball.paper.motion.dynamics import Dynamics, HasDynamics
 
 AMPLITUDE = "amplitude"
@@ -72,10 +72,11 @@ class Family:
         --------
         >>> Family(dict, {"restitution": 0.5}, {"restitution": Range(0, 1, "(]")}).bounds("loss")
         Traceback (most recent call last):
-        bouncing_ball.errors.ParameterError: 'loss' is not one of restitution
+        bouncing_ball.errors.ParameterError: these orbits have no 'loss': one of restitution
         """
         if name not in self.ranges:
-            raise ParameterError(f"{{}} is not one of {', '.join(self.ranges)}", repr(name))
+            known = f"one of {', '.join(self.ranges)}{did_you_mean(name, self.ranges)}"
+            raise ParameterError(f"these orbits have no {{}}: {known}", repr(name))
         allowed = self.ranges[name]
         low = allowed.low + (_INSIDE if allowed.ends[0] == "(" else 0.0)
         high = allowed.high - (_INSIDE if allowed.ends[1] == ")" else 0.0)

@@ -215,9 +215,15 @@ class Dynamics(Batch, ABC):
         flat, (start, before), shape = self.in_a_row(phase, velocity)
         if not np.all(np.isfinite(start) & np.isfinite(before)):
             raise ModelError("the phase and the velocity of the impact must be finite")
-        relative = before - table(start, flat.amplitude)[0]
-        if not np.all(relative <= _ROUNDING * (np.abs(before) + flat.amplitude)):
-            raise ModelError("a ball that rises from the table has no impact: z′ > w′")
+        of_table = table(start, flat.amplitude)[0]
+        relative = before - of_table
+        rises = ~(relative <= _ROUNDING * (np.abs(before) + flat.amplitude))
+        if np.any(rises):
+            k = int(np.argmax(rises))
+            raise ModelError(
+                "a ball that rises from the table has no impact: its velocity "
+                f"z′ = {before[k]:g} is above that of the table, w′ = {of_table[k]:g}"
+            )
         return flat, start, np.minimum(relative, 0.0), shape
 
     def simulate(self, phase: ArrayLike, velocity: ArrayLike, impacts: int) -> ImpactSequence:

@@ -12,7 +12,7 @@ from bouncing_ball.beyond.periodic.curves import Degenerate, Window, curve
 from bouncing_ball.beyond.periodic.following import STEPS, State, follow
 from bouncing_ball.beyond.periodic.special import Special, flight_margin
 from bouncing_ball.beyond.periodic.switching import of_impact, of_motion
-from bouncing_ball.errors import ModelError
+from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.paper.contact.damping import damping_ratio
 from bouncing_ball.paper.contact.permanent_contact import permanent_contact_threshold
 from bouncing_ball.paper.orbits import restitution_branch as formulas
@@ -96,6 +96,12 @@ def test_grazing_orbits_are_a_curve():
     margins = flight_margin(found.orbits, found.branch.points)
     # At grazing the minimum may be negative by rounding.
     assert np.abs(margins).max() < 1e-12
+
+
+def test_a_period_doubling_starts_no_curve_of_saddle_nodes(refusal):
+    start = special("restitution", Special.PERIOD_DOUBLING, 2.0)
+    with refusal(NoOrbitError, "the start is no saddle-node; Newton's method leads to another"):
+        curve(start, Special.SADDLE_NODE, "restitution")
 
 
 def test_a_curve_of_an_unknown_kind_or_parameter_is_refused(refusal):

@@ -66,6 +66,11 @@ class Window(NamedTuple):
     high: float
 
 
+# A start that is farther from the corrected special orbit is none of its kind. Special orbits are
+# located to 1e-12, and those before a singular end of a branch to about 1e-5.
+_ANOTHER = 1e-3
+
+
 def condition_of(orbits: PeriodicOrbits, kind: Special) -> Condition:
     """g and its gradient for a kind of special orbit.
 
@@ -163,6 +168,9 @@ def curve(
     windows = {along: along_window, across: across_window}
     limits = _limits(state.orbits, windows)
     first = _corrected(problem, state.y)
+    if np.linalg.norm(first - state.y) > _ANOTHER:
+        found = State(state.orbits, first)
+        raise NoOrbitError(f"the start is no {kind}; Newton's method leads to another {found!r}")
     with np.errstate(all="ignore"):
         try:
             branch = continue_both_ways(

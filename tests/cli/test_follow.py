@@ -49,9 +49,11 @@ def test_a_mistake_is_one_line(refused, options, words):
 
 
 @pytest.mark.parametrize(("window", "words"), [
-    (("--low", "0.6", "--high", "0.9"), "restitution starts at 0.5, which is not between --low"),
-    (("--low", "0.9", "--high", "0.1"), "restitution starts at 0.5, which is not between --low"),
+    (("--low", "0.6", "--high", "0.9"), "starts at restitution = 0.5, which is not between --low"),
+    (("--low", "0.9", "--high", "0.1"), "starts at restitution = 0.5, which is not between --low"),
     (("--low", "0.4"), "--low and --high are needed together"),
+    (("--along-low", "2", "--along-high", "3"), "1.52682, which is not between --along-low 2 and"),
+    (("--along-high", "3"), "--along-low and --along-high are needed together"),
 ])  # fmt: skip
 def test_a_curve_starts_between_its_limits(refused, window, words):
     kind = ("--kind", "period-doubling", "--across", "restitution")

@@ -62,6 +62,8 @@ _OF_IMPACTS = {
     "special_point": Variable("number of the last point of the branch before the special orbit"),
 }
 _ALL = observables.VARIABLES | _OF_IMPACTS | VARIABLES
+BRANCH, CURVE = 500, 500
+"""Default of the largest number of points of a branch, and of a curve in each direction."""
 
 
 class FollowedBranch(Drawn):
@@ -226,7 +228,7 @@ def follow(
     *,
     along: str = LAMBDA,
     to: float | None = None,
-    points: Points = 2000,
+    points: Points = BRANCH,
 ) -> FollowedBranch:
     """The branch of a periodic orbit along a parameter, up to a value or to the end of the branch.
 
@@ -320,7 +322,7 @@ def curve(
     across: str,
     along_range: Sequence[float] | None = None,
     across_range: Sequence[float] | None = None,
-    points: Points = 1000,
+    points: Points = CURVE,
 ) -> SpecialCurve:
     """The curve of special orbits in two parameters, through one of them.
 

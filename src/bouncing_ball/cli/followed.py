@@ -9,7 +9,14 @@ from bouncing_ball.beyond.periodic.following import State
 from bouncing_ball.beyond.periodic.special import MEANINGS, Special
 from bouncing_ball.calls import followed as calls
 from bouncing_ball.calls import periodic
-from bouncing_ball.calls.arguments import AMPLITUDE_OF_ORBIT, FAMILY, FINITE, STATE, SideName
+from bouncing_ball.calls.arguments import (
+    AMPLITUDE_OF_ORBIT,
+    FAMILY,
+    FINITE,
+    POINTS,
+    STATE,
+    SideName,
+)
 from bouncing_ball.cli.impact import add_ball, ball_of
 from bouncing_ball.cli.options import (
     Parser,
@@ -84,17 +91,21 @@ def follow(
 
 
 def _window(
-    low: float | None, high: float | None, name: str, start: float | None
+    low: float | None, high: float | None, options: tuple[str, str], name: str, start: float | None
 ) -> tuple[float, float] | None:
-    """The range of the second parameter, which contains its value at the start of the curve."""
+    """The range of a parameter of a curve, which contains its value at the start of the curve.
+
+    ``options`` are the names of the two limits.
+    """
     if low is None and high is None:
         return None
+    lower, upper = (f"{{{each}}}" for each in options)
     if low is None or high is None:
-        raise ParameterError("{low} and {high} are needed together")
+        raise ParameterError(f"{lower} and {upper} are needed together")
     if start is not None and not low <= start <= high:
         raise ParameterError(
-            f"{{across}} {option(name)[2:]} starts at {start:g}, which is not between "
-            f"{{low}} {low:g} and {{high}} {high:g}"
+            f"the curve starts at {option(name)[2:]} = {start:g}, which is not between "
+            f"{lower} {low:g} and {upper} {high:g}"
         )
     return low, high
 
@@ -148,6 +159,9 @@ def curve_options(parser: Parser) -> None:
     parser.add_argument(option("across"), metavar="NAME", required=True, help=_NAME)
     add_number(parser, "low", FINITE, "Smallest value of the second parameter.")
     add_number(parser, "high", FINITE, "Largest value of the second parameter.")
+    add_number(parser, "along_low", FINITE, "Smallest value of the first parameter on the curve.")
+    add_number(parser, "along_high", FINITE, "Largest value of the first parameter on the curve.")
+    add_number(parser, "points", POINTS, meanings(calls.curve)["points"], default=calls.CURVE)
     add_ball(parser)
 
 
@@ -157,6 +171,9 @@ def curve(
     across: str,
     low: float | None,
     high: float | None,
+    along_low: float | None,
+    along_high: float | None,
+    points: int,
     along: str,
     to: float,
     doublings: int,
@@ -180,15 +197,25 @@ def curve(
     name = across.replace("-", "_")
     special = found.first(words)
     other = name not in special.orbits.along
-    window = _window(low, high, name, special.orbits.family.values.get(name) if other else None)
-    traced = calls.curve(special, kind=words, across=name, across_range=window)
+    start = special.orbits.family.values.get(name) if other else None
+    first = along.replace("-", "_")
+    traced = calls.curve(
+        special,
+        kind=words,
+        across=name,
+        along_range=_window(
+            along_low, along_high, ("along_low", "along_high"), first, special.parameters[first]
+        ),
+        across_range=_window(low, high, ("low", "high"), name, start),
+        points=points,
+    )
     if plot is not None:
         traced.plot(plot)
     ends = [str(reason) for reason in traced.end_reason.values]
     rows = [traced.isel(special=k) for k in range(traced.sizes["special"])]
     places = [
         {"kind": str(Degenerate(str(row.special_kind.values)))}
-        | {each: float(row[f"special_{each}"]) for each in (along.replace("-", "_"), name)}
+        | {each: float(row[f"special_{each}"]) for each in (first, name)}
         for row in rows
     ]
     return {"orbits": places, "points": traced.sizes["point"], "start": ends[0], "end": ends[1]}

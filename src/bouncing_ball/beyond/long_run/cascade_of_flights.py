@@ -30,10 +30,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
+from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.periodic.family import AMPLITUDE, Family
 from bouncing_ball.beyond.periodic.problem import PeriodicOrbits
 from bouncing_ball.beyond.periodic.release import release_condition
-from bouncing_ball.beyond.periodic.special import flight_margin
 from bouncing_ball.errors import Range, require
 from bouncing_ball.numerics.corrector import NewtonSettings, newton
 from bouncing_ball.paper.contact.permanent_contact import permanent_contact_threshold
@@ -51,6 +51,8 @@ _STEP = 1.2
 # On a weakly damped contact the slope of coarse steps is that of the oscillation that is left from
 # the last contact, and may have the wrong sign.
 _GUESSES = ((1, 1.0), (1, 0.0), (1, -1.0), (3, 1.0))
+# Number of impacts within which a ball must be on its orbit.
+_IMPACTS = 250
 _SETTINGS = NewtonSettings(max_iterations=8)
 
 
@@ -203,7 +205,7 @@ def openings(damping_ratio: ArrayLike, frequency_ratio: np.ndarray, most: int) -
     """The openings of contacts with the displacement release, shape (ζ, most, ϖ).
 
     The openings are followed from the limit of stiff contacts down to the first ϖ at which no
-    stable orbit is found.
+    stable orbit is found, or at which simulated balls show that it is not the next opening.
 
     Parameters
     ----------
@@ -222,7 +224,8 @@ def openings(damping_ratio: ArrayLike, frequency_ratio: np.ndarray, most: int) -
     zeta = np.asarray(damping_ratio, dtype=float)
     shape = (zeta.size, most, frequency_ratio.size)
     found = Openings(np.full(shape, np.nan), np.full(shape, np.nan))
-    threshold = permanent_contact_threshold(frequency_ratio, zeta[:, np.newaxis])
+    contact = SpringDamper(frequency_ratio, zeta[:, np.newaxis])
+    threshold = permanent_contact_threshold(frequency_ratio, contact.damping_ratio)
     last = threshold
     for k in range(most):
         limit = np.stack([_stiff_openings(z, most)[k] for z in zeta])
@@ -230,12 +233,39 @@ def openings(damping_ratio: ArrayLike, frequency_ratio: np.ndarray, most: int) -
         for j in range(frequency_ratio.size - 1, -1, -1):
             place = _next(zeta, frequency_ratio[j], place)
             found.amplitude[:, k, j], found.multiplier[:, k, j] = place.opening
-        # If two openings coincide in Λ, only the first is kept.
-        above_last = found.amplitude[:, k] - last > _ABOVE * (found.amplitude[:, k] - threshold)
-        found.amplitude[:, k][~above_last] = np.nan
-        found.multiplier[:, k][~above_last] = np.nan
-        last = found.amplitude[:, k]
+        amplitude = found.amplitude[:, k]
+        known = _is_next(contact, k + 1, threshold, last, amplitude)
+        # From the first ϖ on at which another opening is found, this one is no longer followed.
+        known = np.logical_and.accumulate(known[:, ::-1], axis=1)[:, ::-1]
+        amplitude[~known] = np.nan
+        found.multiplier[:, k][~known] = np.nan
+        last = amplitude
     return found
+
+
+def _is_next(
+    contact: SpringDamper,
+    flights: int,
+    threshold: np.ndarray,
+    last: np.ndarray,
+    amplitude: np.ndarray,
+) -> np.ndarray:
+    """Whether simulated balls have so many flights from the last opening up to the present one, and
+    one more above it. All arrays have the shape of the contacts, (ζ, ϖ).
+    """
+    # If two openings coincide in Λ, only the first is kept.
+    above = _ABOVE * (amplitude - threshold)
+    exists = amplitude - last > above
+    rises = np.stack([last + 2 * above, (last + amplitude) / 2, amplitude - above])
+    places = np.where(exists, [*rises, amplitude + above], 1.0)
+    # The ball is set down behind the top of the table.
+    phase = np.pi / 2 + 3 / contact.frequency_ratio
+    velocity = places * np.cos(phase) - 0.1 / np.square(contact.frequency_ratio)
+    model = SpringDamperModel(contact)
+    found = final_motions(model, places, phase, velocity, impacts=_IMPACTS)
+    expected = flights + np.array([0, 0, 0, 1])
+    same = (found.periods == 1) & (found.impacts == expected[:, np.newaxis, np.newaxis])
+    return exists & same.all(axis=0)
 
 
 class _Place(NamedTuple):
@@ -287,16 +317,12 @@ def _stepped(zeta: np.ndarray, ratio: float, place: _Place) -> _Place:
     guess = origin + orbits.unit * (place.scaled + ahead * place.rise)
     with np.errstate(all="ignore"):
         solved = newton(orbits, guess, lambda y: release_condition(orbits, y), _SETTINGS)
-        y = solved.point
-        durations = orbits.durations(y)
-        forward = ((durations > 0) & (orbits.intervals(y) > durations)).all(axis=-1)
-        multiplier = orbits.monodromy(y).spectral_radius()
-        # The equations continue a flight that lands earlier. At an opening with a multiplier
-        # above 1 the orbit has turned back at a saddle-node.
-        exists = solved.converged & forward & (flight_margin(orbits, y) > 0) & (multiplier < 1)
-    scaled = np.where(exists[:, np.newaxis], (y - origin) / orbits.unit, np.nan)
-    amplitude = np.where(exists, orbits.values(y)[AMPLITUDE], np.nan)
-    opening = Openings(amplitude, np.where(exists, multiplier, np.nan))
+        multiplier = orbits.monodromy(solved.point).spectral_radius()
+    # With a multiplier above 1 the orbit has turned back at a saddle-node.
+    exists = solved.converged & (multiplier < 1)
+    y = np.where(exists[:, np.newaxis], solved.point, np.nan)
+    scaled = (y - origin) / orbits.unit
+    opening = Openings(orbits.values(y)[AMPLITUDE], np.where(exists, multiplier, np.nan))
     return _Place(ratio, scaled, (scaled - place.scaled) / ahead, opening)
 
 

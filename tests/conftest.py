@@ -279,10 +279,13 @@ def continuation_settings():
 @pytest.fixture
 def short_runs(monkeypatch):
     """The calculator follows few impacts: long runs are those of calculator/test_motion.py."""
+    from bouncing_ball.beyond.calculator import motion
+
     for impacts in ("_IMPACTS", "_IMPACTS_OF_LAW"):
-        monkeypatch.setattr(f"bouncing_ball.beyond.calculator.motion.{impacts}", 20)
+        monkeypatch.setattr(motion, impacts, 20)
+    few = motion.Sampling(unit=4, usual=4, impacts=(8,), before=4)
     for samples in ("_SAMPLES", "_SAMPLES_OF_LAW"):
-        monkeypatch.setattr(f"bouncing_ball.beyond.calculator.motion.{samples}", (4, 1, 12, 4))
+        monkeypatch.setattr(motion, samples, few)
 
 
 CHROMIUM = next(

@@ -121,15 +121,17 @@ def diagram(
     )
     if plot is not None:
         found.plot(plot)
-    at = (found.isel(amplitude=k) for k in range(points))
-    return {"diagram": [{"amplitude": float(x.amplitude), "motions": _shares(x)} for x in at]}
+    # Lists over the amplitudes, because it takes long to select from a dataset hundreds of times.
+    ends = zip(*(found[name].values.tolist() for name in _MOTION), strict=True)
+    at = zip(found.amplitude.values.tolist(), ends, strict=True)
+    return {"diagram": [{"amplitude": lam, "motions": _shares(*end)} for lam, end in at]}
 
 
-def _shares(at: long_run.OrbitDiagram) -> list[Answer]:
+def _shares(*ends: list[Any]) -> list[Answer]:
     """The motions at one amplitude, the most frequent first, with the reason of each that is
-    undecided.
+    undecided; ``ends`` has a list over the balls for each of :data:`_MOTION`.
     """
-    each = Counter(zip(*(at[name].values.tolist() for name in _MOTION), strict=True))
+    each = Counter(zip(*ends, strict=True))
     return [
         {name: x for name, x in zip(_MOTION, motion, strict=True) if x != ""}
         | {"share": number / each.total()}

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.beyond.calculator.motion import height_and_power
 from bouncing_ball.beyond.exhibits.motion_samples import three_models
 from bouncing_ball.beyond.laws.hertzian import LinearHuntCrossley
 from bouncing_ball.beyond.long_run import means as work
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.long_run.means import means
+from bouncing_ball.beyond.long_run.sampled_means import Starts, follow, start
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
@@ -32,9 +32,9 @@ def test_height_and_power_are_those_of_quadrature(r, amplitude, ratio, release, 
     for model in three_models(np.array(r), ratio, release)[::2]:
         found, of = found_and_means(model, amplitude)
         monkeypatch.setattr(work, "has_closed_form", lambda law: False)
-        impacts = (int(found.impacts) or 100) + 1
-        start = float(found.end_phase), float(found.end_velocity)
-        wanted = height_and_power(model.simulate(amplitude, *start, impacts))
+        last = Starts(np.array([found.end_phase]), np.array([found.end_velocity]))
+        _, (time, *sums) = follow(*start(model, amplitude, last), int(found.impacts) or 100)
+        wanted = np.ravel(sums / time)
         assert [float(x) for x in of[1:3]] == pytest.approx(wanted, rel=1e-10)
         monkeypatch.undo()
 

@@ -143,7 +143,7 @@ def design(
         "5 %" or 0.05.
     balls
         Largest number of balls whose means over time are compared if the motion does not repeat.
-        By default it takes some seconds.
+        By default it takes about a second.
     engine
         Physics engine for which the contact is written: generic, mujoco, lammps, liggghts,
         pybullet, drake or mercurydpm. The contact then ends as in this engine.

@@ -204,7 +204,7 @@ class Question:
         Largest relative error of the restitution model's quantity against the contact's.
     balls
         Largest number of balls whose means over time are compared if the motion does not repeat;
-        None for a number that takes about three seconds.
+        None for a number that takes about a second.
 
     Raises
     ------

@@ -6,14 +6,18 @@ in the same way in both models are compared by their greatest height. Other moti
 means over time of the height, and of the power that the table transfers to the ball
 (:mod:`bouncing_ball.beyond.long_run.means`).
 
-In a chaotic motion the balls of both models start alike, and each gives a pair of means. The error
-of the ratio of both means follows from the differences within the pairs, so that fluctuations which
-both models share cancel. For independent means it is smaller than the sum of both errors, by a
-factor of √2 if these are equal. Balls are added until the difference is known to be within or
-beyond the tolerance, up to a number of balls that takes about three seconds.
+A motion that repeats has the mean of one repetition. The mean of another motion is that of many
+balls that start beside its impacts (:mod:`bouncing_ball.beyond.long_run.sampled_means`). The sample
+grows until the difference between both models is known to be within or beyond the tolerance, or
+until it has as many balls and impacts as take about a second. The samples of both models are
+independent, because balls that start alike have nothing in common after the first impacts, which
+are left out. If rounding errors decide after which lap a ball locks, the mean is that of the lap
+computed, and its error that of a sample of as many impacts.
 """
 
-from collections.abc import Iterable, Mapping
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import repeat
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,9 +26,19 @@ from bouncing_ball.beyond.calculator.case import PhysicalCase
 from bouncing_ball.beyond.calculator.families import prediction_error
 from bouncing_ball.beyond.calculator.results import Family, FinalMotion, Mean
 from bouncing_ball.beyond.long_run.destination import final_motions
-from bouncing_ball.beyond.long_run.means import over_steps
 from bouncing_ball.beyond.long_run.motions import Kind
-from bouncing_ball.paper.motion.sequence import ImpactSequence, Status
+from bouncing_ball.beyond.long_run.sampled_means import (
+    Estimate,
+    Look,
+    Starts,
+    follow,
+    looks,
+    quantile,
+    sections,
+    start,
+    sums_at,
+)
+from bouncing_ball.paper.motion.sequence import ImpactSequence
 
 # Relative change of an orbit's impact velocity for a start beside the orbit.
 _BESIDE = 1e-3
@@ -32,15 +46,30 @@ _BESIDE = 1e-3
 # time, which takes several milliseconds for an impact, so that it is followed for fewer.
 _IMPACTS = 600
 _IMPACTS_OF_LAW = 250
-# Balls in a round, the number of rounds unless a number of balls is asked for, impacts of each
-# ball, and the number of first impacts left out of the means. A step of a contact law takes much
-# longer than one of a linear contact, though hardly longer for many balls than for a few.
-_SAMPLES = (256, 6, 500, 100)
-_SAMPLES_OF_LAW = (128, 2, 80, 40)
+
+
+class Sampling(NamedTuple):
+    """The samples of balls: the number of balls is rounded up to multiples of ``unit``; unless one
+    is asked for it is ``usual``. The means are examined after each of the numbers of ``impacts`` of
+    a ball. At least ``before`` first impacts are left out.
+    """
+
+    unit: int
+    usual: int
+    impacts: tuple[int, ...]
+    before: int
+
+
+# A step of a contact law takes much longer than one of a linear contact, though hardly longer for
+# many balls than for a few.
+_SAMPLES = Sampling(256, 4096, (25, 75, 150), 50)
+_SAMPLES_OF_LAW = Sampling(128, 256, (20, 40), 40)
+# An impact multiplies the energy by r² about, and so this number times 1/(1 - r) impacts by less
+# than e⁻⁴; but so many impacts are not left out next to r = 1.
+_FORGOTTEN = 2.0
+_MOST_BEFORE = 400
 # Quantities of which means over time are compared.
 _MEANS = ("height", "power")
-# Quantile of Student's distribution for a confidence interval of 95 % with 128 balls or more.
-_STUDENT = 1.98
 
 
 class _Kind(NamedTuple):
@@ -58,44 +87,48 @@ class _Start(NamedTuple):
     velocity: float
 
 
+class _End(NamedTuple):
+    """The kind of the motion on which a ball ends, impacts of this motion in order, and whether
+    rounding errors decide on its period.
+    """
+
+    kind: _Kind
+    impacts: Starts
+    is_unresolved: bool = False
+
+    @property
+    def is_sampled(self) -> bool:
+        """Whether the means of the motion are those of a sample of balls."""
+        return self.kind.impacts == 0 and not self.is_unresolved
+
+
 def of_family(
     case: PhysicalCase, family: Family, tolerance: float, balls: int | None = None
 ) -> FinalMotion:
     """The motion of a ball that starts on the orbit of a family, or beside an unstable orbit.
 
-    Balls are added to the means over time until these decide about the tolerance, up to ``balls``,
-    rounded up to whole rounds.
+    The sample for means over time grows until these decide about the tolerance, up to ``balls``,
+    rounded up to multiples of 256, or of 128 for a contact law.
     """
     if family.exists and family.is_stable and family.is_admissible:
         return FinalMotion(str(Kind.ORBIT), family.n, 1, laid=_laid(case, family))
     orbit = _first_orbit(case, family.n)
     if orbit is not None and _is_elliptic(case, family, orbit):
         return FinalMotion(str(Kind.UNDECIDED), 0, 0)
-    start = _start(case, orbit)
-    followed = _followed(case)
+    first = _start(case, orbit)
     # The exact model and the restitution model.
-    found = {
-        name: final_motions(
-            case.models[name], case.table.amplitude, start.phase, start.velocity, impacts=followed
-        )
-        for name in list(case.models)[:2]
-    }
-    kinds = {
-        name: _Kind(str(motion.kind), int(motion.periods), int(motion.impacts))
-        for name, motion in found.items()
-    }
+    ends = {name: _end(case, name, first) for name in list(case.models)[:2]}
     ideal = family.standing["restitution"]
     if ideal.exists and ideal.is_stable and ideal.is_admissible:
         # If the orbit is weakly stable, the mapper may not recognise that the motion repeats.
-        kinds["restitution"] = _Kind(str(Kind.ORBIT), family.n, 1)
-    exact, simple = kinds.values()
+        ends["restitution"] = _on_orbit(case, family.n)
+    exact, simple = (end.kind for end in ends.values())
     values: dict[str, Any] = {}
     rests = Kind.PERMANENT_CONTACT in (exact.kind, simple.kind)
     if exact == simple and exact.periods > 0 and not rests:
-        values["greatest"] = {name: _greatest(case, name, start, x) for name, x in found.items()}
+        values["greatest"] = {name: _greatest(case, name, end) for name, end in ends.items()}
     elif not rests:
-        lengths = {name: kind.impacts for name, kind in kinds.items()}
-        values = _compared(case, lengths, start, tolerance, balls)
+        values = _compared(case, ends, tolerance, balls)
     return FinalMotion(
         kind=exact.kind,
         periods=exact.periods,
@@ -157,113 +190,139 @@ def _tops(sequence: ImpactSequence) -> np.ndarray:
     return sequence.release_displacement + lift + rise * rise / 2
 
 
-def _greatest(case: PhysicalCase, name: str, start: _Start, motion: Any) -> float:
+def _end(case: PhysicalCase, name: str, first: _Start) -> _End:
+    """The motion on which a ball of a model ends."""
+    lam = case.table.amplitude
+    path = np.empty((3, _followed(case)))
+    found = final_motions(case.models[name], lam, *first, impacts=path.shape[1], path=path)
+    kind = _Kind(str(found.kind), int(found.periods), int(found.impacts))
+    followed = int(found.followed)
+    seen = path[1:, :followed]
+    unresolved = bool(found.is_unresolved())
+    if unresolved:
+        # The motion begins with the impact after which the ball forgot what was before.
+        began = np.flatnonzero(seen[0] == found.end_phase)
+        of_motion = seen[:, began[0] if began.size else followed // 2 :]
+    else:
+        last = np.array([[found.end_phase], [found.end_velocity]])
+        of_motion = np.concatenate([seen[:, followed // 2 :], last], axis=1)
+    return _End(kind, Starts.of_path(of_motion, lam), unresolved)
+
+
+def _on_orbit(case: PhysicalCase, n: int) -> _End:
+    """The n-T orbit of the restitution model."""
+    orbit = case.models["restitution"].orbit(n, case.table.amplitude)
+    impact = Starts(np.atleast_1d(orbit.phase), np.atleast_1d(orbit.impact_velocity))
+    return _End(_Kind(str(Kind.ORBIT), n, 1), impact)
+
+
+def _greatest(case: PhysicalCase, name: str, end: _End) -> float:
     """Greatest height of a motion that repeats, in m."""
-    impacts = int(motion.followed) + 2 * max(int(motion.impacts), 1)
-    model = case.models[name]
-    found = model.simulate(case.table.amplitude, start.phase, start.velocity, impacts)
-    last = _tops(found)[-1 - max(int(motion.impacts), 1) :]
+    once = end.impacts.last()
+    found = case.models[name].simulate(
+        case.table.amplitude, once.phase[0], once.velocity[0], 2 * end.kind.impacts + 1
+    )
+    last = _tops(found)[-1 - end.kind.impacts :]
     return float(np.nanmax(last)) * case.table.length
 
 
 def _compared(
-    case: PhysicalCase,
-    lengths: Mapping[str, int],
-    start: _Start,
-    tolerance: float,
-    most: int | None,
+    case: PhysicalCase, ends: Mapping[str, _End], tolerance: float, most: int | None
 ) -> dict[str, Any]:
-    """Means of both models over balls that start alike, in m and W, and their relative errors.
-
-    ``lengths`` is the number of impacts after which each motion repeats, 0 if it does not. Motions
-    that repeat are averaged over whole repetitions: all balls end on the same motion, so that the
-    error of a part of a repetition would not show in their scatter.
-    """
-    balls, usual, impacts, before = _SAMPLES if case.law is None else _SAMPLES_OF_LAW
-    rounds = usual if most is None else -(-most // balls)
-    # However many balls there are, the last one starts as far from the orbit.
-    beside = 1 + _BESIDE * usual * np.arange(1, rounds * balls + 1) / (rounds * balls)
-    # Means of height and power for the balls so far, shape (model, quantity, ball).
-    means = np.zeros((2, 2, 0))
-    for velocity in np.split(start.velocity * beside, rounds):
-        found = []
-        for name, length in lengths.items():
-            repeats = max(length, 1)
-            counted = max((impacts - 1 - before) // repeats, 1) * repeats
-            run = case.models[name].simulate(
-                case.table.amplitude, start.phase, velocity, before + counted + 1
-            )
-            if np.any(run.status != Status.BOUNCING):
-                # Some balls come to rest, so that the means do not exist.
-                return {"mean_height": dict.fromkeys(lengths), "mean_power": dict.fromkeys(lengths)}
-            found.append(height_and_power(run, before))
-        means = np.concatenate([means, np.array(found)], axis=-1)
-        error, margin = _error_of_means(*means)
+    """Means of both models, in m and W, and the relative errors of the second model."""
+    sampling = _SAMPLES if case.law is None else _SAMPLES_OF_LAW
+    balls = sampling.usual if most is None else -(-most // sampling.unit) * sampling.unit
+    samples = _looks(sampling, balls, ends.values())
+    sums = (_sums(case, name, end, samples) for name, end in ends.items())
+    for look, *of_models in zip(samples, *sums, strict=False):
+        if np.any(np.isnan(of_models[0])) or np.any(np.isnan(of_models[1])):
+            # Some balls come to rest, so that the means do not exist.
+            return {"mean_height": dict.fromkeys(ends), "mean_power": dict.fromkeys(ends)}
+        exact, simple = (
+            _estimate(end, each) for end, each in zip(ends.values(), of_models, strict=True)
+        )
+        factor = quantile(look.level, min(exact.freedom, simple.freedom))
+        error, margin = _error_of_means(exact, simple, factor)
         size = np.abs(error)
         if np.all(size + margin <= tolerance) or np.any(size - margin > tolerance):
             break
     table = case.table
     watt = case.mass * table.gravity**2 / table.angular_frequency
+    means = dict(zip(ends, (exact, simple), strict=True))
     return {
-        "mean_height": _in_si(means[:, 0], table.length, lengths),
-        "mean_power": _in_si(means[:, 1], watt, lengths),
+        "mean_height": _in_si(means, 0, table.length, factor),
+        "mean_power": _in_si(means, 1, watt, factor),
         "mean_error": {
             name: Mean(float(error[k]), float(margin[k])) for k, name in enumerate(_MEANS)
         },
-        "balls": means.shape[-1],
+        "balls": look.balls,
     }
 
 
-def _error_of_means(exact: np.ndarray, simple: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Relative errors of the simple model's means against the exact ones, and their half-widths.
+def _looks(sampling: Sampling, balls: int, ends: Iterable[_End]) -> list[Look]:
+    """The sizes of the sample at which the means are examined.
 
-    The arguments have the shape (quantity, ball); equal balls of both models start alike.
+    Without a sample there is one look at one ball. Beside a lap on which rounding errors decide, a
+    larger sample would not make the interval smaller.
     """
-    error = prediction_error(simple.mean(axis=-1), exact.mean(axis=-1))[:, np.newaxis]
-    differences = (simple - (1 + error) * exact) / exact.mean(axis=-1, keepdims=True)
-    return error[:, 0], _half_width(differences)
+    ends = list(ends)
+    if not any(end.is_sampled for end in ends):
+        return looks(1, 1, (1,))
+    if any(end.is_unresolved for end in ends):
+        return looks(sampling.unit, sampling.unit, sampling.impacts[-1:])
+    return looks(balls, sampling.usual, sampling.impacts)
 
 
-def _in_si(samples: np.ndarray, unit: float, models: Iterable[str]) -> dict[str, Mean]:
-    """The mean over the balls with its half-width for each model, from shape (model, ball)."""
-    middle = (samples.mean(axis=-1) * unit).tolist()
-    width = (_half_width(samples) * unit).tolist()
-    return {name: Mean(*pair) for name, *pair in zip(models, middle, width, strict=True)}
-
-
-def _half_width(samples: np.ndarray) -> np.ndarray:
-    """Half the width of the 95 % confidence interval of a mean over the last axis."""
-    return _STUDENT * samples.std(axis=-1, ddof=1) / np.sqrt(samples.shape[-1])
-
-
-def height_and_power(sequence: ImpactSequence, before: int = 0) -> tuple[np.ndarray, np.ndarray]:
-    """Means over time of each ball's height and of the power that the table transfers to it.
-
-    The means are dimensionless, have the shape of the balls, and extend from impact number
-    ``before`` to the last impact recorded.
-
-    Examples
-    --------
-    The mean height of an elastic ball on a table at rest is two thirds of its greatest height, and
-    the ball receives no power:
-
-    >>> from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
-    >>> height, power = height_and_power(RestitutionModel(1.0).simulate(0.0, 0.0, -2.0, 5))
-    >>> round(float(height), 12), round(float(power), 12)
-    (1.333333333333, 0.0)
+def _sums(case: PhysicalCase, name: str, end: _End, samples: list[Look]) -> Iterator[np.ndarray]:
+    """The sums over the motion of a model at each look: of the balls of a sample, of sections of a
+    lap, or of one repetition.
     """
-    counted = slice(before, -1)
-    time = sequence.time
-    duration = sequence.contact_duration[counted]
-    phase = sequence.phase[counted]
-    sums = over_steps(
-        sequence.contact,
-        sequence.amplitude,
-        duration,
-        phase=np.array([phase, phase + duration]),
-        gap=np.array([sequence.displacement, sequence.release_displacement])[:, counted],
-        rate=np.array([sequence.relative_velocity, sequence.relative_bounce_velocity])[:, counted],
-        flown=np.diff(time[before:], axis=0) - duration,
-    )
-    height, power = (np.sum(each, axis=0) / (time[-1] - time[before]) for each in sums)
-    return height, power
+    lam = case.table.amplitude
+    model = case.models[name]
+    impacts = end.impacts
+    if end.is_sampled:
+        sampling = _SAMPLES if case.law is None else _SAMPLES_OF_LAW
+        starts = impacts.beside(samples[-1].balls, lam, _BESIDE)
+        return sums_at(samples, starts, model, lam, _before(case, sampling.before))
+    if end.is_unresolved:
+        return repeat(sections(*start(model, lam, impacts.first()), impacts.phase.size))
+    _, once = follow(*start(model, lam, impacts.last()), end.kind.impacts)
+    return repeat(once)
+
+
+def _before(case: PhysicalCase, least: int) -> int:
+    """Number of first impacts that are left out."""
+    loss = 1 - float(case.contact.restitution)
+    forgotten = _MOST_BEFORE if loss * _MOST_BEFORE < _FORGOTTEN else math.ceil(_FORGOTTEN / loss)
+    return max(least, forgotten)
+
+
+def _estimate(end: _End, sums: np.ndarray) -> Estimate:
+    """The means of a motion and their errors.
+
+    The lap on which a ball locks is another one with other rounding errors, and so differs from the
+    true one as two samples of its impacts do.
+    """
+    found = Estimate.of(sums)
+    return found._replace(error=np.sqrt(2) * found.error) if end.is_unresolved else found
+
+
+def _error_of_means(
+    exact: Estimate, simple: Estimate, factor: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Relative errors of the simple model's means against the exact ones, and their half-widths:
+    standard errors times a factor.
+    """
+    error = prediction_error(simple.mean, exact.mean)
+    spread = np.hypot(simple.error, (1 + error) * exact.error) / np.abs(exact.mean)
+    return error, factor * spread
+
+
+def _in_si(
+    means: Mapping[str, Estimate], quantity: int, unit: float, factor: float
+) -> dict[str, Mean]:
+    """The mean of a quantity in each model with its half-width."""
+    return {
+        name: Mean(float(each.mean[quantity]) * unit, factor * float(each.error[quantity]) * unit)
+        for name, each in means.items()
+    }

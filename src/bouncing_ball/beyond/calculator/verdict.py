@@ -157,6 +157,11 @@ def _larger_sample(motion: FinalMotion, tolerance: float) -> str:
     The number is rounded up to two digits.
     """
     assert motion.mean_error is not None and motion.balls is not None
+    ends = (motion.kind, motion.periods), (motion.restitution_kind, motion.restitution_periods)
+    if (Kind.LOCKED, 0) in ends:
+        return (
+            "no larger sample would decide, as rounding errors decide after which lap a ball locks"
+        )
     shares = [
         error.half_width / abs(abs(error.value) - tolerance)
         for error in motion.mean_error.values()

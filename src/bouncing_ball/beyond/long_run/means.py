@@ -186,7 +186,7 @@ def _add_up(dynamics: Dynamics, impact: Impact, impacts: np.ndarray, total: np.n
         change = dynamics.jacobian(impact, departure, after, passed)
         along, across, growth = _grown(*change.apply(along, across))
         flights = np.where(departure.settling > 0, np.inf, 1.0)
-        height, work = _step(dynamics, impact, departure, after, passed)
+        height, work = over_step(dynamics, impact, departure, after, passed)
         total[:, ball] += np.stack([passed, flights + 0 * passed, height, work, growth])
         impact = after
         done += 1
@@ -201,7 +201,7 @@ def _grown(along: np.ndarray, across: np.ndarray) -> tuple[np.ndarray, np.ndarra
     return along / length, across / length, np.log(length)
 
 
-def _step(
+def over_step(
     dynamics: Dynamics, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """∫ z dτ and the work from one impact to the next, or from one instant to the next in the

@@ -16,7 +16,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize.elementwise import find_root
 
 from bouncing_ball.numerics.arrays import blocks
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
@@ -100,6 +99,8 @@ class _Curves(NamedTuple):
         ``interval`` holds the index of the interval for each contact, and ``more`` further
         arguments of the function. The root is NaN where ``found`` is False.
         """
+        # scipy.optimize takes a third of a second to import, and most calls need no bifurcation.
+        from scipy.optimize.elementwise import find_root
 
         def at_excess(excess, which, *more):
             return function(self.take(which).point(excess), *more)

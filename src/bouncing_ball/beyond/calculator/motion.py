@@ -234,7 +234,7 @@ def _compared(
     balls = sampling.usual if most is None else -(-most // sampling.unit) * sampling.unit
     without_means = {"mean_height": dict.fromkeys(ends), "mean_power": dict.fromkeys(ends)}
     if not all(end.impacts.phase.size for end in ends.values()):
-        # Only a contact was followed that never ended, and that had resumed below the table's level.
+        # The only contact that was followed had resumed below the table, and never ended.
         return without_means
     samples = _looks(sampling, balls, ends.values())
     sums = (_sums(case, name, end, samples) for name, end in ends.items())

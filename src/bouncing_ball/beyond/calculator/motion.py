@@ -232,12 +232,16 @@ def _compared(
     """Means of both models, in m and W, and the relative errors of the second model."""
     sampling = _SAMPLES if case.law is None else _SAMPLES_OF_LAW
     balls = sampling.usual if most is None else -(-most // sampling.unit) * sampling.unit
+    without_means = {"mean_height": dict.fromkeys(ends), "mean_power": dict.fromkeys(ends)}
+    if not all(end.impacts.phase.size for end in ends.values()):
+        # The only contact that was followed had resumed below the table, and never ended.
+        return without_means
     samples = _looks(sampling, balls, ends.values())
     sums = (_sums(case, name, end, samples) for name, end in ends.items())
     for look, *of_models in zip(samples, *sums, strict=False):
         if np.any(np.isnan(of_models[0])) or np.any(np.isnan(of_models[1])):
             # Some balls come to rest, so that the means do not exist.
-            return {"mean_height": dict.fromkeys(ends), "mean_power": dict.fromkeys(ends)}
+            return without_means
         exact, simple = (
             _estimate(end, each) for end, each in zip(ends.values(), of_models, strict=True)
         )

@@ -222,8 +222,9 @@ class Estimate(NamedTuple):
 
         Examples
         --------
-        >>> Estimate.of(np.array([[1.0, 3.0], [1.0, 3.0], [1.0, 5.0]])).mean.tolist()
-        [1.0, 1.5]
+        >>> found = Estimate.of(np.array([[1.0, 3.0], [1.0, 3.0], [1.0, 5.0]]))
+        >>> found.mean.tolist(), found.error.tolist(), found.freedom
+        ([1.0, 1.5], [0.0, 0.25], 1)
         """
         time, *integrals = sums
         total = time.sum()

@@ -22,6 +22,7 @@ from scipy.linalg import expm
 from scipy.optimize import brentq
 
 import bouncing_ball
+from bouncing_ball import patience
 from bouncing_ball.cli.main import main
 from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.datasets.variables import SHARED
@@ -34,6 +35,10 @@ pytest_plugins = ["taylor_ball", "article_texts"]
 # Programs that the tests start keep what they have compiled, whatever the shell says: else
 # each start takes twice as long.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
+# The lines of calls that take long depend on the load of the machine, and tests compare what is
+# printed. Tests of these lines set another time.
+patience._FIRST = 3600.0
 
 settings.register_profile(
     "deterministic",

@@ -13,7 +13,7 @@ import xarray as xr
 from bouncing_ball.beyond.periodic import curves, following, switching
 from bouncing_ball.beyond.periodic.curves import Curve, Window
 from bouncing_ball.beyond.periodic.family import AMPLITUDE as LAMBDA
-from bouncing_ball.beyond.periodic.family import Family
+from bouncing_ball.beyond.periodic.family import Family, nothing
 from bouncing_ball.beyond.periodic.following import Followed, State
 from bouncing_ball.beyond.periodic.simulation import is_admissible
 from bouncing_ball.beyond.periodic.special import Special
@@ -158,15 +158,22 @@ def family_of(model: ImpactModel, amplitude: float) -> Family:
         zeta = values["damping_ratio"]
         values["restitution"] = float(restitution_coefficient(zeta, Release.DISPLACEMENT))
 
-    def make(given: Mapping[str, Any]) -> ImpactModel:
-        of_law = dict(given)
-        if linear:
-            r = of_law.pop("restitution")
-            if not np.array_equal(r, values["restitution"]):
-                of_law["damping_ratio"] = damping_ratio(r)
-        return _with_numbers(model, of_law)
+    return Family(
+        make=lambda given: _with_numbers(model, given),
+        values=values,
+        ranges={name: _RANGES.get(name, FINITE) for name in values},
+        implied=_loss if linear else nothing,
+    )
 
-    return Family(make, values, {name: _RANGES.get(name, FINITE) for name in values})
+
+def _loss(varied: Mapping[str, Any]) -> dict[str, Any]:
+    """ζ of r, or r of ζ, of linear contacts."""
+    if "restitution" in varied:
+        return {"damping_ratio": damping_ratio(varied["restitution"])}
+    if "damping_ratio" in varied:
+        zeta = varied["damping_ratio"]
+        return {"restitution": restitution_coefficient(zeta, Release.DISPLACEMENT)}
+    return {}
 
 
 def _state(orbit: Any, along: str) -> State:
@@ -390,7 +397,10 @@ def _window(name: str, given: Sequence[float] | None) -> Window | None:
 
 def _attributes(orbits: Any) -> dict[str, Any]:
     """The values of the parameters that do not vary, and k and m."""
-    fixed = {name: x for name, x in orbits.family.values.items() if name not in orbits.along}
+    family = orbits.family
+    varied = {name: family.values[name] for name in orbits.along}
+    changing = varied.keys() | family.implied(varied).keys()
+    fixed = {name: x for name, x in family.values.items() if name not in changing}
     return {"impacts": orbits.impacts, "periods": int(orbits.periods), **fixed}
 
 

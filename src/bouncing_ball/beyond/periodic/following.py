@@ -14,7 +14,7 @@ from bouncing_ball.beyond.periodic.special import (
     loss_of_release,
     turns_apart,
 )
-from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.errors import NoOrbitError, ParameterError
 from bouncing_ball.numerics.continuation import (
     Branch,
     ContinuationError,
@@ -40,6 +40,9 @@ _NEAR = 0.1
 _CLOSER = 0.1
 _TRIES = 4
 _HALVES = "the two turns of the orbit become nearly equal"
+# If the tangent turns by a finite angle in the shortest step, the branch has a corner.
+_TURNS = "the tangent turns"
+_CORNER = "the branch has a corner, where the map of the model has no derivative"
 # If the steps become too short, a test function this small, or a parameter this close to the end of
 # its range, is given as the reason. Close to an event the functions are of the order of the square
 # root of the distance.
@@ -104,11 +107,14 @@ class State:
         Raises
         ------
         ParameterError
-            If the balls have no such parameter.
+            If the balls have no such parameter, or if one of them follows from another.
         """
         family = self.orbits.family.at(self.parameters)
         for name in names:
             family.bounds(name)
+            for other in family.implied({name: family.values[name]}):
+                if other in names:
+                    raise ParameterError(f"{other} follows from {name}: both cannot vary")
         orbits = replace(self.orbits, family=family, along=names)
         phase, velocity = self.orbits.states(self.y)
         durations = self.orbits.durations(self.y)
@@ -378,5 +384,5 @@ def explained(branch: Branch, tests: Sequence[Event], limits: Sequence[Event]) -
     near = {event.name: abs(float(event.function(last))) for event in tests}
     nearest = min(near, key=lambda name: near[name])
     if not near[nearest] < _CLOSE:
-        return end
+        return End(_CORNER) if _TURNS in end.sentence else end
     return End(f"the orbit is next to a {nearest}, where its equations are not smooth", True)

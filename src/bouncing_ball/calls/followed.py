@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 import xarray as xr
@@ -35,7 +35,7 @@ from bouncing_ball.calls.balls import Ball, a_ball, a_single_ball
 from bouncing_ball.calls.drawn import Drawn
 from bouncing_ball.calls.periodic import PeriodicOrbit
 from bouncing_ball.datasets.variables import SHARED, Variable, described
-from bouncing_ball.errors import ParameterError, Range
+from bouncing_ball.errors import ParameterError
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.contact.damping import Release, damping_ratio, restitution_coefficient
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
@@ -59,24 +59,37 @@ _OF_IMPACTS = {
 _ALL = observables.VARIABLES | _OF_IMPACTS | VARIABLES
 
 
-class FollowedBranch(Drawn):
+class _Orbits(Drawn):
+    """Orbits one after another; a part of them, such as ``found.isel(point=0)``, has no states."""
+
+    __slots__ = ("_found",)
+
+    @classmethod
+    def of(cls, found: Followed | Curve, **attributes: str) -> Self:
+        """The labelled result of a branch or a curve."""
+        data = _columns(found)
+        result = cls(data.data_vars, data.coords, _attributes(found.orbits) | attributes)
+        result._found = found
+        return result
+
+    def states(self) -> Iterator[State]:
+        """The orbits, one after another."""
+        return iter(self._found)
+
+
+class FollowedBranch(_Orbits):
     """A branch of orbits with k impacts in m periods along a parameter.
 
-    It can be iterated by :meth:`states`; a part of it, such as ``found.isel(point=0)``, has no
-    states. The figure shows the phases of the impacts over the parameter.
+    The figure shows the phases of the impacts over the parameter.
     """
 
-    __slots__ = ("_followed",)
+    __slots__ = ()
 
     maker = "follow"
 
-    def states(self) -> Iterator[State]:
-        """The orbits of the branch, one after another."""
-        return iter(self._followed)
-
     def special_states(self) -> list[tuple[str, State]]:
         """The special orbits with their kinds, in order."""
-        return [(str(kind), state) for kind, state in self._followed.special]
+        return [(str(kind), state) for kind, state in self._found.special]
 
     def first(self, kind: str) -> State:
         """The first special orbit of a kind.
@@ -87,7 +100,7 @@ class FollowedBranch(Drawn):
             If the branch has none.
         """
         name = chosen("kind", kind, [str(each) for each in Special])
-        return self._followed.first(Special(name))
+        return self._found.first(Special(name))
 
     def _figure(self) -> Figure:
         from bouncing_ball.calls import figures
@@ -95,19 +108,15 @@ class FollowedBranch(Drawn):
         return figures.followed(self)
 
 
-class SpecialCurve(Drawn):
+class SpecialCurve(_Orbits):
     """A curve of special orbits in two parameters; see :class:`FollowedBranch`.
 
     The figure shows the curve in the plane of the parameters.
     """
 
-    __slots__ = ("_curve",)
+    __slots__ = ()
 
     maker = "curve"
-
-    def states(self) -> Iterator[State]:
-        """The orbits of the curve, one after another."""
-        return iter(self._curve)
 
     def _figure(self) -> Figure:
         from bouncing_ball.calls import figures
@@ -272,16 +281,9 @@ def follow(
     """
     start = _state(orbit, along)
     most = checked_number("points", points, POINTS)
-    value = None if to is None else checked_number("to", to, _within(start, along))
+    value = None if to is None else checked_number("to", to, start.orbits.family.ranges[along])
     found = following.follow(start, value, most=most)
-    data = _columns(found, found.special, along)
-    branch = FollowedBranch(data.data_vars, data.coords, _attributes(found.orbits))
-    branch._followed = found
-    return branch
-
-
-def _within(state: State, name: str) -> Range:
-    return state.orbits.family.ranges[name]
+    return FollowedBranch.of(found)
 
 
 def switch(orbit: State) -> State:
@@ -377,11 +379,7 @@ def curve(
         across_window=_window("across_range", across_range),
         most=most,
     )
-    data = _columns(found, found.special, *found.orbits.along)
-    attributes = _attributes(found.orbits) | {"curve_kind": name}
-    result = SpecialCurve(data.data_vars, data.coords, attributes)
-    result._curve = found
-    return result
+    return SpecialCurve.of(found, curve_kind=name)
 
 
 def _window(name: str, given: Sequence[float] | None) -> Window | None:
@@ -404,11 +402,11 @@ def _attributes(orbits: Any) -> dict[str, Any]:
     return {"impacts": orbits.impacts, "periods": int(orbits.periods), **fixed}
 
 
-def _columns(
-    found: Followed | Curve, special: Sequence[tuple[Any, State]], *along: str
-) -> xr.Dataset:
+def _columns(found: Followed | Curve) -> xr.Dataset:
     """The orbits along a branch or a curve, its special orbits, and the reasons of its two ends."""
     orbits = found.orbits
+    along = orbits.along
+    special = found.special
     y = found.branch.points
     trace, determinant = orbits.trace_and_determinant(y)
     floquet = stability.multipliers(trace, determinant)

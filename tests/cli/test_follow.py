@@ -5,6 +5,7 @@ import pytest
 
 import bouncing_ball
 from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.paper.orbits import observables
 
 RIGID = bouncing_ball.rigid(restitution=0.5)
 FOLLOW = ("follow", "--restitution", "0.5", "--amplitude", "1.4", "--to", "1.8")
@@ -67,7 +68,7 @@ def test_results_are_labelled_and_drawn_and_iterated(tmp_path, described):
     one = bouncing_ball.orbit(RIGID, amplitude=1.4)
     found = bouncing_ball.follow(one, to=1.8)
     described(found)
-    assert found.impact_phase.dims == ("point", "impact") and found.attrs["restitution"] == 0.5
+    assert found.phase.dims == ("point", "impact") and found.attrs["restitution"] == 0.5
     states = list(found.states())
     assert len(states) == found.sizes["point"]
     assert np.allclose([each.parameters["amplitude"] for each in states], found.amplitude)
@@ -118,3 +119,16 @@ def test_no_coefficient_that_varies_along_a_branch_is_called_constant(along):
     found = bouncing_ball.follow(one, along=along, to=1.01 * start)
     assert "frequency_ratio" in found.attrs
     assert not {"restitution", "damping_ratio"} & set(found.attrs)
+
+
+SPRING = bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=10.0)
+LAW = bouncing_ball.contact_law("tsuji", restitution=0.85, duration=0.3)
+
+
+@pytest.mark.parametrize("ball", [RIGID, SPRING, bouncing_ball.corrected(SPRING), LAW])
+def test_a_branch_has_the_observables_of_its_orbits_under_their_names(ball):
+    orbit = bouncing_ball.orbit(ball, amplitude=1.2)
+    found = bouncing_ball.follow(orbit, to=1.25).isel(point=0, impact=0)
+    for name in observables.OBSERVED:
+        # Newton's method moves the first point by rounding errors only.
+        assert float(found[name]) == pytest.approx(getattr(orbit, name), abs=1e-14), name

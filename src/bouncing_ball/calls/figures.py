@@ -55,8 +55,8 @@ def followed(data: xr.Dataset) -> Figure:
     edges = [0, *(np.flatnonzero(looks[1:] != looks[:-1]) + 1), len(looks)]
     borders = {int(data.special_point[j]) + 1: j for j in range(data.sizes["special"])}
     for k in range(data.sizes["impact"]):
-        line = np.stack([data[along].values, data.impact_phase.values[:, k] / np.pi])
-        special = np.stack([data[f"special_{along}"], data.special_impact_phase[:, k] / np.pi])
+        line = np.stack([data[along].values, data.phase.values[:, k] / np.pi])
+        special = np.stack([data[f"special_{along}"], data.special_phase[:, k] / np.pi])
         first = line[:, :0]
         for start, stop in pairwise(edges):
             # Without a special orbit the line changes at the next point.
@@ -68,7 +68,8 @@ def followed(data: xr.Dataset) -> Figure:
             look = LINES[looks[start]] | {"color": COLOURS[k % len(COLOURS)]}
             axes.plot(x, np.where(jumps, np.nan, phase), label=looks[start], **look)
             first = last
-    _mark_special(axes, data, data[f"special_{along}"], data.special_phase / np.pi)
+    first = data.special_phase.isel(impact=0)
+    _mark_special(axes, data, data[f"special_{along}"], first / np.pi)
     axes.set(
         xlabel=symbol(along), ylabel=r"phases of impact $\varphi/\pi$", title=_orbit_title(data)
     )

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-import xarray as xr
 
 from bouncing_ball.beyond.periodic import curves, following, switching
-from bouncing_ball.beyond.periodic.curves import Curve, Window
+from bouncing_ball.beyond.periodic.curves import Window
 from bouncing_ball.beyond.periodic.family import AMPLITUDE as LAMBDA
-from bouncing_ball.beyond.periodic.family import Family
-from bouncing_ball.beyond.periodic.following import Followed, State
-from bouncing_ball.beyond.periodic.simulation import is_admissible
+from bouncing_ball.beyond.periodic.family import Family, nothing
+from bouncing_ball.beyond.periodic.following import State
 from bouncing_ball.beyond.periodic.special import Special
 from bouncing_ball.calls.arguments import (
     AMPLITUDE_OF_ORBIT,
@@ -32,19 +30,13 @@ from bouncing_ball.calls.arguments import (
     chosen,
 )
 from bouncing_ball.calls.balls import Ball, a_ball, a_single_ball
-from bouncing_ball.calls.drawn import Drawn
+from bouncing_ball.calls.labelled_branches import FollowedBranch, SpecialCurve
 from bouncing_ball.calls.periodic import PeriodicOrbit
-from bouncing_ball.datasets.variables import SHARED, Variable, described
-from bouncing_ball.errors import ParameterError, Range
-from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.errors import ParameterError
 from bouncing_ball.paper.contact.damping import Release, damping_ratio, restitution_coefficient
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.orbits import observables, stability
 from bouncing_ball.paper.orbits.model import ImpactModel
 from bouncing_ball.patience import patience
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 _RANGES = {
     LAMBDA: AMPLITUDE_OF_ORBIT,
@@ -52,74 +44,8 @@ _RANGES = {
     "restitution": RESTITUTION,
     "damping_ratio": DAMPING_RATIO,
 }
-VARIABLES = {"relative_velocity": Variable("relative velocity at the impact", symbol="δ′")}
-_OF_IMPACTS = {
-    "impact": Variable("number of the impact within the orbit"),
-    "impact_phase": Variable("phase of the table at the impact", symbol="φ", units="rad"),
-    "special_impact_phase": Variable(
-        "phase of the table at the impact of the special orbit", symbol="φ", units="rad"
-    ),
-    "special_point": Variable("number of the last point of the branch before the special orbit"),
-}
-_ALL = observables.VARIABLES | _OF_IMPACTS | VARIABLES
 BRANCH, CURVE = 500, 500
 """Default of the largest number of points of a branch, and of a curve in each direction."""
-
-
-class FollowedBranch(Drawn):
-    """A branch of orbits with k impacts in m periods along a parameter.
-
-    It can be iterated by :meth:`states`; a part of it, such as ``found.isel(point=0)``, has no
-    states. The figure shows the phases of the impacts over the parameter.
-    """
-
-    __slots__ = ("_followed",)
-
-    maker = "follow"
-
-    def states(self) -> Iterator[State]:
-        """The orbits of the branch, one after another."""
-        return iter(self._followed)
-
-    def special_states(self) -> list[tuple[str, State]]:
-        """The special orbits with their kinds, in order."""
-        return [(str(kind), state) for kind, state in self._followed.special]
-
-    def first(self, kind: str) -> State:
-        """The first special orbit of a kind.
-
-        Raises
-        ------
-        NoOrbitError
-            If the branch has none.
-        """
-        name = chosen("kind", kind, [str(each) for each in Special])
-        return self._followed.first(Special(name))
-
-    def _figure(self) -> Figure:
-        from bouncing_ball.calls import figures
-
-        return figures.followed(self)
-
-
-class SpecialCurve(Drawn):
-    """A curve of special orbits in two parameters; see :class:`FollowedBranch`.
-
-    The figure shows the curve in the plane of the parameters.
-    """
-
-    __slots__ = ("_curve",)
-
-    maker = "curve"
-
-    def states(self) -> Iterator[State]:
-        """The orbits of the curve, one after another."""
-        return iter(self._curve)
-
-    def _figure(self) -> Figure:
-        from bouncing_ball.calls import figures
-
-        return figures.special_curve(self)
 
 
 def _numbers(law: Any) -> dict[str, float]:
@@ -165,15 +91,22 @@ def family_of(model: ImpactModel, amplitude: float) -> Family:
         zeta = values["damping_ratio"]
         values["restitution"] = float(restitution_coefficient(zeta, Release.DISPLACEMENT))
 
-    def make(given: Mapping[str, Any]) -> ImpactModel:
-        of_law = dict(given)
-        if linear:
-            r = of_law.pop("restitution")
-            if not np.array_equal(r, values["restitution"]):
-                of_law["damping_ratio"] = damping_ratio(r)
-        return _with_numbers(model, of_law)
+    return Family(
+        make=lambda given: _with_numbers(model, given),
+        values=values,
+        ranges={name: _RANGES.get(name, FINITE) for name in values},
+        implied=_loss if linear else nothing,
+    )
 
-    return Family(make, values, {name: _RANGES.get(name, FINITE) for name in values})
+
+def _loss(varied: Mapping[str, Any]) -> dict[str, Any]:
+    """ζ of r, or r of ζ, of linear contacts."""
+    if "restitution" in varied:
+        return {"damping_ratio": damping_ratio(varied["restitution"])}
+    if "damping_ratio" in varied:
+        zeta = varied["damping_ratio"]
+        return {"restitution": restitution_coefficient(zeta, Release.DISPLACEMENT)}
+    return {}
 
 
 def _state(orbit: Any, along: str) -> State:
@@ -249,8 +182,8 @@ def follow(
     Returns
     -------
     FollowedBranch
-        The parameter at each ``point``, ``impact_phase``, ``relative_velocity`` and
-        ``contact_duration`` of each ``impact``, and whether the orbit is ``stable`` and
+        The parameter at each ``point``, ``phase``, ``contact_duration`` and the other observables
+        of :func:`bouncing_ball.branch` for each ``impact``, and whether the orbit is ``stable`` and
         ``admissible``; ``special_kind`` and the place of the special orbits; ``end_reason`` says
         why the branch ends.
 
@@ -273,17 +206,9 @@ def follow(
     """
     start = _state(orbit, along)
     most = checked_number("points", points, POINTS)
-    value = None if to is None else checked_number("to", to, _within(start, along))
+    value = None if to is None else checked_number("to", to, start.orbits.family.ranges[along])
     with patience("a nearer value of to or fewer points"):
-        found = following.follow(start, value, most=most)
-        data = _columns(found, found.special, along)
-    branch = FollowedBranch(data.data_vars, data.coords, _attributes(found.orbits))
-    branch._followed = found
-    return branch
-
-
-def _within(state: State, name: str) -> Range:
-    return state.orbits.family.ranges[name]
+        return FollowedBranch.of(following.follow(start, value, most=most))
 
 
 def switch(orbit: State) -> State:
@@ -385,11 +310,7 @@ def curve(
             across_window=_window("across_range", across_range, across, at[across]),
             most=most,
         )
-        data = _columns(found, found.special, *found.orbits.along)
-    attributes = _attributes(found.orbits) | {"curve_kind": name}
-    result = SpecialCurve(data.data_vars, data.coords, attributes)
-    result._curve = found
-    return result
+        return SpecialCurve.of(found, curve_kind=name)
 
 
 def _window(
@@ -410,64 +331,3 @@ def _window(
             "the curve starts"
         )
     return Window(low, high)
-
-
-def _before(points: np.ndarray, special: np.ndarray) -> int:
-    """The number of the last point of a branch before a special orbit, which makes the shortest
-    detour from this point to the next.
-    """
-    lengths = np.linalg.norm(points - special, axis=1)
-    chords = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    detours = lengths[:-1] + lengths[1:] - chords
-    return int(np.argmin(detours)) if detours.size else 0
-
-
-# Each of these follows from the other in a spring and a damper, so that both vary together.
-_OF_LOSS = {"restitution", "damping_ratio"}
-
-
-def _attributes(orbits: Any) -> dict[str, Any]:
-    """The values of the parameters that do not vary, and k and m."""
-    varied = set(orbits.along)
-    if varied & _OF_LOSS:
-        varied |= _OF_LOSS
-    fixed = {name: x for name, x in orbits.family.values.items() if name not in varied}
-    return {"impacts": orbits.impacts, "periods": int(orbits.periods), **fixed}
-
-
-def _columns(
-    found: Followed | Curve, special: Sequence[tuple[Any, State]], *along: str
-) -> xr.Dataset:
-    """The orbits along a branch or a curve, its special orbits, and the reasons of its two ends."""
-    orbits = found.orbits
-    y = found.branch.points
-    trace, determinant = orbits.trace_and_determinant(y)
-    floquet = stability.multipliers(trace, determinant)
-    rows = ("point", "impact")
-    values = orbits.values(y)
-    phase, velocity = orbits.states(y)
-    data: dict[str, Any] = {name: ("point", values[name]) for name in along}
-    data["impact_phase"] = rows, reduce_angle(phase)
-    data["relative_velocity"] = rows, velocity
-    data["contact_duration"] = rows, orbits.legs(y).duration
-    data["stable"] = "point", stability.is_stable(trace, determinant)
-    data["admissible"] = "point", is_admissible(orbits, y)
-    data["multiplier_real"] = ("point", "multiplier"), floquet.real
-    data["multiplier_imag"] = ("point", "multiplier"), floquet.imag
-    data["residual"] = "point", np.abs(orbits.residual(y)).max(axis=-1)
-    data["special_kind"] = "special", np.array([str(kind) for kind, _ in special], dtype=str)
-    for name in along:
-        places = [state.parameters[name] for _, state in special]
-        data[f"special_{name}"] = "special", np.array(places, dtype=float)
-    phases = [state.phase for _, state in special]
-    at_impacts = reduce_angle(np.array(phases).reshape(len(special), phase.shape[1]))
-    data["special_phase"] = "special", at_impacts[:, 0]
-    data["special_impact_phase"] = ("special", "impact"), at_impacts
-    data["special_point"] = "special", np.array([_before(y, s.y) for _, s in special], dtype=int)
-    data["end_reason"] = "end", [str(found.branch.start), str(found.branch.end)]
-    known = {name: SHARED.get(name, Variable(name.replace("_", " "))) for name in along}
-    places = {
-        f"special_{n}": v._replace(long_name=f"{v.long_name} there") for n, v in known.items()
-    }
-    coords = {"special": np.arange(len(special)), "end": ["start", "end"]}
-    return described(data, coords, variables=_ALL | known | places)

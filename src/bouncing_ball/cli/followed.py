@@ -17,6 +17,7 @@ from bouncing_ball.calls.arguments import (
     STATE,
     SideName,
 )
+from bouncing_ball.calls.labelled_branches import FollowedBranch
 from bouncing_ball.cli.impact import add_ball, ball_of
 from bouncing_ball.cli.options import (
     Parser,
@@ -129,7 +130,7 @@ def _start(
     )
 
 
-def _branch(start: Any, along: str, to: float, doublings: int) -> calls.FollowedBranch:
+def _branch(start: Any, along: str, to: float, doublings: int) -> FollowedBranch:
     """The branch of the orbit whose period has doubled so many times."""
     name = along.replace("-", "_")
     found = calls.follow(start, along=name, to=to)

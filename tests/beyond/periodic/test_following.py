@@ -10,9 +10,10 @@ from bouncing_ball.beyond.periodic.following import State, follow
 from bouncing_ball.beyond.periodic.simulation import is_admissible
 from bouncing_ball.beyond.periodic.special import Special
 from bouncing_ball.beyond.periodic.switching import of_impact, of_motion, switch
-from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.errors import NoOrbitError, ParameterError
 from bouncing_ball.numerics.corrector import newton, plane
 from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.paper.contact.damping import damping_ratio
 from bouncing_ball.paper.motion.flight import Flight, table
 from bouncing_ball.paper.orbits.branch import whole_branch
 from bouncing_ball.paper.orbits.observables import GRAZING, branch_columns
@@ -174,6 +175,11 @@ def test_a_contact_that_resumes_is_followed_until_the_ball_no_longer_rises():
     case = FOUND[-2]
     state = of_impact(found_family(case), *case[-2:], case[1], "frequency_ratio")
     assert state.orbits.resuming.tolist() == [False, True]
+    family = state.orbits.family
+    simulated = family.make(family.values).simulate(family.values["amplitude"], *case[-2:], 4)
+    assert (
+        abs(state.orbits.legs(state.y).impact.displacement[1] - simulated.displacement[3]) < 1e-12
+    )
     found = follow(state, 20.0)
     end = found.first(Special.GRAZING_IMPACT)
     assert abs(end.velocity[1]) < 1e-12 and end.defect() < 1e-12
@@ -185,6 +191,22 @@ def test_a_contact_that_resumes_is_followed_until_the_ball_no_longer_rises():
     risen = state.velocity[1] + lam * np.cos(phase)
     other = of_impact(state.orbits.family, phase, risen, 2, "frequency_ratio")
     assert np.abs(other.velocity[::-1] - state.velocity).max() < 1e-12
+
+
+def test_restitution_and_damping_ratio_are_one_parameter(refusal):
+    """Along one of them the other one follows, and is not kept at its first value."""
+    ball = bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=10.0)
+    one = bouncing_ball.orbit(ball, amplitude=1.0)
+    found = bouncing_ball.follow(one, along="restitution", to=0.7)
+    *_, last = found.states()
+    less = bouncing_ball.follow(last, along="damping_ratio", to=0.01)
+    assert less.damping_ratio[0] == pytest.approx(float(damping_ratio(0.7)), abs=1e-15)
+    *_, damped = less.states()
+    back = bouncing_ball.follow(damped, along="restitution", to=0.7)
+    assert abs(back.phase[-1, 0] - found.phase[-1, 0]) < 1e-13
+    assert {"restitution", "damping_ratio"}.isdisjoint(found.attrs)
+    with refusal(ParameterError, "damping_ratio follows from restitution: both cannot vary"):
+        bouncing_ball.curve(last, kind="saddle-node", across="damping_ratio")
 
 
 def passes_through(found, state):

@@ -20,7 +20,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.beyond.periodic.following import STEPS, State, States, explained, limit
+from bouncing_ball.beyond.periodic.following import (
+    PATIENT,
+    STEPS,
+    State,
+    States,
+    explained,
+    limit,
+)
 from bouncing_ball.beyond.periodic.problem import PeriodicOrbits
 from bouncing_ball.beyond.periodic.release import release_condition
 from bouncing_ball.beyond.periodic.special import (
@@ -42,7 +49,6 @@ from bouncing_ball.paper.orbits.stability import Bifurcation
 # A point on a resonance has multipliers that differ from it by less than this. Next to a double
 # multiplier the multipliers differ by the square root of rounding.
 _RESONANT = 1e-6
-_PATIENT = NewtonSettings(max_iterations=20, longest=0.3)
 # The test function of a cusp is a central difference, whose rounding moves the last step by 1e-11.
 _BY_DIFFERENCES = NewtonSettings(tolerance=1e-9, max_iterations=20)
 _MARGINS = {
@@ -119,14 +125,7 @@ class Curve(States):
 
     kind: Special
 
-    @property
-    def special(self) -> list[tuple[Degenerate, State]]:
-        """The points that are special on the curve, with their kinds."""
-        return [
-            (Degenerate(each.name), State(self.orbits, each.point))
-            for each in self.branch.special
-            if each.name in list(Degenerate)
-        ]
+    kinds = Degenerate
 
 
 def curve(
@@ -197,7 +196,7 @@ def _corrected(problem: CurveProblem, y: np.ndarray) -> np.ndarray:
         return point[..., -1] - y[-1], np.broadcast_to(axis, point.shape)
 
     with np.errstate(all="ignore"):
-        found = newton(problem, y, fixed, _PATIENT)
+        found = newton(problem, y, fixed, PATIENT)
     if not found.converged:
         raise NoOrbitError(
             f"no special orbit was found near the start of the curve: residual "

@@ -11,6 +11,15 @@ from bouncing_ball.paper.motion.dynamics import Dynamics, HasDynamics
 
 AMPLITUDE = "amplitude"
 """The name of Λ, the parameter that all balls have."""
+Implied = Callable[[Mapping[str, Any]], Mapping[str, Any]]
+"""The values of other parameters that follow from those that vary."""
+
+
+def nothing(varied: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The parameters are independent of each other."""
+    return {}
+
+
 # A branch stays away from an end of a range that is not in the range by this number.
 _INSIDE = 1e-9
 
@@ -28,6 +37,9 @@ class Family:
         The value of each parameter that may vary, Λ included, under the name ``"amplitude"``.
     ranges : mapping
         The range of each parameter.
+    implied : callable
+        Parameters that are not independent of those that vary, such as the restitution coefficient
+        of the damping ratio; by default none.
 
     Examples
     --------
@@ -43,6 +55,7 @@ class Family:
     make: Callable[[Mapping[str, Any]], HasDynamics]
     values: Mapping[str, Any]
     ranges: Mapping[str, Range]
+    implied: Implied = nothing
 
     def dynamics(self, varied: Mapping[str, np.ndarray]) -> Dynamics:
         """The contacts and flights of balls with these values of some parameters.
@@ -52,13 +65,13 @@ class Family:
         ModelError
             If no ball has these parameters.
         """
-        given = {**self.values, **varied}
+        given = {**self.values, **varied, **self.implied(varied)}
         amplitude = given.pop(AMPLITUDE)
         return self.make(given).dynamics(amplitude)
 
     def at(self, varied: Mapping[str, Any]) -> Self:
         """The same balls with other values of some parameters."""
-        return replace(self, values={**self.values, **varied})
+        return replace(self, values={**self.values, **varied, **self.implied(varied)})
 
     def bounds(self, name: str) -> tuple[float, float]:
         """The smallest and the largest value of a parameter on a branch.

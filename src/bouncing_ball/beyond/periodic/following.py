@@ -2,6 +2,8 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from enum import StrEnum
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -14,7 +16,7 @@ from bouncing_ball.beyond.periodic.special import (
     loss_of_release,
     turns_apart,
 )
-from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.errors import NoOrbitError, ParameterError
 from bouncing_ball.numerics.continuation import (
     Branch,
     ContinuationError,
@@ -30,7 +32,8 @@ from bouncing_ball.paper.orbits.stability import Bifurcation
 
 STEPS = StepControl(initial=0.01, smallest=1e-9, largest=0.1, max_angle=0.15)
 """Steps in arclength, over the phases, the velocities and arsinh of the parameter."""
-_PATIENT = NewtonSettings(max_iterations=20, longest=0.3)
+PATIENT = NewtonSettings(max_iterations=20, longest=0.3)
+"""Newton's method from a guess that is not the last point of a branch."""
 _BOUND = "bound"
 # Largest defect of a start of which the last Newton step is not small: a hundred roundings.
 _SATISFIED = 1e-13
@@ -40,6 +43,9 @@ _NEAR = 0.1
 _CLOSER = 0.1
 _TRIES = 4
 _HALVES = "the two turns of the orbit become nearly equal"
+# If the tangent turns by a finite angle in the shortest step, the branch has a corner.
+_TURNS = "the tangent turns"
+_CORNER = "the branch has a corner, where the map of the model has no derivative"
 # If the steps become too short, a test function this small, or a parameter this close to the end of
 # its range, is given as the reason. Close to an event the functions are of the order of the square
 # root of the distance.
@@ -104,11 +110,14 @@ class State:
         Raises
         ------
         ParameterError
-            If the balls have no such parameter.
+            If the balls have no such parameter, or if one of them follows from another.
         """
         family = self.orbits.family.at(self.parameters)
         for name in names:
             family.bounds(name)
+            for other in family.implied({name: family.values[name]}):
+                if other in names:
+                    raise ParameterError(f"{other} follows from {name}: both cannot vary")
         orbits = replace(self.orbits, family=family, along=names)
         phase, velocity = self.orbits.states(self.y)
         durations = self.orbits.durations(self.y)
@@ -143,25 +152,30 @@ class States:
     orbits: PeriodicOrbits
     branch: Branch
 
+    kinds: ClassVar[type[StrEnum]]
+    """The kinds of special points."""
+
     def __len__(self) -> int:
         return len(self.branch.points)
 
     def __iter__(self) -> Iterator[State]:
         return (State(self.orbits, y) for y in self.branch.points)
 
+    @property
+    def special(self) -> list[tuple[Any, State]]:
+        """The special orbits in order, with their kinds."""
+        return [
+            (self.kinds(each.name), State(self.orbits, each.point))
+            for each in self.branch.special
+            if each.name in list(self.kinds)
+        ]
+
 
 @dataclass(frozen=True)
 class Followed(States):
     """A branch of orbits with k impacts in m periods along one parameter."""
 
-    @property
-    def special(self) -> list[tuple[Special, State]]:
-        """The special orbits in order, with their kinds."""
-        return [
-            (Special(each.name), State(self.orbits, each.point))
-            for each in self.branch.special
-            if each.name in list(Special)
-        ]
+    kinds = Special
 
     def first(self, kind: Special) -> State:
         """The first special orbit of a kind.
@@ -187,7 +201,7 @@ def corrected(state: State) -> State:
     """
     axis = np.eye(state.y.size)[-1]
     with np.errstate(all="ignore"):
-        found = newton(state.orbits, state.y, plane(axis, state.y), _PATIENT)
+        found = newton(state.orbits, state.y, plane(axis, state.y), PATIENT)
     # Next to a bifurcation rounding moves the last step, although the equations are satisfied.
     if not (found.converged or found.residual <= _SATISFIED):
         k = state.orbits.impacts
@@ -348,7 +362,7 @@ def _up_to_halving(orbits: PeriodicOrbits, branch: Branch) -> Branch | None:
     means = (row.reshape(2, k).mean(axis=0) for row in rows)
     guess = half.point(*means, **orbits.values(last))
     kind = Bifurcation.PERIOD_DOUBLING
-    found = newton(half, guess, lambda y: half.bifurcation(kind, y), _PATIENT)
+    found = newton(half, guess, lambda y: half.bifurcation(kind, y), PATIENT)
     if not (found.converged and np.linalg.norm(found.point - guess) < _NEAR):
         return None
     _, halving = twice(half, found.point)
@@ -378,5 +392,5 @@ def explained(branch: Branch, tests: Sequence[Event], limits: Sequence[Event]) -
     near = {event.name: abs(float(event.function(last))) for event in tests}
     nearest = min(near, key=lambda name: near[name])
     if not near[nearest] < _CLOSE:
-        return end
+        return End(_CORNER) if _TURNS in end.sentence else end
     return End(f"the orbit is next to a {nearest}, where its equations are not smooth", True)

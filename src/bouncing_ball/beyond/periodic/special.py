@@ -203,8 +203,3 @@ def events(orbits: PeriodicOrbits) -> Sequence[Event]:
         end(Special.GRAZING_IMPACT, impact_margin),
         replace(end(Special.STICKING, sticking), is_sign=True),
     )
-
-
-def phases(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
-    """The phases of the impacts in [-π, π], shape (..., k)."""
-    return reduce_angle(orbits.states(y)[0])

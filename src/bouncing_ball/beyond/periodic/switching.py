@@ -11,18 +11,17 @@ import numpy as np
 
 from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.beyond.periodic.family import AMPLITUDE, Family
-from bouncing_ball.beyond.periodic.following import State, corrected
+from bouncing_ball.beyond.periodic.following import PATIENT, State, corrected
 from bouncing_ball.beyond.periodic.problem import PeriodicOrbits, twice
 from bouncing_ball.beyond.periodic.simulation import simulated
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.numerics.corrector import Correction, NewtonSettings, newton, plane
+from bouncing_ball.numerics.corrector import Correction, newton, plane
 from bouncing_ball.paper.motion.flight import table
 
 ASIDE = 0.02
 """The distance of the first doubled orbit from the old one, in y."""
 # The distance at which the rise of the parameter is measured.
 _MEASURED = 1e-4
-_SETTINGS = NewtonSettings(max_iterations=20, longest=0.3)
 
 
 def apart(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
@@ -58,7 +57,7 @@ def doubled(
     whole, at = twice(orbits, y)
     direction = apart(orbits, y)
     guess = at + np.asarray(aside)[..., np.newaxis] * direction
-    return whole, newton(whole, guess, plane(direction, guess), _SETTINGS)
+    return whole, newton(whole, guess, plane(direction, guess), PATIENT)
 
 
 def ahead(orbits: PeriodicOrbits, y: np.ndarray, above: np.ndarray) -> np.ndarray:
@@ -74,7 +73,7 @@ def ahead(orbits: PeriodicOrbits, y: np.ndarray, above: np.ndarray) -> np.ndarra
     guess = at + share[..., np.newaxis] * step
     guess[..., -1] = at[..., -1] + above
     axis = np.eye(guess.shape[-1])[-1]
-    found = newton(whole, guess, plane(axis, guess), _SETTINGS)
+    found = newton(whole, guess, plane(axis, guess), PATIENT)
     return np.where(found.converged[..., np.newaxis], found.point, guess)
 
 

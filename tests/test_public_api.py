@@ -13,8 +13,8 @@ import pytest
 
 import bouncing_ball
 from bouncing_ball import contact_law, corrected, orbit, orbits, rigid, simulate, spring_damper
+from bouncing_ball.beyond.law_orbits import LawModel, law_at_orbit
 from bouncing_ball.beyond.laws.hertzian import Tsuji
-from bouncing_ball.beyond.laws.orbits import LawModel, law_at_orbit
 from bouncing_ball.calls.balls import ModelBall
 from bouncing_ball.paper.orbits.stability import Side
 

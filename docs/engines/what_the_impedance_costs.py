@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from bouncing_ball.beyond.law_orbits import LawModel
 from bouncing_ball.beyond.laws.impedance import Impedance
-from bouncing_ball.beyond.laws.orbits import LawModel
 from bouncing_ball.paper.contact.damping import Release, damping_ratio
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel

@@ -4,8 +4,6 @@ import numpy as np
 import pytest
 
 from bouncing_ball.beyond.corrected.errors import errors
-from bouncing_ball.beyond.corrected.instant import Instant
-from bouncing_ball.beyond.corrected.signature import Signature
 from bouncing_ball.beyond.error_law import (
     REMAINDER,
     coefficients,
@@ -15,7 +13,9 @@ from bouncing_ball.beyond.error_law import (
     small_parameter,
 )
 from bouncing_ball.beyond.exhibits.random_orbits import random_orbits
+from bouncing_ball.beyond.laws.instant import Instant
 from bouncing_ball.beyond.laws.linear import LinearLaw
+from bouncing_ball.beyond.laws.signature import Signature
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.paper.comparison.errors import OF_IMPACTS, Quantity
 from bouncing_ball.paper.contact.damping import Release, damping_ratio, restitution_coefficient

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from bouncing_ball.beyond.corrected import branch as corrected_branch
-from bouncing_ball.beyond.corrected.signature import Signature
 from bouncing_ball.beyond.laws.linear import LinearLaw
+from bouncing_ball.beyond.laws.signature import Signature
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 import bouncing_ball
 from bouncing_ball import corrected, rigid, spring_damper
+from bouncing_ball.beyond.law_orbits import LawModel
 from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.beyond.laws.hertzian import HuntCrossley, tsuji_damping
-from bouncing_ball.beyond.laws.orbits import LawModel
 from bouncing_ball.beyond.laws.registry import LAWS
 from bouncing_ball.paper.contact.damping import damping_ratio
 from bouncing_ball.paper.contact.spring_damper import SpringDamper

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.beyond.corrected import branch as corrected
-from bouncing_ball.beyond.corrected.instant import Instant, instant_of
+from bouncing_ball.beyond.laws.instant import Instant, instant_of
 from bouncing_ball.numerics.continuation import ContinuationError, StepControl, continue_branch
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane, tangent
 from bouncing_ball.numerics.events import Event, SpecialPoint, parameter_bound, vanishing
@@ -65,7 +65,7 @@ def restitution_speed(n: ArrayLike, model: Any) -> tuple[np.ndarray, Instant]:
     Examples
     --------
     >>> from bouncing_ball.beyond.laws.hertzian import HuntCrossley
-    >>> from bouncing_ball.beyond.laws.orbits import LawModel
+    >>> from bouncing_ball.beyond.law_orbits import LawModel
     >>> speed, _ = restitution_speed(1, LawModel(HuntCrossley(1e3, 0.0)))
     >>> round(float(speed / np.pi), 12)
     1.0

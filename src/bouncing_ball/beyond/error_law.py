@@ -50,9 +50,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.beyond.corrected.instant import Instant
-from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.laws.instant import Instant
 from bouncing_ball.beyond.laws.linear import LinearLaw
+from bouncing_ball.beyond.laws.signature import Signature
 from bouncing_ball.paper.comparison.errors import OF_IMPACTS, Quantity
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper

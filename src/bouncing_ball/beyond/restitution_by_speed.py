@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.beyond.continued_orbits import ContinuedModel
-from bouncing_ball.beyond.corrected.instant import Instant, rigid_instant
+from bouncing_ball.beyond.laws.instant import Instant, rigid_instant
 from bouncing_ball.numerics.arrays import Batch
 from bouncing_ball.paper.motion.restitution import RestitutionDynamics
 from bouncing_ball.paper.orbits.orbit import Orbit

@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any
 from numpy.typing import ArrayLike
 
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
-from bouncing_ball.beyond.corrected.signature import Signature
 from bouncing_ball.beyond.laws.contact_law import ContactLaw
+from bouncing_ball.beyond.laws.signature import Signature
 from bouncing_ball.calls.arguments import (
     DAMPING_RATIO,
     FREQUENCY_RATIO,

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
+from bouncing_ball.beyond.law_orbits import LawModel, law_at_orbit
 from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.beyond.laws.law_of_impact import law_of_impact, reference
-from bouncing_ball.beyond.laws.orbits import LawModel, law_at_orbit
 from bouncing_ball.beyond.laws.registry import law_named
 from bouncing_ball.calls.arguments import (
     FINITE,

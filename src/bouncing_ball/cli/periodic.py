@@ -7,8 +7,8 @@ import numpy as np
 
 from bouncing_ball.beyond import error_law as error_laws
 from bouncing_ball.beyond.continued_orbits import restitution_speed
-from bouncing_ball.beyond.corrected.signature import Signature, free_impact
 from bouncing_ball.beyond.laws.contact_law import ContactLaw
+from bouncing_ball.beyond.laws.signature import Signature, free_impact
 from bouncing_ball.calls import periodic as calls
 from bouncing_ball.calls.arguments import AMPLITUDE_OF_ORBIT, FAMILY, FREQUENCY_RATIO
 from bouncing_ball.calls.balls import ModelBall, spring_damper

@@ -10,7 +10,7 @@ from scipy.integrate import quad
 from bouncing_ball.beyond.calculator.case import PhysicalCase, TableMotion
 from bouncing_ball.beyond.calculator.contact_data import case_of, hertz
 from bouncing_ball.beyond.calculator.given import Contact
-from bouncing_ball.beyond.corrected.signature import free_impact
+from bouncing_ball.beyond.laws.signature import free_impact
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.spring_damper import SpringDamper

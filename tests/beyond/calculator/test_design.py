@@ -11,9 +11,9 @@ from bouncing_ball.beyond import error_law
 from bouncing_ball.beyond.calculator.drop_test import rebound
 from bouncing_ball.beyond.calculator.verdict import assessed, notes
 from bouncing_ball.beyond.corrected.errors import errors
-from bouncing_ball.beyond.corrected.signature import Signature
 from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.laws.registry import LAWS
+from bouncing_ball.beyond.laws.signature import Signature
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.paper.comparison.errors import Quantity
 from bouncing_ball.paper.contact.damping import Release

@@ -15,7 +15,6 @@ import xarray as xr
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from bouncing_ball.beyond.corrected.signature import Signature, free_impact
 from bouncing_ball.beyond.laws.collocation import contacts, path
 from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.beyond.laws.elasto_backlash import ElastoBacklash
@@ -23,6 +22,7 @@ from bouncing_ball.beyond.laws.hertzian import HuntCrossley, KuwabaraKono, Linea
 from bouncing_ball.beyond.laws.impedance import Impedance
 from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.laws.permanent_contact import permanent_contact
+from bouncing_ball.beyond.laws.signature import Signature, free_impact
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.contact.permanent_contact import permanent_contact_threshold
 from bouncing_ball.paper.motion.history import history

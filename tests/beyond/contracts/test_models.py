@@ -16,13 +16,13 @@ import pytest
 
 from bouncing_ball.beyond.continued_orbits import bifurcation, orbit_at, orbits_at
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
-from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.law_orbits import LawModel
 from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.beyond.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball.beyond.laws.hertzian import KuwabaraKono, Tsuji
 from bouncing_ball.beyond.laws.impedance import Impedance
 from bouncing_ball.beyond.laws.linear import LinearLaw
-from bouncing_ball.beyond.laws.orbits import LawModel
+from bouncing_ball.beyond.laws.signature import Signature
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.numerics.corrector import NewtonSettings, newton
 from bouncing_ball.numerics.events import vanishing

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
-from bouncing_ball.beyond.corrected.signature import Signature
 from bouncing_ball.beyond.laws.hertzian import Tsuji, tsuji_damping
 from bouncing_ball.beyond.laws.linear import LinearLaw
+from bouncing_ball.beyond.laws.signature import Signature
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.motion.deviations import Jacobian
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
-from bouncing_ball.beyond.corrected.signature import Signature
 from bouncing_ball.beyond.laws.linear import LinearLaw
+from bouncing_ball.beyond.laws.signature import Signature
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.motion.sequence import Status
 from bouncing_ball.paper.orbits.restitution_model import RestitutionModel

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
-from bouncing_ball.beyond.corrected.signature import Signature
 from bouncing_ball.beyond.laws.hertzian import Tsuji
 from bouncing_ball.beyond.laws.linear import LinearLaw
+from bouncing_ball.beyond.laws.signature import Signature
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.orbits.orbit import OBSERVABLES
 from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel

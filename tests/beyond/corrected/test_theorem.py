@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
-from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.law_orbits import LawModel
 from bouncing_ball.beyond.laws.collocation import contacts
 from bouncing_ball.beyond.laws.law_of_impact import law_of_impact
 from bouncing_ball.beyond.laws.linear import LinearLaw
-from bouncing_ball.beyond.laws.orbits import LawModel
 from bouncing_ball.beyond.laws.registry import LAWS
+from bouncing_ball.beyond.laws.signature import Signature
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.contact.damping import damping_ratio
 

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from bouncing_ball.beyond.corrected.errors import search
-from bouncing_ball.beyond.corrected.instant import instant_of
 from bouncing_ball.beyond.exhibits.contact_laws import (
     LINEAR,
     NAMES,
@@ -15,6 +14,7 @@ from bouncing_ball.beyond.exhibits.contact_laws import (
     law_errors,
 )
 from bouncing_ball.beyond.laws.collocation import contacts
+from bouncing_ball.beyond.laws.instant import instant_of
 from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.paper.contact.damping import Release, damping_ratio
 from bouncing_ball.paper.contact.spring_damper import SpringDamper

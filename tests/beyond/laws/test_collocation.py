@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from scipy.special import beta
 
-from bouncing_ball.beyond.corrected.signature import free_impact
 from bouncing_ball.beyond.laws.collocation import contacts, path
 from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.beyond.laws.elasto_backlash import ElastoBacklash
@@ -16,6 +15,7 @@ from bouncing_ball.beyond.laws.law_of_impact import law_of_impact
 from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.laws.march import march
 from bouncing_ball.beyond.laws.panel import Balls, Start
+from bouncing_ball.beyond.laws.signature import free_impact
 from bouncing_ball.beyond.laws.sweeps import Sweeps
 from bouncing_ball.errors import ModelError
 

@@ -1,8 +1,8 @@
 """Families of balls by name, and orbits with two to five impacts on which simulated balls end."""
 
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
+from bouncing_ball.beyond.law_orbits import LawModel
 from bouncing_ball.beyond.laws.hertzian import Tsuji
-from bouncing_ball.beyond.laws.orbits import LawModel
 from bouncing_ball.beyond.periodic.family import Family
 from bouncing_ball.beyond.periodic.simulation import simulated
 from bouncing_ball.errors import FREQUENCY_RATIO, RESTITUTION, Range

@@ -3,7 +3,7 @@ r"""Orbits at given Λ along ϖ, by extrapolation along the branch instead of ro
 On the branch of :mod:`bouncing_ball.paper.orbits.spring_damper_branch` the product t = ϖε is almost
 constant along ϖ, and (X, Y) is almost a straight line along ε. The walk therefore starts at the
 stiffest contact and goes down. For stiff contacts only the load a = 1 - Y delays the release, by
-``(1 + r) a/(r v ϖ²)`` for both rules (:mod:`bouncing_ball.beyond.corrected.signature`), with
+``(1 + r) a/(r v ϖ²)`` for both rules (:mod:`bouncing_ball.beyond.laws.signature`), with
 ``v = 2nπ/(1 + r)``. Expressed as an angle of the oscillation of the contact, this is ::
 
     t = √(1 - ζ²) (1 + r)² (1 - Y)/(2nπ r)

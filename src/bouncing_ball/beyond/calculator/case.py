@@ -9,15 +9,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.beyond.corrected.errors import exact_and_simple_models
-from bouncing_ball.beyond.corrected.instant import Instant
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
-from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.law_orbits import LawModel
 from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.beyond.laws.hertzian import Tsuji
+from bouncing_ball.beyond.laws.instant import Instant
 from bouncing_ball.beyond.laws.linear import LinearLaw
-from bouncing_ball.beyond.laws.orbits import LawModel
 from bouncing_ball.beyond.laws.permanent_contact import known_threshold
 from bouncing_ball.beyond.laws.scales import rest
+from bouncing_ball.beyond.laws.signature import Signature
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.model import ImpactModel
 from bouncing_ball.paper.orbits.restitution_branch import rigid_speed

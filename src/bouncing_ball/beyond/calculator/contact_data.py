@@ -25,12 +25,12 @@ import numpy as np
 from bouncing_ball.beyond.calculator.case import PhysicalCase, TableMotion
 from bouncing_ball.beyond.calculator.drop_test import fitted_damping_ratio
 from bouncing_ball.beyond.calculator.given import STANDARD_GRAVITY, Contact, given, single
-from bouncing_ball.beyond.corrected.signature import Signature, free_impact
 from bouncing_ball.beyond.laws.contact_law import ContactLaw
 from bouncing_ball.beyond.laws.hertzian import Tsuji, tsuji_damping
 from bouncing_ball.beyond.laws.law_of_impact import law_of_impact
 from bouncing_ball.beyond.laws.linear import LinearLaw
 from bouncing_ball.beyond.laws.registry import law_named
+from bouncing_ball.beyond.laws.signature import Signature, free_impact
 from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.paper.contact.damping import Release, damping_ratio
 from bouncing_ball.paper.contact.spring_damper import SpringDamper

@@ -1,8 +1,7 @@
 """The corrected restitution model: an impact is an instant at the centroid of the contact force.
 
-In the order of the theory: :mod:`.instant` holds the numbers of such an impact, and
-:mod:`.signature` derives them for a contact law; :mod:`.impact` is the restitution map with them,
-:mod:`.motion` simulates balls by it, :mod:`.branch` has its n-T orbits in closed form,
-:mod:`.orbits` the model, and :mod:`.errors` compares it and the restitution model with the
-spring-damper model.
+The numbers of such an impact are in :mod:`bouncing_ball.beyond.laws.instant`. In the order of the
+theory :mod:`.impact` is the restitution map with them, :mod:`.motion` simulates balls by it,
+:mod:`.branch` has its n-T orbits in closed form, :mod:`.orbits` the model, and :mod:`.errors`
+compares it and the restitution model with the spring-damper model.
 """

@@ -28,7 +28,7 @@ period doubling::
 
 If the signature depends on the speed, the curve ``nπ - X = r(v) v + σ(v) a`` takes the place
 of the line, and its tangent at each point has the same form
-(:meth:`~bouncing_ball.beyond.corrected.instant.Instant.tangent`) with b in place of r and e
+(:meth:`~bouncing_ball.beyond.laws.instant.Instant.tangent`) with b in place of r and e
 in place of t_c. The linearised cycle is that of the tangent, and trace and
 determinant are as above. Points of the curve have no closed form. Searches for orbits, of this
 model and of any other, start from the line for the signature at the restitution model's speed.
@@ -39,7 +39,7 @@ All quantities are dimensionless; all functions broadcast.
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.beyond.corrected.instant import Instant
+from bouncing_ball.beyond.laws.instant import Instant
 
 
 def _level(n: ArrayLike, instant: Instant) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -12,7 +12,7 @@ From (ψ, z, w) the ball flies until it is below the table by h again. This is t
 restitution map (Eq. 5) with the table lowered by h(v) and r replaced by
 ``r_c = r + σ a/v``; for t_c = σ = 0 it is Eq. 5. The contact starts t_c
 before the instant, at φ = ψ - t_c with z′ = p + t_c, and ends D later; t_c, r, σ
-and D are the law's :mod:`signature <bouncing_ball.beyond.corrected.signature>`.
+and D are the law's :mod:`signature <bouncing_ball.beyond.laws.signature>`.
 
 All quantities are dimensionless; all functions broadcast.
 """
@@ -24,8 +24,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.beyond.corrected.instant import Instant
-from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.laws.instant import Instant
+from bouncing_ball.beyond.laws.signature import Signature
 from bouncing_ball.numerics.elementary import sine_and_cosine
 
 # Iterations of ψ = φ + t_c(v), for laws whose delay depends on the speed. Each iteration
@@ -57,7 +57,7 @@ def impact(signature: Signature, amplitude: ArrayLike, phase: ArrayLike, arrival
     --------
     An elastic ball on a table at rest, with a contact of duration 1:
 
-    >>> from bouncing_ball.beyond.corrected.signature import Signature
+    >>> from bouncing_ball.beyond.laws.signature import Signature
     >>> from bouncing_ball.beyond.laws.linear import LinearLaw
     >>> hit = impact(Signature(LinearLaw(np.pi, 0.0)), 0.0, 0.0, -2.0)
     >>> float(hit.velocity), float(hit.depth)
@@ -89,7 +89,7 @@ def meeting(
 
     Examples
     --------
-    >>> from bouncing_ball.beyond.corrected.signature import Signature
+    >>> from bouncing_ball.beyond.laws.signature import Signature
     >>> from bouncing_ball.beyond.laws.linear import LinearLaw
     >>> psi, p = meeting(Signature(LinearLaw(np.pi, 0.0)), 0.0, 0.25, -1.5)
     >>> float(psi), float(p)
@@ -112,7 +112,7 @@ def start_of(amplitude: ArrayLike, hit: Hit) -> tuple[np.ndarray, np.ndarray]:
 
     Examples
     --------
-    >>> from bouncing_ball.beyond.corrected.signature import Signature
+    >>> from bouncing_ball.beyond.laws.signature import Signature
     >>> from bouncing_ball.beyond.laws.linear import LinearLaw
     >>> hit = impact(Signature(LinearLaw(np.pi, 0.0)), 0.0, 0.75, -2.0)
     >>> [float(x) for x in start_of(0.0, hit)]

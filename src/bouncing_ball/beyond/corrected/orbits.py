@@ -17,10 +17,10 @@ from numpy.typing import ArrayLike
 from bouncing_ball.beyond.continued_orbits import ContinuedModel
 from bouncing_ball.beyond.corrected import branch as formulas
 from bouncing_ball.beyond.corrected.impact import Hit, impact, meeting
-from bouncing_ball.beyond.corrected.instant import Instant
 from bouncing_ball.beyond.corrected.motion import CorrectedDynamics
-from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.laws.instant import Instant
 from bouncing_ball.beyond.laws.linear import LinearLaw
+from bouncing_ball.beyond.laws.signature import Signature
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.orbits.orbit import Orbit, check_index
 from bouncing_ball.paper.orbits.stability import Side
@@ -35,7 +35,7 @@ class CorrectedOrbit(Orbit):
 
     Examples
     --------
-    >>> from bouncing_ball.beyond.corrected.signature import Signature
+    >>> from bouncing_ball.beyond.laws.signature import Signature
     >>> from bouncing_ball.beyond.laws.linear import LinearLaw
     >>> orbit = CorrectedOrbit.at(1, Signature(LinearLaw(np.pi, 0.0)), 0.8, np.pi / 2)
     >>> float(orbit.bounce_velocity) == np.pi - 0.5, round(float(orbit.phase) - np.pi / 2, 12)

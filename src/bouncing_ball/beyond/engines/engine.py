@@ -11,11 +11,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from bouncing_ball.beyond.corrected.signature import free_impact as law_impact
 from bouncing_ball.beyond.engines.given_step import AtStep, at_step
 from bouncing_ball.beyond.engines.physical import Physical
 from bouncing_ball.beyond.engines.scheme import Scheme, compensated, represented, steps_for
 from bouncing_ball.beyond.laws.contact_law import ContactLaw
+from bouncing_ball.beyond.laws.signature import free_impact as law_impact
 from bouncing_ball.errors import ModelError, require
 from bouncing_ball.paper.contact.damping import Release
 

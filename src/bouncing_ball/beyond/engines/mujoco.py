@@ -22,11 +22,11 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.beyond.corrected.signature import free_impact
 from bouncing_ball.beyond.engines.engine import ERROR, Engine, Physical, at_speeds
 from bouncing_ball.beyond.engines.given_step import AtStep, at_step
 from bouncing_ball.beyond.engines.scheme import Scheme
 from bouncing_ball.beyond.laws.impedance import Impedance
+from bouncing_ball.beyond.laws.signature import free_impact
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.contact.damping import Release
 

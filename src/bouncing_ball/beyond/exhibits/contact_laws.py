@@ -29,12 +29,12 @@ from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike
 
 from bouncing_ball.beyond.corrected.errors import SIMPLE
-from bouncing_ball.beyond.corrected.instant import instant_of
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
-from bouncing_ball.beyond.corrected.signature import Signature
+from bouncing_ball.beyond.law_orbits import LawModel, law_at_orbit
+from bouncing_ball.beyond.laws.instant import instant_of
 from bouncing_ball.beyond.laws.law_of_impact import law_of_impact
-from bouncing_ball.beyond.laws.orbits import LawModel, law_at_orbit
 from bouncing_ball.beyond.laws.registry import LAWS
+from bouncing_ball.beyond.laws.signature import Signature
 from bouncing_ball.datasets.parameters import LawRestitution, Many, Tolerance
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.errors import ModelError, NoOrbitError

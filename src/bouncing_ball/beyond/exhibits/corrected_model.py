@@ -16,9 +16,9 @@ from pydantic import Field
 
 from bouncing_ball.beyond import error_law
 from bouncing_ball.beyond.corrected.errors import SIMPLE, errors, search
-from bouncing_ball.beyond.corrected.signature import Signature
 from bouncing_ball.beyond.exhibits.random_orbits import random_orbits
 from bouncing_ball.beyond.laws.linear import LinearLaw
+from bouncing_ball.beyond.laws.signature import Signature
 from bouncing_ball.datasets.parameters import LossyRestitution, Samples, Seed
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.paper.comparison.errors import OF_IMPACTS, Quantity

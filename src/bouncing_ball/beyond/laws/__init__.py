@@ -6,6 +6,8 @@ names in :mod:`.registry`. :mod:`.law_of_impact` finds the law with a given rest
 and duration. :mod:`.force_law` is what the numerical methods know of a law.
 :mod:`.panel`, :mod:`.sweeps`, :mod:`.march` and :mod:`.linearised` compute contacts and their
 derivatives, :mod:`.collocation` answers questions about them, :mod:`.motion` simulates balls on
-them, :mod:`.orbits` finds their n-T orbits, and :mod:`.permanent_contact` the largest Λ at which
-a ball stays on the table.
+them, and :mod:`.permanent_contact` finds the largest Λ at which a ball stays on the table.
+:mod:`.instant` holds the numbers by which a short contact is an instantaneous impact, and
+:mod:`.signature` derives them for a law. The n-T orbits on a law are in
+:mod:`bouncing_ball.beyond.law_orbits`.
 """

@@ -21,7 +21,7 @@ from typing import Any, ClassVar, NamedTuple, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.beyond.corrected.instant import Instant
+from bouncing_ball.beyond.laws.instant import Instant
 from bouncing_ball.errors import ModelError
 from bouncing_ball.numerics.arrays import Batch, as_numbers
 from bouncing_ball.paper.contact.damping import Release

@@ -40,9 +40,9 @@ from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
-from bouncing_ball.beyond.corrected.instant import Instant, linear_instant
 from bouncing_ball.beyond.laws.contact_law import OscillatorLaw
 from bouncing_ball.beyond.laws.force_law import Unit
+from bouncing_ball.beyond.laws.instant import Instant, linear_instant
 from bouncing_ball.errors import require
 from bouncing_ball.paper.contact.damping import Release, check_positive, damping_ratio
 from bouncing_ball.paper.contact.spring_damper import SpringDamper

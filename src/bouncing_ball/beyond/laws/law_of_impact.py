@@ -11,8 +11,8 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.beyond.corrected.signature import free_impact
 from bouncing_ball.beyond.laws.contact_law import ContactLaw
+from bouncing_ball.beyond.laws.signature import free_impact
 from bouncing_ball.errors import ModelError, require
 from bouncing_ball.paper.contact.damping import check_positive
 

@@ -12,8 +12,8 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.beyond.corrected.instant import Instant, linear_instant
 from bouncing_ball.beyond.laws.contact_law import OscillatorLaw
+from bouncing_ball.beyond.laws.instant import Instant, linear_instant
 from bouncing_ball.paper.contact.damping import damping_ratio
 from bouncing_ball.paper.contact.permanent_contact import permanent_contact_threshold
 from bouncing_ball.paper.contact.spring_damper import SpringDamper

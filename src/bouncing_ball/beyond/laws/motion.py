@@ -21,12 +21,12 @@ from typing import ClassVar
 
 import numpy as np
 
-from bouncing_ball.beyond.corrected.signature import Signature, free_impact
 from bouncing_ball.beyond.laws.force_law import ForceLaw
 from bouncing_ball.beyond.laws.march import MOST_PANELS, ContactEnds, march
 from bouncing_ball.beyond.laws.panel import Start, slopes_of
 from bouncing_ball.beyond.laws.permanent_contact import holds
 from bouncing_ball.beyond.laws.scales import rest
+from bouncing_ball.beyond.laws.signature import Signature, free_impact
 from bouncing_ball.numerics.first_zero import first_zero
 from bouncing_ball.paper.motion.deviations import Deviation, Jacobian
 from bouncing_ball.paper.motion.dynamics import Departure, Impact

@@ -60,9 +60,9 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
-from bouncing_ball.beyond.corrected.instant import Instant
 from bouncing_ball.beyond.laws.collocation import contacts
 from bouncing_ball.beyond.laws.force_law import ForceLaw
+from bouncing_ball.beyond.laws.instant import Instant
 from bouncing_ball.errors import ModelError
 from bouncing_ball.numerics.arrays import Batch
 

@@ -1,6 +1,6 @@
 """A contact seen from outside: an impact at an instant, with a delay, a restitution and a load.
 
-:mod:`bouncing_ball.beyond.corrected.signature` derives the numbers. For the linear contact they
+:mod:`bouncing_ball.beyond.laws.signature` derives the numbers. For the linear contact they
 are in closed form, with κ as in :mod:`bouncing_ball.paper.contact.damping`::
 
     t_c = r (D + κ)/(1 + r),    σ = (1 - r)(D + κ) - 2ζ (1 + r)/ϖ

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.beyond.corrected.signature import Signature, free_impact
 from bouncing_ball.beyond.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball.beyond.laws.hertzian import KuwabaraKono
 from bouncing_ball.beyond.laws.impedance import Impedance
 from bouncing_ball.beyond.laws.linear import LinearLaw
+from bouncing_ball.beyond.laws.signature import Signature, free_impact
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.contact.damping import Release
 

@@ -6,14 +6,14 @@ import pytest
 from bouncing_ball.beyond.continued_orbits import orbits_at as by_branch
 from bouncing_ball.beyond.continued_orbits import restitution_speed
 from bouncing_ball.beyond.corrected.orbits import CorrectedModel
-from bouncing_ball.beyond.corrected.signature import Signature, free_impact
 from bouncing_ball.beyond.error_law import first_order
+from bouncing_ball.beyond.law_orbits import LawModel, law_at_orbit
 from bouncing_ball.beyond.laws.hertzian import HuntCrossley, KuwabaraKono, Tsuji
 from bouncing_ball.beyond.laws.impedance import Impedance
 from bouncing_ball.beyond.laws.law_of_impact import law_of_impact
 from bouncing_ball.beyond.laws.linear import LinearLaw
-from bouncing_ball.beyond.laws.orbits import LawModel, law_at_orbit
 from bouncing_ball.beyond.laws.registry import LAWS, law_named
+from bouncing_ball.beyond.laws.signature import Signature, free_impact
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.paper.comparison.errors import OF_ORBITS, relative
 from bouncing_ball.paper.orbits.restitution_branch import rigid_speed

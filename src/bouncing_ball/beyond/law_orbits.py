@@ -13,13 +13,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.beyond.continued_orbits import ContinuedModel, orbit_at, orbits_at
-from bouncing_ball.beyond.corrected.instant import Instant
-from bouncing_ball.beyond.corrected.signature import free_impact
 from bouncing_ball.beyond.laws.collocation import contacts, path
 from bouncing_ball.beyond.laws.contact_law import ContactLaw
+from bouncing_ball.beyond.laws.instant import Instant
 from bouncing_ball.beyond.laws.law_of_impact import law_of_impact
 from bouncing_ball.beyond.laws.march import ContactEnds
 from bouncing_ball.beyond.laws.permanent_contact import permanent_contact
+from bouncing_ball.beyond.laws.signature import free_impact
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.paper.orbits.orbit import Orbit
 from bouncing_ball.paper.orbits.restitution_branch import rigid_speed
@@ -180,7 +180,7 @@ def law_at_orbit(
 
     Examples
     --------
-    >>> from bouncing_ball.beyond.corrected.signature import free_impact
+    >>> from bouncing_ball.beyond.laws.signature import free_impact
     >>> from bouncing_ball.beyond.laws.hertzian import Tsuji
     >>> law = law_at_orbit(Tsuji, 0.65, 0.1, 1, 1.0)
     >>> speed = -LawModel(law).orbit(1, 1.0).relative_impact_velocity

@@ -6,10 +6,13 @@ import numpy as np
 import pytest
 from orbits_found import family, known_orbit
 
+from bouncing_ball.beyond.laws.linear import LinearLaw
+from bouncing_ball.beyond.laws.motion import ContactDynamics
 from bouncing_ball.beyond.periodic.release import release_condition, release_margin
 from bouncing_ball.beyond.periodic.switching import of_motion
 from bouncing_ball.paper.contact.damping import damping_ratio
 from bouncing_ball.paper.contact.permanent_contact import permanent_contact_threshold
+from bouncing_ball.paper.motion.linear_contact import LinearContactDynamics
 
 
 def long_contact(ratio, excess, along):
@@ -64,3 +67,20 @@ def test_differences_are_accurate_in_the_units_of_a_stiff_contact():
         return np.abs(off / np.abs(slopes * unit).max(axis=1, keepdims=True)).max()
 
     assert error(scaled) < 1e-4 and error(stiff) > 1e-3
+
+
+@pytest.mark.parametrize("kind", [LinearContactDynamics, ContactDynamics])
+@pytest.mark.parametrize("release", ["displacement", "force"])
+def test_the_release_function_is_the_displacement_and_the_lag_times_the_velocity(kind, release):
+    """At many times within two contacts, against the flow of the linear contact."""
+    law = LinearLaw(np.array([7.3, 25.0]), 0.12, release)
+    dynamics = kind.of(law, 1.3)
+    start = np.array([1.9, 2.3]), np.array([-0.3, -0.05])
+    impact = dynamics.start(*start)
+    departure = dynamics.depart(impact)
+    time = np.linspace(0, 1, 50)[:, np.newaxis] * departure.duration
+    found = dynamics.release_function(impact, departure)(time)
+    flow = law.flow(time, 0.0, start[1], start[0], 1.3)
+    exact = flow.displacement + law.lag * flow.velocity
+    # Ten roundings of the terms, which are as large as the deepest penetration.
+    assert np.all(np.abs(found - exact).max(axis=0) < 2e-15 * np.abs(exact).max(axis=0))

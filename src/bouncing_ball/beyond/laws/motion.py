@@ -16,6 +16,7 @@ otherwise. Landings are proved to be the first for every law.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -27,7 +28,9 @@ from bouncing_ball.beyond.laws.panel import Start, slopes_of
 from bouncing_ball.beyond.laws.permanent_contact import holds
 from bouncing_ball.beyond.laws.scales import rest
 from bouncing_ball.beyond.laws.signature import Signature, free_impact
+from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.first_zero import first_zero
+from bouncing_ball.paper.contact.contact import Span
 from bouncing_ball.paper.motion.deviations import Deviation, Jacobian
 from bouncing_ball.paper.motion.dynamics import Departure, Impact
 from bouncing_ball.paper.motion.flight import Flight, Rise, table
@@ -87,6 +90,31 @@ class ContactDynamics(ResumingDynamics):
             by=end.jacobian,
         )
         return self._with_sticking(impact, departure) if differentiate else departure
+
+    def release_function(
+        self, impact: Impact, departure: Departure
+    ) -> Callable[[np.ndarray], np.ndarray] | None:
+        """δ + κ δ′ within contacts, by the motion of the law; None for a law without a κ."""
+        law = self.law
+        if law.lag is None:
+            return None
+        span = Span(
+            displacement=impact.displacement,
+            velocity=impact.velocity,
+            phase=impact.phase,
+            amplitude=np.broadcast_to(self.amplitude, impact.phase.shape),
+            duration=departure.duration,
+            release_displacement=departure.flight.displacement,
+            release_velocity=departure.flight.velocity,
+        )
+
+        def at(time: np.ndarray) -> np.ndarray:
+            which = np.broadcast_to(np.arange(impact.phase.size), time.shape).ravel()
+            several = law.take(which)
+            displacement, velocity = several.during(pick(span, which), time.ravel())
+            return (displacement + several.lag * velocity).reshape(time.shape)
+
+        return at
 
     def _meets_no_force(self, impact: Impact, depth: np.ndarray) -> np.ndarray:
         """Whether a ball at the surface meets no force, because the load pulls it."""

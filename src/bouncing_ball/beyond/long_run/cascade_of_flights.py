@@ -35,6 +35,7 @@ from bouncing_ball.beyond.periodic.family import AMPLITUDE, Family
 from bouncing_ball.beyond.periodic.problem import PeriodicOrbits
 from bouncing_ball.beyond.periodic.release import release_condition
 from bouncing_ball.errors import Range, require
+from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.corrector import NewtonSettings, newton
 from bouncing_ball.paper.contact.permanent_contact import permanent_contact_threshold
 from bouncing_ball.paper.contact.spring_damper import SpringDamper
@@ -225,47 +226,42 @@ def openings(damping_ratio: ArrayLike, frequency_ratio: np.ndarray, most: int) -
     shape = (zeta.size, most, frequency_ratio.size)
     found = Openings(np.full(shape, np.nan), np.full(shape, np.nan))
     contact = SpringDamper(frequency_ratio, zeta[:, np.newaxis])
-    threshold = permanent_contact_threshold(frequency_ratio, contact.damping_ratio)
-    last = threshold
     for k in range(most):
         limit = np.stack([_stiff_openings(z, most)[k] for z in zeta])
         place = _Place.at_limit(limit)
         for j in range(frequency_ratio.size - 1, -1, -1):
             place = _next(zeta, frequency_ratio[j], place)
             found.amplitude[:, k, j], found.multiplier[:, k, j] = place.opening
-        amplitude = found.amplitude[:, k]
-        known = _is_next(contact, k + 1, threshold, last, amplitude)
-        # From the first ϖ on at which another opening is found, this one is no longer followed.
-        known = np.logical_and.accumulate(known[:, ::-1], axis=1)[:, ::-1]
-        amplitude[~known] = np.nan
-        found.multiplier[:, k][~known] = np.nan
-        last = amplitude
-    return found
+    known = _is_next(contact, found.amplitude)
+    # Each opening requires the last one. From the first ϖ on at which another opening is found, it
+    # is no longer followed.
+    known = np.logical_and.accumulate(known, axis=1)
+    known = np.logical_and.accumulate(known[..., ::-1], axis=-1)[..., ::-1]
+    return Openings(*(np.where(known, x, np.nan) for x in found))
 
 
-def _is_next(
-    contact: SpringDamper,
-    flights: int,
-    threshold: np.ndarray,
-    last: np.ndarray,
-    amplitude: np.ndarray,
-) -> np.ndarray:
-    """Whether simulated balls have so many flights from the last opening up to the present one, and
-    one more above it. All arrays have the shape of the contacts, (ζ, ϖ).
+def _is_next(contact: SpringDamper, amplitude: np.ndarray) -> np.ndarray:
+    """Whether simulated balls on contacts, shape (ζ, ϖ), have k flights from the last opening up to
+    opening k, and one more above it; of the shape of the openings, (ζ, k, ϖ).
     """
+    threshold = permanent_contact_threshold(contact.frequency_ratio, contact.damping_ratio)
+    threshold = threshold[:, np.newaxis]
+    last = np.concatenate([threshold, amplitude[:, :-1]], axis=1)
     # If two openings coincide in Λ, only the first is kept.
     above = _ABOVE * (amplitude - threshold)
-    exists = amplitude - last > above
-    rises = np.stack([last + 2 * above, (last + amplitude) / 2, amplitude - above])
-    places = np.where(exists, [*rises, amplitude + above], 1.0)
+    exists = np.nonzero(amplitude - last > above)
+    zeta, k, ratio = exists
+    low, high, aside = (x[exists] for x in (last, amplitude, above))
+    places = np.stack([low + 2 * aside, (low + high) / 2, high - aside, high + aside])
     # The ball is set down behind the top of the table.
-    phase = np.pi / 2 + 3 / contact.frequency_ratio
-    velocity = places * np.cos(phase) - 0.1 / np.square(contact.frequency_ratio)
-    model = SpringDamperModel(contact)
-    found = final_motions(model, places, phase, velocity, impacts=_IMPACTS)
-    expected = flights + np.array([0, 0, 0, 1])
-    same = (found.periods == 1) & (found.impacts == expected[:, np.newaxis, np.newaxis])
-    return exists & same.all(axis=0)
+    law = contact[zeta, ratio]
+    phase = np.pi / 2 + 3 / law.frequency_ratio
+    velocity = places * np.cos(phase) - 0.1 / np.square(law.frequency_ratio)
+    found = final_motions(SpringDamperModel(law), places, phase, velocity, impacts=_IMPACTS)
+    flights = np.add.outer([0, 0, 0, 1], k + 1)
+    is_next = np.zeros(amplitude.shape, dtype=bool)
+    is_next[exists] = np.all((found.periods == 1) & (found.impacts == flights), axis=0)
+    return is_next
 
 
 class _Place(NamedTuple):
@@ -287,27 +283,39 @@ class _Place(NamedTuple):
         none = np.ones(len(limit))
         return cls(np.inf, limit, np.zeros_like(limit), Openings(none, none))
 
+    @classmethod
+    def unknown(cls, ratio: float, shape: tuple[int, ...]) -> Self:
+        """A place without openings, for unknowns of this shape."""
+        none = np.full(shape, np.nan)
+        openings = np.full((2, shape[0]), np.nan)
+        return cls(ratio, none, none.copy(), Openings(*openings))
+
+    def store(self, which: np.ndarray, part: Self) -> None:
+        """Fill in the openings of the contacts with these indices."""
+        self.scaled[which] = part.scaled
+        self.rise[which] = part.rise
+        for whole, values in zip(self.opening, part.opening, strict=True):
+            whole[which] = values
+
 
 def _next(zeta: np.ndarray, ratio: float, place: _Place) -> _Place:
     """The openings at the next smaller ϖ: for each contact those of the first guess that leads to a
     stable orbit.
     """
-    tries = []
+    found = _Place.unknown(ratio, place.scaled.shape)
+    left = np.flatnonzero(np.isfinite(place.opening.amplitude))
     for parts, share in _GUESSES:
-        there = place._replace(rise=share * place.rise)
+        if not left.size:
+            break
+        there = pick(place, left)
+        there = there._replace(rise=share * there.rise)
         between = np.linspace(place.ratio**-2.0, ratio**-2.0, parts + 1)[1:-1] ** -0.5
         for step in (*between, ratio):
-            there = _stepped(zeta, step, there)
-        tries.append(there)
-        known = np.isfinite([each.opening.amplitude for each in tries])
-        if np.all(known.any(axis=0) | np.isnan(place.opening.amplitude)):
-            break
-    first = known.argmax(axis=0)
-    rows = np.arange(zeta.size)
-    scaled = np.stack([each.scaled for each in tries])[first, rows]
-    rise = np.stack([each.rise for each in tries])[first, rows]
-    opening = np.stack([each.opening for each in tries])[first, :, rows].T
-    return _Place(ratio, scaled, rise, Openings(*opening))
+            there = _stepped(zeta[left], step, there)
+        known = np.isfinite(there.opening.amplitude)
+        found.store(left[known], pick(there, known))
+        left = left[~known]
+    return found
 
 
 def _stepped(zeta: np.ndarray, ratio: float, place: _Place) -> _Place:

@@ -25,8 +25,8 @@ class Legs(NamedTuple):
     ``residual`` are the two sides of Eq. 2 of :mod:`bouncing_ball.beyond.periodic.problem`, shape
     (..., k, 2), and ``duration`` the durations of the contacts. ``tangent`` is DP. ``near`` is the
     same matrix as if the contact began at the phase θ_{i+1}, and ``velocity`` and ``acceleration``
-    are y′ and δ″ there, with y = δ, or δ + κ δ′ where a contact resumes. ``impact``, ``departure``
-    and ``passed``, the time of the leg, are flat.
+    are y′ and δ″ there, with y = δ, or δ + κ δ′ where a contact resumes. ``dynamics``, ``impact``,
+    ``departure`` and ``passed``, the time of the leg, are flat.
     """
 
     residual: np.ndarray
@@ -35,6 +35,7 @@ class Legs(NamedTuple):
     near: Jacobian
     velocity: np.ndarray
     acceleration: np.ndarray
+    dynamics: Any
     impact: Any
     departure: Any
     passed: np.ndarray
@@ -50,6 +51,7 @@ def no_legs(shape: tuple[int, ...]) -> Legs:
         near=Jacobian(none, none, none, none),
         velocity=none,
         acceleration=none,
+        dynamics=None,
         impact=None,
         departure=None,
         passed=none.ravel(),

@@ -210,6 +210,7 @@ class PeriodicOrbits:
             near=Jacobian(*(entry.reshape(shape) for entry in near)),
             velocity=speed.reshape(shape),
             acceleration=acceleration.reshape(shape),
+            dynamics=dynamics,
             impact=impact,
             departure=departure,
             passed=landing.passed,

@@ -4,7 +4,7 @@ A subclass of :class:`Dynamics` computes the ends of contacts; everything else f
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple, Protocol, Self
 
@@ -137,6 +137,14 @@ class Dynamics(Batch, ABC):
         It is the first end, as in :meth:`depart`, unless the model :attr:`continues` contacts.
         """
         return self.depart(impact, differentiate=True)
+
+    def release_function(
+        self, impact: Impact, departure: Departure
+    ) -> Callable[[np.ndarray], np.ndarray] | None:
+        """δ + κ δ′ within contacts as a function of the times since their starts, of shape (...,
+        contacts); None if impacts are instants, and for laws without a κ.
+        """
+        return None
 
     def settles(self, impact: Impact) -> np.ndarray:
         """Whether a contact that :meth:`depart_after` ends at a given duration can begin with these

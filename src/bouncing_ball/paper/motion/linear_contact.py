@@ -19,6 +19,7 @@ motion instead. Let e² = y′² + ϖ² (y + 1/ϖ²)². Damping only decreases i
 bounds of the higher derivatives follow from the equation of motion.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar
@@ -266,6 +267,13 @@ class LinearContactDynamics(ResumingDynamics):
         """The ends of the contacts nearest to given durations, also beyond an earlier end."""
         motion = self._motion(impact)
         return self._ended(impact, motion, nearest_zero(motion, duration))
+
+    def release_function(
+        self, impact: Impact, departure: Departure
+    ) -> Callable[[np.ndarray], np.ndarray]:
+        """δ + κ δ′ within contacts, in closed form."""
+        motion = self._motion(impact)
+        return lambda time: motion(time).value
 
     def _motion(self, impact: Impact) -> ContactMotion:
         x, y = self.table_at(impact)

@@ -20,6 +20,7 @@ from bouncing_ball.beyond.laws.orbits import LawModel, law_at_orbit
 from bouncing_ball.beyond.laws.registry import law_named
 from bouncing_ball.calls.arguments import (
     FINITE,
+    FREQUENCY_RATIO,
     POSITIVE,
     RESTITUTION,
     Axis,
@@ -201,7 +202,8 @@ def _law_of_parameters(
     for name in known:
         if name not in parameters:
             raise ParameterError(f"{kind.name} also needs {{{name}}}=NUMBER")
-    values = {name: checked(name, value, FINITE) for name, value in parameters.items()}
+    ranges = {"frequency_ratio": FREQUENCY_RATIO}
+    values = {name: checked(name, x, ranges.get(name, FINITE)) for name, x in parameters.items()}
     flat = flattened(values)
     if release is None:
         return ModelBall(LawModel(kind(**flat)), {"law": kind.name, **values})

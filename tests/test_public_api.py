@@ -159,6 +159,13 @@ def test_the_frequency_ratio_of_a_law_has_the_range_of_that_of_a_spring(law, rat
         contact_law(law, **given)
 
 
+@pytest.mark.parametrize("stiffness", [1.1e20, 0.9e-20])
+def test_the_stiffness_of_a_law_has_the_range_of_its_frequency_ratio(stiffness, refusal):
+    # ϖ ~ K^(2/5).
+    with refusal(ModelError, "stiffness", "is not a number in [1e-20, 1e+20]"):
+        contact_law("tsuji", stiffness=stiffness, damping=0.1)
+
+
 def test_all_orbits_at_an_amplitude_are_in_order_of_their_contacts():
     found = orbits(spring_damper(restitution=0.85, frequency_ratio=2.0), amplitude=0.9)
     durations = [each.contact_duration for each in found]

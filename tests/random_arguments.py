@@ -77,10 +77,16 @@ class Draw:
             case _:
                 return self.call("corrected", self.spring() if self.is_odd(0.5) else self.on_law())
 
+    def loss(self) -> str:
+        """The name of a measure of a spring's loss; an unknown name is an error of Python."""
+        names = "restitution", "damping_ratio", "measured_restitution"
+        loss = self.pick(*names)
+        return loss if isinstance(loss, str) and loss in names else "restitution"
+
     def spring(self) -> Any:
-        loss = self.pick("restitution", "damping_ratio", "measured_restitution")
+        loss = self.loss()
         release = self.some(release=lambda: self.pick("displacement", "force"))
-        of_loss = {loss if isinstance(loss, str) else "restitution": self.share()}
+        of_loss = {loss: self.share()}
         ratio = self.number(0.1, 1e3) if self.random.random() < 0.6 else self.number(1e-8, 1e8)
         return self.call("spring_damper", frequency_ratio=ratio, **of_loss, **release)
 

@@ -198,9 +198,7 @@ def _of_table(draw: Draw) -> dict[str, Any]:
 
 
 def _of_contact(draw: Draw, *, stiff: bool) -> dict[str, Any]:
-    loss = draw.pick("restitution", "damping_ratio", "measured_restitution")
-    loss = loss if isinstance(loss, str) else "restitution"
-    found = {"mass": draw.text("kg", 1e-6, 1e3), loss: draw.share()}
+    found = {"mass": draw.text("kg", 1e-6, 1e3), draw.loss(): draw.share()}
     match draw.random.integers(4) if stiff else 9:
         case 0 | 1:
             found["stiffness"] = draw.text("N/m", 1.0, 1e12)

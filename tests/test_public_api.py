@@ -16,6 +16,7 @@ from bouncing_ball import contact_law, corrected, orbit, orbits, rigid, simulate
 from bouncing_ball.beyond.law_orbits import LawModel, law_at_orbit
 from bouncing_ball.beyond.laws.hertzian import Tsuji
 from bouncing_ball.calls.balls import ModelBall
+from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.orbits.stability import Side
 
 ROOT = Path(__file__).parents[1]
@@ -146,6 +147,23 @@ def test_parameters_of_a_law_may_be_arrays():
     found = orbit(contact_law("tsuji", stiffness=stiffness, damping=0.1), amplitude=0.9)
     assert found.phase.dims == ("stiffness",)
     assert float(found.phase[1]) == pytest.approx(orbit(TSUJI, amplitude=0.9).phase, rel=1e-12)
+
+
+@pytest.mark.parametrize("law", ["linear", "elasto-backlash"])
+@pytest.mark.parametrize("ratio", [1e300, 1.1e8, 0.9e-8])
+def test_the_frequency_ratio_of_a_law_has_the_range_of_that_of_a_spring(law, ratio, refusal):
+    given = {"frequency_ratio": ratio, "damping_ratio": 0.1}
+    with refusal(ModelError, "frequency_ratio", "is not a number in [1e-08, 1e+08]"):
+        spring_damper(**given)
+    with refusal(ModelError, "frequency_ratio", "is not a number in [1e-08, 1e+08]"):
+        contact_law(law, **given)
+
+
+@pytest.mark.parametrize("stiffness", [1.1e20, 0.9e-20])
+def test_the_stiffness_of_a_law_has_the_range_of_its_frequency_ratio(stiffness, refusal):
+    # ϖ ~ K^(2/5).
+    with refusal(ModelError, "stiffness", "is not a number in [1e-20, 1e+20]"):
+        contact_law("tsuji", stiffness=stiffness, damping=0.1)
 
 
 def test_all_orbits_at_an_amplitude_are_in_order_of_their_contacts():

@@ -250,6 +250,26 @@ def test_a_start_beyond_a_terminal_event_is_refused(refusal):
             along(CIRCLE, 0.8, 0.6, events=events)
 
 
+def test_a_start_without_derivatives_is_refused(refusal):
+    # The equation has solutions at p ≤ 0.6, and its derivatives end before.
+    def slope(x, p):
+        return np.where(p < 0.6, 1.0, np.nan)
+
+    line = Scalar(lambda x, p: x - 2 * p, lambda x, p: 1.0, slope)
+    with refusal(
+        ContinuationError, "near the starting guess [1.2 0.6]", "the derivatives", "not defined"
+    ):
+        along(line, 1.2, 0.6)
+    # The last Newton step, which is short enough, leads to a place without derivatives.
+    corner = Scalar(
+        lambda x, p: (x - 1) * (x + 1),
+        lambda x, p: np.where(np.abs(x - 1) < 1e-12, np.nan, 2 * x),
+        lambda x, p: 0.0,
+    )
+    with refusal(ContinuationError, "has no direction: the derivatives", "not defined"):
+        along(corner, 1 + 1.5e-12, 0.0)
+
+
 def test_the_start_is_corrected_at_a_fixed_parameter():
     assert solve_at(CIRCLE, np.array([0.9, 0.6])) == pytest.approx([0.8, 0.6], abs=EXACT)
     branch = along(CIRCLE, 0.9, 0.6, max_points=3)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane, tangent
+from bouncing_ball.numerics.corrector import NewtonSettings, failure, newton, plane, tangent
 
 EPS = np.finfo(float).eps
 
@@ -88,3 +88,31 @@ def test_tangent_is_the_unit_null_vector_on_the_given_side():
         assert jacobian @ vector == pytest.approx(np.zeros(size), abs=1e-12)
         assert vector @ along > 0
         assert tangent(jacobian, -along) == pytest.approx(-vector, abs=1e-12)
+
+
+def test_the_tangent_is_unknown_only_where_the_jacobian_is_not_finite():
+    matrices = np.array([[[1.0, 1.0]], [[np.nan, 1.0]], [[np.inf, 1.0]]])
+    found = tangent(matrices, np.array([0.0, -1.0]))
+    assert found[0] == pytest.approx(np.array([1.0, -1.0]) / np.sqrt(2), abs=4 * EPS)
+    assert np.all(np.isnan(found[1:]))
+
+
+class Broken:
+    """x p = 0 for p > 0, without derivatives at p = 0."""
+
+    def residual(self, y):
+        return y[..., :1] * y[..., 1:]
+
+    def jacobian(self, y):
+        return np.where(y[..., np.newaxis, 1:] > 0, y[..., np.newaxis, ::-1], np.nan)
+
+
+def test_a_point_without_derivatives_is_no_solution_although_its_equations_are_satisfied():
+    for start, why in (
+        (0.0, "the derivatives of the equations are not defined after 1 Newton iterations"),
+        (1.0, ""),
+    ):
+        guess = np.array([0.0, start])
+        found = newton(Broken(), guess, plane(np.array([0.0, 1.0]), guess))
+        assert found.residual == 0
+        assert failure(Broken(), found) == why

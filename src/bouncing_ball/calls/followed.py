@@ -119,7 +119,9 @@ def _state(orbit: Any, along: str) -> State:
         raise ParameterError(f"the orbit, a {kind}, is not one that was made by {how}")
     family = family_of(orbit.model, orbit.amplitude)
     family.bounds(along)
-    return switching.of_impact(family, orbit.phase, orbit.impact_velocity, 1, along)
+    return switching.of_single_impact(
+        family, orbit.phase, orbit.impact_velocity, orbit.contact_duration, orbit.n, along
+    )
 
 
 def orbit_of_motion(

@@ -20,6 +20,7 @@ from bouncing_ball.beyond.laws.law_of_impact import law_of_impact, reference
 from bouncing_ball.beyond.laws.registry import law_named
 from bouncing_ball.calls.arguments import (
     FINITE,
+    FREQUENCY_RATIO,
     POSITIVE,
     RESTITUTION,
     Axis,
@@ -31,13 +32,17 @@ from bouncing_ball.calls.arguments import (
     is_array,
 )
 from bouncing_ball.calls.balls import Ball, ModelBall, flattened
-from bouncing_ball.errors import ParameterError
+from bouncing_ball.errors import ParameterError, Range
 from bouncing_ball.paper.contact.damping import Release
 from bouncing_ball.paper.orbits.restitution_branch import rigid_speed
 from bouncing_ball.paper.orbits.stability import Side
 
 if TYPE_CHECKING:
     from bouncing_ball.datasets.labelled import Grid
+
+# A Hertzian contact of stiffness K lasts as long as a spring with ϖ ~ K^(2/5), at speeds of order
+# one.
+_RANGES = {"frequency_ratio": FREQUENCY_RATIO, "stiffness": Range(1e-20, 1e20, "[]")}
 
 
 @dataclass(frozen=True, eq=False)
@@ -201,7 +206,7 @@ def _law_of_parameters(
     for name in known:
         if name not in parameters:
             raise ParameterError(f"{kind.name} also needs {{{name}}}=NUMBER")
-    values = {name: checked(name, value, FINITE) for name, value in parameters.items()}
+    values = {name: checked(name, x, _RANGES.get(name, FINITE)) for name, x in parameters.items()}
     flat = flattened(values)
     if release is None:
         return ModelBall(LawModel(kind(**flat)), {"law": kind.name, **values})

@@ -14,11 +14,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.numerics.corrector import NewtonSettings, Problem, newton, plane, tangent
+from bouncing_ball.numerics.corrector import (
+    NewtonSettings,
+    Problem,
+    failure,
+    newton,
+    plane,
+    tangent,
+)
 from bouncing_ball.numerics.events import Event, SpecialPoint, changes_of_sign, locate_all
-
-# Largest defect of a start of which the last Newton step is not small: a hundred roundings.
-_SATISFIED = 1e-13
 
 
 class ContinuationError(RuntimeError):
@@ -133,11 +137,10 @@ def solve_at(problem: Problem, guess: np.ndarray) -> np.ndarray:
     axis = np.zeros_like(guess)
     axis[-1] = 1.0
     found = newton(problem, guess, plane(axis, guess))
-    # Next to a bifurcation rounding moves the last step, although the equations are satisfied.
-    if not (found.converged or found.residual <= _SATISFIED):
+    why = failure(problem, found)
+    if why:
         raise ContinuationError(
-            f"no solution near the starting guess {np.array2string(guess, precision=4)}: "
-            f"residual {found.residual:.1e} after {found.iterations} Newton iterations"
+            f"no solution near the starting guess {np.array2string(guess, precision=4)}: {why}"
         )
     return found.point
 
@@ -192,7 +195,13 @@ def _first_state(
     """The corrected start, with a tangent along which the parameter increases or decreases."""
     point = solve_at(problem, np.asarray(start, dtype=float))
     parameter = np.eye(point.size)[-1] * (1.0 if increasing else -1.0)
-    state = _State(point, tangent(problem.jacobian(point), parameter), _values(events, point))
+    along = tangent(problem.jacobian(point), parameter)
+    if not np.all(np.isfinite(along)):
+        raise ContinuationError(
+            f"the start {np.array2string(point, precision=4)} has no direction: the derivatives of "
+            "the equations are not defined there"
+        )
+    state = _State(point, along, _values(events, point))
     for event, value in zip(events, state.values, strict=True):
         if event.terminal and value < 0:
             raise ContinuationError(
@@ -277,7 +286,8 @@ def continue_branch(
     Raises
     ------
     ContinuationError
-        If there is no solution near ``start``, or it lies outside the domain.
+        If there is no solution near ``start``, if it lies outside the domain, or if the Jacobian is
+        not defined there.
 
     Examples
     --------

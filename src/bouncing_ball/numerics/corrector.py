@@ -11,6 +11,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 _TINY = np.finfo(float).tiny
+# Largest defect of a point of which the last Newton step is not small: a hundred roundings.
+_SATISFIED = 1e-13
 
 
 class Problem(Protocol):
@@ -143,6 +145,20 @@ def _solve_linear(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
         return np.linalg.solve(matrix, right[..., np.newaxis])[..., 0]
 
 
+def failure(problem: Problem, found: Correction) -> str:
+    """Why a single Newton iteration ended at no solution; empty if it ended at one.
+
+    Next to a bifurcation rounding moves the last step, although the equations are satisfied. Such a
+    point is a solution if the Jacobian is defined there.
+    """
+    after = f"after {found.iterations} Newton iterations"
+    if found.converged:
+        return ""
+    if not np.all(np.isfinite(problem.jacobian(found.point))):
+        return f"the derivatives of the equations are not defined {after}"
+    return "" if found.residual <= _SATISFIED else f"residual {float(found.residual):.1e} {after}"
+
+
 def plane(normal: np.ndarray, through: np.ndarray) -> Condition:
     """The condition that y lies in the plane ``normal · (y - through) = 0``.
 
@@ -159,17 +175,33 @@ def plane(normal: np.ndarray, through: np.ndarray) -> Condition:
     return condition
 
 
+def null_vector(matrix: np.ndarray) -> np.ndarray:
+    """Unit null vectors, shape (..., M), of matrices (..., N, M) of rank M - 1, with N = M - 1 or
+    N = M; NaN where a matrix is not finite.
+
+    Examples
+    --------
+    >>> np.abs(null_vector(np.array([[3.0, 0.0], [0.0, 0.0]]))).tolist()
+    [0.0, 1.0]
+    """
+    defined = np.all(np.isfinite(matrix), axis=(-2, -1), keepdims=True)
+    # The decomposition of a matrix with NaN entries would be an error for all matrices.
+    vector = np.linalg.svd(np.where(defined, matrix, 0.0))[2][..., -1, :]
+    return np.where(defined[..., 0], vector, np.nan)
+
+
 def tangent(jacobian: np.ndarray, along: np.ndarray) -> np.ndarray:
     """Unit tangent of the solution curve, oriented along ``along``, shape (..., N + 1).
 
     It is the null vector of the N × (N + 1) Jacobian, which is also defined at a fold. The
-    arguments have shapes (..., N, N + 1) and (..., N + 1).
+    arguments have shapes (..., N, N + 1) and (..., N + 1). The tangent is NaN where the Jacobian is
+    not finite.
 
     Examples
     --------
     >>> tangent(np.array([[1.0, 1.0]]), np.array([0.0, -1.0])).round(6).tolist()
     [0.707107, -0.707107]
     """
-    vector = np.linalg.svd(jacobian)[2][..., -1, :]
+    vector = null_vector(jacobian)
     ahead = np.sum(vector * along, axis=-1, keepdims=True)
     return np.where(ahead < 0, -vector, vector)

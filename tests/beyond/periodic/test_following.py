@@ -267,3 +267,26 @@ def test_states_of_a_branch_are_orbits_one_by_one(case):
     states = list(found)
     assert len(states) == len(found) and all(each.defect() < 1e-11 for each in states)
     assert states[0].impacts == impacts and f"with {impacts} impacts" in repr(states[0]) and name
+
+
+@pytest.mark.parametrize("name", ["rigid", "spring-damper", "corrected", "law"])
+def test_an_orbit_that_no_ball_follows_starts_its_branch(name):
+    linear = bouncing_ball.spring_damper(restitution=0.6, frequency_ratio=1000.0)
+    ball = {
+        "rigid": bouncing_ball.rigid(restitution=0.6),
+        "spring-damper": linear,
+        "corrected": bouncing_ball.corrected(linear),
+        "law": bouncing_ball.contact_law("hunt-crossley", stiffness=1e7, damping=0.2),
+    }[name]
+    for n in (1, 3):
+        orbit = bouncing_ball.orbit(ball, n, amplitude=6.0 * n, side="unstable")
+        assert not orbit.is_admissible()
+        found = bouncing_ball.follow(orbit, to=5.9 * n)
+        first = next(iter(found.states()))
+        assert (first.impacts, first.periods) == (1, n)
+        # The last Newton step of both is below 1e-12 of y, which is of order 10.
+        other = bouncing_ball.orbit(ball, n, amplitude=5.9 * n, side="unstable")
+        for k, here in ((0, orbit), (-1, other)):
+            assert found.multiplier_real[k].values == pytest.approx(
+                here.multipliers().real, rel=1e-11
+            )

@@ -53,3 +53,10 @@ def test_the_highest_point_of_a_contact_is_found_next_to_its_ends(top):
         shape=(), contact_duration=np.array(1.0), contact_path=lambda time: (-((time - top) ** 2),)
     )
     assert abs(Orbit._contact_top(contact)) < 1e-13
+
+
+def test_a_contact_that_only_touches_its_release_has_no_derivatives():
+    # δ′ = 0 at the impact and at the release of a contact without duration.
+    orbit = SpringDamperOrbit.of(1, SpringDamper(10.0, 0.05), 1.0, 0.0, 0.0, impact_velocity=1.0)
+    assert np.all(np.isnan(orbit.contact_jacobian()[0]))
+    assert not orbit.is_stable() and not orbit.is_admissible()

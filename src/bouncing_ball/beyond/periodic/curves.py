@@ -42,7 +42,7 @@ from bouncing_ball.numerics.continuation import (
     StepControl,
     continue_both_ways,
 )
-from bouncing_ball.numerics.corrector import Condition, NewtonSettings, newton
+from bouncing_ball.numerics.corrector import Condition, NewtonSettings, newton, null_vector
 from bouncing_ball.numerics.events import Event, SpecialPoint, locate, vanishing
 from bouncing_ball.paper.orbits.stability import Bifurcation
 
@@ -223,7 +223,7 @@ def _limits(orbits: PeriodicOrbits, windows: dict[str, Window | None]) -> list[E
 def _null_vector(orbits: PeriodicOrbits, y: np.ndarray, reference: np.ndarray) -> np.ndarray:
     """u with a zero for each parameter, oriented along a reference, shape (..., N + 2)."""
     matrix = orbits.jacobian(y)[..., : orbits.equations]
-    vector = np.linalg.svd(matrix)[2][..., -1, :]
+    vector = null_vector(matrix)
     vector = vector * np.where(vector @ reference < 0, -1.0, 1.0)[..., np.newaxis]
     none = np.zeros((*y.shape[:-1], 2))
     return np.concatenate([vector, none], axis=-1)

@@ -24,7 +24,7 @@ from bouncing_ball.numerics.continuation import (
     StepControl,
     continue_branch,
 )
-from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
+from bouncing_ball.numerics.corrector import NewtonSettings, failure, newton, plane
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.paper.orbits import stability
@@ -35,8 +35,6 @@ STEPS = StepControl(initial=0.01, smallest=1e-9, largest=0.1, max_angle=0.15)
 PATIENT = NewtonSettings(max_iterations=20, longest=0.3)
 """Newton's method from a guess that is not the last point of a branch."""
 _BOUND = "bound"
-# Largest defect of a start of which the last Newton step is not small: a hundred roundings.
-_SATISFIED = 1e-13
 # A branch is followed up to this distance of the two turns of an orbit before they become equal.
 # If there is no period doubling near, it is followed up to a smaller distance, several times.
 _NEAR = 0.1
@@ -202,12 +200,11 @@ def corrected(state: State) -> State:
     axis = np.eye(state.y.size)[-1]
     with np.errstate(all="ignore"):
         found = newton(state.orbits, state.y, plane(axis, state.y), PATIENT)
-    # Next to a bifurcation rounding moves the last step, although the equations are satisfied.
-    if not (found.converged or found.residual <= _SATISFIED):
+        why = failure(state.orbits, found)
+    if why:
         k = state.orbits.impacts
         raise NoOrbitError(
-            f"no orbit with {k} impact{'s' if k > 1 else ''} was found near this motion: residual "
-            f"{float(found.residual):.1e} after {found.iterations} Newton iterations"
+            f"no orbit with {k} impact{'s' if k > 1 else ''} was found near this motion: {why}"
         )
     return State(state.orbits, found.point)
 

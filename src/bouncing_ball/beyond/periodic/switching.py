@@ -137,9 +137,38 @@ def of_impact(family: Family, phase: float, velocity: float, impacts: int, along
     NoOrbitError
         If there is no such orbit.
     """
+    guess = simulated(family, *_on_section(family, phase, velocity), impacts, (along,))
+    return corrected(State(*guess))
+
+
+def of_single_impact(
+    family: Family, phase: float, velocity: float, duration: float, periods: int, along: str
+) -> State:
+    """The orbit of one impact in m periods near one with φ, z′ and a duration of its contact.
+
+    No ball is simulated, because a ball leaves an orbit that is not admissible.
+
+    Raises
+    ------
+    NoOrbitError
+        If there is no such orbit.
+    """
+    orbits = PeriodicOrbits(
+        family=family,
+        impacts=1,
+        turns=np.array([periods]),
+        along=(along,),
+        selects=family.dynamics({}).continues and duration > 0,
+    )
+    theta, closing = (np.array([x]) for x in _on_section(family, phase, velocity))
+    guess = orbits.point(theta, closing, np.array([duration]), **{along: family.values[along]})
+    return corrected(State(orbits, guess))
+
+
+def _on_section(family: Family, phase: float, velocity: float) -> tuple[float, float]:
+    """θ and v of an impact with φ and z′."""
     dynamics = family.dynamics({})
     relative = velocity - float(table(np.asarray(phase), dynamics.amplitude)[0])
     row, (start, before), _ = dynamics.in_a_row([phase], [relative])
-    section = row.section(row.start(start, before))
-    guess = simulated(family, float(section[0][0]), float(section[1][0]), impacts, (along,))
-    return corrected(State(*guess))
+    theta, closing = row.section(row.start(start, before))
+    return float(theta[0]), float(closing[0])

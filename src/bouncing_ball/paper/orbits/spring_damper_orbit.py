@@ -96,7 +96,8 @@ class SpringDamperOrbit(Orbit):
     def contact_jacobian(self) -> np.ndarray:
         """Jacobian of (τ_b, δ_b, δ′_b) in (τ, δ′, Λ) at the impact, shape (..., 3, 3).
 
-        The duration is differentiated through the release condition δ_b + κ δ′_b = 0.
+        The duration is differentiated through the release condition δ_b + κ δ′_b = 0. It has no
+        derivative, and the entries are NaN, where the release function only touches 0.
         """
         # Rows δ, δ′; columns (τ, δ′, Λ) of the start. The last array is the derivative in time.
         jacobian = self._end.jacobian
@@ -105,7 +106,7 @@ class SpringDamperOrbit(Orbit):
         lag = np.asarray(self.law.lag)
         released = state[..., 0, :] + lag[..., np.newaxis] * state[..., 1, :]
         pace = by_time[..., 0] + lag * by_time[..., 1]
-        duration = -released / pace[..., np.newaxis]
+        duration = -released / np.where(pace == 0, np.nan, pace)[..., np.newaxis]
         state = state + by_time[..., :, np.newaxis] * duration[..., np.newaxis, :]
         return np.concatenate([duration[..., np.newaxis, :], state], axis=-2)
 

@@ -132,3 +132,13 @@ def test_a_branch_has_the_observables_of_its_orbits_under_their_names(ball):
     for name in observables.OBSERVED:
         # Newton's method moves the first point by rounding errors only.
         assert float(found[name]) == pytest.approx(getattr(orbit, name), abs=1e-14), name
+
+
+@pytest.mark.parametrize("ratio", [2.0, 10.0])
+def test_a_branch_starts_at_a_saddle_node_itself(ratio):
+    """There Newton's method with a fixed amplitude is singular."""
+    ball = bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=ratio)
+    fold = bouncing_ball.limits(ball).saddle_node
+    found = bouncing_ball.follow(fold, to=0.5)
+    assert float(found.amplitude[0]) == pytest.approx(fold.amplitude, abs=1e-12)
+    assert str(found.end_reason[1].values) == "amplitude = 0.5 is reached"

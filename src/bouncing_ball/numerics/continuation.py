@@ -17,7 +17,7 @@ import numpy as np
 from bouncing_ball.numerics.corrector import (
     NewtonSettings,
     Problem,
-    failure,
+    corrected,
     newton,
     plane,
     tangent,
@@ -134,15 +134,12 @@ def solve_at(problem: Problem, guess: np.ndarray) -> np.ndarray:
     >>> solve_at(Circle(), np.array([1.0, 0.6])).round(12).tolist()
     [0.8, 0.6]
     """
-    axis = np.zeros_like(guess)
-    axis[-1] = 1.0
-    found = newton(problem, guess, plane(axis, guess))
-    why = failure(problem, found)
+    point, why = corrected(problem, guess)
     if why:
         raise ContinuationError(
             f"no solution near the starting guess {np.array2string(guess, precision=4)}: {why}"
         )
-    return found.point
+    return point
 
 
 class _State(NamedTuple):

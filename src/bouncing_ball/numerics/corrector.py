@@ -13,6 +13,8 @@ import numpy as np
 _TINY = np.finfo(float).tiny
 # Largest defect of a point of which the last Newton step is not small: a hundred roundings.
 _SATISFIED = 1e-13
+# The accuracy in the parameter with which folds are located.
+_LOCATED = 1e-12
 
 
 class Problem(Protocol):
@@ -205,3 +207,22 @@ def tangent(jacobian: np.ndarray, along: np.ndarray) -> np.ndarray:
     vector = null_vector(jacobian)
     ahead = np.sum(vector * along, axis=-1, keepdims=True)
     return np.where(ahead < 0, -vector, vector)
+
+
+def corrected(
+    problem: Problem, guess: np.ndarray, settings: NewtonSettings = NewtonSettings()
+) -> tuple[np.ndarray, str]:
+    """The solution with the parameter of a guess, shape (N + 1,), and why there is none, or "".
+
+    At a fold the equations with a fixed parameter are singular. There the solution in the plane
+    across the curve is the same, because the parameter only moves by rounding errors.
+    """
+    axis = np.eye(guess.size)[-1]
+    found = newton(problem, guess, plane(axis, guess), settings)
+    why = failure(problem, found)
+    if why:
+        across = null_vector(problem.jacobian(guess))
+        fold = newton(problem, guess, plane(across, guess), settings)
+        if abs(fold.point[-1] - guess[-1]) <= _LOCATED and not failure(problem, fold):
+            return fold.point, ""
+    return found.point, why

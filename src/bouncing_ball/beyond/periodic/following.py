@@ -17,6 +17,7 @@ from bouncing_ball.beyond.periodic.special import (
     turns_apart,
 )
 from bouncing_ball.errors import NoOrbitError, ParameterError
+from bouncing_ball.numerics import corrector
 from bouncing_ball.numerics.continuation import (
     Branch,
     ContinuationError,
@@ -24,7 +25,7 @@ from bouncing_ball.numerics.continuation import (
     StepControl,
     continue_branch,
 )
-from bouncing_ball.numerics.corrector import NewtonSettings, failure, newton, plane
+from bouncing_ball.numerics.corrector import NewtonSettings, newton
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.paper.orbits import stability
@@ -197,16 +198,14 @@ def corrected(state: State) -> State:
     NoOrbitError
         If Newton's method does not converge.
     """
-    axis = np.eye(state.y.size)[-1]
     with np.errstate(all="ignore"):
-        found = newton(state.orbits, state.y, plane(axis, state.y), PATIENT)
-        why = failure(state.orbits, found)
+        point, why = corrector.corrected(state.orbits, state.y, PATIENT)
     if why:
         k = state.orbits.impacts
         raise NoOrbitError(
             f"no orbit with {k} impact{'s' if k > 1 else ''} was found near this motion: {why}"
         )
-    return State(state.orbits, found.point)
+    return State(state.orbits, point)
 
 
 def bounds(start: State, to: float | None) -> list[Event]:

@@ -30,11 +30,7 @@ from bouncing_ball.beyond.periodic.following import (
 )
 from bouncing_ball.beyond.periodic.problem import PeriodicOrbits
 from bouncing_ball.beyond.periodic.release import release_condition
-from bouncing_ball.beyond.periodic.special import (
-    Special,
-    flight_margin,
-    impact_margin,
-)
+from bouncing_ball.beyond.periodic.special import Special, flight_margin, impact_margin
 from bouncing_ball.errors import NoOrbitError, ParameterError
 from bouncing_ball.numerics.continuation import (
     Branch,
@@ -42,7 +38,7 @@ from bouncing_ball.numerics.continuation import (
     StepControl,
     continue_both_ways,
 )
-from bouncing_ball.numerics.corrector import Condition, NewtonSettings, newton, null_vector
+from bouncing_ball.numerics.corrector import Condition, NewtonSettings, corrected, null_vector
 from bouncing_ball.numerics.events import Event, SpecialPoint, locate, vanishing
 from bouncing_ball.paper.orbits.stability import Bifurcation
 
@@ -51,6 +47,9 @@ from bouncing_ball.paper.orbits.stability import Bifurcation
 _RESONANT = 1e-6
 # The test function of a cusp is a central difference, whose rounding moves the last step by 1e-11.
 _BY_DIFFERENCES = NewtonSettings(tolerance=1e-9, max_iterations=20)
+# A start that is farther from the corrected special orbit is none of its kind. Special orbits are
+# located to 1e-12, and those before a singular end of a branch to about 1e-5.
+_ANOTHER = 1e-3
 _MARGINS = {
     Special.GRAZING_FLIGHT: flight_margin,
     Special.GRAZING_IMPACT: impact_margin,
@@ -66,15 +65,10 @@ class Degenerate(StrEnum):
 
 
 class Window(NamedTuple):
-    """The range of the second parameter in which a curve is followed."""
+    """The range of a parameter in which a curve is followed."""
 
     low: float
     high: float
-
-
-# A start that is farther from the corrected special orbit is none of its kind. Special orbits are
-# located to 1e-12, and those before a singular end of a branch to about 1e-5.
-_ANOTHER = 1e-3
 
 
 def condition_of(orbits: PeriodicOrbits, kind: Special) -> Condition:
@@ -189,20 +183,12 @@ def curve(
 
 
 def _corrected(problem: CurveProblem, y: np.ndarray) -> np.ndarray:
-    """The solution nearest to y, by Newton's method with the least step of all parameters."""
-    axis = np.eye(y.size)[-1]
-
-    def fixed(point: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        return point[..., -1] - y[-1], np.broadcast_to(axis, point.shape)
-
+    """The special orbit with the second parameter of y."""
     with np.errstate(all="ignore"):
-        found = newton(problem, y, fixed, PATIENT)
-    if not found.converged:
-        raise NoOrbitError(
-            f"no special orbit was found near the start of the curve: residual "
-            f"{float(found.residual):.1e} after {found.iterations} Newton iterations"
-        )
-    return found.point
+        point, why = corrected(problem, y, PATIENT)
+    if why:
+        raise NoOrbitError(f"no special orbit was found near the start of the curve: {why}")
+    return point
 
 
 def _limits(orbits: PeriodicOrbits, windows: dict[str, Window | None]) -> list[Event]:

@@ -97,8 +97,8 @@ def landed(
         # is the one with which the height is exactly δ′ t.
         later = -(gap + lag * rate) / (rate + lag * acceleration)
         landing = Zero(time + later, -(rate + later * acceleration), none, none)
-        landed, passed = dynamics.arrive(departure, landing)
-        after = without_force(landed, lag)
+        arrived, passed = dynamics.arrive(departure, landing)
+        after = without_force(arrived, lag)
         whole = passed + time_to_section(dynamics, after) - before
         last = to_section
         to_section = whole - duration - landing.time

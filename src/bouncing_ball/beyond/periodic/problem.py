@@ -139,10 +139,6 @@ class PeriodicOrbits:
             parts.insert(1, duration)
         return np.concatenate(parts, axis=-1)
 
-    def with_parameters(self, *along: str) -> "PeriodicOrbits":
-        """The same orbits with other parameters that vary."""
-        return replace(self, along=along)
-
     @cached_property
     def _cached(self) -> Any:
         # A step along a branch evaluates the residual, the Jacobian and the events at the same

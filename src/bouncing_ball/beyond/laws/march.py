@@ -177,6 +177,7 @@ class _March:
         differentiate: bool,
         integrate: bool,
     ) -> None:
+        np.empty(_KEPT, dtype=np.int8)
         size = start.rate.size
         self.law = law
         self.start = start
@@ -329,7 +330,6 @@ def march(
     >>> march(LinearLaw(np.pi, 0.0), start, until=np.full(1, 0.5)).penetration.round(12).tolist()
     [1.0]
     """
-    np.empty(_KEPT, dtype=np.int8)
     contacts = _March(law, start, until, differentiate, integrate)
     with np.errstate(all="ignore"):
         if start.rate.size:
@@ -366,7 +366,6 @@ def march_through(
     >>> (found.penetration**2).round(12).tolist()
     [0.5, 1.0]
     """
-    np.empty(_KEPT, dtype=np.int8)
     contacts = _March(law, start, None, differentiate=False, integrate=False)
     last = np.zeros(start.rate.size)
     np.maximum.at(last, contact, time)

@@ -85,7 +85,7 @@ setup-engines: $(SETUP)
 # Run the snippets of `design --engine` in the installed engines, in about ten minutes.
 # The dataset is results/config/engines.nc; `make accept ONLY=engines` accepts it.
 test-engines: $(SETUP)
-	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -m engines tests/beyond/engines
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -m engines tests/contacts/engines
 
 # The site from the docs, the docstrings, the article and the explorer: results/site/index.html.
 docs: $(SETUP) $(VENV)/.docs

@@ -284,7 +284,7 @@ def continuation_settings():
 @pytest.fixture
 def short_runs(monkeypatch):
     """The calculator follows few impacts: long runs are those of calculator/test_motion.py."""
-    from bouncing_ball.beyond.calculator import motion
+    from bouncing_ball.contacts import motion
 
     for impacts in ("_IMPACTS", "_IMPACTS_OF_LAW"):
         monkeypatch.setattr(motion, impacts, 20)

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from bouncing_ball.beyond.engines.engine import EngineSettings
+from bouncing_ball.contacts.engines.engine import EngineSettings
 
 RADIUS = 1.0
 

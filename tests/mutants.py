@@ -278,7 +278,7 @@ def chosen(
     folder = path.relative_to(PACKAGE).parent
     own = str(path), f"tests/{folder}/test_{path.stem}.py"
     # The tests of all models and laws are in a folder of their own.
-    folders = f"tests/{folder}/", "tests/beyond/contracts/"
+    folders = f"tests/{folder}/", "tests/contracts/"
     reaching = {name for name, (_, calls) in tests.items() if (str(path), fault.function) in calls}
     beside = {name for name in tests if name.startswith((*own, *folders))}
     found = reaching & beside if near else reaching ^ beside

@@ -8,8 +8,8 @@ digits, 35 digits are left.
 
 from mpmath import mp, mpf
 
-from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.models.damping import Release
+from bouncing_ball.models.spring_damper import SpringDamper
 
 STEP = mpf(10) ** -20
 

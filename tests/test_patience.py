@@ -12,7 +12,7 @@ import bouncing_ball
 from bouncing_ball import patience as module
 from bouncing_ball.calls import over_time_on_grid
 from bouncing_ball.cli.main import main
-from bouncing_ball.paper.motion.dynamics import Dynamics
+from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.patience import patience
 
 PROGRAM = Path(sys.executable).with_name("bouncing-ball")

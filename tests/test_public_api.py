@@ -13,11 +13,11 @@ import pytest
 
 import bouncing_ball
 from bouncing_ball import contact_law, corrected, orbit, orbits, rigid, simulate, spring_damper
-from bouncing_ball.beyond.law_orbits import LawModel, law_at_orbit
-from bouncing_ball.beyond.laws.hertzian import Tsuji
 from bouncing_ball.calls.balls import ModelBall
 from bouncing_ball.errors import ModelError
-from bouncing_ball.paper.orbits.stability import Side
+from bouncing_ball.models.laws.hertzian import Tsuji
+from bouncing_ball.periodic.law_orbits import LawModel, law_at_orbit
+from bouncing_ball.periodic.stability import Side
 
 ROOT = Path(__file__).parents[1]
 CONTACT = spring_damper(restitution=0.85, frequency_ratio=10.0)

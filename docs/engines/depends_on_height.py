@@ -3,7 +3,7 @@
 import numpy as np
 
 import bouncing_ball
-from bouncing_ball.paper.contact.damping import damping_ratio
+from bouncing_ball.models.damping import damping_ratio
 
 GRAVITY, OMEGA, R = 9.81, 200.0, 0.75  # m/s^2, rad/s, r of a free impact
 zeta = float(damping_ratio(R))

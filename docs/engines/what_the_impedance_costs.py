@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from bouncing_ball.beyond.law_orbits import LawModel
-from bouncing_ball.beyond.laws.impedance import Impedance
-from bouncing_ball.paper.contact.damping import Release, damping_ratio
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.laws.impedance import Impedance
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.periodic.law_orbits import LawModel
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 
 MASS, TABLE, R, AMPLITUDE = 0.5, 2 * np.pi * 20, 0.75, 0.8  # kg, rad/s, r, acceleration in g
 zeta = float(damping_ratio(R, Release.FORCE))

@@ -56,11 +56,6 @@ The package consists of floors, each of which imports only from those below it i
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from bouncing_ball.beyond.calculator.assess import assess_contact
-    from bouncing_ball.beyond.calculator.choose import choose_contact
-    from bouncing_ball.beyond.calculator.design import design
-    from bouncing_ball.beyond.calculator.given import Contact, Question, Simulation, Table
-    from bouncing_ball.beyond.calculator.recipe import write_contact
     from bouncing_ball.calls.balls import corrected, rigid, spring_damper
     from bouncing_ball.calls.followed import curve, follow, orbit_of_motion, switch
     from bouncing_ball.calls.law_balls import contact_law
@@ -68,10 +63,15 @@ if TYPE_CHECKING:
     from bouncing_ball.calls.over_time import drop, history, simulate
     from bouncing_ball.calls.periodic import branch, limits, orbit, orbits, permanent_contact
     from bouncing_ball.calls.thresholds import error_thresholds
+    from bouncing_ball.contacts.assess import assess_contact
+    from bouncing_ball.contacts.choose import choose_contact
+    from bouncing_ball.contacts.design import design
+    from bouncing_ball.contacts.given import Contact, Question, Simulation, Table
+    from bouncing_ball.contacts.recipe import write_contact
     from bouncing_ball.errors import ModelError, NoOrbitError
-    from bouncing_ball.paper.contact.spring_damper import SpringDamper
-    from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
-    from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+    from bouncing_ball.models.spring_damper import SpringDamper
+    from bouncing_ball.periodic.restitution_model import RestitutionModel
+    from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 
 __version__ = "0.1.0"
 
@@ -136,21 +136,21 @@ def __getattr__(name: str) -> Any:
         case "error_thresholds":
             from bouncing_ball.calls import thresholds as module
         case "design":
-            from bouncing_ball.beyond.calculator import design as module
+            from bouncing_ball.contacts import design as module
         case "assess_contact":
-            from bouncing_ball.beyond.calculator import assess as module
+            from bouncing_ball.contacts import assess as module
         case "choose_contact":
-            from bouncing_ball.beyond.calculator import choose as module
+            from bouncing_ball.contacts import choose as module
         case "write_contact":
-            from bouncing_ball.beyond.calculator import recipe as module
+            from bouncing_ball.contacts import recipe as module
         case "Contact" | "Question" | "Simulation" | "Table":
-            from bouncing_ball.beyond.calculator import given as module
+            from bouncing_ball.contacts import given as module
         case "SpringDamper":
-            from bouncing_ball.paper.contact import spring_damper as module
+            from bouncing_ball.models import spring_damper as module
         case "SpringDamperModel":
-            from bouncing_ball.paper.orbits import spring_damper_model as module
+            from bouncing_ball.periodic import spring_damper_model as module
         case "RestitutionModel":
-            from bouncing_ball.paper.orbits import restitution_model as module
+            from bouncing_ball.periodic import restitution_model as module
         case "ModelError" | "NoOrbitError":
             from bouncing_ball import errors as module
         case _:

@@ -6,7 +6,7 @@ import pytest
 
 import bouncing_ball as bb
 from bouncing_ball.calls import over_time_on_grid
-from bouncing_ball.paper.orbits.model import ImpactModel
+from bouncing_ball.periodic.model import ImpactModel
 
 BALLS = {
     "rigid": bb.rigid(restitution=1.0),

@@ -10,14 +10,14 @@ from hypothesis import strategies as st
 
 import bouncing_ball
 from bouncing_ball import corrected, rigid, spring_damper
-from bouncing_ball.beyond.law_orbits import LawModel
-from bouncing_ball.beyond.laws.contact_law import ContactLaw
-from bouncing_ball.beyond.laws.hertzian import HuntCrossley, tsuji_damping
-from bouncing_ball.beyond.laws.registry import LAWS
-from bouncing_ball.paper.contact.damping import damping_ratio
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.orbits.orbit import OBSERVABLES
-from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.damping import damping_ratio
+from bouncing_ball.models.laws.contact_law import ContactLaw
+from bouncing_ball.models.laws.hertzian import HuntCrossley, tsuji_damping
+from bouncing_ball.models.laws.registry import LAWS
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.periodic.law_orbits import LawModel
+from bouncing_ball.periodic.orbit import OBSERVABLES
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 
 ORBIT = ("orbit", "--n", "1", "--restitution", "0.85", "--amplitude", "1.0")
 FORCE = ("--frequency-ratio", "10", "--release", "force")

@@ -7,11 +7,11 @@ import pytest
 from PIL import Image
 
 from bouncing_ball import design
-from bouncing_ball.beyond.calculator.page_data import page
-from bouncing_ball.beyond.calculator.page_figures import draw
-from bouncing_ball.beyond.calculator.rows import document
+from bouncing_ball.accuracy.errors import Quantity
+from bouncing_ball.contacts.page_data import page
+from bouncing_ball.contacts.page_figures import draw
+from bouncing_ball.contacts.rows import document
 from bouncing_ball.drawing.labels import QUANTITIES
-from bouncing_ball.paper.comparison.errors import Quantity
 
 CASE = ("design", "--mass", "20 g", "--frequency", "50 Hz", "--acceleration", "0.8 g",
         "--restitution", "0.85")  # fmt: skip
@@ -117,7 +117,7 @@ def test_choosing(said):
     ],
 )
 def test_mistakes_are_one_line(refused, monkeypatch, data, arguments, status, says):
-    monkeypatch.setattr("bouncing_ball.beyond.calculator.page_data.page", lambda found: data)
+    monkeypatch.setattr("bouncing_ball.contacts.page_data.page", lambda found: data)
     command = (*STIFF, *arguments)
     code, line = refused(*command)
     assert code == status and says in line
@@ -202,14 +202,14 @@ def test_a_page_without_errors_and_with_a_long_reason(found, data):
 
 def test_a_page_for_an_orbit_that_one_model_lacks(monkeypatch):
     lonely = design(**UNIT | {"restitution": 0.85, "acceleration": 0.247}, stiffness=100.0)
-    monkeypatch.setattr("bouncing_ball.beyond.calculator.page_data._CHART", 2)
+    monkeypatch.setattr("bouncing_ball.contacts.page_data._CHART", 2)
     shown = page(lonely)
     assert shown.ball.sel(model="restitution").isnull().all()
     assert draw(document(lonely), shown, []).axes
 
 
 def test_the_command_writes_the_page_and_answers_as_without(tmp_path, said, monkeypatch, data):
-    monkeypatch.setattr("bouncing_ball.beyond.calculator.page_data.page", lambda found: data)
+    monkeypatch.setattr("bouncing_ball.contacts.page_data.page", lambda found: data)
     assert said(*STIFF, "--plot", str(tmp_path / "page.png")) == said(*STIFF)
     with Image.open(tmp_path / "page.png") as picture:
         # A4 upright, with ink in it.

@@ -6,8 +6,8 @@ import math
 import pytest
 
 from bouncing_ball import design
-from bouncing_ball.beyond.calculator.rows import document
-from bouncing_ball.beyond.engines.choice import ENGINES
+from bouncing_ball.contacts.engines.choice import ENGINES
+from bouncing_ball.contacts.rows import document
 
 pytestmark = pytest.mark.usefixtures("short_runs")
 

@@ -5,7 +5,7 @@ import pytest
 
 import bouncing_ball
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.paper.orbits import observables
+from bouncing_ball.periodic import observables
 
 RIGID = bouncing_ball.rigid(restitution=0.5)
 FOLLOW = ("follow", "--restitution", "0.5", "--amplitude", "1.4", "--to", "1.8")

@@ -16,18 +16,18 @@ from urllib.parse import urlencode
 import numpy as np
 import pytest
 
-from bouncing_ball.beyond.engines.choice import ENGINES
-from bouncing_ball.beyond.engines.engine import Physical
+from bouncing_ball.accuracy.errors import QUANTITIES
 from bouncing_ball.beyond.exhibits.explorer_orbits import reference_orbits
-from bouncing_ball.beyond.long_run.motions import Kind
+from bouncing_ball.contacts.engines.choice import ENGINES
+from bouncing_ball.contacts.engines.engine import Physical
 from bouncing_ball.explorer.document import BOUND, to_html
 from bouncing_ball.explorer.engine_cases import as_json
-from bouncing_ball.paper.comparison.errors import QUANTITIES
-from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.motion.history import history
-from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
-from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.long_run.motions import Kind
+from bouncing_ball.models.damping import Release
+from bouncing_ball.models.history import history
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 from bouncing_ball.pipeline.configuration import typed
 
 pytestmark = pytest.mark.slow

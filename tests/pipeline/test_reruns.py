@@ -84,7 +84,7 @@ def test_the_modules_of_a_stage_are_those_that_python_imports():
     [
         ("bouncing_ball.drawing.style", "drawing/matplotlibrc"),
         ("bouncing_ball.explorer.document", "explorer/model.js"),
-        ("bouncing_ball.beyond.engines.engine", "beyond/engines/snippets/generic.txt"),
+        ("bouncing_ball.contacts.engines.engine", "contacts/engines/snippets/generic.txt"),
     ],
 )
 def test_the_data_that_a_module_reads_belong_to_its_code(module, data):

@@ -19,17 +19,17 @@ from typing import NamedTuple
 import numpy as np
 
 import bouncing_ball
-from bouncing_ball.beyond.engines.engine import Physical
-from bouncing_ball.beyond.engines.mujoco import MuJoCo
-from bouncing_ball.beyond.periodic.curves import CurveProblem, Window, condition_of, curve
-from bouncing_ball.beyond.periodic.following import follow
-from bouncing_ball.beyond.periodic.special import Special
 from bouncing_ball.calls.followed import family_of
+from bouncing_ball.contacts.engines.engine import Physical
+from bouncing_ball.contacts.engines.mujoco import MuJoCo
+from bouncing_ball.models.damping import Release
+from bouncing_ball.models.linear_contact import LinearContactDynamics
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.numerics.corrector import newton, plane
-from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.motion.linear_contact import LinearContactDynamics
-from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic.curves import CurveProblem, Window, condition_of, curve
+from bouncing_ball.periodic.following import follow
+from bouncing_ball.periodic.special import Special
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "speed.md"
 R = 0.5

@@ -6,7 +6,7 @@
 # Datasets that no study makes: what physics engines computed (`make test-engines`), and the summary
 # of the atlas (workflow/rules/atlas.smk).
 stage(
-    "beyond.engines",
+    "contacts.engines",
     engines=dict(title="Orbits that physics engines ran", accepted="config/engines.nc"),
 )
 stage(

@@ -1,9 +1,9 @@
 """The explorer's page from its reference orbits and the settings of engines."""
 
+from bouncing_ball.accuracy.errors import QUANTITIES
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.explorer.document import to_html
 from bouncing_ball.explorer.engine_cases import as_json
-from bouncing_ball.paper.comparison.errors import QUANTITIES
 from bouncing_ball.pipeline.jobs import logged, read_input
 
 with logged(snakemake) as lines:

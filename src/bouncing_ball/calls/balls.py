@@ -15,9 +15,6 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
-from bouncing_ball.beyond.corrected.orbits import CorrectedModel
-from bouncing_ball.beyond.laws.contact_law import ContactLaw
-from bouncing_ball.beyond.laws.signature import Signature
 from bouncing_ball.calls.arguments import (
     DAMPING_RATIO,
     FREQUENCY_RATIO,
@@ -32,11 +29,14 @@ from bouncing_ball.calls.arguments import (
     is_array,
 )
 from bouncing_ball.errors import ModelError, ParameterError
-from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.orbits.model import ImpactModel
-from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
-from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.damping import Release
+from bouncing_ball.models.laws.contact_law import ContactLaw
+from bouncing_ball.models.laws.signature import Signature
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.periodic.corrected_orbits import CorrectedModel
+from bouncing_ball.periodic.model import ImpactModel
+from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 
 if TYPE_CHECKING:
     from bouncing_ball.datasets.labelled import Grid

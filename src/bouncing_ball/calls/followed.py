@@ -9,12 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.beyond.periodic import curves, following, switching
-from bouncing_ball.beyond.periodic.curves import Window
-from bouncing_ball.beyond.periodic.family import AMPLITUDE as LAMBDA
-from bouncing_ball.beyond.periodic.family import Family, nothing
-from bouncing_ball.beyond.periodic.following import State
-from bouncing_ball.beyond.periodic.special import Special
 from bouncing_ball.calls.arguments import (
     AMPLITUDE_OF_ORBIT,
     DAMPING_RATIO,
@@ -33,10 +27,16 @@ from bouncing_ball.calls.balls import Ball, a_ball, a_single_ball
 from bouncing_ball.calls.labelled_branches import FollowedBranch, SpecialCurve
 from bouncing_ball.calls.periodic import PeriodicOrbit
 from bouncing_ball.errors import ParameterError
-from bouncing_ball.paper.contact.damping import Release, damping_ratio, restitution_coefficient
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.orbits.model import ImpactModel
+from bouncing_ball.models.damping import Release, damping_ratio, restitution_coefficient
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.patience import patience
+from bouncing_ball.periodic import curves, following, switching
+from bouncing_ball.periodic.curves import Window
+from bouncing_ball.periodic.family import AMPLITUDE as LAMBDA
+from bouncing_ball.periodic.family import Family, nothing
+from bouncing_ball.periodic.following import State
+from bouncing_ball.periodic.model import ImpactModel
+from bouncing_ball.periodic.special import Special
 
 _RANGES = {
     LAMBDA: AMPLITUDE_OF_ORBIT,

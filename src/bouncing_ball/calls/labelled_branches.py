@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.beyond.periodic.curves import Curve
-from bouncing_ball.beyond.periodic.family import AMPLITUDE as LAMBDA
-from bouncing_ball.beyond.periodic.following import Followed, State
-from bouncing_ball.beyond.periodic.problem import PeriodicOrbits
-from bouncing_ball.beyond.periodic.simulation import is_admissible
-from bouncing_ball.beyond.periodic.special import Special
 from bouncing_ball.calls.arguments import chosen
 from bouncing_ball.calls.drawn import Drawn
 from bouncing_ball.datasets.variables import SHARED, Variable, described
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.paper.orbits import observables, stability
+from bouncing_ball.periodic import observables, stability
+from bouncing_ball.periodic.curves import Curve
+from bouncing_ball.periodic.family import AMPLITUDE as LAMBDA
+from bouncing_ball.periodic.following import Followed, State
+from bouncing_ball.periodic.problem import PeriodicOrbits
+from bouncing_ball.periodic.simulation import is_admissible
+from bouncing_ball.periodic.special import Special
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

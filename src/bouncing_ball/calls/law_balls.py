@@ -14,10 +14,6 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
-from bouncing_ball.beyond.law_orbits import LawModel, law_at_orbit
-from bouncing_ball.beyond.laws.contact_law import ContactLaw
-from bouncing_ball.beyond.laws.law_of_impact import law_of_impact, reference
-from bouncing_ball.beyond.laws.registry import law_named
 from bouncing_ball.calls.arguments import (
     FINITE,
     FREQUENCY_RATIO,
@@ -33,9 +29,13 @@ from bouncing_ball.calls.arguments import (
 )
 from bouncing_ball.calls.balls import Ball, ModelBall, flattened
 from bouncing_ball.errors import ParameterError, Range
-from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.orbits.restitution_branch import rigid_speed
-from bouncing_ball.paper.orbits.stability import Side
+from bouncing_ball.models.damping import Release
+from bouncing_ball.models.laws.contact_law import ContactLaw
+from bouncing_ball.models.laws.law_of_impact import law_of_impact, reference
+from bouncing_ball.models.laws.registry import law_named
+from bouncing_ball.periodic.law_orbits import LawModel, law_at_orbit
+from bouncing_ball.periodic.restitution_branch import rigid_speed
+from bouncing_ball.periodic.stability import Side
 
 if TYPE_CHECKING:
     from bouncing_ball.datasets.labelled import Grid

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bouncing_ball.beyond.long_run import grids
 from bouncing_ball.calls.arguments import (
     AMPLITUDE,
     FOLLOWED,
@@ -26,6 +25,7 @@ from bouncing_ball.calls.drawn import Drawn
 from bouncing_ball.calls.over_time_on_grid import model_of_starts
 from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.errors import ParameterError
+from bouncing_ball.long_run import grids
 from bouncing_ball.patience import patience
 
 if TYPE_CHECKING:
@@ -124,7 +124,7 @@ def motion_of(
     -------
     LongRun
         ``kind``, one of "orbit", "subharmonic", "locked", "permanent contact", "chaotic" and
-        "undecided" (:class:`bouncing_ball.beyond.long_run.motions.Kind`), the ``periods`` of the
+        "undecided" (:class:`bouncing_ball.long_run.motions.Kind`), the ``periods`` of the
         table and the ``impacts`` until the motion repeats, its ``lyapunov_exponent`` per period of
         the table with ``lyapunov_error``, the ``reason`` if it is undecided or if it is locked with
         an unknown period, and one of its impacts. ``followed`` is the number of impacts for which

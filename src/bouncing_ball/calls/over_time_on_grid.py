@@ -16,10 +16,10 @@ from bouncing_ball.datasets import CASE
 from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball.errors import ModelError, require
-from bouncing_ball.paper.motion.flight import Flight, land, table
-from bouncing_ball.paper.motion.history import history as of_one_ball
-from bouncing_ball.paper.motion.sequence import ImpactSequence, Status
-from bouncing_ball.paper.orbits.model import ImpactModel
+from bouncing_ball.models.flight import Flight, land, table
+from bouncing_ball.models.history import history as of_one_ball
+from bouncing_ball.models.sequence import ImpactSequence, Status
+from bouncing_ball.periodic.model import ImpactModel
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

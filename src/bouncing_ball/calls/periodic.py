@@ -26,10 +26,10 @@ from bouncing_ball.calls.arguments import (
 from bouncing_ball.calls.balls import Ball, a_ball, a_known_ball, a_single_ball
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.arrays import in_words
-from bouncing_ball.paper.orbits.model import ImpactModel
-from bouncing_ball.paper.orbits.orbit import OBSERVABLES, Orbit
-from bouncing_ball.paper.orbits.stability import Side
 from bouncing_ball.patience import patience
+from bouncing_ball.periodic.model import ImpactModel
+from bouncing_ball.periodic.orbit import OBSERVABLES, Orbit
+from bouncing_ball.periodic.stability import Side
 
 if TYPE_CHECKING:
     from bouncing_ball.calls.periodic_on_grid import Branches, Limits, Orbits, PermanentContact

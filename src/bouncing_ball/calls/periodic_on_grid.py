@@ -18,13 +18,13 @@ from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.continuation import ContinuationError
-from bouncing_ball.paper.orbits import observables
-from bouncing_ball.paper.orbits.branch import whole_branch
-from bouncing_ball.paper.orbits.model import ImpactModel
-from bouncing_ball.paper.orbits.observables import branch_columns, columns, joined, no_branch
-from bouncing_ball.paper.orbits.orbit import OBSERVABLES
-from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
-from bouncing_ball.paper.orbits.stability import Side
+from bouncing_ball.periodic import observables
+from bouncing_ball.periodic.branch import whole_branch
+from bouncing_ball.periodic.model import ImpactModel
+from bouncing_ball.periodic.observables import branch_columns, columns, joined, no_branch
+from bouncing_ball.periodic.orbit import OBSERVABLES
+from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.periodic.stability import Side
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -85,7 +85,7 @@ class PermanentContact(Drawn):
 
 class Branches(Drawn):
     """Branches of orbits over Λ; the variables are those of
-    :func:`~bouncing_ball.paper.orbits.observables.orbits_in_columns`.
+    :func:`~bouncing_ball.periodic.observables.orbits_in_columns`.
 
     The figure shows the phases of the branches over Λ.
     """

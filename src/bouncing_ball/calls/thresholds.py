@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.beyond.calculator.families import RATIOS
-from bouncing_ball.beyond.corrected.errors import SIMPLE, search
+from bouncing_ball.accuracy.corrected_errors import SIMPLE, search
+from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.calls.arguments import (
     AMPLITUDE_OF_ORBIT,
     FAMILY,
@@ -23,14 +23,14 @@ from bouncing_ball.calls.arguments import (
 )
 from bouncing_ball.calls.balls import Ball, a_known_ball
 from bouncing_ball.calls.drawn import Drawn
+from bouncing_ball.contacts.families import RATIOS
 from bouncing_ball.datasets import CASE
 from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.errors import ParameterError
-from bouncing_ball.paper.comparison.errors import Quantity
-from bouncing_ball.paper.contact.damping import Release, damping_ratio
-from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
+from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.patience import patience
+from bouncing_ball.periodic.restitution_model import RestitutionModel
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -4,17 +4,17 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from bouncing_ball.beyond.calculator import design as calculator
-from bouncing_ball.beyond.calculator import rows
-from bouncing_ball.beyond.calculator.given import quantities
-from bouncing_ball.beyond.calculator.results import Design, Errors, Family, LoneContact, Needed
-from bouncing_ball.beyond.calculator.units import percent, shown, signed
-from bouncing_ball.beyond.engines.given_step import AtStep
+from bouncing_ball.accuracy.errors import OF_IMPACTS, OF_ORBITS, QUANTITIES, Quantity
+from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.cli.options import Parser, add_file, add_parameters, option
+from bouncing_ball.contacts import design as calculator
+from bouncing_ball.contacts import rows
+from bouncing_ball.contacts.engines.given_step import AtStep
+from bouncing_ball.contacts.given import quantities
+from bouncing_ball.contacts.results import Design, Errors, Family, LoneContact, Needed
+from bouncing_ball.contacts.units import percent, shown, signed
 from bouncing_ball.datasets.files import PICTURES, require_writable
 from bouncing_ball.errors import NoOrbitError, ParameterError, extra
-from bouncing_ball.paper.comparison.errors import OF_IMPACTS, OF_ORBITS, QUANTITIES, Quantity
-from bouncing_ball.paper.comparison.thresholds import ThresholdStatus
 
 _SIMPLE = "error law", "corrected"
 # The row that an engine's time step takes the place of.
@@ -69,10 +69,10 @@ def design(*, plot: Path | None, all_families: bool, **given: Any) -> Answer:
 def _draw(found: Design, path: Path) -> None:
     if not any(each.exists for each in found.judged.standing.values()):
         raise NoOrbitError(f"without an orbit there is no page to print: {found.reason}")
-    from bouncing_ball.beyond.calculator.page_data import page
+    from bouncing_ball.contacts.page_data import page
 
     with extra("plot"):
-        from bouncing_ball.beyond.calculator.page_figures import draw
+        from bouncing_ball.contacts.page_figures import draw
         from bouncing_ball.drawing.files import write
         from bouncing_ball.drawing.style import style
     with style():

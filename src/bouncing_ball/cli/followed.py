@@ -4,9 +4,6 @@ import math
 from pathlib import Path
 from typing import Any, get_args
 
-from bouncing_ball.beyond.periodic.curves import Degenerate
-from bouncing_ball.beyond.periodic.following import State
-from bouncing_ball.beyond.periodic.special import MEANINGS, Special
 from bouncing_ball.calls import followed as calls
 from bouncing_ball.calls import periodic
 from bouncing_ball.calls.arguments import (
@@ -30,6 +27,9 @@ from bouncing_ball.cli.options import (
 from bouncing_ball.cli.periodic import Answer
 from bouncing_ball.datasets.files import PICTURES, require_writable
 from bouncing_ball.errors import ParameterError, Range
+from bouncing_ball.periodic.curves import Degenerate
+from bouncing_ball.periodic.following import State
+from bouncing_ball.periodic.special import MEANINGS, Special
 
 _DOUBLINGS = Range(0, 8, "[]", whole=True)
 _NAME = (

@@ -2,7 +2,6 @@
 
 from typing import Any
 
-from bouncing_ball.beyond.laws.registry import law_named
 from bouncing_ball.calls.arguments import (
     DAMPING_RATIO,
     FREQUENCY_RATIO,
@@ -22,7 +21,8 @@ from bouncing_ball.cli.options import (
     option,
 )
 from bouncing_ball.errors import ModelError, ParameterError
-from bouncing_ball.paper.contact.damping import Release
+from bouncing_ball.models.damping import Release
+from bouncing_ball.models.laws.registry import law_named
 
 MODELS = ("restitution", "spring-damper", "corrected")
 

@@ -5,10 +5,7 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from bouncing_ball.beyond import error_law as error_laws
-from bouncing_ball.beyond.continued_orbits import restitution_speed
-from bouncing_ball.beyond.laws.contact_law import ContactLaw
-from bouncing_ball.beyond.laws.signature import Signature, free_impact
+from bouncing_ball.accuracy import error_law as error_laws
 from bouncing_ball.calls import periodic as calls
 from bouncing_ball.calls.arguments import AMPLITUDE_OF_ORBIT, FAMILY, FREQUENCY_RATIO
 from bouncing_ball.calls.balls import ModelBall, spring_damper
@@ -21,10 +18,13 @@ from bouncing_ball.cli.options import (
     meanings,
 )
 from bouncing_ball.errors import NoOrbitError, ParameterError, count, extra
-from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.orbits.orbit import OBSERVABLES
-from bouncing_ball.paper.orbits.stability import Bifurcation
+from bouncing_ball.models.damping import Release
+from bouncing_ball.models.laws.contact_law import ContactLaw
+from bouncing_ball.models.laws.signature import Signature, free_impact
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.periodic.continued_orbits import restitution_speed
+from bouncing_ball.periodic.orbit import OBSERVABLES
+from bouncing_ball.periodic.stability import Bifurcation
 
 Answer = dict[str, Any]
 Side = Literal["stable", "unstable", "all"]

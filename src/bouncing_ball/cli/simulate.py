@@ -10,7 +10,7 @@ from bouncing_ball.calls.arguments import AMPLITUDE, IMPACTS, STATE, Range
 from bouncing_ball.cli.impact import add_ball, ball_of
 from bouncing_ball.cli.options import Parser, add_number, meanings
 from bouncing_ball.cli.periodic import Answer, described
-from bouncing_ball.paper.motion.sequence import Status
+from bouncing_ball.models.sequence import Status
 
 _SHOWN = ("time", "phase", "impact_velocity", "contact_duration", "bounce_velocity")
 

@@ -6,9 +6,9 @@ The page of the explorer writes the same texts in the reader's browser.
 import json
 from typing import Any
 
-from bouncing_ball.beyond.engines.choice import ENGINES
-from bouncing_ball.beyond.engines.engine import Engine, Physical
-from bouncing_ball.paper.contact.damping import Release, damping_ratio
+from bouncing_ball.contacts.engines.choice import ENGINES
+from bouncing_ball.contacts.engines.engine import Engine, Physical
+from bouncing_ball.models.damping import Release, damping_ratio
 
 # m, k, r and the error of r that the time step may cause: from light to heavy and elastic balls.
 _CASES = (

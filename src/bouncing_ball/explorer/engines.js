@@ -1,4 +1,4 @@
-// The engines of bouncing_ball.beyond.engines: their parameters of k, c and m, and the time step for an
+// The engines of bouncing_ball.contacts.engines: their parameters of k, c and m, and the time step for an
 // error of r. Their texts and schemes come from Python, in the page's element "engines".
 "use strict";
 
@@ -25,7 +25,7 @@ function repr(x) {
 }
 
 // Of a mass of one, and ζ < 1: k and c with which implicit Euler has the positions of the exact
-// contact, by exp(-hμ) - 1 for its rate μ (bouncing_ball.beyond.engines.scheme).
+// contact, by exp(-hμ) - 1 for its rate μ (bouncing_ball.contacts.engines.scheme).
 function compensated(k, c, step) {
   const growth = Math.expm1(step * c / 2), angle = step * Math.sqrt(k - c * c / 4);
   const real = growth - (growth + 1) * 2 * Math.sin(angle / 2) ** 2, imaginary = (growth + 1) * Math.sin(angle);

@@ -1,4 +1,4 @@
-// The closed forms of bouncing_ball.paper.orbits and bouncing_ball.beyond.corrected, in plain
+// The closed forms of bouncing_ball.orbits and bouncing_ball.models.corrected, in plain
 // JavaScript: the same formulas in the same order, so that both round alike. Everything is dimensionless; see docs/closed-form.md for
 // the derivation. "NaN" stands for what does not exist, as there.
 "use strict";
@@ -73,7 +73,7 @@ function contactOf(r, omega, release, measured = false) {
     : decrement / Math.hypot(Math.PI, decrement);
   return {omega, zeta, release, sine: release === "force" ? zeta : 0};
 }
-// ζ = cos β with 2β cot β = -ln r < 2, by Newton's method: damping_ratio of paper.contact.damping.
+// ζ = cos β with 2β cot β = -ln r < 2, by Newton's method: damping_ratio of models.damping.
 function forceDamping(decrement) {
   if (decrement === 0) return 0;
   let beta = Math.PI / 2 * Math.sqrt(1 - decrement / 2);
@@ -92,7 +92,7 @@ function ownRestitution(contact) {
 }
 
 // The n-T orbit whose contact lasts (θ₀ + ε)/ϖ_d: branch_point of
-// paper.orbits.spring_damper_branch.
+// periodic.spring_damper_branch.
 function branchPoint(eps, contact, n) {
   const {omega, zeta, sine} = contact;
   const root = Math.sqrt((1 - zeta) * (1 + zeta)), perAngle = 1 / (omega * root);
@@ -154,7 +154,7 @@ function traceOf({omega, zeta, sine}, flight, [u, x, y], sinD, cosD, at, push) {
   return columns[0][0] + columns[1][1];
 }
 
-// ---- Roots, as bouncing_ball.paper.orbits.spring_damper_bifurcations finds them.
+// ---- Roots, as bouncing_ball.periodic.spring_damper_bifurcations finds them.
 // Chandrupatla's method, to four units in the last place of the root.
 function rootOf(f, a, b, fa = f(a), fb = f(b)) {
   if (fa === 0) return a;

@@ -1,5 +1,5 @@
 // One ball from impact to impact, with a restitution coefficient or a spring-damper contact that
-// ends at δ = 0: bouncing_ball.paper.motion in plain JavaScript. δ is the height above the table.
+// ends at δ = 0: bouncing_ball.models in plain JavaScript. δ is the height above the table.
 "use strict";
 
 const TURN = 2 * Math.PI;
@@ -51,7 +51,7 @@ function firstZero(at, start, skip = time => time) {
     ? Math.max(start, time + twice / (v + Math.sqrt(Math.max(square + a * twice, 0)))) : time;
 }
 
-// ---- Free flight from the table: δ and its derivatives after a time (paper.motion.flight).
+// ---- Free flight from the table: δ and its derivatives after a time (models.flight).
 function flightAt({v, x, y}, s) {
   const sine = Math.sin(s), half = Math.sin(s / 2), versine = 2 * half * half;
   return {
@@ -82,7 +82,7 @@ function land(left, amplitude) {
   return {hang, u: Math.min(flightAt(left, hang).speed, 0)};
 }
 
-// ---- An impact with a restitution coefficient (paper.motion.restitution). Infinitely many ever smaller
+// ---- An impact with a restitution coefficient (models.restitution). Infinitely many ever smaller
 // bounces are summed up in closed form where the next term of the sum is below rounding; the ball
 // then rests until Λ sin τ = 1 on the way up, where it leaves; for Λ ≤ 1 it stays.
 const pressed = (x, y) => y < 1 || (y === 1 && x <= 0);
@@ -104,7 +104,7 @@ function departByRestitution(r, amplitude, phase, u) {
     duration: settling + (wait > TURN - 1e-9 ? 0 : wait)};
 }
 
-// ---- A contact: δ < 0 until it first rises through 0 (paper.motion.linear_contact). Where transient and
+// ---- A contact: δ < 0 until it first rises through 0 (models.linear_contact). Where transient and
 // response together stay below 1/ϖ², it does so no more.
 function departByContact(contact, amplitude, phase, u) {
   const {omega, zeta} = contact, stiffness = omega * omega, loss = 2 * zeta * omega;

@@ -76,7 +76,7 @@ class Batch:
 
     Examples
     --------
-    >>> from bouncing_ball.paper.contact.spring_damper import SpringDamper
+    >>> from bouncing_ball.models.spring_damper import SpringDamper
     >>> contact = SpringDamper(np.array([5.0, 10.0]), 0.1)
     >>> contact.shape, contact[1]
     ((2,), SpringDamper(frequency_ratio=10, damping_ratio=0.1, release='displacement'))
@@ -102,7 +102,7 @@ class Batch:
 
         Examples
         --------
-        >>> from bouncing_ball.paper.contact.spring_damper import SpringDamper
+        >>> from bouncing_ball.models.spring_damper import SpringDamper
         >>> SpringDamper([5.0, 10.0], [0.1, 0.2, 0.3])
         Traceback (most recent call last):
         ...

@@ -97,9 +97,9 @@ def sources(modules: Iterable[str], files: Iterable[Path] = ()) -> list[Path]:
 
     Examples
     --------
-    >>> found = sources(["bouncing_ball.paper.contact.damping"])
+    >>> found = sources(["bouncing_ball.models.damping"])
     >>> [path.name for path in found if path.name != "__init__.py"]
-    ['errors.py', 'arrays.py', 'elementary.py', 'damping.py']
+    ['errors.py', 'damping.py', 'arrays.py', 'elementary.py']
     """
     for module in modules:
         if module_file(module) is None:

@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.accuracy.corrected_errors import orbit_errors, search
+from bouncing_ball.accuracy.errors import OF_ORBITS
+from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.beyond.atlas.answers import last_crossings
 from bouncing_ball.beyond.atlas.walk import walk
-from bouncing_ball.beyond.corrected.errors import orbit_errors, search
-from bouncing_ball.paper.comparison.errors import OF_ORBITS
-from bouncing_ball.paper.comparison.thresholds import ThresholdStatus
 
 RATIOS = np.geomspace(1.0, 1e3, 61)
 STEP = RATIOS[1] / RATIOS[0]

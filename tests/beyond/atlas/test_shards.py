@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.beyond import error_law
+from bouncing_ball.accuracy import error_law
+from bouncing_ball.accuracy.corrected_errors import errors
+from bouncing_ball.accuracy.errors import OF_LIMITS, OF_ORBITS
 from bouncing_ball.beyond.atlas import answers, shards
 from bouncing_ball.beyond.atlas.answers import last_crossings
 from bouncing_ball.beyond.atlas.walk import walk
-from bouncing_ball.beyond.corrected.errors import errors
-from bouncing_ball.beyond.laws.linear import LinearLaw
-from bouncing_ball.beyond.laws.signature import Signature
 from bouncing_ball.errors import ModelError
-from bouncing_ball.paper.comparison.errors import OF_LIMITS, OF_ORBITS
+from bouncing_ball.models.laws.linear import LinearLaw
+from bouncing_ball.models.laws.signature import Signature
 
 
 def same(one, other):

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from bouncing_ball.accuracy.error_law import coefficients
 from bouncing_ball.beyond.atlas import summary as suprema
 from bouncing_ball.beyond.atlas.plan import Plan
 from bouncing_ball.beyond.atlas.summary import summary
-from bouncing_ball.beyond.error_law import coefficients
-from bouncing_ball.paper.contact.damping import damping_ratio
+from bouncing_ball.models.damping import damping_ratio
 
 RANGES = {"tiles": 2, "samples": 2}
 PLAN = Plan(

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
+from bouncing_ball.accuracy.corrected_errors import SIMPLE, errors, exact_and_simple_models
+from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.beyond.atlas.summary import (
     Largest,
     in_common_range,
@@ -13,11 +15,9 @@ from bouncing_ball.beyond.atlas.summary import (
     suprema,
     tolerated,
 )
-from bouncing_ball.beyond.corrected.errors import SIMPLE, errors, exact_and_simple_models
-from bouncing_ball.paper.comparison.errors import Quantity
-from bouncing_ball.paper.contact.damping import damping_ratio
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.orbits import restitution_branch as restitution_orbit
+from bouncing_ball.models.damping import damping_ratio
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.periodic import restitution_branch as restitution_orbit
 
 
 def error(plan, row, r, place, kind, ratio=100.0):

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from bouncing_ball.beyond.atlas.walk import REACHED, extrapolated, stiff_start, walk
-from bouncing_ball.paper.orbits import spring_damper_bifurcations as bifurcations
-from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
-from bouncing_ball.paper.orbits.spring_damper_branch import branch_point
+from bouncing_ball.periodic import spring_damper_bifurcations as bifurcations
+from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.periodic.spring_damper_branch import branch_point
 
 COMPARED = [3.0, 10.0, 100.0, 1e4]
 

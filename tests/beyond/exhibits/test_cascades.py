@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.beyond.error_law import coefficients
+from bouncing_ball.accuracy.error_law import coefficients
 from bouncing_ball.beyond.exhibits.cascades import cascades
-from bouncing_ball.paper.contact.damping import Release, damping_ratio
+from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.pipeline.configuration import typed
 
 R = [0.5, 0.85]

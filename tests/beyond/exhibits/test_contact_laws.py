@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.beyond.corrected.errors import search
+from bouncing_ball.accuracy.corrected_errors import search
 from bouncing_ball.beyond.exhibits.contact_laws import (
     LINEAR,
     NAMES,
@@ -13,14 +13,14 @@ from bouncing_ball.beyond.exhibits.contact_laws import (
     exact_model,
     law_errors,
 )
-from bouncing_ball.beyond.laws.collocation import contacts
-from bouncing_ball.beyond.laws.instant import instant_of
-from bouncing_ball.beyond.laws.linear import LinearLaw
-from bouncing_ball.paper.contact.damping import Release, damping_ratio
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.orbits.restitution_branch import rigid_speed
-from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
-from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.instant import instant_of
+from bouncing_ball.models.laws.collocation import contacts
+from bouncing_ball.models.laws.linear import LinearLaw
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.periodic.restitution_branch import rigid_speed
+from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 from bouncing_ball.pipeline.configuration import typed
 
 slow = pytest.mark.slow

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.beyond.corrected.errors import errors
+from bouncing_ball.accuracy.corrected_errors import errors
 from bouncing_ball.beyond.exhibits import corrected_model as study
 from bouncing_ball.beyond.exhibits.random_orbits import random_orbits
-from bouncing_ball.paper.contact.damping import Release, damping_ratio
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.pipeline.configuration import typed
 
 SPAN = {"min": 1.0, "max": 1e4, "samples": 41}

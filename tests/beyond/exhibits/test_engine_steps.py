@@ -5,13 +5,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bouncing_ball.beyond.corrected.errors import errors
-from bouncing_ball.beyond.engines.choice import ENGINES
-from bouncing_ball.beyond.engines.scheme import Scheme
+from bouncing_ball.accuracy.corrected_errors import errors
 from bouncing_ball.beyond.exhibits.engine_steps import conformance
+from bouncing_ball.contacts.engines.choice import ENGINES
+from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.errors import ModelError
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.pipeline.configuration import read_yaml, typed
 
 CONFIG = Path(__file__).parents[3] / "config"

@@ -6,8 +6,8 @@ import numpy as np
 
 from bouncing_ball.beyond.exhibits import lives
 from bouncing_ball.beyond.exhibits.motion_samples import ThreeModels
-from bouncing_ball.beyond.long_run.motions import Kind
-from bouncing_ball.paper.contact.damping import Release
+from bouncing_ball.long_run.motions import Kind
+from bouncing_ball.models.damping import Release
 
 
 def test_the_limits_of_a_mean_life_contain_the_known_value():

@@ -11,7 +11,7 @@ from bouncing_ball.beyond.exhibits.locked_orbits import (
     locked_orbits,
 )
 from bouncing_ball.beyond.exhibits.motion_samples import uncertainty_exponent
-from bouncing_ball.beyond.long_run.lift_off import returns
+from bouncing_ball.long_run.lift_off import returns
 from bouncing_ball.pipeline.configuration import typed
 
 

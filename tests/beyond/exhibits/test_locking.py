@@ -5,10 +5,10 @@ from scipy.stats import norm
 
 from bouncing_ball.beyond.exhibits.locking import GROUPS, agreement, locking
 from bouncing_ball.beyond.exhibits.motion_samples import three_models
-from bouncing_ball.beyond.long_run.destination import final_motions
-from bouncing_ball.beyond.long_run.motions import Kind, Motions
-from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
+from bouncing_ball.long_run.destination import final_motions
+from bouncing_ball.long_run.motions import Kind, Motions
+from bouncing_ball.models.damping import Release
+from bouncing_ball.periodic.restitution_model import RestitutionModel
 from bouncing_ball.pipeline.configuration import typed
 from bouncing_ball.pipeline.diff.datasets import compare_datasets
 

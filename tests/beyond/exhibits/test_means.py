@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.beyond.exhibits.means import DECISIONS, MEANS, MeanMotions, mean_motions, needed
-from bouncing_ball.paper.contact.damping import Release
+from bouncing_ball.models.damping import Release
 from bouncing_ball.pipeline.configuration import typed
 
 RATIOS = [10.0, 30.0, 100.0, 1000.0]

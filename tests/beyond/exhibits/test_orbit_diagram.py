@@ -5,7 +5,7 @@ import xarray as xr
 
 from bouncing_ball.beyond.exhibits.motion_samples import three_models
 from bouncing_ball.beyond.exhibits.orbit_diagram import orbit_diagrams
-from bouncing_ball.paper.contact.damping import Release
+from bouncing_ball.models.damping import Release
 from bouncing_ball.pipeline.configuration import typed
 
 

@@ -11,7 +11,7 @@ from bouncing_ball.beyond.proofs.balls import precision
 from bouncing_ball.beyond.proofs.certificates import Proved, period_doubling
 from bouncing_ball.beyond.proofs.problem import Problem
 from bouncing_ball.beyond.proofs.return_map import flip_coefficient, return_map
-from bouncing_ball.paper.contact.damping import Release
+from bouncing_ball.models.damping import Release
 
 SPRING = {"frequency_ratio": Fraction(10), "restitution": Fraction(85, 100)}
 SOFT = {"frequency_ratio": Fraction(44, 100), "restitution": Fraction(144, 10_000)}

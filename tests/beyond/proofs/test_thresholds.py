@@ -9,7 +9,7 @@ from flint import arb
 from mpmath import mp, mpf
 from sixty_digits import Exact
 
-from bouncing_ball.beyond.corrected.errors import errors, search
+from bouncing_ball.accuracy.corrected_errors import errors, search
 from bouncing_ball.beyond.proofs import newton
 from bouncing_ball.beyond.proofs import thresholds as proofs
 from bouncing_ball.beyond.proofs.balls import ProofError, decimal, precision
@@ -25,8 +25,8 @@ from bouncing_ball.beyond.proofs.thresholds import (
     permanent_contact_minimum,
     permanent_contact_threshold,
 )
-from bouncing_ball.paper.contact.damping import Release, damping_ratio
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.spring_damper import SpringDamper
 
 R = Fraction(65, 100)
 ZETA = damping_ratio(0.65)

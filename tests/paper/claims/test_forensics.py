@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from bouncing_ball.models.damping import damping_ratio
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.claims.forensics import (
     PRINTED_DAMPING,
     WeightlessOrbit,
@@ -12,11 +14,9 @@ from bouncing_ball.paper.claims.forensics import (
     high_bounce_monodromy,
 )
 from bouncing_ball.paper.claims.tables import forensics as rows
-from bouncing_ball.paper.contact.damping import damping_ratio
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.orbits import restitution_branch as restitution_orbit
-from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
-from bouncing_ball.paper.orbits.spring_damper_orbit import SpringDamperOrbit
+from bouncing_ball.periodic import restitution_branch as restitution_orbit
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic.spring_damper_orbit import SpringDamperOrbit
 
 ZETA = float(damping_ratio(0.85))
 WEIGHTLESS, HIGH_BOUNCE = "no gravity in contact", "high-bounce stability"

@@ -21,8 +21,8 @@ from bouncing_ball.paper.claims.witness import (
     witness,
 )
 from bouncing_ball.paper.exhibits.continuation_of_orbits import Domains, orbit_branches
-from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
-from bouncing_ball.paper.orbits.spring_damper_orbit import SpringDamperOrbit
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic.spring_damper_orbit import SpringDamperOrbit
 
 
 @pytest.fixture(scope="module")

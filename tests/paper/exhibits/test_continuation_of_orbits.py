@@ -5,9 +5,9 @@ import pytest
 
 from bouncing_ball.datasets import PERIOD_DOUBLING, SADDLE_NODE
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.paper.contact.damping import Release, damping_ratio
-from bouncing_ball.paper.contact.permanent_contact import permanent_contact_threshold
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.permanent_contact import permanent_contact_threshold
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.continuation_of_orbits import (
     Branches,
     both_domains,
@@ -17,9 +17,9 @@ from bouncing_ball.paper.exhibits.continuation_of_orbits import (
     stability_ranges,
 )
 from bouncing_ball.paper.exhibits.continuation_of_orbits_figures import domains
-from bouncing_ball.paper.orbits.spring_damper_bifurcations import period_doubling, saddle_node
-from bouncing_ball.paper.orbits.spring_damper_branch import branch_point
-from bouncing_ball.paper.orbits.spring_damper_orbit import SpringDamperOrbit
+from bouncing_ball.periodic.spring_damper_bifurcations import period_doubling, saddle_node
+from bouncing_ball.periodic.spring_damper_branch import branch_point
+from bouncing_ball.periodic.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.pipeline.configuration import typed
 
 # As the configuration gives them.

@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.accuracy.errors import Quantity, modulus, relative_errors
+from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.paper.comparison.errors import Quantity, modulus, relative_errors
-from bouncing_ball.paper.comparison.thresholds import ThresholdStatus
-from bouncing_ball.paper.contact.damping import Release, damping_ratio
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.error_thresholds import error_thresholds, height_error
 from bouncing_ball.paper.exhibits.permanent_contact import permanent_contact_error
-from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
-from bouncing_ball.paper.orbits.spring_damper_bifurcations import orbit_at
-from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.periodic.spring_damper_bifurcations import orbit_at
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 from bouncing_ball.pipeline.configuration import typed
 
 PARAMETERS = {

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.errors import ModelError
+from bouncing_ball.models.restitution import RestitutionDynamics
 from bouncing_ball.paper.exhibits.kinds_of_motion import (
     Path,
     follow,
@@ -11,8 +12,7 @@ from bouncing_ball.paper.exhibits.kinds_of_motion import (
     impacts_until_repetition,
     kinds_of_motion,
 )
-from bouncing_ball.paper.motion.restitution import RestitutionDynamics
-from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
+from bouncing_ball.periodic.restitution_model import RestitutionModel
 from bouncing_ball.pipeline.configuration import typed
 
 PARAMETERS = {

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.paper.contact.damping import Release, damping_ratio
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.lowest_period_doubling import (
     lowest_along_ratio,
     lowest_period_doublings,
 )
-from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 from bouncing_ball.pipeline.configuration import typed
 
 PARAMETERS = {

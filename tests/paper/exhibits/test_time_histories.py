@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.paper.contact.damping import damping_ratio
+from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.paper.exhibits.time_histories import both_histories, contact_history
 from bouncing_ball.pipeline.configuration import typed
 

@@ -17,13 +17,13 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.accuracy.corrected_errors import orbit_errors
+from bouncing_ball.accuracy.error_law import remainder
+from bouncing_ball.accuracy.errors import OF_ORBITS
 from bouncing_ball.beyond.atlas.plan import Plan
 from bouncing_ball.beyond.atlas.walk import walk
-from bouncing_ball.beyond.corrected.errors import orbit_errors
-from bouncing_ball.beyond.error_law import remainder
-from bouncing_ball.beyond.laws.linear import LinearLaw
-from bouncing_ball.beyond.laws.signature import Signature
-from bouncing_ball.paper.comparison.errors import OF_ORBITS
+from bouncing_ball.models.laws.linear import LinearLaw
+from bouncing_ball.models.laws.signature import Signature
 
 # The error is bounded for the interpolation, because it is infinite where a model has no orbit.
 _LARGEST = 1e3

@@ -19,12 +19,9 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.beyond.atlas.plan import Nodes, Plan
-from bouncing_ball.beyond.atlas.shards import VARIABLES as OF_SHARDS
-from bouncing_ball.beyond.corrected.errors import SIMPLE, exact_and_simple_models
-from bouncing_ball.beyond.error_law import coefficients
-from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball.paper.comparison.errors import (
+from bouncing_ball.accuracy.corrected_errors import SIMPLE, exact_and_simple_models
+from bouncing_ball.accuracy.error_law import coefficients
+from bouncing_ball.accuracy.errors import (
     OF_LIMITS,
     OF_ORBITS,
     Quantity,
@@ -32,9 +29,12 @@ from bouncing_ball.paper.comparison.errors import (
     relative,
     values,
 )
-from bouncing_ball.paper.comparison.thresholds import thresholds
-from bouncing_ball.paper.orbits import restitution_branch as restitution_orbit
-from bouncing_ball.paper.orbits.model import ImpactModel
+from bouncing_ball.accuracy.thresholds import thresholds
+from bouncing_ball.beyond.atlas.plan import Nodes, Plan
+from bouncing_ball.beyond.atlas.shards import VARIABLES as OF_SHARDS
+from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.periodic import restitution_branch as restitution_orbit
+from bouncing_ball.periodic.model import ImpactModel
 
 VARIABLES = {
     "needed": Variable("ϖ from which the error of all nodes of a tile is tolerated", symbol="ϖ"),
@@ -176,7 +176,7 @@ def largest(
 def tolerated(error: Callable[[float], float], grid: np.ndarray, tolerance: float) -> float:
     """The point of ``grid``'s range above which an error is within the tolerance.
 
-    It is found by :func:`~bouncing_ball.paper.comparison.thresholds.thresholds`, and is NaN if the
+    It is found by :func:`~bouncing_ball.accuracy.thresholds.thresholds`, and is NaN if the
     error is within the tolerance at all points of the grid, or exceeds it at the last point.
 
     Examples

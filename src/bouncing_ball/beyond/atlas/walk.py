@@ -1,9 +1,9 @@
 r"""Orbits at given Λ along ϖ, by extrapolation along the branch instead of root finding.
 
-On the branch of :mod:`bouncing_ball.paper.orbits.spring_damper_branch` the product t = ϖε is almost
+On the branch of :mod:`bouncing_ball.periodic.spring_damper_branch` the product t = ϖε is almost
 constant along ϖ, and (X, Y) is almost a straight line along ε. The walk therefore starts at the
 stiffest contact and goes down. For stiff contacts only the load a = 1 - Y delays the release, by
-``(1 + r) a/(r v ϖ²)`` for both rules (:mod:`bouncing_ball.beyond.laws.signature`), with
+``(1 + r) a/(r v ϖ²)`` for both rules (:mod:`bouncing_ball.models.laws.signature`), with
 ``v = 2nπ/(1 + r)``. Expressed as an angle of the oscillation of the contact, this is ::
 
     t = √(1 - ζ²) (1 + r)² (1 - Y)/(2nπ r)
@@ -18,7 +18,7 @@ the smaller belongs to the stable side. This takes two evaluations of the branch
 orbit, whereas a bracketing root finder takes hundreds. Every result of the walk is an orbit
 of the closed form; only its Λ differs slightly from the requested Λ, by a known
 difference. Where the difference exceeds :data:`REACHED`, the orbit is computed by
-:func:`bouncing_ball.paper.orbits.spring_damper_bifurcations.orbit_at`, which is authoritative.
+:func:`bouncing_ball.periodic.spring_damper_bifurcations.orbit_at`, which is authoritative.
 """
 
 from collections.abc import Iterator
@@ -28,12 +28,12 @@ from typing import NamedTuple
 import numpy as np
 
 from bouncing_ball.beyond.atlas.plan import Nodes
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.orbits import restitution_branch as restitution_orbit
-from bouncing_ball.paper.orbits import spring_damper_bifurcations as bifurcations
-from bouncing_ball.paper.orbits.spring_damper_branch import BranchPoint, branch_point
-from bouncing_ball.paper.orbits.spring_damper_orbit import SpringDamperOrbit
-from bouncing_ball.paper.orbits.stability import is_stable
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.periodic import restitution_branch as restitution_orbit
+from bouncing_ball.periodic import spring_damper_bifurcations as bifurcations
+from bouncing_ball.periodic.spring_damper_branch import BranchPoint, branch_point
+from bouncing_ball.periodic.spring_damper_orbit import SpringDamperOrbit
+from bouncing_ball.periodic.stability import is_stable
 
 REACHED = 1e-6
 """Largest relative difference between the Λ of an orbit and the requested Λ. Errors of models are
@@ -63,7 +63,7 @@ def stiff_start(nodes: Nodes) -> np.ndarray:
     --------
     Where the acceleration of the table balances gravity, Λ sin φ = 1, the load is zero:
 
-    >>> from bouncing_ball.paper.contact.damping import Release
+    >>> from bouncing_ball.models.damping import Release
     >>> nodes = Nodes(Release.DISPLACEMENT, 1, np.array([1.0]), np.array([1.0]))
     >>> stiff_start(nodes).tolist()
     [0.0]

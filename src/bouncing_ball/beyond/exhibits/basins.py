@@ -15,12 +15,12 @@ from bouncing_ball.beyond.exhibits.motion_samples import (
     uncertainty_exponent,
     with_limits,
 )
-from bouncing_ball.beyond.long_run.destination import final_motions
-from bouncing_ball.beyond.long_run.motions import Kind, Motions
 from bouncing_ball.datasets.parameters import FrequencyRatio, Many, Seed, Sharded, number
 from bouncing_ball.datasets.shards import Arrays, Found, Part
 from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball.paper.contact.damping import Release
+from bouncing_ball.long_run.destination import final_motions
+from bouncing_ball.long_run.motions import Kind, Motions
+from bouncing_ball.models.damping import Release
 
 VARIABLES = {
     "basin_share": Variable("share of the starts that end on a motion", budget=0.0001, scale="1"),

@@ -12,9 +12,7 @@ import numpy as np
 import xarray as xr
 from pydantic import Field
 
-from bouncing_ball.beyond.corrected.errors import exact_and_simple_models
-from bouncing_ball.beyond.long_run.cascade_of_flights import openings, stiff_openings
-from bouncing_ball.beyond.long_run.period_doublings import MOST, cascade
+from bouncing_ball.accuracy.corrected_errors import exact_and_simple_models
 from bouncing_ball.datasets.parameters import (
     Family,
     LossyRestitution,
@@ -24,9 +22,11 @@ from bouncing_ball.datasets.parameters import (
     number,
 )
 from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball.paper.contact.damping import Release, damping_ratio
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.long_run.cascade_of_flights import openings, stiff_openings
+from bouncing_ball.long_run.period_doublings import MOST, cascade
+from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 
 VARIABLES = {
     "flights": Variable("flights of the orbit in a period", symbol="k"),

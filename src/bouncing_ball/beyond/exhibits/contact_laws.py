@@ -28,24 +28,24 @@ import xarray as xr
 from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike
 
-from bouncing_ball.beyond.corrected.errors import SIMPLE
-from bouncing_ball.beyond.corrected.orbits import CorrectedModel
-from bouncing_ball.beyond.law_orbits import LawModel, law_at_orbit
-from bouncing_ball.beyond.laws.instant import instant_of
-from bouncing_ball.beyond.laws.law_of_impact import law_of_impact
-from bouncing_ball.beyond.laws.registry import LAWS
-from bouncing_ball.beyond.laws.signature import Signature
+from bouncing_ball.accuracy.corrected_errors import SIMPLE
+from bouncing_ball.accuracy.errors import Quantity, relative, values
 from bouncing_ball.datasets.parameters import LawRestitution, Many, Tolerance
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.paper.comparison.errors import Quantity, relative, values
-from bouncing_ball.paper.contact.damping import Release, damping_ratio
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.instant import instant_of
+from bouncing_ball.models.laws.law_of_impact import law_of_impact
+from bouncing_ball.models.laws.registry import LAWS
+from bouncing_ball.models.laws.signature import Signature
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.orbit_parameters import OrbitParameters, OrbitsAlongRatio
-from bouncing_ball.paper.orbits.model import ImpactModel
-from bouncing_ball.paper.orbits.restitution_branch import rigid_speed
-from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
-from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic.corrected_orbits import CorrectedModel
+from bouncing_ball.periodic.law_orbits import LawModel, law_at_orbit
+from bouncing_ball.periodic.model import ImpactModel
+from bouncing_ball.periodic.restitution_branch import rigid_speed
+from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 
 VARIABLES = {
     "law": Variable("law of the contact"),

@@ -5,7 +5,7 @@ computed along ϖ. Random orbits show their orders in 1/ϖ and the remainder of 
 are relative to the simple model as in Eqs. 37-38, ``|q_SD - q|/|q|`` with q of the
 corrected model, or of the restitution model with the r that the contact really has, which
 differs from the r of Eq. 16 for the force release. The first-order law is that of
-:mod:`bouncing_ball.beyond.error_law`.
+:mod:`bouncing_ball.accuracy.error_law`.
 """
 
 from typing import Annotated
@@ -14,19 +14,19 @@ import numpy as np
 import xarray as xr
 from pydantic import Field
 
-from bouncing_ball.beyond import error_law
-from bouncing_ball.beyond.corrected.errors import SIMPLE, errors, search
+from bouncing_ball.accuracy import error_law
+from bouncing_ball.accuracy.corrected_errors import SIMPLE, errors, search
+from bouncing_ball.accuracy.errors import OF_IMPACTS, Quantity
 from bouncing_ball.beyond.exhibits.random_orbits import random_orbits
-from bouncing_ball.beyond.laws.linear import LinearLaw
-from bouncing_ball.beyond.laws.signature import Signature
 from bouncing_ball.datasets.parameters import LossyRestitution, Samples, Seed
 from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball.paper.comparison.errors import OF_IMPACTS, Quantity
-from bouncing_ball.paper.contact.damping import Release, damping_ratio
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.laws.linear import LinearLaw
+from bouncing_ball.models.laws.signature import Signature
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.orbit_parameters import OrbitErrors
 from bouncing_ball.paper.exhibits.time_histories import ContactHistory
-from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 
 VARIABLES = {
     "coefficient": Variable("relative error times the frequency ratio, to first order", symbol="K"),
@@ -168,7 +168,7 @@ def orders(parameters: Orders, release: Release) -> xr.Dataset:
     For random orbits it has the measured ``order`` (model, quantity, sample) between the two ϖ in
     ``order_frequency_ratio`` (pair,), and
     ``law_remainder`` (quantity, law_sample), which is |error - K/ϖ|/(S δ) and at most M by the law.
-    M was fitted to other orbits (:data:`~bouncing_ball.beyond.error_law.REMAINDER`).
+    M was fitted to other orbits (:data:`~bouncing_ball.accuracy.error_law.REMAINDER`).
     """
     n = parameters.n
     lam = parameters.amplitude

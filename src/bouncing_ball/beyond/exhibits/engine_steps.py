@@ -2,7 +2,7 @@ r"""Errors due to the time steps of physics engines, and errors of the models (b
 
 A contact that an engine resolves by N time steps has the restitution r_N of its scheme, which
 depends on the fraction of a step at which the contact begins
-(:mod:`bouncing_ball.beyond.engines.scheme`). The ball is therefore simulated here from event to
+(:mod:`bouncing_ball.contacts.engines.scheme`). The ball is therefore simulated here from event to
 event with the exact contact that has this r, which changes from impact to impact. Errors of heights
 are relative to the height of the engine, or of the model, as in Eq. 37. The results of the engines
 are read from the accepted dataset of their runs.
@@ -15,16 +15,16 @@ import numpy as np
 import xarray as xr
 from pydantic import AfterValidator, Strict
 
-from bouncing_ball.beyond.corrected.errors import SIMPLE, errors
-from bouncing_ball.beyond.engines.scheme import Scheme, restitution_in_steps
+from bouncing_ball.accuracy.corrected_errors import SIMPLE, errors
+from bouncing_ball.accuracy.errors import relative
+from bouncing_ball.contacts.engines.scheme import Scheme, restitution_in_steps
 from bouncing_ball.datasets.parameters import Family, Many, Parameters, Restitution, Seed, number
 from bouncing_ball.datasets.selection import index_of
 from bouncing_ball.datasets.variables import Variable, describe
-from bouncing_ball.paper.comparison.errors import relative
-from bouncing_ball.paper.contact.damping import Release, damping_ratio
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.orbits.orbit import Orbit
-from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.periodic.orbit import Orbit
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 
 VARIABLES = {
     "engine": Variable("physics engine"),
@@ -115,7 +115,7 @@ def greatest_heights(orbit: Orbit, restitution: np.ndarray) -> np.ndarray:
 
     Examples
     --------
-    >>> from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+    >>> from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
     >>> orbit = SpringDamperModel(SpringDamper(10.0, damping_ratio(0.85))).orbit(1, 1.0)
     >>> tops = greatest_heights(orbit, np.full(5, 0.85))
     >>> bool(np.all(abs(tops / orbit.max_height - 1) < 1e-12))

@@ -8,17 +8,17 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.beyond.corrected.errors import exact_and_simple_models
+from bouncing_ball.accuracy.corrected_errors import exact_and_simple_models
 from bouncing_ball.beyond.exhibits.random_orbits import random_orbits
-from bouncing_ball.beyond.long_run.destination import final_motions
 from bouncing_ball.datasets.parameters import Parameters, Seed, Span
 from bouncing_ball.datasets.variables import Variable, describe
-from bouncing_ball.paper.contact.damping import Release, restitution_coefficient
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.orbits.model import ImpactModel
-from bouncing_ball.paper.orbits.orbit import OBSERVABLES
-from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
-from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.long_run.destination import final_motions
+from bouncing_ball.models.damping import Release, restitution_coefficient
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.periodic.model import ImpactModel
+from bouncing_ball.periodic.orbit import OBSERVABLES
+from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 
 VARIABLES = {
     "end_speed": Variable("speed of the ball towards the table at that impact", symbol="-δ′"),

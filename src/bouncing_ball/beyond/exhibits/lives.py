@@ -15,8 +15,6 @@ from bouncing_ball.beyond.exhibits.motion_samples import (
     three_models,
     with_limits,
 )
-from bouncing_ball.beyond.long_run.destination import final_motions
-from bouncing_ball.beyond.long_run.motions import Kind
 from bouncing_ball.datasets.parameters import (
     Amplitude,
     FrequencyRatio,
@@ -29,8 +27,10 @@ from bouncing_ball.datasets.parameters import (
 )
 from bouncing_ball.datasets.shards import Arrays, Found, Part
 from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.long_run.destination import final_motions
+from bouncing_ball.long_run.motions import Kind
+from bouncing_ball.models.damping import Release
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.paper.contact.damping import Release
 
 VARIABLES = {
     "life_ratio": Variable(

@@ -16,9 +16,6 @@ from bouncing_ball.beyond.exhibits.motion_samples import (
     uncertainty_exponent,
     with_limits,
 )
-from bouncing_ball.beyond.long_run.destination import final_motions
-from bouncing_ball.beyond.long_run.lift_off import Return, returns
-from bouncing_ball.beyond.long_run.motions import Kind
 from bouncing_ball.datasets.parameters import (
     Many,
     Seed,
@@ -26,7 +23,10 @@ from bouncing_ball.datasets.parameters import (
 )
 from bouncing_ball.datasets.shards import Arrays, Found, Part
 from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball.paper.contact.damping import Release
+from bouncing_ball.long_run.destination import final_motions
+from bouncing_ball.long_run.lift_off import Return, returns
+from bouncing_ball.long_run.motions import Kind
+from bouncing_ball.models.damping import Release
 
 VARIABLES = {
     "node": Variable("place in the plane of amplitude and restitution coefficient"),
@@ -201,7 +201,7 @@ def returns_at_places(
     Returns
     -------
     dict of array
-        The fields of :class:`~bouncing_ball.beyond.long_run.lift_off.Return`, shape (change,
+        The fields of :class:`~bouncing_ball.long_run.lift_off.Return`, shape (change,
         place), first without a change of Λ and then with each change; and ``same``, shape (ϖ,
         place), whether the contact has a locked orbit of the same period.
     """
@@ -222,7 +222,7 @@ def locked_orbits(
 
     The places are uniformly distributed in Λ and r. Over ``node`` the dataset has ``restitution``
     and ``amplitude``, and ``periods``, ``sensitivity`` S, ``peak`` P and ``wait`` w of
-    :func:`bouncing_ball.beyond.long_run.lift_off.returns`, which are 0 or NaN where the ball is not
+    :func:`bouncing_ball.long_run.lift_off.returns`, which are 0 or NaN where the ball is not
     found to stick again; such places are left out of all shares. ``needed_ratio`` is the smallest
     of the given ϖ above which the contact locks with the same period after a rest on the table; it
     is infinite if the contact does not do so at the largest ϖ.

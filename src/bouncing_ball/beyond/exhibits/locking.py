@@ -13,12 +13,12 @@ from bouncing_ball.beyond.exhibits.motion_samples import (
     share,
     three_models,
 )
-from bouncing_ball.beyond.long_run.destination import final_motions
-from bouncing_ball.beyond.long_run.motions import Kind, Motions
 from bouncing_ball.datasets.parameters import number
 from bouncing_ball.datasets.shards import Arrays, Found, Part
 from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball.paper.contact.damping import Release
+from bouncing_ball.long_run.destination import final_motions
+from bouncing_ball.long_run.motions import Kind, Motions
+from bouncing_ball.models.damping import Release
 
 VARIABLES = {
     "kind_nodes": Variable("nodes at which the ball of a model ends on a motion of this group"),
@@ -91,7 +91,7 @@ def motions_at_nodes(parameters: Locking, release: Release, part: Part = np.asar
     Returns
     -------
     dict of array
-        The fields of :class:`~bouncing_ball.beyond.long_run.motions.Motions`, shape (model, ϖ,
+        The fields of :class:`~bouncing_ball.long_run.motions.Motions`, shape (model, ϖ,
         node). The restitution model has the same values at every ϖ.
     """
     ratios = np.array(parameters.frequency_ratio)
@@ -113,7 +113,7 @@ def locking(parameters: Locking, release: Release, found: Found = None) -> xr.Da
 
     ``kind``, ``periods``, ``impacts``, ``lyapunov_exponent`` and ``lyapunov_error`` (model,
     restitution, amplitude) are those of
-    :func:`bouncing_ball.beyond.long_run.destination.final_motions` at the first ϖ, with one ball
+    :func:`bouncing_ball.long_run.destination.final_motions` at the first ϖ, with one ball
     for each node; the error of an exponent is at least 1e-5. ``agreement`` (simple,
     frequency_ratio, motion_group) is the share of nodes at which the ball of the contact ends on a
     motion of the same kind and period as the ball of the simple model. ``agreement_low`` and

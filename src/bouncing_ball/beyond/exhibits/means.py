@@ -7,13 +7,13 @@ import xarray as xr
 from scipy.stats import t as student
 
 from bouncing_ball.beyond.exhibits.motion_samples import SIMPLE, ParameterPlane, share, three_models
-from bouncing_ball.beyond.long_run.destination import final_motions
-from bouncing_ball.beyond.long_run.means import means
-from bouncing_ball.beyond.long_run.motions import Kind
 from bouncing_ball.datasets.parameters import Seed, Tolerance, number
 from bouncing_ball.datasets.shards import Arrays, Found, Part
 from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball.paper.contact.damping import Release
+from bouncing_ball.long_run.destination import final_motions
+from bouncing_ball.long_run.means import means
+from bouncing_ball.long_run.motions import Kind
+from bouncing_ball.models.damping import Release
 
 VARIABLES = {
     "mean": Variable("mean over the motion on which a ball ends"),

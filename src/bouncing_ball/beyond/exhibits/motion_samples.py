@@ -17,8 +17,7 @@ import numpy as np
 from pydantic import Field
 from scipy.stats import binomtest
 
-from bouncing_ball.beyond.corrected.errors import SIMPLE, exact_and_simple_models
-from bouncing_ball.beyond.corrected.orbits import CorrectedModel
+from bouncing_ball.accuracy.corrected_errors import SIMPLE, exact_and_simple_models
 from bouncing_ball.datasets.parameters import (
     Amplitude,
     AmplitudeMax,
@@ -29,10 +28,11 @@ from bouncing_ball.datasets.parameters import (
     Sharded,
     number,
 )
-from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
-from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.damping import Release
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.periodic.corrected_orbits import CorrectedModel
+from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 
 Confidence = Annotated[float, number("level of the confidence intervals", gt=0.5, lt=1)]
 Impacts = Annotated[

@@ -12,11 +12,11 @@ from bouncing_ball.beyond.exhibits.motion_samples import (
     Impacts,
     three_models,
 )
-from bouncing_ball.beyond.long_run.grids import REACH, diagram
 from bouncing_ball.datasets.parameters import FrequencyRatio, LossyRestitution, Sharded, number
 from bouncing_ball.datasets.shards import Arrays, Found, Part
 from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball.paper.contact.damping import Release
+from bouncing_ball.long_run.grids import REACH, diagram
+from bouncing_ball.models.damping import Release
 
 VARIABLES = {
     "bin_phase": Variable("middle of a range of phases of impact", symbol="φ", units="rad"),
@@ -103,7 +103,7 @@ def orbit_diagrams(parameters: Diagram, release: Release, found: Found = None) -
 
     ``phase_density`` (model, amplitude, bin_phase) is the share of the impacts within a range of
     phases, whose middle is ``bin_phase``, averaged over the motions on which the balls of
-    :func:`bouncing_ball.beyond.long_run.grids.diagram` end. ``lyapunov_exponent`` (model,
+    :func:`bouncing_ball.long_run.grids.diagram` end. ``lyapunov_exponent`` (model,
     amplitude) is the largest exponent of these motions, -∞ where all are locked, and
     ``lyapunov_error`` its standard error, which is at least 1e-5.
     """

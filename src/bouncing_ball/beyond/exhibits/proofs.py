@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from flint import arb
 
-from bouncing_ball.beyond.corrected.errors import SIMPLE, errors, search
+from bouncing_ball.accuracy.corrected_errors import SIMPLE, errors, search
 from bouncing_ball.beyond.proofs.balls import ProofError, decimal, exactly, precision
 from bouncing_ball.beyond.proofs.certificates import (
     Proved,
@@ -38,9 +38,9 @@ from bouncing_ball.datasets.parameters import (
     number,
 )
 from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball.paper.contact.damping import Release, damping_ratio
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.orbits.stability import Bifurcation
+from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.periodic.stability import Bifurcation
 
 VARIABLES = {
     "certificate": Variable("what is certified"),

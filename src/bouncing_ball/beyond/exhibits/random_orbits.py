@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
+from bouncing_ball.models.damping import Release
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.periodic.restitution_model import RestitutionModel
 
 
 def random_orbits(

@@ -25,14 +25,14 @@ from bouncing_ball.datasets.parameters import (
     Tolerance,
 )
 from bouncing_ball.datasets.variables import Variable, describe, described
-from bouncing_ball.paper.contact.damping import Release, damping_ratio, restitution_coefficient
-from bouncing_ball.paper.contact.oscillator import responses
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.models.damping import Release, damping_ratio, restitution_coefficient
+from bouncing_ball.models.oscillator import responses
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.error_thresholds import ErrorsAlongRatio
 from bouncing_ball.paper.exhibits.errors_along_ratio import errors_along_ratio
 from bouncing_ball.paper.exhibits.lowest_period_doubling import lowest_along_ratio
-from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
-from bouncing_ball.paper.orbits.stability import Bifurcation
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic.stability import Bifurcation
 
 VARIABLES = {
     "bifurcation_amplitude": Variable("excitation amplitude of the bifurcation", symbol="Λ"),

@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.beyond.exhibits.motion_samples import share_with_limits
-from bouncing_ball.beyond.long_run.period_doublings import FEIGENBAUM
+from bouncing_ball.long_run.period_doublings import FEIGENBAUM
 from bouncing_ball.paper.claims.claim import claim, defined_in
 from bouncing_ball.paper.claims.claims import assess
 from bouncing_ball.paper.claims.verdict import decided

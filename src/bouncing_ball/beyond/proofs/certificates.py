@@ -27,9 +27,9 @@ from bouncing_ball.beyond.proofs.newton import certified_zero
 from bouncing_ball.beyond.proofs.problem import Problem, working_bits
 from bouncing_ball.beyond.proofs.return_map import ReturnMap, flip_coefficient, return_map
 from bouncing_ball.beyond.proofs.series import Series
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.orbits import spring_damper_bifurcations as double
-from bouncing_ball.paper.orbits.stability import Side
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.periodic import spring_damper_bifurcations as double
+from bouncing_ball.periodic.stability import Side
 
 # Precision of the proofs that a function keeps its sign, which need no digits.
 _COARSE = 80

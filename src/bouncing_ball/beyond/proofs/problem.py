@@ -8,8 +8,8 @@ from flint import arb
 
 from bouncing_ball.beyond.proofs.balls import ProofError, rational
 from bouncing_ball.beyond.proofs.branch import Contact
-from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.models.damping import Release
+from bouncing_ball.models.spring_damper import SpringDamper
 
 # Bits beyond the requested digits and those that stiff contacts cost by cancellation,
 # about log2(ϖ²). With so many the ball is far narrower than the last decimal digit, so that the

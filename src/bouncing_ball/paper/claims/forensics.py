@@ -15,13 +15,13 @@ from scipy.optimize.elementwise import find_minimum, find_root
 
 from bouncing_ball.datasets.rounding import levels
 from bouncing_ball.datasets.variables import Variable, describe
+from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.spring_damper import ContactFlow, SpringDamper
 from bouncing_ball.paper.claims import as_printed
-from bouncing_ball.paper.contact.damping import Release, damping_ratio
-from bouncing_ball.paper.contact.spring_damper import ContactFlow, SpringDamper
 from bouncing_ball.paper.exhibits.printed_table1 import AXES, LAST_DIGIT, RESTITUTION, printed_table
-from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
-from bouncing_ball.paper.orbits.spring_damper_orbit import SpringDamperOrbit
-from bouncing_ball.paper.orbits.stability import Bifurcation
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic.spring_damper_orbit import SpringDamperOrbit
+from bouncing_ball.periodic.stability import Bifurcation
 
 VARIABLES = {
     "rows": Variable("rows of the table that are compared", equation="Table 1"),

@@ -14,16 +14,16 @@ import xarray as xr
 
 from bouncing_ball.datasets.parameters import Parameters, Seed, number
 from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.models.linear_contact import LinearContactDynamics
+from bouncing_ball.models.permanent_contact import permanent_contact_threshold
+from bouncing_ball.models.restitution import RestitutionDynamics
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.sticking import lift_off_phase
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.claims import as_printed as printed
-from bouncing_ball.paper.contact.permanent_contact import permanent_contact_threshold
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.motion.linear_contact import LinearContactDynamics
-from bouncing_ball.paper.motion.restitution import RestitutionDynamics
-from bouncing_ball.paper.motion.sticking import lift_off_phase
-from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
-from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
-from bouncing_ball.paper.orbits.stability import Bifurcation
+from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic.stability import Bifurcation
 
 VARIABLES = {
     "formula": Variable("printed formula"),

@@ -12,7 +12,7 @@ from bouncing_ball.paper.claims.evidence import GRID
 from bouncing_ball.paper.claims.parameters import STIFF, TOLERANCE
 from bouncing_ball.paper.claims.verdict import above, at_least, at_most, below
 from bouncing_ball.paper.exhibits.printed_table1 import AXES, printed_text
-from bouncing_ball.paper.orbits.stability import Bifurcation
+from bouncing_ball.periodic.stability import Bifurcation
 
 # The orbits.
 

@@ -16,14 +16,14 @@ import xarray as xr
 
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.errors import ModelError
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane, tangent
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import vanishing
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.orbits.orbit import Orbit
-from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
-from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
-from bouncing_ball.paper.orbits.stability import Bifurcation
+from bouncing_ball.periodic.orbit import Orbit
+from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic.stability import Bifurcation
 
 VARIABLES = {
     "artifact": Variable("figure or table whose orbits are compared"),

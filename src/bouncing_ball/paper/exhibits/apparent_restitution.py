@@ -9,16 +9,16 @@ from pydantic import AfterValidator, ValidationInfo
 
 from bouncing_ball.datasets.parameters import Amplitude, Family, Many, Parameters, Restitution, Span
 from bouncing_ball.datasets.variables import Variable, describe
-from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.models.damping import Release
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.orbit_parameters import (
     OrbitAmplitude,
     require_any_orbit,
     require_orbit,
 )
-from bouncing_ball.paper.orbits.observables import OBSERVED, columns
-from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
-from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic.observables import OBSERVED, columns
+from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 
 VARIABLES = {
     "labelled": Variable("whether the figure marks this frequency ratio"),

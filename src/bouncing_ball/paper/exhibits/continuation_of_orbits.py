@@ -15,19 +15,19 @@ from bouncing_ball.datasets.parameters import (
 )
 from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.numerics.continuation import Branch, ContinuationError
-from bouncing_ball.paper.contact.damping import Release, damping_ratio
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.orbit_parameters import BranchEnd, Points
 from bouncing_ball.paper.exhibits.printed_table1 import printed_table
-from bouncing_ball.paper.orbits import observables
-from bouncing_ball.paper.orbits import restitution_branch as restitution_orbits
-from bouncing_ball.paper.orbits.branch import whole_branch
-from bouncing_ball.paper.orbits.equations import OrbitSystem
-from bouncing_ball.paper.orbits.observables import PLACE, branch_columns, columns, joined, no_branch
-from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
-from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
-from bouncing_ball.paper.orbits.stability import Bifurcation
+from bouncing_ball.periodic import observables
+from bouncing_ball.periodic import restitution_branch as restitution_orbits
+from bouncing_ball.periodic.branch import whole_branch
+from bouncing_ball.periodic.equations import OrbitSystem
+from bouncing_ball.periodic.observables import PLACE, branch_columns, columns, joined, no_branch
+from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic.stability import Bifurcation
 
 VARIABLES = {
     "absence": Variable("why there is no stable range"),
@@ -85,7 +85,7 @@ def followed(
     Raises
     ------
     NoOrbitError, ContinuationError
-        As :func:`~bouncing_ball.paper.orbits.branch.whole_branch`.
+        As :func:`~bouncing_ball.periodic.branch.whole_branch`.
     """
     model = SpringDamperModel(SpringDamper.from_restitution(given.restitution, ratio, release))
     found = whole_branch(model, n, given.amplitude_max, continuation.largest_step)
@@ -263,7 +263,7 @@ def _stability_range(
     Raises
     ------
     NoOrbitError, ContinuationError
-        As :func:`~bouncing_ball.paper.orbits.branch.whole_branch` and :func:`first_limits`.
+        As :func:`~bouncing_ball.periodic.branch.whole_branch` and :func:`first_limits`.
     """
     model = SpringDamperModel(SpringDamper.from_restitution(given.restitution, ratio, release))
     branch = whole_branch(

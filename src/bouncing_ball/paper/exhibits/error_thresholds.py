@@ -5,19 +5,19 @@ from typing import Annotated
 import xarray as xr
 from pydantic import Strict
 
+from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.datasets.parameters import Many, Tolerance
 from bouncing_ball.datasets.variables import Variable, describe
-from bouncing_ball.paper.comparison.errors import Quantity
-from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.models.damping import Release
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.errors_along_ratio import errors_along_ratio
 from bouncing_ball.paper.exhibits.orbit_parameters import (
     OrbitErrors,
     OrbitsAlongRatio,
     require_any_orbit,
 )
-from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
-from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 
 VARIABLES = {
     "restitution_max_height": Variable(

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.paper.comparison.errors import Quantity, modulus
-from bouncing_ball.paper.comparison.thresholds import restitution_thresholds
-from bouncing_ball.paper.contact.damping import Release, damping_ratio
+from bouncing_ball.accuracy.errors import Quantity, modulus
+from bouncing_ball.accuracy.thresholds import restitution_thresholds
+from bouncing_ball.models.damping import Release, damping_ratio
 
 
 def errors_along_ratio(

@@ -18,9 +18,9 @@ import xarray as xr
 from bouncing_ball.datasets.parameters import Amplitude, Many, Parameters, Restitution, number
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.errors import ModelError
+from bouncing_ball.models.restitution import RestitutionDynamics
+from bouncing_ball.models.sequence import Status
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.paper.motion.restitution import RestitutionDynamics
-from bouncing_ball.paper.motion.sequence import Status
 
 VARIABLES = {
     "stickings": Variable("number of impacts after which the ball sticks to the table"),

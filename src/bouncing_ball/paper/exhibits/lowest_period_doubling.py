@@ -10,9 +10,9 @@ from scipy.optimize.elementwise import find_minimum
 
 from bouncing_ball.datasets.parameters import Family, LossyRestitution, Many, Parameters, Span
 from bouncing_ball.datasets.variables import described
-from bouncing_ball.paper.contact.damping import Release, damping_ratio
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
-from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 
 
 class FamiliesAlongRatio(Parameters):

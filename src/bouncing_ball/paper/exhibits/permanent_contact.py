@@ -2,11 +2,11 @@
 
 import xarray as xr
 
+from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.datasets.parameters import Parameters, Restitution, Span, Tolerance
 from bouncing_ball.datasets.variables import Variable, describe, described
-from bouncing_ball.paper.comparison.errors import Quantity
-from bouncing_ball.paper.contact.damping import Release, damping_ratio
-from bouncing_ball.paper.contact.permanent_contact import (
+from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.permanent_contact import (
     RESTITUTION_THRESHOLD,
     permanent_contact_minimum,
     permanent_contact_threshold,

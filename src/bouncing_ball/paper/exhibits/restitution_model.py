@@ -8,9 +8,9 @@ import xarray as xr
 from bouncing_ball.datasets.parameters import Samples, number
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.paper.exhibits.orbit_parameters import FamilyBranches, OrbitParameters
-from bouncing_ball.paper.orbits import restitution_branch as orbits
-from bouncing_ball.paper.orbits.restitution_branch import ImpactMap
-from bouncing_ball.paper.orbits.restitution_model import RestitutionModel, RestitutionOrbit
+from bouncing_ball.periodic import restitution_branch as orbits
+from bouncing_ball.periodic.restitution_branch import ImpactMap
+from bouncing_ball.periodic.restitution_model import RestitutionModel, RestitutionOrbit
 
 VARIABLES = {
     "grazing_amplitude": Variable(

@@ -5,11 +5,11 @@ import xarray as xr
 
 from bouncing_ball.datasets.parameters import FrequencyRatio, Many, Samples
 from bouncing_ball.datasets.variables import Variable, describe
-from bouncing_ball.paper.contact.damping import Release
-from bouncing_ball.paper.contact.spring_damper import SpringDamper
+from bouncing_ball.models.damping import Release
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.orbit_parameters import OrbitParameters
-from bouncing_ball.paper.orbits.restitution_model import RestitutionModel
-from bouncing_ball.paper.orbits.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 
 VARIABLES = {
     "table_phase": Variable("phase of the table", symbol="τ + φ", units="rad"),

@@ -1,0 +1,155 @@
+r"""The quantities by which models are compared, and the errors of simple models (Eqs. 37-38).
+
+The error of a quantity is ``(q_SD - q)/q``, where q is the value in a simple model, which is the
+restitution model in the paper. The paper compares the greatest height (Eq. 37) and the threshold of
+permanent contact (Eq. 38), and uses the modulus of the error; here the error is signed.
+"""
+
+from collections.abc import Iterable, Sequence
+from enum import StrEnum
+from functools import cache
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.periodic.model import ImpactModel
+from bouncing_ball.periodic.stability import Bifurcation
+
+
+class Quantity(StrEnum):
+    """A quantity that is compared between models."""
+
+    MAX_HEIGHT = "max_height"
+    BOUNCE_VELOCITY = "bounce_velocity"
+    PHASE = "phase"
+    APPARENT_RESTITUTION = "apparent_restitution"
+    SADDLE_NODE = "saddle_node"
+    PERIOD_DOUBLING = "period_doubling"
+    PERMANENT_CONTACT = "permanent_contact"
+
+
+OF_ORBITS = tuple(Quantity)[:4]
+"""Quantities of an orbit: functions of the contact, n and Λ."""
+
+OF_LIMITS = tuple(Quantity)[4:]
+"""Values of Λ: functions of the contact and of n; the permanent contact does not depend on n."""
+
+OF_IMPACTS = tuple(Quantity)[:6]
+"""Quantities that depend on an impact: all except the permanent contact, which has no impact."""
+
+QUANTITIES = {
+    Quantity.MAX_HEIGHT: "greatest height",
+    Quantity.BOUNCE_VELOCITY: "bouncing-off velocity",
+    Quantity.PHASE: "phase of impact",
+    Quantity.APPARENT_RESTITUTION: "apparent restitution",
+    Quantity.SADDLE_NODE: str(Bifurcation.SADDLE_NODE),
+    Quantity.PERIOD_DOUBLING: str(Bifurcation.PERIOD_DOUBLING),
+    Quantity.PERMANENT_CONTACT: "threshold of permanent contact",
+}
+"""The names of the quantities in sentences."""
+
+
+def values(
+    model: ImpactModel, n: ArrayLike, amplitude: ArrayLike, quantities: Iterable[str] = OF_IMPACTS
+) -> np.ndarray:
+    """Values of quantities in a model; one search for the orbit serves all its quantities.
+
+    Parameters
+    ----------
+    model : ImpactModel
+    n, amplitude : array_like
+        Index of the family and Λ of the stable orbits; they broadcast with the model.
+    quantities : iterable of str
+
+    Returns
+    -------
+    ndarray, shape (quantity, ...)
+        NaN where the model has no such orbit or bifurcation.
+
+    Examples
+    --------
+    >>> from bouncing_ball.periodic.restitution_model import RestitutionModel
+    >>> names = "bounce_velocity", "permanent_contact"
+    >>> bool(np.all(values(RestitutionModel(0.5), 1, 2.0, names) == [np.pi, 1.0]))
+    True
+    """
+    orbit = cache(lambda: model.orbit(n, amplitude))
+
+    def value(quantity: str) -> np.ndarray:
+        if quantity == Quantity.PERMANENT_CONTACT:
+            return model.permanent_contact_threshold()
+        if quantity in OF_LIMITS:
+            return getattr(model, quantity)(n).amplitude
+        return getattr(orbit(), quantity)
+
+    return np.stack(np.broadcast_arrays(*map(value, quantities)))
+
+
+def relative(exact: ArrayLike, simple: ArrayLike) -> np.ndarray:
+    """Signed relative errors: the exact value minus the simple value, over the simple value.
+
+    The error is NaN where a value is missing, and for 0/0. It is infinite where the simple value
+    is 0, for example for the saddle-node at r = 1.
+
+    Examples
+    --------
+    >>> relative([1.5, 1.0], [1.0, 0.0]).tolist()
+    [0.5, inf]
+    """
+    reference = np.asarray(simple, dtype=float)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return (np.asarray(exact, dtype=float) - reference) / reference
+
+
+def modulus(error: ArrayLike) -> np.ndarray:
+    """Modulus of errors; infinite for NaN, because a model that lacks a quantity is not accurate.
+
+    Examples
+    --------
+    >>> modulus([-0.5, np.nan]).tolist()
+    [0.5, inf]
+    """
+    return np.where(np.isnan(error), np.inf, np.abs(error))
+
+
+def relative_errors(
+    exact: ImpactModel,
+    simple: Sequence[ImpactModel],
+    n: ArrayLike,
+    amplitude: ArrayLike,
+    quantities: Sequence[str] = OF_IMPACTS,
+) -> np.ndarray:
+    """Signed relative errors of simple models, shape (model, quantity, ...).
+
+    Parameters
+    ----------
+    exact : ImpactModel
+    simple : sequence of ImpactModel
+    n, amplitude : array_like
+        Index of the family and Λ of the stable orbits; they broadcast with the models.
+    quantities : sequence of str
+
+    Returns
+    -------
+    ndarray
+        NaN where a model has no such orbit or bifurcation.
+
+    Examples
+    --------
+    Without damping, Λ_SD = 1 - 1/ϖ² above the resonance:
+
+    >>> from bouncing_ball.models.spring_damper import SpringDamper
+    >>> from bouncing_ball.periodic.restitution_model import RestitutionModel
+    >>> from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+    >>> stiff = SpringDamperModel(SpringDamper.from_restitution(1.0, np.array([2.0])))
+    >>> relative_errors(stiff, [RestitutionModel(1.0)], 1, 1.0, ["permanent_contact"]).tolist()
+    [[[-0.25]]]
+    """
+    shape = np.broadcast_shapes(exact.shape, np.shape(n), np.shape(amplitude))
+    wanted = values(exact, n, amplitude, quantities)
+    errors = np.empty((len(simple), len(quantities), *shape))
+    for k, model in enumerate(simple):
+        found = values(model, n, amplitude, quantities)
+        for q in range(len(quantities)):
+            errors[k, q] = relative(wanted[q], found[q])
+    return errors

@@ -1,0 +1,97 @@
+"""Drake: point contact with the relaxation time τ = c/k, f = k (p + τ p′) ≥ 0, or with the
+dissipation d of Hunt and Crossley, f = k p (1 + d p′) ≥ 0.
+"""
+
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+import numpy as np
+
+from bouncing_ball.contacts.engines.engine import Engine, Parameters, Physical, at_speeds, written
+from bouncing_ball.contacts.engines.scheme import Scheme
+from bouncing_ball.models.damping import Release
+from bouncing_ball.models.laws.hertzian import LinearHuntCrossley
+
+
+class Drake(Engine):
+    """A discrete plant with the approximation "sap", whose contact is the linear spring-damper.
+
+    Drake combines the parameters of two bodies: their springs are in series, and their relaxation
+    times are added. If ball and table have the same parameters, these are 2k in N/m and
+    τ/2 = c/(2k) in s. The other approximations are :class:`HuntCrossleyDrake`.
+
+    Examples
+    --------
+    >>> found = Drake().parameters(Physical(mass=2.0, stiffness=200.0, damping=4.0))
+    >>> found
+    {'point_contact_stiffness': 400.0, 'relaxation_time': 0.01}
+    >>> Drake().read(found, 2.0)
+    Physical(mass=2.0, stiffness=200.0, damping=4.0)
+    """
+
+    name = "drake"
+    names = ("point_contact_stiffness", "relaxation_time")
+    releases = (Release.FORCE,)
+    scheme = Scheme.COMPENSATED
+    laws: ClassVar[dict[str, str]] = {"hunt-crossley": "hunt-crossley-linear"}
+
+    def parameters(self, contact: Physical) -> Parameters:
+        time = contact.damping / contact.stiffness / 2
+        return dict(zip(self.names, (2 * contact.stiffness, time), strict=True))
+
+    def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
+        m, double, half_time = self._two(parameters, mass)
+        return Physical(m, double / 2, double * half_time)
+
+    def reader(self, parameters: Mapping[str, Any]) -> Engine:
+        return HuntCrossleyDrake() if HuntCrossleyDrake.names[1] in parameters else self
+
+    def with_law(self, law: Mapping[str, Any]) -> Engine:
+        return HuntCrossleyDrake(law)
+
+
+class HuntCrossleyDrake(Drake):
+    """The approximations with the damping of Hunt and Crossley, f = k p (1 + d p′).
+
+    If ball and table are alike, the contact has half of their stiffness, and d in s/m is the
+    ``hunt_crossley_dissipation`` of each. This damper grows with the penetration, so that it cannot
+    take back that of the time step. In slow impacts it vanishes: :meth:`read` returns c = 0.
+
+    Parameters
+    ----------
+    law : mapping, optional
+        The stiffness k in N/m and the damping d that :meth:`parameters` gives.
+
+    Examples
+    --------
+    >>> found = {"point_contact_stiffness": 400.0, "hunt_crossley_dissipation": 0.5}
+    >>> HuntCrossleyDrake().law(found, mass=2.0).parameters()
+    {'stiffness': 100.0, 'damping': 0.5}
+    """
+
+    names = ("point_contact_stiffness", "hunt_crossley_dissipation")
+    scheme = Scheme.IMPLICIT
+    needs_speed = True
+    text = "drake-hunt-crossley"
+
+    def __init__(self, law: Mapping[str, Any] | None = None):
+        self._law = law or {}
+
+    def parameters(self, contact: Physical) -> Parameters:
+        values = (written(2 * self._law["stiffness"]), written(self._law["damping"]))
+        return dict(zip(self.names, values, strict=True))
+
+    def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
+        m, double, _ = self._two(parameters, mass)
+        return Physical(m, double / 2, 0.0)
+
+    def law(
+        self, parameters: Mapping[str, Any], mass: float = 1, time: float = 1, length: float = 1
+    ) -> LinearHuntCrossley:
+        _, double, dissipation = self._two(parameters, mass)
+        return LinearHuntCrossley(double / 2 / mass * time**2, dissipation * length / time)
+
+    def remarks(self, parameters: Mapping[str, Any]) -> tuple[str, ...]:
+        law = self.law(parameters)
+        impacts = at_speeds(law, np.array([0.1, 1, 10]) / (law.damping or 1))
+        return (f"in the limit of small time steps a free impact has {impacts}",)

@@ -1,0 +1,367 @@
+"""The interface of an engine: parameters from k, c and m, release rules, a time-stepping scheme,
+and a text to paste."""
+
+import math
+import re
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib.resources import files
+from typing import Any, ClassVar
+
+import numpy as np
+
+from bouncing_ball.contacts.engines.given_step import AtStep, at_step
+from bouncing_ball.contacts.engines.physical import Physical
+from bouncing_ball.contacts.engines.scheme import Scheme, compensated, represented, steps_for
+from bouncing_ball.errors import ModelError, require
+from bouncing_ball.models.damping import Release
+from bouncing_ball.models.laws.contact_law import ContactLaw
+from bouncing_ball.models.laws.signature import free_impact as law_impact
+
+ERROR = 0.001
+"""The default of the largest error of a free impact's r that the time step may cause."""
+
+# A whole number of steps is not rounded down.
+_ALMOST = 1 + 1e-9
+_PLACE = re.compile(r"@([\w.]+)@")
+Parameters = Mapping[str, float | list[float]]
+
+
+def written(value: float) -> float:
+    """A number with twelve digits, so that the rounding errors of products are not written."""
+    return float(f"{value:.12g}")
+
+
+@dataclass(frozen=True)
+class EngineSettings:
+    """The settings to write into an engine, and the restitution that they produce.
+
+    ``parameters`` have the names and units of the engine; those of a compensated scheme hold for
+    the time step only. ``time_step`` is in s; with ``steps`` such steps in a contact the
+    ``restitution`` of a free impact is met within ``error``. ``restitutions`` has the r of the same
+    contact under each release that the engine has.
+    ``max_height`` and ``penetration`` in m and ``contact_duration`` in s belong to the orbit of a
+    design; they are None if there is no orbit. ``at_step`` is what the contact does at a time step
+    that is given, None if the time step follows from the contact.
+    """
+
+    name: str
+    parameters: Parameters
+    time_step: float
+    release: str
+    restitution: float
+    restitutions: dict[str, float]
+    steps: int
+    error: float
+    scheme: str
+    snippet: str
+    max_height: float | None = None
+    contact_duration: float | None = None
+    penetration: float | None = None
+    at_step: AtStep | None = None
+
+
+def text_of(name: str) -> str:
+    """The text to paste of an engine, from its file, with placeholders for the numbers."""
+    return files(__package__).joinpath(f"snippets/{name}.txt").read_text("utf-8")
+
+
+def filled(text: str, numbers: Mapping[str, str]) -> str:
+    """A text with numbers for its placeholders; lines with a number not given are left out."""
+    lines = (line for line in text.splitlines() if numbers.keys() >= {*_PLACE.findall(line)})
+    return _PLACE.sub(lambda place: numbers[place[1]], "\n".join(lines))
+
+
+def at_speeds(law: ContactLaw, speeds: np.ndarray) -> str:
+    """The restitution of a law's free impacts at these speeds in m/s, in words."""
+    found = zip(law_impact(law, speeds).restitution, speeds, strict=True)
+    return "r = " + ", ".join(f"{r:.4f} at {v:.3g} m/s" for r, v in found)
+
+
+class Engine(ABC):
+    """A physics engine and its linear contact between a ball and a wall, at rest or moving.
+
+    A subclass defines its ``name``, the ``names`` of its parameters, its ``releases`` with the
+    default first, and the ``scheme`` by which it moves a ball in contact. Its text to paste is
+    ``snippets/NAME.txt``, where NAME may be another ``text``.
+    """
+
+    name: ClassVar[str]
+    names: ClassVar[tuple[str, ...]]
+    releases: ClassVar[tuple[Release, ...]]
+    scheme: ClassVar[Scheme]
+    laws: ClassVar[dict[str, str]] = {}
+    """The names of the engine's other contact laws, by the names that users may give."""
+    text: ClassVar[str] = ""
+    needs_speed: ClassVar[bool] = False
+    """Whether the damping depends on the impact speed, so that :meth:`read` returns c = 0."""
+
+    @abstractmethod
+    def parameters(self, contact: Physical) -> Parameters:
+        """The parameters of a contact, in the units and under the names of the engine."""
+
+    def for_step(self, contact: Physical, time_step: float) -> Physical:
+        """The contact whose parameters let the engine compute a contact with a time step in s."""
+        if self.scheme is not Scheme.COMPENSATED:
+            return contact
+        m, k, c = contact
+        return Physical(m, *(written(x * m) for x in compensated(k / m, c / m, time_step)))
+
+    def contact(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
+        """The contact that the engine computes with these parameters, and a ``time_step`` in s.
+
+        The time step is a parameter of engines with a compensated scheme only. Without it the
+        contact is the limit of small steps.
+
+        Raises
+        ------
+        ModelError
+            See :meth:`read`; or if the time step is not positive.
+        """
+        if self.scheme is not Scheme.COMPENSATED or "time_step" not in parameters:
+            return self.read(parameters, mass)
+        values = dict(parameters)
+        step = values.pop("time_step")
+        require(0 < step < math.inf, step, "time_step", "a positive number of s")
+        m, k, c = self.read(values, mass)
+        return Physical(m, *(value * m for value in represented(k / m, c / m, step)))
+
+    def numbers(self, contact: Physical) -> dict[str, float]:
+        """The parameters of a contact as single numbers; an entry of a list is named NAME.INDEX."""
+        found: dict[str, float] = {}
+        for name, value in self.parameters(contact).items():
+            many = {f"{name}.{k}": x for k, x in enumerate(np.ravel(value).tolist())}
+            found |= many if isinstance(value, list) else {name: value}
+        return found
+
+    def template(self, release: Release) -> str:
+        """The text to paste for a release, with placeholders ``@name@`` for the numbers.
+
+        A line of ``snippets/NAME.txt`` that is for one release only begins with the release's name.
+        """
+        lines = (line.rpartition("|") for line in text_of(self.text or self.name).splitlines())
+        return "\n".join(line for rule, _, line in lines if rule in ("", release))
+
+    def snippet(self, contact: Physical, release: Release, time_step: float) -> str:
+        """The text to paste for a contact and a time step in s; its comments give the units.
+
+        It has no line about a release under which the ball would not rebound.
+        """
+        values = {**contact._asdict(), "time_step": time_step}
+        values |= self.numbers(self.for_step(contact, time_step))
+        texts = {name: repr(value) for name, value in values.items()}
+        texts |= {rule: f"{r:.4f}" for rule, r in self.restitutions(contact, release).items()}
+        return filled(self.template(release), texts)
+
+    @abstractmethod
+    def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
+        """The contact with these parameters, in the engine's units, and with a mass in kg.
+
+        Raises
+        ------
+        ModelError
+            If a parameter or the mass is missing, unknown, or outside its range.
+        """
+
+    def reader(self, parameters: Mapping[str, Any]) -> "Engine":
+        """The engine, or the part of it to which these parameters belong."""
+        return self
+
+    def law(
+        self, parameters: Mapping[str, Any], mass: float = 1, time: float = 1, length: float = 1
+    ) -> ContactLaw | None:
+        """The contact law with these parameters for a mass in kg, dimensionless with units of time
+        in s and length in m.
+
+        None if the contact is the spring and damper of :meth:`read`.
+        """
+        return None
+
+    def with_law(self, law: Mapping[str, Any]) -> "Engine":
+        """The engine for a contact law, which has a ``name`` and its parameters in SI units.
+
+        Its settings are made from the linear contact with the same restitution and duration.
+
+        Raises
+        ------
+        ModelError
+            If the engine has no such law.
+        """
+        raise ModelError(f"{law['name']} is not written for {self.name}")
+
+    def remarks(self, parameters: Mapping[str, Any]) -> tuple[str, ...]:
+        """Sentences on how the contact with these parameters differs from a spring and damper."""
+        if self.scheme is not Scheme.COMPENSATED or "time_step" in parameters:
+            return ()
+        limit = "k, c and r are those in the limit of small time steps, which damp less"
+        return (f"{limit}; with the parameter time_step, in s, they are those of this step",)
+
+    def release(self, asked: str | None = None) -> Release:
+        """The release with this name, or the engine's default.
+
+        Raises
+        ------
+        ModelError
+            If the engine has no such release.
+        """
+        if asked is None:
+            return self.releases[0]
+        release = Release.of(asked)
+        if release not in self.releases:
+            has = " and ".join(self.releases)
+            raise ModelError(f"{self.name} has no {release} release: its contacts end by {has}")
+        return release
+
+    def restitutions(self, contact: Physical, release: Release) -> dict[Release, float]:
+        """r of a free impact under a release, and under those other releases of the engine under
+        which the ball rebounds.
+
+        Raises
+        ------
+        ModelError
+            If ζ ≥ 1 and ``release`` is the displacement release.
+        """
+        slow = contact.damping_ratio < 1
+        rules = [rule for rule in self.releases if rule is release or slow]
+        return {rule: contact.restitution(rule) for rule in rules}
+
+    def settings(
+        self,
+        contact: Physical,
+        release: str | None = None,
+        error: float = ERROR,
+        time_step: float | None = None,
+    ) -> EngineSettings:
+        """The settings for a contact, with a time step that changes r by at most ``error``.
+
+        With a ``time_step`` in s they are for this step: for the contact, if the step resolves it,
+        and otherwise for the stiffest contact with the same r that it resolves.
+
+        Raises
+        ------
+        ModelError
+            If the engine has no such release, the contact does not bounce, or the error is not
+            positive.
+
+        Examples
+        --------
+        >>> from bouncing_ball.contacts.engines.mujoco import MuJoCo
+        >>> found = MuJoCo().settings(Physical(1.0, 1e6, 200.0), error=0.01, time_step=2e-4)
+        >>> found.at_step.is_within, found.time_step, found.parameters["solref"][0] > -1e6
+        (False, 0.0002, True)
+        """
+        rule = self.release(release)
+        contact = Physical(*map(written, contact))
+        restitution = contact.restitution(rule)
+        at = None
+        if time_step is None:
+            steps = steps_for(self.scheme, contact.damping_ratio, rule, error)
+            step = written(contact.contact_time(rule) / steps)
+        else:
+            step = time_step
+            at = self.at_step(contact, rule, step, error)
+            if not at.is_within:
+                stiffest = (contact.mass, at.stiffest, at.stiffest_damping)
+                contact = Physical(*map(written, stiffest))
+            steps = math.floor(contact.contact_time(rule) / step * _ALMOST)
+        text = self.snippet(contact, rule, step)
+        found = self.parameters(self.for_step(contact, step))
+        by_rule = {str(one): r for one, r in self.restitutions(contact, rule).items()}
+        return EngineSettings(
+            name=self.name,
+            parameters=found,
+            time_step=step,
+            release=str(rule),
+            restitution=restitution,
+            restitutions=by_rule,
+            steps=steps,
+            error=error,
+            scheme=str(self.scheme),
+            snippet=text,
+            at_step=at,
+        )
+
+    def at_step(
+        self, contact: Physical, release: Release, time_step: float, error: float
+    ) -> AtStep:
+        """What a contact that is written for the engine does with a time step in s."""
+        return at_step(self.name, self.scheme, contact, release, time_step, error)
+
+    def at_step_of(
+        self,
+        parameters: Mapping[str, Any],
+        mass: float | None,
+        time_step: float,
+        error: float = ERROR,
+        release: str | None = None,
+    ) -> AtStep:
+        """What the engine does with parameters and a time step in s.
+
+        Parameters that are not made for this step are damped by it: r is then compared with the
+        limit of small steps.
+
+        Raises
+        ------
+        ModelError
+            See :meth:`read`.
+        """
+        asked = self.read(parameters, mass)
+        contact = asked
+        if self.scheme is Scheme.COMPENSATED:
+            contact = self.contact({**parameters, "time_step": time_step}, mass)
+        rule = self.release(release)
+        return at_step(self.name, self.scheme, contact, rule, time_step, error, asked=asked)
+
+    def _given(self, parameters: Mapping[str, Any], mass: float | None) -> float:
+        """The mass in kg, after a check of it and of the names of all parameters."""
+        if unknown := set(parameters) - set(self.names):
+            names = " and ".join(self.names)
+            raise ModelError(
+                f"{self.name} has no {sorted(unknown)[0]!r}: its parameters are {names}"
+            )
+        if mass is None:
+            raise ModelError(
+                f"the mass is missing: the parameters of {self.name} do not contain it"
+            )
+        require(0 < mass < math.inf, mass, "mass", "a positive number of kg")
+        return float(mass)
+
+    def _two(self, parameters: Mapping[str, Any], mass: float | None) -> tuple[float, float, float]:
+        """The mass in kg, and the engine's parameters of stiffness, which must be positive, and of
+        damping, in the engine's units.
+        """
+        m = self._given(parameters, mass)
+        for name in self.names:
+            if name not in parameters:
+                both = " and ".join(self.names)
+                raise ModelError(f"{name} is missing: the parameters of {self.name} are {both}")
+            value = float(parameters[name])
+            require(0 <= value < math.inf, value, name, "a number of at least 0")
+        stiffness, damping = (float(parameters[name]) for name in self.names)
+        require(stiffness > 0, stiffness, self.names[0], "positive")
+        return m, stiffness, damping
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}()"
+
+
+class Proportional(Engine):
+    """An engine with two parameters a·k and b·c, whose factors a and b depend on the mass alone.
+
+    Both factors are 1 unless a subclass defines them.
+    """
+
+    def factors(self, mass: float) -> tuple[float, float]:
+        """The factors a and b for k and c, for a ball of this mass in kg."""
+        return 1.0, 1.0
+
+    def parameters(self, contact: Physical) -> Parameters:
+        stiff, lossy = self.factors(contact.mass)
+        values = (stiff * contact.stiffness, lossy * contact.damping)
+        return dict(zip(self.names, values, strict=True))
+
+    def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
+        m, stiffness, loss = self._two(parameters, mass)
+        stiff, lossy = self.factors(m)
+        return Physical(m, stiffness / stiff, loss / lossy)

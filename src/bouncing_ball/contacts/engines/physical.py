@@ -1,0 +1,52 @@
+"""A ball and its linear contact with a wall, in SI units."""
+
+import math
+from typing import NamedTuple
+
+from bouncing_ball.contacts.engines.scheme import free_impact
+from bouncing_ball.models.damping import Release
+
+
+class Physical(NamedTuple):
+    """A ball of mass m and the linear contact k p + c p′ between it and a wall, in SI units.
+
+    Examples
+    --------
+    >>> contact = Physical(mass=2.0, stiffness=200.0, damping=4.0)
+    >>> contact.angular_frequency, contact.damping_ratio
+    (10.0, 0.1)
+    """
+
+    mass: float
+    stiffness: float
+    damping: float
+
+    @property
+    def angular_frequency(self) -> float:
+        """ω = √(k/m) of the contact, in rad/s."""
+        return math.sqrt(self.stiffness / self.mass)
+
+    @property
+    def damping_ratio(self) -> float:
+        """ζ = c/(2mω) of the contact."""
+        return self.damping / (2 * self.mass * self.angular_frequency)
+
+    def restitution(self, release: Release) -> float:
+        """r of a free impact under a release rule.
+
+        Raises
+        ------
+        ModelError
+            If ζ ≥ 1 with the displacement release, under which the ball does not come back.
+        """
+        return free_impact(self.damping_ratio, release)[1]
+
+    def contact_time(self, release: Release) -> float:
+        """Duration of a free impact under a release rule, in s.
+
+        Raises
+        ------
+        ModelError
+            If ζ ≥ 1 with the displacement release.
+        """
+        return free_impact(self.damping_ratio, release)[0] / self.angular_frequency

@@ -1,0 +1,337 @@
+"""The n-T families of a case: orbits, margins, loads and errors in every model.
+
+:func:`needed` gives the frequency ratio ϖ that a tolerance needs, from a root of the exact error
+over ϖ.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.accuracy import error_law
+from bouncing_ball.accuracy.corrected_errors import search
+from bouncing_ball.accuracy.error_law import law_thresholds
+from bouncing_ball.accuracy.errors import OF_IMPACTS, OF_ORBITS, Quantity, relative
+from bouncing_ball.contacts.case import PhysicalCase, TableMotion
+from bouncing_ball.contacts.results import Errors, Family, Needed, Standing
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.laws.contact_law import ContactLaw
+from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.periodic.model import ImpactModel
+from bouncing_ball.periodic.orbit import Orbit
+
+# Samples of a contact, and further samples for each radian of the table's motion, because a long
+# contact has several maxima. The two steps around the greatest sample are sampled again. A step is
+# then 2·10⁻⁶ of the contact, so that a parabola exceeds its samples by less than 10⁻¹¹ of its
+# height.
+_SAMPLES = 1001
+_IN_A_RADIAN = 16
+
+
+def finite(value: float | np.ndarray) -> float | None:
+    """The value as a Python float; None if it is NaN or infinite."""
+    return float(value) if math.isfinite(value) else None
+
+
+def against_contact(error: np.ndarray) -> np.ndarray:
+    """The error of a simple model against the contact, (q - q_SD)/q_SD, from that of the paper.
+
+    The paper divides by the value of the simple model: its error is e = (q_SD - q)/q (Eq. 37), so
+    that the error against the contact is -e/(1 + e). Both are the same to first order, but for
+    the sign.
+
+    Examples
+    --------
+    >>> against_contact(np.array([-0.5, 1.0, np.inf])).tolist()
+    [1.0, -0.5, -1.0]
+    """
+    paper = np.asarray(error, dtype=float)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(np.isinf(paper), -1.0, -paper / (1 + paper))
+
+
+def prediction_error(predicted: ArrayLike, true: ArrayLike) -> np.ndarray:
+    """Signed relative error of predicted values against the true ones, which are the contact's.
+
+    Examples
+    --------
+    >>> prediction_error([2.0, 1.0], [1.0, 2.0]).tolist()
+    [1.0, -0.5]
+    """
+    return relative(predicted, true)
+
+
+def _by_quantity(values: np.ndarray) -> Errors:
+    return {str(q): finite(x) for q, x in zip(Quantity, values, strict=False)}
+
+
+def _loads(law: ContactLaw, orbit: Any) -> tuple[float, float]:
+    """Greatest compression and greatest force over weight in one contact, dimensionless."""
+    if not orbit.exists:
+        return math.nan, math.nan
+
+    def loads(time: np.ndarray) -> np.ndarray:
+        displacement, velocity = orbit.contact_motion(time)
+        load = 1 - orbit.amplitude * np.sin(orbit.phase + time)
+        force = law.loaded_force(np.maximum(-displacement, 0.0), -velocity, load)
+        return np.array([-displacement, force])
+
+    duration = float(orbit.contact_duration)
+    times = np.linspace(0.0, duration, _SAMPLES + int(_IN_A_RADIAN * duration))
+    tops = loads(times).argmax(axis=1)
+    low, high = times[np.clip([tops - 1, tops + 1], 0, times.size - 1)]
+    around_depth, around_force = np.linspace(low, high, _SAMPLES, axis=1)
+    depth, _ = loads(around_depth)
+    _, force = loads(around_force)
+    return float(np.max(depth)), float(np.max(force))
+
+
+def by_error_law(case: PhysicalCase, n: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The restitution model's errors that the error law predicts, shape (quantity, n), and whether
+    it holds, shape (n,).
+
+    They are errors against the contact, which to first order are those of the law with the other
+    sign. The error of the permanent contact, K₂/ϖ², is known for the linear contact only.
+
+    Examples
+    --------
+    >>> from bouncing_ball.contacts.case import TableMotion
+    >>> from bouncing_ball.models.spring_damper import SpringDamper
+    >>> case = PhysicalCase(1.0, TableMotion(1.0, 1.0, 1.0), SpringDamper(10.0, 0.0))
+    >>> by_error_law(case, np.array([1]))[0][-1].tolist()
+    [0.01]
+    """
+    lam = case.table.amplitude
+    contact = case.contact
+    predicted = np.full((len(Quantity), n.size), np.nan)
+    holds = np.zeros(n.size, dtype=bool)
+    there = case.models["restitution"].orbit(n, lam).exists
+    instant = case.instant(n[there])
+    predicted[: len(OF_IMPACTS), there] = [*error_law.first_order(n[there], instant, lam).values()]
+    is_small = error_law.small_parameter(n[there], instant, lam) < error_law.VALID_BELOW
+    # If the r of a contact law depends on the speed, it equals the r of the restitution model at
+    # one speed only.
+    holds[there] = is_small & case.has_its_restitution(n[there])
+    if case.law is None:
+        second = error_law.permanent_contact_coefficient(contact.damping_ratio, contact.release)
+        predicted[-1] = second / contact.frequency_ratio**2
+    return -predicted, holds
+
+
+def _standing(orbit: Orbit, values: np.ndarray, amplitude: float) -> Standing:
+    there = bool(orbit.exists)
+    node, doubling, _ = values[len(OF_ORBITS) :]
+    return Standing(
+        exists=there,
+        is_stable=there and bool(orbit.is_stable()),
+        is_admissible=there and bool(orbit.is_admissible()),
+        saddle_node=finite(node),
+        saddle_node_margin=finite(1 - node / amplitude),
+        period_doubling=finite(doubling),
+        period_doubling_margin=finite(doubling / amplitude - 1),
+    )
+
+
+def families(
+    case: PhysicalCase, asked: Sequence[int], or_first: bool = False
+) -> tuple[Family, ...]:
+    """The families ``asked`` in which at least one model has an orbit.
+
+    If there is no such family, the result is the first of ``asked`` with ``or_first``, and
+    otherwise an error.
+
+    Raises
+    ------
+    NoOrbitError
+        If no model has an orbit; the message gives the Λ that the first family needs.
+
+    Examples
+    --------
+    >>> from bouncing_ball.contacts.case import TableMotion
+    >>> from bouncing_ball.models.spring_damper import SpringDamper
+    >>> case = PhysicalCase(1.0, TableMotion(1.0, 0.5, 1.0), SpringDamper(10.0, 0.1))
+    >>> [family.n for family in families(case, [1, 2, 3])]
+    [1]
+    """
+    n = np.array(asked)
+    orbits: list[Orbit] = []
+    found: list[list[np.ndarray]] = []
+    for model in case.models.values():
+        is_exact = not orbits
+        orbit, quantities = _in_model(
+            model,
+            n,
+            case.table.amplitude,
+            case.permanent_contact if is_exact else RESTITUTION_THRESHOLD,
+        )
+        orbits.append(orbit)
+        found.append(quantities)
+    values = np.array(found)
+    there = np.any([orbit.exists for orbit in orbits], axis=0)
+    there[0] |= or_first and not there.any()
+    if not there.any():
+        raise _no_orbit(case, asked, values[:, len(OF_ORBITS), 0])
+    by_law, holds = by_error_law(case, n)
+    return tuple(
+        _family(
+            case,
+            asked[k],
+            orbits=[orbit[k] for orbit in orbits],
+            values=values[:, :, k],
+            by_law=by_law[:, k],
+            holds=bool(holds[k]),
+        )
+        for k in np.flatnonzero(there).tolist()
+    )
+
+
+def _in_model(
+    model: ImpactModel, n: np.ndarray, amplitude: float, permanent_contact: float
+) -> tuple[Orbit, list[np.ndarray]]:
+    """The n-T orbits of one model and the values of all quantities, in the order of Quantity."""
+    node = model.saddle_node(n).amplitude
+    doubling = model.period_doubling(n).amplitude
+    # Below its saddle-node a model has no orbit, so that none is searched for.
+    orbit = model.orbit(n, np.where(amplitude < node, np.nan, amplitude))
+    of_orbits = [getattr(orbit, quantity) for quantity in OF_ORBITS]
+    return orbit, [*of_orbits, node, doubling, np.full(n.shape, permanent_contact)]
+
+
+def _no_orbit(case: PhysicalCase, asked: Sequence[int], saddle_nodes: np.ndarray) -> NoOrbitError:
+    """The error that no model has an orbit, from the saddle-nodes of the first family asked."""
+    amplitude = case.table.amplitude
+    # The restitution model's where that of a strongly damped law was not found.
+    lowest = saddle_nodes[~np.isnan(saddle_nodes)][0]
+    which = f"{asked[0]}-T orbit" if len(asked) == 1 else "n-T orbit"
+    laid = amplitude <= case.permanent_contact
+    rests = ", and a ball laid on the table stays at rest" if laid else ""
+    return NoOrbitError(
+        f"no {which} in any model{rests}: the table's acceleration is Λ = {amplitude:.4g} times "
+        f"gravity, and the {asked[0]}-T orbit needs {lowest:.4g}"
+    )
+
+
+def _family(
+    case: PhysicalCase,
+    n: int,
+    *,
+    orbits: Sequence[Any],
+    values: np.ndarray,
+    by_law: np.ndarray,
+    holds: bool,
+) -> Family:
+    """A family from its orbits in all models, the ``values`` of the quantities, shape
+    (model, quantity), and the result of the error law.
+    """
+    unit = case.table
+    orbit = orbits[0]
+    standing = [_standing(*each, unit.amplitude) for each in zip(orbits, values, strict=True)]
+    depth, force = _loads(case.exact_law, orbit)
+    restitution, corrected = map(_by_quantity, prediction_error(values[1:], values[0]))
+    in_si = values * _units(case.table)
+    return Family(
+        n=n,
+        exists=standing[0].exists,
+        is_stable=standing[0].is_stable,
+        is_admissible=standing[0].is_admissible,
+        standing=dict(zip(case.models, standing, strict=True)),
+        max_height=finite(orbit.max_height * unit.length),
+        impact_speed=finite(-orbit.relative_impact_velocity * unit.length / unit.time),
+        contact_duration=finite(orbit.contact_duration * unit.time),
+        greatest_compression=finite(depth * unit.length),
+        peak_force=finite(force * case.mass * unit.gravity),
+        peak_force_over_weight=finite(force),
+        values={
+            str(quantity): dict(zip(case.models, map(finite, of_models), strict=True))
+            for quantity, of_models in zip(Quantity, in_si.T, strict=True)
+        },
+        errors=restitution,
+        corrected_errors=corrected,
+        law_errors=_by_quantity(by_law),
+        law_holds=holds,
+    )
+
+
+def _units(table: TableMotion) -> np.ndarray:
+    """The SI units of the quantities, in their order: m, m/s, and 1 for the others."""
+    units = np.ones(len(Quantity))
+    order = list(Quantity)
+    units[order.index(Quantity.MAX_HEIGHT)] = table.length
+    units[order.index(Quantity.BOUNCE_VELOCITY)] = table.length / table.time
+    return units
+
+
+# From contacts that last a considerable part of the table's period to contacts stiffer than those
+# of any simulation. The grid is fine, so that two crossings hardly fall between neighbours.
+RATIOS = np.geomspace(1.0, 1e6, 97)
+NO_ORBIT = "no orbit"
+"""A status in addition to :class:`~bouncing_ball.accuracy.thresholds.ThresholdStatus`."""
+
+
+def needed(
+    quantity: str, tolerance: float, contact: SpringDamper, n: int, amplitude: float
+) -> Needed:
+    """The ϖ that a tolerance needs, for contacts with the ζ and the release of a given contact.
+
+    Parameters
+    ----------
+    quantity : str
+        One of :class:`~bouncing_ball.accuracy.errors.Quantity`.
+    tolerance : float
+        Largest relative error allowed, against the contact (:func:`against_contact`).
+    contact : SpringDamper
+    n : int
+    amplitude : float
+        Λ.
+
+    Examples
+    --------
+    Without damping the threshold is Λ_SD = 1 - 1/ϖ², for which the restitution model has 1, so
+    that its error is 1/(ϖ² - 1):
+
+    >>> found = needed("permanent_contact", 0.01, SpringDamper(5.0, 0.0), 1, 1.0)
+    >>> round(found.frequency_ratio**2, 9), round(found.by_law, 12)
+    (101.0, 10.0)
+    """
+    zeta = contact.damping_ratio
+    rule = contact.release
+    # The error law of a limit does not depend on Λ. A Λ too small for an orbit is therefore
+    # replaced by nπ, which is above the saddle-node.
+    there = amplitude if quantity in OF_ORBITS else max(amplitude, n * np.pi)
+    try:
+        by_law = finite(law_thresholds(n, zeta, there, rule, tolerance)[Quantity(quantity)])
+    except NoOrbitError:
+        return Needed(
+            quantity=quantity,
+            tolerance=tolerance,
+            frequency_ratio=None,
+            by_law=None,
+            corrected=None,
+            status=NO_ORBIT,
+            corrected_status=NO_ORBIT,
+        )
+    found = search(
+        zeta,
+        rule,
+        n=n,
+        amplitude=amplitude,
+        ratios=RATIOS,
+        tolerance=tolerance,
+        quantities=(quantity,),
+        measure=against_contact,
+    )
+    simple, corrected = found.threshold[:, 0, 0]
+    status, corrected_status = found.status[:, 0, 0]
+    return Needed(
+        quantity=quantity,
+        tolerance=tolerance,
+        frequency_ratio=finite(simple),
+        by_law=by_law,
+        corrected=finite(corrected),
+        status=str(status),
+        corrected_status=str(corrected_status),
+    )

@@ -1,0 +1,356 @@
+"""The sentences of a design: the motion, the verdict with its reason, and further notes."""
+
+import math
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from bouncing_ball.accuracy.errors import QUANTITIES, Quantity
+from bouncing_ball.accuracy.thresholds import ThresholdStatus
+from bouncing_ball.contacts.case import PhysicalCase
+from bouncing_ball.contacts.families import NO_ORBIT, prediction_error
+from bouncing_ball.contacts.given import MOST_BALLS
+from bouncing_ball.contacts.results import Family, FinalMotion, Mean, Needed
+from bouncing_ball.contacts.units import in_place_of, percent, shown, signed
+from bouncing_ball.long_run.motions import Kind
+from bouncing_ball.models.damping import Release
+from bouncing_ball.models.laws.contact_law import ContactLaw
+from bouncing_ball.models.laws.hertzian import Tsuji
+from bouncing_ball.models.laws.impedance import Impedance
+from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+
+_UNITS = {Quantity.MAX_HEIGHT: "m", Quantity.BOUNCE_VELOCITY: "m/s"}
+# Units of the means over time.
+_OF_MEANS = {"height": "m", "power": "W"}
+
+# What a ball does that starts near an orbit, by the kind of the motion on which it ends.
+_DOES: Mapping[str, str] = {
+    Kind.ORBIT: "settles on a periodic orbit, which repeats",
+    Kind.SUBHARMONIC: "settles on a doubled orbit, which repeats",
+    Kind.LOCKED: "settles on a locked motion, which sticks to the table and repeats",
+    Kind.PERMANENT_CONTACT: "comes to rest on the table",
+    Kind.CHAOTIC: "ends in chaotic motion",
+    Kind.UNDECIDED: "shows no periodic motion and is not known to be chaotic",
+}
+# The same for a ball that is laid on the table.
+_LAID = {**_DOES, Kind.PERMANENT_CONTACT: "stays at rest"}
+
+
+class Verdict(NamedTuple):
+    """Whether the restitution model is good enough, this verdict as a sentence, and the reason."""
+
+    is_good_enough: bool
+    verdict: str
+    reason: str
+
+
+_NO_CROSSING = {
+    ThresholdStatus.ALWAYS_WITHIN: "the error is within the tolerance at every ϖ scanned",
+    ThresholdStatus.NEVER_WITHIN: "the error is outside the tolerance at the largest ϖ scanned",
+    NO_ORBIT: "the restitution model has no such orbit",
+}
+
+
+def _subject(quantity: str, n: int) -> str:
+    of_family = "" if quantity == Quantity.PERMANENT_CONTACT else f" of the {n}-T orbit"
+    return f"the {QUANTITIES[Quantity(quantity)]}{of_family}"
+
+
+def _disagreement(family: Family) -> str | None:
+    """The first qualitative disagreement between the restitution model's orbit and the exact one:
+    in existence, admissibility or stability. None if they agree.
+    """
+    simple = family.standing["restitution"]
+    orbit = f"{family.n}-T orbit"
+    if family.exists != simple.exists:
+        missed = f"it misses the {orbit}, which the contact has"
+        return missed if family.exists else f"it has the {orbit}, which the contact has not"
+    if family.is_admissible != simple.is_admissible:
+        return _opposite(orbit, "free of other impacts", simple.is_admissible)
+    if family.is_stable != simple.is_stable:
+        return _opposite(orbit, "stable", simple.is_stable)
+    return None
+
+
+def _opposite(orbit: str, word: str, of_model: bool) -> str:
+    """A clause that the orbit of only one of the two, the model and the contact, is ``word``."""
+    if of_model:
+        return f"its {orbit} is {word}, and the contact's is not"
+    return f"its {orbit} is not {word}, and the contact's is"
+
+
+def assessed(family: Family, needed: Needed, frequency_ratio: float) -> Verdict:
+    """The verdict on a given contact.
+
+    The model is good enough if its orbit agrees with the exact one in existence, admissibility and
+    stability, and if the error is within the tolerance.
+    """
+    tolerance = percent(needed.tolerance)
+    error = family.errors[needed.quantity]
+    wrong = _disagreement(family)
+    if wrong is None and error is None:
+        name = QUANTITIES[Quantity(needed.quantity)]
+        sentence = f"Whether the restitution model is good enough in the {name} is not known."
+        return Verdict(False, sentence, "the contact or the model has no value to compare")
+    good = wrong is None and error is not None and abs(error) <= needed.tolerance
+    reason = _reason(needed, frequency_ratio, good, tolerance)
+    if good:
+        found = _prediction(family, needed)
+        sentence = f"The restitution model is good enough: {found}, within {tolerance}."
+        return Verdict(True, sentence, reason)
+    why = wrong or f"{_prediction(family, needed)}, beyond {tolerance}"
+    instead = _instead(family, needed)
+    return Verdict(False, f"The restitution model is not good enough: {why}{instead}.", reason)
+
+
+def _prediction(family: Family, needed: Needed) -> str:
+    """A clause with the values of a quantity in the restitution model and on the contact, and the
+    error of the model.
+    """
+    exact, predicted, *_ = family.values[needed.quantity].values()
+    both = in_place_of(predicted, exact, _UNITS.get(Quantity(needed.quantity), ""))
+    size = signed(family.errors[needed.quantity], needed.tolerance)
+    return f"for {_subject(needed.quantity, family.n)} it predicts {both}, {size}"
+
+
+def judged_by_motion(motion: FinalMotion, tolerance: float, n: int) -> Verdict:
+    """The verdict on the motion on which a ball ends, if the orbit is not stable."""
+    about = f"no ball stays on the {n}-T orbit, so that its errors are not judged"
+    exact = motion.kind
+    simple = motion.restitution_kind
+    if exact == simple == Kind.PERMANENT_CONTACT:
+        sentence = "The restitution model is good enough: the ball rests in both models."
+        return Verdict(True, sentence, about)
+    # Locked and chaotic motions may be alike in the mean, but other kinds that differ are not. An
+    # undecided motion may be of any kind, but is not the n-T orbit, on which no ball stays.
+    on_orbit = simple == Kind.ORBIT and motion.restitution_periods == n
+    known = on_orbit or Kind.UNDECIDED not in (exact, simple)
+    distinct = {Kind.PERMANENT_CONTACT, Kind.ORBIT, Kind.SUBHARMONIC}
+    if exact != simple and known and {exact, simple} & distinct:
+        sentence = f"its motion is {_named(simple)}, and the contact's is {_named(exact)}"
+        return Verdict(False, f"The restitution model is not good enough: {sentence}.", about)
+    if motion.greatest is not None:
+        true, predicted = motion.greatest.values()
+        error = float(prediction_error(predicted, true))
+        both = in_place_of(predicted, true, "m")
+        found = f"for the greatest height of this motion it predicts {both}, {signed(error)}"
+        return _within(abs(error), abs(error), tolerance, found, about)
+    if motion.mean_error is None:
+        sentence = "Whether the restitution model is good enough for this motion is not known."
+        return Verdict(False, sentence, f"{about}; nor are means, as some balls come to rest")
+    means = {"height": motion.mean_height, "power": motion.mean_power}
+    found = "it predicts " + " and ".join(
+        _of_mean(name, means[name], error) for name, error in motion.mean_error.items()
+    )
+    errors = motion.mean_error.values()
+    least = max(abs(error.value) - error.half_width for error in errors)
+    most = max(abs(error.value) + error.half_width for error in errors)
+    why = f"{about}; means over time are compared"
+    return _within(least, most, tolerance, found, why, _larger_sample(motion, tolerance))
+
+
+def _larger_sample(motion: FinalMotion, tolerance: float) -> str:
+    """How many balls would decide, because an interval shrinks as the square root of their number.
+
+    The number is rounded up to two digits.
+    """
+    assert motion.mean_error is not None and motion.balls is not None
+    ends = (motion.kind, motion.periods), (motion.restitution_kind, motion.restitution_periods)
+    if (Kind.LOCKED, 0) in ends:
+        return (
+            "no larger sample would decide, as rounding errors decide after which lap a ball locks"
+        )
+    shares = [
+        error.half_width / abs(abs(error.value) - tolerance)
+        for error in motion.mean_error.values()
+        if error.half_width > abs(abs(error.value) - tolerance) > 0
+    ]
+    wanted = motion.balls * max(shares, default=2.0) ** 2
+    if wanted > MOST_BALLS.high:
+        return (
+            f"the sample of {motion.balls} balls is too small to decide, and so is any up to "
+            f"{MOST_BALLS.high}: the error is next to the tolerance"
+        )
+    digits = 10 ** max(len(f"{wanted:.0f}") - 2, 0)
+    enough = math.ceil(wanted / digits) * digits
+    return (
+        f"the sample of {motion.balls} balls is too small to decide; with balls = {enough} "
+        f"(--balls {enough}) it should be large enough"
+    )
+
+
+def _named(kind: str | None) -> str:
+    words: dict[str | None, str] = {Kind.ORBIT: "periodic", Kind.SUBHARMONIC: "doubled"}
+    return words.get(kind, str(kind))
+
+
+def _of_mean(name: str, of_models: Mapping[str, Mean | None] | None, error: Mean) -> str:
+    """The mean of both models, and the error with its interval."""
+    true, predicted = (mean for mean in (of_models or {}).values() if mean is not None)
+    both = in_place_of(predicted.value, true.value, _OF_MEANS[name])
+    return f"a mean {name} of {both}, {_between(error)}"
+
+
+# A half-width below a hundredth of a per cent is not printed.
+_UNSEEN = 1e-4
+
+
+def _between(error: Mean) -> str:
+    """An error with its interval, or its largest size where the interval contains zero."""
+    size = abs(error.value)
+    if error.half_width > size:
+        return f"at most {shown(size + error.half_width, '%')} off"
+    if error.half_width < _UNSEEN:
+        return signed(error.value)
+    # As many decimals as the first digit of the half-width has.
+    decimals = max(-math.floor(math.log10(100 * error.half_width)), 0)
+    return f"{100 * error.value:+.{decimals}f} % ± {100 * error.half_width:.{decimals}f} %"
+
+
+def _within(
+    least: float, most: float, tolerance: float, found: str, why: str, undecided: str = ""
+) -> Verdict:
+    """The verdict on a largest error between two bounds, against a tolerance.
+
+    ``undecided`` says what helps if the tolerance lies between the bounds.
+    """
+    asked = percent(tolerance)
+    if most <= tolerance:
+        return Verdict(True, f"The restitution model is good enough: {found}, within {asked}.", why)
+    if least > tolerance:
+        sentence = f"The restitution model is not good enough: {found}, beyond {asked}."
+        return Verdict(False, sentence, why)
+    sentence = f"Whether the restitution model is good enough is not decided at {asked}: {found}."
+    return Verdict(False, sentence, f"{why}; {undecided}")
+
+
+def _instead(family: Family, needed: Needed) -> str:
+    """A clause on whether the corrected model is good enough instead."""
+    error = family.corrected_errors[needed.quantity]
+    corrected = family.standing["corrected"]
+    same = (family.exists, family.is_stable) == (corrected.exists, corrected.is_stable)
+    if same and error is not None and abs(error) <= needed.tolerance:
+        size = signed(error, needed.tolerance)
+        return f"; the corrected restitution model is good enough: its error is {size}"
+    return "; nor is the corrected one: simulate the contact"
+
+
+def _reason(needed: Needed, frequency_ratio: float, good: bool, tolerance: str) -> str:
+    """A clause that compares the ϖ of the contact with the ϖ that the tolerance needs."""
+    if needed.frequency_ratio is None:
+        return _NO_CROSSING[needed.status]
+    place = "above" if frequency_ratio >= needed.frequency_ratio else "below"
+    text = (
+        f"the contact's frequency ratio ϖ = {frequency_ratio:.4g} is {place} the "
+        f"ϖ = {needed.frequency_ratio:.4g} from which on the error stays within {tolerance}"
+    )
+    if good and place == "below":
+        text += "; it is small here only because it passes through zero near this ϖ"
+    return text
+
+
+def chosen(si: Mapping[str, float], needed: Needed, n: int) -> Verdict:
+    """The verdict on the most compliant contact within the tolerance."""
+    tolerance = percent(needed.tolerance)
+    sentence = (
+        f"A simulation needs a contact of at least {shown(si['stiffness'], 'N/m')}, with a contact "
+        f"time of {shown(si['contact_time'], 's')} or less and a damping of "
+        f"{shown(si['damping'], 'N s/m')} at that stiffness: the restitution model then predicts "
+        f"{_subject(needed.quantity, n)} within {tolerance}."
+    )
+    if needed.frequency_ratio is None:
+        return Verdict(True, sentence, _NO_CROSSING[needed.status])
+    where = f"at the frequency ratio ϖ = {needed.frequency_ratio:.4g}"
+    return Verdict(True, sentence, f"the error crosses {tolerance} for the last time {where}")
+
+
+def _cost_of(law: Impedance, case: PhysicalCase, family: Family) -> str:
+    """A sentence on the change of the greatest height that an impedance causes."""
+    about = "stiffness, damping, ϖ and ζ are those of the spring and damper of this solref"
+    spring = SpringDamperModel(case.contact).orbit(family.n, case.table.amplitude)
+    if family.greatest_compression is None or family.max_height is None or not spring.exists:
+        return about
+    depth = np.array(family.greatest_compression / case.table.length)
+    off = float(prediction_error(family.max_height, spring.max_height * case.table.length))
+    return (
+        f"{about}: at the orbit's depth of {shown(family.greatest_compression, 'm')}, where the "
+        f"impedance is {float(law.impedance(depth)):.3g}, the ball bounces {shown(abs(off), '%')} "
+        f"{'higher' if off > 0 else 'lower'} than with them"
+    )
+
+
+def _notes_on_law(law: ContactLaw, case: PhysicalCase, family: Family) -> list[str]:
+    """Sentences on how the numbers of a linear contact are those of a case with another law."""
+    # The contact of a solref has the ϖ of its impedance, unlike one that was found for an impact.
+    if isinstance(law, Impedance) and math.isclose(
+        law.frequency_ratio, case.contact.frequency_ratio
+    ):
+        return [_cost_of(law, case, family)]
+    hertz = isinstance(law, Tsuji)
+    name = "Hertz contact with Tsuji's damping" if hertz else f"{law.name} contact"
+    found = [
+        "stiffness, damping, ϖ and ζ, and the ϖ that is needed, are those of a linear contact: "
+        f"it has the r of the {name}, and its duration at the impact"
+    ]
+    if not np.all(case.has_its_restitution([family.n, family.n + 1])):
+        found.append(
+            "the restitution of this law depends on the speed: it is r at the speed of the "
+            "restitution model's lowest stable orbit"
+        )
+    return found
+
+
+def notes(case: PhysicalCase, family: Family, motion: FinalMotion) -> tuple[str, ...]:
+    """Sentences that a user should read in addition to the verdict."""
+    contact = case.contact
+    orbit = f"{family.n}-T orbit"
+    found = [] if case.law is None else _notes_on_law(case.law, case, family)
+    if math.isnan(case.permanent_contact):
+        found.append(
+            "no threshold of permanent contact was found, because the contact is weakly damped"
+        )
+    if not family.exists:
+        found.append(f"at this Λ the contact has no {orbit}")
+    elif motion.restitution_kind is not None:
+        what = "unstable" if family.is_admissible else "inadmissible (an earlier impact occurs)"
+        found.append(f"the {orbit} is {what}, so that no ball stays on it")
+    if contact.frequency_ratio < 1:
+        found.append("the contact is slower than the table: the ball oscillates on a spring")
+    if case.law is None and contact.release is Release.DISPLACEMENT and contact.damping_ratio > 0:
+        found.append(
+            "before its release at δ = 0 the contact pulls the ball; a contact that cannot pull "
+            "has the r of a release without force"
+        )
+    return tuple(found)
+
+
+def aside(motion: FinalMotion, amplitude: float) -> str:
+    """A clause that follows the verdict on the orbit if a ball laid on the table ends elsewhere."""
+    rests = motion.laid == Kind.PERMANENT_CONTACT and amplitude <= RESTITUTION_THRESHOLD
+    if motion.laid is None or rests:
+        return ""
+    return f"; a ball laid on the table {_LAID[motion.laid]}, and is not judged"
+
+
+def headline(motion: FinalMotion, family: Family) -> str:
+    """The motion of the ball, in one sentence."""
+    orbit = f"{family.n}-T orbit"
+    if motion.kind == Kind.ORBIT and motion.restitution_kind is None:
+        said = f"The {orbit} is stable: a ball on it stays on it."
+        if motion.laid is None:
+            return said
+        return f"{said} A ball laid on the table {_LAID[motion.laid]}."
+    if motion.restitution_kind is None:
+        return f"A ball near the {orbit} stays near it, because the contact loses no energy."
+    none = not any(each.exists for each in family.standing.values())
+    does = (_LAID if none else _DOES)[motion.kind]
+    if motion.periods > 1 and motion.kind != Kind.PERMANENT_CONTACT:
+        does += f" after {motion.periods} periods of the table and {motion.impacts} impacts"
+    why = "not stable" if family.is_admissible else "not admissible"
+    if none:
+        return f"No model has an n-T orbit. A ball laid on the table {does}."
+    if not family.exists:
+        return f"The contact has no {orbit}. A ball that starts as on such an orbit {does}."
+    return f"The {orbit} is {why}. A ball that starts near it {does}."

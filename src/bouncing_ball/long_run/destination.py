@@ -1,0 +1,374 @@
+r"""From the start of a ball to the motion on which it ends, for every model.
+
+A motion repeats if its state returns and neighbouring motions approach it. The return to a mark is
+examined in :mod:`bouncing_ball.long_run.recurrence`, and the growth of deviations in
+:mod:`bouncing_ball.long_run.lyapunov`.
+
+A ball *sticks* to the table if a contact lasts until the table's motion ends it. With instantaneous
+impacts this is a rest on the table up to the lift-off. A contact of finite stiffness sticks if it
+lasts longer than one of its damped oscillations, 2π/ϖ_d, because an undamped contact under a
+constant load lasts no longer. A motion that repeats and sticks in each repetition is *locked*. If
+the contact is compliant, an n-T orbit may be locked in this sense as well.
+
+With instantaneous impacts the motion after sticking does not depend on earlier impacts, because a
+ball always leaves in the state of the lift-off. A motion that sticks twice is therefore locked. If
+rounding errors have grown to its size between the two stickings, its period is not known: another
+rounding gives another lap, but also one that begins and ends at the lift-off. Whether the true lap
+ends is examined with more digits in :mod:`bouncing_ball.long_run.many_digits`.
+
+In a contact of finite stiffness the dependence decreases by a finite factor, and the state is
+compared as for any other motion. If rounding errors grow too much for a return, a ball that sticks
+again and again is locked if the deviations decrease on the whole by more than all digits, with an
+unknown period as well.
+
+A motion is called chaotic if it has done none of this in the impacts for which it was followed, and
+if its neighbours separate exponentially. More impacts may show that it is a long transient.
+
+Balls are followed with the operations + - × ÷ and √ only, so that the same bits give the same
+motion on every processor. A ball with a long transient loses the digits of its start, and the last
+digit then decides on which motion the ball ends: see ``digits_lost`` of
+:class:`~bouncing_ball.long_run.motions.Motions`.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.long_run.followed import (
+    MARGINAL,
+    REASONS,
+    ROUNDING,
+    Balls,
+    joined,
+    record,
+    store,
+    store_ends,
+)
+from bouncing_ball.long_run.lyapunov import DIGITS, FORGOTTEN, NEAR
+from bouncing_ball.long_run.motions import Kind, Motions, Reason
+from bouncing_ball.long_run.recurrence import periods_in, returns_to_marks
+from bouncing_ball.models.deviations import Jacobian
+from bouncing_ball.models.dynamics import Departure, Dynamics, HasDynamics, Impact
+from bouncing_ball.models.sequence import Status
+
+IMPACTS = 2000
+"""Number of impacts after which the search for a repetition ends."""
+# Number of standard errors by which the exponent of a chaotic motion must be positive; this happens
+# by chance once in three million.
+_ERRORS = 5.0
+# Number of balls followed at the same time.
+_BLOCK = 1 << 16
+# Number of bytes that are allocated once at the start.
+_KEPT = 1 << 24
+_BOUNCING = np.array(Status.BOUNCING)
+
+
+def final_motions(
+    model: HasDynamics,
+    amplitude: ArrayLike,
+    phase: ArrayLike,
+    velocity: ArrayLike,
+    *,
+    impacts: int = IMPACTS,
+    path: np.ndarray | None = None,
+) -> Motions:
+    """The motions on which balls end that start with an impact.
+
+    Parameters
+    ----------
+    model : HasDynamics
+        The model, or the law, of the impact.
+    amplitude, phase, velocity : array_like
+        Λ ≥ 0, the phase φ of the first impact, and the absolute velocity z′ before it.
+    impacts : int
+        Number of impacts after which the search for a repetition ends. A motion is found if it
+        repeats within about a third of them.
+    path : array, optional
+        Contiguous, with the shape (3, impacts) in front of that of the result. It is filled with
+        time, φ and z′ of each impact before the one at which the motion is found.
+
+    Returns
+    -------
+    Motions
+        Arrays of the shape to which the arguments broadcast.
+
+    Raises
+    ------
+    ModelError
+        If r, Λ or a state is outside its range, or if a ball rises from the table.
+
+    Examples
+    --------
+    Below and above the period doubling at Λ = 1.527, and a motion that sticks to the table:
+
+    >>> from bouncing_ball.periodic.restitution_model import RestitutionModel
+    >>> model = RestitutionModel(0.5)
+    >>> found = final_motions(model, [1.2, 1.6, 2.5], 1.0, -3.0)
+    >>> found.kind.tolist(), found.periods.tolist(), found.impacts.tolist()[:2]
+    (['orbit', 'subharmonic', 'locked'], [1, 2, 6], [1, 2])
+
+    The path to a motion is the one that a simulation has, up to a rounding of the velocity:
+
+    >>> path = np.empty((3, 20, 2))
+    >>> start = [1.2, 1.6], 1.0, -3.0
+    >>> found = final_motions(model, *start, impacts=20, path=path)
+    >>> way = model.simulate(*start, 20)
+    >>> apart = np.abs(path - [way.time, way.phase, way.impact_velocity])
+    >>> found.followed.tolist(), apart[:2].max().tolist(), bool(apart[2].max() < 1e-15)
+    ([20, 20], 0.0, True)
+    """
+    dynamics, start, relative, shape = model.dynamics(amplitude).first_impacts(phase, velocity)
+    # After memory of this size has been freed once, the process keeps it and need not request it
+    # from the system at each step.
+    np.empty(_KEPT, dtype=np.int8)
+    # The derivatives of a long turn may overflow, and those of a ball that sticks are zero.
+    with np.errstate(all="ignore"):
+        found = _follow(dynamics, start, relative, impacts, path)
+    return Motions(**{name: values.reshape(shape) for name, values in vars(found).items()})
+
+
+def _follow(
+    dynamics: Dynamics,
+    start: np.ndarray,
+    relative: np.ndarray,
+    impacts: int,
+    path: np.ndarray | None,
+) -> Motions:
+    """Follow all balls, in a block to which new balls are added when a quarter of it is free."""
+    found = Motions.unknown(start.size)
+    balls: Any = None
+    impact: Any = None
+    started = 0
+    alive = 0
+    while alive or started < start.size:
+        free = _BLOCK - alive
+        if started < start.size and 4 * free >= _BLOCK:
+            lanes = np.arange(started, min(started + free, start.size))
+            started += lanes.size
+            first, new = _new_balls(dynamics.take(lanes), lanes, start[lanes], relative[lanes])
+            impact = joined(impact, first) if alive else first
+            balls = joined(balls, new) if alive else new
+            now = dynamics.take(balls.lane)
+        if path is not None:
+            record(path.reshape(3, impacts, -1), balls, impact)
+
+        departure = now.depart(impact, differentiate=True)
+        done = _departing(now, departure, balls, found)
+        if done.any():
+            (going,) = (~done).nonzero()
+            store_ends(found, balls, impact, going)
+            now, impact, departure, balls = now.kept(going, impact, departure, balls)
+
+        alive = balls.lane.size
+        if alive:
+            after, passed = now.fly(departure)
+            change = now.jacobian(impact, departure, after, passed)
+            _advance(balls, impact, change, passed, departure.sticks)
+            phase, velocity = now.section(after)
+            done = _ending(balls, phase, velocity, impacts, found)
+            impact = after
+            if done.any():
+                (going,) = (~done).nonzero()
+                store_ends(found, balls, impact, going)
+                now, impact, balls = now.kept(going, impact, balls)
+                alive = going.size
+    return found
+
+
+def _new_balls(
+    dynamics: Dynamics, lanes: np.ndarray, phase: np.ndarray, relative: np.ndarray
+) -> tuple[Impact, Balls]:
+    """The first impacts of balls, and the balls."""
+    first = dynamics.start(phase, relative)
+    return first, Balls.new(lanes, dynamics.amplitude, first)
+
+
+def _departing(
+    dynamics: Dynamics, departure: Departure, balls: Balls, found: Motions
+) -> np.ndarray:
+    """Store which balls stay on the table, are not released, or lock because they stick again;
+    return which do.
+    """
+    done = departure.status != _BOUNCING
+    if done.any():
+        stays = departure.status == Status.PERMANENT_CONTACT
+        store(found, balls, stays, kind=Kind.PERMANENT_CONTACT, periods=1, exponent_error=0.0)
+        store(found, balls, done & ~stays, kind=Kind.UNDECIDED, reason=Reason.NO_RELEASE)
+    if dynamics.forgets:
+        sticks = ~done & departure.sticks
+        if sticks.any():
+            done |= _sticking_again(balls, sticks, balls.time + departure.duration, found)
+    return done
+
+
+def _sticking_again(
+    balls: Balls, sticks: np.ndarray, time: np.ndarray, found: Motions
+) -> np.ndarray:
+    """Store which balls lock because they stick for the second time, and return which do.
+
+    If rounding errors have grown too much since the first lift-off, only the kind is known. The
+    time of the present lift-off is ``time``.
+    """
+    sticking = balls.sticking
+    again = sticks & (sticking.impact >= 0)
+    resolved = again & ~balls.stretch.lost()
+    store(
+        found,
+        balls,
+        resolved,
+        kind=Kind.LOCKED,
+        periods=periods_in(time - sticking.time)[resolved],
+        impacts=(balls.seen - sticking.impact)[resolved],
+        exponent=-np.inf,
+        exponent_error=0.0,
+    )
+    _store_unresolved(found, balls, again & ~resolved, -np.inf, 0.0)
+    sticking.time[sticks] = time[sticks]
+    return again
+
+
+def _store_unresolved(
+    found: Motions, balls: Balls, which: np.ndarray, exponent: ArrayLike, error: ArrayLike
+) -> None:
+    """Store motions that lock after a period that is not known."""
+    store(
+        found,
+        balls,
+        which,
+        kind=Kind.LOCKED,
+        periods=0,
+        impacts=0,
+        reason=Reason.ROUNDING,
+        exponent=exponent,
+        exponent_error=error,
+    )
+
+
+def _advance(
+    balls: Balls, impact: Impact, change: Jacobian, passed: np.ndarray, sticks: np.ndarray
+) -> None:
+    """Advance the counts, times, derivatives and deviations of all balls to the next impact.
+
+    ``impact`` is the last one, and ``sticks`` whether the ball stuck after it.
+    """
+    stretch = balls.stretch
+    sticking = balls.sticking
+    balls.mark.advance(change)
+    balls.mark.stuck[:] += sticks
+    sticking.number[:] += sticks
+    grown = stretch.grow(change)
+    forgot = stretch.forgetting(grown, sticks)
+    if forgot.size:
+        again = forgot[sticking.impact[forgot] >= 0]
+        balls.doubt[again[stretch.lost()[again]]] = ROUNDING
+        first = sticking.store(forgot, impact, balls.seen)
+    balls.seen[:] += 1
+    balls.time[:] += passed
+    stretch.add(grown, forgot, balls.time, balls.seen)
+    if forgot.size:
+        stretch.restart(first, balls.time)
+
+
+def _ending(
+    balls: Balls, phase: np.ndarray, velocity: np.ndarray, impacts: int, found: Motions
+) -> np.ndarray:
+    """Compare balls with their marks, and store which balls repeat or reach the last impact; return
+    which do.
+    """
+    mark = balls.mark
+    done = np.zeros(phase.size, dtype=bool)
+    moves = balls.seen >= mark.until
+    near, *shifts = mark.near(phase, velocity, balls.amplitude)
+    if near.size:
+        first, second = _returning(balls, near, (shifts[0], shifts[1]), found)
+        moves[first] = True
+        moves[second] = False
+        done[second] = True
+    if moves.any():
+        mark.move(moves.nonzero()[0], balls.seen, balls.time, phase, velocity)
+        balls.stretch.mark(moves)
+    over = balls.seen >= impacts
+    if over.any():
+        last = (over & ~done).nonzero()[0]
+        _give_up(balls, last, found)
+        done[last] = True
+    return done
+
+
+def _returning(
+    balls: Balls, near: np.ndarray, shifts: tuple[np.ndarray, np.ndarray], found: Motions
+) -> tuple[np.ndarray, np.ndarray]:
+    """The indices of the balls that return to their marks for the first time, and for the second
+    time; the motions of the latter are stored.
+    """
+    mark = balls.mark
+    seen = returns_to_marks(
+        mark,
+        near,
+        shifts,
+        seen=balls.seen,
+        time=balls.time,
+        amplitude=balls.amplitude,
+        worst=balls.stretch.worst,
+    )
+    balls.doubt[near[seen.marginal]] = MARGINAL
+    first = near[seen.first]
+    mark.turn[first] = seen.length[seen.first]
+    second = near[seen.second]
+    if second.size:
+        periods = seen.periods[seen.second]
+        radius = seen.radius[seen.second]
+        exponent = np.log(radius) / periods
+        _store_repeating(found, balls, second, periods, seen.length[seen.second], exponent)
+    return first, second
+
+
+def _store_repeating(
+    found: Motions,
+    balls: Balls,
+    which: np.ndarray,
+    periods: np.ndarray,
+    impacts: np.ndarray,
+    exponent: np.ndarray,
+) -> None:
+    """Store motions that repeat after these numbers of table periods and of impacts."""
+    coprime = np.gcd(periods, impacts) == 1
+    bouncing = np.where(coprime, Kind.ORBIT, Kind.SUBHARMONIC)
+    store(
+        found,
+        balls,
+        which,
+        kind=np.where(balls.mark.stuck[which] > 0, Kind.LOCKED, bouncing),
+        periods=periods,
+        impacts=impacts,
+        exponent=exponent,
+        exponent_error=0.0,
+    )
+
+
+def _give_up(balls: Balls, which: np.ndarray, found: Motions) -> None:
+    """Store which of the balls that have not repeated are locked after an unknown period, which are
+    chaotic, and which are undecided.
+    """
+    stretch = balls.stretch
+    rate, error = stretch.exponent(which)
+    growth = stretch.sums[which, 1]
+    doubt = balls.doubt[which]
+    separates = rate > _ERRORS * error
+    # Next to a bifurcation neighbours may separate, but not exponentially.
+    exponentially = growth > -np.log(NEAR)
+    chaotic = separates & exponentially & (doubt != MARGINAL)
+    sticks_again = balls.sticking.number[which] > 1
+    locked = sticks_again & (growth < -DIGITS) & (stretch.most[which] > FORGOTTEN)
+    store(
+        found,
+        balls,
+        which,
+        kind=np.where(chaotic, Kind.CHAOTIC, Kind.UNDECIDED),
+        reason=np.where(chaotic, Reason.NONE, REASONS[doubt]),
+        exponent=2 * np.pi * rate,
+        exponent_error=2 * np.pi * error,
+    )
+    of_locked = (2 * np.pi * rate[locked], 2 * np.pi * error[locked])
+    _store_unresolved(found, balls, which[locked], *of_locked)

@@ -1,0 +1,245 @@
+"""Motions on which balls end, as datasets: for given starts, over Λ, and for basins.
+
+All quantities are dimensionless, and phases are in radians.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from bouncing_ball.datasets import CASE
+from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.errors import ParameterError
+from bouncing_ball.long_run.destination import final_motions
+from bouncing_ball.long_run.motions import Kind, Motions
+from bouncing_ball.models.instant import instant_of
+
+VARIABLES = {
+    "digits_lost": Variable(
+        "decimal digits of the start that the motion has lost on the way", budget=math.inf
+    ),
+    "end_velocity": Variable("velocity of the ball before that impact"),
+    "followed": Variable("number of impacts for which a ball is followed"),
+    "start": Variable("start of a ball at one amplitude"),
+    "impact": Variable("impact of the motion on which the ball ends"),
+    "impact_phase": Variable(
+        "phase of the table at an impact of the motion on which the ball ends",
+        symbol="φ",
+        units="rad",
+    ),
+    "impact_speed": Variable(
+        "speed of the ball towards the table at an impact of the motion on which it ends"
+    ),
+    "motion_kind": Variable("kind of one of the motions on which balls end"),
+    "motion_periods": Variable("periods of the table after which one of the motions repeats"),
+    "motion_impacts": Variable("impacts until one of the motions repeats"),
+    "share_error": Variable("standard error of a share"),
+}
+
+MOST_BALLS = 20_000_000
+"""Largest number of balls that are followed at the same time; they take some gigabytes."""
+# Balls start again from the ends of balls that are this many amplitudes away.
+_FURTHER = (1, 4)
+# Families of orbits beside which balls start, and the difference between their phases.
+_FAMILIES = (1, 2, 3)
+_BESIDE = 1e-3
+# The fractional parts of multiples of these two numbers cover a square evenly.
+_EVEN = np.array([0.7548776662466927, 0.5698402909980532])
+REACH = max(_FURTHER)
+"""The motions at one Λ depend on at most this number of amplitudes on each side."""
+
+
+def require_memory(balls: int, what: str) -> None:
+    """Raise :class:`ParameterError` if there are more balls than fit into memory.
+
+    Examples
+    --------
+    >>> require_memory(10**9, "starts")
+    Traceback (most recent call last):
+    ...
+    bouncing_ball.errors.ParameterError: starts: 1000000000 balls are more than fit into memory, \
+20000000 are allowed
+    """
+    if balls > MOST_BALLS:
+        raise ParameterError(
+            f"{what}: {balls} balls are more than fit into memory, {MOST_BALLS} are allowed"
+        )
+
+
+def motions(
+    model: Any, amplitude: np.ndarray, phase: np.ndarray, velocity: np.ndarray, impacts: int
+) -> xr.Dataset:
+    """The motions on which a row of balls ends that start with the impacts (Λ, φ, z′_i).
+
+    The variables are the fields of :class:`~bouncing_ball.long_run.motions.Motions`, over
+    the row, the dimension "case".
+
+    Raises
+    ------
+    ModelError
+        If there are too many balls, or a state is outside its range.
+    """
+    require_memory(amplitude.size, "a grid of starts")
+    found = final_motions(model, amplitude, phase, velocity, impacts=impacts)
+    return described(_variables(found, (CASE,)), variables=VARIABLES)
+
+
+def _variables(found: Motions, dims: tuple[str, ...]) -> dict[str, Any]:
+    """The fields of motions as the variables of a dataset over these dimensions."""
+    renamed = {"exponent": "lyapunov_exponent", "exponent_error": "lyapunov_error"}
+    return {renamed.get(name, name): (dims, values) for name, values in vars(found).items()}
+
+
+def fastest(model: Any, amplitude: Any) -> np.ndarray:
+    """A speed above which every impact slows the ball, (1 + r) max(Λ, 1)/(1 - r), 1 - r ≥ 0.05.
+
+    An impact changes the absolute speed v of the ball to r v + (1 + r) Λ at most, which is less
+    than v above this value. r is that of a free impact with the speed 2π.
+
+    Examples
+    --------
+    >>> from bouncing_ball.periodic.restitution_model import RestitutionModel
+    >>> float(fastest(RestitutionModel(0.5), 2.0))
+    6.0
+    """
+    lam = np.asarray(amplitude, dtype=float)
+    r = np.asarray(instant_of(model, 2 * np.pi).restitution)
+    return (1 + r) * np.maximum(lam, 1.0) / np.maximum(1 - r, 0.05)
+
+
+def diagram(
+    model: Any, amplitude: np.ndarray, starts: int, samples: int, impacts: int
+) -> xr.Dataset:
+    """The attractors over Λ, from several starts and from the motions at neighbouring Λ.
+
+    After the starts, balls start again at each Λ from the ends of balls at lower and at higher Λ.
+    An attractor is thus followed in both directions beyond the Λ at which a start finds it. The
+    motions are over (amplitude, start). ``impact_phase`` and ``impact_speed`` are over (amplitude,
+    start, impact), NaN beyond the impacts of one period.
+
+    Raises
+    ------
+    ModelError
+        If there are too many balls.
+    """
+    balls = starts + len(_FAMILIES) + 2 * len(_FURTHER)
+    require_memory(amplitude.size * balls * samples, "amplitudes, starts and samples")
+    lam = amplitude[:, np.newaxis]
+    phase, speed = _first_starts(model, lam, starts)
+    found = _ends(model, lam, phase, speed, impacts)
+    phase, speed = _starts_from_neighbours(found, amplitude)
+    swept = _ends(model, lam, phase, speed, impacts)
+    found = _beside(found, swept)
+    impact_phase, impact_speed = _impacts(model, lam, found, samples)
+    dims = ("amplitude", "start")
+    data = {
+        **_variables(found, dims),
+        "impact_phase": ((*dims, "impact"), impact_phase),
+        "impact_speed": ((*dims, "impact"), impact_speed),
+    }
+    return described(data, {"amplitude": amplitude}, VARIABLES)
+
+
+def _first_starts(model: Any, lam: np.ndarray, starts: int) -> tuple[np.ndarray, np.ndarray]:
+    """Phases and speeds of impacts that cover their ranges evenly, and beside n-T orbits.
+
+    Λ has the shape (amplitudes, 1), and the results the shape (amplitudes, balls).
+    """
+    even = np.mod(0.5 + np.arange(1, starts + 1)[:, np.newaxis] * _EVEN, 1.0)
+    even_phase = 2 * np.pi * even[:, 0] - np.pi + 0 * lam
+    even_speed = even[:, 1] * fastest(model, lam)
+    # More balls start beside the orbits with one impact, which may attract few of the other balls.
+    orbit = model.orbit(np.array(_FAMILIES), np.where(lam > 0, lam, np.nan))
+    phase = np.concatenate([even_phase, orbit.phase + _BESIDE], axis=1)
+    speed = np.concatenate([even_speed, -orbit.relative_impact_velocity], axis=1)
+    return phase, speed
+
+
+def _starts_from_neighbours(found: Motions, amplitude: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Phases and speeds of the ends of the first balls at two lower and at two higher Λ."""
+    steps = np.multiply.outer([-1, 1], _FURTHER).ravel()
+    place = np.arange(amplitude.size)[:, np.newaxis] + steps
+    place = np.clip(place, 0, amplitude.size - 1)
+    phase = found.end_phase[place, 0]
+    velocity = found.end_velocity[place, 0]
+    return phase, amplitude[place] * np.cos(phase) - velocity
+
+
+def _beside(found: Motions, more: Motions) -> Motions:
+    """Two groups of motions side by side, along their second axis."""
+    return Motions(
+        **{
+            name: np.concatenate([values, getattr(more, name)], axis=1)
+            for name, values in vars(found).items()
+        }
+    )
+
+
+def _ends(
+    model: Any, amplitude: np.ndarray, phase: np.ndarray, speed: np.ndarray, impacts: int
+) -> Motions:
+    """The motions of balls that start with impacts of given speeds.
+
+    If the speed is not positive, for example for a ball on the table, the ball starts with speed 1.
+    """
+    phase = np.nan_to_num(phase)
+    speed = np.where(speed > 0, speed, 1.0)
+    velocity = amplitude * np.cos(phase) - speed
+    return final_motions(model, amplitude, phase, velocity, impacts=impacts)
+
+
+def _impacts(model: Any, amplitude: np.ndarray, found: Motions, samples: int) -> np.ndarray:
+    """Phase and speed of the impacts of motions, shape (2, ..., samples); NaN beyond a period."""
+    seen = np.full((2, samples, *found.shape), np.nan)
+    lam = np.broadcast_to(amplitude, found.shape)
+    falls = found.end_velocity < lam * np.cos(found.end_phase)
+    if falls.any():
+        sequence = model.simulate(
+            lam[falls], found.end_phase[falls], found.end_velocity[falls], samples
+        )
+        seen[:, :, falls] = sequence.phase, -sequence.relative_velocity
+    length = np.where(found.impacts > 0, found.impacts, samples)
+    number = np.expand_dims(np.arange(samples), tuple(range(1, length.ndim + 1)))
+    return np.moveaxis(np.where(number >= length, np.nan, seen), 1, -1)
+
+
+def basins(
+    model: Any, amplitude: float, starts: int, fast: float | None, impacts: int
+) -> xr.Dataset:
+    """The motions on which a grid of impacts (φ, δ′) ends, with their shares of the grid.
+
+    ``destination`` (start_speed, start_phase) is an index along ``motion``. Over ``motion`` the
+    dataset has ``motion_kind``, ``motion_periods``, ``motion_impacts``, ``share`` and its standard
+    error ``share_error``; ``lyapunov_exponent`` is over the starts.
+
+    Raises
+    ------
+    ModelError
+        If there are too many starts.
+    """
+    require_memory(starts * starts, "a grid of starts")
+    middle = (np.arange(starts) + 0.5) / starts
+    phase = 2 * np.pi * middle - np.pi
+    speed = (float(fastest(model, amplitude)) if fast is None else fast) * middle
+    start_phase, start_speed = np.meshgrid(phase, speed)
+    velocity = amplitude * np.cos(start_phase) - start_speed
+    found = final_motions(model, amplitude, start_phase, velocity, impacts=impacts)
+    kinds = np.array(list(Kind))
+    kind_number = np.argmax(found.kind[..., np.newaxis] == kinds, axis=-1)
+    keys = np.stack([kind_number, found.periods, found.impacts], axis=-1).reshape(-1, 3)
+    known, which, count = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
+    share = count / which.size
+    dims = ("start_speed", "start_phase")
+    data = {
+        "destination": (dims, which.reshape(found.shape)),
+        "lyapunov_exponent": (dims, found.exponent),
+        "motion_kind": ("motion", kinds[known[:, 0]]),
+        "motion_periods": ("motion", known[:, 1]),
+        "motion_impacts": ("motion", known[:, 2]),
+        "share": ("motion", share),
+        "share_error": ("motion", np.sqrt(share * (1 - share) / which.size)),
+    }
+    coords = {"start_phase": phase, "start_speed": speed}
+    return described(data, coords, VARIABLES)

@@ -1,0 +1,153 @@
+"""The largest Lyapunov exponent: a deviation of each ball and its growth.
+
+The deviation is multiplied by the derivative of the map and normalised to length 1 after each
+impact; the logarithms of its growth are added up. The Lyapunov exponent is the ratio of the mean
+growth to the mean time, over sections of 32 impacts, so that its standard error can be computed.
+
+The digits that a motion has lost follow from the same growth. They are counted anew when the ball
+forgets: when a contact shrinks the deviation so far that less than a rounding error is left of its
+growth. The exponent contains these contractions, except for the first, because what was before it
+does not belong to the motion on which the ball ends.
+"""
+
+from typing import NamedTuple, Self
+
+import numpy as np
+
+from bouncing_ball.models.deviations import Jacobian
+
+# Distance of a state from the orbit within which a ball is regarded as being on the orbit.
+NEAR = 1e-7
+# Logarithms of the growth from a rounding error to 1, and to the distance NEAR.
+DIGITS = -float(np.log(np.finfo(float).eps))
+FORGOTTEN = DIGITS + float(np.log(NEAR))
+# Number of impacts of each section, over which a mean of the growth is taken.
+_BATCH = 32
+# Number of first sections that are left out.
+_TRANSIENT = 2
+# Relative error of a rate that is due to rounding: sums of n squares give the error √(n ε).
+_EQUAL = 1e-6
+# If a deviation shrinks to less than this length in one impact, a new deviation is started.
+_TINY = np.array(1e-300)
+
+
+class Stretching(NamedTuple):
+    """A deviation of length 1 of each ball, and the logarithm of its growth."""
+
+    # The parts dφ and dδ′ of the deviation.
+    along: np.ndarray
+    across: np.ndarray
+    # The growth since the ball last forgot, the smallest growth since then, and the largest rise of
+    # the growth above it, at any time so far.
+    growth: np.ndarray
+    least: np.ndarray
+    most: np.ndarray
+    # The smallest growth since the mark, and the largest rise of the growth above it since then.
+    lowest: np.ndarray
+    worst: np.ndarray
+    # The growth in the present section, and the time at which the section began.
+    section_growth: np.ndarray
+    section_start: np.ndarray
+    # The number of sections, and the sums over them of the growth g, the time t, g², g t and t²,
+    # shape (balls, 6).
+    sums: np.ndarray
+
+    @classmethod
+    def of(cls, balls: int) -> Self:
+        """The deviations of a number of balls before their first flights."""
+        return cls(
+            along=np.ones(balls),
+            across=np.zeros(balls),
+            growth=np.zeros(balls),
+            least=np.zeros(balls),
+            most=np.zeros(balls),
+            lowest=np.zeros(balls),
+            worst=np.zeros(balls),
+            section_growth=np.zeros(balls),
+            section_start=np.zeros(balls),
+            sums=np.zeros((balls, 6)),
+        )
+
+    def grow(self, change: Jacobian) -> np.ndarray:
+        """Carry the deviation to the next impact, and return the logarithm of its growth."""
+        along, across = change.apply(self.along, self.across)
+        length = np.sqrt(along * along + across * across)
+        straight = length > _TINY
+        if straight.all():
+            self.along[:] = along / length
+            self.across[:] = across / length
+            return np.log(length)
+        self.along[:] = np.where(straight, along / length, 1.0)
+        self.across[:] = np.where(straight, across / length, 0.0)
+        # A resumption of the contact of a law without a lag has no derivative here.
+        return np.where(np.isnan(length), 0.0, np.log(length))
+
+    def forgetting(self, grown: np.ndarray, sticks: np.ndarray) -> np.ndarray:
+        """The indices of the balls that forget in an impact with this growth, as they stick."""
+        if not sticks.any():
+            return np.flatnonzero(sticks)
+        return np.flatnonzero(sticks & (self.growth + grown < self.least - DIGITS))
+
+    def add(
+        self, grown: np.ndarray, forgot: np.ndarray, time: np.ndarray, seen: np.ndarray
+    ) -> None:
+        """Add the growth at an impact.
+
+        ``forgot`` are the indices of the balls that forget there, ``time`` and ``seen`` the time of
+        the impact and its number.
+        """
+        self.section_growth[:] += grown
+        self.growth[:] += grown
+        if forgot.size:
+            for values in (self.growth, self.least, self.lowest):
+                values[forgot] = 0
+        np.minimum(self.least, self.growth, out=self.least)
+        np.maximum(self.most, self.growth - self.least, out=self.most)
+        np.minimum(self.lowest, self.growth, out=self.lowest)
+        np.maximum(self.worst, self.growth - self.lowest, out=self.worst)
+        (at,) = (seen % _BATCH == 0).nonzero()
+        if at.size:
+            g = self.section_growth[at]
+            t = time[at] - self.section_start[at]
+            self.section_growth[at] = 0
+            self.section_start[at] = time[at]
+            terms = np.stack([np.ones_like(t), g, t, g * g, g * t, t * t], axis=1)
+            counts = seen[at] > _TRANSIENT * _BATCH
+            self.sums[at[counts]] += terms[counts]
+
+    def restart(self, which: np.ndarray, time: np.ndarray) -> None:
+        """Begin the exponent again for balls that have forgotten for the first time."""
+        self.section_growth[which] = 0
+        self.section_start[which] = time[which]
+        self.sums[which] = 0
+
+    def lost(self) -> np.ndarray:
+        """Whether a rounding error has grown too much since the ball last forgot."""
+        return self.growth - self.least > FORGOTTEN
+
+    def mark(self, which: np.ndarray) -> None:
+        """Begin a new mark of some balls."""
+        self.worst[which] = 0
+        self.lowest[which] = self.growth[which]
+
+    def exponent(self, which: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The growth per unit of time, and its standard error, NaN where the error is not known.
+
+        Sections that are equal up to rounding are copies of one section and give no error.
+
+        Examples
+        --------
+        Growth by 1 and by 3 in one unit of time each:
+
+        >>> stretch = Stretching.of(1)
+        >>> stretch.sums[0] = 2, 4, 2, 10, 4, 2
+        >>> rate, error = stretch.exponent(np.array([0]))
+        >>> rate.tolist(), error.tolist()
+        ([2.0], [1.0])
+        """
+        number, growth, time, growth_squares, products, time_squares = self.sums[which].T
+        rate = growth / time
+        # The standard error of a ratio of means, where each mean is over a section of the motion.
+        residual = growth_squares - 2 * rate * products + rate * rate * time_squares
+        error = np.sqrt(np.maximum(residual, 0.0) * number / (number - 1)) / time
+        return rate, np.where(error > _EQUAL * np.abs(rate), error, np.nan)

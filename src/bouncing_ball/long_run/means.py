@@ -1,0 +1,251 @@
+"""Means over the motions of balls: flights, height, received power, growth of deviations.
+
+The means of height and power follow from integrals over contacts and flights. The work of the table
+w = Λ sin τ on a ball is, per unit of mass, ::
+
+    ∫ (z″ + 1) w′ dτ = [z′ w′ + w] + ∫ z′ w dτ
+
+because w″ = -w. In a linear contact ϖ² δ = w - 1 - δ″ - l δ′ with l = 2ζϖ. Integration by parts
+gives ::
+
+    ϖ² ∫ δ dτ = -[w′ + δ′ + l δ] - D
+    (ϖ² - 1) I + l J = [w²/2 - w - δ′ w′ - δ w - l δ w′],                 I = ∫ δ w′ dτ
+    (ϖ² - 1) J - l I = Λ² D/2 + [w′ - w w′/2 - δ′ w + δ w′ - l δ w],      J = ∫ δ w dτ
+
+The table does no work in a flight. At an instantaneous impact its work is the impulse times w′, and
+while a ball rests on the table it is the integral of (1 - w) w′. Over a long time the mean work
+equals the mean dissipation of the contacts.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.long_run.motions import Motions
+from bouncing_ball.models.dynamics import Departure, Dynamics, HasDynamics, Impact
+from bouncing_ball.models.flight import table
+from bouncing_ball.models.laws.collocation import integrals
+from bouncing_ball.models.laws.linear import LinearLaw
+from bouncing_ball.models.linear_contact import has_closed_form
+from bouncing_ball.models.sequence import Status
+from bouncing_ball.models.spring_damper import SpringDamper
+
+
+def _change(values: np.ndarray) -> np.ndarray:
+    """The value at the end of a contact minus the value at its start."""
+    return values[1] - values[0]
+
+
+def over_contact(
+    law: SpringDamper, amplitude: ArrayLike, duration: Any, level: Any, gap: Any, rate: Any
+) -> tuple[np.ndarray, np.ndarray]:
+    """The integrals ∫ z dτ and ∫ z′ w dτ over contacts.
+
+    Parameters
+    ----------
+    law : SpringDamper
+    amplitude, duration : array_like
+        Λ and the duration D of the contacts.
+    level : tuple of array
+        w′ and w, each at the start and at the end of the contacts, shape (2, ...).
+    gap, rate : array, shape (2, ...)
+        δ and δ′ at the start and at the end.
+
+    Examples
+    --------
+    On a table at rest z = δ, and the table does no work:
+
+    >>> law, still = SpringDamper(2.0, 0.0), np.zeros((2, 1))
+    >>> gap, rate = np.array([[0.0], [0.0]]), np.array([[-1.0], [1.0]])
+    >>> [float(x[0]) for x in over_contact(law, 0.0, 2.0, (still, still), gap, rate)]
+    [-1.0, 0.0]
+    """
+    w_rate, w = level
+    stiffness = law.frequency_ratio**2
+    loss = 2 * law.damping_ratio * law.frequency_ratio
+    # The right-hand sides of the equations for I and J, which are then solved for I.
+    of_rate = _change(w * w / 2 - w - rate * w_rate - gap * w - loss * gap * w_rate)
+    of_level = _change(w_rate - w * w_rate / 2 - rate * w + gap * w_rate - loss * gap * w)
+    of_level = of_level + np.square(amplitude) * duration / 2
+    s = stiffness - 1
+    integral_of_rate = (s * of_rate - loss * of_level) / (s * s + loss * loss)
+    integral_of_gap = -(_change(w_rate + rate + loss * gap) + duration) / stiffness
+    height = integral_of_gap - _change(w_rate)
+    work = _change(gap * w + w * w / 2) - integral_of_rate
+    return height, work
+
+
+def over_steps(
+    law: Any,
+    amplitude: Any,
+    duration: Any,
+    phase: np.ndarray,
+    gap: np.ndarray,
+    rate: np.ndarray,
+    flown: Any,
+) -> tuple[np.ndarray, np.ndarray]:
+    """The integral ∫ z dτ and the work of the table, over contacts and the flights after them.
+
+    Parameters
+    ----------
+    law : ContactLaw or None
+        None if impacts are instantaneous; a contact with a duration is then a rest on the table.
+    amplitude, duration : array_like
+        Λ and the duration D of the contacts.
+    phase, gap, rate : array, shape (2, ...)
+        φ, δ and δ′ at the start and at the end of the contacts.
+    flown : array_like
+        The duration of the flights.
+
+    Examples
+    --------
+    A ball that leaves a table at rest with z′ = 3 flies for 6, and its mean height is 3:
+
+    >>> phase, gap, rate = np.zeros((2, 1)), np.zeros((2, 1)), np.array([[-3.0], [3.0]])
+    >>> [float(x[0]) for x in over_steps(None, 0.0, 0.0, phase, gap, rate, 6.0)]
+    [18.0, 0.0]
+    """
+    w_rate, w = table(phase, amplitude)
+    if isinstance(law, SpringDamper) and has_closed_form(law):
+        held, moved = over_contact(law, amplitude, duration, (w_rate, w), gap, rate)
+    else:
+        held = -_change(w_rate)
+        moved = _change(w * w) / 2
+        if law is not None:
+            of = LinearLaw.of(law) if isinstance(law, SpringDamper) else law
+            sunk, sunk_moved = integrals(of, duration, -gap[0], -rate[0], phase[0], amplitude)
+            held = held - sunk
+            moved = moved - sunk_moved
+    release_height = gap[1] + w[1]
+    velocity = rate + w_rate
+    height = held + (release_height + (velocity[1] / 2 - flown / 6) * flown) * flown
+    work = _change(velocity * w_rate + w) + moved
+    return height, work
+
+
+def means(model: HasDynamics, amplitude: ArrayLike, found: Motions, samples: int) -> np.ndarray:
+    """Means over the motions on which balls end: over one period, or over ``samples`` impacts if
+    the motion does not repeat.
+
+    Returns
+    -------
+    array
+        Shape (4, ...); NaN for a ball that stays on the table. For each ball, the entries are the
+        flights per table period 2π, infinite in the restitution model if the ball sticks; the mean
+        of the height z; the power that the table transfers; and the growth per table period of the
+        logarithm of a deviation. If an impact reduces the deviation to zero, a new deviation takes
+        its place.
+
+    Examples
+    --------
+    In each period the 1-T orbit dissipates ½(1 - r²)v², where (1 + r) v = 2π:
+
+    >>> from bouncing_ball.long_run.destination import final_motions
+    >>> from bouncing_ball.periodic.restitution_model import RestitutionModel
+    >>> model = RestitutionModel(0.5)
+    >>> flights, _, power, _ = means(model, 1.2, final_motions(model, 1.2, 1.0, -3.0), 100)
+    >>> float(flights.round(6)), bool(np.isclose(power, np.pi / 3))
+    (1.0, True)
+    """
+    lam, phase, velocity = np.broadcast_arrays(amplitude, found.end_phase, found.end_velocity)
+    # A ball that stays on the table has no impacts; its state here is that of a ball at rest.
+    falls = np.isfinite(phase)
+    phase = np.where(falls, phase, 0 * lam)
+    velocity = np.where(falls, velocity, lam)
+    dynamics, start, relative, shape = model.dynamics(lam).first_impacts(phase, velocity)
+    impacts = np.where(found.impacts > 0, found.impacts, samples).ravel() * falls.ravel()
+    total = np.full((5, impacts.size), np.nan)
+    _add_up(dynamics, dynamics.start(start, relative), impacts, total)
+    time, flights, height, work, growth = total.reshape(5, *shape)
+    turns = time / (2 * np.pi)
+    return np.stack([flights / turns, height / time, work / time, growth / turns])
+
+
+def _add_up(dynamics: Dynamics, impact: Impact, impacts: np.ndarray, total: np.ndarray) -> None:
+    """Add up times, flights, heights, works and logarithms in ``total``, shape (5, balls).
+
+    ``impacts`` are the numbers of impacts over which they are added up.
+    """
+    ball = np.arange(impacts.size)
+    along = np.ones(impacts.size)
+    across = np.zeros(impacts.size)
+    done = 0
+    total[:, impacts > 0] = 0.0
+    while True:
+        departure = dynamics.depart(impact, differentiate=True)
+        bounces = departure.status == Status.BOUNCING
+        total[:, ball[~bounces]] = np.nan
+        going = np.flatnonzero((impacts[ball] > done) & bounces)
+        if going.size < ball.size:
+            rows = impact, departure, ball, along, across
+            dynamics, impact, departure, ball, along, across = dynamics.kept(going, *rows)
+        if not ball.size:
+            return
+        after, passed = dynamics.fly(departure)
+        change = dynamics.jacobian(impact, departure, after, passed)
+        along, across, growth = _grown(*change.apply(along, across))
+        flights = np.where(departure.settling > 0, np.inf, 1.0)
+        height, work = over_step(dynamics, impact, departure, after, passed)
+        total[:, ball] += np.stack([passed, flights + 0 * passed, height, work, growth])
+        impact = after
+        done += 1
+
+
+def _grown(along: np.ndarray, across: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Deviations normalised to length 1, and the logarithms of their lengths."""
+    length = np.hypot(along, across)
+    # After a ball of a simple model has stuck, the deviation is zero.
+    along = np.where(length > 0, along, 1.0)
+    length = np.where(length > 0, length, 1.0)
+    return along / length, across / length, np.log(length)
+
+
+def over_step(
+    dynamics: Dynamics, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """∫ z dτ and the work from one impact to the next, or from one instant to the next in the
+    corrected model.
+    """
+    lam = dynamics.amplitude
+    if impact.known is not None:
+        return _step_of_instants(lam, impact.known, departure, after.known, passed)
+    flight = departure.flight
+    return over_steps(
+        dynamics.contact,
+        lam,
+        departure.duration,
+        phase=np.array([impact.phase, departure.phase]),
+        gap=np.array([impact.displacement, flight.displacement]),
+        rate=np.array([impact.velocity, flight.velocity]),
+        flown=passed - departure.duration,
+    )
+
+
+def _step_of_instants(
+    lam: np.ndarray, hit: Any, departure: Departure, next_hit: Any, passed: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """∫ z dτ and the work from one instant of the corrected model to the next.
+
+    A ball that sticks rests on the table after the instant. ``passed`` is the time between the
+    starts of the two contacts.
+    """
+    x, y = table(hit.phase, lam)
+    displacement = hit.height - y
+    sticks = departure.sticks
+    flight = departure.flight
+    delay = hit.instant.delay
+    duration = np.where(sticks, departure.duration - delay, 0.0)
+    between = passed - delay + next_hit.instant.delay
+    end_phase = np.where(sticks, departure.phase, hit.phase)
+    end_displacement = np.where(sticks, flight.displacement, displacement)
+    end_velocity = np.where(sticks, flight.velocity, hit.velocity - x)
+    return over_steps(
+        None,
+        lam,
+        duration,
+        phase=np.array([hit.phase, end_phase]),
+        gap=np.array([displacement, end_displacement]),
+        rate=np.array([hit.arrival - x, end_velocity]),
+        flown=between - duration,
+    )

@@ -1,0 +1,142 @@
+"""Impacts of the corrected restitution model: instant, release, flight, landing.
+
+The impact is that of :mod:`bouncing_ball.models.corrected.impact`. The flight that
+follows counts from the end of the contact on, D - t_c after the
+instant. The ball leaves there if it rises and comes above the table's level.
+If it does not, the impact was too weak for its load (v is of the order of a D), and the
+ball stays on the table until the table's downward acceleration exceeds gravity, at Λ sin τ = 1
+while the table rises. For Λ ≤ 1 it never leaves.
+
+The landing on the table's level is found as in the other two models, and is proved to be the
+first. On the flight continued from there, the instant is where the ball has the depth
+h = v t_c(v). A few steps of Newton's method find it, starting from the solution for a constant
+load.
+
+A state on the Poincaré section is (φ, δ′) at the start of contact, t_c before
+the instant. The height of the continued flight at this start differs from the table's level by
+about a t_c²/2.
+"""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from bouncing_ball.models.corrected import impact as corrected_map
+from bouncing_ball.models.deviations import Deviation, Jacobian
+from bouncing_ball.models.dynamics import Departure, Dynamics, Impact
+from bouncing_ball.models.flight import Flight, emerge, land, table
+from bouncing_ball.models.sticking import lifted, stay
+from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.numerics.first_zero import Zero
+
+# Newton steps from the landing to the instant: the start has an error of third
+# order in t_c, and each step doubles the order.
+_DESCENT = 4
+
+
+@dataclass(frozen=True, repr=False)
+class CorrectedDynamics(Dynamics):
+    """Impacts and flights of the corrected model; ``law`` is the signature."""
+
+    forgets: ClassVar[bool] = True
+
+    def start(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
+        """First impacts that start at phases φ with δ′ at the table's level, and their instants."""
+        arrival = velocity + table(phase, self.amplitude)[0]
+        instant = corrected_map.meeting(self.law, self.amplitude, phase, arrival)
+        hit = corrected_map.impact(self.law, self.amplitude, *instant)
+        return Impact.at_level(phase, velocity, hit)
+
+    def at_section(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
+        """Impacts whose instants are at phases ψ, with the given relative velocity before them."""
+        arrival = velocity + table(phase, self.amplitude)[0]
+        hit = corrected_map.impact(self.law, self.amplitude, phase, arrival)
+        return Impact.at_level(*corrected_map.start_of(self.amplitude, hit), hit)
+
+    def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
+        """The end of each contact, or of the rest on the table that follows it."""
+        hit = impact.known
+        amplitude = self.amplitude
+        x, y = table(hit.phase, amplitude)
+        rest = hit.instant.duration - hit.instant.delay
+        whole = Flight(hit.height - y, hit.velocity - x, x, y, amplitude)
+        displacement, velocity, _, _ = whole.gap(rest)
+        end = hit.phase + rest
+        flight = Flight(displacement, velocity, *table(end, amplitude), amplitude)
+        none = np.zeros_like(end)
+        start, leaves = emerge(flight)
+        aloft = np.where(leaves, start, 0.0)
+        departure = Departure(end, hit.instant.duration + none, flight, none, aloft=aloft)
+        departure = stay(departure, ~leaves, amplitude)
+        return lifted(departure, amplitude) if differentiate else departure
+
+    def fly(self, departure: Departure) -> tuple[Impact, np.ndarray]:
+        """The start of the next contact, and the time from the last start to it."""
+        flight = departure.flight
+        landing = land(flight, np.maximum(departure.aloft, flight.earliest_landing()))
+        return self.arrive(departure, landing)
+
+    def arrive(self, departure: Departure, landing: Zero) -> tuple[Impact, np.ndarray]:
+        """The start of the contact after a landing, and the time from the last start to it."""
+        flight = departure.flight
+        at_level = departure.phase + landing.time
+        flown = landing.time + self._descent(at_level, -landing.rate)
+        instant = reduce_angle(departure.phase + flown)
+        arrival = flight.velocity + flight.x - flown
+        hit = corrected_map.impact(self.law, self.amplitude, instant, arrival)
+        phase, velocity = corrected_map.start_of(self.amplitude, hit)
+        passed = departure.duration + flown - hit.instant.delay
+        return Impact.at_level(phase, velocity, hit), passed
+
+    def _descent(self, phase: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+        """Time from landings (phase, δ′) on the table's level to the instants.
+
+        At the instant ``δ + h(-δ′) = 0``. With a constant load a and delay t_c this is
+        ``a s²/2 + (u - a t_c) s = u t_c`` for the landing speed u = -δ′.
+        """
+        x, y = table(phase, self.amplitude)
+        fall = Flight(np.zeros_like(velocity), velocity, x, y, self.amplitude)
+        here = self.law(-velocity)
+        delay = here.delay
+        pull = (1 - y) * delay
+        both = -velocity - pull + np.sqrt(velocity * velocity + pull * pull)
+        falls = both > 0
+        time = np.where(falls, -2 * delay * velocity / np.where(falls, both, 1.0), 2 * delay)
+        for _ in range(_DESCENT):
+            displacement, rate, acceleration, _ = fall.gap(time)
+            if not self.law.is_constant:
+                here = self.law(-rate)
+            by_time = rate - (here.delay - here.d_delay * rate) * acceleration
+            missing = displacement - rate * here.delay
+            sinks = by_time < 0
+            time = time - np.where(sinks, missing / np.where(sinks, by_time, -1.0), 0.0)
+        return time
+
+    def jacobian(
+        self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
+    ) -> Jacobian:
+        """Derivative of the map from one instant to the next.
+
+        It is zero if the ball sticks, because its later motion does not depend on the impact.
+        """
+        hit = impact.known
+        then = after.known
+        x, y = table(hit.phase, self.amplitude)
+        none = np.zeros_like(passed)
+        free = np.where(departure.sticks, 0.0, 1.0)
+        here, _ = hit.instant.tangent(hit.speed, 1 - y)
+        there, _ = then.instant.tangent(then.speed, 0)
+        between = passed + then.instant.delay - hit.instant.delay
+        end = table(then.phase, self.amplitude)
+        released = (
+            Deviation(free, none, -here.load * x * free),
+            Deviation(none, here.delay * free, -here.restitution * free),
+        )
+        columns = (each.flown((x, y), end, between, -then.speed, -there.delay) for each in released)
+        return Jacobian.of_columns(*columns)
+
+    def section(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
+        """The phase of the instant and the relative velocity before it."""
+        hit = impact.known
+        return reduce_angle(hit.phase), -hit.speed

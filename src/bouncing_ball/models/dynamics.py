@@ -1,0 +1,342 @@
+"""The simulation of balls from impact to impact, by the contacts and flights of any model.
+
+A subclass of :class:`Dynamics` computes the ends of contacts; everything else follows from them.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any, ClassVar, NamedTuple, Protocol, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.errors import ModelError, require
+from bouncing_ball.models.contact import Contact
+from bouncing_ball.models.deviations import Deviation, Jacobian
+from bouncing_ball.models.flight import Flight, land, table
+from bouncing_ball.models.sequence import RECORDED, Cycle, ImpactSequence, Status
+from bouncing_ball.numerics.arrays import BLOCK, Batch, as_numbers, blocks, pick
+from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.numerics.first_zero import Zero
+
+# Rounding may give a ball at rest on the table a small upward velocity.
+_ROUNDING = 8 * np.finfo(float).eps
+
+
+class Level(NamedTuple):
+    """Λ cos φ and Λ sin φ, the table's velocity and height."""
+
+    x: np.ndarray
+    y: np.ndarray
+
+
+class Impact(NamedTuple):
+    """Starts of contact: the table's phase, δ and δ′, and further results of the model.
+
+    ``level`` is the table's state at this phase, if it is known.
+    """
+
+    phase: np.ndarray
+    displacement: np.ndarray
+    velocity: np.ndarray
+    known: Any = None
+    level: Level | None = None
+
+    @classmethod
+    def at_level(cls, phase: np.ndarray, velocity: np.ndarray, known: Any = None) -> "Impact":
+        """Starts at the table's level, δ = 0."""
+        return cls(reduce_angle(phase), np.zeros(phase.shape), velocity, known)
+
+
+class Departure(NamedTuple):
+    """Ends of contact: the table's phase, the duration of the contact, the flight that follows and
+    the :class:`~bouncing_ball.models.sequence.Status`.
+
+    ``settling`` is the part of the duration in which the ball still bounces. ``aloft`` is a time of
+    flight before which the ball has not landed; it is used if it exceeds
+    :meth:`.Flight.earliest_landing`.
+    ``by`` has the derivatives of the contact's end, if they are computed together with it.
+    ``sticks`` marks the balls that stay until the table's downward acceleration exceeds gravity;
+    it is None without derivatives.
+    """
+
+    phase: np.ndarray
+    duration: np.ndarray
+    flight: Flight
+    status: np.ndarray
+    settling: np.ndarray | float = 0.0
+    aloft: np.ndarray | float = 0.0
+    by: Any = None
+    sticks: Any = None
+
+
+@dataclass(frozen=True, repr=False)
+class Dynamics(Batch, ABC):
+    """A law of the impact on a table of amplitude Λ.
+
+    Each model is a subclass, which computes the ends of contacts, and the ends of flights if these
+    are not landings. All arrays are one-dimensional with an entry per ball, and ``block`` is the
+    largest number of balls computed at the same time.
+    """
+
+    law: Any
+    amplitude: np.ndarray
+
+    block: ClassVar[int] = BLOCK
+    forgets: ClassVar[bool] = False
+    """Whether the state in which a ball leaves after sticking is independent of earlier impacts."""
+    continues: ClassVar[bool] = False
+    """Whether :meth:`depart_after` can continue a contact beyond its first end."""
+
+    @classmethod
+    def of(cls, law: Any, amplitude: ArrayLike) -> Self:
+        """The dynamics of a law at Λ.
+
+        Raises
+        ------
+        ModelError
+            If Λ is not finite and ≥ 0.
+        """
+        name = "amplitude Λ"
+        allowed = "finite and ≥ 0"
+        lam = as_numbers(amplitude, name, allowed)
+        require((lam >= 0) & np.isfinite(lam), lam, name, allowed)
+        return cls(law, lam)
+
+    @property
+    def contact(self) -> Contact | None:
+        """The law of contacts of finite duration, or None if impacts are instants."""
+        return None
+
+    def start(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
+        """First impacts, which start at phases φ with δ′ at the table's level."""
+        return self.with_table(Impact.at_level(phase, velocity))
+
+    def with_table(self, impact: Impact) -> Impact:
+        """The impacts with the state of the table, which is used several times."""
+        return impact._replace(level=Level(*table(impact.phase, self.amplitude)))
+
+    def table_at(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
+        """Λ cos φ and Λ sin φ at impacts."""
+        return impact.level or table(impact.phase, self.amplitude)
+
+    def at_section(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
+        """The impacts with these states, in the coordinates of :meth:`section`."""
+        return self.start(phase, velocity)
+
+    @abstractmethod
+    def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
+        """The ends of the contacts that start with these impacts; with ``differentiate`` also which
+        balls stick, and what :meth:`jacobian` needs.
+        """
+
+    def depart_after(self, impact: Impact, duration: np.ndarray) -> Departure:
+        """The ends of the contacts nearest to given durations, with their derivatives.
+
+        It is the first end, as in :meth:`depart`, unless the model :attr:`continues` contacts.
+        """
+        return self.depart(impact, differentiate=True)
+
+    def release_function(
+        self, impact: Impact, departure: Departure
+    ) -> Callable[[np.ndarray], np.ndarray] | None:
+        """δ + κ δ′ within contacts as a function of the times since their starts, of shape (...,
+        contacts); None if impacts are instants, and for laws without a κ.
+        """
+        return None
+
+    def settles(self, impact: Impact) -> np.ndarray:
+        """Whether a contact that :meth:`depart_after` ends at a given duration can begin with these
+        impacts; always, unless bounces must first end before the next lift-off.
+        """
+        return np.ones(impact.phase.shape, dtype=bool)
+
+    def fly(self, departure: Departure) -> tuple[Impact, np.ndarray]:
+        """The next impact of balls that leave, and the time from the last impact to it.
+
+        Raises
+        ------
+        ModelError
+            If a flight is too long for floating-point numbers.
+        """
+        landing = land(departure.flight, departure.flight.earliest_landing())
+        return self.arrive(departure, landing)
+
+    def arrive(self, departure: Departure, landing: Zero) -> tuple[Impact, np.ndarray]:
+        """The next impact after a landing, and the time from the last impact to it."""
+        impact = Impact.at_level(departure.phase + landing.time, -landing.rate)
+        return self.with_table(impact), departure.duration + landing.time
+
+    @abstractmethod
+    def jacobian(
+        self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
+    ) -> Jacobian:
+        """Derivative of the map from one impact to the next, in the coordinates of :meth:`section`.
+
+        ``passed`` is the time between the two impacts.
+        """
+
+    def section(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
+        """The state of an impact on the Poincaré section: a phase and a relative velocity."""
+        return impact.phase, impact.velocity
+
+    def landed(
+        self,
+        released: Iterable[Deviation],
+        departure: Departure,
+        after: Impact,
+        passed: np.ndarray,
+        lag: np.ndarray | float = 0.0,
+    ) -> Jacobian:
+        """The derivative whose columns are the two deviations at the release after the flight.
+
+        The flight ends where δ + κ δ′ = 0, with κ = ``lag``.
+        """
+        flight = departure.flight
+        start = flight.x, flight.y
+        end = self.table_at(after)
+        time = passed - departure.duration
+        columns = (each.flown(start, end, time, after.velocity, lag) for each in released)
+        return Jacobian.of_columns(*columns)
+
+    def in_a_row(self, *states: ArrayLike) -> tuple[Self, list[np.ndarray], tuple[int, ...]]:
+        """The dynamics and states of balls, flattened, and the shape to which they broadcast."""
+        arrays = [np.asarray(x, dtype=float) for x in states]
+        shape = np.broadcast_shapes(self.shape, *(x.shape for x in arrays))
+        return self.flat(shape), [np.broadcast_to(x, shape).reshape(-1) for x in arrays], shape
+
+    def kept(self, which: np.ndarray, *rows: Any) -> tuple:
+        """The dynamics and the rows of the balls with these indices."""
+        return self.take(which), *(pick(x, which) for x in rows)
+
+    def first_impacts(
+        self, phase: ArrayLike, velocity: ArrayLike
+    ) -> tuple[Self, np.ndarray, np.ndarray, tuple[int, ...]]:
+        """The dynamics of balls, and φ and δ′ ≤ 0 of their first impacts, flattened; their shape.
+
+        Raises
+        ------
+        ModelError
+            If a state is not finite, or if a ball rises from the table.
+        """
+        flat, (start, before), shape = self.in_a_row(phase, velocity)
+        if not np.all(np.isfinite(start) & np.isfinite(before)):
+            raise ModelError("the phase and the velocity of the impact must be finite")
+        of_table = table(start, flat.amplitude)[0]
+        relative = before - of_table
+        rises = ~(relative <= _ROUNDING * (np.abs(before) + flat.amplitude))
+        if np.any(rises):
+            k = int(np.argmax(rises))
+            raise ModelError(
+                "a ball that rises from the table has no impact: its velocity "
+                f"z′ = {before[k]:g} is above that of the table, w′ = {of_table[k]:g}"
+            )
+        return flat, start, np.minimum(relative, 0.0), shape
+
+    def simulate(self, phase: ArrayLike, velocity: ArrayLike, impacts: int) -> ImpactSequence:
+        """Follow balls from an impact through a number of impacts, the first included.
+
+        Parameters
+        ----------
+        phase, velocity : array_like
+            The table's phase φ and the absolute velocity z′_i just before the first impact.
+        impacts : int
+            Number of impacts. The bounces that are summed up before a ball sticks are not counted.
+            Balls that remain on the table have fewer impacts.
+
+        Returns
+        -------
+        ImpactSequence
+            Its rows have the shape to which the arguments and the dynamics broadcast.
+
+        Raises
+        ------
+        ModelError
+            If a state is not finite, or if a ball rises from the table.
+        """
+        flat, start, relative, shape = self.first_impacts(phase, velocity)
+        rows = {name: np.full((impacts, start.size), np.nan) for name in RECORDED}
+        status = np.zeros(start.size, dtype=np.int8)
+        for part in blocks(start.size, self.block):
+            of_block = {name: values[:, part] for name, values in rows.items()}
+            dynamics = flat.take(part)
+            first = dynamics.start(start[part], relative[part])
+            dynamics._follow(first, of_block, status[part])
+        return ImpactSequence(
+            amplitude=np.broadcast_to(self.amplitude, shape),
+            contact=self.contact,
+            status=status.reshape(shape),
+            **{name: values.reshape(impacts, *shape) for name, values in rows.items()},
+        )
+
+    def _follow(self, impact: Impact, rows: dict[str, np.ndarray], status: np.ndarray) -> None:
+        """Fill the rows, shape (impacts, balls), and the status of one block of balls.
+
+        Balls that do not bounce any more are left out of the arrays, and their rows remain NaN.
+        """
+        dynamics = self
+        time = np.zeros_like(impact.phase)
+        bouncing: Any = slice(None)
+        impacts = len(rows["time"])
+        for row in range(impacts):
+            departure = dynamics.depart(impact)
+            for name, values in _recorded(time, impact, departure).items():
+                rows[name][row, bouncing] = values
+            if np.any(departure.status):
+                status[bouncing] = departure.status
+                going = np.flatnonzero(departure.status == Status.BOUNCING)
+                bouncing = np.arange(len(status))[bouncing][going]
+                dynamics, departure, time = dynamics.kept(going, departure, time)
+            if row == impacts - 1 or not len(time):
+                break
+            impact, passed = dynamics.fly(departure)
+            time = time + passed
+
+    def next_impact(self, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
+        """The Poincaré map from one impact (φ, δ′) to the next, for arguments that broadcast.
+
+        Raises
+        ------
+        ModelError
+            If a flight is too long for floating-point numbers.
+        """
+        flat, (start, velocity), shape = self.in_a_row(phase, relative_velocity)
+        cycle = Cycle(
+            phase=np.full(start.size, np.nan),
+            relative_velocity=np.full(start.size, np.nan),
+            displacement=np.full(start.size, np.nan),
+            time=np.full(start.size, np.inf),
+        )
+        for part in blocks(start.size, self.block):
+            dynamics = flat.take(part)
+            departure = dynamics.depart(dynamics.start(start[part], velocity[part]))
+            going = np.flatnonzero(departure.status == Status.BOUNCING)
+            landed, passed = dynamics.take(going).fly(pick(departure, going))
+            balls = part.start + going
+            cycle.phase[balls] = landed.phase
+            cycle.relative_velocity[balls] = landed.velocity
+            cycle.displacement[balls] = landed.displacement
+            cycle.time[balls] = passed
+        return Cycle(*(values.reshape(shape) for values in cycle))
+
+
+def _recorded(time: np.ndarray, impact: Impact, departure: Departure) -> dict[str, Any]:
+    """The values of :data:`.RECORDED` for impacts at these times since the first ones."""
+    return {
+        "time": time,
+        "phase": impact.phase,
+        "displacement": impact.displacement,
+        "relative_velocity": impact.velocity,
+        "contact_duration": departure.duration,
+        "release_displacement": departure.flight.displacement,
+        "relative_bounce_velocity": departure.flight.velocity,
+        "settling": departure.settling,
+    }
+
+
+class HasDynamics(Protocol):
+    """A model or a law of the impact, which determines how balls move."""
+
+    def dynamics(self, amplitude: ArrayLike) -> Dynamics:
+        """The contacts and flights of balls on a table of amplitude Λ."""

@@ -1,0 +1,119 @@
+"""A contact seen from outside: an impact at an instant, with a delay, a restitution and a load.
+
+:mod:`bouncing_ball.models.laws.signature` derives the numbers. For the linear contact they
+are in closed form, with κ as in :mod:`bouncing_ball.models.damping`::
+
+    t_c = r (D + κ)/(1 + r),    σ = (1 - r)(D + κ) - 2ζ (1 + r)/ϖ
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+
+
+class Instant(NamedTuple):
+    """The signature at an impact speed v, and its derivatives with respect to v.
+
+    ``delay`` t_c, ``restitution`` r, ``load`` σ and ``duration`` D are arrays that broadcast; t_c,
+    σ and D are times in units of 1/Ω. ``d_delay``, ``d_restitution`` and ``d_load`` are the
+    derivatives of t_c, r and σ with respect to v.
+    """
+
+    delay: np.ndarray
+    restitution: np.ndarray
+    load: np.ndarray
+    duration: np.ndarray
+    d_delay: np.ndarray | float = 0.0
+    d_restitution: np.ndarray | float = 0.0
+    d_load: np.ndarray | float = 0.0
+
+    def at(self, speed: ArrayLike) -> Instant:
+        """This signature, which is the same at every speed, in the shape of the speeds."""
+        none = 0 * np.asarray(speed, dtype=float)
+        return Instant(*(x + none for x in self))
+
+    def tangent(self, speed: ArrayLike, load: ArrayLike) -> tuple[Instant, np.ndarray]:
+        """The constant signature that agrees with this one to first order near v, under a load a.
+
+        Its restitution is ``b = ∂(r v + σ a)/∂v = r + r′ v + σ′ a`` and its delay ``e = ∂(v t_c)/∂v
+        = t_c + t_c′ v``. The second result is the number (b - r) v₀ at the given speed v₀, so that
+        ``r_c v = b v + σ a - (b - r) v₀`` to first order about v₀. For a constant signature b = r
+        and e = t_c, and the second result is 0.
+
+        Examples
+        --------
+        >>> instant, rest = Instant(1.0, 0.5, 0.0, 2.0, d_restitution=-0.125).tangent(2.0, 0.0)
+        >>> float(instant.restitution), float(rest)
+        (0.25, -0.5)
+        """
+        v = np.asarray(speed, dtype=float)
+        slope = self.restitution + (self.d_restitution * v + self.d_load * np.asarray(load))
+        depth = self.delay + self.d_delay * v
+        return Instant(depth, slope, self.load, self.duration), (slope - self.restitution) * v
+
+
+def linear_instant(contact: SpringDamper) -> Instant:
+    """The signature of a linear contact in closed form, which is the same at every speed.
+
+    Raises
+    ------
+    ModelError
+        If ζ ≥ 1: the formulas hold for underdamped contacts only.
+
+    Examples
+    --------
+    The force of an elastic contact is symmetric in time, so that its centroid is in the middle:
+
+    >>> instant = linear_instant(SpringDamper(2.0, 0.0))
+    >>> float(instant.delay) == np.pi / 4, float(instant.restitution), float(instant.load)
+    (True, 1.0, 0.0)
+    """
+    duration = contact.free_duration
+    r = contact.restitution
+    # The time at which the flight after the contact rises through δ = 0.
+    through = duration + contact.lag
+    loss = 2 * np.asarray(contact.damping_ratio) / contact.frequency_ratio
+    return Instant(
+        delay=r * through / (1 + r),
+        restitution=r + 0 * duration,
+        load=(1 - r) * through - loss * (1 + r),
+        duration=duration,
+    )
+
+
+def rigid_instant(restitution: ArrayLike, slope: ArrayLike, speed: ArrayLike) -> Instant:
+    """An impact with restitution r(v) at the table's level: no delay, no load, no duration.
+
+    ``slope`` is d(r v)/dv.
+    """
+    v = np.asarray(speed, dtype=float)
+    r = np.asarray(restitution, dtype=float)
+    none = np.zeros_like(v)
+    return Instant(
+        delay=none,
+        restitution=r + none,
+        load=none,
+        duration=none,
+        d_restitution=(np.asarray(slope) - r) / v,
+    )
+
+
+def instant_of(model: Any, speed: ArrayLike) -> Instant:
+    """The impact of any model as an instant, at impact speeds v > 0.
+
+    The models of the paper do not know this view of an impact; all others have it as their method
+    ``signature``.
+    """
+    match model:
+        case RestitutionModel():
+            return rigid_instant(model.restitution, model.restitution, speed)
+        case SpringDamperModel():
+            return linear_instant(model.contact).at(speed)
+    return model.signature(speed)

@@ -1,0 +1,129 @@
+r"""How the end of a contact changes with its start: the linearised equations of its panels.
+
+The derivatives are those of the collocation itself, so that they are exact for the computed motion:
+one linear system for each panel, and one equation for the release. They are derivatives with
+respect to (φ, v, Λ, w).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from bouncing_ball.models.laws.force_law import ForceLaw
+from bouncing_ball.models.laws.panel import (
+    IMAGINARY_STEP,
+    Panel,
+    Start,
+    gauss_rule,
+    grip_of,
+    lever_of,
+    load_of,
+    slopes_of,
+)
+
+
+def at_end(
+    law: ForceLaw, start: Start, panel: Panel, by: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """The derivatives of (q, p′, t) at the ends of panels, and ∫ ∂F/∂p′ ds.
+
+    They are derivatives with respect to (φ, v, Λ, w), and ``by`` are those at the start of the
+    panels, shape (..., 3, 4). They solve the linearised equations of the collocation ::
+
+        δF = F_q δq + F_u δp′ + F_t (δφ + δt) + F_Λ δΛ + F_w δw
+    """
+    count = len(panel.push)
+    rule = gauss_rule(count)
+    m = law.root
+    q = panel.root[:-1].T
+    angle = start.phase[:, np.newaxis] + panel.time[:-1].T
+    lever = lever_of(m, q)
+    bend = m * (m - 1) * q ** max(m - 2, 0)
+    depth = panel.root[:-1] ** m
+    rate = panel.rate[:-1]
+    load = load_of(start, panel.time[:-1]) if law.feels_load else 0.0
+    slopes = slopes_of(lambda p, u: law.loaded_force(p, u, load), depth, rate)
+
+    def column(rows):
+        return rows[:, :, np.newaxis]
+
+    by_root = column(bend * panel.push.T / lever - lever * lever * slopes.by_penetration.T)
+    by_rate = column(-lever * slopes.by_rate.T)
+    # The share of the load that the force carries; the force is linear in the load.
+    if law.feels_load:
+        carried = law.loaded_force(depth, rate, 1.0) - law.force(depth, rate)
+    else:
+        carried = np.zeros(1)
+    felt = lever * (1 - carried.T)
+    by_time = column(-felt * start.amplitude[:, np.newaxis] * np.cos(angle))
+    step = panel.step[:, np.newaxis, np.newaxis]
+    whole = step * rule.integral
+    once = whole[:, :-1]
+    to_end = whole[:, -1:]
+    # δp′ = δp′₀ + once δF, δq = δq₀ + once δp′, δt = δt₀ + bent δq
+    twice = step * (once @ rule.integral[:-1])
+    bent = once * bend[:, np.newaxis]
+    root0, rate0, time0 = (by[:, np.newaxis, k] for k in range(3))
+    free_root = root0 + step * rule.node * rate0
+    known = by_root * free_root + by_rate * rate0 + by_time * (time0 + bent @ free_root)
+    known[:, :, 0] += by_time[:, :, 0]
+    known[:, :, 2] -= felt * np.sin(angle)
+    known[:, :, 3] += felt
+    matrix = np.eye(count) - by_root * twice - by_rate * once - by_time * (bent @ twice)
+    pushed = np.linalg.solve(matrix, known)
+    of_root = free_root + twice @ pushed
+    of_rate = rate0 + once @ pushed
+    ends = [
+        root0 + to_end @ of_rate,
+        rate0 + to_end @ pushed,
+        time0 + to_end @ (column(bend) * of_root),
+    ]
+    return np.concatenate(ends, axis=1), (to_end @ by_rate)[:, 0, 0]
+
+
+def at_release(
+    law: ForceLaw, start: Start, panel: Panel, by: np.ndarray, strain: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """The derivatives of (D, p_e, p′_e) and the contraction, for panels that end at the release.
+
+    ``by`` are the derivatives of (q, p′, t) at the ends of the panels, and ``strain`` is the
+    integral of ∂F/∂p′ over the contacts.
+    """
+    m = law.root
+    root = panel.root[-1]
+    rate = panel.rate[-1]
+    lever = lever_of(m, root)
+    angle = start.phase + panel.time[-1]
+    load = load_of(start, panel.time[-1])
+    grip_by_root = np.imag(grip_of(law, m, root + IMAGINARY_STEP, rate, load)) / IMAGINARY_STEP.imag
+    grip_by_rate = np.imag(grip_of(law, m, root, rate + IMAGINARY_STEP, load)) / IMAGINARY_STEP.imag
+    grip_by_load = np.imag(grip_of(law, m, root, rate, load + IMAGINARY_STEP)) / IMAGINARY_STEP.imag
+    grip_by_root = np.where(panel.surfaced, 1.0, grip_by_root)
+    grip_by_rate = np.where(panel.surfaced, 0.0, grip_by_rate)
+    grip_by_load = np.where(panel.surfaced, 0.0, grip_by_load)
+    turning = -start.amplitude * np.cos(angle)
+    # Up to the release the force is that of the law; the panel's F at its end is extrapolated
+    # from the nodes, with an error of the order of the last Legendre coefficients and not of their
+    # squares.
+    force = law.loaded_force(root**m, rate, load)
+    final = lever * (load - force)
+    falls = grip_by_root * rate + grip_by_rate * final + grip_by_load * turning * lever
+    # If the force has a step at the release, the rate of change of the grip has a step too.
+    step = np.where(grip_by_rate == 0, 0.0, grip_by_rate * lever * force)
+    by_root, by_rate, by_time = (by[:, k] for k in range(3))
+    by_load = turning[:, np.newaxis] * by_time
+    by_load += np.stack([turning, 0 * angle, -np.sin(angle), np.ones_like(angle)], axis=1)
+
+    def column(row):
+        return row[:, np.newaxis]
+
+    moved = column(grip_by_root) * by_root + column(grip_by_rate) * by_rate
+    moved = moved + column(grip_by_load) * by_load
+    # How much later in s the release is.
+    later = -moved / column(falls)
+    ends = [
+        by_time + column(lever) * later,
+        column(lever) * (by_root + column(rate) * later),
+        by_rate + column(final) * later,
+    ]
+    return np.stack(ends, axis=1), np.exp(strain) * falls / (falls + step)

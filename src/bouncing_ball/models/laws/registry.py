@@ -1,0 +1,30 @@
+"""The contact laws by their names."""
+
+from bouncing_ball.errors import one_of
+from bouncing_ball.models.laws.contact_law import ContactLaw
+from bouncing_ball.models.laws.elasto_backlash import ElastoBacklash
+from bouncing_ball.models.laws.hertzian import HuntCrossley, KuwabaraKono, LinearHuntCrossley, Tsuji
+from bouncing_ball.models.laws.impedance import Impedance
+from bouncing_ball.models.laws.linear import LinearLaw
+
+_HERTZ = (HuntCrossley, LinearHuntCrossley, Tsuji, KuwabaraKono)
+LAWS: dict[str, type[ContactLaw]] = {
+    law.name: law for law in (*_HERTZ, LinearLaw, ElastoBacklash, Impedance)
+}
+"""The laws by their names on the command line and in calls."""
+
+
+def law_named(name: str) -> type[ContactLaw]:
+    """The class of the contact law with this name.
+
+    Raises
+    ------
+    ModelError
+        If there is no such law.
+
+    Examples
+    --------
+    >>> law_named("tsuji").__name__
+    'Tsuji'
+    """
+    return one_of("contact law", name, LAWS)

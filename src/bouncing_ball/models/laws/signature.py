@@ -1,0 +1,223 @@
+r"""The effect of a contact on the motion outside it: the signature of an impact.
+
+In the table's frame the ball obeys δ″ = -a + F, with the load ``a = 1 - Λ sin τ``
+and F the contact force over the mass. Continue the free flights before and
+after the contact into the contact. Both have the acceleration -a, so that their
+distance depends on F only, whatever the motion of the table::
+
+    δ_out(t) - δ_in(t) = ∫ F(s) (t - s) ds = J (t - t_c),    J = ∫ F ds
+
+They meet at one instant, the centroid of the force, ``t_c = ∫ s F ds / J``. For the motion
+outside, the contact is equivalent to an instantaneous impact at this instant, below the
+table's level, with the restitution ``r_c = -δ′_out/δ′_in`` of the continued
+flights. This is exact. To second order in the duration of the contact
+the law enters only through functions of the speed v = -δ′_in:
+
+* the *delay* t_c(v), from the start of contact to the instant, and with it the
+  depth h = v t_c of the instant below the table;
+* the *restitution* r(v) of the free impact, without load;
+* the *load sensitivity* σ(v), ``r_c = r + σ a/v``, with v and a at the instant;
+* the *duration* D(v) of the contact, which determines only when the ball leaves.
+
+For the linear contact they are constants in closed form. The contact ends where δ + κ δ′ = 0, see
+:mod:`bouncing_ball.models.damping`. The free impact ends with δ′ = r v and
+δ = -κ r v, hence from F = δ″ and one integration by parts ::
+
+    t_c = (D δ′_b - δ_b)/((1 + r) v) = r (D + κ)/(1 + r)
+
+A constant load a adds -a G to δ, ``G = (1 - g′ - 2ζϖ g)/ϖ²`` with g the impulse
+response. The release then comes later by ``(1 + r) a/(r v ϖ²)``, and the
+velocity there is less by ``[2ζ(1 + r)/ϖ - κ] a``, to first order. The load also acts on the
+continued flights: during D - t_c, from the release back to the instant, with weight 1, and during
+t_c, from the start to the instant, with weight -r. This adds ``[D - (1 + r) t_c] a``. Together ::
+
+    σ = (1 - r)(D + κ) - 2ζ (1 + r)/ϖ
+
+For any other law they are computed from free impacts. A free impact of speed v ends after D(v)
+with p_e and p′_e = -r v, and the centroid of its force is ``t_c = (p_e + D r v)/((1 + r) v)``. A
+small constant load a changes p′_e by its derivative ∂p′_e/∂a, and the velocities of the continued
+flights before and after the instant by a t_c and a (D - t_c), so that at the speed v of
+the instant ::
+
+    σ = -∂p′_e/∂a + (D - t_c) - t_c d(r v)/dv
+
+One collocation at each speed gives all four numbers. Between these speeds the four functions are
+interpolated by Chebyshev polynomials in ln v, in which they are smooth. A panel covers a factor
+of eight in speed, and is computed when it is first needed. At a speed at which the deepest point of
+the impact just reaches a kink of the force, the functions have only a few derivatives. The panels
+of such laws are therefore shorter, and the errors there are about 10⁻⁶ of t_c, σ and D, and 10⁻⁸
+of r.
+
+All quantities are dimensionless; all functions broadcast.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import ArrayLike
+
+from bouncing_ball.errors import ModelError
+from bouncing_ball.models.instant import Instant
+from bouncing_ball.models.laws.collocation import contacts
+from bouncing_ball.models.laws.force_law import ForceLaw
+from bouncing_ball.numerics.arrays import Batch
+
+# Width of a panel in ln v, and its number of nodes: with a pole of r(v) at ln v = x ± iπ, like
+# that of 1/(1 + C v), the interpolation error is of the order of 6⁻²⁴.
+_WIDTH = np.log(8.0)
+_NODES = 24
+# Each panel is divided into this number of panels for a law with kinks at given depths.
+_PARTS = 16
+# Speeds are clipped to this range, beyond which no impact lies.
+_SLOWEST, _FASTEST = 1e-30, 1e30
+
+
+def free_impact(law: ForceLaw, speed: ArrayLike) -> Instant:
+    """The signature at impact speeds v > 0, by one collocation for each speed.
+
+    A signature in closed form is used instead if the law has one. Of the derivatives with respect
+    to v only that of r is computed; the others are left at zero.
+
+    Raises
+    ------
+    ModelError
+        If the law does not release the ball.
+
+    Examples
+    --------
+    The force of an elastic contact is symmetric in time, so that its centroid is in the middle and
+    the effects of the load cancel:
+
+    >>> from bouncing_ball.models.laws.hertzian import HuntCrossley
+    >>> impact = free_impact(HuntCrossley(100.0, 0.0), 2.0)
+    >>> bool(abs(impact.delay / impact.duration - 0.5) < 1e-12)
+    True
+    >>> round(float(impact.restitution), 12), abs(round(float(impact.load), 12))
+    (1.0, 0.0)
+    """
+    v = np.asarray(speed, dtype=float)
+    known = law.signature
+    if known is not None:
+        return known.at(v)
+    end = contacts(law, v, weight=0.0)
+    if not np.all(np.isfinite(end.duration)):
+        lost = np.broadcast_to(v, end.duration.shape)[np.isnan(end.duration)][0]
+        raise ModelError(
+            f"{law.name}: a free impact of speed {lost:.3g} does not end within a dozen "
+            "oscillations, because the law is adhesive or damped too strongly"
+        )
+    by_speed = end.jacobian[..., 2, 1]
+    by_load = end.jacobian[..., 2, 3]
+    r = -end.rate / v
+    delay = (end.penetration + end.duration * r * v) / ((1 + r) * v)
+    load = -by_load + (end.duration - delay) + delay * by_speed
+    return Instant(
+        delay=delay,
+        restitution=r,
+        load=load,
+        duration=end.duration,
+        d_restitution=(-by_speed - r) / v,
+    )
+
+
+def _width(law: ForceLaw) -> float:
+    """Width of a panel of the interpolation, in ln v."""
+    return _WIDTH / _PARTS if law.has_kink and law.lag is None else _WIDTH
+
+
+@lru_cache(maxsize=4096)
+def _panel(law: ForceLaw, number: int) -> np.ndarray:
+    """Chebyshev coefficients of t_c, r, σ and D over a panel, shape (nodes, 4)."""
+    x = chebyshev.chebpts1(_NODES)
+    instant = free_impact(law, np.exp((number + (x + 1) / 2) * _width(law)))
+    return chebyshev.chebfit(x, np.stack(instant[:4], axis=1), _NODES - 1)
+
+
+@dataclass(frozen=True, repr=False)
+class Signature(Batch):
+    """The signature of a contact law as a function of the impact speed.
+
+    It is interpolated unless the law has a closed form.
+
+    Parameters
+    ----------
+    law : ForceLaw
+        A single law, unless its signature has a closed form.
+
+    Raises
+    ------
+    ModelError
+        If the law does not release the ball, or has arrays of parameters but no closed form.
+
+    Examples
+    --------
+    The force of an elastic contact is symmetric in time, so that its centroid is in the middle and
+    the effects of the load cancel:
+
+    >>> from bouncing_ball.models.laws.linear import LinearLaw
+    >>> instant = Signature(LinearLaw(2.0, 0.0))()
+    >>> float(instant.delay) == np.pi / 4, float(instant.restitution), float(instant.load)
+    (True, 1.0, 0.0)
+
+    >>> from bouncing_ball.models.laws.hertzian import Tsuji, tsuji_damping
+    >>> instant = Signature(Tsuji(50.0, tsuji_damping(0.7)))([1.0, 2.0, 3.0])
+    >>> instant.restitution.round(12).tolist()
+    [0.7, 0.7, 0.7]
+    """
+
+    law: ForceLaw
+
+    def __post_init__(self):
+        if not self.is_constant and self.law.shape:
+            raise ModelError("the signature of a contact law is tabulated for one law, not many")
+
+    @cached_property
+    def _known(self) -> Instant | None:
+        # Cached, because a simulation needs it at every impact.
+        return self.law.signature
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether the signature is the same at every impact speed, as for a linear contact."""
+        return self._known is not None
+
+    @property
+    def label(self) -> str:
+        """The name and the parameters of the law as text."""
+        return self.law.label
+
+    def __call__(self, speed: ArrayLike = 1.0) -> Instant:
+        """The signature at speeds v > 0 of the continued flight at the instant.
+
+        Its fields have the shape to which the speeds and the law broadcast.
+        """
+        v = np.asarray(speed, dtype=float)
+        if self._known is not None:
+            return self._known.at(v)
+        v = np.clip(v, _SLOWEST, _FASTEST)
+        width = _width(self.law)
+        log = np.log(v) / width
+        number = np.floor(np.where(np.isnan(log), 0.0, log)).astype(int)
+        values = np.full((2, 4, *v.shape), np.nan)
+        for panel in np.unique(number):
+            coefficients = _panel(self.law, int(panel))
+            slopes = chebyshev.chebder(coefficients) * (2 / width)
+            here = number == panel
+            x = 2 * (log[here] - panel) - 1
+            values[0, :, here] = chebyshev.chebval(x, coefficients).T
+            values[1, :, here] = (chebyshev.chebval(x, slopes) / v[here]).T
+        delay, restitution, load, duration = values[0]
+        d_delay, d_restitution, d_load, _ = values[1]
+        return Instant(
+            delay=delay,
+            restitution=restitution,
+            load=load,
+            duration=duration,
+            d_delay=d_delay,
+            d_restitution=d_restitution,
+            d_load=d_load,
+        )

@@ -1,0 +1,349 @@
+r"""Contact with the spring-damper, from its start to its release.
+
+The release is the first upward zero of ``y = δ + κ δ′``, which is negative in contact. For the
+displacement release κ = 0; for the force release κ = 2ζ/ϖ, so that ``-ϖ² y`` is the force of
+the table over the weight. In both cases ::
+
+    y″ + 2a y′ + ϖ² y = -1 + Λ sin τ + κ Λ cos τ,       a = ζϖ
+    y(s) = e^{-as} (A cos ϖ_d s + B sin ϖ_d s) - 1/ϖ² + C sin s + D cos s
+
+(Eqs. 12-13 for κ = 0). The transient's derivative of order k is at most
+``ϖ^k R e^{-as}``, R = √(A² + B²), and each derivative of the steady part at most
+ρ = √(C² + D²). The contact therefore never ends if at some time ::
+
+    R e^{-as} + ρ ≤ 1/ϖ²
+
+Next to the undamped resonance the steady part is lost in rounding, and the contact's flow gives the
+motion instead. Let e² = y′² + ϖ² (y + 1/ϖ²)². Damping only decreases it, and the forcing, at most
+``F = Λ √(1 + κ²)``, increases e by at most F in a time 1. Within this time \|y′\| ≤ e + F, and
+bounds of the higher derivatives follow from the equation of motion.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+
+from bouncing_ball.models.deviations import Deviation, Jacobian
+from bouncing_ball.models.dynamics import Departure, Impact
+from bouncing_ball.models.flight import Flight, table
+from bouncing_ball.models.resumption import ResumingDynamics
+from bouncing_ball.models.sequence import Status
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.numerics.elementary import (
+    arctangent,
+    exponential,
+    sine_and_cosine,
+    sine_and_versine,
+)
+from bouncing_ball.numerics.first_zero import Motion, State, Zero, first_zero, nearest_zero
+
+# The closed form is used for √γ above this value: the relative error of the steady part is ε/√γ.
+_RESONANCE = 1e-4
+# Number of steps after which the expensive bound of :meth:`ContactMotion.skip` is used.
+_PATIENCE = 12
+# Bound of the rounding errors of the three terms of the inequality above.
+_ROUNDING = np.array(8 * np.finfo(float).eps)
+# Constants are arrays without an axis, as in :mod:`bouncing_ball.numerics.elementary`.
+_ZERO = np.array(0.0)
+_ONE = np.array(1.0)
+_TWO = np.array(2.0)
+_PI = np.array(np.pi)
+_TURN = np.array(2 * np.pi)
+_LARGEST_GROWTH = np.array(690.0)
+_TINY = np.array(1e-300)
+
+
+def _resistance(contact: SpringDamper):
+    """ϖ² - 1 and 2ζϖ, the sum of whose squares is γ."""
+    omega = np.asarray(contact.frequency_ratio, dtype=float)
+    return (omega - 1) * (omega + 1), 2 * np.asarray(contact.damping_ratio) * omega
+
+
+def has_closed_form(contact: SpringDamper) -> bool:
+    """Whether all contacts are underdamped and away from the undamped resonance ζ = 0, ϖ = 1.
+
+    Examples
+    --------
+    >>> has_closed_form(SpringDamper(2.0, 0.1)), has_closed_form(SpringDamper(1.0, 0.0))
+    (True, False)
+    """
+    underdamped = np.all(np.asarray(contact.damping_ratio) < 1)
+    return bool(underdamped and np.all(np.hypot(*_resistance(contact)) >= _RESONANCE))
+
+
+class ContactMotion(Motion):
+    """The motion y = δ + κ δ′ of balls in contact.
+
+    Parameters
+    ----------
+    contact : SpringDamper
+        One underdamped contact, or one for each ball.
+    amplitude : float or array
+        Λ.
+    displacement, velocity : array
+        δ and δ′ at the start.
+    x, y : array
+        Λ cos φ and Λ sin φ at the start.
+    """
+
+    def __init__(self, contact: SpringDamper, amplitude, displacement, velocity, x, y):
+        self.omega = contact.frequency_ratio
+        self.zeta = contact.damping_ratio
+        self.lag = contact.lag
+        self.damped = contact.damped_frequency
+        self.stiffness = self.omega * self.omega
+        self.decay = self.zeta * self.omega
+        # The amplitude of the forcing Λ sin τ + κ Λ cos τ of y, and its value at the start.
+        self.forcing = amplitude * np.sqrt(_ONE + self.lag * self.lag)
+        self.push = y + self.lag * x
+        acceleration = (y - _ONE) - _TWO * self.decay * velocity - self.stiffness * displacement
+        self.start = displacement + self.lag * velocity
+        self.start_rate = velocity + self.lag * acceleration
+
+    def release(self, rate, y):
+        """δ and δ′ at a release with the rate y′, where ``y`` is the table's height Λ sin τ."""
+        velocity = rate - self.lag * (y - _ONE)
+        return -self.lag * velocity, velocity
+
+    def earliest_release(self) -> np.ndarray:
+        """A time before which the contact has certainly not ended, within half a period.
+
+        Replace the forcing by a constant P, its largest value within the half period. The
+        contact then ends earlier, because the impulse response is positive there.
+        Its motion is ``e^{-as} (A′ cos θ + B′ sin θ) + P/ϖ²``, which is
+        negative where ``A′ cos θ + B′ sin θ < -e^{aπ/ϖ_d} P/ϖ²``; once it is
+        positive it remains positive for longer than half a period.
+        """
+        half = _PI / self.damped
+        # Near critical damping the exponent is limited against overflow; a factor of this size
+        # already makes the bound ineffective.
+        growth = exponential(np.minimum(self.decay * half, _LARGEST_GROWTH))
+        forcing = np.minimum(self.push + self.forcing * half, self.forcing) - _ONE
+        level = np.maximum(forcing, _ZERO) / self.stiffness
+        a = self.start - level
+        b = (self.start_rate + self.decay * a) / self.damped
+        radius = np.sqrt(a * a + b * b)
+        depth = np.minimum(growth * level / np.maximum(radius, _TINY), _ONE)
+        # The angle of (a, b), rotated by half a turn because that avoids a jump for a < 0, and the
+        # angle whose cosine is ``depth``: their sum is within half a turn.
+        rest = np.sqrt((_ONE - depth) * (_ONE + depth))
+        angle = arctangent(-b * depth - a * rest, b * rest - a * depth)
+        angle = np.where((depth < _ONE) & (angle > _ZERO), angle, _ZERO)
+        return angle / self.damped
+
+
+class ClosedFormMotion(ContactMotion):
+    """The motion y away from the resonance, as the sum of the transient and the steady part."""
+
+    def __init__(self, contact: SpringDamper, amplitude, displacement, velocity, x, y):
+        super().__init__(contact, amplitude, displacement, velocity, x, y)
+        detuning, loss = _resistance(contact)
+        gamma = detuning * detuning + loss * loss
+        # Coefficients of Λ sin τ and Λ cos τ in the steady response to Λ sin τ + κ Λ cos τ.
+        in_phase = (detuning + self.lag * loss) / gamma
+        quadrature = (self.lag * detuning - loss) / gamma
+        self.steady = amplitude * np.sqrt(in_phase * in_phase + quadrature * quadrature)
+        self.sine = in_phase * x - quadrature * y
+        self.cosine = in_phase * y + quadrature * x
+        self.a = self.start + (_ONE / self.stiffness - self.cosine)
+        self.b = (self.start_rate - self.sine + self.decay * self.a) / self.damped
+        self.envelope = np.sqrt(self.a * self.a + self.b * self.b)
+
+    def __call__(self, time: np.ndarray) -> State:
+        angles = np.array([self.damped * time, time])
+        (sine, slow_sine), (cosine, slow_cosine) = sine_and_cosine(angles)
+        decay = exponential(-self.decay * time)
+        a = self.a * decay
+        b = self.b * decay
+        free = a * cosine + b * sine
+        free_rate = self.damped * (b * cosine - a * sine) - self.decay * free
+        loss = _TWO * self.decay
+        free_second = -loss * free_rate - self.stiffness * free
+        free_third = -loss * free_second - self.stiffness * free_rate
+        forced = self.sine * slow_sine + self.cosine * slow_cosine
+        forced_rate = self.sine * slow_cosine - self.cosine * slow_sine
+        level = _ONE / self.stiffness
+        envelope = self.envelope * decay
+        bound = self.stiffness * envelope
+        return State(
+            value=(free - level) + forced,
+            rate=free_rate + forced_rate,
+            second=free_second - forced,
+            third=free_third - forced_rate,
+            second_bound=bound + self.steady,
+            third_bound=self.omega * bound + self.steady,
+            fourth_bound=self.stiffness * bound + self.steady,
+            ended=envelope + (self.steady - level) <= _ROUNDING * level,
+        )
+
+    def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
+        """A time up to which y is negative, because its bound by the transient's envelope is.
+
+        The bound is negative until the steady part rises through 1/ϖ² - R e^{-as}. Without it
+        a stiff, weakly damped contact would need steps over about ϖ oscillations.
+        """
+        if steps < _PATIENCE:
+            return time
+        level = 1 / self.stiffness - self.envelope * exponential(-self.decay * time)
+        ratio = level / np.maximum(self.steady, 1e-300)
+        inside = np.abs(ratio) < 1
+        ratio = np.where(inside, ratio, 0.0)
+        rising = arctangent(ratio, np.sqrt((1 - ratio) * (1 + ratio)))
+        now = time + arctangent(self.cosine, self.sine)
+        below = inside & (sine_and_cosine(now)[0] < ratio)
+        # The result precedes the crossing by more than the rounding error of the crossing.
+        wait = np.mod(rising - now, 2 * np.pi) - 1e-9
+        # Rounding must not postpone a crossing at the present time by a full turn.
+        wait = np.where(wait > 2 * np.pi - 1e-6, 0.0, wait)
+        return time + np.where(below, np.maximum(wait, 0.0), 0.0)
+
+
+class ResonantMotion(ContactMotion):
+    """The motion y of balls whose contact is at the undamped resonance, or near it.
+
+    y moves as δ does, with another forcing. The bounds hold for a time 1 and are raised such that
+    no step is longer.
+    """
+
+    def __init__(self, contact: SpringDamper, amplitude, displacement, velocity, x, y):
+        super().__init__(contact, amplitude, displacement, velocity, x, y)
+        # The phase of the forcing Λ sin τ + κ Λ cos τ at the start.
+        self.phase = np.arctan2(self.push, x - self.lag * y)
+
+    def __call__(self, time: np.ndarray) -> State:
+        flow = SpringDamper(self.omega, self.zeta).flow(
+            time, self.start, self.start_rate, self.phase, self.forcing
+        )
+        value = flow.displacement
+        rate = flow.velocity
+        second = flow.acceleration
+        loss = 2 * self.decay
+        stiffness = self.stiffness
+        forcing = self.forcing
+        third = table(self.phase + time, forcing)[0] - loss * second - stiffness * rate
+        # e, and the bound of |y′| within a time 1.
+        moved = np.sqrt(rate * rate + (self.omega * value + 1 / self.omega) ** 2)
+        fast = moved + forcing
+        by_second = forcing + (loss + self.omega) * fast
+        by_third = forcing + loss * by_second + stiffness * fast
+        by_fourth = forcing + loss * by_third + stiffness * by_second
+        by_second = np.maximum(by_second, -2 * (value + rate))
+        by_third = np.maximum(by_third, 3 * np.abs(second))
+        by_fourth = np.maximum(by_fourth, 12 * (by_second + np.abs(second)))
+        return State(
+            value=value,
+            rate=rate,
+            second=second,
+            third=third,
+            second_bound=by_second,
+            third_bound=by_third,
+            fourth_bound=by_fourth,
+            # Without forcing, a free oscillation of at most this size never ends the contact.
+            ended=(forcing == 0) & (moved * self.omega <= 1),
+        )
+
+
+@dataclass(frozen=True, repr=False)
+class LinearContactDynamics(ResumingDynamics):
+    """The dynamics of an underdamped
+    :class:`~bouncing_ball.models.spring_damper.SpringDamper`.
+    """
+
+    continues: ClassVar[bool] = True
+
+    @cached_property
+    def _has_closed_form(self) -> bool:
+        return has_closed_form(self.law)
+
+    def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
+        """The end of each contact, or permanent contact if it is proved never to end."""
+        motion = self._motion(impact)
+        return self._ended(impact, motion, first_zero(motion, motion.earliest_release()))
+
+    def depart_after(self, impact: Impact, duration: np.ndarray) -> Departure:
+        """The ends of the contacts nearest to given durations, also beyond an earlier end."""
+        motion = self._motion(impact)
+        return self._ended(impact, motion, nearest_zero(motion, duration))
+
+    def release_function(
+        self, impact: Impact, departure: Departure
+    ) -> Callable[[np.ndarray], np.ndarray]:
+        """δ + κ δ′ within contacts, in closed form."""
+        motion = self._motion(impact)
+        return lambda time: motion(time).value
+
+    def _motion(self, impact: Impact) -> ContactMotion:
+        x, y = self.table_at(impact)
+        kind = ClosedFormMotion if self._has_closed_form else ResonantMotion
+        return kind(self.law, self.amplitude, impact.displacement, impact.velocity, x, y)
+
+    def _ended(self, impact: Impact, motion: ContactMotion, end: Zero) -> Departure:
+        """The departures of contacts that end at these zeros of their motion."""
+        status = np.full(end.time.shape, int(Status.BOUNCING))
+        duration = end.time
+        phase = impact.phase + end.time
+        x, y = table(phase, self.amplitude)
+        # If the ball just reaches the table's level, rounding may give it a downward velocity.
+        displacement, velocity = motion.release(np.maximum(end.rate, _ZERO), y)
+        forever = end.ended | end.undecided
+        if forever.any():
+            # Where the search ended without a release, the contact is permanent.
+            status[end.ended] = Status.PERMANENT_CONTACT
+            status[end.undecided] = Status.UNDECIDED
+            duration = np.where(forever, np.inf, duration)
+            displacement = np.where(forever, np.nan, displacement)
+            velocity = np.where(forever, np.nan, velocity)
+        flight = Flight(displacement, velocity, x, y, self.amplitude)
+        # An undamped contact that starts at zero speed under a constant load lasts exactly one
+        # oscillation. A longer contact therefore ends because the load changes.
+        sticks = duration * self.law.damped_frequency > _TURN
+        return Departure(phase, duration, flight, status, sticks=sticks)
+
+    def jacobian(
+        self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
+    ) -> Jacobian:
+        """Derivative of the map over contact and flight, in closed form."""
+        contact = self.law
+        flight = departure.flight
+        omega = contact.frequency_ratio
+        stiffness = omega**2
+        loss = 2 * contact.damping_ratio * omega
+        half = loss / _TWO
+        # The impulse response g, g′, and g′ + 2ζϖ g, the response to a unit displacement.
+        sine, versine = sine_and_versine(contact.damped_frequency * departure.duration)
+        decay = exponential(-half * departure.duration)
+        impulse = decay * sine / contact.damped_frequency
+        impulse_rate = decay * (_ONE - versine) - half * impulse
+        level = impulse_rate + loss * impulse
+
+        def acceleration(displacement, velocity, y):
+            return (y - _ONE) - loss * velocity - stiffness * displacement
+
+        _, y = self.table_at(impact)
+        rate = impact.velocity
+        speed = flight.velocity
+        first = acceleration(impact.displacement, rate, y)
+        last = acceleration(flight.displacement, speed, flight.y)
+        # A contact that resumes starts, and the flight before it ends, at δ + κ δ′ = 0.
+        lag_before = contact.lag * (impact.displacement < _ZERO)
+        lag_after = contact.lag * (after.displacement < _ZERO)
+        one = np.ones(passed.shape)
+        none = np.zeros(passed.shape)
+        # A deviation along the motion changes only the time. (1, 0, 0) is therefore (1, δ′, δ″),
+        # which becomes (1, δ′, δ″) at the release, less (0, δ′, δ″).
+        by_phase = Deviation(
+            phase=one,
+            displacement=speed - level * rate - impulse * first,
+            velocity=last + stiffness * impulse * rate - impulse_rate * first,
+        )
+        by_velocity = Deviation(
+            phase=none,
+            displacement=impulse - lag_before * level,
+            velocity=impulse_rate + lag_before * stiffness * impulse,
+        )
+        moved = (by_phase, by_velocity)
+        released = (each.to_event(speed, last, contact.lag) for each in moved)
+        return self.landed(released, departure, after, passed, lag_after)

@@ -1,0 +1,196 @@
+r"""Impacts with a restitution coefficient: impact, chattering, and the map from impact to impact.
+
+Let v₀ be the ball's velocity just after an impact at the phase τ₀. The ball flies for a time s
+until it lands, and the impact turns its relative velocity δ′ into ``-r δ′`` (Eq. 2). With the
+flight of Eqs. 3 and 4, the map from (τ₀, v₀) to the phase τ₁ = τ₀ + s and the velocity v₁ just
+after the next impact is (Eq. 5) ::
+
+    Λ (sin τ₁ - sin τ₀) = s v₀ - s²/2
+    v₁ = -r (v₀ - s) + (1 + r) Λ cos τ₁
+
+Here the map is composed of the impact (:meth:`RestitutionDynamics.depart`) and of the flight up to
+the landing (:meth:`.Dynamics.fly`), and a state is (τ, δ′) just before an impact.
+
+While the relative gravity g = 1 - Λ sin τ is positive, infinitely many ever smaller bounces take a
+finite time T: the ball *chatters*. Let v be δ′ after an impact, and ``g′ = -Λ cos τ`` the rate of
+change of g. Then ::
+
+    T = T₀ (1 - g′ T₀/(3g) + ...),    T₀ = 2v/(g (1 - r))
+
+This sum replaces the bounces once Λ T₀ and T₀ are below 10⁻⁵ g, where the next term is below
+10⁻¹⁵. The ball then rests on the table until it lifts off
+(:mod:`bouncing_ball.models.sticking`).
+"""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.models.damping import check_restitution
+from bouncing_ball.models.deviations import Deviation, Jacobian
+from bouncing_ball.models.dynamics import Departure, Dynamics, Impact
+from bouncing_ball.models.flight import Flight
+from bouncing_ball.models.sticking import lift_off_phase, lifted, pressed, stay
+
+# Bound of Λ T₀/g and T₀/g below which chattering is summed up.
+_CHATTER = 1e-5
+# Where g is tiny (Λ near 1), chattering is also summed up if T₀ is below rounding.
+_INSTANT = np.finfo(float).eps
+# The smallest speed of an impact for which r is asked, and 1, as arrays without an axis.
+_SLOW = np.array(np.finfo(float).tiny)
+_ONE = np.array(1.0)
+
+
+def chattering(
+    velocity: np.ndarray,
+    restitution: np.ndarray,
+    x: np.ndarray,
+    y: np.ndarray,
+    amplitude: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Which balls come to rest on the table after an impact, and the time T of their chattering.
+
+    ``velocity`` is δ′ just after the impact, and ``x``, ``y`` are Λ cos τ and Λ sin τ. T is 0 for
+    balls that do not come to rest, because their bounces are not summed up.
+
+    Examples
+    --------
+    On a table at rest T is the geometric series 2v (1 + r + r² + ...):
+
+    >>> speed, zero = np.array([1e-6, 1e-6, 1.0]), np.zeros(3)
+    >>> sticks, time = chattering(speed, np.array([0.5, 0.9, 0.5]), zero, zero, zero)
+    >>> sticks.tolist(), time.round(12).tolist()
+    ([True, False, False], [4e-06, 0.0, 0.0])
+    """
+    # T₀ > 2v/g, and g ≤ 1 + Λ: above this speed no ball of any r has a short T₀.
+    load = _ONE + amplitude
+    if (velocity > _CHATTER * load * load).all():
+        return np.zeros(x.shape, dtype=bool), np.zeros(x.shape)
+    gravity = 1 - y
+    down = pressed(x, y)
+    # T₀ has no meaning where the relative gravity is not positive, or for r = 1.
+    loss = gravity * (1 - restitution)
+    usable = down & (loss > 0)
+    first = np.where(usable, 2 * velocity, 0.0) / np.where(usable, loss, 1.0)
+    limit = np.maximum(_CHATTER * gravity / np.maximum(amplitude, 1.0), _INSTANT)
+    short = usable & (first <= limit)
+    sticks = short | (down & (velocity == 0))
+    if not sticks.any():
+        return sticks, np.zeros_like(x)
+    correction = np.where(short, x * first, 0.0) / np.where(short, 3 * gravity, 1.0)
+    return sticks, np.where(sticks, first * (1 + correction), 0.0)
+
+
+@dataclass(frozen=True, repr=False)
+class RestitutionDynamics(Dynamics):
+    """Impacts and flights of the restitution model; ``law`` holds numbers r.
+
+    Examples
+    --------
+    The map satisfies both lines of Eq. 5. Here the first impact, at τ₀ = 0.3, turns δ′ = -2 into 1:
+
+    >>> r, amplitude, start = 0.5, 1.2, 0.3
+    >>> v = 1 + amplitude * np.cos(start)
+    >>> after = RestitutionDynamics.of(r, amplitude).next_impact(start, -2.0)
+    >>> s, end = after.time, start + after.time
+    >>> landing = amplitude * (np.sin(end) - np.sin(start)) - (s * v - s**2 / 2)
+    >>> bounced = -r * after.relative_velocity + amplitude * np.cos(end)
+    >>> expected = -r * (v - s) + (1 + r) * amplitude * np.cos(end)
+    >>> bool(abs(landing) < 1e-14), bool(abs(bounced - expected) < 1e-14)
+    (True, True)
+    """
+
+    forgets: ClassVar[bool] = True
+    continues: ClassVar[bool] = True
+
+    @classmethod
+    def of(cls, law: Any, amplitude: ArrayLike) -> Self:
+        """The dynamics of restitution coefficients r at Λ.
+
+        Raises
+        ------
+        ModelError
+            If r or Λ is outside its range.
+        """
+        return super().of(check_restitution(law), amplitude)
+
+    def rebound(self, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """r and d(r v)/dv at impact speeds v > 0; for a constant r both are r."""
+        return self.law, self.law
+
+    def _rebound_of(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
+        # A ball that rests on the table has no impact speed; its r has no effect.
+        return self.rebound(np.maximum(-impact.velocity, _SLOW))
+
+    def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
+        """The flight after each impact (Eq. 2), or the rest on the table after chattering."""
+        r, _ = self._rebound_of(impact)
+        velocity = -r * impact.velocity
+        x, y = self.table_at(impact)
+        sticks, settling = chattering(velocity, r, x, y, self.amplitude)
+        flight = Flight(np.zeros(x.shape), velocity, x, y, self.amplitude)
+        departure = self._left(impact, flight, sticks, settling)
+        return lifted(departure, self.amplitude) if differentiate else departure
+
+    def depart_after(self, impact: Impact, duration: np.ndarray) -> Departure:
+        """The rest on the table up to the lift-off where the duration is positive, otherwise the
+        flight.
+
+        The bounces before the rest are left out, also if they would last beyond the lift-off
+        (:meth:`settles`): the state at the lift-off does not depend on them.
+        """
+        x, y = self.table_at(impact)
+        r, _ = self._rebound_of(impact)
+        flight = Flight(np.zeros(x.shape), -r * impact.velocity, x, y, self.amplitude)
+        rests = self._left(impact, flight, duration > 0, np.zeros(x.shape))
+        return lifted(rests, self.amplitude)
+
+    def settles(self, impact: Impact) -> np.ndarray:
+        """Whether the bounces after each impact end before the next lift-off, so that the ball
+        comes to rest.
+
+        Next to the limit this takes the more bounces, the nearer r is to 1: some 300 for r = 0.9.
+        """
+        settled = np.zeros(impact.phase.shape, dtype=bool)
+        balls = np.arange(settled.size)
+        dynamics = self
+        left = np.mod(lift_off_phase(self.amplitude) - impact.phase, 2 * np.pi)
+        while balls.size:
+            departure = dynamics.depart(impact, differentiate=True)
+            settled[balls[departure.sticks]] = True
+            going = np.flatnonzero(~departure.sticks)
+            dynamics, departure, left, balls = dynamics.kept(going, departure, left, balls)
+            impact, passed = dynamics.fly(departure)
+            left = left - passed
+            going = np.flatnonzero(left > 0)
+            dynamics, impact, left, balls = dynamics.kept(going, impact, left, balls)
+        return settled
+
+    def _left(
+        self, impact: Impact, flight: Flight, sticks: np.ndarray, settling: np.ndarray
+    ) -> Departure:
+        """The flights after the impacts, or after the rest of the balls that stick."""
+        departure = Departure(
+            phase=impact.phase + settling,
+            duration=settling,
+            flight=flight,
+            status=np.zeros(settling.shape),
+            settling=settling,
+        )
+        return stay(departure, sticks, self.amplitude)
+
+    def jacobian(
+        self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
+    ) -> Jacobian:
+        """Derivative of the map over impact and flight.
+
+        It is zero if the ball sticks, because its later motion does not depend on the impact.
+        """
+        _, slope = self._rebound_of(impact)
+        none = np.zeros(passed.shape)
+        free = np.logical_not(departure.sticks).astype(float)
+        by_phase = Deviation(free, none, none)
+        by_velocity = Deviation(none, none, -slope * free)
+        return self.landed((by_phase, by_velocity), departure, after, passed)

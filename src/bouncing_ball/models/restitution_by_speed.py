@@ -1,0 +1,128 @@
+"""Instantaneous impacts with a restitution coefficient that depends on the impact speed."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import ClassVar, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.models.instant import Instant, rigid_instant
+from bouncing_ball.models.restitution import RestitutionDynamics
+from bouncing_ball.numerics.arrays import Batch
+from bouncing_ball.periodic.continued_orbits import ContinuedModel
+from bouncing_ball.periodic.orbit import Orbit
+from bouncing_ball.periodic.restitution_model import RestitutionOrbit
+
+# The imaginary step relative to the speed; its square is lost in rounding.
+_IMAGINARY = 1e-20
+
+
+class RestitutionLaw(Batch, ABC):
+    """A restitution coefficient r(v), as a frozen dataclass of its parameters.
+
+    A subclass defines :meth:`restitution` with numpy functions that are analytic in v, or piecewise
+    analytic; :meth:`slope` differentiates it.
+
+    Examples
+    --------
+    >>> from dataclasses import dataclass
+    >>> @dataclass(frozen=True, repr=False)
+    ... class Slowing(RestitutionLaw):
+    ...     scale: float
+    ...
+    ...     def restitution(self, speed):
+    ...         return 1 / (1 + speed / self.scale)
+    >>> float(Slowing(2.0).restitution(2.0)), round(float(Slowing(2.0).slope(2.0)), 12)
+    (0.5, 0.25)
+    """
+
+    @abstractmethod
+    def restitution(self, speed: np.ndarray) -> np.ndarray:
+        """r at impact speeds v > 0, of the shape of the speeds."""
+
+    def slope(self, speed: np.ndarray) -> np.ndarray:
+        """d(r v)/dv at impact speeds v > 0, by an imaginary step, exact up to rounding."""
+        v = np.asarray(speed, dtype=float)
+        # The speed is NaN where there is no impact.
+        with np.errstate(invalid="ignore"):
+            moved = v * (1 + 1j * _IMAGINARY)
+            return np.imag(self.restitution(moved) * moved) / (_IMAGINARY * v)
+
+    def dynamics(self, amplitude: ArrayLike) -> RestitutionLawDynamics:
+        """The impacts and flights with this law on a table of amplitude Λ.
+
+        Raises
+        ------
+        ModelError
+            If Λ is outside its range.
+        """
+        return RestitutionLawDynamics.of(self, amplitude)
+
+
+class RestitutionLawDynamics(RestitutionDynamics):
+    """Impacts and flights with a restitution coefficient r(v); ``law`` is the
+    :class:`RestitutionLaw`.
+    """
+
+    @classmethod
+    def of(cls, law: RestitutionLaw, amplitude: ArrayLike) -> Self:
+        """The dynamics of a law r(v) at Λ.
+
+        Raises
+        ------
+        ModelError
+            If Λ is outside its range.
+        """
+        return super(RestitutionDynamics, cls).of(law, amplitude)
+
+    def rebound(self, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """r and d(r v)/dv at impact speeds v > 0."""
+        return self.law.restitution(speed), self.law.slope(speed)
+
+
+class RestitutionLawOrbit(RestitutionOrbit):
+    """n-T orbits with instantaneous impacts; ``law`` is a :class:`RestitutionLaw`."""
+
+    dynamics = RestitutionLawDynamics.of
+
+    def rebound(self) -> tuple[np.ndarray, np.ndarray]:
+        """r and d(r v)/dv at the impact speed v."""
+        speed = -self.relative_impact_velocity
+        return self.law.restitution(speed), self.law.slope(speed)
+
+
+@dataclass(frozen=True, repr=False)
+class RestitutionLawModel(ContinuedModel):
+    """A ball whose impacts are instants with a restitution coefficient r(v).
+
+    Parameters
+    ----------
+    law : RestitutionLaw
+        The law r(v). The orbits have no closed form and are found by continuation.
+
+    Examples
+    --------
+    >>> from dataclasses import dataclass
+    >>> @dataclass(frozen=True, repr=False)
+    ... class Slowing(RestitutionLaw):
+    ...     scale: float
+    ...
+    ...     def restitution(self, speed):
+    ...         return 1 / (1 + speed / self.scale)
+    >>> orbit = RestitutionLawModel(Slowing(50.0)).orbit(1, 1.0)
+    >>> round(float(orbit.bounce_velocity / np.pi), 12)
+    1.0
+    """
+
+    law: RestitutionLaw
+
+    name: ClassVar[str] = "restitution-law"
+    orbit_type: ClassVar[type[Orbit]] = RestitutionLawOrbit
+
+    def signature(self, speed: ArrayLike) -> Instant:
+        """The restitution r(v), without delay, load sensitivity and duration."""
+        v = np.asarray(speed, dtype=float)
+        return rigid_instant(self.law.restitution(v), self.law.slope(v), v)

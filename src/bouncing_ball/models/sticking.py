@@ -1,0 +1,91 @@
+"""Rest on the table, and the lift-off that ends it (Eq. 9).
+
+A ball rests on the table while the load g = 1 - Λ sin τ is positive. It leaves when Λ sin τ rises
+through 1, because the table's downward acceleration then exceeds gravity. If g ≤ 0 already, it
+leaves at once. For Λ ≤ Λ_CR = 1 it never leaves: this is permanent contact (Eq. 9).
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.models.dynamics import Departure
+from bouncing_ball.models.flight import Flight, table
+from bouncing_ball.models.sequence import Status
+from bouncing_ball.numerics.arrays import pick
+from bouncing_ball.numerics.elementary import arctangent, reduce_angle
+
+
+def lift_off_phase(amplitude: ArrayLike) -> np.ndarray:
+    """Phase arcsin(1/Λ) at which a ball at rest leaves the table; NaN for Λ ≤ 1.
+
+    Examples
+    --------
+    >>> bool(np.isclose(lift_off_phase(2.0), np.pi / 6))
+    True
+    """
+    lam = np.asarray(amplitude, dtype=float)
+    cosine = _lift_off_velocity(np.maximum(lam, 1.0))
+    return np.where(lam > 1, arctangent(1.0, cosine), np.nan)
+
+
+def _lift_off_velocity(amplitude: np.ndarray) -> np.ndarray:
+    """The table's velocity √(Λ² - 1) at lift-off, for Λ ≥ 1."""
+    return np.sqrt((amplitude - 1) * (amplitude + 1))
+
+
+def pressed(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Whether a ball at rest stays on the table at the phase with Λ cos τ = x and Λ sin τ = y.
+
+    Examples
+    --------
+    >>> pressed(np.zeros(2), np.array([0.5, 1.5])).tolist()
+    [True, False]
+    """
+    return (y < 1) | ((y == 1) & (x <= 0))
+
+
+def stay(departure: Departure, rests: np.ndarray, amplitude: np.ndarray) -> Departure:
+    """The departures after the balls marked by ``rests`` have rested on the table.
+
+    These balls rest on the table from the phase of the given departure on until they lift off.
+    """
+    if not rests.any():
+        return departure
+    x, y = table(departure.phase, amplitude)
+    held = pressed(x, y)
+    forever = rests & (amplitude <= 1)
+    # At lift-off Λ sin τ = 1 exactly. For Λ ≤ 1 the values have no meaning and are not used.
+    velocity = _lift_off_velocity(np.maximum(amplitude, 1.0))
+    lift = arctangent(1.0, velocity)
+    wait = np.where(held, np.mod(reduce_angle(lift - departure.phase), 2 * np.pi), 0.0)
+    # Rounding must not postpone a lift-off at the present phase by a full turn.
+    wait = np.where(wait > 2 * np.pi - 1e-9, 0.0, wait)
+    rest = np.where(forever, np.inf, wait)
+    level = np.where(forever, np.nan, 0.0)
+    before = departure.flight
+    flight = Flight(
+        displacement=np.where(rests, level, before.displacement),
+        velocity=np.where(rests, level, before.velocity),
+        x=np.where(rests, np.where(held, velocity, x), before.x),
+        y=np.where(rests, np.where(held, 1.0, y), before.y),
+        amplitude=amplitude,
+    )
+    return departure._replace(
+        phase=np.where(rests & held, lift, departure.phase),
+        duration=departure.duration + np.where(rests, rest, 0.0),
+        flight=flight,
+        status=np.where(forever, Status.PERMANENT_CONTACT, Status.BOUNCING),
+    )
+
+
+def lifted(departure: Departure, amplitude: np.ndarray) -> Departure:
+    """The departures with those marked as sticking that leave by lift-off, a state that does not
+    depend on their earlier motion.
+    """
+    at_rest = (departure.flight.velocity == 0) & (departure.flight.displacement == 0)
+    (balls,) = at_rest.nonzero()
+    sticks = at_rest
+    if not balls.size:
+        return departure._replace(sticks=sticks)
+    sticks[balls] = departure.phase[balls] == lift_off_phase(pick(amplitude, balls))
+    return departure._replace(sticks=sticks)

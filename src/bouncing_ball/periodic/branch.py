@@ -1,0 +1,121 @@
+"""The branch of n-T orbits of a model, followed from one end to the other.
+
+The branch is a solution curve of the model's equations
+(:mod:`bouncing_ball.periodic.equations`), with Λ as the parameter. It is followed to both sides
+from an orbit in the stable range, until the orbits end or Λ leaves a window.
+"""
+
+from collections.abc import Collection
+from dataclasses import replace
+
+import numpy as np
+
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.numerics.continuation import (
+    Branch,
+    ContinuationError,
+    StepControl,
+    continue_both_ways,
+)
+from bouncing_ball.numerics.events import Event, parameter_bound
+from bouncing_ball.periodic.equations import OrbitSystem
+from bouncing_ball.periodic.model import ImpactModel
+from bouncing_ball.periodic.stability import Bifurcation
+
+# By default a branch ends at this multiple of the Λ of its period doubling.
+_BEYOND_DOUBLING = 1.4
+# Smallest Λ of a branch: a fold below it belongs to an elastic contact.
+_LOWEST = 1e-4
+# Number of Λ at which an orbit to start from is searched.
+_STARTS = 16
+
+
+def whole_branch(
+    model: ImpactModel,
+    n: int,
+    amplitude_max: float | None,
+    largest_step: float,
+    ends: Collection[Bifurcation] = (),
+) -> Branch:
+    """The branch of n-T orbits of a single model, from one end to the other, up to some Λ.
+
+    It is followed to both sides from the orbit in the middle of the stable range, or from the
+    orbit at the nearest Λ that has one.
+
+    Parameters
+    ----------
+    model : ImpactModel
+    n : int
+        Index of the family.
+    amplitude_max : float, optional
+        Λ at which the branch ends; by default 1.4 times that of the period doubling.
+    largest_step : float
+        Largest step in arclength.
+    ends : collection of Bifurcation, optional
+        The bifurcations at which the branch is not followed any further.
+
+    Raises
+    ------
+    NoOrbitError
+        If the branch begins above this Λ, or if no orbit is found to start from.
+    ContinuationError
+        If the continuation stops before an end of the branch or a bound of Λ.
+
+    Examples
+    --------
+    >>> from bouncing_ball.periodic.restitution_model import RestitutionModel
+    >>> found = whole_branch(RestitutionModel(0.85), 1, 1.2, largest_step=0.1)
+    >>> for special in found.special:
+    ...     print(special.name, round(float(special.point[-1]), 4))
+    parameter bound 1.2
+    saddle-node 0.2547
+    period doubling 1.0383
+    parameter bound 1.2
+    """
+    fold = float(model.saddle_node(n).amplitude)
+    doubling = float(model.period_doubling(n).amplitude)
+    low = fold if fold > 0 else 0.0
+    top = amplitude_max or _default_top(low, doubling)
+    if low >= top:
+        raise NoOrbitError(f"{_none(model, n, top)}: the branch begins at Λ = {low:.6g}")
+    stable = min(doubling, top)
+    middle = (low + (stable if stable > low else top)) / 2
+    start = _start(model, n, middle, low, top)
+    system = model.system(n)
+    events = _events(system, top, ends)
+    control = StepControl(largest=largest_step)
+    found = continue_both_ways(system, start, events=events, control=control)
+    for end in (found.start, found.end):
+        if not end.finished:
+            raise ContinuationError(f"the branch is not followed to its end: {end}")
+    return found
+
+
+def _default_top(low: float, doubling: float) -> float:
+    """The largest Λ if none is given; without a period doubling it follows from the fold."""
+    return _BEYOND_DOUBLING * (doubling if doubling > low else max(2 * low, 1.0))
+
+
+def _none(model: ImpactModel, n: int, top: float) -> str:
+    return f"no {n}-T orbit up to Λ = {top:g} for {model.label}"
+
+
+def _start(model: ImpactModel, n: int, middle: float, low: float, top: float) -> np.ndarray:
+    """The point of an orbit at Λ = ``middle``, or at the nearest of several Λ that has one."""
+    others = np.linspace(low, top, _STARTS + 1)[1:]
+    nearest_first = others[np.argsort(np.abs(others - middle))]
+    orbits = model.orbit(n, np.append(middle, nearest_first))
+    if not np.any(orbits.exists):
+        raise NoOrbitError(f"{_none(model, n, top)} was found to start from")
+    first = int(np.argmax(orbits.exists))
+    return model.system(n).point(orbits[first])
+
+
+def _events(system: OrbitSystem, top: float, ends: Collection[Bifurcation]) -> list[Event]:
+    """The events of the equations, of which those in ``ends`` are terminal, and the bounds of Λ."""
+    events = [
+        replace(event, terminal=event.terminal or event.name in ends) for event in system.events()
+    ]
+    for bound, upper in ((_LOWEST, False), (top, True)):
+        events.append(parameter_bound(bound, upper, f"left the window at amplitude {bound:g}"))
+    return events

@@ -1,0 +1,269 @@
+r"""Curves of special orbits in two parameters.
+
+A saddle-node, a period doubling or a grazing orbit is a solution of the equations of the orbit and
+of one more equation, g = 0. With two parameters the solutions are a curve, which is followed in
+the same way as a branch. On it these points are named:
+
+* a cusp, where two saddle-nodes meet: the curve turns back in the plane of the parameters;
+* the resonances 1:1 and 1:2, where both multipliers are 1 on a curve of saddle-nodes, or -1 on one
+  of period doublings. The product of the multipliers is below 1 for every contact that dissipates,
+  so that a curve meets a resonance only where the dissipation ends, for example at r = 1.
+
+At a cusp the tangent of the curve lies in the direction u of the null vector of the orbit's
+equations alone. The cusp is therefore a zero of the derivative of g in the direction u.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from typing import NamedTuple
+
+import numpy as np
+
+from bouncing_ball.errors import NoOrbitError, ParameterError
+from bouncing_ball.numerics.continuation import (
+    Branch,
+    ContinuationError,
+    StepControl,
+    continue_both_ways,
+)
+from bouncing_ball.numerics.corrector import Condition, NewtonSettings, corrected, null_vector
+from bouncing_ball.numerics.events import Event, SpecialPoint, locate, vanishing
+from bouncing_ball.periodic.following import (
+    PATIENT,
+    STEPS,
+    State,
+    States,
+    explained,
+    limit,
+)
+from bouncing_ball.periodic.problem import PeriodicOrbits
+from bouncing_ball.periodic.release import release_condition
+from bouncing_ball.periodic.special import Special, flight_margin, impact_margin
+from bouncing_ball.periodic.stability import Bifurcation
+
+# A point on a resonance has multipliers that differ from it by less than this. Next to a double
+# multiplier the multipliers differ by the square root of rounding.
+_RESONANT = 1e-6
+# The test function of a cusp is a central difference, whose rounding moves the last step by 1e-11.
+_BY_DIFFERENCES = NewtonSettings(tolerance=1e-9, max_iterations=20)
+# A start that is farther from the corrected special orbit is none of its kind. Special orbits are
+# located to 1e-12, and those before a singular end of a branch to about 1e-5.
+_ANOTHER = 1e-3
+_MARGINS = {
+    Special.GRAZING_FLIGHT: flight_margin,
+    Special.GRAZING_IMPACT: impact_margin,
+}
+
+
+class Degenerate(StrEnum):
+    """The kinds of points that are special on a curve."""
+
+    CUSP = "cusp"
+    ONE_TO_ONE = "1:1 resonance"
+    ONE_TO_TWO = "1:2 resonance"
+
+
+class Window(NamedTuple):
+    """The range of a parameter in which a curve is followed."""
+
+    low: float
+    high: float
+
+
+def condition_of(orbits: PeriodicOrbits, kind: Special) -> Condition:
+    """g and its gradient for a kind of special orbit.
+
+    Raises
+    ------
+    ParameterError
+        If there is no curve of such orbits.
+    """
+    if str(kind) in list(map(str, Bifurcation)):
+        bifurcation = Bifurcation(str(kind))
+        return lambda y: orbits.bifurcation(bifurcation, y)
+    if kind is Special.GRAZING_RELEASE:
+        return lambda y: release_condition(orbits, y)
+    if kind not in _MARGINS:
+        known = ", ".join([*Bifurcation, Special.GRAZING_RELEASE, *_MARGINS])
+        raise ParameterError(f"{{}} is not one of {known}", repr(str(kind)))
+    margin = _MARGINS[kind]
+    return vanishing(lambda y: margin(orbits, y))
+
+
+@dataclass(frozen=True)
+class CurveProblem:
+    """Special orbits in two parameters as a :class:`~bouncing_ball.numerics.corrector.Problem`.
+
+    ``orbits`` has two parameters that vary, and ``condition`` is g with its gradient.
+    """
+
+    orbits: PeriodicOrbits
+    condition: Condition
+
+    def residual(self, y: np.ndarray) -> np.ndarray:
+        """The equations of the orbit and g, shape (..., N + 1)."""
+        value, _ = self.condition(y)
+        return np.concatenate([self.orbits.residual(y), value[..., np.newaxis]], axis=-1)
+
+    def jacobian(self, y: np.ndarray) -> np.ndarray:
+        """Its Jacobian, shape (..., N + 1, N + 2)."""
+        _, gradient = self.condition(y)
+        matrix = self.orbits.jacobian(y)
+        return np.concatenate([matrix, gradient[..., np.newaxis, :]], axis=-2)
+
+
+@dataclass(frozen=True)
+class Curve(States):
+    """A curve of special orbits of a kind in two parameters."""
+
+    kind: Special
+
+    kinds = Degenerate
+
+
+def curve(
+    start: State,
+    kind: Special,
+    across: str,
+    *,
+    along_window: Window | None = None,
+    across_window: Window | None = None,
+    control: StepControl = STEPS,
+    most: int = 1000,
+) -> Curve:
+    """The curve of special orbits through one of them, in both directions.
+
+    Parameters
+    ----------
+    start : State
+        A special orbit of the kind, for example one of :attr:`.Followed.special`, with a single
+        parameter that varies.
+    kind : Special
+    across : str
+        The second parameter.
+    along_window, across_window : Window, optional
+        The ranges of the two parameters outside which the curve is not followed.
+    control : StepControl
+    most : int
+        Number of points in each direction after which the curve is left unfinished.
+
+    Raises
+    ------
+    NoOrbitError
+        If there is no such orbit near the start.
+    ParameterError
+        If the balls have no such parameter, or no curve is defined for the kind.
+    """
+    (along,) = start.orbits.along
+    state = start.along(along, across)
+    problem = CurveProblem(state.orbits, condition_of(state.orbits, kind))
+    windows = {along: along_window, across: across_window}
+    limits = _limits(state.orbits, windows)
+    first = _corrected(problem, state.y)
+    if np.linalg.norm(first - state.y) > _ANOTHER:
+        found = State(state.orbits, first)
+        raise NoOrbitError(f"the start is no {kind}; Newton's method leads to another {found!r}")
+    with np.errstate(all="ignore"):
+        try:
+            branch = continue_both_ways(
+                problem, first, events=limits, control=control, max_points=most
+            )
+        except ContinuationError as error:
+            raise NoOrbitError(str(error)) from None
+        special = [*_cusps(problem, branch, kind), *_resonances(problem, branch, kind)]
+        backwards = replace(branch, points=branch.points[::-1], end=branch.start)
+        named = replace(
+            branch,
+            special=tuple(special),
+            start=explained(backwards, (), limits),
+            end=explained(branch, (), limits),
+        )
+    return Curve(state.orbits, named, kind)
+
+
+def _corrected(problem: CurveProblem, y: np.ndarray) -> np.ndarray:
+    """The special orbit with the second parameter of y."""
+    with np.errstate(all="ignore"):
+        point, why = corrected(problem, y, PATIENT)
+    if why:
+        raise NoOrbitError(f"no special orbit was found near the start of the curve: {why}")
+    return point
+
+
+def _limits(orbits: PeriodicOrbits, windows: dict[str, Window | None]) -> list[Event]:
+    """The ends of the ranges of both parameters, as terminal events."""
+    found = []
+    for j, (name, window) in enumerate(windows.items()):
+        low, high = orbits.family.bounds(name)
+        if window is not None:
+            low = max(low, window.low)
+            high = min(high, window.high)
+        column = orbits.equations + j
+        for bound, sign in ((low, 1.0), (high, -1.0)):
+            if np.isfinite(bound):
+                found.append(limit(name, bound, sign, column))
+    return found
+
+
+def _null_vector(orbits: PeriodicOrbits, y: np.ndarray, reference: np.ndarray) -> np.ndarray:
+    """u with a zero for each parameter, oriented along a reference, shape (..., N + 2)."""
+    matrix = orbits.jacobian(y)[..., : orbits.equations]
+    vector = null_vector(matrix)
+    vector = vector * np.where(vector @ reference < 0, -1.0, 1.0)[..., np.newaxis]
+    none = np.zeros((*y.shape[:-1], 2))
+    return np.concatenate([vector, none], axis=-1)
+
+
+def _cusps(problem: CurveProblem, branch: Branch, kind: Special) -> list[SpecialPoint]:
+    """The cusps, which lie where the direction in the plane of the parameters is reversed."""
+    if kind is not Special.SADDLE_NODE:
+        return []
+    orbits = problem.orbits
+    direction = branch.tangents[:, -2:]
+    turned = np.flatnonzero(np.sum(direction[1:] * direction[:-1], axis=-1) < 0)
+    found = []
+    for k in turned:
+        left = branch.points[k]
+        right = branch.points[k + 1]
+        reference = _null_vector(orbits, left, branch.tangents[k, : orbits.equations])
+        test = _quadratic(problem, reference[: orbits.equations])
+        cusp = locate(problem, Event(Degenerate.CUSP, test), left, right, _BY_DIFFERENCES)
+        if cusp is not None:
+            found.append(cusp)
+    return found
+
+
+def _quadratic(problem: CurveProblem, reference: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+    """The derivative of g in the direction u, a function of y."""
+
+    def test(y: np.ndarray) -> np.ndarray:
+        _, gradient = problem.condition(y)
+        return np.sum(gradient * _null_vector(problem.orbits, y, reference), axis=-1)
+
+    return test
+
+
+def _resonances(problem: CurveProblem, branch: Branch, kind: Special) -> list[SpecialPoint]:
+    """The resonances at the ends of the curve and between its points, where det M passes 1."""
+    names = {
+        Special.SADDLE_NODE: Degenerate.ONE_TO_ONE,
+        Special.PERIOD_DOUBLING: Degenerate.ONE_TO_TWO,
+    }
+    if kind not in names:
+        return []
+    name = names[kind]
+
+    def excess(y: np.ndarray) -> np.ndarray:
+        return problem.orbits.trace_and_determinant(y)[1] - 1
+
+    values = excess(branch.points)
+    found = [
+        SpecialPoint(name, branch.points[end]) for end in (0, -1) if abs(values[end]) < _RESONANT
+    ]
+    inner = np.flatnonzero((values[1:] > _RESONANT) != (values[:-1] > _RESONANT))
+    for k in inner:
+        place = locate(problem, Event(name, excess), branch.points[k], branch.points[k + 1])
+        if place is not None:
+            found.append(place)
+    return found

@@ -1,0 +1,392 @@
+"""A branch of periodic orbits, followed along a parameter from one orbit to a value or an end."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from typing import Any, ClassVar
+
+import numpy as np
+
+from bouncing_ball.errors import NoOrbitError, ParameterError
+from bouncing_ball.numerics import corrector
+from bouncing_ball.numerics.continuation import (
+    Branch,
+    ContinuationError,
+    End,
+    StepControl,
+    continue_branch,
+)
+from bouncing_ball.numerics.corrector import NewtonSettings, newton
+from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.numerics.events import Event, SpecialPoint
+from bouncing_ball.periodic import stability
+from bouncing_ball.periodic.problem import PeriodicOrbits, twice
+from bouncing_ball.periodic.simulation import is_admissible
+from bouncing_ball.periodic.special import (
+    MEANINGS,
+    Special,
+    events,
+    loss_of_release,
+    turns_apart,
+)
+from bouncing_ball.periodic.stability import Bifurcation
+
+STEPS = StepControl(initial=0.01, smallest=1e-9, largest=0.1, max_angle=0.15)
+"""Steps in arclength, over the phases, the velocities and arsinh of the parameter."""
+PATIENT = NewtonSettings(max_iterations=20, longest=0.3)
+"""Newton's method from a guess that is not the last point of a branch."""
+_BOUND = "bound"
+# A branch is followed up to this distance of the two turns of an orbit before they become equal.
+# If there is no period doubling near, it is followed up to a smaller distance, several times.
+_NEAR = 0.1
+_CLOSER = 0.1
+_TRIES = 4
+_HALVES = "the two turns of the orbit become nearly equal"
+# If the tangent turns by a finite angle in the shortest step, the branch has a corner.
+_TURNS = "the tangent turns"
+_CORNER = "the branch has a corner, where the map of the model has no derivative"
+# If the steps become too short, a test function this small, or a parameter this close to the end of
+# its range, is given as the reason. Close to an event the functions are of the order of the square
+# root of the distance.
+_CLOSE = 1e-2
+_AT_END = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """One orbit with k impacts in m periods of the table.
+
+    Parameters
+    ----------
+    orbits : PeriodicOrbits
+        The equations, which give the unknowns a meaning.
+    y : array
+        The unknowns, and the coordinates of the parameters that vary.
+    """
+
+    orbits: PeriodicOrbits
+    y: np.ndarray
+
+    def __repr__(self) -> str:
+        impacts = f"{self.impacts} impact{'s' if self.impacts > 1 else ''}"
+        periods = f"{self.periods} period{'s' if self.periods > 1 else ''}"
+        values = ", ".join(f"{name} = {x:.10g}" for name, x in self.parameters.items())
+        return f"orbit with {impacts} in {periods}: {values}"
+
+    @property
+    def impacts(self) -> int:
+        """k."""
+        return self.orbits.impacts
+
+    @property
+    def periods(self) -> int:
+        """m."""
+        return int(self.orbits.periods)
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """The values of the parameters that vary."""
+        return {name: float(x) for name, x in self.orbits.values(self.y).items()}
+
+    @property
+    def phase(self) -> np.ndarray:
+        """The phases of the impacts on the section, in [-π, π], shape (k,)."""
+        return reduce_angle(self.orbits.states(self.y)[0])
+
+    @property
+    def velocity(self) -> np.ndarray:
+        """δ′ of the impacts on the section, shape (k,)."""
+        return self.orbits.states(self.y)[1]
+
+    @property
+    def contact_duration(self) -> np.ndarray:
+        """The durations of the contacts, shape (k,)."""
+        return self.orbits.legs(self.y).duration
+
+    def along(self, *names: str) -> "State":
+        """The same orbit with other parameters that vary.
+
+        Raises
+        ------
+        ParameterError
+            If the balls have no such parameter, or if one of them follows from another.
+        """
+        family = self.orbits.family.at(self.parameters)
+        for name in names:
+            family.bounds(name)
+            for other in family.implied({name: family.values[name]}):
+                if other in names:
+                    raise ParameterError(f"{other} follows from {name}: both cannot vary")
+        orbits = replace(self.orbits, family=family, along=names)
+        phase, velocity = self.orbits.states(self.y)
+        durations = self.orbits.durations(self.y)
+        values = {name: family.values[name] for name in names}
+        return State(orbits, orbits.point(phase, velocity, durations, **values))
+
+    def multipliers(self) -> np.ndarray:
+        """The two Floquet multipliers, complex; that of larger modulus comes first."""
+        return stability.multipliers(*self.orbits.trace_and_determinant(self.y))
+
+    def is_stable(self) -> bool:
+        """Whether both multipliers lie inside the unit circle."""
+        return bool(stability.is_stable(*self.orbits.trace_and_determinant(self.y)))
+
+    def is_admissible(self) -> bool:
+        """Whether a simulated ball follows the orbit, without an earlier release or landing."""
+        return bool(is_admissible(self.orbits, self.y))
+
+    def defect(self) -> float:
+        """Largest absolute value of the defects of the equations."""
+        return float(np.abs(self.orbits.residual(self.y)).max())
+
+
+@dataclass(frozen=True)
+class States:
+    """Orbits in order, one after another: a branch, or a curve of special orbits.
+
+    ``branch`` has the points in order and the special points; ``branch.end`` gives the reason why
+    the branch ends, in words.
+    """
+
+    orbits: PeriodicOrbits
+    branch: Branch
+
+    kinds: ClassVar[type[StrEnum]]
+    """The kinds of special points."""
+
+    def __len__(self) -> int:
+        return len(self.branch.points)
+
+    def __iter__(self) -> Iterator[State]:
+        return (State(self.orbits, y) for y in self.branch.points)
+
+    @property
+    def special(self) -> list[tuple[Any, State]]:
+        """The special orbits in order, with their kinds."""
+        return [
+            (self.kinds(each.name), State(self.orbits, each.point))
+            for each in self.branch.special
+            if each.name in list(self.kinds)
+        ]
+
+
+@dataclass(frozen=True)
+class Followed(States):
+    """A branch of orbits with k impacts in m periods along one parameter."""
+
+    kinds = Special
+
+    def first(self, kind: Special) -> State:
+        """The first special orbit of a kind.
+
+        Raises
+        ------
+        NoOrbitError
+            If there is none on the branch.
+        """
+        for name, state in self.special:
+            if name is kind:
+                return state
+        raise NoOrbitError(f"the branch has no {kind}; it ends because {self.branch.end}")
+
+
+def corrected(state: State) -> State:
+    """The orbit at the parameters of an approximate one.
+
+    Raises
+    ------
+    NoOrbitError
+        If Newton's method does not converge.
+    """
+    with np.errstate(all="ignore"):
+        point, why = corrector.corrected(state.orbits, state.y, PATIENT)
+    if why:
+        k = state.orbits.impacts
+        raise NoOrbitError(
+            f"no orbit with {k} impact{'s' if k > 1 else ''} was found near this motion: {why}"
+        )
+    return State(state.orbits, point)
+
+
+def bounds(start: State, to: float | None) -> list[Event]:
+    """The ends of the branch at the ends of the parameter's range, at the value ``to``, and as far
+    beyond the start.
+    """
+    orbits = start.orbits
+    (name,) = orbits.along
+    low, high = orbits.family.bounds(name)
+    if to is not None:
+        back = 2 * start.parameters[name] - to
+        low = max(low, min(to, back))
+        high = min(high, max(to, back))
+    found = []
+    for bound, sign in ((low, 1.0), (high, -1.0)):
+        if np.isfinite(bound):
+            found.append(limit(name, bound, sign, orbits.equations))
+    return found
+
+
+def limit(name: str, bound: float, sign: float, column: int) -> Event:
+    """The end of a branch where a parameter, an entry of y, reaches a bound: from above if the sign
+    is positive, otherwise from below.
+    """
+    at = np.arcsinh(bound)
+    reason = f"{name.replace('_', ' ')} = {bound:g} is reached"
+    return Event(_BOUND, lambda y: sign * (y[..., column] - at), True, reason)
+
+
+def follow(
+    start: State,
+    to: float | None = None,
+    *,
+    increasing: bool = True,
+    control: StepControl = STEPS,
+    most: int = 2000,
+) -> Followed:
+    """Follow an orbit along its parameter, up to a value, the end of the branch or of the range.
+
+    Parameters
+    ----------
+    start : State
+        An orbit, or an approximation to one, with a single parameter that varies.
+    to : float, optional
+        The value at which the branch ends. The parameter first moves towards it. Behind a
+        saddle-node it moves back, at most as far beyond the start as the value is before it.
+    increasing : bool
+        The direction if ``to`` is not given.
+    control : StepControl
+    most : int
+        Number of points after which the branch is left unfinished.
+
+    Raises
+    ------
+    NoOrbitError
+        If there is no orbit near the start.
+    """
+    here = corrected(start)
+    (name,) = here.orbits.along
+    if to is not None:
+        increasing = to > here.parameters[name]
+    limits = bounds(here, to)
+    near = min(_NEAR, float(turns_apart(here.orbits, here.y)) / 2)
+    with np.errstate(all="ignore"):
+        for _ in range(_TRIES):
+            branch = _followed(here, limits, near, increasing, control, most)
+            if branch.end.sentence != _HALVES:
+                break
+            whole = _up_to_halving(here.orbits, branch)
+            if whole is not None:
+                branch = whole
+                break
+            near *= _CLOSER
+        tests = [*events(here.orbits), loss_of_release(here.orbits)]
+        return Followed(here.orbits, replace(branch, end=explained(branch, tests, limits)))
+
+
+def _followed(
+    start: State,
+    limits: list[Event],
+    near: float,
+    increasing: bool,
+    control: StepControl,
+    most: int,
+) -> Branch:
+    """The branch from a solution on, at most up to where its turns are so near to each other."""
+    orbits = start.orbits
+
+    def two_turns(y: np.ndarray) -> np.ndarray:
+        return turns_apart(orbits, y) - near
+
+    # The first steps must not pass over a place nearby where the turns are equal. If a later step
+    # does, the branch is cut off there.
+    initial = min(control.initial, near * np.sqrt(2 * orbits.impacts) / 2)
+    halves = Event(_HALVES, two_turns, terminal=True, reason=_HALVES)
+    try:
+        branch = continue_branch(
+            orbits,
+            start.y,
+            increasing=increasing,
+            events=[*events(orbits), halves, *limits],
+            control=replace(control, initial=initial),
+            max_points=most,
+        )
+    except ContinuationError as error:
+        raise NoOrbitError(str(error)) from None
+    return _cut_off(orbits, branch)
+
+
+def _cut_off(orbits: PeriodicOrbits, branch: Branch) -> Branch:
+    """The branch up to the first step on which the difference of the two turns is reversed."""
+    if orbits.impacts % 2:
+        return branch
+    _, velocity = orbits.states(branch.points)
+    phase, _ = orbits.states(branch.points)
+    half = orbits.impacts // 2
+    turned = reduce_angle(phase - np.roll(phase, half, axis=-1))
+    difference = np.concatenate([turned, velocity - np.roll(velocity, half, axis=-1)], axis=-1)
+    reversed_at = np.flatnonzero(np.sum(difference[1:] * difference[:-1], axis=-1) < 0)
+    if not reversed_at.size:
+        return branch
+    count = int(reversed_at[0]) + 1
+    last = branch.points[count - 1]
+    before = [x for x in branch.special if (x.point - last) @ branch.tangents[count - 1] <= 0]
+    return replace(
+        branch,
+        points=branch.points[:count],
+        tangents=branch.tangents[:count],
+        special=tuple(before),
+        end=End(_HALVES),
+    )
+
+
+def _up_to_halving(orbits: PeriodicOrbits, branch: Branch) -> Branch | None:
+    """The branch up to the period halving, which is a period doubling of the orbit of half the
+    period; None if there is none near the end of the branch.
+
+    At the halving the equations have two directions of solutions, so that Newton's method fails.
+    """
+    k = orbits.impacts // 2
+    last = branch.points[-1]
+    phase, velocity = orbits.states(last)
+    first = phase[:k]
+    turned = np.concatenate([first, first + reduce_angle(phase[k:] - first)])
+    turns = orbits.turns[:k].copy()
+    # The turn ends at the first impact of the first turn in place of the second.
+    turns[-1] += round(float(phase[k] - phase[0]) / (2 * np.pi))
+    half = replace(orbits, impacts=k, turns=turns, resumes=orbits.resuming[:k])
+    rows = (turned, velocity, orbits.durations(last))
+    means = (row.reshape(2, k).mean(axis=0) for row in rows)
+    guess = half.point(*means, **orbits.values(last))
+    kind = Bifurcation.PERIOD_DOUBLING
+    found = newton(half, guess, lambda y: half.bifurcation(kind, y), PATIENT)
+    if not (found.converged and np.linalg.norm(found.point - guess) < _NEAR):
+        return None
+    _, halving = twice(half, found.point)
+    kind_here = Special.PERIOD_HALVING
+    special = SpecialPoint(kind_here, halving)
+    along = halving - last
+    return Branch(
+        points=np.concatenate([branch.points, [halving]]),
+        tangents=np.concatenate([branch.tangents, [along / np.linalg.norm(along)]]),
+        special=(*branch.special, special),
+        start=branch.start,
+        end=End(f"{kind_here}: {MEANINGS[kind_here]}"),
+    )
+
+
+def explained(branch: Branch, tests: Sequence[Event], limits: Sequence[Event]) -> End:
+    """The end of a branch, with the event that is near if the steps became too short."""
+    end = branch.end
+    if not end.sentence.startswith("step too small"):
+        return end
+    last = branch.points[-1]
+    for limit in limits:
+        if abs(float(limit.function(last))) < _AT_END:
+            return End(limit.reason)
+    if not tests:
+        return end
+    near = {event.name: abs(float(event.function(last))) for event in tests}
+    nearest = min(near, key=lambda name: near[name])
+    if not near[nearest] < _CLOSE:
+        return End(_CORNER) if _TURNS in end.sentence else end
+    return End(f"the orbit is next to a {nearest}, where its equations are not smooth", True)

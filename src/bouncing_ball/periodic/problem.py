@@ -1,0 +1,366 @@
+r"""The equations of a periodic orbit with k impacts in m periods of the table.
+
+An impact has the state (θ, v) on the Poincaré section of the model: for most models the phase of
+the table and δ′ at the start of the contact. A leg is a contact and the flight after it. It leads
+from the state s_i of impact i to P(s_i), which must be the state of the next impact::
+
+    P(s_i) = s_{i+1},    s_{k+1} = s_1 + (2πm, 0)                                            (1)
+
+The landing is the one near the phase θ_{i+1} among the unknowns, found by one step of Newton's
+method, and not the first one. The equations therefore are smooth where a flight grazes the table,
+and a branch can be followed beyond this point, where no ball follows the orbit. With a landing that
+is late by t, the two equations of a leg are multiplied by δ′ and combined ::
+
+    δ′ t = 0,    (δ′ at the landing - v_{i+1}) - δ″ t = 0                                     (2)
+
+These are the height, with the opposite sign, and the velocity at the phase θ_{i+1}, which are
+smooth where v_{i+1} vanishes, whereas t is not. Because δ′ t must be this height also before
+Newton's method has converged, the factor δ′ and the matrix in the Jacobian are those at the phase
+θ_{i+1}. Those of the monodromy are at the landing, so that they depend on θ_i and v_i alone.
+
+After a release by force a contact may resume below the level of the table, with δ + κ δ′ = 0 and
+δ′ > 0. Its state is also (θ, δ′), and in Eq. 2 the factor δ′ of t becomes δ′ + κ δ″.
+
+If a model can continue its contacts beyond their first release (:meth:`.Dynamics.depart_after`),
+the duration D_i of each contact is a further unknown. It selects the release near D_i, and nothing
+else depends on it: its equation is that D_i is the duration of the contact. The equations of such a
+model are smooth also where a contact grazes the release.
+
+The derivatives of Eq. 2 with respect to the states follow from the tangent maps of the models,
+exactly at a solution. Those of the durations, and those with respect to a parameter, are central
+differences, whose error of 1e-9 only affects how fast Newton's method converges and not the
+solution.
+
+A parameter p enters as arsinh p, which is p for small p and ln 2p for large p, so that steps along
+ϖ = 2…1000 are as long as those along Λ.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from typing import Any
+
+import numpy as np
+
+from bouncing_ball.models.deviations import Jacobian
+from bouncing_ball.models.dynamics import Dynamics, Impact
+from bouncing_ball.models.flight import table
+from bouncing_ball.models.sequence import Status
+from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.periodic.family import Family, known
+from bouncing_ball.periodic.legs import Legs, lag_of, landed, no_legs, without_force
+from bouncing_ball.periodic.products import matrices_of, product_of, shifted_determinant
+from bouncing_ball.periodic.stability import Bifurcation
+
+# Step of the central differences, near the optimum ε^(1/3).
+_DIFFERENCE = 6e-6
+# Where the second difference of a side of Eq. 2 is larger than this and than half of the first one,
+# the side has no derivative but a jump. At an end of a range both differences are equal, and
+# smaller. A jump that is not noticed spoils a solution by 1e-7 of its size.
+_JUMP = 1e-3
+# Number of points at which the legs are known at the same time.
+_KEPT = 8
+
+
+@dataclass(frozen=True)
+class PeriodicOrbits:
+    """Orbits with k impacts in m periods as a :class:`~bouncing_ball.numerics.corrector.Problem`.
+
+    The last axis of y holds θ_1, v_1, θ_2, …, v_k, the durations D_1, …, D_k if they are unknowns,
+    and the coordinates arsinh p of the parameters in ``along``. With two of them the
+    solutions are a surface.
+
+    Parameters
+    ----------
+    family : Family
+        The balls, with the values of the parameters that do not vary.
+    impacts : int
+        k.
+    turns : array of int
+        The whole turns of the table from each phase to the next among the unknowns, shape (..., k):
+        the phases themselves stay within a few turns, so that they keep their digits.
+    along : tuple of str
+        The names of the parameters that vary.
+    selects : bool
+        Whether the durations of the contacts are unknowns, which select their releases.
+    unit : float or array
+        The scale of each unknown, which broadcasts to y: the steps of the central differences are
+        proportional to it. The solutions do not depend on it.
+    resumes : array of bool
+        Which contacts resume below the level of the table, shape (k,); by default none.
+    """
+
+    family: Family
+    impacts: int
+    turns: Any
+    along: tuple[str, ...]
+    selects: bool = False
+    unit: Any = 1.0
+    resumes: Any = False
+
+    @property
+    def resuming(self) -> np.ndarray:
+        """Which contacts resume, shape (k,)."""
+        return np.broadcast_to(self.resumes, (self.impacts,))
+
+    @property
+    def periods(self) -> Any:
+        """m, of the leading shape of y."""
+        return np.sum(self.turns, axis=-1)
+
+    @property
+    def equations(self) -> int:
+        """N, the number of equations."""
+        return self.impacts * (3 if self.selects else 2)
+
+    def states(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """θ and v of the impacts, each of shape (..., k)."""
+        state = y[..., : 2 * self.impacts].reshape(*y.shape[:-1], self.impacts, 2)
+        return state[..., 0], state[..., 1]
+
+    def values(self, y: np.ndarray) -> dict[str, np.ndarray]:
+        """The values of the parameters that vary, each with the leading shape of y."""
+        return {name: np.sinh(y[..., self.equations + j]) for j, name in enumerate(self.along)}
+
+    def durations(self, y: np.ndarray) -> np.ndarray:
+        """The durations of the contacts, shape (..., k); 0 if they are no unknowns."""
+        if not self.selects:
+            return np.zeros((*y.shape[:-1], self.impacts))
+        return y[..., 2 * self.impacts : 3 * self.impacts]
+
+    def point(
+        self, phase: np.ndarray, velocity: np.ndarray, duration: np.ndarray, **values: Any
+    ) -> np.ndarray:
+        """y of orbits from θ, v and D, shape (..., k), and the parameters that vary."""
+        state = np.stack([phase, velocity], axis=-1).reshape(*phase.shape[:-1], -1)
+        coordinates = [np.arcsinh(np.asarray(values[name])) for name in self.along]
+        of_parameters = np.stack(np.broadcast_arrays(*coordinates), axis=-1)
+        parts = [state, of_parameters]
+        if self.selects:
+            parts.insert(1, duration)
+        return np.concatenate(parts, axis=-1)
+
+    @cached_property
+    def _cached(self) -> Any:
+        # A step along a branch evaluates the residual, the Jacobian and the events at the same
+        # points.
+        def legs(shape: tuple[int, ...], entries: bytes) -> Legs:
+            with np.errstate(all="ignore"):
+                return self._legs(np.frombuffer(entries).reshape(shape))
+
+        return lru_cache(maxsize=_KEPT)(legs)
+
+    def legs(self, y: np.ndarray) -> Legs:
+        """The legs of the orbits at points y of shape (..., N + parameters)."""
+        return self._cached(y.shape, y.tobytes())
+
+    def dynamics(self, y: np.ndarray) -> tuple[Dynamics | None, np.ndarray]:
+        """The dynamics of the legs in a row, and which legs are inside the ranges."""
+        leading = y.shape[:-1]
+        given = {**self.family.values, **self.values(y)}
+        each = {}
+        for name, value in given.items():
+            if name in self.along or np.ndim(value):
+                each[name] = np.repeat(np.broadcast_to(value, leading).ravel(), self.impacts)
+        return known(self.family, each, self.along)
+
+    def impact(self, dynamics: Dynamics, y: np.ndarray) -> Impact:
+        """The impacts of the orbits in a row."""
+        phase, velocity = self.states(y)
+        start = dynamics.at_section(reduce_angle(phase.ravel()), velocity.ravel().copy())
+        resumes = np.broadcast_to(self.resuming, phase.shape).ravel()
+        return without_force(start, lag_of(dynamics, resumes))
+
+    def intervals(self, y: np.ndarray) -> np.ndarray:
+        """θ_{i+1} - θ_i, shape (..., k)."""
+        phase, _ = self.states(y)
+        return (np.roll(phase, -1, axis=-1) - phase) + 2 * np.pi * np.asarray(self.turns)
+
+    def _legs(self, y: np.ndarray) -> Legs:
+        dynamics, inside = self.dynamics(y)
+        shape = (*y.shape[:-1], self.impacts)
+        if dynamics is None:
+            return no_legs(shape)
+        phase, velocity = self.states(y)
+        interval = self.intervals(y).ravel()
+        impact = self.impact(dynamics, y)
+        departure = dynamics.depart_after(impact, self.durations(y).ravel())
+        bouncing = inside & (departure.status == Status.BOUNCING)
+        duration = np.where(bouncing, departure.duration, np.nan)
+        resumes = np.broadcast_to(np.roll(self.resuming, -1), shape).ravel()
+        lag = lag_of(dynamics, resumes)
+        landing = landed(dynamics, impact, departure, duration, interval, lag)
+        _, end_velocity = dynamics.section(landing.near)
+        _, landing_velocity = dynamics.section(landing.after)
+        next_phase = np.roll(phase, -1, axis=-1).ravel()
+        acceleration = table(reduce_angle(next_phase), dynamics.amplitude)[1] - 1
+        too_fast = landing_velocity - np.roll(velocity, -1, axis=-1).ravel()
+        speed = end_velocity + lag * acceleration
+        height = speed * landing.late
+        residual = np.stack([height, too_fast - acceleration * landing.late], axis=-1)
+        tangent = dynamics.jacobian(impact, departure, landing.after, landing.passed)
+        near = dynamics.jacobian(impact, departure, landing.near, landing.passed_near)
+        return Legs(
+            residual=residual.reshape(*shape, 2),
+            duration=duration.reshape(shape),
+            tangent=Jacobian(*(entry.reshape(shape) for entry in tangent)),
+            near=Jacobian(*(entry.reshape(shape) for entry in near)),
+            velocity=speed.reshape(shape),
+            acceleration=acceleration.reshape(shape),
+            dynamics=dynamics,
+            impact=impact,
+            departure=departure,
+            passed=landing.passed,
+        )
+
+    def residual(self, y: np.ndarray) -> np.ndarray:
+        """Both sides of Eq. 2, and the errors of the durations, shape (..., N)."""
+        legs = self.legs(self.around(y))
+        here = legs.residual[0].reshape(*y.shape[:-1], -1)
+        if not self.selects:
+            return here
+        return np.concatenate([here, self.durations(y) - legs.duration[0]], axis=-1)
+
+    def around(self, y: np.ndarray, everywhere: bool = False) -> np.ndarray:
+        """The points at which legs are compared: y and the points beside it, along a first axis.
+
+        They are y itself, y moved by ± the step of the differences in each parameter, and, if the
+        durations are unknowns or ``everywhere`` is set, y with all θ or all v moved: a leg depends
+        on the state at its start alone.
+        """
+        columns: list[Any] = [self.equations + j for j in range(len(self.along))]
+        if self.selects or everywhere:
+            columns += [slice(0, 2 * self.impacts, 2), slice(1, 2 * self.impacts, 2)]
+        points = np.repeat(y[np.newaxis], 1 + 2 * len(columns), axis=0)
+        step = self._step(y)
+        for j, column in enumerate(columns):
+            points[1 + 2 * j, ..., column] += step[..., column]
+            points[2 + 2 * j, ..., column] -= step[..., column]
+        return self._within(points)
+
+    def _step(self, y: np.ndarray) -> np.ndarray:
+        """The steps of the central differences, of the shape of y."""
+        return np.broadcast_to(_DIFFERENCE * np.asarray(self.unit), y.shape)
+
+    def _within(self, y: np.ndarray) -> np.ndarray:
+        """Points beside y, moved back to the ends of the ranges of the parameters."""
+        for j, name in enumerate(self.along):
+            low, high = np.arcsinh(self.family.bounds(name))
+            here = y[0, ..., self.equations + j]
+            beside = np.clip(y[1:, ..., self.equations + j], low, high)
+            # A point that is itself outside the range is left where it is.
+            outside = (here < low) | (here > high)
+            y[1:, ..., self.equations + j] = np.where(outside, here, beside)
+        return y
+
+    def jacobian(self, y: np.ndarray) -> np.ndarray:
+        """Jacobian of the residual, shape (..., N, N + parameters)."""
+        legs = self.legs(self.around(y))
+        k = self.impacts
+        matrix = np.zeros((*y.shape[:-1], self.equations, y.shape[-1]))
+        first = np.arange(k)
+        after = (first + 1) % k
+        speed = legs.velocity[0]
+        pull = legs.acceleration[0]
+        a, b, c, d = (entry[0] for entry in legs.near)
+        height = 2 * first
+        rate = height + 1
+        matrix[..., height, 2 * first] += speed * a
+        matrix[..., height, 2 * first + 1] += speed * b
+        matrix[..., rate, 2 * first] += c - pull * a
+        matrix[..., rate, 2 * first + 1] += d - pull * b
+        matrix[..., height, 2 * after] -= speed
+        matrix[..., rate, 2 * after] += pull
+        matrix[..., rate, 2 * after + 1] -= 1
+        for j, length in enumerate(self._lengths(y)):
+            change = legs.residual[1 + 2 * j] - legs.residual[2 + 2 * j]
+            bend = legs.residual[1 + 2 * j] + legs.residual[2 + 2 * j] - 2 * legs.residual[0]
+            jumps = (np.abs(bend) > _JUMP) & (np.abs(bend) > np.abs(change) / 2)
+            slope = np.where(jumps, np.nan, change).reshape(*y.shape[:-1], -1) / length
+            matrix[..., : 2 * k, self.equations + j] = slope
+        if self.selects:
+            self._fill_durations(matrix, legs, y)
+        return matrix
+
+    def _fill_durations(self, matrix: np.ndarray, legs: Legs, y: np.ndarray) -> None:
+        """The rows of the Jacobian that belong to the durations."""
+        contact = np.arange(self.impacts)
+        row = 2 * self.impacts + contact
+        matrix[..., row, row] = 1
+        count = len(self.along)
+        step = self._step(y)
+        for j, length in enumerate(self._lengths(y)):
+            longer = legs.duration[1 + 2 * j] - legs.duration[2 + 2 * j]
+            matrix[..., row, self.equations + j] = -longer / length
+        for j in range(2):
+            longer = legs.duration[1 + 2 * (count + j)] - legs.duration[2 + 2 * (count + j)]
+            start = 2 * contact + j
+            matrix[..., row, start] = -longer / (2 * step[..., start])
+
+    def _lengths(self, y: np.ndarray) -> list[np.ndarray]:
+        """The lengths of the central differences in each parameter, shape (..., 1): shorter where
+        the range of the parameter ends.
+        """
+        points = self.around(y)
+        return [
+            points[1 + 2 * j][..., [column]] - points[2 + 2 * j][..., [column]]
+            for j, column in enumerate(range(self.equations, y.shape[-1]))
+        ]
+
+    def matrices(self, y: np.ndarray) -> np.ndarray:
+        """DP of the legs, shape (..., k, 2, 2)."""
+        return matrices_of(self.legs(self.around(y)).tangent)[0]
+
+    def monodromy(self, y: np.ndarray) -> Jacobian:
+        """The derivative of the map Pᵏ at the first impact; entries of the leading shape of y."""
+        product = product_of(self.matrices(y))
+        return Jacobian(*(product[..., i, j] for i, j in ((0, 0), (0, 1), (1, 0), (1, 1))))
+
+    def trace_and_determinant(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Trace and determinant of the monodromy, each with the leading shape of y."""
+        m = self.monodromy(y)
+        return m.a + m.d, m.a * m.d - m.b * m.c
+
+    def bifurcation(self, kind: Bifurcation, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The test function det(M - μ) of a bifurcation, μ = ±1, and its gradient.
+
+        The derivatives of the matrices of the legs are central differences. The results have the
+        shapes (...,) and (..., N + parameters).
+        """
+        around = self.legs(self.around(y, everywhere=True))
+        matrices = matrices_of(around.tangent)
+        multiplier = 1.0 if kind is Bifurcation.SADDLE_NODE else -1.0
+        value, weights = shifted_determinant(matrices[0], multiplier)
+        # tr(W_i dM_i) for each leg.
+        change = [
+            np.einsum("...ij,...ji->...", weights, right - left)
+            for right, left in zip(matrices[1::2], matrices[2::2], strict=True)
+        ]
+        return value, self.gradient(y, np.array(change))
+
+    def gradient(self, y: np.ndarray, change: np.ndarray) -> np.ndarray:
+        """The gradient of a sum of a function over the legs, shape (..., N + parameters).
+
+        ``change`` are the differences of the function between the two points :meth:`around` y on
+        both sides, everywhere, shape (pairs of points, ..., k).
+        """
+        gradient = np.zeros(y.shape)
+        for j, length in enumerate(self._lengths(y)):
+            gradient[..., self.equations + j] = change[j].sum(axis=-1) / length[..., 0]
+        step = self._step(y)
+        for j in range(2):
+            column = slice(j, 2 * self.impacts, 2)
+            gradient[..., column] = change[len(self.along) + j] / (2 * step[..., column])
+        return gradient
+
+
+def twice(orbits: PeriodicOrbits, y: np.ndarray) -> tuple[PeriodicOrbits, np.ndarray]:
+    """The same orbits, taken twice: the problem with 2k impacts and its points."""
+    phase, velocity = orbits.states(y)
+    duration = orbits.durations(y)
+    turns = np.concatenate([orbits.turns, orbits.turns], axis=-1)
+    resumes = np.tile(orbits.resuming, 2)
+    whole = replace(orbits, impacts=2 * orbits.impacts, turns=turns, resumes=resumes)
+    phases = np.concatenate([phase, phase], axis=-1)
+    velocities = np.concatenate([velocity, velocity], axis=-1)
+    durations = np.concatenate([duration, duration], axis=-1)
+    return whole, whole.point(phases, velocities, durations, **orbits.values(y))

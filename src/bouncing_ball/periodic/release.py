@@ -1,0 +1,126 @@
+"""The grazing of a release: the highest point within a contact, and how it depends on the orbit.
+
+A contact ends where δ + κ δ′ rises through 0, and before this it is negative. Where its highest
+local maximum touches 0 the contact opens. Because the derivative with respect to the time vanishes
+at a maximum, the gradient of the maximum is that at the fixed time of the maximum.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple, Self
+
+import numpy as np
+
+from bouncing_ball.periodic.legs import Legs
+from bouncing_ball.periodic.problem import PeriodicOrbits
+
+# Samples of a contact: evenly, and in geometric progression from this fraction of the duration on,
+# because the oscillations after an impact decay.
+_EVEN, _GEOMETRIC, _FIRST = 160, 160, 1e-6
+# Each of these rounds of this many samples narrows the bracket of a maximum to a hundredth. The
+# parabola through the last three samples, 1e-4 of the first bracket apart, has an error of the
+# fourth order of this distance.
+_ROUNDS, _SAMPLES = 2, 201
+# The height where there is no maximum, and thus no event near.
+_FAR = -1.0
+
+
+class _Tops(NamedTuple):
+    """The largest local maximum within each contact and its time since the start of the contact,
+    shape (..., k); -1 and NaN if there is none.
+    """
+
+    height: np.ndarray
+    time: np.ndarray
+
+
+def release_margin(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
+    """Minus the largest local maximum of δ + κ δ′ within the contacts of each orbit, of the leading
+    shape of y; 1 where there is none, where impacts are instants, and for laws without a κ.
+    """
+    return -_tops(orbits.legs(y), (*y.shape[:-1], orbits.impacts)).height.max(axis=-1)
+
+
+def release_condition(orbits: PeriodicOrbits, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The margin and its gradient, of the leading shape and of the shape of y."""
+    points = orbits.around(y, everywhere=True)
+    shape = (*points.shape[:-1], orbits.impacts)
+    legs = orbits.legs(points)
+    # The first of the points is y.
+    tops = _tops(legs, shape[1:])
+    # Only the contact with the largest maximum counts.
+    counts = np.arange(orbits.impacts) == tops.height.argmax(axis=-1)[..., np.newaxis]
+    which = np.flatnonzero(np.broadcast_to(counts, shape))
+    time = np.broadcast_to(tops.time, shape).ravel()[which]
+    height = np.zeros(shape)
+    height.ravel()[which] = _heights(legs, which, time)
+    change = height[2::2] - height[1::2]
+    return -tops.height.max(axis=-1), orbits.gradient(y, change)
+
+
+class _Contacts(NamedTuple):
+    """A row of contacts: δ + κ δ′ at times since their starts, and their durations."""
+
+    height: Callable[[np.ndarray], np.ndarray]
+    duration: np.ndarray
+
+    @classmethod
+    def of(cls, legs: Legs, which: np.ndarray) -> Self | None:
+        """The contacts with these indices; None if there are none or if they have no κ."""
+        if legs.dynamics is None or not which.size:
+            return None
+        dynamics, *ends = legs.dynamics.kept(which, legs.impact, legs.departure)
+        height = dynamics.release_function(*ends)
+        return None if height is None else cls(height, legs.duration.ravel()[which])
+
+
+def _heights(legs: Legs, which: np.ndarray, time: np.ndarray) -> np.ndarray:
+    """δ + κ δ′ at a time in each of the contacts with these indices, NaN if it is not known."""
+    found = np.full(which.shape, np.nan)
+    known = np.isfinite(legs.duration.ravel()[which]) & np.isfinite(time)
+    contacts = _Contacts.of(legs, which[known])
+    if contacts is not None:
+        found[known] = contacts.height(time[known])
+    return found
+
+
+def _tops(legs: Legs, shape: tuple[int, ...]) -> _Tops:
+    """The largest local maximum of δ + κ δ′ within each of the first contacts, which have this
+    shape, and its time.
+    """
+    height = np.full(shape, _FAR)
+    at = np.full(shape, np.nan)
+    duration = legs.duration.ravel()[: height.size]
+    known = np.flatnonzero(np.isfinite(duration) & (duration > 0))
+    contacts = _Contacts.of(legs, known)
+    if contacts is not None:
+        with np.errstate(all="ignore"):
+            found = _highest(contacts)
+        height.ravel()[known], at.ravel()[known] = found
+    return _Tops(height, at)
+
+
+def _highest(contacts: _Contacts) -> _Tops:
+    """The largest local maximum within each contact of a row, all of finite duration."""
+    evenly = np.linspace(0, 1, _EVEN)[1:]
+    densely = np.geomspace(_FIRST, 1, _GEOMETRIC)
+    share = np.union1d(evenly, densely)
+    value = contacts.height(share[:, np.newaxis] * contacts.duration)
+    inner = value[1:-1]
+    is_top = (inner > value[:-2]) & (inner >= value[2:])
+    top = np.where(is_top, inner, -np.inf).argmax(axis=0)
+    found = is_top.any(axis=0)
+    left = share[top] * contacts.duration
+    right = share[top + 2] * contacts.duration
+    rows = np.arange(top.size)
+    for _ in range(_ROUNDS):
+        time = left + (right - left) * np.linspace(0, 1, _SAMPLES)[:, np.newaxis]
+        value = contacts.height(time)
+        best = np.clip(value.argmax(axis=0), 1, _SAMPLES - 2)
+        left = time[best - 1, rows]
+        right = time[best + 1, rows]
+    before, middle, after = (value[best + j, rows] for j in (-1, 0, 1))
+    slope = (after - before) / 2
+    bend = before - 2 * middle + after
+    height = middle - slope * slope / (2 * bend)
+    at = (left + right) / 2 - slope / bend * (right - left) / 2
+    return _Tops(np.where(found, height, _FAR), np.where(found, at, np.nan))

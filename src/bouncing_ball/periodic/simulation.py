@@ -1,0 +1,119 @@
+"""From a simulated ball to an orbit, and whether a simulated ball follows an orbit."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.dynamics import Dynamics
+from bouncing_ball.models.sequence import Status
+from bouncing_ball.numerics.arrays import pick
+from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.periodic.family import Family
+from bouncing_ball.periodic.legs import lag_of, time_to_section, without_force
+from bouncing_ball.periodic.problem import PeriodicOrbits
+from bouncing_ball.periodic.special import sticking
+
+# Relative to its length, a leg of the simulation differs from that of the orbit by less than this
+# if both are the same; another landing or release differs by far more.
+_SAME = 1e-6
+
+
+def simulated(
+    family: Family, phase: float, velocity: float, impacts: int, along: Sequence[str]
+) -> tuple[PeriodicOrbits, np.ndarray]:
+    """The problem and the guess y of an orbit with k impacts near a simulated impact.
+
+    ``phase`` and ``velocity`` are those of an impact on the section; with a positive velocity the
+    contact resumes. The number of periods is the whole number nearest to the time of k legs.
+
+    Raises
+    ------
+    ModelError
+        If the parameters are outside their ranges.
+    NoOrbitError
+        If a contact resumes, and its law has no fixed κ.
+    """
+    dynamics = family.dynamics({})
+    dynamics, start, _ = dynamics.in_a_row([phase], [velocity])
+    impact = dynamics.at_section(*start)
+    if velocity > 0:
+        _check_resumption(dynamics)
+        impact = without_force(impact, lag_of(dynamics, np.array([True])))
+    phases = [float(reduce_angle(start[0])[0])]
+    turns = []
+    velocities = []
+    durations = []
+    resumes = []
+    for _ in range(impacts):
+        departure = dynamics.depart(impact)
+        after, passed = dynamics.fly(departure)
+        velocities.append(float(dynamics.section(impact)[1][0]))
+        durations.append(float(departure.duration[0]))
+        resumes.append(bool(impact.displacement[0] < 0))
+        later = passed + time_to_section(dynamics, after) - time_to_section(dynamics, impact)
+        last = phases[-1] + float(later[0])
+        phases.append(float(reduce_angle(np.array(last))))
+        turns.append(round((last - phases[-1]) / (2 * np.pi)))
+        impact = after
+    # The last phase is replaced by the first one.
+    turns[-1] += round((phases[-1] - phases[0]) / (2 * np.pi))
+    if any(resumes):
+        _check_resumption(dynamics)
+    selects = dynamics.continues and max(durations) > 0
+    problem = PeriodicOrbits(
+        family=family,
+        impacts=impacts,
+        turns=np.array(turns),
+        along=tuple(along),
+        selects=selects,
+        resumes=np.array(resumes),
+    )
+    values = {name: family.values[name] for name in along}
+    rows = (np.array(row) for row in (phases[:-1], velocities, durations))
+    return problem, problem.point(*rows, **values)
+
+
+def _check_resumption(dynamics: Dynamics) -> None:
+    if dynamics.contact is None or dynamics.contact.lag is None:
+        raise NoOrbitError(
+            "in this orbit a contact resumes below the level of the table while the ball rises, "
+            "and for its law no equations are defined for such a start"
+        )
+
+
+def is_admissible(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
+    """Whether a simulated ball follows the orbits, with the first releases and landings.
+
+    The events of the simulation are certified (:mod:`bouncing_ball.numerics.first_zero`).
+    """
+    dynamics, inside = orbits.dynamics(y)
+    shape = (*y.shape[:-1], orbits.impacts)
+    if dynamics is None:
+        return np.zeros(y.shape[:-1], dtype=bool)
+    _, velocity = orbits.states(y)
+    same = np.zeros(inside.shape, dtype=bool)
+    closing = np.where(orbits.resuming, -velocity, velocity).ravel()
+    possible = np.flatnonzero(inside & (closing < 0) & np.isfinite(closing))
+    if not possible.size:
+        return np.all(same.reshape(shape), axis=-1)
+    part = dynamics.take(possible)
+    impact = pick(orbits.impact(dynamics, y), possible)
+    expected = orbits.durations(y).ravel()[possible]
+    departure = part.depart(impact, differentiate=True)
+    if orbits.selects and part.forgets:
+        # The bounces before a rest belong to the leg in which the ball comes to rest.
+        early = departure.sticks & (expected == 0)
+        departure = part.depart_after(impact, np.where(early, np.nan, expected))
+    going = np.flatnonzero(departure.status == Status.BOUNCING)
+    possible = possible[going]
+    expected = expected[going]
+    part, impact, departure = part.kept(going, impact, departure)
+    after, passed = part.fly(departure)
+    interval = orbits.intervals(y).ravel()[possible]
+    late = passed + time_to_section(part, after) - time_to_section(part, impact) - interval
+    longer = departure.duration - expected if orbits.selects else np.zeros_like(late)
+    resumes = np.broadcast_to(np.roll(orbits.resuming, -1), shape).ravel()[possible]
+    alike = (after.displacement < 0) == resumes
+    same[possible] = alike & (np.maximum(np.abs(late), np.abs(longer)) < _SAME * interval)
+    return np.all(same.reshape(shape), axis=-1) & (sticking(orbits, y) > 0)

@@ -1,0 +1,205 @@
+r"""Special orbits on a branch: where the orbit changes its stability, or meets another contact.
+
+Each event except the last is a zero of a smooth function along the branch, which is located
+together with the equations of the orbit, to the accuracy of Newton's method:
+
+* a saddle-node and a period doubling, where a multiplier is 1 or -1;
+* the grazing of a flight: the ball touches the table in flight, at a local minimum of the height δ;
+* the grazing of an impact: the ball lands with δ′ = 0, so that this impact appears or disappears;
+* the grazing of a release: within a contact the release function y = δ + κ δ′ touches 0, at a local
+  maximum, so that the contact opens there;
+* the end of sticking in the restitution model: the ball comes to rest just when the table leaves it
+  behind, so that it would no longer stick. It is bisected along the branch to the last digit.
+
+A minimum of δ in flight is unique in each interval in which Λ sin τ > 1, because δ″ = Λ sin τ - 1
+is positive there and nowhere else. All minima are therefore found.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from enum import StrEnum
+
+import numpy as np
+
+from bouncing_ball import datasets
+from bouncing_ball.models.flight import Flight
+from bouncing_ball.numerics.arrays import pick
+from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.numerics.events import Event
+from bouncing_ball.periodic.problem import PeriodicOrbits
+from bouncing_ball.periodic.release import release_condition, release_margin
+from bouncing_ball.periodic.stability import Bifurcation
+
+# A time is bisected until a minimum is known to 2⁻²⁶ of an interval of at most π; its height then
+# has an error of the order of the square.
+_BISECTIONS = 26
+# The value of a function where there is no minimum or maximum, and thus no event near.
+_FAR = 1.0
+
+
+class Special(StrEnum):
+    """The kinds of special orbits."""
+
+    SADDLE_NODE = datasets.SADDLE_NODE
+    PERIOD_DOUBLING = datasets.PERIOD_DOUBLING
+    GRAZING_FLIGHT = "grazing of a flight"
+    GRAZING_IMPACT = "grazing of an impact"
+    GRAZING_RELEASE = "grazing of a release"
+    STICKING = "end of sticking"
+    PERIOD_HALVING = "period halving"
+
+
+MEANINGS = {
+    Special.SADDLE_NODE: "a multiplier is 1: two orbits merge",
+    Special.PERIOD_DOUBLING: "a multiplier is -1: an orbit of twice the period branches off",
+    Special.GRAZING_FLIGHT: "a flight touches the table: beyond it there is one impact more",
+    Special.GRAZING_IMPACT: "the ball lands with the speed of the table: an impact disappears",
+    Special.GRAZING_RELEASE: "a contact touches its release: beyond it there is one flight more",
+    Special.PERIOD_HALVING: "the orbit merges with one of half its period, whose period doubles",
+    Special.STICKING: "the ball comes to rest as the table leaves it behind",
+}
+"""What each kind of special orbit is."""
+
+
+def flight_margin(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
+    """The smallest local minimum of δ in flight over the legs of each orbit, of the leading shape
+    of y; 1 where there is none.
+    """
+    legs = orbits.legs(y)
+    if legs.departure is None:
+        return np.full(y.shape[:-1], np.nan)
+    flight = legs.departure.flight
+    duration = np.where(np.isfinite(legs.duration.ravel()), legs.departure.duration, np.nan)
+    with np.errstate(all="ignore"):
+        lowest = _lowest(flight, legs.passed - duration)
+    return lowest.reshape(legs.duration.shape).min(axis=-1)
+
+
+def _lowest(flight: Flight, time: np.ndarray) -> np.ndarray:
+    """The smallest local minimum of δ within each flight of this duration, 1 if there is none."""
+    lowest = np.full(time.shape, _FAR)
+    amplitude = np.broadcast_to(flight.amplitude, time.shape)
+    may = np.flatnonzero((amplitude > 1) & np.isfinite(time))
+    if not may.size:
+        return lowest
+    part = pick(flight, may)
+    longest = time[may]
+    opening = np.arcsin(1 / amplitude[may])
+    start = np.arctan2(part.y, part.x)
+    # The first interval with Λ sin τ > 1 that ends after the start of the flight.
+    low = opening - start
+    width = np.pi - 2 * opening
+    low = low - 2 * np.pi * np.floor((low + width) / (2 * np.pi))
+    while np.any(low < longest):
+        left = np.clip(low, 0.0, longest)
+        right = np.clip(low + width, 0.0, longest)
+        falls = part.gap(left)[1] < 0
+        rises = part.gap(right)[1] > 0
+        turns = np.flatnonzero(falls & rises)
+        if turns.size:
+            bottom = _bottom(pick(part, turns), left[turns], right[turns])
+            lowest[may[turns]] = np.minimum(lowest[may[turns]], bottom)
+        low = low + 2 * np.pi
+    return lowest
+
+
+def _bottom(flight: Flight, left: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """The minimum of δ between times at which δ falls and rises."""
+    for _ in range(_BISECTIONS):
+        middle = (left + right) / 2
+        falls = flight.gap(middle)[1] < 0
+        left = np.where(falls, middle, left)
+        right = np.where(falls, right, middle)
+    gap, rate, second, _ = flight.gap(left)
+    return gap - rate * rate / (2 * second)
+
+
+def impact_margin(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
+    """The smallest speed of the impacts of each orbit, -v, or v where a contact resumes while the
+    ball rises; of the leading shape of y.
+    """
+    _, velocity = orbits.states(y)
+    return np.where(orbits.resuming, velocity, -velocity).min(axis=-1)
+
+
+def sticking(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
+    """1 for orbits whose balls come to rest wherever the equations say so, also for those without a
+    rest, and -1 for others; of the leading shape of y.
+
+    Next to the end of sticking the rest vanishes as a power of the distance with an exponent that
+    is no whole number, and infinitely many bounces precede it. No function of the state is smooth
+    there, whereas the equations of the orbit are, because the lift-off depends on Λ alone.
+    """
+    legs = orbits.legs(y)
+    dynamics, inside = orbits.dynamics(y)
+    if dynamics is None:
+        return np.ones(y.shape[:-1])
+    rests = np.flatnonzero(inside & (orbits.durations(y).ravel() > 0))
+    settles = np.ones(inside.shape, dtype=bool)
+    settles[rests] = dynamics.take(rests).settles(pick(legs.impact, rests))
+    return np.where(settles.reshape(legs.duration.shape).all(axis=-1), 1.0, -1.0)
+
+
+def loss_of_release(orbits: PeriodicOrbits) -> Event:
+    """The speed δ′ with which the ball leaves the table relative to that of its impact, the
+    smallest of an orbit.
+
+    Where it vanishes, a flight disappears. The release then is a double zero and its time is not a
+    smooth function of the state, so that the place is the end of a branch, but is not located. An
+    impact that grazes also has a slow release, but their ratio tends to 1.
+    """
+
+    def share(y: np.ndarray) -> np.ndarray:
+        legs = orbits.legs(y)
+        if legs.departure is None:
+            return np.full(y.shape[:-1], np.nan)
+        _, closing = orbits.states(y)
+        velocity = legs.departure.flight.velocity.reshape(closing.shape)
+        # The bounces before a rest on the table become arbitrarily slow.
+        rests = np.any(legs.departure.sticks) if orbits.family.dynamics({}).forgets else False
+        lowest = (velocity / np.abs(closing)).min(axis=-1)
+        return np.full(lowest.shape, _FAR) if rests else lowest
+
+    return Event("release without speed", share)
+
+
+def turns_apart(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
+    """The distance of the two halves of each orbit, the root of the mean square over its impacts.
+
+    It vanishes for an orbit that repeats after half its period; 1 for odd k.
+    """
+    half, rest = divmod(orbits.impacts, 2)
+    if rest:
+        return np.full(y.shape[:-1], _FAR)
+    phase, velocity = orbits.states(y)
+    turned = reduce_angle(phase - np.roll(phase, half, axis=-1))
+    faster = velocity - np.roll(velocity, half, axis=-1)
+    return np.sqrt(np.mean(turned**2 + faster**2, axis=-1))
+
+
+def events(orbits: PeriodicOrbits) -> Sequence[Event]:
+    """The events along a branch, which ends where an impact grazes and where sticking ends."""
+
+    def bifurcation(kind: Bifurcation) -> Event:
+        return Event(
+            Special(kind),
+            lambda y: kind.test(*orbits.trace_and_determinant(y)),
+            condition=lambda y: orbits.bifurcation(kind, y),
+        )
+
+    def end(kind: Special, margin) -> Event:
+        reason = f"{kind}: {MEANINGS[kind]}"
+        return Event(kind, lambda y: margin(orbits, y), terminal=True, reason=reason)
+
+    return (
+        bifurcation(Bifurcation.SADDLE_NODE),
+        bifurcation(Bifurcation.PERIOD_DOUBLING),
+        Event(Special.GRAZING_FLIGHT, lambda y: flight_margin(orbits, y)),
+        Event(
+            Special.GRAZING_RELEASE,
+            lambda y: release_margin(orbits, y),
+            condition=lambda y: release_condition(orbits, y),
+        ),
+        end(Special.GRAZING_IMPACT, impact_margin),
+        replace(end(Special.STICKING, sticking), is_sign=True),
+    )

@@ -1,0 +1,59 @@
+"""The commands and the scripts of docs/engines.md and README.md print what these pages say."""
+
+import re
+import runpy
+import shlex
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from bouncing_ball.cli.main import main
+from bouncing_ball.contacts.engines.choice import ENGINES
+from bouncing_ball.contacts.engines.engine import Physical
+
+ROOT = Path(__file__).parents[3]
+PAGE = (ROOT / "docs" / "engines.md").read_text(encoding="utf-8")
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+BLOCKS, SHOWN = (
+    re.findall(r"```\n\$ ((?:.*\\\n)*.*)\n([^`]*)```", text) for text in (PAGE, README)
+)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("command", "printed"), BLOCKS + SHOWN)
+def test_a_command_prints_what_the_page_says(command, printed, monkeypatch, capsys):
+    program, *arguments = shlex.split(command.replace("\\\n", ""))
+    monkeypatch.chdir(ROOT)
+    if program == "bouncing-ball":
+        main(arguments)
+    else:
+        runpy.run_path(*arguments, run_name="__main__")
+    out = capsys.readouterr().out
+    # Where the page leaves something out, a part of it.
+    part = "…" in printed
+    assert printed.strip("…\n") in out if part else printed.rstrip() == out.rstrip()
+
+
+def test_every_script_is_on_the_page_and_the_readme_begins_with_an_engine():
+    scripts = sorted((ROOT / "docs" / "engines").glob("*.py"))
+    commands = [command for command, _ in BLOCKS]
+    assert {f"python docs/engines/{path.name}" for path in scripts} < set(commands)
+    assert SHOWN[0][0] == BLOCKS[0][0] and len(SHOWN) == 2
+    assert all(len(path.read_text(encoding="utf-8").splitlines()) <= 30 for path in scripts)
+
+
+def test_the_table_has_every_engine_with_its_formulas_and_releases():
+    rows = re.findall(r"^\| `(\w+)` \| (.+) \| (.+) \|$", PAGE, re.MULTILINE)
+    assert [name for name, *_ in rows] == [*[*ENGINES][1:], "generic"]
+    contact = Physical(2.0, 300.0, 5.0)
+    for name, formulas, releases in rows:
+        found = ENGINES[name].parameters(contact)
+        values = {}
+        for parameter, cell in re.findall(r"`(\w+)` = ([^`]+?)(?:, (?=`)|$)", formulas):
+            python = re.sub(r"(\d)(?=[kc])", r"\1*", cell.replace("−", "-"))
+            values[parameter] = eval(python, dict(zip("mkc", contact, strict=True)))
+        assert set(values) >= set(ENGINES[name].names) - {"solimp"}
+        for parameter, value in values.items():
+            assert np.array_equal(found[parameter], value)
+        assert re.findall("displacement|force", releases) == list(map(str, ENGINES[name].releases))

@@ -1,0 +1,267 @@
+"""What a ball does in the end: labels, statistics and the verdict on them."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball import design
+from bouncing_ball.contacts.results import FinalMotion, Mean
+from bouncing_ball.contacts.verdict import aside, judged_by_motion
+from bouncing_ball.errors import ModelError
+from bouncing_ball.long_run.destination import final_motions
+from bouncing_ball.long_run.means import means as means_of
+from bouncing_ball.long_run.sampled_means import Starts, follow, start
+from bouncing_ball.models.laws.linear import LinearLaw
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+
+UNIT = {"mass": 1.0, "angular_frequency": 1.0, "gravity": 1.0, "restitution": 0.85, "n": 1}
+
+
+@pytest.mark.parametrize("law", [RestitutionModel(1.0), LinearLaw(4.0, 0.0), LinearLaw(40.0, 0.0)])
+def test_an_elastic_ball_has_the_energy_that_the_table_gives_it(law):
+    dynamics, first = start(law, 1.7, Starts(np.array([0.4]), np.array([-4.0])))
+    first, _ = follow(dynamics, first, 3)
+    last, sums = follow(dynamics, first, 36)
+    energy = [
+        (each.velocity + 1.7 * np.cos(each.phase)) ** 2 / 2 + 1.7 * np.sin(each.phase)
+        for each in (first, last)
+    ]
+    # The nodes of a contact are right to rounding; so is the simulation.
+    assert sums[2] == pytest.approx(energy[1] - energy[0], rel=1e-9, abs=1e-9)
+
+
+def test_an_instant_takes_its_impulse_times_the_speed_of_the_table():
+    found = RestitutionModel(0.6).simulate(2.3, 0.4, -4.0, 60)
+    impulse = -1.6 * found.relative_velocity[:-1]
+    work = np.sum(impulse * 2.3 * np.cos(found.phase[:-1]))
+    once = Starts(np.array([0.4]), np.array([-4.0]))
+    _, sums = follow(*start(RestitutionModel(0.6), 2.3, once), 59)
+    assert sums[2] == pytest.approx(work, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("amplitude", "kind", "says"),
+    [
+        (0.8, "orbit", "The 1-T orbit is stable: a ball on it stays on it. A ball laid on the"),
+        (
+            1.1,
+            "subharmonic",
+            "doubled orbit, which repeats after 2 periods of the table and 2 impacts.",
+        ),
+        (2.0, "chaotic", "A ball that starts near it ends in chaotic motion."),
+    ],
+)
+def test_the_headline_says_what_the_ball_does(amplitude, kind, says):
+    found = design(**UNIT, acceleration=amplitude, stiffness=5000.0, tolerance="20 %")
+    assert found.motion.kind == kind and says in found.headline
+    assert found.headline != found.verdict
+    if kind == "orbit":
+        assert found.motion.laid == "permanent contact"
+        # A ball laid on this table is thrown onto the orbit.
+        thrown = design(**UNIT | {"restitution": 0.2}, acceleration=2.43, stiffness=4900.0)
+        assert thrown.motion.laid is None
+        return
+    assert found.motion.restitution_kind == kind
+    # An orbit that no ball has is not judged.
+    assert "1-T orbit" not in found.verdict
+    if kind == "chaotic":
+        for name in ("height", "power"):
+            exact, simple = getattr(found.motion, f"mean_{name}").values()
+            off, margin = vars(found.motion.mean_error[name]).values()
+            assert off == pytest.approx(simple.value / exact.value - 1, rel=1e-9)
+            size = abs(off)
+            shown = (
+                f"at most {100 * (size + margin):.2g} %"
+                if margin > size
+                else f"{100 * off:+.2g} % ±"
+            )
+            assert shown in found.verdict
+            assert 0 < exact.half_width < 0.1 * exact.value
+        # What the table gives, the impacts lose: (1 - r²)/2 of the squared relative speed.
+        impacts = RestitutionModel(0.85).simulate(2.0, 1.4, np.linspace(-3.2, -3.0, 64), 500)
+        lost = (1 - 0.85**2) / 2 * np.sum(impacts.relative_velocity[100:-1] ** 2, axis=0)
+        power = lost / (impacts.time[-1] - impacts.time[100])
+        margin = 4 * (power.std() / 8 + simple.half_width / 2)
+        assert simple.value == pytest.approx(power.mean(), abs=margin)
+
+
+@pytest.mark.parametrize(
+    ("amplitude", "restitution", "kind", "says"),
+    [(0.2, 0.85, "permanent contact", "stays at rest."), (1.1, 0.2, "locked", "sticks to the")],
+)
+def test_where_there_is_no_orbit_the_ball_is_laid_on_the_table(amplitude, restitution, kind, says):
+    given = UNIT | {"n": None, "restitution": restitution, "stiffness": 5000.0}
+    found = design(**given, acceleration=f"{amplitude} m/s^2", tolerance="5 %")
+    assert found.headline.startswith("No model has an n-T orbit.") and says in found.headline
+    assert found.motion.kind == found.motion.restitution_kind == kind and found.is_good_enough
+    assert "no n-T orbit in any model" in found.reason and not found.judged.exists
+    if kind == "locked":
+        # Means over whole repetitions are those of one repetition, which all balls share.
+        contact = SpringDamper.from_restitution(restitution, np.sqrt(5000.0))
+        models = SpringDamperModel(contact), RestitutionModel(restitution)
+        for model, *shown in zip(
+            models, found.motion.mean_height.values(), found.motion.mean_power.values(), strict=True
+        ):
+            motion = final_motions(model, amplitude, np.pi, -amplitude)
+            once = means_of(model, amplitude, motion, 1)[1:3]
+            assert [x.value for x in shown] == pytest.approx(once.tolist(), rel=1e-9)
+
+
+def test_a_verdict_on_an_orbit_says_that_it_leaves_out_a_ball_laid_on_the_table():
+    found = design(**UNIT | {"n": 7, "stiffness": 1e5}, acceleration=2.0, tolerance="20 %")
+    assert found.motion.kind == "orbit" and found.motion.laid not in (None, "permanent contact")
+    assert found.verdict.endswith(", and is not judged.") and "; a ball laid" in found.verdict
+
+
+def test_a_ball_laid_on_the_table_is_left_out_without_a_word_where_it_rests_in_both_models():
+    # A ball with restitution alone rests up to Λ = 1.
+    for laid, amplitude in (("permanent contact", 1.01), ("chaotic", 0.9)):
+        assert aside(FinalMotion("orbit", 1, 1, laid), amplitude).endswith("and is not judged")
+    assert aside(FinalMotion("orbit", 1, 1, "permanent contact"), 1.0) == ""
+
+
+def test_without_loss_a_ball_stays_beside_the_orbit(short_runs):
+    lossless = UNIT | {"restitution": 1.0, "stiffness": 1e4, "tolerance": "5 %"}
+    found = design(**lossless, acceleration=0.5)
+    assert "loses no energy" in found.headline and found.is_good_enough
+    assert not any("no ball stays" in note for note in found.notes)
+    # Beyond the period doubling at Λ = 1 neighbours leave it even so.
+    beyond = design(**lossless, acceleration=1.2)
+    assert "not stable" in beyond.headline and "1-T orbit" not in beyond.verdict
+
+
+def motion(kind, other, **more):
+    return FinalMotion(
+        kind=kind,
+        periods=0,
+        impacts=0,
+        restitution_kind=other,
+        restitution_periods=0,
+        restitution_impacts=0,
+        **more,
+    )
+
+
+def means(height, width, other="chaotic"):
+    errors = {"height": Mean(height, width), "power": Mean(0.01, 0.0)}
+    exact = dict.fromkeys(("spring-damper", "restitution"), Mean(1.0, 0.0))
+    given = {"mean_height": exact, "mean_power": exact, "mean_error": errors, "balls": 256}
+    return motion("chaotic", other, **given)
+
+
+LOCKED = ("locked", "locked")
+
+
+@pytest.mark.parametrize(
+    ("found", "good", "says"),
+    [
+        (motion("permanent contact", "permanent contact"), True, "the ball rests in both models"),
+        (motion("locked", "permanent contact"), False, "its motion is permanent contact, and the"),
+        (motion("subharmonic", "orbit"), False, "is periodic, and the contact's is doubled"),
+        (
+            motion(*LOCKED, greatest={"a": 1.0, "b": 1.04}),
+            True,
+            "1.04 m in place of 1 m, +4 %, within",
+        ),
+        (
+            motion(*LOCKED, greatest={"a": 1.0, "b": 0.94}),
+            False,
+            "m in place of 1 m, -6 %, beyond 5 %",
+        ),
+        (motion("chaotic", "chaotic"), False, "is not known"),
+        (motion("undecided", "permanent contact"), False, "is not known"),
+        (
+            means(0.02, 0.005),
+            True,
+            "1 m, +2.0 % ± 0.5 % and a mean power of 1 W in place of 1 W, +1 %, within",
+        ),
+        (means(-0.02, 0.005), True, "a mean height of 1 m in place of 1 m, -2.0 % ± 0.5 % and"),
+        (means(0.0, 0.02), True, "height of 1 m in place of 1 m, at most 2 % off and a mean power"),
+        (
+            means(0.009, 0.045),
+            False,
+            "at 5 %: it predicts a mean height of 1 m in place of 1 m, at most 5.4 % off",
+        ),
+        (
+            means(0.04, 0.02),
+            False,
+            "not decided at 5 %: it predicts a mean height of 1 m in place of 1 m, +4 % ± 2 %",
+        ),
+        (
+            means(-0.12, 0.005),
+            False,
+            "enough: it predicts a mean height of 1 m in place of 1 m, -12.0 % ± 0.5",
+        ),
+    ],
+)
+def test_the_verdict_on_a_motion(found, good, says):
+    verdict = judged_by_motion(found, 0.05, 1)
+    assert verdict.is_good_enough is good and says in verdict.verdict
+
+
+@pytest.mark.parametrize(
+    ("found", "advice"),
+    [
+        # An interval shrinks as the square root of the number: 256 (2/1)² = 1024.
+        (means(0.04, 0.02), "256 balls is too small to decide; with balls = 1100 (--balls 1100)"),
+        (means(0.0499, 0.02), "so is any up to 100000: the error is next to the tolerance"),
+        (means(0.04, 0.02, "locked"), "no larger sample would decide, as rounding errors decide"),
+    ],
+)
+def test_an_undecided_verdict_says_how_many_balls_would_decide(found, advice):
+    assert advice in judged_by_motion(found, 0.05, 1).reason
+
+
+def test_a_larger_sample_decides_what_a_smaller_one_leaves_open():
+    given = {"mass": "20 g", "frequency": "50 Hz", "acceleration": "2 g", "restitution": 0.5}
+    asked = given | {"stiffness": "1e7 N/m", "tolerance": 0.2465}
+    small = design(**asked, balls=256)
+    assert "not decided" in small.verdict and small.motion.balls == 256
+    large = design(**asked, balls=10_000)
+    assert "not decided" not in large.verdict and large.motion.balls > 256
+
+
+def test_beside_a_lap_that_rounding_errors_decide_on_the_interval_is_that_of_the_lap():
+    """In the restitution model a ball sticks again after 72 impacts, and has lost 14 digits."""
+    given = {"mass": "20 g", "frequency": "50 Hz", "acceleration": "4 g", "restitution": 0.5}
+    found = design(**given, stiffness="1e7 N/m").motion
+    assert (found.restitution_kind, found.restitution_periods) == ("locked", 0)
+    exact, simple = found.mean_height.values()
+    assert exact.half_width == 0 and simple.half_width > 0.05 * simple.value
+    # The mean over all laps is that of balls that are thrown after each rest with some digits less.
+    model = RestitutionModel(0.5)
+    random = np.random.default_rng(3)
+    starts = Starts(random.uniform(-3, 3, 300), random.uniform(-20, -5, 300))
+    dynamics, first = start(model, 4.0, starts)
+    first, _ = follow(dynamics, first, 200)
+    _, (time, height, _) = follow(dynamics, first, 800)
+    length = 9.80665 / (2 * np.pi * 50) ** 2
+    assert abs(simple.value - length * height.sum() / time.sum()) < simple.half_width
+
+
+@pytest.mark.parametrize("balls", [0, 100_001, 2.5, "x"])
+def test_a_number_of_balls_out_of_range_is_refused(balls):
+    with pytest.raises(
+        ModelError, match=r"\{?balls\}? = .* is not a whole number from 1 to 100000"
+    ):
+        design(**UNIT, stiffness=5000.0, acceleration=2.0, balls=balls)
+
+
+def test_the_heights_of_a_motion_are_in_metres():
+    """The same dimensionless case in other units has heights in the ratio of the lengths g/Ω²."""
+    given = {"acceleration": 1.1, "stiffness": 5000.0, "tolerance": "20 %"}
+    unit = design(**UNIT, **given)
+    omega = 2 * np.pi * 20
+    real = {"mass": 0.3, "angular_frequency": omega, "restitution": 0.85, "n": 1}
+    found = design(**real, acceleration="1.1 g", stiffness=0.3 * 5000 * omega**2, tolerance="20 %")
+    assert found.motion.kind == unit.motion.kind == "subharmonic"
+    length = 9.80665 / omega**2
+    for name, height in found.motion.greatest.items():
+        assert height == pytest.approx(length * unit.motion.greatest[name], rel=1e-6)
+    # Greatest heights by a simulation of the restitution model, over both impacts of the motion.
+    model = RestitutionModel(0.85)
+    run = model.simulate(1.1, 1.2, -3.0, 4000)
+    late = slice(-4, None)
+    tops = 1.1 * np.sin(run.phase[late]) + run.bounce_velocity[late] ** 2 / 2
+    assert unit.motion.greatest["restitution"] == pytest.approx(tops.max(), rel=1e-6)

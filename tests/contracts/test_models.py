@@ -1,0 +1,387 @@
+"""What every model of the impact keeps, whatever its law.
+
+A new model is one more line of :data:`MODELS`; ``plastic_impact.py`` beside this
+file is an example of one. Tolerances are roundings, of
+times some 2πn and of velocities some nπ, grown by the quantity that is named
+beside them.
+"""
+
+import runpy
+from functools import cache
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.models.laws.contact_law import ContactLaw
+from bouncing_ball.models.laws.elasto_backlash import ElastoBacklash
+from bouncing_ball.models.laws.hertzian import KuwabaraKono, Tsuji
+from bouncing_ball.models.laws.impedance import Impedance
+from bouncing_ball.models.laws.linear import LinearLaw
+from bouncing_ball.models.laws.signature import Signature
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.numerics.corrector import NewtonSettings, newton
+from bouncing_ball.numerics.events import vanishing
+from bouncing_ball.periodic.continued_orbits import bifurcation, orbit_at, orbits_at
+from bouncing_ball.periodic.corrected_orbits import CorrectedModel
+from bouncing_ball.periodic.law_orbits import LawModel
+from bouncing_ball.periodic.model import ImpactModel
+from bouncing_ball.periodic.orbit import OBSERVABLES
+from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic.stability import Bifurcation, Side
+
+EPS = np.finfo(float).eps
+COMPLIANT = SpringDamper.from_restitution(0.85, 4.0)
+STIFF = SpringDamper.from_restitution(0.65, 50.0)
+PUSHING = SpringDamper.from_restitution(0.65, 20.0, "force")
+HERTZ = {
+    "tsuji": Tsuji(500.0, 0.3),
+    "kuwabara-kono": KuwabaraKono(2e3, 0.008),
+    "impedance": Impedance(15.0, 0.1),
+    "elasto-backlash": ElastoBacklash(15.0, 0.1),
+    "hardening spring": runpy.run_path(str(Path(__file__).with_name("hardening_spring.py")))["LAW"],
+}
+# Of contacts and their derivatives: roundings, but for the laws without a closed form,
+# where it is the collocation's convergence, and of a simulated cycle its own tolerance, 1e-12
+# of the velocity in each of some ten steps.
+EXACT = {name: 1e-12 for name in HERTZ}
+SIMULATED = {name: 1e-11 for name in HERTZ}
+OWN = runpy.run_path(str(Path(__file__).with_name("plastic_impact.py")))
+MODELS = {
+    "restitution": RestitutionModel(0.65),
+    "elastic": RestitutionModel(1.0),
+    "compliant contact": SpringDamperModel(COMPLIANT),
+    "stiff contact": SpringDamperModel(STIFF),
+    "force release": SpringDamperModel(PUSHING),
+    "undamped contact": SpringDamperModel(SpringDamper(10.0, 0.0)),
+    "corrected": CorrectedModel.of_contact(STIFF),
+    "corrected, force release": CorrectedModel.of_contact(PUSHING),
+    "corrected, kuwabara-kono": CorrectedModel(Signature(HERTZ["kuwabara-kono"])),
+    **{name: LawModel(law) for name, law in HERTZ.items()},
+    "one's own": OWN["MODEL"],
+}
+# Other laws of the same model: one of them is tried often, and the others weekly.
+SELDOM = ("kuwabara-kono", "elasto-backlash", "impedance")
+DISSIPATIVE = [name for name in MODELS if name not in ("elastic", "undamped contact")]
+# n, and Λ over the saddle-node's and below the table's grazing, Λ > 1 included.
+CASES = [(1, 0.3), (2, 0.3), (1, 0.6)]
+
+
+def often(names):
+    """Names of models as parameters, some of them of long tests only."""
+    return [pytest.param(x, marks=pytest.mark.long if x in SELDOM else ()) for x in names]
+
+
+def cases(names):
+    """All cases of models by their names, each on both sides."""
+    return [
+        pytest.param(x, id="-".join(map(str, x)), marks=pytest.mark.long if x[0] in SELDOM else ())
+        for x in product(names, CASES, Side)
+    ]
+
+
+every_model = pytest.mark.parametrize("name", often(MODELS))
+every_case = pytest.mark.parametrize(("n", "above"), CASES)
+every_side = pytest.mark.parametrize("side", list(Side))
+
+
+@cache
+def bifurcations(name, n):
+    return MODELS[name].saddle_node(n), MODELS[name].period_doubling(n)
+
+
+@cache
+def some_orbit(name, n, above, side):
+    model = MODELS[name]
+    node = float(bifurcations(name, n)[0].amplitude)
+    return model.require_orbit(n, (0.0 if np.isnan(node) else node) + above, side)
+
+
+@pytest.fixture(params=cases(MODELS))
+def some(request):
+    """Name, model, n, and an orbit: of every model in every case on every side."""
+    name, (n, above), side = request.param
+    return name, MODELS[name], n, some_orbit(name, n, above, side)
+
+
+def differences(function, y, steps):
+    """Central differences of fourth order along every entry of y, last axis."""
+    weights = np.array([1, -8, 8, -1]) / 12
+    columns = []
+    for k, step in enumerate(steps):
+        moved = [y + j * step * np.eye(len(y))[k] for j in (-2, -1, 1, 2)]
+        columns.append(sum(w * function(x) for w, x in zip(weights, moved, strict=True)) / step)
+    return np.stack(columns, axis=-1)
+
+
+def test_an_orbit_solves_its_equations(some):
+    _, model, n, orbit = some
+    # Heights of order (nπ)²; a contact's phase ϖD is rounded too.
+    size = (1 + np.pi * n) ** 2 * (1 + float(orbit.clock) * float(orbit.contact_duration))
+    assert orbit.defect() < 100 * EPS * size
+    system = model.system(n)
+    y = system.point(orbit)
+    assert np.max(np.abs(system.residual(y))) < 100 * EPS * size
+    assert system.orbit(y).distance(orbit) < 100 * EPS * size
+
+
+def test_the_jacobian_is_the_derivative_of_the_equations(some):
+    _, model, n, orbit = some
+    system = model.system(n)
+    y = system.point(orbit)
+    computed = system.jacobian(y)
+    # Fourth order: h⁴/30 = 3e-14 times a fifth derivative, and roundings over h.
+    expected = differences(system.residual, y, np.full(len(y), 1e-3))
+    assert np.abs(computed - expected).max() < 1e-9 * (1 + np.abs(computed).max())
+
+
+def test_an_orbit_is_a_fixed_point_of_the_simulation(some):
+    name, model, n, orbit = some
+    assert orbit.is_admissible()
+    u = orbit.relative_impact_velocity
+    growth = 1 + np.abs(orbit.monodromy()).max()
+    for cycle in (model.cycle(orbit.amplitude, orbit.phase, u), orbit.cycle(orbit.phase, u)):
+        rounding = SIMULATED.get(name, 100 * EPS * 2 * np.pi * n)
+        assert abs(cycle.time - 2 * np.pi * n) < rounding * growth
+        assert abs(cycle.relative_velocity - u) < rounding * growth
+    sequence = model.simulate(orbit.amplitude, orbit.phase, orbit.impact_velocity, 2)
+    missed = SIMULATED.get(name, 1e-12)
+    assert sequence.time[1] == pytest.approx(2 * np.pi * n, abs=missed * growth)
+    assert sequence.contact_duration[0] == pytest.approx(orbit.contact_duration, abs=1e-13 * growth)
+
+
+def test_the_monodromy_is_the_jacobian_of_the_simulated_map(some):
+    _, _, _, orbit = some
+
+    def cycle(state):
+        at = orbit.cycle(state[0], state[1])
+        # The time runs on where the phase is reduced.
+        return np.array([state[0] + at.time, at.relative_velocity])
+
+    state = np.array([float(orbit.phase), float(orbit.relative_impact_velocity)])
+    expected = differences(cycle, state, np.full(2, 1e-3 * min(1.0, abs(state[1]))))
+    computed = orbit.monodromy()
+    assert np.abs(computed - expected).max() < 1e-8 * (1 + np.abs(computed).max() ** 2)
+
+
+# The corrected model's impact is an instant, and no contact.
+@pytest.mark.parametrize(
+    "some", cases(x for x in MODELS if not x.startswith("corrected")), indirect=True
+)
+def test_the_contact_jacobian_is_the_derivative_of_the_contact(some):
+    # Where the force vanishes the map does not feel the time of release, so that
+    # the monodromy would not show an error in it.
+    _, model, _, orbit = some
+
+    def contact(state):
+        phase, relative, lam = state
+        end = model.simulate(lam, phase, relative + lam * np.cos(phase), 1)
+        ends = end.contact_duration, end.release_displacement, end.relative_bounce_velocity
+        return np.array([float(x[0]) for x in ends])
+
+    parts = orbit.phase, orbit.relative_impact_velocity, orbit.amplitude
+    expected = differences(contact, np.array(parts, dtype=float), np.full(3, 1e-3))
+    assert np.abs(orbit.contact_jacobian() - expected).max() < 1e-9 * (1 + np.abs(expected).max())
+
+
+def test_the_determinant_is_the_contraction(some):
+    name, _, _, orbit = some
+    matrix = orbit.monodromy()
+    size = 1 + np.abs(matrix).max() ** 2
+    missed = EXACT.get(name, 100 * EPS)
+    assert abs(np.linalg.det(matrix) - orbit.determinant()) < missed * size
+    trace, det = orbit.trace_and_determinant()
+    assert abs(np.trace(matrix) - trace) < 100 * EPS * size
+    product = np.prod(orbit.multipliers())
+    assert abs(product - det) < 100 * EPS * size
+    # Without dissipation the multipliers lie on the circle, and rounding decides.
+    if name in DISSIPATIVE:
+        assert bool(orbit.is_stable()) == bool(np.all(np.abs(orbit.multipliers()) < 1))
+
+
+@every_case
+@pytest.mark.parametrize("name", often(DISSIPATIVE))
+def test_the_orbits_at_the_bifurcations_have_a_multiplier_plus_or_minus_one(name, n, above):
+    model = MODELS[name]
+    node, doubling = bifurcations(name, n)
+    # The multiplier at a fold is as exact as the root of its distance to 1.
+    assert np.min(np.abs(node.multipliers() - 1)) < 1e-6
+    assert np.min(np.abs(doubling.multipliers() + 1)) < 1e-6
+    between = model.orbit(n, (node.amplitude + doubling.amplitude) / 2)
+    assert between.is_stable()
+    assert not model.orbit(n, node.amplitude + 0.01 * above, Side.UNSTABLE).is_stable()
+    # The continuation's own extended system meets them.
+    system = model.system(n)
+    events = {event.name: event.function for event in system.events()}
+    for kind, orbit in (("saddle-node", node), ("period doubling", doubling)):
+        start = system.point(orbit) * (1 + 1e-4)
+        settings = NewtonSettings(max_iterations=40)
+        found = newton(system, start, vanishing(events[kind]), settings)
+        assert found.converged
+        # The test functions' rounding over their slope, of order one.
+        assert abs(found.point[-1] - orbit.amplitude) < 1e-9
+
+
+def test_the_path_is_continuous_and_closed(some):
+    name, _, n, orbit = some
+    period = 2 * np.pi * n
+    duration = float(orbit.contact_duration)
+    height, velocity = orbit.path([0.0, period, -period, 5 * period])
+    np.testing.assert_allclose(height, height[0], rtol=0, atol=1e-12 * n * n)
+    # The corrected model meets the table's level to second order in the delay only.
+    delay = float(orbit.instant.delay) if name.startswith("corrected") else 0.0
+    missed = 1e-12 + (1 + orbit.amplitude) * delay**2
+    assert height[0] == pytest.approx(orbit.amplitude * np.sin(orbit.phase), abs=missed)
+    np.testing.assert_allclose(velocity, velocity[0], rtol=0, atol=1e-12 * n)
+    # Velocities are the slopes, but at impacts that are instants.
+    time = np.linspace(0, period, 403)[1:-1]
+    h = 1e-4
+    instants = [0.0, duration, period, delay]
+    clear = np.min(np.abs(time[:, None] - instants), axis=1) > 2 * h
+    slope = (orbit.path(time + h)[0] - orbit.path(time - h)[0]) / (2 * h)
+    # Second order: h²/6 times the third derivative of the height, ϖ² and more.
+    assert np.abs(slope - orbit.path(time)[1])[clear].max() < h * h * (1 + float(orbit.clock)) ** 3
+    for end in (duration, period):
+        before, after = (orbit.path(end + s * 1e-9)[0] for s in (-1, 1))
+        assert abs(before - after) < 1e-7
+    # The flight keeps its energy, and is what lifts these balls highest.
+    flying = np.linspace(duration, period, 50)[1:-1]
+    z, v = orbit.path(flying)
+    assert v[0] > 0
+    np.testing.assert_allclose(v * v / 2 + z, orbit.max_height, rtol=100 * EPS)
+
+
+def test_the_ball_is_held_in_contact_and_above_the_table_in_flight(some):
+    # First events: the ball is held in contact, and above the table in flight.
+    _, _, _, orbit = some
+    share = np.linspace(0, 1, 2001)[1:-1]
+    law = LinearLaw.of(orbit.law) if isinstance(orbit.law, SpringDamper) else orbit.law
+    if isinstance(law, ContactLaw):
+        depth, rate = (-x for x in orbit.contact_motion(share * orbit.contact_duration))
+        angle = orbit.phase + share * orbit.contact_duration
+        assert np.all(law.loaded_grip(depth, rate, 1 - orbit.amplitude * np.sin(angle)) > 0)
+    time = float(orbit.contact_duration) + share * float(orbit.flight_time)
+    gap = orbit.path(time)[0] - orbit.amplitude * np.sin(orbit.phase + time)
+    rising = gap > 0
+    end = orbit.contact_path(orbit.contact_duration)[0]
+    if end < orbit.amplitude * np.sin(orbit.release_phase):
+        # Let go below the table's level: it crosses it once, upwards.
+        rising = rising[np.argmax(rising) :]
+        assert len(rising) > len(gap) / 2
+    assert np.all(rising)
+
+
+@every_model
+def test_arrays_are_their_elements(name):
+    model = MODELS[name]
+    amplitude = np.array([[0.01], [1.0]])
+    orbits = model.orbit(np.array([1, 2]), amplitude)
+    assert orbits.shape == (2, 2) and len(orbits) == 2
+    for k in np.ndindex(2, 2):
+        single = model.orbit(k[1] + 1, amplitude[k[0], 0])
+        one = orbits[k]
+        for quantity in OBSERVABLES:
+            assert getattr(one, quantity) == pytest.approx(
+                getattr(single, quantity), rel=1e-11, nan_ok=True
+            )
+    there = orbits[orbits.exists]
+    assert there.size == orbits.exists.sum() > 0
+    # The orbits known by their numbers are the same ones.
+    values = (there.amplitude, there.phase, there.contact_duration, there.impact_velocity)
+    known = model.orbit_of(there.n, *values)
+    np.testing.assert_allclose(known.bounce_velocity, there.bounce_velocity)
+
+
+@pytest.mark.parametrize("name", often(DISSIPATIVE))
+def test_both_sides_are_among_all_orbits_at_an_amplitude(name):
+    model = MODELS[name]
+    found = model.orbits(1, 0.9)
+    assert np.all(np.diff(found.contact_duration) >= 0)
+    for side in Side:
+        assert np.min(found.distance(model.orbit(1, 0.9, side))) < 1e-9
+    assert model.orbits(1, 1e-3).size == 0
+
+
+@every_model
+def test_a_side_may_be_given_by_its_name(name):
+    model = MODELS[name]
+    for side in Side:
+        named = model.orbit(1, 0.9, str(side))
+        assert named.distance(model.orbit(1, 0.9, side)) == 0
+        assert model.absence(1, 0.9, str(side)) == model.absence(1, 0.9, side)
+
+
+@pytest.mark.parametrize("name", [name for name in DISSIPATIVE if MODELS[name].has_closed_form])
+def test_a_closed_form_is_what_the_continuation_finds(name):
+    # What a model overrides against what it would inherit.
+    model = MODELS[name]
+    n = np.array([1, 2])
+    for kind in Bifurcation:
+        exact = {"saddle-node": model.saddle_node, "period doubling": model.period_doubling}[kind](
+            n
+        )
+        # The test functions' rounding over their slope, of order one.
+        np.testing.assert_allclose(
+            bifurcation(model, n, kind).amplitude, exact.amplitude, rtol=1e-9
+        )
+    lam = model.saddle_node(n).amplitude + np.array([[1e-3], [0.3], [0.8]])
+    for side in Side:
+        found = orbit_at(model, n, lam, side)
+        exact = model.orbit(n, lam, side)
+        assert found.exists.tolist() == exact.exists.tolist()
+        # Next to the fold a rounding of Λ is its root in the phase.
+        assert np.nanmax(found.distance(exact)) < 1e-10
+        assert (ImpactModel.absence(model, n, lam, side) == model.absence(n, lam, side)).all()
+    # A closed form may know orbits with long contacts that no branch from here leads to.
+    exact = model.orbits(1, 0.9)
+    for orbit in map(orbits_at(model, 1, 0.9).__getitem__, range(2)):
+        assert np.min(orbit.distance(exact)) < 1e-10
+    assert np.isnan(orbit_at(model, 1, 1e-3, Side.STABLE).phase)
+
+
+@every_side
+@pytest.mark.parametrize("name", [name for name in MODELS if hasattr(MODELS[name], "nearest")])
+def test_the_closed_form_is_nearest_to_its_own_orbits(name, side):
+    orbit = some_orbit(name, 1, 0.6, side)
+    assert MODELS[name].nearest(orbit).distance(orbit) < 1e-12
+
+
+@every_model
+def test_a_wrong_index_and_an_orbit_below_the_fold_are_refused(name):
+    model = MODELS[name]
+    for n in (0, -1, 1.5, np.nan):
+        for ask in (model.saddle_node, model.period_doubling, lambda n: model.orbit(n, 1.0)):
+            with pytest.raises(ModelError, match="not a positive integer"):
+                ask(n)
+    if name in DISSIPATIVE:
+        with pytest.raises(NoOrbitError, match=r"Λ = 0\.001 .*below the saddle-node"):
+            model.require_orbit(1, 1e-3)
+    assert model.permanent_contact_threshold() > 0
+
+
+@pytest.mark.parametrize("n", [1, 3])
+def test_the_orbits_of_a_simple_restitution_law_are_those_found_by_hand(n):
+    # With v = w⁴ the speed of the orbits, v + r v = 2πn, is w⁴ + c^¼ w³ = 2πn, for v > c.
+    model = OWN["MODEL"]
+    c = 0.7**0.25
+    w = max(np.roots([1, c, 0, 0, -2 * np.pi * n]).real)
+    level = w**4 - np.pi * n
+    r = c / w
+    # d(r v)/dv = 3r/4, and 1 + tr + det = 0 at Λ sin φ = 2(1 + ¾r²)/((1 + r)(1 + ¾r)).
+    lift = 2 * (1 + 0.75 * r * r) / ((1 + r) * (1 + 0.75 * r))
+    assert float(model.saddle_node(n).amplitude) == pytest.approx(level, rel=1e-12)
+    assert float(model.period_doubling(n).amplitude) == pytest.approx(np.hypot(level, lift))
+    orbit = model.orbit(n, level + 0.5)
+    assert float(orbit.phase) == pytest.approx(np.arccos(level / (level + 0.5)), rel=1e-12)
+    assert float(orbit.apparent_restitution) == pytest.approx(r, rel=1e-12)
+
+
+def test_each_impact_of_a_simulation_has_its_own_restitution():
+    found = OWN["MODEL"].simulate(0.4, np.array([0.0, 1.0]), np.array([-3.0, -5.0]), 30)
+    speed = -found.relative_velocity
+    expected = np.minimum(1.0, (0.7 / speed) ** 0.25)
+    np.testing.assert_allclose(found.relative_bounce_velocity / speed, expected, rtol=1e-12)
+    assert np.ptp(expected) > 0.1

@@ -1,0 +1,33 @@
+"""An answer has the same bits on a processor without fast paths."""
+
+import os
+import subprocess
+import sys
+
+CODE = """
+import numpy as np, hashlib
+from bouncing_ball.long_run.destination import final_motions
+from bouncing_ball.periodic.corrected_orbits import CorrectedModel
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+rng = np.random.default_rng(5)
+r, lam, phase = rng.uniform([[0.1], [0.9], [-3]], [[0.95], [5], [3]], (3, 60))
+contact = SpringDamper.from_restitution(r, 100.0)
+for model in (RestitutionModel(r), SpringDamperModel(contact), CorrectedModel.of_contact(contact)):
+    found = final_motions(model, lam, phase, -lam - rng.uniform(0, 12, 60), impacts=200)
+    # A chaotic ball of 200 impacts has made a last digit into another motion long ago.
+    assert (found.kind == "chaotic").sum() > 5
+    for values in (found.end_phase, found.end_velocity, found.periods, found.impacts):
+        print(hashlib.sha256(values.tobytes()).hexdigest())
+"""
+
+
+def test_a_processor_without_fast_paths_follows_the_same_balls(capsys):
+    plain = {"NPY_DISABLE_CPU_FEATURES": "X86_V3 X86_V4 AVX512_ICL AVX512_SPR"}
+    plain |= {"GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA,-AVX512F"}
+    exec(CODE, {})
+    here = capsys.readouterr().out
+    command = [sys.executable, "-W", "ignore", "-c", CODE]
+    assert subprocess.check_output(command, env=os.environ | plain, text=True) == here
+    assert here.count("\n") == 12

@@ -1,0 +1,73 @@
+"""The search for orbits along a branch: which one is taken, and how far the branch is followed."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.periodic.continued_orbits import continued, orbit_at
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic.stability import Bifurcation, Side
+
+# The branch of the compliant contact has saddle-nodes at Λ = 0.188 and 1.176 and a second stable
+# side; that of the other one ends at Λ = 2.004, where the ball no longer leaves the table.
+COMPLIANT = SpringDamperModel(SpringDamper.from_restitution(0.85, 2.0))
+SHORT = SpringDamperModel(SpringDamper.from_restitution(0.65, 3.0))
+
+
+@pytest.fixture
+def along_the_branch(monkeypatch):
+    """Newton's method finds no orbit at Λ itself, nor beside the fold: the branch is followed."""
+    module = "bouncing_ball.periodic.continued_orbits"
+    monkeypatch.setattr(f"{module}._beside_fold", lambda _, fold, *__: np.full_like(fold, np.nan))
+
+    def found(model, amplitude, side):
+        # The signs of the sides are exchanged in the first guess, which is then refused.
+        other = Side.UNSTABLE if side is Side.STABLE else Side.STABLE
+        phase = "bouncing_ball.periodic.corrected_branch.instant_phase"
+        original = orbit_at.__globals__["corrected"].instant_phase
+        with monkeypatch.context() as patch:
+            seen = []
+
+            def wrong_first(n, instant, amplitude, stable_side=True):
+                seen.append(stable_side)
+                side_taken = (other is Side.STABLE) if len(seen) == 1 else stable_side
+                return original(n, instant, amplitude, side_taken)
+
+            patch.setattr(phase, wrong_first)
+            return orbit_at(model, 1, amplitude, side)
+
+    return found
+
+
+@pytest.mark.parametrize("side", list(Side))
+@pytest.mark.parametrize("amplitude", [0.4, 0.9, 1.15])
+def test_the_orbit_on_the_branch_is_the_one_next_to_the_fold(along_the_branch, amplitude, side):
+    """Beyond the second saddle-node there is a third orbit at each of these Λ but the first."""
+    found = along_the_branch(COMPLIANT, amplitude, side)
+    assert float(found.distance(COMPLIANT.orbit(1, amplitude, side))) < 1e-10
+
+
+def test_a_side_that_does_not_reach_an_amplitude_has_no_orbit_there():
+    assert not orbit_at(COMPLIANT, 1, 3.0, Side.UNSTABLE).exists
+    assert orbit_at(COMPLIANT, 1, 3.0, Side.STABLE).exists
+
+
+@pytest.mark.parametrize(
+    ("amplitude", "farther", "most"),
+    [
+        # A multiple of Λ, of 1, and at least beyond the start, which is at 1.3 Λ.
+        (1.05, 1.8, 1.8 * 1.05),
+        (0.9, 1.8, 1.8),
+        (0.9, 1.3, 1.3 * 1.3 * 0.9),
+    ],
+)
+def test_a_branch_is_followed_up_to_a_multiple_of_the_amplitude(amplitude, farther, most):
+    special = continued(SHORT, 1, amplitude, farther=farther)
+    assert special[-1].name == "parameter bound"
+    assert float(special[-1].point[-1]) == pytest.approx(most, rel=1e-12)
+
+
+def test_by_default_a_branch_is_followed_to_its_end():
+    special = continued(SHORT, 1, 0.9)
+    assert special[-1].name == "release lost"
+    assert [each.name for each in special].count(Bifurcation.SADDLE_NODE) == 1

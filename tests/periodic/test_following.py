@@ -1,0 +1,292 @@
+"""Branches along any parameter, their events, and the doubled branches."""
+
+import numpy as np
+import pytest
+from orbits_found import FOUND, family, found_family, known_orbit
+
+import bouncing_ball
+from bouncing_ball.errors import NoOrbitError, ParameterError
+from bouncing_ball.long_run.destination import final_motions
+from bouncing_ball.models.damping import damping_ratio
+from bouncing_ball.models.flight import Flight, table
+from bouncing_ball.numerics.corrector import newton, plane
+from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.periodic.branch import whole_branch
+from bouncing_ball.periodic.following import State, follow
+from bouncing_ball.periodic.observables import GRAZING, branch_columns
+from bouncing_ball.periodic.simulation import is_admissible
+from bouncing_ball.periodic.special import Special
+from bouncing_ball.periodic.switching import of_impact, of_motion, switch
+
+CLOSED = ["restitution", "spring-damper", "force release", "corrected"]
+
+
+def start(name, along="amplitude", amplitude=1.3):
+    _, problem, y = known_orbit(name, amplitude, (along,))
+    return State(problem, y)
+
+
+@pytest.mark.parametrize("name", CLOSED)
+def test_the_bifurcations_of_one_impact_are_those_of_the_closed_form(name):
+    model = start(name).orbits.family
+    closed = model.make(model.values)
+    down = follow(start(name), 0.1).first(Special.SADDLE_NODE)
+    up = follow(start(name), 2.0).first(Special.PERIOD_DOUBLING)
+    assert down.parameters["amplitude"] == pytest.approx(
+        float(closed.saddle_node(1).amplitude), abs=1e-12
+    )
+    assert up.parameters["amplitude"] == pytest.approx(
+        float(closed.period_doubling(1).amplitude), abs=1e-12
+    )
+
+
+@pytest.mark.parametrize(("name", "along", "to"), [
+    ("restitution", "restitution", 0.8), ("spring-damper", "frequency_ratio", 3.0),
+    ("force release", "restitution", 0.7), ("corrected", "frequency_ratio", 100.0),
+])  # fmt: skip
+def test_a_branch_along_any_parameter_is_the_closed_form_at_each_point(name, along, to):
+    found = follow(start(name, along), to)
+    assert str(found.branch.end) == f"{along.replace('_', ' ')} = {to:g} is reached"
+    for state in list(found)[::4]:
+        balls = state.orbits.family.at(state.parameters)
+        orbit = balls.make(balls.values).orbit(1, 1.3)
+        offset = np.abs(orbit.trace_and_determinant()[0] - state.orbits.trace_and_determinant(
+            state.y)[0])  # fmt: skip
+        assert offset < 1e-11
+
+
+def test_a_grazing_flight_is_where_the_lowest_point_of_the_flight_is_on_the_table():
+    found = follow(start("restitution", amplitude=2.0), 0.9)
+    grazing = found.first(Special.GRAZING_FLIGHT)
+    lam = grazing.parameters["amplitude"]
+    x, y = table(np.array(grazing.phase[0]), lam)
+    flight = Flight(0.0, -0.5 * grazing.velocity[0], x, y, lam)
+    time = np.linspace(1.0, 6.2, 400_001)
+    gap = flight.gap(time)[0]
+    inside = (time > 1.0) & (time < 6.2)
+    assert abs(gap[inside].min()) < 1e-9
+
+
+@pytest.mark.parametrize("name", ["restitution", "spring-damper"])
+def test_grazing_orbits_are_those_that_bisection_finds(name):
+    balls = family(name, 1.3)
+    model = balls.make(balls.values)
+    branch = whole_branch(model, 1, 6.0, 0.1)
+    columns = branch_columns(model.system(1), branch, 100)
+    expected = columns.special_amplitude.values[columns.special_kind.values == GRAZING]
+    ours = []
+    for to in (5.9, 0.05):
+        found = follow(start(name), to)
+        ours += [s.parameters["amplitude"] for kind, s in found.special
+                 if kind is Special.GRAZING_FLIGHT]  # fmt: skip
+    assert expected.size and all(np.abs(np.array(ours) - x).min() < 1e-12 for x in expected
+                                 if 0.1 < x < 2.5)  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["restitution", "spring-damper"])
+def test_generations_of_doubled_orbits_attract_balls_and_end_where_they_began(name):
+    state = start(name)
+    before = 0.0
+    for generation in range(4):
+        doubling = follow(state, 2.2).first(Special.PERIOD_DOUBLING)
+        lam = doubling.parameters["amplitude"]
+        assert doubling.impacts == 2**generation and lam > before
+        assert doubling.multipliers()[0] == pytest.approx(-1, abs=1e-9)
+        state = switch(doubling, 0.02 / 2.2**generation)
+        back = follow(state, 0.5)
+        halving = back.first(Special.PERIOD_HALVING)
+        assert halving.parameters["amplitude"] == pytest.approx(lam, abs=1e-12)
+        before = lam
+        balls = state.orbits.family.at(state.parameters)
+        model = balls.make(balls.values)
+        here = state.parameters["amplitude"]
+        velocity = state.velocity[0] + here * np.cos(state.phase[0])
+        motion = final_motions(model, here, state.phase[0], velocity, impacts=4000)
+        assert int(motion.impacts) == state.impacts
+
+
+def test_a_motion_starts_the_continuation_of_the_orbit_on_which_it_ends():
+    state = of_motion(family("restitution", 1.6), 1.0, -3.0, "amplitude")
+    assert (state.impacts, state.periods) == (2, 2)
+    doubling = follow(state, 1.8).first(Special.PERIOD_DOUBLING)
+    assert doubling.parameters["amplitude"] == pytest.approx(1.667130660770, abs=1e-11)
+
+
+def test_a_chaotic_motion_is_on_no_orbit(refusal):
+    with refusal(NoOrbitError, "ends on no orbit that could be followed: it is chaotic"):
+        of_motion(family("restitution", 2.0, restitution=0.85), 1.0, -3.0, "amplitude")
+
+
+def test_a_contact_law_is_followed_along_its_stiffness():
+    _, problem, y = known_orbit("tsuji", 1.0, ("stiffness",))
+    found = follow(State(problem, y), 800.0)
+    assert str(found.branch.end) == "stiffness = 800 is reached"
+    last = list(found)[-1]
+    balls = last.orbits.family.at(last.parameters)
+    orbit = balls.make(balls.values).orbit(1, 1.0)
+    assert float(orbit.phase) == pytest.approx(last.phase[0], abs=1e-11)
+
+
+def test_a_locked_orbit_is_followed_until_it_no_longer_sticks_or_an_impact_grazes():
+    state = of_motion(family("restitution", 2.5), 1.0, -3.0, "amplitude")
+    legs = state.orbits.legs(state.y)
+    assert legs.departure.sticks.sum() == 1
+    found = follow(state, 2.50002)
+    assert len(found) > 3 and np.all(is_admissible(found.orbits, found.branch.points))
+    m = found.orbits.monodromy(found.branch.points[-1])
+    assert max(map(abs, m)) == 0.0
+
+
+@pytest.mark.parametrize(("amplitude", "impacts", "periods"), [(2.2, 17, 11), (2.5, 18, 9)])
+def test_a_locked_orbit_of_a_stiff_contact_is_followed_along_the_stiffness(
+    amplitude, impacts, periods
+):
+    """The ball rests in a long contact once per orbit; a simulation ends on the same impacts."""
+    ball = bouncing_ball.spring_damper(restitution=0.5, frequency_ratio=100.0)
+    start = bouncing_ball.orbit_of_motion(ball, amplitude=amplitude, phase=1.0, velocity=-3.0)
+    state = start.along("frequency_ratio")
+    assert (state.impacts, state.periods) == (impacts, periods)
+    assert state.orbits.legs(state.y).departure.sticks.sum() == 1
+    found = follow(state, 110.0, most=20)
+    states = [each for each in found if each.is_admissible()]
+    assert len(states) > 5
+    ratios = [each.parameters["frequency_ratio"] for each in states]
+    assert min(ratios) == ratios[0] and ratios[-1] > ratios[0] + 1e-4
+    for each in states[:: len(states) - 1]:
+        balls = each.orbits.family.at(each.parameters)
+        motion = final_motions(balls.make(balls.values), amplitude, 1.0, -3.0)
+        assert int(motion.impacts) == impacts and int(motion.periods) == periods
+        relative = motion.end_velocity - table(motion.end_phase, amplitude)[0]
+        away = np.hypot(reduce_angle(each.phase - motion.end_phase), each.velocity - relative)
+        assert away.min() < 1e-10
+
+
+def test_a_branch_ends_where_the_map_of_the_corrected_model_jumps():
+    """There a central difference is large, so that Newton's method seems to converge."""
+    model = bouncing_ball.spring_damper(restitution=0.6977, frequency_ratio=1.488)
+    ball = bouncing_ball.corrected(model)
+    start = {"amplitude": 1.21979, "phase": -2.9230134388176703, "velocity": -6.3303630330352965}
+    found = bouncing_ball.follow(bouncing_ball.orbit_of_motion(ball, **start), points=100)
+    assert found.sizes["point"] < 100 and "step too small" in str(found.end_reason[1].values)
+    assert found.residual.max() < 1e-12
+
+
+def test_a_contact_that_resumes_is_followed_until_the_ball_no_longer_rises():
+    case = FOUND[-2]
+    state = of_impact(found_family(case), *case[-2:], case[1], "frequency_ratio")
+    assert state.orbits.resuming.tolist() == [False, True]
+    family = state.orbits.family
+    simulated = family.make(family.values).simulate(family.values["amplitude"], *case[-2:], 4)
+    assert (
+        abs(state.orbits.legs(state.y).impact.displacement[1] - simulated.displacement[3]) < 1e-12
+    )
+    found = follow(state, 20.0)
+    end = found.first(Special.GRAZING_IMPACT)
+    assert abs(end.velocity[1]) < 1e-12 and end.defect() < 1e-12
+    states = list(found)[:-1]
+    assert all(each.velocity[1] > 0 and each.is_admissible() for each in states)
+    # A start on such a contact gives the same orbit.
+    phase = state.phase[1]
+    lam = state.orbits.family.values["amplitude"]
+    risen = state.velocity[1] + lam * np.cos(phase)
+    other = of_impact(state.orbits.family, phase, risen, 2, "frequency_ratio")
+    assert np.abs(other.velocity[::-1] - state.velocity).max() < 1e-12
+
+
+def test_restitution_and_damping_ratio_are_one_parameter(refusal):
+    """Along one of them the other one follows, and is not kept at its first value."""
+    ball = bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=10.0)
+    one = bouncing_ball.orbit(ball, amplitude=1.0)
+    found = bouncing_ball.follow(one, along="restitution", to=0.7)
+    *_, last = found.states()
+    less = bouncing_ball.follow(last, along="damping_ratio", to=0.01)
+    assert less.damping_ratio[0] == pytest.approx(float(damping_ratio(0.7)), abs=1e-15)
+    *_, damped = less.states()
+    back = bouncing_ball.follow(damped, along="restitution", to=0.7)
+    assert abs(back.phase[-1, 0] - found.phase[-1, 0]) < 1e-13
+    assert {"restitution", "damping_ratio"}.isdisjoint(found.attrs)
+    with refusal(ParameterError, "damping_ratio follows from restitution: both cannot vary"):
+        bouncing_ball.curve(last, kind="saddle-node", across="damping_ratio")
+
+
+def passes_through(found, state):
+    """Whether a branch has a solution that is the state to rounding.
+
+    The branch is corrected onto the plane through the state across its direction, from each step
+    that crosses this plane.
+    """
+    orbits = found.orbits
+    points = found.branch.points
+    direction = np.linalg.svd(orbits.jacobian(state.y))[2][-1]
+    normal = plane(direction, state.y)
+    side = (points - state.y) @ direction
+    crossing = np.flatnonzero((side[1:] >= 0) != (side[:-1] >= 0))
+    chord = points[crossing + 1] - points[crossing]
+    share = side[crossing] / (side[crossing] - side[crossing + 1])
+    with np.errstate(all="ignore"):
+        there = newton(orbits, points[crossing] + share[:, np.newaxis] * chord, normal)
+    gap = np.linalg.norm(there.point - state.y, axis=-1)
+    # Near a fold or where an impact is slow, rounding is enlarged.
+    return bool(np.any(there.converged & (gap < 1e-9)))
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", CLOSED[:3])
+def test_two_hundred_random_orbits_are_followed_without_a_jump(name):
+    """Twenty steps there, also past special orbits, and back again: the branch meets its start."""
+    random = np.random.default_rng(4)
+    count = 0
+    special = 0
+    while count < 67:
+        lam, r, ratio = random.uniform([1.0, 0.3, 3.0], [3.0, 0.9, 60.0])
+        balls = family(name, lam, r, ratio)
+        phase, speed = random.uniform([-3.0, 1.0], [3.0, 6.0])
+        try:
+            state = of_motion(balls, phase, lam * np.cos(phase) - speed, "amplitude", 1500)
+        except NoOrbitError:
+            continue
+        if state.impacts > 12 or np.any(state.orbits.legs(state.y).departure.sticks & (
+                name == "restitution")):  # fmt: skip
+            continue
+        count += 1
+        there = follow(state, most=20)
+        special += bool(there.special)
+        # The last point may be a special orbit that ends the branch.
+        last = State(there.orbits, there.branch.points[-2])
+        rises = there.branch.tangents[-2, -1] > 0
+        back = follow(last, increasing=not rises, most=120)
+        assert passes_through(back, state), (count, lam, r, ratio, phase, speed)
+    assert special > 10
+
+
+@pytest.mark.parametrize("case", FOUND[:2])
+def test_states_of_a_branch_are_orbits_one_by_one(case):
+    name, impacts, _, *_, phase, velocity = case
+    state = of_impact(found_family(case), phase, velocity, impacts, "amplitude")
+    found = follow(state, 1.36)
+    states = list(found)
+    assert len(states) == len(found) and all(each.defect() < 1e-11 for each in states)
+    assert states[0].impacts == impacts and f"with {impacts} impacts" in repr(states[0]) and name
+
+
+@pytest.mark.parametrize("name", ["rigid", "spring-damper", "corrected", "law"])
+def test_an_orbit_that_no_ball_follows_starts_its_branch(name):
+    linear = bouncing_ball.spring_damper(restitution=0.6, frequency_ratio=1000.0)
+    ball = {
+        "rigid": bouncing_ball.rigid(restitution=0.6),
+        "spring-damper": linear,
+        "corrected": bouncing_ball.corrected(linear),
+        "law": bouncing_ball.contact_law("hunt-crossley", stiffness=1e7, damping=0.2),
+    }[name]
+    for n in (1, 3):
+        orbit = bouncing_ball.orbit(ball, n, amplitude=6.0 * n, side="unstable")
+        assert not orbit.is_admissible()
+        found = bouncing_ball.follow(orbit, to=5.9 * n)
+        first = next(iter(found.states()))
+        assert (first.impacts, first.periods) == (1, n)
+        # The last Newton step of both is below 1e-12 of y, which is of order 10.
+        other = bouncing_ball.orbit(ball, n, amplitude=5.9 * n, side="unstable")
+        for k, here in ((0, orbit), (-1, other)):
+            assert found.multiplier_real[k].values == pytest.approx(
+                here.multipliers().real, rel=1e-11
+            )

@@ -1,0 +1,102 @@
+"""Where an impact disappears: its orbit ends in one with an impact less, whose flight grazes."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from orbits_found import family, known_orbit
+from scipy.optimize import brentq
+
+from bouncing_ball.models.flight import table
+from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
+from bouncing_ball.periodic.following import STEPS, State, follow
+from bouncing_ball.periodic.special import Special
+
+# The first orbit with the additional impact has this closing speed, and is looked for nearby.
+SLOW = 3e-3
+NEARBY = NewtonSettings(max_iterations=30, longest=0.01)
+
+
+def touching(orbit, amplitude, duration, leaving):
+    """Time and height of the lowest point of the flight, from the sum of two sines and a parabola.
+
+    The flight begins ``duration`` after the impact of a 1-T orbit with the relative velocity
+    ``leaving``, on the level of the table.
+    """
+    start = float(orbit.phase) + duration
+    launch = leaving + amplitude * np.cos(start)
+
+    def rate(t):
+        return launch - t - amplitude * np.cos(start + t)
+
+    # δ″ = Λ sin τ - 1 is positive around the top of the table, and nowhere else.
+    half = np.arccos(1 / amplitude)
+    middle = np.pi / 2 - start
+    middle += 2 * np.pi * (middle < 0)
+    lowest = brentq(rate, middle - half, middle + half, xtol=1e-15)
+    rise = launch * lowest - lowest**2 / 2
+    return lowest, rise + amplitude * (np.sin(start) - np.sin(start + lowest))
+
+
+def with_a_slow_impact(problem, orbit, amplitude, duration, leaving):
+    """The orbit with two impacts beside the 1-T orbit whose flight grazes."""
+    aloft, _ = touching(orbit, amplitude, duration, leaving)
+    phase = float(orbit.phase)
+    second = phase + duration + aloft
+    pull = table(second, amplitude)[1] - 1
+    whole = replace(problem, impacts=2, turns=np.array([0, 1]))
+    guess = whole.point(
+        np.array([phase, second - SLOW / pull]),
+        np.array([float(orbit.relative_impact_velocity), -SLOW]),
+        np.array([duration, 2 * SLOW / pull]),
+        amplitude=amplitude,
+    )
+    found = newton(whole, guess, plane(np.eye(guess.size)[3], guess), NEARBY)
+    assert found.converged
+    return State(whole, found.point)
+
+
+@pytest.mark.parametrize("restitution", [0.3, 0.5, 0.7])
+def test_an_impact_grazes_where_bisection_finds_the_grazing_flight(restitution):
+    model = family("restitution", 1.3, restitution)
+    closed = model.make(model.values)
+
+    def height(amplitude):
+        orbit = closed.orbit(1, amplitude, "unstable")
+        leaving = -restitution * float(orbit.relative_impact_velocity)
+        return touching(orbit, amplitude, 0.0, leaving)[1]
+
+    # The first flight is above the table, and the second below it.
+    amplitude = brentq(height, 2.4, 3.0, xtol=1e-15)
+    orbit = closed.orbit(1, amplitude, "unstable")
+    leaving = -restitution * float(orbit.relative_impact_velocity)
+    problem = replace(known_orbit("restitution", 1.3, ("amplitude",))[1], family=model)
+    state = with_a_slow_impact(problem, orbit, amplitude, 0.0, leaving)
+    assert state.is_admissible()
+    # The orbit with two impacts exists above or below, which depends on r.
+    increasing = state.parameters["amplitude"] < amplitude
+    found = follow(state, increasing=increasing, control=replace(STEPS, initial=1e-4))
+    grazing = found.first(Special.GRAZING_IMPACT)
+    assert grazing.parameters["amplitude"] == pytest.approx(amplitude, abs=1e-12)
+    assert abs(grazing.velocity.max()) < 1e-12
+    assert str(found.branch.end).startswith("grazing of an impact")
+
+
+def test_an_impact_of_a_compliant_contact_disappears_with_its_contact():
+    """It is approached up to a small step, because no contact begins with the speed 0."""
+    _, problem, y = known_orbit("spring-damper", 2.0, ("amplitude",))
+    grazing = follow(State(problem, y), 0.9).first(Special.GRAZING_FLIGHT)
+    amplitude = grazing.parameters["amplitude"]
+    orbit = problem.family.make(problem.family.values).orbit(1, amplitude, "unstable")
+    legs = grazing.orbits.legs(grazing.y)
+    duration = float(legs.duration[0])
+    leaving = float(legs.departure.flight.velocity[0])
+    assert abs(touching(orbit, amplitude, duration, leaving)[1]) < 1e-12
+    state = with_a_slow_impact(problem, orbit, amplitude, duration, leaving)
+    found = follow(state, increasing=False, control=replace(STEPS, initial=1e-4))
+    assert "next to a grazing of an impact" in str(found.branch.end)
+    last = list(found)[-1]
+    closing = -last.velocity.max()
+    assert 0 < closing < 1e-4
+    # What is left of the impact changes Λ by its speed's square, apart from a factor of order 1.
+    assert abs(last.parameters["amplitude"] - amplitude) < 10 * closing**2

@@ -1,0 +1,145 @@
+"""Orbits on any contact: the closed form where there is one, and properties that all laws share."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.accuracy.error_law import first_order
+from bouncing_ball.accuracy.errors import OF_ORBITS, relative
+from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.models.laws.hertzian import HuntCrossley, KuwabaraKono, Tsuji
+from bouncing_ball.models.laws.impedance import Impedance
+from bouncing_ball.models.laws.law_of_impact import law_of_impact
+from bouncing_ball.models.laws.linear import LinearLaw
+from bouncing_ball.models.laws.registry import LAWS, law_named
+from bouncing_ball.models.laws.signature import Signature, free_impact
+from bouncing_ball.periodic.continued_orbits import orbits_at as by_branch
+from bouncing_ball.periodic.continued_orbits import restitution_speed
+from bouncing_ball.periodic.corrected_orbits import CorrectedModel
+from bouncing_ball.periodic.law_orbits import LawModel, law_at_orbit
+from bouncing_ball.periodic.restitution_branch import rigid_speed
+from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.periodic.spring_damper_bifurcations import orbits_at as by_formula
+from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic.stability import Side
+
+KINDS = [LinearLaw, *LAWS.values()]
+every_kind = pytest.mark.parametrize("kind", KINDS, ids=[kind.name for kind in KINDS])
+
+
+@pytest.mark.parametrize(
+    "law", [HuntCrossley(1e3, 0.08), HuntCrossley(1e3, 0.5), KuwabaraKono(2e3, 0.008)]
+)
+def test_the_impact_speed_of_the_restitution_models_orbits_solves_its_equation(law):
+    model = LawModel(law)
+    n = np.array([1, 2, 5])
+    speed, _ = restitution_speed(n, model)
+    # The last step of Newton's method is below 1e-3, and leaves its square.
+    period = (1 + model.signature(speed).restitution) * speed
+    np.testing.assert_allclose(period, 2 * np.pi * n, rtol=1e-6)
+
+
+# A law that feels its load, a Hertz contact and one with a kink; the others weekly.
+SELDOM = [pytest.param(x, marks=pytest.mark.long) for x in LAWS if x not in ("tsuji", "impedance")]
+
+
+@pytest.mark.parametrize("name", ["tsuji", "impedance", "by depth", *SELDOM])
+def test_the_corrected_model_and_the_error_law_leave_errors_of_second_order(name):
+    errors = []
+    for duration in (0.04, 0.02):
+        if name == "by depth":
+            # The width is that of the impact, so that r is the same at both durations.
+            law = Impedance(np.pi / duration, 0.1, 0.95, 0.5, width=duration / 2)
+        else:
+            law = law_at_orbit(LAWS[name], 0.65, duration, 1, 1.0)
+        orbit, corrected = (
+            model.require_orbit(1, 1.0) for model in (LawModel(law), CorrectedModel(Signature(law)))
+        )
+        # The simple models compared have the r of the speed at the instant.
+        instant = corrected.instant
+        rigid = RestitutionModel(float(instant.restitution)).require_orbit(1, 1.0)
+        simple, left = (
+            np.array([relative(getattr(orbit, q), getattr(one, q)) for q in OF_ORBITS])
+            for one in (rigid, corrected)
+        )
+        expected = first_order(1, instant, 1.0)
+        errors.append([simple, left, simple - np.array([expected[q] for q in OF_ORBITS])])
+    first, second, law_left = np.array(errors[0]) / np.array(errors[1])
+    # The next order is a share of D. It is seen in the apparent restitution, most of whose first
+    # order cancels.
+    assert first[:3] == pytest.approx(np.full(3, 2.0), rel=0.04)
+    assert second == pytest.approx(np.full(4, 4.0), rel=0.04)
+    assert law_left == pytest.approx(np.full(4, 4.0), rel=0.04)
+
+
+@every_kind
+def test_a_law_has_the_restitution_and_duration_that_were_asked_for(kind):
+    for r, duration, speed in ((0.3, 0.2, 1.0), (0.95, 1e-3, 7.0), (1.0, 0.1, 3.0)):
+        impact = free_impact(law_of_impact(kind, r, duration, speed), speed)
+        assert float(impact.restitution) == pytest.approx(r, rel=1e-13)
+        assert float(impact.duration) == pytest.approx(duration, rel=1e-13)
+
+
+def test_a_law_at_an_orbit_is_the_same_for_a_side_and_its_name():
+    of_side = law_at_orbit(HuntCrossley, 0.65, 0.1, 1, 1.0, Side.UNSTABLE)
+    assert law_at_orbit(HuntCrossley, 0.65, 0.1, 1, 1.0, "unstable") == of_side
+    assert law_at_orbit(HuntCrossley, 0.65, 0.1, 1, 1.0) != of_side
+
+
+def test_an_unknown_law_and_an_impossible_impact_are_refused():
+    with pytest.raises(ModelError, match=r"unknown contact law 'rubber': one of hunt-crossley"):
+        law_named("rubber")
+    for r, duration, speed in ((0.0, 1.0, 1.0), (1.1, 1.0, 1.0), (0.5, 0.0, 1.0), (0.5, 1.0, -1)):
+        with pytest.raises(ModelError, match="is not"):
+            law_of_impact(HuntCrossley, r, duration, speed)
+    with pytest.raises(ModelError, match="hardly leaves"):
+        law_of_impact(HuntCrossley, 1e-6, 0.1, 1.0)
+
+
+def test_far_above_the_fold_an_orbit_is_followed_to_or_reported_as_not_found(monkeypatch):
+    model = LawModel(Tsuji(1e3, 0.3))
+    orbit = model.require_orbit(20, 300.0, Side.UNSTABLE)
+    # The contact is one of the collocation's; the equations hold to rounding of z ≈ Λ.
+    assert np.abs(orbit.residual()).max() < 1e-12 * 300
+    assert orbit.trace_and_determinant()[0] > 2
+    # A walk of a few steps does not arrive, and one of 300 takes seconds.
+    monkeypatch.setattr("bouncing_ball.periodic.continued_orbits._POINTS", 20)
+    with pytest.raises(NoOrbitError, match="none was found, but one may exist"):
+        model.require_orbit(20, 1000.0, Side.UNSTABLE)
+
+
+@pytest.mark.parametrize(
+    ("r", "duration"), [(0.85, 0.3), pytest.param(0.5, 0.6, marks=pytest.mark.long)]
+)
+def test_just_above_the_fold_two_orbits_part_as_the_root_of_the_distance(r, duration):
+    model = LawModel(law_of_impact(HuntCrossley, r, duration, rigid_speed(1, r)))
+    fold = model.saddle_node(1)
+    apart = []
+    for above in (1e-6, 1e-4, 1e-2):
+        stable, unstable = (model.orbit(1, fold.amplitude * (1 + above), side) for side in Side)
+        assert stable.defect() < 1e-11 and unstable.defect() < 1e-11
+        assert stable.phase > fold.phase > unstable.phase
+        apart.append(float(stable.phase - unstable.phase))
+    # The next order of the root is smaller by the distance itself.
+    assert apart[1] / apart[0] == pytest.approx(10, rel=1e-3)
+    assert apart[2] / apart[1] == pytest.approx(10, rel=0.1)
+
+
+@pytest.mark.parametrize(("amplitude", "number"), [(0.9, 3), (3.0, 1)])
+def test_a_branch_that_turns_again_is_followed_to_all_of_its_orbits(amplitude, number):
+    """Also from far above the fold, which is at Λ = 0.18: the closed form has the same orbits."""
+    contact = LinearLaw(2.0, 0.05)
+    found = by_branch(SpringDamperModel(contact), 1, amplitude)
+    known = by_formula(contact, 1, amplitude)
+    assert found.contact_duration.shape == (number,)
+    assert np.abs(found.contact_duration - known.contact_duration).max() < 1e-11
+
+
+@pytest.mark.parametrize("law", [HuntCrossley, LinearLaw, Impedance])
+@pytest.mark.parametrize("value", ["x", "2.0", True, [[1.0], [2.0, 3.0]]])
+def test_a_parameter_of_a_law_that_is_no_number_is_refused(law, value, refusal):
+    first, second, *_ = law.parameter_names()
+    for parameters in ({first: value, second: 0.1}, {first: 2.0, second: value}):
+        with refusal(ModelError, f"= {value!r} is not a"):
+            law(**parameters)
+    with refusal(ModelError, f"{first} of shape (2,) and {second} of shape (3,) do not broadcast"):
+        law(**{first: [2.0, 3.0], second: [0.1, 0.2, 0.3]})

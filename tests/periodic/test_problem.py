@@ -1,0 +1,114 @@
+"""Orbits with k impacts: against closed forms, differences, and shooting with an integrator."""
+
+import numpy as np
+import pytest
+import shooting
+from orbits_found import FOUND, family, found_family, known_orbit
+
+from bouncing_ball.periodic.following import corrected
+from bouncing_ball.periodic.problem import twice
+from bouncing_ball.periodic.simulation import is_admissible
+from bouncing_ball.periodic.stability import Bifurcation
+from bouncing_ball.periodic.switching import of_impact
+
+CLOSED = ["restitution", "spring-damper", "force release", "corrected"]
+ALL = [*CLOSED, "tsuji"]
+ALONG = [
+    (name, along)
+    for name in CLOSED
+    for along in ("amplitude", "restitution", "frequency_ratio")
+    if along != "frequency_ratio" or name != "restitution"
+]
+
+
+def found_orbit(case, along="amplitude"):
+    _, impacts, periods, *_, phase, velocity = case
+    state = of_impact(found_family(case), phase, velocity, impacts, along)
+    assert state.periods == periods
+    return state
+
+
+@pytest.fixture(params=FOUND, ids=lambda case: f"{case[0]}-{case[1]}-{case[2]}")
+def case(request):
+    return request.param
+
+
+@pytest.mark.parametrize(("name", "along"), ALONG)
+def test_an_orbit_with_one_impact_is_that_of_the_closed_form(name, along):
+    orbit, problem, y = known_orbit(name, 1.3, (along,))
+    assert np.abs(problem.residual(y)).max() < 1e-13
+    ours = problem.trace_and_determinant(y)
+    assert np.abs(np.subtract(ours, orbit.trace_and_determinant())).max() < 1e-12
+    assert is_admissible(problem, y) == orbit.is_admissible()
+
+
+@pytest.mark.parametrize("name", CLOSED)
+def test_newtons_method_comes_back_to_the_closed_form(name):
+    from bouncing_ball.periodic.following import State
+
+    _, problem, y = known_orbit(name, 1.3, ("amplitude",))
+    moved = y.copy()
+    moved[:2] += [1e-3, -2e-3]
+    found = corrected(State(problem, moved))
+    assert np.abs(found.y - y).max() < 1e-12
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_the_jacobian_is_that_of_differences(name):
+    _, problem, y = known_orbit(name, 1.3, ("amplitude",))
+    whole, y = twice(problem, y)
+    step = 1e-6
+    moved = [whole.residual(y + sign * step * np.eye(y.size)) for sign in (1, -1)]
+    slopes = (moved[0] - moved[1]).T / (2 * step)
+    # The residuals are of order one; central differences of both kinds have errors of 1e-9.
+    assert np.abs(whole.jacobian(y) - slopes).max() < 1e-7
+
+
+@pytest.mark.parametrize("kind", list(Bifurcation))
+@pytest.mark.parametrize("name", CLOSED)
+def test_the_gradient_of_a_bifurcation_is_that_of_differences(name, kind):
+    _, problem, y = known_orbit(name, 1.3, ("amplitude", "restitution"))
+    value, gradient = problem.bifurcation(kind, y)
+    assert value == pytest.approx(float(kind.test(*problem.trace_and_determinant(y))), abs=1e-13)
+    step = 1e-5
+    moved = [problem.bifurcation(kind, y + sign * step * np.eye(y.size))[0] for sign in (1, -1)]
+    assert np.abs(gradient - (moved[0] - moved[1]) / (2 * step)).max() < 1e-6
+
+
+def test_an_orbit_with_several_impacts_is_that_of_shooting_with_another_integrator(case):
+    name, impacts, periods, r, ratio, amplitude, phase, velocity = case
+    state = found_orbit(case)
+    ball = (name, r, ratio, amplitude)
+    expected = shooting.orbit(phase, velocity, impacts, periods, *ball)
+    relative = expected[1] - amplitude * np.cos(expected[0])
+    assert state.phase[0] == pytest.approx(expected[0], abs=1e-8)
+    assert state.velocity[0] == pytest.approx(relative, abs=1e-8)
+    assert state.defect() < 1e-12 and state.is_admissible() and state.is_stable()
+
+
+def test_the_determinant_of_the_return_map_is_that_of_the_closed_form(case):
+    name, impacts, _, r, ratio, *_ = case
+    state = found_orbit(case)
+    _, determinant = state.orbits.trace_and_determinant(state.y)
+    if name == "restitution":
+        expected = r ** (2 * impacts)
+    else:
+        zeta = -np.log(r) / np.hypot(np.pi, np.log(r))
+        expected = np.exp(-2 * zeta * ratio * state.contact_duration.sum())
+    # The determinant is a difference of products of the entries of the monodromy.
+    m = state.orbits.monodromy(state.y)
+    assert abs(determinant - expected) < 1e-13 * (abs(m.a * m.d) + abs(m.b * m.c) + 1)
+
+
+def test_parameters_outside_their_ranges_have_no_residual():
+    problem, y = known_orbit("restitution", 1.3, ("restitution",))[1:]
+    beyond = y.copy()
+    beyond[-1] = np.arcsinh(1.1)
+    assert np.isnan(problem.residual(beyond)).any()
+    rows = problem.residual(np.stack([y, beyond]))
+    assert np.abs(rows[0]).max() < 1e-13 and np.isnan(rows[1]).any()
+
+
+def test_an_unknown_parameter_is_refused(refusal):
+    with refusal(ValueError, "these orbits have no 'stiffness': one of"):
+        family("restitution", 1.0).__class__(dict, {}, {"amplitude": None}).bounds("stiffness")

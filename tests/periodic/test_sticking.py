@@ -1,0 +1,133 @@
+"""Where sticking ends: against the self-similar bounces before the lift-off, in 60 digits.
+
+Near the lift-off the relative gravity falls linearly to 0 as c s, with s the phase left and
+c = √(Λ² - 1). With v = c w s² after an impact and a flight over the part u of s, the flight and the
+impact (Eq. 2) are ::
+
+    w = u/2 - u²/6,    w′ = r (u/2 - u²/3)/(1 - u)²
+
+The fixed point w* separates balls that come to rest from those that do not; there u is the zero of
+u³ - 5u² + (7 - 2r) u - 3 (1 - r) in (0, 1). After j bounces w depends smoothly on the parameter.
+"""
+
+from functools import partial
+
+import numpy as np
+import pytest
+from mpmath import findroot, mp, mpf, workdps
+from orbits_found import family
+
+from bouncing_ball.errors import ParameterError
+from bouncing_ball.periodic.curves import curve
+from bouncing_ball.periodic.following import follow
+from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.periodic.special import Special
+from bouncing_ball.periodic.switching import of_motion
+
+# The zeros of w - w* after j and j + 3 bounces are then equal to rounding.
+SETTLED = 1e-17
+
+
+def fixed_point(r):
+    def cubic(u):
+        return u**3 - 5 * u**2 + (7 - 2 * r) * u - 3 * (1 - r)
+
+    u = findroot(cubic, (0, 1), solver="anderson")
+    return u / 2 - u**2 / 6
+
+
+def bounce(phase, velocity, lam, r, guess):
+    """The impact after a flight that starts on the table, near a time, and δ′ after it."""
+
+    def gap(t):
+        fall = mp.sin(phase) - mp.sin(phase + t)
+        return lam * fall + (lam * mp.cos(phase) + velocity) * t - t**2 / 2
+
+    def rate(t):
+        return lam * (mp.cos(phase) - mp.cos(phase + t)) + velocity - t
+
+    t = mpf(guess)
+    step = t
+    # Newton's method squares the error, which is then below that of 60 digits.
+    while abs(step) > mpf(1e-24) * t:
+        step = gap(t) / rate(t)
+        t -= step
+    return phase + t, -r * rate(t)
+
+
+def late(lam, r, flights, more):
+    """w after the flights from a lift-off, of about these durations, and after more bounces."""
+    start = mp.asin(1 / lam)
+    phase = start
+    velocity = mpf(0)
+    for guess in flights:
+        phase, velocity = bounce(phase, velocity, lam, r, guess)
+    lift_off = start + 2 * mp.pi * mp.ceil((phase - start) / (2 * mp.pi))
+
+    def share():
+        return velocity / (mp.sqrt(lam**2 - 1) * (lift_off - phase) ** 2)
+
+    for _ in range(more):
+        part = (3 - mp.sqrt(9 - 24 * share())) / 2
+        phase, velocity = bounce(phase, velocity, lam, r, part * (lift_off - phase))
+    return share()
+
+
+def ended(along, amplitude, restitution, to):
+    state = of_motion(family("restitution", amplitude, restitution), 1.0, -5.0, along)
+    found = follow(state, to)
+    assert str(found.branch.end).startswith("end of sticking")
+    return found.first(Special.STICKING)
+
+
+CASES = [
+    ("amplitude", 1.3744, 0.4847, 2.4),
+    ("amplitude", 2.4643, 0.5577, 1.1),
+    ("restitution", 1.3744, 0.4847, 0.9),
+    ("restitution", 3.4664, 0.2341, 0.9),
+]
+
+
+@pytest.mark.parametrize(("along", "amplitude", "restitution", "to"), CASES)
+def test_sticking_ends_where_the_bounces_become_self_similar(along, amplitude, restitution, to):
+    state = ended(along, amplitude, restitution, to)
+    rest = state.orbits.durations(state.y)
+    (sticks,) = np.flatnonzero(rest > 0)
+    flights = np.roll(state.orbits.intervals(state.y) - rest, -sticks)
+    place = state.parameters[along]
+
+    def excess(p, more):
+        lam, r = (p, mpf(restitution)) if along == "amplitude" else (mpf(amplitude), p)
+        return late(lam, r, flights, more) - fixed_point(r)
+
+    with workdps(60):
+        zeros = [mpf(place), mpf(place) * (1 + mpf(1e-15))]
+        # The bounces enlarge w - w*, so that only the last zeros are near enough to start from.
+        while abs(zeros[-1] - zeros[-2]) > SETTLED:
+            more = 3 * len(zeros)
+            assert more < 60
+            beside = zeros[-1] + (zeros[-1] - zeros[-2]) / 100
+            zeros.append(findroot(partial(excess, more=more), (zeros[-1], beside), tol=1e-30))
+        # The phases of the impacts, and thus the place, have some roundings.
+        assert abs(zeros[-1] - place) < 1e-13
+
+
+@pytest.mark.parametrize("case", [CASES[0], CASES[2]])
+def test_a_simulated_ball_rests_in_its_first_turn_before_the_end_and_not_beyond_it(case):
+    """On both sides of the end, from the lift-off on."""
+    along, amplitude, restitution, to = case
+    state = ended(*case)
+    ahead = np.sign(to - {"amplitude": amplitude, "restitution": restitution}[along])
+    for aside, expected in ((-1e-9, True), (1e-9, False)):
+        known = {"amplitude": amplitude, "restitution": restitution}
+        known[along] = state.parameters[along] + ahead * aside
+        lam, r = known.values()
+        run = RestitutionModel(r).simulate(lam, np.arcsin(1 / lam), np.sqrt(lam**2 - 1), 300)
+        rests = run.time[1:][run.settling[1:] > 0]
+        assert bool(rests.size and rests[0] < 2 * np.pi * state.periods) is expected
+
+
+def test_there_is_no_smooth_function_whose_zero_is_a_curve(refusal):
+    state = ended(*CASES[0])
+    with refusal(ParameterError, "'end of sticking' is not one of"):
+        curve(state, Special.STICKING, "restitution")

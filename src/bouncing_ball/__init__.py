@@ -69,9 +69,9 @@ if TYPE_CHECKING:
     from bouncing_ball.contacts.given import Contact, Question, Simulation, Table
     from bouncing_ball.contacts.recipe import write_contact
     from bouncing_ball.errors import ModelError, NoOrbitError
+    from bouncing_ball.models.rigid import RestitutionModel
     from bouncing_ball.models.spring_damper import SpringDamper
-    from bouncing_ball.periodic.restitution_model import RestitutionModel
-    from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+    from bouncing_ball.models.spring_damper_model import SpringDamperModel
 
 __version__ = "0.1.0"
 
@@ -148,9 +148,9 @@ def __getattr__(name: str) -> Any:
         case "SpringDamper":
             from bouncing_ball.models import spring_damper as module
         case "SpringDamperModel":
-            from bouncing_ball.periodic import spring_damper_model as module
+            from bouncing_ball.models import spring_damper_model as module
         case "RestitutionModel":
-            from bouncing_ball.periodic import restitution_model as module
+            from bouncing_ball.models import rigid as module
         case "ModelError" | "NoOrbitError":
             from bouncing_ball import errors as module
         case _:

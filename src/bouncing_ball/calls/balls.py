@@ -29,14 +29,14 @@ from bouncing_ball.calls.arguments import (
     is_array,
 )
 from bouncing_ball.errors import ModelError, ParameterError
+from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.signature import Signature
+from bouncing_ball.models.model import Model
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.corrected_orbits import CorrectedModel
-from bouncing_ball.periodic.model import ImpactModel
-from bouncing_ball.periodic.restitution_model import RestitutionModel
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 
 if TYPE_CHECKING:
     from bouncing_ball.datasets.labelled import Grid
@@ -98,7 +98,7 @@ class ModelBall(Ball):
 
     Parameters
     ----------
-    model : ImpactModel
+    model : Model
         One model, or a row of models, one for each place of the grid of the parameters.
     parameters : mapping
         The parameters by name; empty for a model that was made without this module.
@@ -109,7 +109,7 @@ class ModelBall(Ball):
     RestitutionModel(restitution=0.5)
     """
 
-    model: ImpactModel
+    model: Model
     parameters: Mapping[str, Any] = field(default_factory=dict)
 
     is_known = True

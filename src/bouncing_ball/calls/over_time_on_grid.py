@@ -18,8 +18,8 @@ from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball.errors import ModelError, require
 from bouncing_ball.models.flight import Flight, land, table
 from bouncing_ball.models.history import history as of_one_ball
+from bouncing_ball.models.model import Model
 from bouncing_ball.models.sequence import ImpactSequence, Status
-from bouncing_ball.periodic.model import ImpactModel
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -84,13 +84,13 @@ class _Starts(NamedTuple):
         """The first impacts that are given by the arguments of a call."""
         return cls(grid.row("amplitude"), grid.row("phase"), grid.row("velocity"))
 
-    def model(self, ball: Ball, grid: Grid) -> ImpactModel:
+    def model(self, ball: Ball, grid: Grid) -> Model:
         """The model of each ball, whose law may depend on the speed of its first impact."""
         speed = self.amplitude * np.cos(self.phase) - self.velocity
         return ball.row(grid).at_speed(speed if grid.shape else float(speed[0])).model
 
 
-def model_of_starts(ball: Ball, grid: Grid) -> ImpactModel:
+def model_of_starts(ball: Ball, grid: Grid) -> Model:
     """The model of the balls that start with the impacts (Λ, φ, z′_i) of a grid."""
     return _Starts.on(grid).model(ball, grid)
 
@@ -194,7 +194,7 @@ def instants(periods: float, samples: int, balls: int) -> np.ndarray:
     return np.linspace(0.0, 2 * np.pi * periods, count)
 
 
-def _followed(model: ImpactModel, starts: _Starts, time: np.ndarray) -> dict[str, np.ndarray]:
+def _followed(model: Model, starts: _Starts, time: np.ndarray) -> dict[str, np.ndarray]:
     """The variables of :class:`History` for balls at times (ball, sample) since their first
     impacts.
     """
@@ -214,7 +214,7 @@ def _followed(model: ImpactModel, starts: _Starts, time: np.ndarray) -> dict[str
     }
 
 
-def _until(model: ImpactModel, starts: _Starts, end: np.ndarray) -> ImpactSequence:
+def _until(model: Model, starts: _Starts, end: np.ndarray) -> ImpactSequence:
     """The impacts of balls up to a time since their first impacts, shape (ball,).
 
     Raises

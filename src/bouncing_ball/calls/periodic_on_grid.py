@@ -17,13 +17,13 @@ from bouncing_ball.datasets import CASE
 from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.model import Model
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.numerics.continuation import ContinuationError
-from bouncing_ball.periodic import observables
+from bouncing_ball.periodic import n_t, observables
 from bouncing_ball.periodic.branch import whole_branch
-from bouncing_ball.periodic.model import ImpactModel
 from bouncing_ball.periodic.observables import branch_columns, columns, joined, no_branch
 from bouncing_ball.periodic.orbit import OBSERVABLES
-from bouncing_ball.periodic.restitution_model import RestitutionModel
 from bouncing_ball.periodic.stability import Side
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ class Orbits(Drawn):
     def _figure(self) -> "Figure":
         from bouncing_ball.calls import figures
 
-        return figures.orbits(self)
+        return n_t.orbits(figures, self)
 
 
 class Limits(Drawn):
@@ -113,9 +113,9 @@ def orbits_on_grid(ball: Ball, n: Any, amplitude: Any, side: Side) -> Orbits:
     return grid.unfold(describe(rows, observables.VARIABLES), Orbits)
 
 
-def _observables(model: ImpactModel, n: Any, amplitude: Any, side: Side) -> dict[str, np.ndarray]:
+def _observables(model: Model, n: Any, amplitude: Any, side: Side) -> dict[str, np.ndarray]:
     names = (name for name in OBSERVABLES if name != "amplitude")
-    return columns(model.orbit(n, amplitude, side), *names)
+    return columns(n_t.orbit(model, n, amplitude, side), *names)
 
 
 def limits_on_grid(ball: Ball, n: Any) -> Limits:
@@ -126,8 +126,8 @@ def limits_on_grid(ball: Ball, n: Any) -> Limits:
 
     def found(one: Ball, n: Any) -> dict[str, np.ndarray]:
         model = one.at_limits(n).model
-        saddle_node = model.saddle_node(n)
-        period_doubling = model.period_doubling(n)
+        saddle_node = n_t.saddle_node(model, n)
+        period_doubling = n_t.period_doubling(model, n)
         return {
             "saddle_node_amplitude": saddle_node.amplitude,
             "saddle_node_phase": saddle_node.phase,
@@ -225,6 +225,6 @@ def branch_of(model: Any, n: int, amplitude_max: float | None, points: int) -> x
     longest = max(_LARGEST_STEP, _STRIDE * (amplitude_max or 0.0))
     try:
         found = whole_branch(model, n, amplitude_max, longest)
-        return branch_columns(model.system(n), found, points)
+        return branch_columns(found, points)
     except ContinuationError as error:
         raise NoOrbitError(f"the branch of {n}-T orbits for {model.label}: {error}") from None

@@ -29,8 +29,8 @@ from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.errors import ParameterError
 from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.patience import patience
-from bouncing_ball.periodic.restitution_model import RestitutionModel
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -14,8 +14,8 @@ endif
 COMMA := ,
 # The target that every other target needs first; empty if another venv exists already.
 SETUP ?= setup
-# Print one line for each file, and errors; the rest of Snakemake's output is in .snakemake/log.
-QUIETLY := --quiet host rules reason progress
+# Print the files made, how many steps are done, and errors; the rest is in .snakemake/log.
+QUIETLY := --quiet host rules reason
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
 # Sixty jobs import the same modules, so that compiled modules are kept whatever the shell sets.

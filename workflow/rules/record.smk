@@ -7,7 +7,7 @@ from bouncing_ball.pipeline.diff.targets import (
     requested_files,
     requested_names,
 )
-from bouncing_ball.pipeline.jobs import begin, concluded
+from bouncing_ball.pipeline.jobs import concluded
 
 
 # ONLY='fig08 table1' snakemake --cores 1 accept; without ONLY, all artifacts that have moved.
@@ -42,12 +42,10 @@ rule diff:
         "../scripts/diff.py"
 
 
-# Each job that makes a file prints how many of these jobs are done.
 # The limit of jobs per second is off: with it, each job that starts or ends makes Snakemake examine
 # all waiting jobs again every second until the run ends.
 onstart:
     workflow.scheduler.job_rate_limiter = None
-    begin(sum(bool(job.is_script and job.output) for job in workflow.dag.needrun_jobs()))
 
 
 # A difference or a refusal is not a failure of the job: it gives one line, and exit status 1.

@@ -143,17 +143,3 @@ def keep_digest(path: Path, found: str) -> None:
     """Write a digest to a file if the file has another one."""
     if not path.is_file() or path.read_text(encoding="ascii") != found:
         write_text(path, found)
-
-
-def keep_doubt(path: Path, found: str, outputs: Iterable[Path], *, doubted: bool = False) -> None:
-    """What ``--touch`` does in place of :func:`keep_digest`.
-
-    Snakemake then makes all outputs newer than the file. If they were not made by the code with
-    this digest, the file must not have it, so that the next run writes it and makes them again.
-    The same holds if they are ``doubted`` for another reason, such as other parameters.
-    """
-    if not doubted and path.is_file() and path.read_text(encoding="ascii") == found:
-        written = path.stat().st_mtime_ns
-        if all(each.stat().st_mtime_ns >= written for each in outputs if each.exists()):
-            return
-    write_text(path, "unknown")

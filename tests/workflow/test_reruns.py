@@ -80,5 +80,5 @@ def test_a_failing_study_prints_its_line_and_its_log_and_no_sources(fresh):
     said = done.stdout + done.stderr
     log = "results/logs/stages/fig02.log"
     assert done.returncode != 0
-    assert f"restitution_model/fig02: no such orbit (details in {log})" in said
+    assert f"restitution_model_study/fig02: no such orbit (details in {log})" in said
     assert (fresh.path / log).is_file() and "src/bouncing_ball" not in said

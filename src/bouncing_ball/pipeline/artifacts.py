@@ -77,8 +77,8 @@ class Artifact:
     ... )
     >>> artifact.files
     ['results/figures/table1.nc', 'results/figures/table1.csv', 'results/figures/table1.md']
-    >>> artifact.wing, artifact.dataset
-    ('paper', 'results/figures/table1.nc')
+    >>> artifact.wing, artifact.stage, artifact.dataset
+    ('paper', 'orbits', 'results/figures/table1.nc')
     """
 
     name: str
@@ -99,11 +99,19 @@ class Artifact:
         return self.module.partition(".")[0]
 
     @property
+    def stage(self) -> str:
+        """The name of its stage, which is that of the module."""
+        return self.module.rpartition(".")[2]
+
+    @property
+    def computed(self) -> str | None:
+        """The dataset that the study computes, also where an accepted one is read in its place."""
+        return f"{FOLDER}/{self.name}{DATASET}" if self.study else None
+
+    @property
     def dataset(self) -> str | None:
         """The dataset that others read; None for a figure without data, such as a schematic."""
-        if self.accepted:
-            return self.accepted
-        return f"{FOLDER}/{self.name}{DATASET}" if self.study else None
+        return self.accepted or self.computed
 
     @property
     def files(self) -> list[str]:

@@ -23,11 +23,15 @@ unexport PYTHONDONTWRITEBYTECODE
 
 # Targets run one after another, because clean, run and compare share results/.
 .NOTPARALLEL:
-.PHONY: all setup lint test quick speed test-cluster test-long setup-engines test-engines docs test-docs gallery mutants diff accept samples report clean ci setup-newest newest config-docs lock
+.PHONY: all replication setup lint test quick speed test-cluster test-long setup-engines test-engines docs test-docs gallery mutants diff accept samples report clean ci setup-newest newest config-docs lock
 
 all: $(SETUP)
 	$(BIN)/snakemake --cores 2 $(QUIETLY)
 	@echo "Results: results/paper.md, results/figures/. Compare with the record: make diff"
+
+# The paper alone, and its comparison with the record: results/diff/replication.html.
+replication: $(SETUP)
+	$(BIN)/snakemake --cores 2 replication diff $(QUIETLY)
 
 setup: $(VENV)/.installed
 

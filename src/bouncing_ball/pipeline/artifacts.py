@@ -10,7 +10,7 @@ all datasets. The measurements of physics engines, ``config/engines.nc``, are an
 run makes.
 """
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
@@ -166,20 +166,25 @@ def _files_in(folder: Path) -> list[str]:
         for path in paths
         if path.suffix in _SUFFIXES and path.exists()
     ]
-    if not files:
-        raise ModelError(f"nothing to compare in {folder}: neither figures/ nor {TEXTS[0]}")
     return files
 
 
-def artifacts_in(*folders: Path) -> dict[str, ArtifactFiles]:
+def artifacts_in(*folders: Path, not_made: Collection[str] = ()) -> dict[str, ArtifactFiles]:
     """The artifacts of which at least one folder has a file, by name; the texts come last.
+
+    ``not_made`` are files that a run did not make, which may be in neither.
 
     Raises
     ------
     ModelError
-        If one of the folders has no artifact.
+        If one of the folders has no artifact, although nothing is known that was not made.
     """
-    files = {file for folder in folders for file in _files_in(folder)}
+    files = {file for file in not_made if PurePosixPath(file).suffix in _SUFFIXES}
+    for folder in folders:
+        found_here = _files_in(folder)
+        if not found_here and not not_made:
+            raise ModelError(f"nothing to compare in {folder}: neither figures/ nor {TEXTS[0]}")
+        files.update(found_here)
     if all((folder / MEASURED).is_file() for folder in folders):
         files.add(MEASURED)
     by_name: dict[str, list[str]] = {}

@@ -60,11 +60,13 @@ def concluded() -> str:
 def logged(snakemake: Any) -> Iterator[list[str]]:
     """Collect lines for the log of the job; on failure print one line about the failure.
 
-    The traceback is then in the log, and the process exits with status 1.
+    The traceback is then in the log, whose last line is the same, and the process exits with status
+    1.
     """
     _prepare_process()
     lines: list[str] = []
     log = Path(snakemake.log[0])
+    log.unlink(missing_ok=True)
     with _without_pint():
         try:
             yield lines
@@ -72,13 +74,13 @@ def logged(snakemake: Any) -> Iterator[list[str]]:
             if snakemake.output:
                 print("made", *snakemake.output, flush=True)
         except Exception as error:
-            # For example, writing the log fails if the disk is full.
-            with suppress(OSError):
-                write_text(log, traceback.format_exc())
             name = "/".join([snakemake.rule, *snakemake.wildcards])
             kind = "" if isinstance(error, ValueError) else f"{type(error).__name__}: "
-            message = " ".join(str(error).split())
-            sys.exit(f"{name}: {kind}{message} (details in {log})")
+            message = f"{name}: {kind}{' '.join(str(error).split())}"
+            # For example, writing the log fails if the disk is full.
+            with suppress(OSError):
+                write_text(log, f"{traceback.format_exc()}{message}\n")
+            sys.exit(f"{message} (details in {log})")
 
 
 def _prepare_process() -> None:

@@ -240,15 +240,25 @@ def test_an_artifact_of_older_code_is_stale_even_if_it_agrees(pair):
         write_dataset(data, folder / "figures" / "fig05.nc")
     assert pair.artifact("fig05").outcome is Outcome.IDENTICAL
     (pair.new / "code").mkdir()
-    # After `snakemake --touch`, nothing is known about the code.
-    for digest, outcome in (
-        ("1f0e", Outcome.IDENTICAL),
-        ("2a2a", Outcome.STALE),
-        ("unknown", Outcome.STALE),
-    ):
+    for digest, outcome in (("1f0e", Outcome.IDENTICAL), ("2a2a", Outcome.STALE)):
         (pair.new / "code" / "fig05").write_text(digest, encoding="utf-8")
         assert pair.artifact("fig05").outcome is outcome
     assert pair.artifact("fig05").cause == "made by older code than that of the working tree"
+
+
+def test_what_was_not_made_has_its_reason_even_if_an_older_version_or_nothing_is_there(pair):
+    shutil.rmtree(pair.new / "figures")
+    files = {"figures/fig05.nc": "fig05: no orbit", "figures/fig08.png": "needs fig05"}
+    found = compare_folders(pair.record, pair.new, not_made=files)
+    causes = {artifact.name: artifact.cause for artifact in found.moved}
+    assert causes["fig05"] == "not made, fig05: no orbit"
+    assert causes["fig08"] == "not made, needs fig05"
+    assert causes["fig09"] == "a file is missing" and found.outcome.status == 1
+    # Nothing at all was made.
+    (pair.new / "paper.md").unlink()
+    found = compare_folders(pair.record, pair.new, ["fig05"], files)
+    assert to_terminal(found).startswith("fig05: not made, fig05: no orbit\n")
+    assert "not made, fig05: no orbit" in to_html(found)
 
 
 @pytest.mark.parametrize(

@@ -20,6 +20,7 @@ class Outcome(StrEnum):
     STALE = "stale"
     MISSING = "missing"
     EXTRA = "extra"
+    NOT_MADE = "not made"
     UNREADABLE = "could not be compared"
 
     @property

@@ -128,14 +128,19 @@ def to_terminal(comparison: Whole) -> str:
       paper.md  drifted  line 1: r = 0.25 → r = 0.26
     1 drifted, 1 identical. The new artifacts differ from the record.
     """
-    files = [file for artifact in comparison.moved for file in artifact.moved]
+    # A file that was not made has its reason in the line of the artifact.
+    shown = {
+        artifact.name: [file for file in artifact.moved if file.outcome is not Outcome.NOT_MADE]
+        for artifact in comparison.moved
+    }
+    files = [file for of_artifact in shown.values() for file in of_artifact]
     name_width = max((len(file.name) for file in files), default=0)
     outcomes = {file.name: _outcome_text(file) for file in files}
     outcome_width = max(map(len, outcomes.values()), default=0)
     lines = []
     for artifact in comparison.moved:
         lines.append(f"{artifact.name}: {artifact.cause}")
-        for file in artifact.moved:
+        for file in shown[artifact.name]:
             name = f"{file.name:<{name_width}}"
             outcome = f"{outcomes[file.name]:<{outcome_width}}"
             lines.append(f"  {name}  {outcome}  {note(file)}".rstrip())

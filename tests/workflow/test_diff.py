@@ -77,6 +77,13 @@ def test_a_drifted_record_turns_diff_red_and_is_replaced_by_accept(recorded, mon
     assert recorded.git("status", "--porcelain") == ""
 
 
+def test_the_file_of_code_that_changed_is_named(recorded):
+    file = "src/bouncing_ball/paper/exhibits/permanent_contact.py"
+    recorded.rewrite(file, '("frequency_ratio", curve),', '("frequency_ratio", 1.001 * curve),')
+    done = recorded.run("--cores", "1", "fig11", "diff", check=False)
+    assert "fig11: other code, paper/exhibits/permanent_contact.py" in done.stdout.splitlines()
+
+
 def test_a_study_that_fails_is_listed_and_all_else_is_made_and_compared(recorded):
     page = recorded.path / "results" / "diff" / "index.html"
     page.parent.mkdir()

@@ -33,7 +33,7 @@ if os.path.lexists("results") and not os.path.isdir("results"):
 
 from bouncing_ball.pipeline.artifacts import Artifact
 from bouncing_ball.pipeline.configuration import ConfigurationError, arguments
-from bouncing_ball.pipeline.sources import digest, keep_digest, sources
+from bouncing_ball.pipeline.sources import digests, keep_digests, sources
 
 SCRIPTS = Path(ROOT, "workflow", "scripts")
 sys.path.append(str(SCRIPTS))
@@ -78,8 +78,8 @@ def shards_of(wildcards):
     return expand(rules.shard.output.data, shard=names, **wildcards)
 
 
-# The one input that stands for the code of a job: a file with the digest of its script, of the
-# named modules, and of all modules and data that these import and read. It is written only if the
+# The one input that stands for the code of a job: a file with the digests of its script, of the
+# named modules, and of all modules and data that these import and read. It is written only if a
 # digest changes, and the job then runs again. `--touch` leaves it as it is, so that a digest that
 # has changed is written by the next run.
 def code(job, script, *modules, files=()):
@@ -88,7 +88,7 @@ def code(job, script, *modules, files=()):
         return str(path)
     read = [Path(file).resolve() for file in (SCRIPTS / "adapter.py", SCRIPTS / script, *files)]
     try:
-        keep_digest(path, digest(sources([f"bouncing_ball.{module}" for module in modules], read)))
+        keep_digests(path, digests(sources([f"bouncing_ball.{module}" for module in modules], read)))
     except OSError as error:
         sys.exit(f"{path} cannot be written: {error.strerror}")
     return str(path)

@@ -195,8 +195,8 @@ def artifacts_in(*folders: Path, not_made: Collection[str] = ()) -> dict[str, Ar
     return {artifact.name: artifact for artifact in found}
 
 
-def digest_of_code(results: Path, file: str) -> str | None:
-    """The digest of the code with which a run would make a dataset or a PNG file now.
+def digests_of_code(results: Path, file: str) -> str | None:
+    """The digests of the code with which a run would make a dataset or a PNG file now.
 
     A run notes it in ``code/``; without this file, as in results from elsewhere, it is unknown.
     """

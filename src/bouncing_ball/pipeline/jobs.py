@@ -165,7 +165,7 @@ def joined(shards: Sequence[xr.Dataset]) -> dict[str, np.ndarray]:
 
 
 def provenance(snakemake: Any) -> dict[str, str]:
-    """The provenance of the files that the job writes, with the digest of its code.
+    """The provenance of the files that the job writes, with the digests of its code.
 
     It is gathered when a file is written and is not a parameter of the job, because Snakemake
     would then run every job again after each commit.
@@ -175,7 +175,7 @@ def provenance(snakemake: Any) -> dict[str, str]:
     code = snakemake.input.code
     inputs = [str(path) for path in snakemake.input if path != code]
     gathered = gather(str(snakemake.output[0]), inputs, repository, snakemake.config)
-    return gathered | {f"{PREFIX}code": Path(code).read_text(encoding="ascii")}
+    return gathered | {f"{PREFIX}code": Path(code).read_text(encoding="utf-8")}
 
 
 def recorded(arguments: Mapping[str, Any]) -> dict[str, Any]:

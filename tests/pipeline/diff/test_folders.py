@@ -192,7 +192,13 @@ def versions(**libraries):
             {"provenance_code": "2a2a", "r": 0.7},
             "parameter changed, r 0.85 → 0.7; other code",
         ),
-        ({"provenance_code": "1f0e"}, {"provenance_code": "2a2a"}, "other code"),
+        (
+            {"provenance_code": "1f0e a.py\n0000 b.py"},
+            {"provenance_code": "2a2a a.py\n0000 b.py"},
+            "other code, a.py",
+        ),
+        # A record of an earlier day has one digest for all files.
+        ({"provenance_code": "1f0e"}, {"provenance_code": "2a2a a.py"}, "other code"),
         (
             {"provenance_versions": versions(numpy="2.2.0", scipy="1.15.0")},
             {"provenance_versions": versions(numpy="2.3.1", scipy="1.15.0")},
@@ -218,6 +224,14 @@ def test_pictures_and_tables_of_other_parameters_are_named_as_such(pair):
     outcomes = {part.name: part.outcome for part in artifact.moved}
     changed = {"figures/fig08.nc", "figures/fig08.png"}
     assert outcomes == dict.fromkeys(changed, Outcome.PARAMETERS)
+
+
+def test_a_picture_that_other_code_has_drawn_from_the_same_data_names_this_code(pair):
+    for folder, digest in ((pair.record, "1f0e"), (pair.new, "2a2a")):
+        picture = Image.new("RGB", (12, 9), "white" if digest == "1f0e" else "black")
+        path = folder / "figures" / "fig08.png"
+        save_png(path, picture, provenance_code=f"{digest} drawing/style.py")
+    assert pair.artifact("fig08").cause == "other code, drawing/style.py"
 
 
 def test_what_is_made_from_a_changed_artifact_names_it(pair):

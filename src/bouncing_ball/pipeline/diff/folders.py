@@ -28,7 +28,7 @@ from bouncing_ball.pipeline.artifacts import (
     ArtifactFiles,
     artifacts_among,
     artifacts_in,
-    digest_of_code,
+    digests_of_code,
 )
 from bouncing_ball.pipeline.diff import budgets
 from bouncing_ball.pipeline.diff.cause import (
@@ -128,10 +128,10 @@ def _is_stale(file: str, results: Path) -> bool:
     # An SVG file is made together with its PNG file.
     if not file.endswith((DATASET, ".png")) or not (results / file).exists():
         return False
-    digest = digest_of_code(results, file)
-    if digest is None:
+    digests = digests_of_code(results, file)
+    if digests is None:
         return False
-    return origin_of(results / file).code not in ("", digest)
+    return origin_of(results / file).code not in ("", digests)
 
 
 @dataclass(frozen=True)
@@ -247,9 +247,14 @@ def _ordered(names: Collection[str], judged: dict[str, _Judged]) -> list[str]:
     return sorted(names, key=lambda name: (judged[name].outcome is not Outcome.PARAMETERS, name))
 
 
-def _cause(whole: Whole, judged: _Judged, roots: Sequence[str]) -> str:
+def _cause(whole: Whole, judged: _Judged, roots: Sequence[str], compared: Compared) -> str:
     """Why an artifact differs from the record."""
-    causes = own_causes(judged.record, judged.new)
+    record, new = judged.record, judged.new
+    pictures = [file.name for file in whole.moved if file.name.endswith(".png")]
+    if judged.outcome is Outcome.IDENTICAL and pictures:
+        # Drawn by other code from the same data.
+        record, new = (origin_of(folder / pictures[0]) for folder in compared.folders)
+    causes = own_causes(record, new)
     if roots:
         causes.append(made_from(roots))
     match whole.outcome:
@@ -304,7 +309,11 @@ def compare_folders(
         if whole.outcome is not Outcome.IDENTICAL:
             roots = _ordered(_roots(name, judged, artifacts), judged)
             reasons = [compared.not_made[x] for x in artifact.files if x in compared.not_made]
-            cause = f"not made, {reasons[0]}" if reasons else _cause(whole, judged[name], roots)
+            cause = (
+                f"not made, {reasons[0]}"
+                if reasons
+                else _cause(whole, judged[name], roots, compared)
+            )
             whole = replace(whole, cause=cause)
         found.append(whole)
     found.sort(key=lambda whole: (-whole.outcome.rank, -whole.share, whole.name))

@@ -96,7 +96,7 @@ class Origin:
     parameters : mapping
         The parameters of a dataset by name; a picture has none.
     code : str
-        Digests of the files of code that made it, see :func:`bouncing_ball.pipeline.sources.digests`.
+        Digests of the files of code that made it, see :func:`~.sources.digests`.
     versions : mapping
         Versions of the libraries by name.
     inputs : tuple of str

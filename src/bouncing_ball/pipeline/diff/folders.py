@@ -249,7 +249,11 @@ def _ordered(names: Collection[str], judged: dict[str, _Judged]) -> list[str]:
 
 def _cause(whole: Whole, judged: _Judged, roots: Sequence[str], compared: Compared) -> str:
     """Why an artifact differs from the record."""
-    record, new = judged.record, judged.new
+    for file in whole.parts:
+        if file.name in compared.not_made:
+            return f"not made, {compared.not_made[file.name]}"
+    record = judged.record
+    new = judged.new
     pictures = [file.name for file in whole.moved if file.name.endswith(".png")]
     if judged.outcome is Outcome.IDENTICAL and pictures:
         # Drawn by other code from the same data.
@@ -308,13 +312,7 @@ def compare_folders(
         whole = Whole(name, tuple([data, *others] if data else others))
         if whole.outcome is not Outcome.IDENTICAL:
             roots = _ordered(_roots(name, judged, artifacts), judged)
-            reasons = [compared.not_made[x] for x in artifact.files if x in compared.not_made]
-            cause = (
-                f"not made, {reasons[0]}"
-                if reasons
-                else _cause(whole, judged[name], roots, compared)
-            )
-            whole = replace(whole, cause=cause)
+            whole = replace(whole, cause=_cause(whole, judged[name], roots, compared))
         found.append(whole)
     found.sort(key=lambda whole: (-whole.outcome.rank, -whole.share, whole.name))
     return Whole("", tuple(found))

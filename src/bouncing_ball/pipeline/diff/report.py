@@ -5,8 +5,9 @@ from pathlib import Path
 
 from bouncing_ball.datasets.files import write_text
 from bouncing_ball.pipeline.diff.folders import compare_folders
-from bouncing_ball.pipeline.diff.page import to_html, to_terminal
+from bouncing_ball.pipeline.diff.page import sentence, to_html, to_terminal
 from bouncing_ball.pipeline.diff.targets import report_paths
+from bouncing_ball.pipeline.diff.words import headline
 
 
 def write_reports(
@@ -34,7 +35,8 @@ def write_reports(
     comparison = compare_folders(record, Path("results"), artifacts, missing)
     text = to_terminal(comparison)
     lines, page = report_paths(name)
-    write_text(lines, text)
+    head = "".join(f"{line}\n" for line in headline(comparison))
+    write_text(lines, f"{sentence(comparison)}\n{head}\n{text}")
     write_text(page, to_html(comparison))
     print(text, end="", flush=True)
     if not comparison.outcome.status:

@@ -25,16 +25,16 @@ scale of the ϖ from which on the locked orbit is the same is therefore max(S/w,
 threshold: the constant before P is of order one and differs from orbit to orbit.
 """
 
-from typing import NamedTuple, Self
+from itertools import islice
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.models.damping import Release
-from bouncing_ball.models.dynamics import Departure, Dynamics, Impact
+from bouncing_ball.models.dynamics import Departure, Dynamics, Impact, Leg
 from bouncing_ball.models.flight import table
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic.corrected_orbits import CorrectedModel
 from bouncing_ball.periodic.restitution_model import RestitutionModel
@@ -69,29 +69,18 @@ class Return(NamedTuple):
 
 
 class _Balls(NamedTuple):
-    """Balls on their way from the lift-off to the next sticking, and the deviations e times ϖ."""
+    """Balls on their way from the lift-off to the next sticking."""
 
     lane: np.ndarray
     # The time since the lift-off.
     time: np.ndarray
-    # Shape (2, balls): the deviation of φ and that of δ′.
-    deviation: np.ndarray
+    # The deviation e times ϖ: that of φ, and that of δ′.
+    phase_shift: np.ndarray
+    velocity_shift: np.ndarray
     # The largest deviation of φ so far.
     peak: np.ndarray
-    impact: Impact
-    # The same states in the corrected model.
+    # The states of the present impacts in the corrected model.
     corrected_impact: Impact
-
-    def take(self, which: np.ndarray) -> Self:
-        """The balls with these indices."""
-        return self._replace(
-            lane=self.lane[which],
-            time=self.time[which],
-            deviation=self.deviation[:, which],
-            peak=self.peak[which],
-            impact=pick(self.impact, which),
-            corrected_impact=pick(self.corrected_impact, which),
-        )
 
 
 def _store(
@@ -100,7 +89,7 @@ def _store(
     """Store the returns of the balls that stick after this number of impacts."""
     lane = balls.lane[sticks]
     time = (balls.time + departure.duration)[sticks]
-    late = np.abs(balls.deviation[0, sticks])
+    late = np.abs(balls.phase_shift[sticks])
     found.periods[lane] = np.rint(time / (2 * np.pi))
     found.impacts[lane] = impacts
     found.sensitivity[lane] = np.nan_to_num(late, nan=np.inf, posinf=np.inf)
@@ -108,35 +97,33 @@ def _store(
     found.wait[lane] = (departure.duration - departure.settling)[sticks]
 
 
-def _next_impacts(
-    dynamics: Dynamics, corrected: Dynamics, balls: _Balls, departure: Departure, *, lifts_off: bool
-) -> _Balls:
+def _at_next_impacts(leg: Leg, corrected: Dynamics, balls: _Balls, *, lifts_off: bool) -> _Balls:
     """The balls at their next impacts, with e ← M e + K/ϖ.
 
     The lift-off is the same in both models, so that the time and e begin there.
     """
-    impact = balls.impact
-    after, passed = dynamics.fly(departure)
-    corrected_after, _ = corrected.fly(corrected.depart(balls.corrected_impact))
+    departure = leg.departure
+    after, passed = leg.fly()
+    corrected_after, _ = next(corrected.legs(balls.corrected_impact)).fly()
     phase, velocity = corrected.section(corrected_after)
     shift = np.array([reduce_angle(phase - after.phase), velocity - after.velocity])
-    deviation = balls.deviation
+    deviation = np.array([balls.phase_shift, balls.velocity_shift])
     if lifts_off:
         passed = passed - departure.duration
     else:
-        gravity = 1 - table(impact.phase, dynamics.amplitude)[1]
-        chattering_time = 2 * departure.flight.velocity / (1 - dynamics.law)
+        gravity = 1 - table(leg.impact.phase, leg.dynamics.amplitude)[1]
+        chattering_time = 2 * departure.flight.velocity / (1 - leg.dynamics.law)
         shift[:, (0 < gravity) & (chattering_time < _CHATTER * gravity**2)] = 0
         with np.errstate(over="ignore", invalid="ignore"):
-            change = dynamics.jacobian(impact, departure, after, passed)
-            deviation = np.array(change.apply(*deviation))
-    deviation = deviation + _STIFF * shift
-    size = np.nan_to_num(np.abs(deviation[0]), nan=np.inf, posinf=np.inf)
-    return balls._replace(
+            deviation = np.array(leg.jacobian().apply(*deviation))
+    phase_shift, velocity_shift = deviation + _STIFF * shift
+    size = np.nan_to_num(np.abs(phase_shift), nan=np.inf, posinf=np.inf)
+    return _Balls(
+        lane=balls.lane,
         time=balls.time + passed,
-        deviation=deviation,
+        phase_shift=phase_shift,
+        velocity_shift=velocity_shift,
         peak=np.maximum(balls.peak, size),
-        impact=after,
         corrected_impact=corrected.at_section(after.phase, after.velocity),
     )
 
@@ -170,22 +157,20 @@ def returns(restitution: ArrayLike, amplitude: ArrayLike, impacts: int) -> Retur
     balls = _Balls(
         lane=np.arange(r.size),
         time=np.zeros(r.size),
-        deviation=np.zeros((2, r.size)),
+        phase_shift=np.zeros(r.size),
+        velocity_shift=np.zeros(r.size),
         peak=np.zeros(r.size),
-        impact=dynamics.start(*state),
         corrected_impact=corrected.start(*state),
     )
-    for count in range(impacts):
-        departure = dynamics.depart(balls.impact, differentiate=True)
-        if count:
-            sticks = departure.sticks
-            if sticks.any():
-                _store(found, balls, departure, sticks, count)
-                left = np.flatnonzero(~sticks)
-                dynamics, departure = dynamics.kept(left, departure)
-                corrected = corrected.take(left)
-                balls = balls.take(left)
-        if not balls.lane.size:
-            break
-        balls = _next_impacts(dynamics, corrected, balls, departure, lifts_off=count == 0)
+    legs = dynamics.legs(dynamics.start(*state), differentiate=True)
+    for count, leg in enumerate(islice(legs, impacts)):
+        sticks = leg.departure.sticks
+        if count and sticks.any():
+            _store(found, balls, leg.departure, sticks, count)
+            left = np.flatnonzero(~sticks)
+            corrected = corrected.take(left)
+            (balls,) = leg.keep(left, balls)
+            if not left.size:
+                break
+        balls = _at_next_impacts(leg, corrected, balls, lifts_off=count == 0)
     return Return(*(x.reshape(shape) for x in found))

@@ -39,7 +39,7 @@ from bouncing_ball.long_run.followed import (
     MARGINAL,
     REASONS,
     ROUNDING,
-    Balls,
+    Tracked,
     joined,
     record,
     store,
@@ -163,7 +163,7 @@ def _follow(
     return found
 
 
-def _without(done: np.ndarray, leg: Leg, impact: Impact, balls: Balls, found: Motions) -> Balls:
+def _without(done: np.ndarray, leg: Leg, impact: Impact, balls: Tracked, found: Motions) -> Tracked:
     """Store the last impacts of the balls that are done, and leave them out."""
     if not done.any():
         return balls
@@ -175,13 +175,13 @@ def _without(done: np.ndarray, leg: Leg, impact: Impact, balls: Balls, found: Mo
 
 def _new_balls(
     dynamics: Dynamics, lanes: np.ndarray, phase: np.ndarray, relative: np.ndarray
-) -> tuple[Impact, Balls]:
+) -> tuple[Impact, Tracked]:
     """The first impacts of balls, and the balls."""
     first = dynamics.start(phase, relative)
-    return first, Balls.new(lanes, dynamics.amplitude, first)
+    return first, Tracked.new(lanes, dynamics.amplitude, first)
 
 
-def _departing(leg: Leg, balls: Balls, found: Motions) -> np.ndarray:
+def _departing(leg: Leg, balls: Tracked, found: Motions) -> np.ndarray:
     """Store which balls stay on the table, are not released, or lock because they stick again;
     return which do.
     """
@@ -199,7 +199,7 @@ def _departing(leg: Leg, balls: Balls, found: Motions) -> np.ndarray:
 
 
 def _sticking_again(
-    balls: Balls, sticks: np.ndarray, time: np.ndarray, found: Motions
+    balls: Tracked, sticks: np.ndarray, time: np.ndarray, found: Motions
 ) -> np.ndarray:
     """Store which balls lock because they stick for the second time, and return which do.
 
@@ -225,7 +225,7 @@ def _sticking_again(
 
 
 def _store_unresolved(
-    found: Motions, balls: Balls, which: np.ndarray, exponent: ArrayLike, error: ArrayLike
+    found: Motions, balls: Tracked, which: np.ndarray, exponent: ArrayLike, error: ArrayLike
 ) -> None:
     """Store motions that lock after a period that is not known."""
     store(
@@ -241,7 +241,7 @@ def _store_unresolved(
     )
 
 
-def _advance(balls: Balls, leg: Leg) -> None:
+def _advance(balls: Tracked, leg: Leg) -> None:
     """Advance the counts, times, derivatives and deviations of all balls to the next impact."""
     change = leg.jacobian()
     sticks = leg.departure.sticks
@@ -264,7 +264,7 @@ def _advance(balls: Balls, leg: Leg) -> None:
 
 
 def _ending(
-    balls: Balls, phase: np.ndarray, velocity: np.ndarray, impacts: int, found: Motions
+    balls: Tracked, phase: np.ndarray, velocity: np.ndarray, impacts: int, found: Motions
 ) -> np.ndarray:
     """Compare balls with their marks, and store which balls repeat or reach the last impact; return
     which do.
@@ -290,7 +290,7 @@ def _ending(
 
 
 def _returning(
-    balls: Balls, near: np.ndarray, shifts: tuple[np.ndarray, np.ndarray], found: Motions
+    balls: Tracked, near: np.ndarray, shifts: tuple[np.ndarray, np.ndarray], found: Motions
 ) -> tuple[np.ndarray, np.ndarray]:
     """The indices of the balls that return to their marks for the first time, and for the second
     time; the motions of the latter are stored.
@@ -319,7 +319,7 @@ def _returning(
 
 def _store_repeating(
     found: Motions,
-    balls: Balls,
+    balls: Tracked,
     which: np.ndarray,
     periods: np.ndarray,
     impacts: np.ndarray,
@@ -340,7 +340,7 @@ def _store_repeating(
     )
 
 
-def _give_up(balls: Balls, which: np.ndarray, found: Motions) -> None:
+def _give_up(balls: Tracked, which: np.ndarray, found: Motions) -> None:
     """Store which of the balls that have not repeated are locked after an unknown period, which are
     chaotic, and which are undecided.
     """

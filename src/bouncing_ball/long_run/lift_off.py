@@ -31,6 +31,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.long_run.recurrence import periods_in
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.dynamics import Departure, Dynamics, Impact, Leg
 from bouncing_ball.models.flight import table
@@ -47,14 +48,15 @@ _STIFF = 1e6
 _CHATTER = 1e-2
 
 
-class Return(NamedTuple):
-    """Returns from the lift-off, arrays of one shape; 0 or NaN for a ball that does not stick.
+class Lap(NamedTuple):
+    """Ways from the lift-off to the next sticking; 0 or NaN for a ball that does not stick again.
 
-    ``periods`` and ``impacts`` are the numbers of periods of the table and of impacts until the
-    ball sticks. ``sensitivity`` is S, that of the phase at which the chattering ends, ``peak`` is
-    P, the largest one of a phase of impact on the way, and ``wait`` is the time w from the end of
-    the chattering to the next lift-off. An S or P that is too large for a number is infinite. Where
-    S exceeds w by more than the digits of a double, rounding errors decide on the period.
+    All arrays have one shape. ``periods`` and ``impacts`` are the numbers of periods of the table
+    and of impacts until the ball sticks. ``sensitivity`` is S, that of the phase at which the
+    chattering ends, ``peak`` is P, the largest one of a phase of impact on the way, and ``wait`` is
+    the time w from the end of the chattering to the next lift-off. An S or P that is too large for
+    a number is infinite. Where S exceeds w by more than the digits of a double, rounding errors
+    decide on the period.
     """
 
     periods: np.ndarray
@@ -68,7 +70,7 @@ class Return(NamedTuple):
         return np.maximum(self.sensitivity / self.wait, self.peak)
 
 
-class _Balls(NamedTuple):
+class _OnLap(NamedTuple):
     """Balls on their way from the lift-off to the next sticking."""
 
     lane: np.ndarray
@@ -84,20 +86,20 @@ class _Balls(NamedTuple):
 
 
 def _store(
-    found: Return, balls: _Balls, departure: Departure, sticks: np.ndarray, impacts: int
+    found: Lap, balls: _OnLap, departure: Departure, sticks: np.ndarray, impacts: int
 ) -> None:
-    """Store the returns of the balls that stick after this number of impacts."""
+    """Store the laps of the balls that stick after this number of impacts."""
     lane = balls.lane[sticks]
     time = (balls.time + departure.duration)[sticks]
     late = np.abs(balls.phase_shift[sticks])
-    found.periods[lane] = np.rint(time / (2 * np.pi))
+    found.periods[lane] = periods_in(time)
     found.impacts[lane] = impacts
     found.sensitivity[lane] = np.nan_to_num(late, nan=np.inf, posinf=np.inf)
     found.peak[lane] = balls.peak[sticks]
     found.wait[lane] = (departure.duration - departure.settling)[sticks]
 
 
-def _at_next_impacts(leg: Leg, corrected: Dynamics, balls: _Balls, *, lifts_off: bool) -> _Balls:
+def _at_next_impacts(leg: Leg, corrected: Dynamics, balls: _OnLap, *, lifts_off: bool) -> _OnLap:
     """The balls at their next impacts, with e ← M e + K/ϖ.
 
     The lift-off is the same in both models, so that the time and e begin there.
@@ -118,7 +120,7 @@ def _at_next_impacts(leg: Leg, corrected: Dynamics, balls: _Balls, *, lifts_off:
             deviation = np.array(leg.jacobian().apply(*deviation))
     phase_shift, velocity_shift = deviation + _STIFF * shift
     size = np.nan_to_num(np.abs(phase_shift), nan=np.inf, posinf=np.inf)
-    return _Balls(
+    return _OnLap(
         lane=balls.lane,
         time=balls.time + passed,
         phase_shift=phase_shift,
@@ -128,12 +130,12 @@ def _at_next_impacts(leg: Leg, corrected: Dynamics, balls: _Balls, *, lifts_off:
     )
 
 
-def returns(restitution: ArrayLike, amplitude: ArrayLike, impacts: int) -> Return:
-    """The returns of balls that lift off from a table with Λ > 1, within a number of impacts.
+def laps(restitution: ArrayLike, amplitude: ArrayLike, impacts: int) -> Lap:
+    """The laps of balls that lift off from a table with Λ > 1, within a number of impacts.
 
     Examples
     --------
-    >>> returns([0.5, 0.6], [2.5, 3.0], 100).periods.tolist()
+    >>> laps([0.5, 0.6], [2.5, 3.0], 100).periods.tolist()
     [6, 13]
     """
     r, lam = np.broadcast_arrays(
@@ -147,14 +149,14 @@ def returns(restitution: ArrayLike, amplitude: ArrayLike, impacts: int) -> Retur
     corrected_model = CorrectedModel.of_contact(contact)
     corrected, _, _ = corrected_model.dynamics(lam.ravel()).in_a_row(*state)
 
-    found = Return(
+    found = Lap(
         periods=np.zeros(r.size, dtype=int),
         impacts=np.zeros(r.size, dtype=int),
         sensitivity=np.full(r.size, np.nan),
         peak=np.full(r.size, np.nan),
         wait=np.full(r.size, np.nan),
     )
-    balls = _Balls(
+    balls = _OnLap(
         lane=np.arange(r.size),
         time=np.zeros(r.size),
         phase_shift=np.zeros(r.size),
@@ -173,4 +175,4 @@ def returns(restitution: ArrayLike, amplitude: ArrayLike, impacts: int) -> Retur
             if not left.size:
                 break
         balls = _at_next_impacts(leg, corrected, balls, lifts_off=count == 0)
-    return Return(*(x.reshape(shape) for x in found))
+    return Lap(*(x.reshape(shape) for x in found))

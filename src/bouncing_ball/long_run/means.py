@@ -188,6 +188,7 @@ def _add_up(dynamics: Dynamics, impact: Impact, impacts: np.ndarray, total: np.n
 
 def _grown(along: np.ndarray, across: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Deviations normalised to length 1, and the logarithms of their lengths."""
+    # A long contact may leave 1e-170 of a deviation, of which the square would be zero.
     length = np.hypot(along, across)
     # After a ball of a simple model has stuck, the deviation is zero.
     along = np.where(length > 0, along, 1.0)

@@ -32,7 +32,7 @@ VARIABLES = {
 _ROUNDING = 1e-12
 
 
-class Balls(Parameters):
+class BallsAlike(Parameters):
     """One ball for each Λ. All balls start alike."""
 
     restitution: Restitution
@@ -78,7 +78,7 @@ def is_back(sequence: ImpactSequence, impacts: np.ndarray) -> np.ndarray:
     return np.maximum(np.abs(turn), np.abs(change)) <= _ROUNDING
 
 
-def kinds_of_motion(parameters: Balls) -> xr.Dataset:
+def kinds_of_motion(parameters: BallsAlike) -> xr.Dataset:
     """Whether the motion of each ball repeats, and how fast its neighbours separate from it.
 
     The dataset has, over ``amplitude``, ``impacts`` and ``periods`` of the table until the motion

@@ -143,7 +143,9 @@ def _follow(
     while alive or started < start.size:
         lanes = np.arange(started, min(started + _BLOCK - alive, start.size))
         started += lanes.size
-        first, new = _new_balls(dynamics.take(lanes), lanes, start[lanes], relative[lanes])
+        entering = dynamics.take(lanes)
+        first = entering.start(start[lanes], relative[lanes])
+        new = Tracked.new(lanes, entering.amplitude, first)
         impact = joined(impact, first) if alive else first
         balls = joined(balls, new) if alive else new
         for leg in dynamics.take(balls.lane).legs(impact, differentiate=True):
@@ -171,14 +173,6 @@ def _without(done: np.ndarray, leg: Leg, impact: Impact, balls: Tracked, found: 
     store_ends(found, balls, impact, going)
     (balls,) = leg.keep(going, balls)
     return balls
-
-
-def _new_balls(
-    dynamics: Dynamics, lanes: np.ndarray, phase: np.ndarray, relative: np.ndarray
-) -> tuple[Impact, Tracked]:
-    """The first impacts of balls, and the balls."""
-    first = dynamics.start(phase, relative)
-    return first, Tracked.new(lanes, dynamics.amplitude, first)
 
 
 def _departing(leg: Leg, balls: Tracked, found: Motions) -> np.ndarray:

@@ -7,7 +7,6 @@ confirmed statement is a summary with an interval, and no prediction that was te
 
 import sys
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -16,22 +15,23 @@ from bouncing_ball.beyond.exhibits.motion_samples import share_with_limits
 from bouncing_ball.long_run.period_doublings import FEIGENBAUM
 from bouncing_ball.paper.claims.claim import claim, defined_in
 from bouncing_ball.paper.claims.claims import assess
+from bouncing_ball.paper.claims.parameters import Digests
 from bouncing_ball.paper.claims.verdict import decided
 
-PARAMETERS: dict[str, dict[str, Any]] = {
-    "ext_locking": {"frequency_ratio": [100.0, 1000.0, 10000.0]},
-    "ext_chaos": {"followed": [500, 1000, 3000, 10000], "bands": [0.3, 0.5, 0.6, 0.7, 0.8]},
-    "ext_locked": {},
-    "ext_lives": {"frequency_ratio": [100.0, 1000.0, 10000.0]},
-    "ext_cascades": {
-        "n": 1,
-        "restitution": [0.3, 0.5, 0.65, 0.85],
-        "frequency_ratio": {"min": 2.0, "max": 2000.0},
-    },
-    "ext_means": {"frequency_ratio": [10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0, 10000.0]},
-    "ext_basins": {},
+PARAMETERS: Digests = {
+    "ext_locking": ("5663cdb1", "frequency_ratio"),
+    "ext_chaos": ("aad7e794", "followed", "bands"),
+    "ext_lives": ("5663cdb1", "frequency_ratio"),
+    "ext_cascades": (
+        "2a3e477b",
+        "n",
+        "restitution",
+        "frequency_ratio__min",
+        "frequency_ratio__max",
+    ),
+    "ext_means": ("47b23b1c", "frequency_ratio"),
 }
-"""The parameters that the statements name, for each dataset that decides one."""
+"""The digests of the parameters that the statements name; other datasets may have any."""
 
 
 def limits(data, name, **place):

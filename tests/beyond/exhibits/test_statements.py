@@ -5,9 +5,8 @@ import pytest
 from declared_artifacts import ARTIFACTS
 
 from bouncing_ball.beyond.exhibits import statements as whole_motion
-from bouncing_ball.beyond.exhibits.statements import statements
+from bouncing_ball.beyond.exhibits.statements import decided, statements
 from bouncing_ball.paper.claims.claim import defined_in
-from bouncing_ball.paper.claims.verdict import decided
 
 # A false value of the variable that decides a statement; of an interval it is the bound itself.
 FALSE = {

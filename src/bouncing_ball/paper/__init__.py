@@ -19,8 +19,8 @@ Eqs.     what                        where
 16       damping from restitution    ``models.damping.damping_ratio``
 17       apparent restitution        ``periodic.orbit.Orbit.apparent_restitution``
 18-20    period of the n-T orbit     ``periodic.orbit.Orbit.flight_time``
-21-26    its equations               ``periodic.spring_damper_orbit.SpringDamperOrbit.residual``
-..       as a continuation problem   ``periodic.equations.OrbitSystem``
+21-26    its equations               ``periodic.problem.PeriodicOrbits``
+..       in the unknowns of paper    ``periodic.paper_unknowns.PaperUnknowns``
 ..       solved at a given duration  ``periodic.spring_damper_branch.branch_point``
 ..       its saddle-node             ``periodic.spring_damper_bifurcations.saddle_node``
 ..       its period doubling         ``periodic.spring_damper_bifurcations.period_doubling``

@@ -131,8 +131,8 @@ def _restitution_orbits(rng, r) -> Checks:
 
     doubling = printed.period_doubling(n, r)
     corrected = np.hypot(2 * (1 + r * r) / (1 + r) ** 2, along)
-    phase = np.arccos(along / corrected)
-    at_doubling = Orbit.of(model, n, corrected, phase).trace_and_determinant()
+    turned = np.arccos(along / corrected)
+    at_doubling = Orbit.of(model, n, corrected, turned).trace_and_determinant()
     # Holmes' map, whose next phase is φ + 2v, has the trace 1 + r - 2p and the determinant r.
     push = (1 + r) * np.sqrt(doubling**2 - along**2)
     holmes = Bifurcation.PERIOD_DOUBLING.test(1 + r - 2 * push, r)

@@ -28,11 +28,11 @@ from bouncing_ball.calls.arguments import (
     is_array,
 )
 from bouncing_ball.calls.balls import Ball, ModelBall, flattened
+from bouncing_ball.contacts.named_laws import law_named
 from bouncing_ball.errors import ParameterError, Range
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.law_of_impact import law_of_impact, reference
-from bouncing_ball.models.laws.registry import law_named
 from bouncing_ball.periodic.law_orbits import LawModel, law_at_orbit
 from bouncing_ball.periodic.restitution_branch import rigid_speed
 from bouncing_ball.periodic.stability import Side

@@ -14,7 +14,6 @@ from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.errors import ParameterError
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.motions import Kind, Motions
-from bouncing_ball.models.instant import instant_of
 
 VARIABLES = {
     "digits_lost": Variable(
@@ -105,7 +104,7 @@ def fastest(model: Any, amplitude: Any) -> np.ndarray:
     6.0
     """
     lam = np.asarray(amplitude, dtype=float)
-    r = np.asarray(instant_of(model, 2 * np.pi).restitution)
+    r = np.asarray(model.signature(2 * np.pi).restitution)
     return (1 + r) * np.maximum(lam, 1.0) / np.maximum(1 - r, 0.05)
 
 

@@ -1,21 +1,15 @@
 """A contact seen from outside: an impact at an instant, with a delay, a restitution and a load.
 
-:mod:`bouncing_ball.models.laws.signature` derives the numbers. For the linear contact they
-are in closed form, with κ as in :mod:`bouncing_ball.models.damping`::
-
-    t_c = r (D + κ)/(1 + r),    σ = (1 - r)(D + κ) - 2ζ (1 + r)/ϖ
+:mod:`bouncing_ball.models.laws.signature` derives the numbers. Every law and every model has them
+as its method ``signature``.
 """
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-
-from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.restitution_model import RestitutionModel
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 
 
 class Instant(NamedTuple):
@@ -59,35 +53,6 @@ class Instant(NamedTuple):
         return Instant(depth, slope, self.load, self.duration), (slope - self.restitution) * v
 
 
-def linear_instant(contact: SpringDamper) -> Instant:
-    """The signature of a linear contact in closed form, which is the same at every speed.
-
-    Raises
-    ------
-    ModelError
-        If ζ ≥ 1: the formulas hold for underdamped contacts only.
-
-    Examples
-    --------
-    The force of an elastic contact is symmetric in time, so that its centroid is in the middle:
-
-    >>> instant = linear_instant(SpringDamper(2.0, 0.0))
-    >>> float(instant.delay) == np.pi / 4, float(instant.restitution), float(instant.load)
-    (True, 1.0, 0.0)
-    """
-    duration = contact.free_duration
-    r = contact.restitution
-    # The time at which the flight after the contact rises through δ = 0.
-    through = duration + contact.lag
-    loss = 2 * np.asarray(contact.damping_ratio) / contact.frequency_ratio
-    return Instant(
-        delay=r * through / (1 + r),
-        restitution=r + 0 * duration,
-        load=(1 - r) * through - loss * (1 + r),
-        duration=duration,
-    )
-
-
 def rigid_instant(restitution: ArrayLike, slope: ArrayLike, speed: ArrayLike) -> Instant:
     """An impact with restitution r(v) at the table's level: no delay, no load, no duration.
 
@@ -103,17 +68,3 @@ def rigid_instant(restitution: ArrayLike, slope: ArrayLike, speed: ArrayLike) ->
         duration=none,
         d_restitution=(np.asarray(slope) - r) / v,
     )
-
-
-def instant_of(model: Any, speed: ArrayLike) -> Instant:
-    """The impact of any model as an instant, at impact speeds v > 0.
-
-    The models of the paper do not know this view of an impact; all others have it as their method
-    ``signature``.
-    """
-    match model:
-        case RestitutionModel():
-            return rigid_instant(model.restitution, model.restitution, speed)
-        case SpringDamperModel():
-            return linear_instant(model.contact).at(speed)
-    return model.signature(speed)

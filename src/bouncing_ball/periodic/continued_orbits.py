@@ -14,7 +14,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.models.instant import Instant, instant_of
+from bouncing_ball.models.instant import Instant
 from bouncing_ball.numerics.continuation import ContinuationError, StepControl, continue_branch
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane, tangent
 from bouncing_ball.numerics.events import Event, SpecialPoint, parameter_bound, vanishing
@@ -73,7 +73,7 @@ def restitution_speed(n: ArrayLike, model: Any) -> tuple[np.ndarray, Instant]:
     period = 2 * np.pi * np.asarray(n, dtype=float)
     speed = period / 1.7 + np.zeros(model.shape)
     for _ in range(_ROUNDS):
-        instant = instant_of(model, speed)
+        instant = model.signature(speed)
         slope = 1 + instant.restitution + instant.d_restitution * speed
         step = (period - (1 + instant.restitution) * speed) / slope
         speed = speed + step

@@ -17,7 +17,6 @@ from numpy.typing import ArrayLike
 from bouncing_ball.models.corrected.impact import Hit, impact, meeting
 from bouncing_ball.models.corrected.motion import CorrectedDynamics
 from bouncing_ball.models.instant import Instant
-from bouncing_ball.models.laws.linear import LinearLaw
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic import corrected_branch as formulas
@@ -36,8 +35,7 @@ class CorrectedOrbit(Orbit):
     Examples
     --------
     >>> from bouncing_ball.models.laws.signature import Signature
-    >>> from bouncing_ball.models.laws.linear import LinearLaw
-    >>> orbit = CorrectedOrbit.at(1, Signature(LinearLaw(np.pi, 0.0)), 0.8, np.pi / 2)
+    >>> orbit = CorrectedOrbit.at(1, Signature(SpringDamper(np.pi, 0.0)), 0.8, np.pi / 2)
     >>> float(orbit.bounce_velocity) == np.pi - 0.5, round(float(orbit.phase) - np.pi / 2, 12)
     (True, -0.5)
     """
@@ -188,7 +186,7 @@ class CorrectedModel(ContinuedModel):
         ModelError
             If ζ ≥ 1.
         """
-        return ConstantCorrectedModel(Signature(LinearLaw.of(contact)))
+        return ConstantCorrectedModel(Signature(contact))
 
     def signature(self, speed: ArrayLike) -> Instant:
         """The signature at impact speeds v > 0."""

@@ -19,7 +19,6 @@ from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
 from bouncing_ball.models.laws.march import ContactEnds
 from bouncing_ball.models.laws.permanent_contact import permanent_contact
-from bouncing_ball.models.laws.signature import free_impact
 from bouncing_ball.periodic.continued_orbits import ContinuedModel, orbit_at, orbits_at
 from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.restitution_branch import rigid_speed
@@ -122,7 +121,7 @@ class LawModel(ContinuedModel):
         ModelError
             If the law does not release the ball.
         """
-        return free_impact(self.law, speed)
+        return self.law.signature(speed)
 
     def orbits(self, n: int, amplitude: float) -> LawOrbit:
         """The n-T orbits of one law at one Λ, in order of contact duration, shape (count,).
@@ -180,11 +179,10 @@ def law_at_orbit(
 
     Examples
     --------
-    >>> from bouncing_ball.models.laws.signature import free_impact
     >>> from bouncing_ball.models.laws.hertzian import Tsuji
     >>> law = law_at_orbit(Tsuji, 0.65, 0.1, 1, 1.0)
     >>> speed = -LawModel(law).orbit(1, 1.0).relative_impact_velocity
-    >>> round(float(free_impact(law, speed).duration), 12)
+    >>> round(float(law.signature(speed).duration), 12)
     0.1
     """
     side = Side(side)

@@ -27,6 +27,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.dynamics import Dynamics
+from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.models.sequence import Cycle, ImpactSequence
 from bouncing_ball.numerics.arrays import Batch
@@ -62,6 +63,10 @@ class ImpactModel(Batch, ABC):
     def label(self) -> str:
         """The parameters of a single model as text: the label of the law if it has one."""
         return getattr(self.impact_law, "label", repr(self.impact_law))
+
+    @abstractmethod
+    def signature(self, speed: ArrayLike) -> Instant:
+        """The impacts as instants, at impact speeds v > 0 of any shape."""
 
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ up to which the ball stays on the table, of the model's shape.

@@ -8,6 +8,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.models.instant import Instant, rigid_instant
 from bouncing_ball.models.restitution import RestitutionDynamics
 from bouncing_ball.periodic import restitution_branch as formulas
 from bouncing_ball.periodic.model import ImpactModel
@@ -97,6 +98,10 @@ class RestitutionModel(ImpactModel):
 
     def __post_init__(self):
         formulas.check_family(1, self.restitution)
+
+    def signature(self, speed: ArrayLike) -> Instant:
+        """The constant r, without delay, load sensitivity and duration."""
+        return rigid_instant(self.restitution, self.restitution, speed)
 
     @property
     def label(self) -> str:

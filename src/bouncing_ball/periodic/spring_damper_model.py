@@ -8,6 +8,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic import spring_damper_bifurcations as bifurcations
@@ -49,6 +50,10 @@ class SpringDamperModel(ImpactModel):
     def label(self) -> str:
         contact = self.contact
         return f"ϖ = {float(contact.frequency_ratio):g}, ζ = {float(contact.damping_ratio):.4g}"
+
+    def signature(self, speed: ArrayLike) -> Instant:
+        """The signature of the contact, which is the same at every speed."""
+        return self.contact.signature(speed)
 
     def orbit(
         self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE

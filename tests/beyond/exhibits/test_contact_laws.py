@@ -14,9 +14,7 @@ from bouncing_ball.beyond.exhibits.contact_laws import (
     law_errors,
 )
 from bouncing_ball.models.damping import Release, damping_ratio
-from bouncing_ball.models.instant import instant_of
 from bouncing_ball.models.laws.collocation import contacts
-from bouncing_ball.models.laws.linear import LinearLaw
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic.restitution_branch import rigid_speed
 from bouncing_ball.periodic.restitution_model import RestitutionModel
@@ -75,9 +73,9 @@ def test_a_contact_has_its_restitution_and_its_centroid_at_the_speed_of_its_cali
     right = speeds.pop(calibration)
     (wrong,) = speeds.values()
     # The speeds differ by 0.14 %, and the r of this law at these speeds by some 0.05 %.
-    assert instant_of(model, right).restitution == pytest.approx(0.65, abs=1e-9)
-    assert abs(instant_of(model, right).delay / (0.65 / 1.65 * np.pi / 80) - 1) < 1e-8
-    assert abs(instant_of(model, wrong).restitution - 0.65) > 2e-4
+    assert model.signature(right).restitution == pytest.approx(0.65, abs=1e-9)
+    assert abs(model.signature(right).delay / (0.65 / 1.65 * np.pi / 80) - 1) < 1e-8
+    assert abs(model.signature(wrong).restitution - 0.65) > 2e-4
 
 
 def test_a_threshold_that_the_grid_does_not_have_is_nan():
@@ -90,7 +88,7 @@ def test_a_threshold_that_the_grid_does_not_have_is_nan():
 def law_at_rigid_speed(name, duration):
     """The trial gave r and D at the restitution model's impact speed, 2π/(1 + r)."""
     model = exact_model(name, 0.65, duration, rigid_speed(1, 0.65))
-    return model, LinearLaw.of(model.contact) if name in LINEAR else model.law
+    return model, model.contact if name in LINEAR else model.law
 
 
 def height_by_one_impact(law):
@@ -183,7 +181,7 @@ def test_contacts_of_one_centroid_take_different_times(errors):
     for name in NAMES:
         models = CalibratedContacts(name, LawOrbit(**ONE)).models(np.array([100.0]))
         speed = -models.orbit(1, 1.0).relative_impact_velocity
-        impact = instant_of(models, speed)
+        impact = models.signature(speed)
         assert impact.delay == pytest.approx(0.65 / 1.65 * np.pi / 100, rel=1e-8)
         # A contact that ends by its force is released below the table's level.
         ends_early = name in ("linear, force release", "kuwabara-kono")

@@ -5,8 +5,8 @@ import pytest
 
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.hertzian import Tsuji
-from bouncing_ball.models.laws.linear import LinearLaw
 from bouncing_ball.models.laws.signature import Signature
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic.corrected_orbits import CorrectedModel
 from bouncing_ball.periodic.orbit import OBSERVABLES
 from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
@@ -17,7 +17,7 @@ COMPARED = (*OBSERVABLES[1:], "bounce_height")
 
 
 def models(omega, zeta, release):
-    contact = LinearLaw(omega, zeta, release)
+    contact = SpringDamper(omega, zeta, release)
     return CorrectedModel.of_contact(contact), SpringDamperModel(contact)
 
 

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.contacts.engines.impedance import Impedance
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball.models.laws.hertzian import KuwabaraKono
-from bouncing_ball.models.laws.impedance import Impedance
-from bouncing_ball.models.laws.linear import LinearLaw
-from bouncing_ball.models.laws.signature import Signature, free_impact
+from bouncing_ball.models.laws.signature import Signature
+from bouncing_ball.models.spring_damper import SpringDamper
 
 RELEASES = list(Release)
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
@@ -25,14 +25,14 @@ def test_flights_continued_into_any_contact_meet_at_the_centroid_of_its_force():
             lam = rng.uniform(0, 3)
             phase = rng.uniform(-3, 3)
             speed = rng.uniform(2, 9)
-            contact = LinearLaw(omega, zeta, release)
+            contact = SpringDamper(omega, zeta, release)
             impact = contact.dynamics(lam).simulate(phase, lam * np.cos(phase) - speed, 1)
             end = float(impact.contact_duration[0])
             left = float(impact.release_displacement[0])
             if not np.isfinite(end):
                 continue
             time = end * (NODES + 1) / 2
-            flow = LinearLaw(omega, zeta).flow(time, 0.0, -speed, phase, lam)
+            flow = SpringDamper(omega, zeta).flow(time, 0.0, -speed, phase, lam)
             force = contact.force(-flow.displacement, -flow.velocity)
             impulse = np.sum(WEIGHTS * force)
             centroid = np.sum(WEIGHTS * force * time) / impulse
@@ -49,7 +49,7 @@ def test_flights_continued_into_any_contact_meet_at_the_centroid_of_its_force():
 
 @pytest.mark.parametrize("release", RELEASES)
 def test_an_elastic_contact_has_its_centroid_in_the_middle(release):
-    instant = Signature(LinearLaw(np.array([2.0, 50.0]), 0.0, release))()
+    instant = Signature(SpringDamper(np.array([2.0, 50.0]), 0.0, release))()
     np.testing.assert_array_equal(instant.delay, instant.duration / 2)
     np.testing.assert_array_equal(instant.restitution, 1.0)
     np.testing.assert_array_equal(instant.load, 0.0)
@@ -57,7 +57,7 @@ def test_an_elastic_contact_has_its_centroid_in_the_middle(release):
 
 def test_an_overdamped_contact_has_no_signature(refusal):
     with refusal(ModelError, "damping ratio ζ = 1.0", "below 1"):
-        Signature(LinearLaw(10.0, 1.0))
+        Signature(SpringDamper(10.0, 1.0))
 
 
 KINKED = Impedance(10.0, 0.136, 0.95, 0.5, width=0.2)
@@ -76,7 +76,7 @@ KINKED = Impedance(10.0, 0.136, 0.95, 0.5, width=0.2)
 def test_between_its_nodes_a_signature_is_that_of_free_impacts(law, missed):
     speed = np.geomspace(0.3, 12.0, 37)
     found = Signature(law)(speed)
-    exact = free_impact(law, speed)
+    exact = law.signature(speed)
     for name in ("delay", "load", "duration"):
         error = np.abs(getattr(found, name) - getattr(exact, name)) / exact.duration
         assert error.max() < missed

@@ -30,13 +30,12 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.accuracy.corrected_errors import SIMPLE
 from bouncing_ball.accuracy.errors import Quantity, relative, values
+from bouncing_ball.contacts.named_laws import LAWS
 from bouncing_ball.datasets.parameters import LawRestitution, Many, Tolerance
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.models.damping import Release, damping_ratio
-from bouncing_ball.models.instant import instant_of
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
-from bouncing_ball.models.laws.registry import LAWS
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.orbit_parameters import OrbitParameters, OrbitsAlongRatio
@@ -106,7 +105,7 @@ def share_in_contact(name: str, restitution: float) -> float:
     >>> share_in_contact("linear", 0.5)
     1.0
     """
-    impact = instant_of(exact_model(name, restitution, 1.0, 1.0), 1.0)
+    impact = exact_model(name, restitution, 1.0, 1.0).signature(1.0)
     return float(impact.restitution / ((1 + impact.restitution) * impact.delay))
 
 

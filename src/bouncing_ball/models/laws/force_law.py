@@ -126,7 +126,7 @@ class ForceLaw(Batch, ABC):
         return self.grip(penetration, rate)
 
     @property
-    def signature(self) -> Instant | None:
+    def constant_signature(self) -> Instant | None:
         """The signature of free impacts if it has a closed form and is the same at every speed,
         otherwise None.
         """

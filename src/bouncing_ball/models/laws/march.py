@@ -324,10 +324,10 @@ def march(
     --------
     After a quarter of an oscillation the ball is at the depth v/ϖ:
 
-    >>> from bouncing_ball.models.laws.linear import LinearLaw
+    >>> from bouncing_ball.models.spring_damper import SpringDamper
     >>> zero = np.zeros(1)
     >>> start = Start(zero, np.full(1, np.pi), zero, zero, zero)
-    >>> march(LinearLaw(np.pi, 0.0), start, until=np.full(1, 0.5)).penetration.round(12).tolist()
+    >>> march(SpringDamper(np.pi, 0.0), start, until=np.full(1, 0.5)).penetration.round(12).tolist()
     [1.0]
     """
     contacts = _March(law, start, until, differentiate, integrate)
@@ -358,11 +358,11 @@ def march_through(
 
     Examples
     --------
-    >>> from bouncing_ball.models.laws.linear import LinearLaw
+    >>> from bouncing_ball.models.spring_damper import SpringDamper
     >>> zero = np.zeros(1)
     >>> start = Start(zero, np.full(1, np.pi), zero, zero, zero)
     >>> which = np.zeros(2, dtype=int)
-    >>> found = march_through(LinearLaw(np.pi, 0.0), start, which, np.array([0.25, 0.5]), 99)
+    >>> found = march_through(SpringDamper(np.pi, 0.0), start, which, np.array([0.25, 0.5]), 99)
     >>> (found.penetration**2).round(12).tolist()
     [0.5, 1.0]
     """

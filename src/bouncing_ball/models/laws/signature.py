@@ -76,33 +76,9 @@ _PARTS = 16
 _SLOWEST, _FASTEST = 1e-30, 1e30
 
 
-def free_impact(law: ForceLaw, speed: ArrayLike) -> Instant:
-    """The signature at impact speeds v > 0, by one collocation for each speed.
-
-    A signature in closed form is used instead if the law has one. Of the derivatives with respect
-    to v only that of r is computed; the others are left at zero.
-
-    Raises
-    ------
-    ModelError
-        If the law does not release the ball.
-
-    Examples
-    --------
-    The force of an elastic contact is symmetric in time, so that its centroid is in the middle and
-    the effects of the load cancel:
-
-    >>> from bouncing_ball.models.laws.hertzian import HuntCrossley
-    >>> impact = free_impact(HuntCrossley(100.0, 0.0), 2.0)
-    >>> bool(abs(impact.delay / impact.duration - 0.5) < 1e-12)
-    True
-    >>> round(float(impact.restitution), 12), abs(round(float(impact.load), 12))
-    (1.0, 0.0)
-    """
+def computed(law: ForceLaw, speed: ArrayLike) -> Instant:
+    """The signature of :meth:`.ContactLaw.signature`, by one collocation for each speed."""
     v = np.asarray(speed, dtype=float)
-    known = law.signature
-    if known is not None:
-        return known.at(v)
     end = contacts(law, v, weight=0.0)
     if not np.all(np.isfinite(end.duration)):
         lost = np.broadcast_to(v, end.duration.shape)[np.isnan(end.duration)][0]
@@ -133,7 +109,7 @@ def _width(law: ForceLaw) -> float:
 def _panel(law: ForceLaw, number: int) -> np.ndarray:
     """Chebyshev coefficients of t_c, r, σ and D over a panel, shape (nodes, 4)."""
     x = chebyshev.chebpts1(_NODES)
-    instant = free_impact(law, np.exp((number + (x + 1) / 2) * _width(law)))
+    instant = computed(law, np.exp((number + (x + 1) / 2) * _width(law)))
     return chebyshev.chebfit(x, np.stack(instant[:4], axis=1), _NODES - 1)
 
 
@@ -158,8 +134,8 @@ class Signature(Batch):
     The force of an elastic contact is symmetric in time, so that its centroid is in the middle and
     the effects of the load cancel:
 
-    >>> from bouncing_ball.models.laws.linear import LinearLaw
-    >>> instant = Signature(LinearLaw(2.0, 0.0))()
+    >>> from bouncing_ball.models.spring_damper import SpringDamper
+    >>> instant = Signature(SpringDamper(2.0, 0.0))()
     >>> float(instant.delay) == np.pi / 4, float(instant.restitution), float(instant.load)
     (True, 1.0, 0.0)
 
@@ -178,7 +154,7 @@ class Signature(Batch):
     @cached_property
     def _known(self) -> Instant | None:
         # Cached, because a simulation needs it at every impact.
-        return self.law.signature
+        return self.law.constant_signature
 
     @property
     def is_constant(self) -> bool:

@@ -16,12 +16,23 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from bouncing_ball.contacts.engines.impedance import Impedance
+from bouncing_ball.contacts.named_laws import LAWS as NAMED
+from bouncing_ball.contacts.named_laws import by_name
+from bouncing_ball.errors import ModelError
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.history import history
 from bouncing_ball.models.laws.collocation import contacts, path
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.elasto_backlash import ElastoBacklash
-from bouncing_ball.models.laws.hertzian import HuntCrossley, KuwabaraKono, LinearHuntCrossley, Tsuji
+from bouncing_ball.models.laws.force_law import Unit
+from bouncing_ball.models.laws.hertzian import (
+    Hertz,
+    HuntCrossley,
+    KuwabaraKono,
+    LinearHuntCrossley,
+    Tsuji,
+)
+from bouncing_ball.models.laws.law_of_impact import law_of_impact
 from bouncing_ball.models.laws.permanent_contact import permanent_contact
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
@@ -141,6 +152,33 @@ def integrated(law, speed, phase, amplitude):
             q, u, t = state
             return np.array([t, max(q, 0.0) ** m, u])
         turned.direction *= -1
+
+
+@dataclass(frozen=True, repr=False)
+class Unitless(Hertz):
+    """A law whose damping has no declared unit."""
+
+    units: ClassVar[dict[str, Unit]] = {"stiffness": Unit("N/m^1.5", 1, -0.5, -2)}
+    name: ClassVar[str] = "unitless"
+
+    def root_force(self, root, rate):
+        return self.stiffness * root**3
+
+
+def test_a_law_without_the_units_of_its_parameters_gets_no_name_and_no_si_numbers(refusal):
+    for ask in (lambda: by_name(Unitless), lambda: Unitless(1.0, 0.1).in_si(1.0, 1.0, 1.0)):
+        with refusal(ModelError, "unitless declares no unit of its parameter damping"):
+            ask()
+
+
+@pytest.mark.parametrize("name", NAMED)
+def test_with_its_units_a_law_has_the_same_force_in_other_units(name):
+    law = law_of_impact(NAMED[name], 0.7, 0.1, 3.0)
+    length, time = 0.7, 1.3
+    other = NAMED[name](**law.in_si(1.0, length, time))
+    force = law.force(np.float64(0.02), np.float64(-0.5))
+    scaled = other.force(np.float64(0.02 * length), np.float64(-0.5 * length / time))
+    assert scaled == pytest.approx(force * length / time**2, rel=1e-13)
 
 
 @every_law

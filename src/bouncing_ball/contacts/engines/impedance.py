@@ -44,7 +44,7 @@ from bouncing_ball.errors import require
 from bouncing_ball.models.damping import Release, check_positive, damping_ratio
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.contact_law import OscillatorLaw
-from bouncing_ball.models.laws.force_law import Unit
+from bouncing_ball.models.laws.force_law import NUMBER, Unit
 from bouncing_ball.models.spring_damper import SpringDamper
 
 
@@ -98,7 +98,13 @@ class Impedance(OscillatorLaw):
     power: float | np.ndarray = 2.0
 
     name: ClassVar[str] = "impedance"
-    units: ClassVar[dict[str, Unit]] = OscillatorLaw.units | {"width": Unit("m", 0, 1, 0)}
+    units: ClassVar[dict[str, Unit]] = OscillatorLaw.units | {
+        "share": NUMBER,
+        "at_surface": NUMBER,
+        "width": Unit("m", 0, 1, 0),
+        "midpoint": NUMBER,
+        "power": NUMBER,
+    }
     release = Release.FORCE
     lag: ClassVar[None] = None
     feels_load: ClassVar[bool] = True

@@ -18,7 +18,7 @@ from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.flight import table
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.collocation import integrals, states
-from bouncing_ball.models.laws.force_law import ForceLaw, Unit
+from bouncing_ball.models.laws.force_law import NUMBER, ForceLaw, Unit
 from bouncing_ball.models.laws.motion import ContactDynamics
 from bouncing_ball.models.laws.panel import Start
 from bouncing_ball.models.laws.signature import computed
@@ -115,7 +115,10 @@ class OscillatorLaw(ContactLaw):
     damping_ratio: float | np.ndarray
 
     root: ClassVar[int] = 1
-    units: ClassVar[dict[str, Unit]] = {"frequency_ratio": Unit("rad/s", 0, 0, -1)}
+    units: ClassVar[dict[str, Unit]] = {
+        "frequency_ratio": Unit("rad/s", 0, 0, -1),
+        "damping_ratio": NUMBER,
+    }
 
     def __post_init__(self):
         check_positive(self.frequency_ratio, "frequency ratio ϖ")

@@ -36,6 +36,10 @@ class Unit(NamedTuple):
     time: float = 0.0
 
 
+NUMBER = Unit("")
+"""The unit of a pure number."""
+
+
 @dataclass(frozen=True, repr=False)
 class ForceLaw(Batch, ABC):
     """The law of a contact force: a frozen dataclass of its dimensionless parameters.
@@ -48,7 +52,9 @@ class ForceLaw(Batch, ABC):
 
     name: ClassVar[str]
     units: ClassVar[dict[str, Unit]] = {}
-    """The units of the parameters; a parameter that is not listed is a pure number."""
+    """The units of all parameters, :data:`NUMBER` for a pure number. A law that has a name on the
+    command line, or whose parameters are given in SI units, must declare them.
+    """
     root: ClassVar[int] = 2
     release = Release.DISPLACEMENT
 
@@ -167,14 +173,27 @@ class ForceLaw(Batch, ABC):
         """Names and values of the law's numerical parameters, as they were given."""
         return {name: getattr(self, name) for name in self.parameter_names()}
 
+    @classmethod
+    def require_units(cls) -> None:
+        """Raise :class:`~bouncing_ball.errors.ModelError` if a parameter has no declared unit."""
+        for name in cls.parameter_names():
+            if name not in cls.units:
+                raise ModelError(f"{cls.name} declares no unit of its parameter {name}")
+
     def in_si(self, mass: float, length: float, time: float) -> dict[str, float]:
         """The parameters of a single law in SI units.
 
         The arguments are the units of mass, length and time of the dimensionless model, in SI.
+
+        Raises
+        ------
+        ModelError
+            If the law does not declare the unit of a parameter.
         """
+        self.require_units()
         found = {}
         for name, value in self.parameters().items():
-            unit = self.units.get(name, Unit(""))
+            unit = self.units[name]
             found[name] = value * mass**unit.mass * length**unit.length * time**unit.time
         return found
 

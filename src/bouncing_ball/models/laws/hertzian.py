@@ -54,7 +54,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.errors import require
 from bouncing_ball.models.damping import Release, check_damping, check_positive
 from bouncing_ball.models.laws.contact_law import ContactLaw
-from bouncing_ball.models.laws.force_law import Unit
+from bouncing_ball.models.laws.force_law import NUMBER, Unit
 
 
 @dataclass(frozen=True, repr=False)
@@ -76,7 +76,10 @@ class Hertz(ContactLaw):
     stiffness: float | np.ndarray
     damping: float | np.ndarray
 
-    units: ClassVar[dict[str, Unit]] = {"stiffness": Unit("N/m^1.5", 1, -0.5, -2)}
+    units: ClassVar[dict[str, Unit]] = {
+        "stiffness": Unit("N/m^1.5", 1, -0.5, -2),
+        "damping": NUMBER,
+    }
 
     def __post_init__(self):
         super().__post_init__()

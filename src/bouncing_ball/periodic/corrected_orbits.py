@@ -17,8 +17,8 @@ from numpy.typing import ArrayLike
 from bouncing_ball.models.corrected.impact import Hit, impact, meeting
 from bouncing_ball.models.corrected.motion import CorrectedDynamics
 from bouncing_ball.models.instant import Instant
+from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.signature import Signature
-from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic import corrected_branch as formulas
 from bouncing_ball.periodic.continued_orbits import ContinuedModel
 from bouncing_ball.periodic.orbit import Orbit, check_index
@@ -178,15 +178,19 @@ class CorrectedModel(ContinuedModel):
     orbit_type: ClassVar[type[Orbit]] = CorrectedOrbit
 
     @classmethod
-    def of_contact(cls, contact: SpringDamper) -> "ConstantCorrectedModel":
-        """The corrected model of a spring-damper contact, whose orbits have a closed form.
+    def of_contact(cls, contact: ContactLaw) -> "CorrectedModel":
+        """The corrected model of a contact; its orbits have a closed form if the signature does not
+        depend on the speed.
 
         Raises
         ------
         ModelError
-            If ζ ≥ 1.
+            If the contact has no signature, as a linear one for ζ ≥ 1, or is a row of laws that
+            have no table in common.
         """
-        return ConstantCorrectedModel(Signature(contact))
+        signature = Signature(contact)
+        kind = ConstantCorrectedModel if signature.is_constant else CorrectedModel
+        return kind(signature)
 
     def signature(self, speed: ArrayLike) -> Instant:
         """The signature at impact speeds v > 0."""

@@ -19,6 +19,7 @@ from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
 from bouncing_ball.models.laws.march import ContactEnds
 from bouncing_ball.models.laws.permanent_contact import permanent_contact
+from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.periodic.continued_orbits import ContinuedModel, orbit_at, orbits_at
 from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.restitution_branch import rigid_speed
@@ -121,7 +122,10 @@ class LawModel(ContinuedModel):
         ModelError
             If the law does not release the ball.
         """
-        return self.law.signature(speed)
+        law = self.law
+        # One table serves all laws of such a kind; otherwise a few speeds cost less than a table.
+        at = law.signature if law.scaled(np.ones(1)) is None else Signature(law)
+        return at(speed)
 
     def orbits(self, n: int, amplitude: float) -> LawOrbit:
         """The n-T orbits of one law at one Λ, in order of contact duration, shape (count,).

@@ -7,7 +7,7 @@ from bouncing_ball.contacts.engines.impedance import Impedance
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.elasto_backlash import ElastoBacklash
-from bouncing_ball.models.laws.hertzian import KuwabaraKono
+from bouncing_ball.models.laws.hertzian import HuntCrossley, KuwabaraKono, LinearHuntCrossley, Tsuji
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.spring_damper import SpringDamper
 
@@ -81,3 +81,37 @@ def test_between_its_nodes_a_signature_is_that_of_free_impacts(law, missed):
         error = np.abs(getattr(found, name) - getattr(exact, name)) / exact.duration
         assert error.max() < missed
     assert np.abs(found.restitution - exact.restitution).max() < max(1e-2 * missed, 1e-12)
+
+
+ROWS = [
+    HuntCrossley(np.array([1e2, 1e4, 1e6]), np.array([0.0, 0.3, 0.02])),
+    LinearHuntCrossley(np.array([1e2, 1e4, 1e6]), np.array([0.1, 0.3, 0.02])),
+    Tsuji(np.array([1e2, 1e4, 1e6]), np.array([0.0, 0.5, 1.9])),
+    KuwabaraKono(np.array([1e2, 1e4, 1e6]), np.array([0.0, 0.05, 1e-4])),
+]
+
+
+@pytest.mark.parametrize("laws", ROWS, ids=lambda x: x.name)
+def test_one_table_serves_all_laws_of_a_kind(laws):
+    speed = np.array([[0.3], [2.9], [11.0]])
+    found = Signature(laws)(speed)
+    exact = laws.signature(speed)
+    for name in ("delay", "load", "duration"):
+        error = np.abs(getattr(found, name) - getattr(exact, name)) / exact.duration
+        assert error.max() < 1e-12
+    assert np.abs(found.restitution - exact.restitution).max() < 1e-12
+    assert np.abs((found.d_restitution - exact.d_restitution) * speed).max() < 1e-11
+    # Differences of sixth order, with h⁶ times a seventh derivative, and 1e-14 over h.
+    h = 1e-2
+    beside = [Signature(laws)(speed * (1 + h * k)) for k in (-3, -2, -1, 1, 2, 3)]
+    weights = np.array([-1, 9, -45, 45, -9, 1]) / 60
+    for name in ("delay", "load"):
+        values = np.stack([getattr(x, name) for x in beside])
+        slope = np.tensordot(weights, values, axes=1) / (h * speed)
+        np.testing.assert_allclose(slope, getattr(found, f"d_{name}"), atol=1e-10)
+
+
+def test_where_there_is_no_impact_a_row_has_no_signature():
+    found = Signature(ROWS[2])(np.array([np.nan, 1.0, np.nan]))
+    for values in found:
+        assert np.isnan(values).tolist() == [True, False, True]

@@ -36,7 +36,6 @@ from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
-from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.paper.exhibits.orbit_parameters import OrbitParameters, OrbitsAlongRatio
 from bouncing_ball.periodic.corrected_orbits import CorrectedModel
@@ -223,10 +222,7 @@ class CalibratedContacts:
 
 def corrected_values(exact: Any, *asked: Any) -> np.ndarray:
     """Quantities in the corrected restitution models of contacts, shape (quantity, ϖ)."""
-    if isinstance(exact, SpringDamperModel):
-        return values(CorrectedModel.of_contact(exact.contact), *asked)
-    each = (CorrectedModel(Signature(exact.law.take(k))) for k in range(exact.law.size))
-    return np.stack([values(model, *asked) for model in each], axis=-1)
+    return values(CorrectedModel.of_contact(exact.impact_law), *asked)
 
 
 def _errors(name: str, parameters: LawErrors) -> np.ndarray:

@@ -40,6 +40,19 @@ NUMBER = Unit("")
 """The unit of a pure number."""
 
 
+class Scaled(NamedTuple):
+    """Impacts of laws in units of their scales P and P/v.
+
+    ``group`` is the dissipation, on which alone such an impact depends, and ``time`` is P/v. Both
+    are proportional to powers of the impact speed, whose exponents are the other fields.
+    """
+
+    group: np.ndarray
+    time: np.ndarray
+    group_exponent: float
+    time_exponent: float
+
+
 @dataclass(frozen=True, repr=False)
 class ForceLaw(Batch, ABC):
     """The law of a contact force: a frozen dataclass of its dimensionless parameters.
@@ -156,6 +169,12 @@ class ForceLaw(Batch, ABC):
             If the law does not define this.
         """
         raise ModelError(f"{cls.name} is given by its parameters, not by restitution and duration")
+
+    def scaled(self, speed: np.ndarray) -> Scaled | None:
+        """The impacts at speeds v > 0 in units of their scales, the inverse of :meth:`of_scales`;
+        None if the law does not define it.
+        """
+        return None
 
     @classmethod
     def group_of(cls, restitution: float) -> float | None:

@@ -43,7 +43,9 @@ the instant ::
 
 One collocation at each speed gives all four numbers. Between these speeds the four functions are
 interpolated by Chebyshev polynomials in ln v, in which they are smooth. A panel covers a factor
-of eight in speed, and is computed when it is first needed. At a speed at which the deepest point of
+of eight in speed, and is computed when it is first needed. In units of its scales P and P/v the
+impact of a Hertzian law depends on its dissipation group alone, a power of v, so that one table
+over the logarithm of the group serves all laws of a kind. At a speed at which the deepest point of
 the impact just reaches a kink of the force, the functions have only a few derivatives. The panels
 of such laws are therefore shorter, and the errors there are about 10⁻⁶ of t_c, σ and D, and 10⁻⁸
 of r.
@@ -63,7 +65,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.collocation import contacts
-from bouncing_ball.models.laws.force_law import ForceLaw
+from bouncing_ball.models.laws.force_law import ForceLaw, Scaled
 from bouncing_ball.numerics.arrays import Batch
 
 # Width of a panel in ln v, and its number of nodes: with a pole of r(v) at ln v = x ± iπ, like
@@ -106,11 +108,66 @@ def _width(law: ForceLaw) -> float:
 
 
 @lru_cache(maxsize=4096)
-def _panel(law: ForceLaw, number: int) -> np.ndarray:
-    """Chebyshev coefficients of t_c, r, σ and D over a panel, shape (nodes, 4)."""
+def _of_group(kind: type[ForceLaw], group: float) -> np.ndarray:
+    """t_c, r, σ and D of the impact with this group in units of its scales, shape (4, 1)."""
+    return np.array(computed(kind.of_scales(group, 1.0, 1.0), np.ones(1))[:4])
+
+
+@lru_cache(maxsize=4096)
+def _panel(law: ForceLaw | type[ForceLaw], number: int, width: float) -> np.ndarray:
+    """Chebyshev coefficients of t_c, r, σ and D over a panel, shape (nodes, 4).
+
+    Of a law, panels divide ln v; of a kind of laws, they divide the logarithm of the group, and the
+    numbers are in units of the scales.
+    """
     x = chebyshev.chebpts1(_NODES)
-    instant = computed(law, np.exp((number + (x + 1) / 2) * _width(law)))
+    at = np.exp((number + (x + 1) / 2) * width)
+    if isinstance(law, type):
+        instant = computed(law.of_scales(at, 1.0, 1.0), 1.0)
+    else:
+        instant = computed(law, at)
     return chebyshev.chebfit(x, np.stack(instant[:4], axis=1), _NODES - 1)
+
+
+def _interpolated(
+    law: ForceLaw | type[ForceLaw], at: np.ndarray, width: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """t_c, r, σ and D, and their derivatives with respect to the logarithm of ``at``, shape (4, m);
+    ``at`` are speeds, or groups of a kind of laws, shape (m,).
+    """
+    log = np.log(at) / width
+    number = np.floor(log).astype(int)
+    values = np.empty((4, at.size))
+    slopes = np.empty((4, at.size))
+    for panel in np.unique(number):
+        coefficients = _panel(law, int(panel), width)
+        here = number == panel
+        x = 2 * (log[here] - panel) - 1
+        values[:, here] = chebyshev.chebval(x, coefficients)
+        slopes[:, here] = chebyshev.chebval(x, chebyshev.chebder(coefficients)) * (2 / width)
+    return values, slopes
+
+
+def _of_kind(kind: type[ForceLaw], scaled: Scaled) -> tuple[np.ndarray, np.ndarray]:
+    """t_c, r, σ and D of impacts of laws of one kind, and their derivatives with respect to ln v,
+    shape (4, m).
+    """
+    group = scaled.group
+    values = np.empty((4, group.size))
+    slopes = np.zeros((4, group.size))
+    # Without dissipation, or if r is the same at every speed, the group is.
+    same = (group == 0) | (scaled.group_exponent == 0)
+    for each in np.unique(group[same]):
+        values[:, same & (group == each)] = _of_group(kind, float(each))
+    if not same.all():
+        width = scaled.group_exponent * _WIDTH
+        values[:, ~same], slopes[:, ~same] = _interpolated(kind, group[~same], width)
+    slopes *= scaled.group_exponent
+    times = [0, 2, 3]
+    slopes[times] += scaled.time_exponent * values[times]
+    values[times] *= scaled.time
+    slopes[times] *= scaled.time
+    return values, slopes
 
 
 @dataclass(frozen=True, repr=False)
@@ -122,12 +179,13 @@ class Signature(Batch):
     Parameters
     ----------
     law : ForceLaw
-        A single law, unless its signature has a closed form.
+        A single law, unless its signature has a closed form or is that of all laws of its kind.
 
     Raises
     ------
     ModelError
-        If the law does not release the ball, or has arrays of parameters but no closed form.
+        If the law does not release the ball, or has arrays of parameters, no closed form, and no
+        :meth:`~.ForceLaw.scaled`.
 
     Examples
     --------
@@ -148,7 +206,7 @@ class Signature(Batch):
     law: ForceLaw
 
     def __post_init__(self):
-        if not self.is_constant and self.law.shape:
+        if not self.is_constant and self.law.shape and self.law.scaled(np.ones(1)) is None:
             raise ModelError("the signature of a contact law is tabulated for one law, not many")
 
     @cached_property
@@ -174,18 +232,18 @@ class Signature(Batch):
         v = np.asarray(speed, dtype=float)
         if self._known is not None:
             return self._known.at(v)
-        v = np.clip(v, _SLOWEST, _FASTEST)
-        width = _width(self.law)
-        log = np.log(v) / width
-        number = np.floor(np.where(np.isnan(log), 0.0, log)).astype(int)
-        values = np.full((2, 4, *v.shape), np.nan)
-        for panel in np.unique(number):
-            coefficients = _panel(self.law, int(panel))
-            slopes = chebyshev.chebder(coefficients) * (2 / width)
-            here = number == panel
-            x = 2 * (log[here] - panel) - 1
-            values[0, :, here] = chebyshev.chebval(x, coefficients).T
-            values[1, :, here] = (chebyshev.chebval(x, slopes) / v[here]).T
+        shape = np.broadcast_shapes(v.shape, self.law.shape)
+        row = np.clip(np.broadcast_to(v, shape).ravel(), _SLOWEST, _FASTEST)
+        values = np.full((2, 4, row.size), np.nan)
+        known = np.flatnonzero(~np.isnan(row))
+        law = self.law.flat(shape).take(known)
+        scaled = law.scaled(row[known])
+        if scaled is None:
+            values[:, :, known] = _interpolated(law, row[known], _width(law))
+        else:
+            values[:, :, known] = _of_kind(type(law), scaled)
+        values[1] /= row
+        values = values.reshape(2, 4, *shape)
         delay, restitution, load, duration = values[0]
         d_delay, d_restitution, d_load, _ = values[1]
         return Instant(

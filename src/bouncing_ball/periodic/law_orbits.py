@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,6 +20,7 @@ from bouncing_ball.models.laws.law_of_impact import law_of_impact
 from bouncing_ball.models.laws.march import ContactEnds
 from bouncing_ball.models.laws.permanent_contact import permanent_contact
 from bouncing_ball.models.laws.signature import Signature
+from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
 from bouncing_ball.periodic.continued_orbits import ContinuedModel, orbit_at, orbits_at
 from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.restitution_branch import rigid_speed
@@ -30,6 +31,8 @@ from bouncing_ball.periodic.stability import Side
 # is left.
 _ROUNDS = 20
 _SETTLED = 1e-10
+# From the orbits of the round before, the error after a step of this length is its square.
+_CLOSE = NewtonSettings(tolerance=1e-7)
 
 
 class LawOrbit(Orbit):
@@ -142,6 +145,16 @@ class LawModel(ContinuedModel):
         return np.array(found).reshape(self.law.shape)
 
 
+def _next_to(model: LawModel, orbit: LawOrbit) -> LawOrbit:
+    """The orbits of laws with the n and Λ of given orbits of similar laws; NaN where Newton's
+    method does not converge from these.
+    """
+    system = model.system(orbit.n)
+    guess = system.point(orbit)
+    found = newton(system, guess, plane(np.eye(guess.shape[-1])[-1], guess), _CLOSE)
+    return system.orbit(np.where(found.converged[..., np.newaxis], found.point, np.nan))
+
+
 def law_at_orbit(
     kind: type[ContactLaw],
     restitution: float,
@@ -193,10 +206,11 @@ def law_at_orbit(
     taken = np.asarray(duration, dtype=float)
     speed = np.full_like(taken, rigid_speed(n, restitution))
     before = missed_before = np.full_like(taken, np.nan)
-    for _ in range(_ROUNDS):
+    orbit: Any = None
+    for tried in range(_ROUNDS):
         law = law_of_impact(kind, restitution, taken, speed)
         model = LawModel(law)
-        orbit = orbit_at(model, n, amplitude, side)
+        orbit = _next_to(model, orbit) if tried else orbit_at(model, n, amplitude, side)
         lost = np.flatnonzero(~np.atleast_1d(orbit.exists))
         if lost.size:
             LawModel(law.take(lost[0])).require_orbit(n, amplitude, side)

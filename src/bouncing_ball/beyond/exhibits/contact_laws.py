@@ -194,12 +194,12 @@ class CalibratedContacts:
         exact = self.along(ratios, lambda x: x.orbit(one.n, one.amplitude).max_height)
         return np.abs(relative(exact, simple))
 
-    def threshold(self, ratios: np.ndarray, tolerance: float) -> float:
+    def threshold(self, ratios: np.ndarray, error: np.ndarray, tolerance: float) -> float:
         """The π/(D + κ) at which the error of the greatest height is the tolerance.
 
-        It is searched for along ``ratios``, which increase, and NaN if it is not among them.
+        It is searched for along ``ratios``, which increase and have these errors, and NaN if it is
+        not among them.
         """
-        error = self.height_error(ratios)
         outside = np.flatnonzero(error > tolerance)
         if not outside.size or outside[-1] == ratios.size - 1:
             return np.nan
@@ -258,6 +258,7 @@ def law_errors(parameters: LawErrors) -> xr.Dataset:
     """
     ratios = parameters.frequency_ratio.grid()
     cases: list[OrbitParameters] = [parameters, *parameters.further]
+    errors = {name: _errors(name, parameters) for name in NAMES}
     shape = len(cases), len(Calibration), len(NAMES)
     threshold = np.empty(shape)
     stable = np.empty(shape, dtype=bool)
@@ -265,7 +266,10 @@ def law_errors(parameters: LawErrors) -> xr.Dataset:
         np.ndindex(shape), product(cases, Calibration, NAMES), strict=True
     ):
         contacts = CalibratedContacts(name, case, calibration)
-        found = contacts.threshold(ratios, parameters.tolerance)
+        # Those of the first orbit are known: the first model and the first quantity.
+        known = case is parameters and calibration is Calibration.CONTACT
+        error = errors[name][0, 0] if known else contacts.height_error(ratios)
+        found = contacts.threshold(ratios, error, parameters.tolerance)
         threshold[place] = found
         stable[place] = contacts.is_stable(found)
     by_case = ("case", "calibration", "law")
@@ -273,7 +277,7 @@ def law_errors(parameters: LawErrors) -> xr.Dataset:
         {
             "relative_error": (
                 ("law", "model", "quantity", "centroid_ratio"),
-                np.array([_errors(name, parameters) for name in NAMES]),
+                np.array(list(errors.values())),
             ),
             "error_calibration": str(Calibration.CONTACT),
             "error_threshold": (by_case, threshold),

@@ -108,9 +108,9 @@ def _width(law: ForceLaw) -> float:
 
 
 @lru_cache(maxsize=4096)
-def _of_group(kind: type[ForceLaw], group: float) -> np.ndarray:
-    """t_c, r, σ and D of the impact with this group in units of its scales, shape (4, 1)."""
-    return np.array(computed(kind.of_scales(group, 1.0, 1.0), np.ones(1))[:4])
+def _of_groups(kind: type[ForceLaw], groups: tuple[float, ...]) -> np.ndarray:
+    """t_c, r, σ and D of the impacts with m groups, in units of their scales, shape (4, m)."""
+    return np.array(computed(kind.of_scales(np.array(groups), 1.0, 1.0), 1.0)[:4])
 
 
 @lru_cache(maxsize=4096)
@@ -157,8 +157,9 @@ def _of_kind(kind: type[ForceLaw], scaled: Scaled) -> tuple[np.ndarray, np.ndarr
     slopes = np.zeros((4, group.size))
     # Without dissipation, or if r is the same at every speed, the group is.
     same = (group == 0) | (scaled.group_exponent == 0)
-    for each in np.unique(group[same]):
-        values[:, same & (group == each)] = _of_group(kind, float(each))
+    if same.any():
+        groups, which = np.unique(group[same], return_inverse=True)
+        values[:, same] = _of_groups(kind, tuple(groups.tolist()))[:, which]
     if not same.all():
         width = scaled.group_exponent * _WIDTH
         values[:, ~same], slopes[:, ~same] = _interpolated(kind, group[~same], width)

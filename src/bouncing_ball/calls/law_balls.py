@@ -142,6 +142,8 @@ def contact_law(
     --------
     >>> contact_law("hunt-crossley", stiffness=1000.0, damping=0.08).model
     LawModel(law=HuntCrossley(stiffness=1000, damping=0.08))
+    >>> contact_law("linear", frequency_ratio=10.0, damping_ratio=1.5).model.law
+    SpringDamper(frequency_ratio=10, damping_ratio=1.5, release='displacement')
     >>> ball = contact_law("hunt-crossley", restitution=0.8, duration=0.2)
     >>> ball.at_speed(3.0).model
     LawModel(law=HuntCrossley(stiffness=641.257, damping=0.124382))

@@ -105,7 +105,7 @@ class ForceLaw(Batch, ABC):
     """Whether the contact force depends on the load through :meth:`loaded_force`.
 
     If it does, the ball is released where :meth:`loaded_grip` vanishes or where p = 0, whichever
-    comes first.
+    comes first, and m is 1.
     """
 
     def loaded_force(self, penetration: np.ndarray, rate: np.ndarray, load: Any) -> np.ndarray:

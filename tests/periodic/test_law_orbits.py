@@ -143,3 +143,15 @@ def test_a_parameter_of_a_law_that_is_no_number_is_refused(law, value, refusal):
             law(**parameters)
     with refusal(ModelError, f"{first} of shape (2,) and {second} of shape (3,) do not broadcast"):
         law(**{first: [2.0, 3.0], second: [0.1, 0.2, 0.3]})
+
+
+@pytest.mark.parametrize("kind", [HuntCrossley, Tsuji])
+def test_a_row_of_corrected_models_is_that_of_its_laws(kind):
+    laws = kind(np.array([300.0, 2e3, 5e4]), np.array([0.05, 0.1, 0.02]))
+    row = CorrectedModel.of_contact(laws)
+    one = [CorrectedModel.of_contact(law) for law in laws]
+    # The orbits move by rounding only; the tables are the same.
+    found = row.orbit(1, 1.0).max_height
+    np.testing.assert_allclose(found, [x.orbit(1, 1.0).max_height for x in one], rtol=1e-12)
+    fold = row.saddle_node(1).amplitude
+    np.testing.assert_allclose(fold, [x.saddle_node(1).amplitude for x in one], rtol=1e-11)

@@ -34,7 +34,7 @@ class CorrectedOrbit(Orbit):
 
     Examples
     --------
-    >>> from bouncing_ball.models.laws.signature import Signature
+    >>> from bouncing_ball.models.spring_damper import SpringDamper
     >>> orbit = CorrectedOrbit.at(1, Signature(SpringDamper(np.pi, 0.0)), 0.8, np.pi / 2)
     >>> float(orbit.bounce_velocity) == np.pi - 0.5, round(float(orbit.phase) - np.pi / 2, 12)
     (True, -0.5)
@@ -167,6 +167,7 @@ class CorrectedModel(ContinuedModel):
 
     Examples
     --------
+    >>> from bouncing_ball.models.spring_damper import SpringDamper
     >>> model = CorrectedModel.of_contact(SpringDamper.from_restitution(0.65, 10.0))
     >>> round(float(model.orbit(1, 1.0).max_height), 3)
     5.215

@@ -305,7 +305,9 @@ def test_a_misspelt_parameter_is_named_with_its_function():
             "duration needs speed",
         ),
         (
-            lambda: corrected(contact_law("tsuji", stiffness=[9.0, 8.0], damping=1.0)),
+            lambda: corrected(
+                contact_law("elasto-backlash", frequency_ratio=[9.0, 8.0], damping_ratio=0.1)
+            ),
             "is tabulated for one law",
         ),
         (

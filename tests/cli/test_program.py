@@ -17,7 +17,7 @@ import bouncing_ball
 from bouncing_ball.calls.balls import spring_damper
 from bouncing_ball.cli.commands import COMMANDS
 from bouncing_ball.cli.options import meanings
-from bouncing_ball.models.laws.registry import LAWS
+from bouncing_ball.contacts.named_laws import LAWS
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = Path(sys.executable).with_name("bouncing-ball")

@@ -32,7 +32,6 @@ from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
-from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
@@ -125,12 +124,9 @@ class ModelBall(Ball):
 
     def corrected(self) -> ModelBall:
         law = self.model.impact_law
-        if isinstance(self.model, SpringDamperModel):
-            model: CorrectedModel = CorrectedModel.of_contact(self.model.contact)
-        elif isinstance(law, ContactLaw):
-            model = CorrectedModel(Signature(law))
-        else:
+        if not isinstance(law, ContactLaw):
             raise ModelError(f"{self.model.name} impacts have no contact that could be corrected")
+        model = CorrectedModel.of_contact(law)
         return ModelBall(model, {**self.parameters, "model": "corrected"})
 
     def row(self, grid: Grid) -> ModelBall:
@@ -255,8 +251,8 @@ def corrected(ball: Ball) -> Ball:
     Raises
     ------
     ModelError
-        If the impacts of the ball have no contact, or the contacts of a law that is not linear
-        have arrays of parameters.
+        If the impacts of the ball have no contact, or the parameters of a law that is neither
+        linear nor Hertzian are arrays.
 
     Examples
     --------

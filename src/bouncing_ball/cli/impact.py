@@ -20,9 +20,9 @@ from bouncing_ball.cli.options import (
     meanings,
     option,
 )
+from bouncing_ball.contacts.named_laws import law_named
 from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.models.damping import Release
-from bouncing_ball.models.laws.registry import law_named
 
 MODELS = ("restitution", "spring-damper", "corrected")
 

@@ -20,7 +20,7 @@ from bouncing_ball.cli.options import (
 from bouncing_ball.errors import NoOrbitError, ParameterError, count, extra
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
-from bouncing_ball.models.laws.signature import Signature, free_impact
+from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic.orbit import OBSERVABLES, Orbit
 from bouncing_ball.periodic.stability import Bifurcation
@@ -49,7 +49,7 @@ def described(law: Any, speed: float = math.nan) -> Answer:
                 "damping_ratio": float(law.damping_ratio),
             }
         case ContactLaw():
-            impact = free_impact(law, np.float64(speed))
+            impact = law.signature(np.float64(speed))
             return {
                 "law": law.name,
                 "parameters": {name: float(x) for name, x in law.parameters().items()},

@@ -12,7 +12,7 @@ from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.permanent_contact import permanent_contact
-from bouncing_ball.models.laws.signature import free_impact
+from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.model import Model
 
 
@@ -48,7 +48,10 @@ class LawModel(Model):
         ModelError
             If the law does not release the ball.
         """
-        return free_impact(self.law, speed)
+        law = self.law
+        # One table serves all laws of such a kind; otherwise a few speeds cost less than a table.
+        at = law.signature if law.scaled(np.ones(1)) is None else Signature(law)
+        return at(speed)
 
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ up to which a steady contact never releases the ball, of the shape of the laws."""

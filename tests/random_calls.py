@@ -22,10 +22,8 @@ from random_arguments import Draw
 
 import bouncing_ball as bb
 
-# Seconds of processor time after which a call is ended, and after which it is ended if it has
-# printed a line by then.
-MOST = 12.0
-_TOLD = 4.0
+# Seconds of processor time after which a call is ended.
+MOST = 6.0
 
 
 class Outcome(StrEnum):
@@ -33,13 +31,13 @@ class Outcome(StrEnum):
 
     ANSWER = "answer"
     REFUSAL = "refusal"
-    NO_ANSWER_SOON = "progress line, ended"
-    SILENT = "silent for the most seconds"
+    NO_ANSWER_SOON = "ended without an answer"
+    SPOKEN = "writes to standard error"
     WARNING = "warning"
     TRACEBACK = "traceback"
 
 
-BAD = {Outcome.SILENT, Outcome.WARNING, Outcome.TRACEBACK}
+BAD = {Outcome.SPOKEN, Outcome.WARNING, Outcome.TRACEBACK}
 
 
 class Result(NamedTuple):
@@ -286,8 +284,7 @@ def result(seed: int, number: int, calls: Any = CALLS, most: float = MOST) -> Re
     message = ""
 
     def over(*_: Any) -> None:
-        told = "Ctrl-C" in spoken.getvalue()
-        if time.process_time() - start > (_TOLD if told else most):
+        if time.process_time() - start > most:
             raise TimeOver
 
     signal.signal(signal.SIGPROF, over)
@@ -306,14 +303,16 @@ def result(seed: int, number: int, calls: Any = CALLS, most: float = MOST) -> Re
         outcome = Outcome.REFUSAL if proper and "\n" not in message else Outcome.TRACEBACK
         message += "" if outcome is Outcome.REFUSAL else f" {_place(error)}"
     except TimeOver as error:
-        told = "Ctrl-C" in spoken.getvalue()
-        outcome = Outcome.NO_ANSWER_SOON if told else Outcome.SILENT
+        outcome = Outcome.NO_ANSWER_SOON
         message = _place(error)
     except Exception as error:
         outcome = Outcome.TRACEBACK
         message = f"{error!r} {_place(error)}"
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0)
+    if spoken.getvalue():
+        outcome = Outcome.SPOKEN
+        message = spoken.getvalue()
     return Result(outcome, time.process_time() - start, "; ".join(draw.said), message)
 
 

@@ -50,7 +50,6 @@ The package consists of floors, each of which imports only from those below it i
 ``datasets``    variables with units and budgets, labelled results, netCDF files
 ``numerics``    independent of the ball: continuation, certified first zeros, rows of an array
 ``errors``      what a user reads, ranges of numbers
-``patience``    what a user reads when an answer takes long
 """
 
 from typing import TYPE_CHECKING, Any

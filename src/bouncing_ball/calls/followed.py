@@ -29,7 +29,6 @@ from bouncing_ball.calls.periodic import PeriodicOrbit
 from bouncing_ball.errors import ParameterError
 from bouncing_ball.models.damping import Release, damping_ratio, restitution_coefficient
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.patience import patience
 from bouncing_ball.periodic import curves, following, switching
 from bouncing_ball.periodic.curves import Window
 from bouncing_ball.periodic.family import AMPLITUDE as LAMBDA
@@ -154,8 +153,7 @@ def orbit_of_motion(
     before = checked_number("velocity", velocity, STATE)
     most = checked_number("impacts", impacts, FOLLOWED)
     family = family_of(a_single_ball(a_ball(ball)).model, lam)
-    with patience("fewer impacts"):
-        return switching.of_motion(family, phi, before, LAMBDA, most)
+    return switching.of_motion(family, phi, before, LAMBDA, most)
 
 
 def follow(
@@ -209,8 +207,7 @@ def follow(
     start = _state(orbit, along)
     most = checked_number("points", points, POINTS)
     value = None if to is None else checked_number("to", to, start.orbits.family.ranges[along])
-    with patience("a nearer value of to or fewer points"):
-        return FollowedBranch.of(following.follow(start, value, most=most))
+    return FollowedBranch.of(following.follow(start, value, most=most))
 
 
 def switch(orbit: State) -> State:
@@ -238,8 +235,7 @@ def switch(orbit: State) -> State:
     """
     if not isinstance(orbit, State):
         raise ParameterError("switch needs an orbit of a branch, not {}", type(orbit).__name__)
-    with patience(""):
-        return switching.switch(orbit)
+    return switching.switch(orbit)
 
 
 def curve(
@@ -303,16 +299,15 @@ def curve(
     family.bounds(across)
     at = {**family.values, **orbit.parameters}
     along = orbit.orbits.along[0]
-    with patience("narrower ranges or fewer points"):
-        found = curves.curve(
-            orbit,
-            Special(name),
-            across,
-            along_window=_window("along_range", along_range, along, at[along]),
-            across_window=_window("across_range", across_range, across, at[across]),
-            most=most,
-        )
-        return SpecialCurve.of(found, curve_kind=name)
+    found = curves.curve(
+        orbit,
+        Special(name),
+        across,
+        along_window=_window("along_range", along_range, along, at[along]),
+        across_window=_window("across_range", across_range, across, at[across]),
+        most=most,
+    )
+    return SpecialCurve.of(found, curve_kind=name)
 
 
 def _window(

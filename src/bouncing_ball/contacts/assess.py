@@ -7,7 +7,7 @@ from bouncing_ball.contacts.case import PhysicalCase, TableMotion
 from bouncing_ball.contacts.contact_data import case_of
 from bouncing_ball.contacts.engine_data import Ready, ready
 from bouncing_ball.contacts.families import families, finite, needed
-from bouncing_ball.contacts.given import CHEAPER, Contact, Question, Table
+from bouncing_ball.contacts.given import Contact, Question, Table
 from bouncing_ball.contacts.lone_contact import drop_remarks, require_short, slowed
 from bouncing_ball.contacts.motion import of_family
 from bouncing_ball.contacts.results import (
@@ -27,7 +27,6 @@ from bouncing_ball.contacts.verdict import (
 )
 from bouncing_ball.errors import ModelError, NoOrbitError, require
 from bouncing_ball.models.damping import Release
-from bouncing_ball.patience import patience
 
 STEPS = 50
 """Time steps in one contact, for the rule of the largest time step."""
@@ -69,8 +68,7 @@ def assess_contact(table: Table, contact: Contact, question: Question | None = N
     (1, True, 0.0122)
     """
     asked = question or Question()
-    with patience(CHEAPER):
-        return of_contact(table.motion, ready(contact), asked)
+    return of_contact(table.motion, ready(contact), asked)
 
 
 def of_contact(table: TableMotion, given: Ready, question: Question) -> Assessment:

@@ -18,14 +18,13 @@ from bouncing_ball.contacts.contact_data import (
 )
 from bouncing_ball.contacts.engine_data import Ready, ready
 from bouncing_ball.contacts.families import RATIOS, needed
-from bouncing_ball.contacts.given import CHEAPER, Contact, Question, Table, given
+from bouncing_ball.contacts.given import Contact, Question, Table, given
 from bouncing_ball.contacts.lone_contact import drop_remarks
 from bouncing_ball.contacts.results import Choice, Needed
 from bouncing_ball.contacts.units import percent
 from bouncing_ball.contacts.verdict import chosen
 from bouncing_ball.errors import NoOrbitError, ParameterError
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.patience import patience
 from bouncing_ball.periodic.restitution_model import RestitutionModel
 
 # Largest number of times that the damping of a drop test is fitted to the stiffness chosen.
@@ -58,8 +57,7 @@ def choose_contact(table: Table, contact: Contact, question: Question | None = N
     >>> f"{found.stiffness:.4g} N/m, {found.contact_time:.3g} s", round(found.frequency_ratio, 2)
     ('1.36e+07 N/m, 0.000122 s', 83.0)
     """
-    with patience(CHEAPER):
-        return of_loss(table.motion, ready(contact), question or Question())
+    return of_loss(table.motion, ready(contact), question or Question())
 
 
 def of_loss(table: TableMotion, ready: Ready, question: Question) -> Choice:

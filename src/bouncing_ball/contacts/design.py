@@ -22,7 +22,6 @@ from bouncing_ball.contacts.recipe import (
 from bouncing_ball.contacts.results import Design, LoneContact, TimeStep
 from bouncing_ball.errors import NoOrbitError, ParameterError
 from bouncing_ball.models.damping import Release
-from bouncing_ball.patience import patience
 
 # Parameters of which each implies that there is a table.
 _TABLE = ("frequency", "angular_frequency", "period", "table_amplitude", "acceleration")
@@ -189,48 +188,45 @@ def design(
     (0.75, 'force')
     """
     call = locals()
-    with patience(data.CHEAPER):
-        si = in_si(call)
-        contact = Contact(**_of(Contact, call))
-        question = Question(n=n, quantity=quantity, tolerance=tolerance, balls=balls)
-        found = ready(contact, engine)
-        allowed = si["restitution_error"]
-        simulation = None
-        if engine is not None:
-            simulation = Simulation(engine=engine, restitution_error=allowed, time_step=time_step)
-        on_table = n is not None or any(call[name] is not None for name in _TABLE)
-        has_stiffness = found.contact.stiffness is not None or contact_time is not None
-        answer: Design | LoneContact
-        if on_table or not (engine or has_stiffness):
-            table = Table(**_of(Table, call))
-            # An acceleration in m/s², with or without its unit, may have been meant in g.
-            hint = _meant_in_g(acceleration, table) if gravity is None else ""
-            answer = _on_table(found, table, question, hint)
-            if simulation is not None:
-                answer = _written(answer, simulation)
-            of_drop = Physical(answer.case.mass, answer.stiffness, answer.damping)
-            rule = answer.case.contact.release
-            is_linear = answer.law is None
-        else:
-            if simulation is not None:
-                found = resolved(found, simulation, si.get("gravity"))
-            answer = lone_contact(found, si.get("gravity"))
-            if simulation is not None:
-                answer = replace(answer, engine=settings_of(answer, simulation))
-            of_drop = physical(answer)
-            rule = Release.of(answer.release)
-            is_linear = answer.damping is not None
-        if speed is not None:
-            if not is_linear:
-                raise ParameterError(
-                    "{speed} needs a spring and a damper: this r depends on the law"
-                )
-            answer = replace(answer, dropped=dropped(of_drop, rule, si.get("gravity"), si["speed"]))
-        if time_step is None:
-            return answer
-        if answer.engine is not None:
-            return replace(answer, at_step=answer.engine.at_step)
-        return replace(answer, at_step=at_given_step(found, si["time_step"], allowed))
+    si = in_si(call)
+    contact = Contact(**_of(Contact, call))
+    question = Question(n=n, quantity=quantity, tolerance=tolerance, balls=balls)
+    found = ready(contact, engine)
+    allowed = si["restitution_error"]
+    simulation = None
+    if engine is not None:
+        simulation = Simulation(engine=engine, restitution_error=allowed, time_step=time_step)
+    on_table = n is not None or any(call[name] is not None for name in _TABLE)
+    has_stiffness = found.contact.stiffness is not None or contact_time is not None
+    answer: Design | LoneContact
+    if on_table or not (engine or has_stiffness):
+        table = Table(**_of(Table, call))
+        # An acceleration in m/s², with or without its unit, may have been meant in g.
+        hint = _meant_in_g(acceleration, table) if gravity is None else ""
+        answer = _on_table(found, table, question, hint)
+        if simulation is not None:
+            answer = _written(answer, simulation)
+        of_drop = Physical(answer.case.mass, answer.stiffness, answer.damping)
+        rule = answer.case.contact.release
+        is_linear = answer.law is None
+    else:
+        if simulation is not None:
+            found = resolved(found, simulation, si.get("gravity"))
+        answer = lone_contact(found, si.get("gravity"))
+        if simulation is not None:
+            answer = replace(answer, engine=settings_of(answer, simulation))
+        of_drop = physical(answer)
+        rule = Release.of(answer.release)
+        is_linear = answer.damping is not None
+    if speed is not None:
+        if not is_linear:
+            raise ParameterError("{speed} needs a spring and a damper: this r depends on the law")
+        answer = replace(answer, dropped=dropped(of_drop, rule, si.get("gravity"), si["speed"]))
+    if time_step is None:
+        return answer
+    if answer.engine is not None:
+        return replace(answer, at_step=answer.engine.at_step)
+    return replace(answer, at_step=at_given_step(found, si["time_step"], allowed))
 
 
 def _of(kind: Any, call: Mapping[str, Any]) -> dict[str, Any]:

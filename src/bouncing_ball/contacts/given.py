@@ -21,8 +21,6 @@ from bouncing_ball.models.laws.linear import LinearLaw
 STANDARD_GRAVITY = 9.80665
 """Standard acceleration of gravity, in m/s²."""
 
-CHEAPER = "a single family n, fewer balls, or a spring and a damper in place of a law"
-"""What makes an answer of the calculator cheaper."""
 # The families of which one is judged by default: those that the paper shows, and some more.
 _FAMILIES = range(1, 9)
 # The smallest modulus in Pa that is taken for one if it is given without a unit.

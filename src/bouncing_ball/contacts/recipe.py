@@ -15,7 +15,6 @@ from bouncing_ball.contacts.engines.engine import EngineSettings
 from bouncing_ball.contacts.engines.given_step import AtStep, stiffest_contact
 from bouncing_ball.contacts.engines.physical import Physical
 from bouncing_ball.contacts.given import (
-    CHEAPER,
     STANDARD_GRAVITY,
     Contact,
     Question,
@@ -26,7 +25,6 @@ from bouncing_ball.contacts.given import (
 from bouncing_ball.contacts.lone_contact import LONGEST, lone_contact, physical
 from bouncing_ball.contacts.results import Assessment, LoneContact
 from bouncing_ball.errors import ParameterError
-from bouncing_ball.patience import patience
 
 # Largest number of times that the damping of a drop test is fitted to the stiffest contact.
 _REFITS = 12
@@ -76,13 +74,12 @@ def write_contact(
     >>> found.at_step.is_within, f"{found.at_step.stiffest:.3g} N/m"
     (False, '74.1 N/m')
     """
-    with patience(CHEAPER):
-        found = ready(contact, simulation.engine)
-        if table is None:
-            found = resolved(found, simulation, None)
-            return settings_of(lone_contact(found, None), simulation)
-        answer = of_contact(table.motion, found, question or Question())
-        return settings_on_table(answer, simulation)
+    found = ready(contact, simulation.engine)
+    if table is None:
+        found = resolved(found, simulation, None)
+        return settings_of(lone_contact(found, None), simulation)
+    answer = of_contact(table.motion, found, question or Question())
+    return settings_on_table(answer, simulation)
 
 
 def resolved(ready: Ready, simulation: Simulation, gravity: float | None) -> Ready:

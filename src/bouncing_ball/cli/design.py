@@ -18,7 +18,7 @@ from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.describe import Description, Dropped, describe, drop
 from bouncing_ball.contacts.engines.engine import ERROR, EngineSettings
 from bouncing_ball.contacts.engines.given_step import AtStep
-from bouncing_ball.contacts.families import Errors, Family, Needed
+from bouncing_ball.contacts.families import ComparedOrbit, Errors, Needed
 from bouncing_ball.contacts.quantities import quantities
 from bouncing_ball.contacts.question import EngineSetup, Question
 from bouncing_ball.contacts.resolve import resolve
@@ -243,7 +243,7 @@ def _line(name: str, *columns: str) -> str:
     return f"{name:<38}" + "".join(f"{column + ' ':<18}" for column in columns).rstrip()
 
 
-def _error(one: Family, quantity: Quantity) -> str:
+def _error(one: ComparedOrbit, quantity: Quantity) -> str:
     """The errors of a quantity in all models, or which of them has no orbit."""
     found = []
     for model, errors in (
@@ -259,7 +259,7 @@ def _error(one: Family, quantity: Quantity) -> str:
     return _line(f"    {QUANTITIES[quantity]}", *found)
 
 
-def _without(one: Family, quantity: str, model: str) -> str:
+def _without(one: ComparedOrbit, quantity: str, model: str) -> str:
     """The first of contact and model that lacks the orbit of a quantity; empty if both have it."""
     if model == "error law":
         # The law starts from an orbit of the restitution model, for the limits of orbits as well.
@@ -271,7 +271,7 @@ def _without(one: Family, quantity: str, model: str) -> str:
     return "" if one.standing[model].exists else model
 
 
-def _off(one: Family, need: Needed, model: str, errors: Errors) -> str:
+def _off(one: ComparedOrbit, need: Needed, model: str, errors: Errors) -> str:
     """The error of the judged quantity, or the reason why there is none."""
     error = errors[need.quantity]
     missing = _without(one, need.quantity, model)
@@ -280,7 +280,7 @@ def _off(one: Family, need: Needed, model: str, errors: Errors) -> str:
     return signed(error, need.tolerance)
 
 
-def _family_lines(one: Family) -> list[str]:
+def _family_lines(one: ComparedOrbit) -> list[str]:
     lines = ["", f"{one.n}-T orbit", _line("", *one.standing)]
     for columns in zip(*map(rows.texts, one.standing.values()), strict=True):
         lines.append(_line(f"  {columns[0][0]}", *(text for _, text in columns)))
@@ -355,7 +355,7 @@ def _short(found: Assessment) -> list[str]:
     return ["", head, *(_one_line(one, need) for one in found.orbits), f"({about}.)"]
 
 
-def _one_line(one: Family, need: Needed) -> str:
+def _one_line(one: ComparedOrbit, need: Needed) -> str:
     of_contact = {row.key: row.text for row in rows.rows(one) if row.words}
     height, force = (
         of_contact[name,] if one.exists else "no orbit" for name in ("max_height", "peak_force")

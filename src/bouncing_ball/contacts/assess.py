@@ -8,7 +8,7 @@ from bouncing_ball.accuracy.errors import OF_ORBITS
 from bouncing_ball.contacts.choose import Choice
 from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.describe import require_short
-from bouncing_ball.contacts.families import Family, Needed, families, finite, needed
+from bouncing_ball.contacts.families import ComparedOrbit, Needed, families, finite, needed
 from bouncing_ball.contacts.motion import FinalMotion, of_family
 from bouncing_ball.contacts.notes import notes, remarks
 from bouncing_ball.contacts.question import Question
@@ -99,7 +99,7 @@ class Assessment:
     permanent_contact: Annotated[float | None, Listed("permanent contact up to Λ")]
     law: dict[str, Any] | None
     corrected: Corrected
-    orbits: tuple[Family, ...]
+    orbits: tuple[ComparedOrbit, ...]
     needed: Needed
     motion: FinalMotion
     case: ResolvedContact
@@ -108,7 +108,7 @@ class Assessment:
     no_orbit: str = ""
 
     @property
-    def judged(self) -> Family:
+    def judged(self) -> ComparedOrbit:
         """The result for the family of the verdict."""
         return next(one for one in self.orbits if one.n == self.n)
 
@@ -257,7 +257,7 @@ def assess(case: ResolvedContact, question: Question, choice: Choice | None = No
     )
 
 
-def _judged(found: tuple[Family, ...], choice: Choice | None) -> Family:
+def _judged(found: tuple[ComparedOrbit, ...], choice: Choice | None) -> ComparedOrbit:
     """The family of the verdict: that of the choice, or the first whose orbit is stable and
     admissible, or else exists.
     """

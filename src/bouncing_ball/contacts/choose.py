@@ -7,7 +7,7 @@ from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.families import RATIOS, Needed, needed
 from bouncing_ball.contacts.hertz import reduced_modulus
-from bouncing_ball.contacts.loss import of_loss, require_mass_and_heights
+from bouncing_ball.contacts.loss import of_loss
 from bouncing_ball.contacts.notes import remarks
 from bouncing_ball.contacts.question import Question
 from bouncing_ball.contacts.resolve import law_type, meant
@@ -99,7 +99,6 @@ def choose(
         raise ParameterError("a contact with a stiffness is not chosen: leave its stiffness out")
     # A law is fitted to a free impact, so that it is never chosen.
     law_type(plain)
-    require_mass_and_heights(plain)
     # A radius alone is a Hertz contact whose modulus is missing.
     reduced_modulus(plain)
 

@@ -98,8 +98,8 @@ class Contact:
     Raises
     ------
     ModelError
-        If a quantity is out of range or of another dimension, or if the parameters of an engine are
-        given without its name.
+        If a quantity is out of range or of another dimension, if one height of a drop test is
+        missing, or if the parameters of an engine are given without its name or beside others.
 
     Examples
     --------
@@ -136,6 +136,12 @@ class Contact:
             first = next(iter(self.engine_parameters))
             what = f"{{{first}}}" if first in _OF_MUJOCO else f"{{parameters}} {first}"
             raise ParameterError(f"{what} needs {{from_engine}}, the name of the engine")
+        if self.from_engine is not None:
+            for other in (*STIFF, *LOSSY, "law"):
+                if getattr(self, other) is not None:
+                    raise ParameterError(f"{{{other}}} is not allowed with {{from_engine}}")
+        if (self.rebound_height is None) != (self.drop_height is None):
+            raise ParameterError("{rebound_height} and {drop_height} are needed together")
 
     @property
     def rule(self) -> Release:
@@ -197,10 +203,9 @@ class Contact:
             )
         own = self.engine
         if own is None:
+            if self.mass is None:
+                raise ParameterError("the mass is missing: give {mass}, such as 20 g")
             return self if written is None else self.in_engine(written)
-        for other in (*STIFF, *LOSSY, "law"):
-            if getattr(self, other) is not None:
-                raise ParameterError(f"{{{other}}} is not allowed with {{from_engine}}")
         mass, stiffness, damping = own.contact(self.engine_parameters, self.mass)
         found = Contact(mass=mass, stiffness=stiffness, damping=damping, release=self.release)
         if written is not None:

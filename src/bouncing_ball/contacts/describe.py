@@ -1,7 +1,7 @@
 """A contact without a table: its numbers, and drops on a table at rest."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar
 
 from bouncing_ball.contacts.contact import Contact
@@ -37,14 +37,14 @@ class Description:
 
     mass: Annotated[float, Listed("mass in kg")]
     stiffness: Annotated[float, Listed("stiffness", "N/m")]
-    damping: Annotated[float | None, Listed("damping", "N s/m")]
-    damping_ratio: Annotated[float | None, Listed("damping ratio ζ")]
     natural_frequency: Annotated[float, Listed("natural frequency ω = ϖΩ", "rad/s")]
-    contact_time: Annotated[float | None, Listed("contact time", "s")]
     release: str
-    measured_restitution: Annotated[float | None, Listed("restitution of a free impact")]
-    slowed_speed: Annotated[float | None, Listed("gravity lowers r by 1 % at", "m/s")]
     case: ResolvedContact
+    damping: Annotated[float | None, Listed("damping", "N s/m")] = None
+    damping_ratio: Annotated[float | None, Listed("damping ratio ζ")] = None
+    contact_time: Annotated[float | None, Listed("contact time", "s")] = None
+    measured_restitution: Annotated[float | None, Listed("restitution of a free impact")] = None
+    slowed_speed: Annotated[float | None, Listed("gravity lowers r by 1 % at", "m/s")] = None
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -105,35 +105,27 @@ def describe(case: ResolvedContact) -> Description:
         If the contact is longer than any that is simulated, or is to be written for an engine
         whereas its r depends on the speed.
     """
-    physical = case.physical
     release = case.contact.release
-    if not case.needs_speed:
-        require_short(physical.contact_time(release))
-        return Description(
-            mass=case.mass,
-            stiffness=case.stiffness,
-            damping=case.damping,
-            damping_ratio=float(case.contact.damping_ratio),
-            natural_frequency=case.omega,
-            contact_time=physical.contact_time(release),
-            release=str(release),
-            measured_restitution=physical.restitution(release),
-            slowed_speed=case.slowed_speed,
-            case=case,
-        )
-    if case.written is not None:
-        raise needs_table(f"{{from_engine}} {case.given.from_engine}", "r")
-    return Description(
+    found = Description(
         mass=case.mass,
         stiffness=case.stiffness,
-        damping=None,
-        damping_ratio=None,
         natural_frequency=case.omega,
-        contact_time=None,
         release=str(release),
-        measured_restitution=None,
-        slowed_speed=None,
         case=case,
+    )
+    if case.needs_speed:
+        if case.written is not None:
+            raise needs_table(f"{{from_engine}} {case.given.from_engine}", "r")
+        return found
+    time = case.physical.contact_time(release)
+    require_short(time)
+    return replace(
+        found,
+        damping=case.damping,
+        damping_ratio=float(case.contact.damping_ratio),
+        contact_time=time,
+        measured_restitution=case.physical.restitution(release),
+        slowed_speed=case.slowed_speed,
     )
 
 

@@ -51,7 +51,7 @@ class Standing:
 
 
 @dataclass(frozen=True)
-class Family:
+class ComparedOrbit:
     """The n-T orbit of a case, in SI units, and the errors of the simple models.
 
     ``exists``, ``is_stable`` and ``is_admissible`` refer to the orbit of the exact model, which
@@ -213,7 +213,7 @@ def _standing(orbit: Orbit, values: np.ndarray, amplitude: float) -> Standing:
 
 def families(
     case: ResolvedContact, asked: Sequence[int], or_first: bool = False
-) -> tuple[Family, ...]:
+) -> tuple[ComparedOrbit, ...]:
     """The families ``asked`` in which at least one model has an orbit.
 
     If there is no such family, the result is the first of ``asked`` with ``or_first``, and
@@ -298,7 +298,7 @@ def _family(
     values: np.ndarray,
     by_law: np.ndarray,
     holds: bool,
-) -> Family:
+) -> ComparedOrbit:
     """A family from its orbits in all models, the ``values`` of the quantities, shape
     (model, quantity), and the result of the error law.
     """
@@ -308,7 +308,7 @@ def _family(
     depth, force = _loads(case.exact_law, orbit)
     restitution, corrected = map(_by_quantity, prediction_error(values[1:], values[0]))
     in_si = values * _units(case.table)
-    return Family(
+    return ComparedOrbit(
         n=n,
         exists=standing[0].exists,
         is_stable=standing[0].is_stable,

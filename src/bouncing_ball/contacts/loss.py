@@ -22,20 +22,6 @@ _REFITS = 12
 _Found = TypeVar("_Found")
 
 
-def require_mass_and_heights(contact: Contact) -> None:
-    """Refuse a drop test of which one height is missing, and a contact without a mass.
-
-    Raises
-    ------
-    ModelError
-        The message names what is missing.
-    """
-    if (contact.rebound_height is None) != (contact.drop_height is None):
-        raise ParameterError("{rebound_height} and {drop_height} are needed together")
-    if contact.mass is None:
-        raise ParameterError("the mass is missing: give {mass}, such as 20 g")
-
-
 def loss(
     contact: Contact,
     omega_of: Callable[[float], float] | None = None,

@@ -23,7 +23,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.contacts.families import Family, prediction_error
+from bouncing_ball.contacts.families import ComparedOrbit, prediction_error
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.motions import Kind
@@ -139,7 +139,7 @@ class _End(NamedTuple):
 
 
 def of_family(
-    case: ResolvedContact, family: Family, tolerance: float, balls: int | None = None
+    case: ResolvedContact, family: ComparedOrbit, tolerance: float, balls: int | None = None
 ) -> FinalMotion:
     """The motion of a ball that starts on the orbit of a family, or beside an unstable orbit.
 
@@ -190,7 +190,7 @@ def _first_orbit(case: ResolvedContact, n: int) -> Any | None:
     return None
 
 
-def _is_elliptic(case: ResolvedContact, family: Family, orbit: Any) -> bool:
+def _is_elliptic(case: ResolvedContact, family: ComparedOrbit, orbit: Any) -> bool:
     """Whether a ball stays near the orbit without being attracted, as the contact has no loss."""
     lossless = float(case.contact.restitution) == 1
     if not (lossless and family.exists and family.is_admissible):
@@ -208,7 +208,7 @@ def _start(case: ResolvedContact, orbit: Any | None) -> _Start:
     return _Start(float(orbit.phase), float(orbit.impact_velocity) * (1 + _BESIDE))
 
 
-def _laid(case: ResolvedContact, family: Family) -> str | None:
+def _laid(case: ResolvedContact, family: ComparedOrbit) -> str | None:
     """Kind of the motion of a ball that is laid on the table; None if it ends on the orbit."""
     lam = case.table.amplitude
     if lam <= case.permanent_contact:

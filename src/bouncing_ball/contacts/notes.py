@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from bouncing_ball.contacts.families import Family, prediction_error
+from bouncing_ball.contacts.families import ComparedOrbit, prediction_error
 from bouncing_ball.contacts.motion import FinalMotion
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.texts import shown
@@ -57,7 +57,7 @@ def on_drop_test(case: ResolvedContact) -> tuple[str, ...]:
     )
 
 
-def _cost_of(law: Impedance, case: ResolvedContact, family: Family) -> str:
+def _cost_of(law: Impedance, case: ResolvedContact, family: ComparedOrbit) -> str:
     """A sentence on the change of the greatest height that an impedance causes."""
     about = "stiffness, damping, ϖ and ζ are those of the spring and damper of this solref"
     spring = SpringDamperModel(case.contact).orbit(family.n, case.table.amplitude)
@@ -72,7 +72,7 @@ def _cost_of(law: Impedance, case: ResolvedContact, family: Family) -> str:
     )
 
 
-def _notes_on_law(law: ContactLaw, case: ResolvedContact, family: Family) -> list[str]:
+def _notes_on_law(law: ContactLaw, case: ResolvedContact, family: ComparedOrbit) -> list[str]:
     """Sentences on how the numbers of a linear contact are those of a case with another law."""
     # The contact of a solref has the ϖ of its impedance, unlike one that was found for an impact.
     if isinstance(law, Impedance) and math.isclose(
@@ -93,7 +93,7 @@ def _notes_on_law(law: ContactLaw, case: ResolvedContact, family: Family) -> lis
     return found
 
 
-def notes(case: ResolvedContact, family: Family, motion: FinalMotion) -> tuple[str, ...]:
+def notes(case: ResolvedContact, family: ComparedOrbit, motion: FinalMotion) -> tuple[str, ...]:
     """Sentences that a user should read in addition to the verdict."""
     contact = case.contact
     orbit = f"{family.n}-T orbit"

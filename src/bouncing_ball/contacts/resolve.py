@@ -16,7 +16,7 @@ import numpy as np
 
 from bouncing_ball.contacts.contact import LOSSY, STIFF, Contact
 from bouncing_ball.contacts.hertz import hertz, reduced_modulus
-from bouncing_ball.contacts.loss import loss, oscillating, require_mass_and_heights, same_omega
+from bouncing_ball.contacts.loss import loss, oscillating, same_omega
 from bouncing_ball.contacts.quantities import given, single
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.table import TableMotion
@@ -67,7 +67,6 @@ def resolve(
     """
     plain = contact.by_stiffness_and_loss(written)
     kind = law_type(plain)
-    require_mass_and_heights(plain)
     stiff = single(given(plain), STIFF, "the stiffness of the contact")
     modulus = reduced_modulus(plain)
     if not stiff:

@@ -18,7 +18,7 @@ class Listed(NamedTuple):
     unit: str = ""
 
 
-class Row(NamedTuple):
+class Entry(NamedTuple):
     """A number or a text of a result.
 
     ``key`` is the path of its name in JSON. Rows without ``words`` are in JSON only. The value is
@@ -40,7 +40,7 @@ class Row(NamedTuple):
         return shown(self.value, self.unit)
 
 
-def rows(result: Any) -> list[Row]:
+def rows(result: Any) -> list[Entry]:
     """The rows of a result in the order of its fields, including those of nested results.
 
     A field that holds a dict has one description for each of its values.
@@ -51,7 +51,7 @@ def rows(result: Any) -> list[Row]:
     >>> [tuple(row) for row in rows(TimeStep(2e-6, "a rule"))]
     [(('largest',), 'largest time step', 's', 2e-06), (('rule',), '', '', 'a rule')]
     """
-    found: list[Row] = []
+    found: list[Entry] = []
     hints = get_type_hints(type(result), include_extras=True)
     for name in getattr(result, "KEYS", None) or [field.name for field in fields(result)]:
         value = getattr(result, name)
@@ -59,13 +59,13 @@ def rows(result: Any) -> list[Row]:
         if isinstance(value, Mapping) and listed:
             of_values = zip(value.items(), listed, strict=True)
             found += [
-                Row((name, key), each.words, each.unit, one) for (key, one), each in of_values
+                Entry((name, key), each.words, each.unit, one) for (key, one), each in of_values
             ]
         elif is_dataclass(value):
             found += [row._replace(key=(name, *row.key)) for row in rows(value)]
         else:
             words, unit = listed[0] if listed else ("", "")
-            found.append(Row((name,), words, unit, value))
+            found.append(Entry((name,), words, unit, value))
     return found
 
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from bouncing_ball.accuracy.errors import QUANTITIES, Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
-from bouncing_ball.contacts.families import NO_ORBIT, Family, Needed, prediction_error
+from bouncing_ball.contacts.families import NO_ORBIT, ComparedOrbit, Needed, prediction_error
 from bouncing_ball.contacts.motion import FinalMotion, Mean
 from bouncing_ball.contacts.question import MOST_BALLS
 from bouncing_ball.contacts.resolved import ResolvedContact
@@ -51,7 +51,7 @@ def _subject(quantity: str, n: int) -> str:
     return f"the {QUANTITIES[Quantity(quantity)]}{of_family}"
 
 
-def _disagreement(family: Family) -> str | None:
+def _disagreement(family: ComparedOrbit) -> str | None:
     """The first qualitative disagreement between the restitution model's orbit and the exact one:
     in existence, admissibility or stability. None if they agree.
     """
@@ -74,7 +74,7 @@ def _opposite(orbit: str, word: str, of_model: bool) -> str:
     return f"its {orbit} is not {word}, and the contact's is"
 
 
-def assessed(family: Family, needed: Needed, frequency_ratio: float) -> Verdict:
+def assessed(family: ComparedOrbit, needed: Needed, frequency_ratio: float) -> Verdict:
     """The verdict on a given contact.
 
     The model is good enough if its orbit agrees with the exact one in existence, admissibility and
@@ -98,7 +98,7 @@ def assessed(family: Family, needed: Needed, frequency_ratio: float) -> Verdict:
     return Verdict(False, f"The restitution model is not good enough: {why}{instead}.", reason)
 
 
-def _prediction(family: Family, needed: Needed) -> str:
+def _prediction(family: ComparedOrbit, needed: Needed) -> str:
     """A clause with the values of a quantity in the restitution model and on the contact, and the
     error of the model.
     """
@@ -219,7 +219,7 @@ def _within(
     return Verdict(False, sentence, f"{why}; {undecided}")
 
 
-def _instead(family: Family, needed: Needed) -> str:
+def _instead(family: ComparedOrbit, needed: Needed) -> str:
     """A clause on whether the corrected model is good enough instead."""
     error = family.corrected_errors[needed.quantity]
     corrected = family.standing["corrected"]
@@ -267,7 +267,7 @@ def aside(motion: FinalMotion, amplitude: float) -> str:
     return f"; a ball laid on the table {_LAID[motion.laid]}, and is not judged"
 
 
-def headline(motion: FinalMotion, family: Family) -> str:
+def headline(motion: FinalMotion, family: ComparedOrbit) -> str:
     """The motion of the ball, in one sentence."""
     orbit = f"{family.n}-T orbit"
     if motion.kind == Kind.ORBIT and motion.restitution_kind is None:

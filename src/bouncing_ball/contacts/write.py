@@ -12,7 +12,7 @@ from bouncing_ball.contacts.describe import LONGEST, describe
 from bouncing_ball.contacts.engines.choice import engine_named
 from bouncing_ball.contacts.engines.engine import EngineSettings
 from bouncing_ball.contacts.engines.given_step import AtStep, stiffest_contact
-from bouncing_ball.contacts.loss import of_loss, require_mass_and_heights
+from bouncing_ball.contacts.loss import of_loss
 from bouncing_ball.contacts.question import EngineSetup, Question
 from bouncing_ball.contacts.resolve import resolve
 from bouncing_ball.contacts.resolved import ResolvedContact
@@ -87,7 +87,6 @@ def resolve_for(contact: Contact, setup: EngineSetup, at_rest: TableMotion) -> R
     step = setup.time_step
     if plain.is_stiff or step is None:
         return resolve(contact, at_rest, written=setup.engine)
-    require_mass_and_heights(plain)
     scheme = engine_named(setup.engine).scheme
     allowed = setup.restitution_error
 

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from bouncing_ball.cli.design import Answer, answer
+from bouncing_ball.cli.design import answer
+from bouncing_ball.cli.design_text import Answer
 from bouncing_ball.contacts.assess import Assessment
 from bouncing_ball.contacts.describe import Description
 

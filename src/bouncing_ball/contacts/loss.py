@@ -27,16 +27,16 @@ def loss(
     omega_of: Callable[[float], float] | None = None,
     gravity: float = STANDARD_GRAVITY,
 ) -> float:
-    """Damping ratio ζ of a contact whose loss is given without the stiffness.
+    """Damping ratio ζ of a contact whose loss is given.
 
     A drop test needs ``omega_of``, √(k/m) in rad/s as a function of ζ, for the effect of gravity;
-    without it gravity is neglected.
+    without it gravity is neglected. A damping c needs it, too.
 
     Raises
     ------
     ModelError
-        If no parameter or more than one gives the loss, if the loss is given as a damping c, which
-        needs the stiffness, or if r or ζ is out of range.
+        If no parameter or more than one gives the loss, if the loss is given as a damping c without
+        the stiffness, or if r or ζ is out of range.
 
     Examples
     --------
@@ -48,11 +48,14 @@ def loss(
     ways = f"one of {others}, or {{drop_height}} and {{rebound_height}}"
     name = single(given(contact), LOSSY, "the loss of the contact", ways)
     if name == "damping":
-        raise ParameterError(
-            "{damping} needs {stiffness}: give it, or {restitution} in place of {damping}"
-        )
+        if contact.stiffness is None or omega_of is None:
+            raise ParameterError(
+                "{damping} needs {stiffness}: give it, or {restitution} in place of {damping}"
+            )
+        zeta = contact.damping / (2 * contact.mass * omega_of(0.0))
+        return _oscillating(zeta, release, "damping ratio ζ of the contact")
     if name == "damping_ratio":
-        return oscillating(contact.damping_ratio, release, "{damping_ratio}")
+        return _oscillating(contact.damping_ratio, release, "{damping_ratio}")
     if name == "restitution":
         return float(damping_ratio(contact.restitution, Release.DISPLACEMENT))
     if name == "measured_restitution":
@@ -66,14 +69,8 @@ def loss(
     return float(damping_ratio(math.sqrt(height / drop), release))
 
 
-def oscillating(zeta: float, release: Release, name: str) -> float:
-    """ζ, or an error if a free impact with it does not end: a damper that pulls holds the ball.
-
-    Raises
-    ------
-    ModelError
-        The message has the ``name`` of the damping ratio.
-    """
+def _oscillating(zeta: float, release: Release, name: str) -> float:
+    """ζ, or an error if a free impact with it does not end: a damper that pulls holds the ball."""
     if release is not Release.DISPLACEMENT:
         return zeta
     if not (zeta < 1 and SpringDamper(1.0, zeta, release).restitution > 0):
@@ -118,3 +115,8 @@ def of_loss(
 def same_omega(omega: float) -> Callable[[float], float]:
     """√(k/m) in rad/s, as a function of ζ, of contacts of one stiffness: it is constant."""
     return lambda zeta: omega
+
+
+def omega_of_time(duration: float, release: Release) -> Callable[[float], float]:
+    """√(k/m) in rad/s, as a function of ζ, of contacts whose free impacts last so many seconds."""
+    return lambda zeta: float(SpringDamper(1.0, zeta, release).free_duration) / duration

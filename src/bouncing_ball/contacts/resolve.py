@@ -14,9 +14,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from bouncing_ball.contacts.contact import LOSSY, STIFF, Contact
+from bouncing_ball.contacts.contact import STIFF, Contact
 from bouncing_ball.contacts.hertz import hertz, reduced_modulus
-from bouncing_ball.contacts.loss import loss, oscillating, same_omega
+from bouncing_ball.contacts.loss import loss, omega_of_time, same_omega
 from bouncing_ball.contacts.quantities import given, single
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.table import TableMotion
@@ -67,14 +67,12 @@ def resolve(
     """
     plain = contact.by_stiffness_and_loss(written)
     kind = law_type(plain)
-    stiff = single(given(plain), STIFF, "the stiffness of the contact")
+    is_stiff = single(given(plain), STIFF, "the stiffness of the contact") != ""
     modulus = reduced_modulus(plain)
-    if not stiff:
+    if not is_stiff:
         raise ParameterError("no stiffness: give {stiffness}, or {contact_time}")
-    if stiff == "stiffness":
-        found = _of_stiffness(plain, table)
-    elif kind is None and modulus is None:
-        found = _of_contact_time(plain, table)
+    if kind is None and modulus is None:
+        found = _spring_damper(plain, table)
     else:
         found = _of_law(plain, table, families, kind, modulus)
     found = replace(found, given=contact, written=written)
@@ -116,37 +114,21 @@ def law_type(contact: Contact) -> type[ContactLaw] | None:
     return kind
 
 
-def _of_stiffness(contact: Contact, table: TableMotion) -> ResolvedContact:
-    """A linear contact whose stiffness is given, with its loss."""
+def _spring_damper(contact: Contact, table: TableMotion) -> ResolvedContact:
+    """A linear contact whose stiffness or duration is given, with its loss."""
     rule = contact.rule
-    omega = math.sqrt(contact.stiffness / contact.mass)
-    if single(given(contact), LOSSY, "the loss of the contact") == "damping":
-        zeta = contact.damping / (2 * contact.mass * omega)
-        zeta = oscillating(zeta, rule, "damping ratio ζ of the contact")
+    if contact.stiffness is not None:
+        omega = same_omega(math.sqrt(contact.stiffness / contact.mass))
     else:
-        zeta = loss(contact, same_omega(omega), table.gravity)
+        omega = omega_of_time(contact.contact_time, rule)
+    zeta = loss(contact, omega, table.gravity)
     return ResolvedContact(
         contact.mass,
         table,
-        SpringDamper(omega / table.angular_frequency, zeta, rule),
+        SpringDamper(omega(zeta) / table.angular_frequency, zeta, rule),
         given_stiffness=contact.stiffness,
         given_damping=contact.damping,
     )
-
-
-def _of_contact_time(contact: Contact, table: TableMotion) -> ResolvedContact:
-    """A linear contact whose duration is given, with its loss."""
-    rule = contact.rule
-    time = contact.contact_time
-
-    def omega(zeta: float) -> float:
-        return float(SpringDamper(1.0, zeta, rule).free_duration) / time
-
-    zeta = loss(contact, omega, table.gravity)
-    # A contact with ω = 1; its free duration over the given one is ϖ.
-    unit = SpringDamper(1.0, zeta, rule)
-    ratio = float(unit.free_duration) / (time / table.time)
-    return ResolvedContact(contact.mass, table, replace(unit, frequency_ratio=ratio))
 
 
 def _of_law(

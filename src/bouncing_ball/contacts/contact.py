@@ -219,9 +219,13 @@ class Contact:
 
         A contact with both restitutions stays as it is, because they contradict each other.
         """
+        return replace(self, **self._measured())
+
+    def _measured(self) -> dict[str, Any]:
+        """The restitution as the measured one, by the names of the fields that change."""
         if self.restitution is None or self.measured_restitution is not None:
-            return self
-        return replace(self, restitution=None, measured_restitution=self.restitution)
+            return {}
+        return {"restitution": None, "measured_restitution": self.restitution}
 
     def in_engine(self, name: str) -> "Contact":
         """The contact as it ends in the engine with this name, in which r is the measured one.
@@ -245,4 +249,4 @@ class Contact:
         if law not in (None, LinearLaw.name, *engine.laws, *engine.laws.values()):
             raise ParameterError(f"{{law}} {law} is not written for {name}: leave {{law}} out")
         law = engine.laws.get(str(law), law)
-        return replace(self.with_measured_restitution(), release=rule, law=law)
+        return replace(self, release=rule, law=law, **self._measured())

@@ -1,7 +1,7 @@
 """A contact with numbers: the dimensionless model of a contact, and its SI scales."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -32,6 +32,7 @@ from bouncing_ball.periodic.restitution_model import RestitutionModel
 _SAME = 1e-9
 # The loss 1 - r below which a contact law is hardly damped.
 _HARDLY = 1e-6
+_NOTHING = Contact()
 
 
 @dataclass(frozen=True)
@@ -55,7 +56,7 @@ class ResolvedContact:
     given_stiffness, given_damping : float, optional
         k and c if they were given, because mω² and 2ζmω differ from them by rounding.
     given : Contact
-        The contact as it was given.
+        The contact as it was given, for the sentences on how it was read.
     written : str, optional
         Name of the engine for which it is written.
 
@@ -74,7 +75,7 @@ class ResolvedContact:
     law: ContactLaw | None = None
     given_stiffness: float | None = None
     given_damping: float | None = None
-    given: Contact = field(default_factory=Contact)
+    given: Contact = _NOTHING
     written: str | None = None
 
     @property

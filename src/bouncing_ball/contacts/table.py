@@ -53,17 +53,17 @@ class TableMotion:
         """Whether the table does not move."""
         return self.table_amplitude == 0
 
-    @property
+    @cached_property
     def amplitude(self) -> float:
         """Excitation amplitude Λ = AΩ²/g, the greatest acceleration of the table over gravity."""
         return self.table_amplitude * self.angular_frequency**2 / self.gravity
 
-    @property
+    @cached_property
     def time(self) -> float:
         """Unit of time, 1/Ω, in s."""
         return 1 / self.angular_frequency
 
-    @property
+    @cached_property
     def length(self) -> float:
         """Unit of length, g/Ω², in m."""
         return self.gravity / self.angular_frequency**2

@@ -83,10 +83,10 @@ def resolve_for(contact: Contact, setup: EngineSetup, at_rest: TableMotion) -> R
         If parameters do not suffice or contradict each other, or no contact has its r within the
         error at this step.
     """
-    plain = contact.by_stiffness_and_loss(setup.engine)
     step = setup.time_step
-    if plain.is_stiff or step is None:
+    if contact.is_stiff or step is None:
         return resolve(contact, at_rest, written=setup.engine)
+    plain = contact.by_stiffness_and_loss(setup.engine)
     scheme = engine_named(setup.engine).scheme
     allowed = setup.restitution_error
 

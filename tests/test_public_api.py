@@ -318,7 +318,7 @@ def test_a_misspelt_parameter_is_named_with_its_function():
             lambda: bouncing_ball.error_thresholds(RIGID, amplitude=1.0, quantities=["mass"]),
             "quantities = 'mass' is not one of max_height",
         ),
-        (lambda: bouncing_ball.design(frequency="{mass} Hz"), "frequency = '{mass} Hz' does not"),
+        (lambda: bouncing_ball.Table(frequency="{mass} Hz"), "frequency = '{mass} Hz' does not"),
     ],
 )
 def test_wrong_values_are_refused_with_the_allowed_ones(call, says, refusal):

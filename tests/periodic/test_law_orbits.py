@@ -156,7 +156,7 @@ def test_a_row_of_corrected_models_is_that_of_its_laws(kind):
     row = CorrectedModel.of_contact(laws)
     one = [CorrectedModel.of_contact(law) for law in laws]
     # The orbits move by rounding only; the tables are the same.
-    found = row.orbit(1, 1.0).max_height
-    np.testing.assert_allclose(found, [x.orbit(1, 1.0).max_height for x in one], rtol=1e-12)
-    fold = row.saddle_node(1).amplitude
-    np.testing.assert_allclose(fold, [x.saddle_node(1).amplitude for x in one], rtol=1e-11)
+    found = n_t.orbit(row, 1, 1.0).max_height
+    np.testing.assert_allclose(found, [n_t.orbit(x, 1, 1.0).max_height for x in one], rtol=1e-12)
+    fold = n_t.saddle_node(row, 1).amplitude
+    np.testing.assert_allclose(fold, [n_t.saddle_node(x, 1).amplitude for x in one], rtol=1e-11)

@@ -26,7 +26,6 @@ from bouncing_ball.calls.over_time_on_grid import model_of_starts
 from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.errors import ParameterError
 from bouncing_ball.long_run import grids
-from bouncing_ball.patience import patience
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -151,8 +150,7 @@ def motion_of(
     most = checked_number("impacts", impacts, FOLLOWED)
     grid = Grid(amplitude=lam, phase=phi, velocity=before, **a_ball(ball).parameters)
     start = (grid.row("amplitude"), grid.row("phase"), grid.row("velocity"))
-    with patience("fewer impacts or fewer balls"):
-        found = grids.motions(model_of_starts(ball, grid), *start, most)
+    found = grids.motions(model_of_starts(ball, grid), *start, most)
     return grid.unfold(found, LongRun)
 
 
@@ -242,14 +240,13 @@ def orbit_diagram(
     lam = np.atleast_1d(np.asarray(checked("amplitudes", amplitudes, AMPLITUDE)))
     if lam.ndim > 1 or np.any(np.diff(lam) <= 0):
         raise ParameterError("{amplitudes} must be at least one Λ, in rising order")
-    with patience("fewer amplitudes, fewer starts or fewer impacts"):
-        found = grids.diagram(
-            a_single_ball(ball).model,
-            lam,
-            starts=checked_number("starts", starts, SAMPLES),
-            samples=checked_number("samples", samples, SAMPLES),
-            impacts=checked_number("impacts", impacts, FOLLOWED),
-        )
+    found = grids.diagram(
+        a_single_ball(ball).model,
+        lam,
+        starts=checked_number("starts", starts, SAMPLES),
+        samples=checked_number("samples", samples, SAMPLES),
+        impacts=checked_number("impacts", impacts, FOLLOWED),
+    )
     return _parameters_of(ball).unfold(found, OrbitDiagram)
 
 
@@ -299,14 +296,13 @@ def basins(
     fastest = None
     if velocity_max is not None:
         fastest = checked_number("velocity_max", velocity_max, POSITIVE)
-    with patience("fewer starts or fewer impacts"):
-        found = grids.basins(
-            a_single_ball(ball).model,
-            lam,
-            starts=checked_number("starts", starts, SAMPLES),
-            fast=fastest,
-            impacts=checked_number("impacts", impacts, FOLLOWED),
-        )
+    found = grids.basins(
+        a_single_ball(ball).model,
+        lam,
+        starts=checked_number("starts", starts, SAMPLES),
+        fast=fastest,
+        impacts=checked_number("impacts", impacts, FOLLOWED),
+    )
     return _parameters_of(ball).unfold(found.assign_attrs(amplitude=lam), Basins)
 
 

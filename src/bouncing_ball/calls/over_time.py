@@ -22,12 +22,9 @@ from bouncing_ball.calls.arguments import (
     checked_number,
 )
 from bouncing_ball.calls.balls import Ball, a_ball
-from bouncing_ball.patience import patience
 
 if TYPE_CHECKING:
     from bouncing_ball.calls.over_time_on_grid import History, Simulation
-
-_LESS = "fewer periods, fewer samples or fewer balls"
 
 
 def simulate(
@@ -81,8 +78,7 @@ def simulate(
     # Imported here, because the command line needs no labels.
     from bouncing_ball.calls.over_time_on_grid import impacts_on_grid
 
-    with patience("fewer impacts or fewer balls"):
-        return impacts_on_grid(ball, lam, phi, before, count)
+    return impacts_on_grid(ball, lam, phi, before, count)
 
 
 def history(
@@ -138,8 +134,7 @@ def history(
     a_ball(ball)
     from bouncing_ball.calls.over_time_on_grid import history_on_grid
 
-    with patience(_LESS):
-        return history_on_grid(ball, lam, phi, before, length, count)
+    return history_on_grid(ball, lam, phi, before, length, count)
 
 
 def drop(
@@ -195,5 +190,4 @@ def drop(
     a_ball(ball)
     from bouncing_ball.calls.over_time_on_grid import drop_on_grid
 
-    with patience(_LESS):
-        return drop_on_grid(ball, start, lam, phi, length, count)
+    return drop_on_grid(ball, start, lam, phi, length, count)

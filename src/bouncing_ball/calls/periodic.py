@@ -20,16 +20,12 @@ from bouncing_ball.calls.arguments import (
 )
 from bouncing_ball.calls.balls import Ball, a_ball, a_known_ball, a_single_ball
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.patience import patience
 from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.stability import Side
 
 if TYPE_CHECKING:
     from bouncing_ball.calls.periodic_on_grid import Branches, Limits, Orbits, PermanentContact
-
-# What makes orbits cheaper.
-_SIMPLER = "a spring and a damper in place of a law, or fewer balls"
 
 
 class TwoLimits(NamedTuple):
@@ -96,11 +92,9 @@ release='displacement')
         # than computing the orbit.
         from bouncing_ball.calls.periodic_on_grid import orbits_on_grid
 
-        with patience(_SIMPLER):
-            return orbits_on_grid(ball, family, lam, branch_side)
-    with patience(_SIMPLER):
-        model = ball.at_orbit(family, lam, branch_side).model
-        return n_t.require_orbit(model, family, lam, branch_side)
+        return orbits_on_grid(ball, family, lam, branch_side)
+    model = ball.at_orbit(family, lam, branch_side).model
+    return n_t.require_orbit(model, family, lam, branch_side)
 
 
 def orbits(ball: Ball, n: int = 1, *, amplitude: float) -> list[Orbit]:
@@ -133,9 +127,8 @@ def orbits(ball: Ball, n: int = 1, *, amplitude: float) -> list[Orbit]:
     """
     family = checked_number("n", n, FAMILY)
     lam = checked_number("amplitude", amplitude, AMPLITUDE_OF_ORBIT)
-    with patience(_SIMPLER):
-        model = a_single_ball(a_ball(ball).at_orbit(family, lam)).model
-        found = n_t.orbits(model, family, lam)
+    model = a_single_ball(a_ball(ball).at_orbit(family, lam)).model
+    found = n_t.orbits(model, family, lam)
     if not found.size:
         raise NoOrbitError(f"no {family}-T orbit at Λ = {lam:g} for {model.label}")
     return [found[k] for k in range(found.size)]
@@ -172,14 +165,12 @@ def limits(ball: Ball, n: Family = 1) -> TwoLimits | Limits:
     if _is_grid(a_ball(ball), family):
         from bouncing_ball.calls.periodic_on_grid import limits_on_grid
 
-        with patience(_SIMPLER):
-            return limits_on_grid(ball, family)
-    with patience(_SIMPLER):
-        model = ball.at_limits(family).model
-        return TwoLimits(
-            saddle_node=n_t.saddle_node(model, family),
-            period_doubling=n_t.period_doubling(model, family),
-        )
+        return limits_on_grid(ball, family)
+    model = ball.at_limits(family).model
+    return TwoLimits(
+        saddle_node=n_t.saddle_node(model, family),
+        period_doubling=n_t.period_doubling(model, family),
+    )
 
 
 def branch(
@@ -230,8 +221,7 @@ def branch(
     a_ball(ball)
     from bouncing_ball.calls.periodic_on_grid import branches_on_grid
 
-    with patience(f"a smaller amplitude_max, {_SIMPLER}"):
-        return branches_on_grid(ball, family, top, count)
+    return branches_on_grid(ball, family, top, count)
 
 
 def permanent_contact(ball: Ball) -> float | PermanentContact:
@@ -263,10 +253,8 @@ def permanent_contact(ball: Ball) -> float | PermanentContact:
     if _is_grid(known):
         from bouncing_ball.calls.periodic_on_grid import permanent_contact_on_grid
 
-        with patience(_SIMPLER):
-            return permanent_contact_on_grid(known)
-    with patience(_SIMPLER):
-        return float(known.model.permanent_contact_threshold())
+        return permanent_contact_on_grid(known)
+    return float(known.model.permanent_contact_threshold())
 
 
 def _is_grid(ball: Ball, *arguments: Any) -> bool:

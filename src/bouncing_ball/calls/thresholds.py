@@ -30,7 +30,6 @@ from bouncing_ball.datasets.variables import described
 from bouncing_ball.errors import ParameterError
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.patience import patience
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -112,8 +111,7 @@ def error_thresholds(
     rule = Release.of(chosen("release", release, [str(each) for each in Release]))
     asked = _names(quantities)
     grid = Grid(n=family, amplitude=lam, tolerance=level, **ball.parameters)
-    with patience("fewer balls or fewer quantities"):
-        found = _on_grid(grid, asked, rule)
+    found = _on_grid(grid, asked, rule)
     return grid.unfold(found, Thresholds)
 
 

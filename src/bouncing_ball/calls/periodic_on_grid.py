@@ -48,7 +48,7 @@ class Orbits(Drawn):
     def _figure(self) -> "Figure":
         from bouncing_ball.calls import figures
 
-        return n_t.orbits(figures, self)
+        return figures.orbits(self)
 
 
 class Limits(Drawn):

@@ -207,7 +207,7 @@ def follow(
     start = _state(orbit, along)
     most = checked_number("points", points, POINTS)
     value = None if to is None else checked_number("to", to, start.orbits.family.ranges[along])
-    return FollowedBranch.of(following.follow(start, value, most=most))
+    return FollowedBranch.of_orbits(following.follow(start, value, most=most), "follow")
 
 
 def switch(orbit: State) -> State:
@@ -307,7 +307,7 @@ def curve(
         across_window=_window("across_range", across_range, across, at[across]),
         most=most,
     )
-    return SpecialCurve.of(found, curve_kind=name)
+    return SpecialCurve.of_orbits(found, "curve", curve_kind=name)
 
 
 def _window(

@@ -24,7 +24,7 @@ from bouncing_ball.calls.arguments import (
 from bouncing_ball.calls.balls import Ball, a_ball
 
 if TYPE_CHECKING:
-    from bouncing_ball.calls.over_time_on_grid import History, Simulation
+    from bouncing_ball.drawing.result import Result
 
 
 def simulate(
@@ -34,7 +34,7 @@ def simulate(
     phase: State = 0.0,
     velocity: State = -math.pi,
     impacts: Impacts = 100,
-) -> Simulation:
+) -> Result:
     """The sequence of impacts that begins with a given first impact.
 
     Parameters
@@ -51,11 +51,11 @@ def simulate(
 
     Returns
     -------
-    Simulation
+    Result
         ``time``, ``impact_phase``, ``impact_velocity``, ``contact_duration`` and
         ``bounce_velocity`` of each ``impact``, NaN after the last one; and the ``status`` of the
         ball after it. The last axis is ``impact``; each argument that is an array has an axis
-        before it.
+        before it. The figure shows the phases and velocities of the impacts over time.
 
     Raises
     ------
@@ -89,7 +89,7 @@ def history(
     velocity: State = -math.pi,
     periods: Periods = 10.0,
     samples: Samples = 200,
-) -> History:
+) -> Result:
     """A ball over time, from a first impact as in :func:`simulate`.
 
     Parameters
@@ -108,9 +108,10 @@ def history(
 
     Returns
     -------
-    History
+    Result
         ``ball`` z, ``ball_velocity`` z′, ``table`` w and whether they are in ``contact``. The
-        last axis is ``time``; each argument that is an array has an axis before it.
+        last axis is ``time``; each argument that is an array has an axis before it. The figure
+        shows the heights over time.
 
     Raises
     ------
@@ -145,7 +146,7 @@ def drop(
     phase: State = 0.0,
     periods: Periods = 10.0,
     samples: Samples = 200,
-) -> History:
+) -> Result:
     """A ball that is dropped at rest above a table, which does not move unless Λ is given.
 
     Parameters
@@ -164,7 +165,7 @@ def drop(
 
     Returns
     -------
-    History
+    Result
         As for :func:`history`; the time begins when the ball is dropped.
 
     Raises

@@ -5,24 +5,21 @@ first in every result.
 """
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from bouncing_ball.calls.balls import Ball
-from bouncing_ball.calls.drawn import Drawn
 from bouncing_ball.datasets import CASE
 from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.datasets.variables import Variable, describe
+from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import ModelError, require
 from bouncing_ball.models.flight import Flight, land, table
 from bouncing_ball.models.history import history as of_one_ball
 from bouncing_ball.models.sequence import ImpactSequence, Status
 from bouncing_ball.periodic.model import ImpactModel
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 _OF_SIMULATIONS = {
     "impact": Variable("number of the impact"),
@@ -38,38 +35,6 @@ _LOSSLESS = 1e-10
 # Largest number of states of all balls. A state takes about fifty bytes, and as much again while
 # it is computed.
 _STATES = 10_000_000
-
-
-class Simulation(Drawn):
-    """Sequences of impacts; the last axis is ``impact``.
-
-    The figure shows the phases and velocities of the impacts over time.
-    """
-
-    __slots__ = ()
-
-    maker = "simulate"
-
-    def _figure(self) -> "Figure":
-        from bouncing_ball.calls import figures
-
-        return figures.impacts(self)
-
-
-class History(Drawn):
-    """Balls and table over time; the last axis is ``time``.
-
-    The figure shows the heights over time.
-    """
-
-    __slots__ = ()
-
-    maker = "history"
-
-    def _figure(self) -> "Figure":
-        from bouncing_ball.calls import figures
-
-        return figures.over_time(self)
 
 
 class _Starts(NamedTuple):
@@ -95,9 +60,7 @@ def model_of_starts(ball: Ball, grid: Grid) -> ImpactModel:
     return _Starts.on(grid).model(ball, grid)
 
 
-def impacts_on_grid(
-    ball: Ball, amplitude: Any, phase: Any, velocity: Any, impacts: int
-) -> Simulation:
+def impacts_on_grid(ball: Ball, amplitude: Any, phase: Any, velocity: Any, impacts: int) -> Result:
     """Sequences of impacts from the first impacts (Λ, φ, z′_i) of a grid.
 
     Raises
@@ -118,12 +81,12 @@ def impacts_on_grid(
     }
     rows = xr.Dataset({name: ((CASE, "impact"), value.T) for name, value in of_impacts.items()})
     described = describe(rows.assign(status=(CASE, status)), _OF_SIMULATIONS)
-    return grid.unfold(described, Simulation)
+    return Result.of(grid.unfold(described), "simulate")
 
 
 def history_on_grid(
     ball: Ball, amplitude: Any, phase: Any, velocity: Any, periods: float, samples: int
-) -> History:
+) -> Result:
     """Balls and table over time, from the first impacts (Λ, φ, z′_i) of a grid.
 
     ``ball``, ``ball_velocity``, ``table`` and ``contact`` are over (…, time).
@@ -142,7 +105,7 @@ def history_on_grid(
 
 def drop_on_grid(
     ball: Ball, height: Any, amplitude: Any, phase: Any, periods: float, samples: int
-) -> History:
+) -> Result:
     """Balls and table over time since the balls were released at rest at the height h, with the
     (h, Λ, φ) of a grid.
 
@@ -195,7 +158,7 @@ def instants(periods: float, samples: int, balls: int) -> np.ndarray:
 
 
 def _followed(model: ImpactModel, starts: _Starts, time: np.ndarray) -> dict[str, np.ndarray]:
-    """The variables of :class:`History` for balls at times (ball, sample) since their first
+    """The variables of a history for balls at times (ball, sample) since their first
     impacts.
     """
     sequence = _until(model, starts, time[:, -1])
@@ -248,6 +211,6 @@ def _hops_on(found: ImpactSequence, end: np.ndarray) -> np.ndarray:
     return (found.amplitude == 0) & lossless & (end > (_MOST + 1) * interval)
 
 
-def _over_time(grid: Grid, time: np.ndarray, found: dict[str, np.ndarray]) -> History:
+def _over_time(grid: Grid, time: np.ndarray, found: dict[str, np.ndarray]) -> Result:
     rows = {name: ((CASE, "time"), values) for name, values in found.items()}
-    return grid.unfold(describe(xr.Dataset(rows, {"time": time})), History)
+    return Result.of(grid.unfold(describe(xr.Dataset(rows, {"time": time}))), "history")

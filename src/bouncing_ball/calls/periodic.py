@@ -31,7 +31,7 @@ from bouncing_ball.periodic.orbit import OBSERVABLES, Orbit
 from bouncing_ball.periodic.stability import Side
 
 if TYPE_CHECKING:
-    from bouncing_ball.calls.periodic_on_grid import Branches, Limits, Orbits, PermanentContact
+    from bouncing_ball.drawing.result import Result
 
 
 @dataclass(frozen=True, repr=False)
@@ -164,7 +164,7 @@ class TwoLimits(NamedTuple):
 
 def orbit(
     ball: Ball, n: Family = 1, *, amplitude: AmplitudeOfOrbit, side: SideName = "stable"
-) -> PeriodicOrbit | Orbits:
+) -> PeriodicOrbit | Result:
     """The n-T orbit at the excitation amplitude Λ.
 
     Parameters
@@ -179,7 +179,7 @@ def orbit(
 
     Returns
     -------
-    PeriodicOrbit or Orbits
+    PeriodicOrbit or Result
         One orbit, with Python floats. If a parameter is an array, a dataset of the observables
         of all orbits with an axis named after each array; NaN where there is no orbit.
 
@@ -256,7 +256,7 @@ def orbits(ball: Ball, n: int = 1, *, amplitude: float) -> list[PeriodicOrbit]:
     return [PeriodicOrbit.of(model, found[k]) for k in range(found.size)]
 
 
-def limits(ball: Ball, n: Family = 1) -> TwoLimits | Limits:
+def limits(ball: Ball, n: Family = 1) -> TwoLimits | Result:
     """Saddle-node and period doubling of the n-T orbits; NaN where there is none.
 
     Parameters
@@ -267,7 +267,7 @@ def limits(ball: Ball, n: Family = 1) -> TwoLimits | Limits:
 
     Returns
     -------
-    TwoLimits or Limits
+    TwoLimits or Result
         Two orbits. If a parameter is an array, a dataset of both amplitudes and phases with an
         axis named after each array.
 
@@ -297,7 +297,7 @@ def limits(ball: Ball, n: Family = 1) -> TwoLimits | Limits:
 
 def branch(
     ball: Ball, n: Family = 1, *, amplitude_max: float | None = None, points: Points = 300
-) -> Branches:
+) -> Result:
     """The branch of n-T orbits over the amplitude Λ, on both sides of its saddle-node.
 
     Parameters
@@ -312,7 +312,7 @@ def branch(
 
     Returns
     -------
-    Branches
+    Result
         ``amplitude``, ``phase`` and the other observables of each ``point``, and whether the
         orbit is ``stable`` and ``admissible``; ``special_amplitude`` and others of the
         saddle-nodes, period doublings and grazing orbits. Where one of several branches does not
@@ -345,7 +345,7 @@ def branch(
     return branches_on_grid(ball, family, top, count)
 
 
-def permanent_contact(ball: Ball) -> float | PermanentContact:
+def permanent_contact(ball: Ball) -> float | Result:
     """The Λ up to which a ball at rest stays on the table.
 
     Parameters
@@ -356,7 +356,7 @@ def permanent_contact(ball: Ball) -> float | PermanentContact:
 
     Returns
     -------
-    float or PermanentContact
+    float or Result
         If a parameter of the ball is an array, a dataset with an axis named after each array.
 
     Raises

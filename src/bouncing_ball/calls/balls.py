@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
-from bouncing_ball.calls.arguments import (
+from bouncing_ball.datasets.arguments import (
     DAMPING_RATIO,
     FREQUENCY_RATIO,
     RESTITUTION,
@@ -80,6 +80,13 @@ class Ball(ABC):
     @abstractmethod
     def corrected(self) -> Ball:
         """The ball of the corrected restitution model of this contact."""
+
+    def grid(self, **arguments: Any) -> Grid:
+        """The grid that arguments of a call and the parameters span, in this order."""
+        # Imported here, because a single orbit needs no labels.
+        from bouncing_ball.datasets.labelled import Grid
+
+        return Grid(**arguments, **self.parameters)
 
     @abstractmethod
     def row(self, grid: Grid) -> Ball:

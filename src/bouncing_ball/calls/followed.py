@@ -9,7 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.calls.arguments import (
+from bouncing_ball.calls.balls import Ball, a_ball, a_single_ball
+from bouncing_ball.calls.labelled_branches import FollowedBranch, SpecialCurve
+from bouncing_ball.calls.periodic import PeriodicOrbit
+from bouncing_ball.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
     DAMPING_RATIO,
     FINITE,
@@ -23,9 +26,6 @@ from bouncing_ball.calls.arguments import (
     checked_number,
     chosen,
 )
-from bouncing_ball.calls.balls import Ball, a_ball, a_single_ball
-from bouncing_ball.calls.labelled_branches import FollowedBranch, SpecialCurve
-from bouncing_ball.calls.periodic import PeriodicOrbit
 from bouncing_ball.errors import ParameterError
 from bouncing_ball.models.damping import Release, damping_ratio, restitution_coefficient
 from bouncing_ball.models.spring_damper import SpringDamper

@@ -8,7 +8,7 @@ from typing import Any, Self
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.calls.arguments import chosen
+from bouncing_ball.datasets.arguments import chosen
 from bouncing_ball.datasets.variables import SHARED, Variable, described
 from bouncing_ball.drawing.result import Result
 from bouncing_ball.numerics.elementary import reduce_angle

@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
-from bouncing_ball.calls.arguments import (
+from bouncing_ball.calls.balls import Ball, ModelBall, flattened
+from bouncing_ball.datasets.arguments import (
     FINITE,
     FREQUENCY_RATIO,
     POSITIVE,
@@ -27,7 +28,6 @@ from bouncing_ball.calls.arguments import (
     chosen,
     is_array,
 )
-from bouncing_ball.calls.balls import Ball, ModelBall, flattened
 from bouncing_ball.errors import ParameterError, Range
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw

@@ -6,7 +6,9 @@ import math
 
 import numpy as np
 
-from bouncing_ball.calls.arguments import (
+from bouncing_ball.calls.balls import Ball, a_ball, a_single_ball
+from bouncing_ball.calls.over_time import Starts
+from bouncing_ball.datasets.arguments import (
     AMPLITUDE,
     FOLLOWED,
     POSITIVE,
@@ -19,9 +21,6 @@ from bouncing_ball.calls.arguments import (
     checked,
     checked_number,
 )
-from bouncing_ball.calls.balls import Ball, a_ball, a_single_ball
-from bouncing_ball.calls.over_time_on_grid import model_of_starts
-from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import ParameterError
 from bouncing_ball.long_run import grids
@@ -81,9 +80,9 @@ def motion_of(
     phi = checked("phase", phase, STATE)
     before = checked("velocity", velocity, STATE)
     most = checked_number("impacts", impacts, FOLLOWED)
-    grid = Grid(amplitude=lam, phase=phi, velocity=before, **a_ball(ball).parameters)
-    start = (grid.row("amplitude"), grid.row("phase"), grid.row("velocity"))
-    found = grids.motions(model_of_starts(ball, grid), *start, most)
+    grid = a_ball(ball).grid(amplitude=lam, phase=phi, velocity=before)
+    starts = Starts.on(grid)
+    found = grids.motions(starts.model(ball, grid), *starts, most)
     return Result.of(grid.unfold(found), "motion")
 
 
@@ -181,7 +180,7 @@ def orbit_diagram(
         samples=checked_number("samples", samples, SAMPLES),
         impacts=checked_number("impacts", impacts, FOLLOWED),
     )
-    return Result.of(_parameters_of(ball).unfold(found), "diagram")
+    return Result.of(ball.grid().unfold(found), "diagram")
 
 
 def basins(
@@ -238,10 +237,5 @@ def basins(
         fast=fastest,
         impacts=checked_number("impacts", impacts, FOLLOWED),
     )
-    whole = _parameters_of(ball).unfold(found.assign_attrs(amplitude=lam))
+    whole = ball.grid().unfold(found.assign_attrs(amplitude=lam))
     return Result.of(whole, "basins")
-
-
-def _parameters_of(ball: Ball) -> Grid:
-    """A grid of one place, which makes the parameters of a single ball attributes of results."""
-    return Grid(**ball.parameters)

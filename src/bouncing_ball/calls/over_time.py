@@ -1,11 +1,19 @@
-"""Calls that follow a ball from its first impact, or from the height at which it is dropped."""
+"""Balls over time: from a first impact, or from the height at which they are dropped.
+
+All quantities are dimensionless, and times are in units of 1/Ω. The axes of the arguments come
+first in every result.
+"""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from bouncing_ball.calls.arguments import (
+import numpy as np
+
+from bouncing_ball.calls.balls import Ball, a_ball
+from bouncing_ball.datasets import CASE
+from bouncing_ball.datasets.arguments import (
     AMPLITUDE,
     IMPACTS,
     PERIODS,
@@ -21,10 +29,45 @@ from bouncing_ball.calls.arguments import (
     checked,
     checked_number,
 )
-from bouncing_ball.calls.balls import Ball, a_ball
+from bouncing_ball.errors import ModelError, require
+from bouncing_ball.models.flight import Flight, land, table
+from bouncing_ball.models.history import history as of_one_ball
+from bouncing_ball.models.sequence import ImpactSequence, Status
+from bouncing_ball.periodic.model import ImpactModel
 
+# A single simulation of the command line needs no labels, and importing xarray takes longer: it is
+# imported where results are labelled.
 if TYPE_CHECKING:
+    from bouncing_ball.datasets.labelled import Grid
     from bouncing_ball.drawing.result import Result
+
+# Number of impacts of a ball that are simulated at first, and the largest number allowed.
+_FIRST, _MOST = 4, 65_536
+# A ball on a table at rest whose velocity changes by less than this part from its first impacts to
+# its last, in three intervals or more, has less than 0.2 intervals more or less in the largest
+# number of impacts.
+_LOSSLESS = 1e-10
+# Largest number of states of all balls. A state takes about fifty bytes, and as much again while
+# it is computed.
+_STATES = 10_000_000
+
+
+class Starts(NamedTuple):
+    """First impacts of a row of balls: Λ, the table's phase φ, and z′_i, each of shape (ball,)."""
+
+    amplitude: np.ndarray
+    phase: np.ndarray
+    velocity: np.ndarray
+
+    @classmethod
+    def on(cls, grid: Grid) -> Starts:
+        """The first impacts that are given by the arguments of a call."""
+        return cls(grid.row("amplitude"), grid.row("phase"), grid.row("velocity"))
+
+    def model(self, ball: Ball, grid: Grid) -> ImpactModel:
+        """The model of each ball, whose law may depend on the speed of its first impact."""
+        speed = self.amplitude * np.cos(self.phase) - self.velocity
+        return ball.row(grid).at_speed(speed if grid.shape else float(speed[0])).model
 
 
 def simulate(
@@ -74,11 +117,9 @@ def simulate(
     phi = checked("phase", phase, STATE)
     before = checked("velocity", velocity, STATE)
     count = checked_number("impacts", impacts, IMPACTS)
-    a_ball(ball)
-    # Imported here, because the command line needs no labels.
-    from bouncing_ball.calls.over_time_on_grid import impacts_on_grid
-
-    return impacts_on_grid(ball, lam, phi, before, count)
+    grid = a_ball(ball).grid(amplitude=lam, phase=phi, velocity=before)
+    starts = Starts.on(grid)
+    return _labelled_impacts(grid, starts.model(ball, grid).simulate(*starts, count))
 
 
 def history(
@@ -132,10 +173,11 @@ def history(
     before = checked("velocity", velocity, STATE)
     length = checked_number("periods", periods, PERIODS)
     count = checked_number("samples", samples, SAMPLES)
-    a_ball(ball)
-    from bouncing_ball.calls.over_time_on_grid import history_on_grid
-
-    return history_on_grid(ball, lam, phi, before, length, count)
+    grid = a_ball(ball).grid(amplitude=lam, phase=phi, velocity=before)
+    time = instants(length, count, grid.size)
+    starts = Starts.on(grid)
+    since = np.broadcast_to(time, (grid.size, time.size))
+    return _labelled_history(grid, time, _followed(starts.model(ball, grid), starts, since))
 
 
 def drop(
@@ -188,7 +230,147 @@ def drop(
     phi = checked("phase", phase, STATE)
     length = checked_number("periods", periods, PERIODS)
     count = checked_number("samples", samples, SAMPLES)
-    a_ball(ball)
-    from bouncing_ball.calls.over_time_on_grid import drop_on_grid
+    grid = a_ball(ball).grid(height=start, amplitude=lam, phase=phi)
+    time = instants(length, count, grid.size)
+    found = _dropped(ball, grid, time)
+    labelled = _labelled_history(grid, time, found)
+    labelled.time.attrs["long_name"] = "time since the ball was let go"
+    return labelled
 
-    return drop_on_grid(ball, start, lam, phi, length, count)
+
+def instants(periods: float, samples: int, balls: int) -> np.ndarray:
+    """Times over several periods of the table, with ``samples`` times in each period.
+
+    Raises
+    ------
+    ModelError
+        If the states of this many balls at all these times would fill the memory.
+
+    Examples
+    --------
+    >>> (instants(1.0, 4, 1) / np.pi).tolist()
+    [0.0, 0.5, 1.0, 1.5, 2.0]
+    """
+    count = math.ceil(periods * samples) + 1
+    if count * balls > _STATES:
+        raise ModelError(
+            f"{count * balls} states exceed the limit of {_STATES}: use fewer samples or balls"
+        )
+    return np.linspace(0.0, 2 * np.pi * periods, count)
+
+
+def _dropped(ball: Ball, grid: Grid, time: np.ndarray) -> dict[str, np.ndarray]:
+    """The variables of a history for balls at times since they were released at rest at the height
+    h, with the (h, Λ, φ) of a grid.
+
+    Raises
+    ------
+    ModelError
+        If a ball is released below the table.
+    """
+    start = grid.row("height")
+    lam = grid.row("amplitude")
+    phi = grid.row("phase")
+    rate, level = table(phi, lam)
+    require(start >= level, start, "height", "at or above the table, Λ sin φ")
+    flight = Flight(start - level, -rate, rate, level, lam)
+    falling = land(flight, flight.earliest_landing()).time
+    first = Starts(lam, phi + falling, -falling)
+    since = time - falling[:, np.newaxis]
+    found = _followed(first.model(ball, grid), first, since)
+    above = since < 0
+    fallen = start[:, np.newaxis] - time * time / 2
+    found["ball"] = np.where(above, fallen, found["ball"])
+    found["ball_velocity"] = np.where(above, -time, found["ball_velocity"])
+    found["table"] = table(first.phase[:, np.newaxis] + since, lam[:, np.newaxis])[1]
+    return found
+
+
+def _followed(model: ImpactModel, starts: Starts, time: np.ndarray) -> dict[str, np.ndarray]:
+    """The variables of a history for balls at times (ball, sample) since their first
+    impacts.
+    """
+    sequence = _until(model, starts, time[:, -1])
+    balls = [of_one_ball(sequence[k], each) for k, each in enumerate(time)]
+    for one in balls:
+        if np.any(one.touching & np.isnan(one.height)):
+            raise ModelError(
+                "a ball stays on its contact for longer than its motion is followed: use fewer "
+                "periods, or a contact of more damping or less stiffness"
+            )
+    return {
+        "ball": np.array([one.height for one in balls]),
+        "ball_velocity": np.array([one.velocity for one in balls]),
+        "table": np.array([one.table for one in balls]),
+        "contact": np.array([one.touching for one in balls]),
+    }
+
+
+def _until(model: ImpactModel, starts: Starts, end: np.ndarray) -> ImpactSequence:
+    """The impacts of balls up to a time since their first impacts, shape (ball,).
+
+    Raises
+    ------
+    ModelError
+        If a ball has too many impacts in this time.
+    """
+    impacts = _FIRST
+    while True:
+        found = model.simulate(*starts, impacts)
+        unfinished = (found.status == Status.BOUNCING) & (found.time[-1] <= end)
+        if not np.any(unfinished):
+            return found
+        if impacts == _MOST or np.any(unfinished & _hops_on(found, end)):
+            raise ModelError(
+                f"a ball has more than {_MOST} impacts in this time: use fewer periods"
+            )
+        impacts *= 4
+
+
+def _hops_on(found: ImpactSequence, end: np.ndarray) -> np.ndarray:
+    """Which balls have more than the largest number of impacts up to a time, as is known for balls
+    that lose no energy on a table at rest, shape (ball,).
+
+    The next impact of a ball on such a table depends on the velocity of the last one alone. If the
+    velocities are equal, so are all intervals.
+    """
+    first = found.relative_velocity[0]
+    lossless = np.abs(found.relative_velocity[-1] - first) < _LOSSLESS * np.abs(first)
+    interval = found.time[-1] / (len(found.time) - 1)
+    return (found.amplitude == 0) & lossless & (end > (_MOST + 1) * interval)
+
+
+def _labelled_impacts(grid: Grid, sequence: ImpactSequence) -> Result:
+    """Sequences of impacts with the axes of the grid, and a last axis "impact"."""
+    import xarray as xr
+
+    from bouncing_ball.datasets.variables import Variable, describe
+    from bouncing_ball.drawing.result import Result
+
+    status = [Status(number).name.lower().replace("_", " ") for number in sequence.status.tolist()]
+    of_impacts = {
+        "time": sequence.time,
+        "impact_phase": sequence.phase,
+        "impact_velocity": sequence.impact_velocity,
+        "contact_duration": sequence.contact_duration,
+        "bounce_velocity": sequence.bounce_velocity,
+    }
+    meanings = {
+        "impact": Variable("number of the impact"),
+        "impact_phase": Variable("phase of the table at the impact", symbol="φ", units="rad"),
+        "status": Variable("what the ball does after the last of these impacts"),
+    }
+    rows = xr.Dataset({name: ((CASE, "impact"), value.T) for name, value in of_impacts.items()})
+    described = describe(rows.assign(status=(CASE, status)), meanings)
+    return Result.of(grid.unfold(described), "simulate")
+
+
+def _labelled_history(grid: Grid, time: np.ndarray, found: dict[str, np.ndarray]) -> Result:
+    """Balls and table with the axes of the grid, and a last axis "time"."""
+    import xarray as xr
+
+    from bouncing_ball.datasets.variables import describe
+    from bouncing_ball.drawing.result import Result
+
+    rows = {name: ((CASE, "time"), values) for name, values in found.items()}
+    return Result.of(grid.unfold(describe(xr.Dataset(rows, {"time": time}))), "history")

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.calls.arguments import (
+from bouncing_ball.calls.balls import Ball, a_ball, a_known_ball, a_single_ball
+from bouncing_ball.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
     FAMILY,
     POINTS,
@@ -23,7 +24,6 @@ from bouncing_ball.calls.arguments import (
     chosen,
     is_array,
 )
-from bouncing_ball.calls.balls import Ball, a_ball, a_known_ball, a_single_ball
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.arrays import in_words
 from bouncing_ball.periodic.model import ImpactModel

@@ -10,7 +10,10 @@ import xarray as xr
 
 from bouncing_ball.accuracy.corrected_errors import SIMPLE, search
 from bouncing_ball.accuracy.errors import Quantity
-from bouncing_ball.calls.arguments import (
+from bouncing_ball.accuracy.thresholds import RATIOS
+from bouncing_ball.calls.balls import Ball, a_known_ball
+from bouncing_ball.datasets import CASE
+from bouncing_ball.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
     FAMILY,
     TOLERANCE,
@@ -21,9 +24,6 @@ from bouncing_ball.calls.arguments import (
     checked,
     chosen,
 )
-from bouncing_ball.calls.balls import Ball, a_known_ball
-from bouncing_ball.contacts.families import RATIOS
-from bouncing_ball.datasets import CASE
 from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.drawing.result import Result
@@ -91,7 +91,7 @@ def error_thresholds(
     level = checked("tolerance", tolerance, TOLERANCE)
     rule = Release.of(chosen("release", release, [str(each) for each in Release]))
     asked = _names(quantities)
-    grid = Grid(n=family, amplitude=lam, tolerance=level, **ball.parameters)
+    grid = ball.grid(n=family, amplitude=lam, tolerance=level)
     found = _on_grid(grid, asked, rule)
     return Result.of(grid.unfold(found), "error_thresholds")
 

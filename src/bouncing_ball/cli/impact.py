@@ -2,13 +2,6 @@
 
 from typing import Any
 
-from bouncing_ball.calls.arguments import (
-    DAMPING_RATIO,
-    FREQUENCY_RATIO,
-    POSITIVE,
-    RESTITUTION,
-    Rule,
-)
 from bouncing_ball.calls.balls import LOSSES, Ball, corrected, rigid, spring_damper, the_loss
 from bouncing_ball.calls.law_balls import contact_law
 from bouncing_ball.cli.options import (
@@ -19,6 +12,13 @@ from bouncing_ball.cli.options import (
     laws,
     meanings,
     option,
+)
+from bouncing_ball.datasets.arguments import (
+    DAMPING_RATIO,
+    FREQUENCY_RATIO,
+    POSITIVE,
+    RESTITUTION,
+    Rule,
 )
 from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.models.damping import Release

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball.calls import long_run
-from bouncing_ball.calls.arguments import AMPLITUDE, FOLLOWED, SAMPLES, STATE
 from bouncing_ball.calls.balls import Ball
 from bouncing_ball.cli.impact import add_ball, ball_of
 from bouncing_ball.cli.options import Parser, add_file, add_interval, add_number, meanings
 from bouncing_ball.cli.periodic import Answer
+from bouncing_ball.datasets.arguments import AMPLITUDE, FOLLOWED, SAMPLES, STATE
 from bouncing_ball.datasets.files import PICTURES, require_writable
 from bouncing_ball.errors import ParameterError, count
 

@@ -7,7 +7,6 @@ import numpy as np
 
 from bouncing_ball.accuracy import error_law as error_laws
 from bouncing_ball.calls import periodic as calls
-from bouncing_ball.calls.arguments import AMPLITUDE_OF_ORBIT, FAMILY, FREQUENCY_RATIO
 from bouncing_ball.calls.balls import ModelBall, spring_damper
 from bouncing_ball.cli.impact import add_ball, add_contact, ball_of
 from bouncing_ball.cli.options import (
@@ -17,6 +16,7 @@ from bouncing_ball.cli.options import (
     add_optional_number,
     meanings,
 )
+from bouncing_ball.datasets.arguments import AMPLITUDE_OF_ORBIT, FAMILY, FREQUENCY_RATIO
 from bouncing_ball.errors import NoOrbitError, ParameterError, count, extra
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw

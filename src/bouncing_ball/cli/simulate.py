@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball.calls import over_time
-from bouncing_ball.calls.arguments import AMPLITUDE, IMPACTS, STATE, Range
 from bouncing_ball.cli.impact import add_ball, ball_of
 from bouncing_ball.cli.options import Parser, add_number, meanings
 from bouncing_ball.cli.periodic import Answer, described
+from bouncing_ball.datasets.arguments import AMPLITUDE, IMPACTS, STATE, Range
 from bouncing_ball.models.sequence import Status
 
 _SHOWN = ("time", "phase", "impact_velocity", "contact_duration", "bounce_velocity")

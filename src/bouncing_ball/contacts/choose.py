@@ -4,7 +4,7 @@ import math
 from dataclasses import replace
 
 from bouncing_ball.accuracy.errors import OF_ORBITS, QUANTITIES, Quantity
-from bouncing_ball.accuracy.thresholds import ThresholdStatus
+from bouncing_ball.accuracy.thresholds import RATIOS, ThresholdStatus
 from bouncing_ball.contacts.assess import require_range
 from bouncing_ball.contacts.case import PhysicalCase, TableMotion
 from bouncing_ball.contacts.contact_data import (
@@ -17,7 +17,7 @@ from bouncing_ball.contacts.contact_data import (
     same_omega,
 )
 from bouncing_ball.contacts.engine_data import Ready, ready
-from bouncing_ball.contacts.families import RATIOS, needed
+from bouncing_ball.contacts.families import needed
 from bouncing_ball.contacts.given import Contact, Question, Table, given
 from bouncing_ball.contacts.lone_contact import drop_remarks
 from bouncing_ball.contacts.results import Choice, Needed

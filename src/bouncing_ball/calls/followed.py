@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.calls.balls import Ball, a_ball, a_single_ball
 from bouncing_ball.calls.labelled_branches import FollowedBranch, SpecialCurve
 from bouncing_ball.calls.periodic import PeriodicOrbit
 from bouncing_ball.datasets.arguments import (
@@ -27,6 +26,7 @@ from bouncing_ball.datasets.arguments import (
     chosen,
 )
 from bouncing_ball.errors import ParameterError
+from bouncing_ball.models.ball import Ball, a_ball, a_single_ball
 from bouncing_ball.models.damping import Release, damping_ratio, restitution_coefficient
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic import curves, following, switching
@@ -80,7 +80,7 @@ def family_of(model: ImpactModel, amplitude: float) -> Family:
     Examples
     --------
     >>> from bouncing_ball import spring_damper
-    >>> family = family_of(spring_damper(frequency_ratio=9.0, damping_ratio=0.0).model, 1.0)
+    >>> family = family_of(spring_damper(frequency_ratio=9.0, damping_ratio=0.0), 1.0)
     >>> dict(family.values)
     {'frequency_ratio': 9.0, 'damping_ratio': 0.0, 'amplitude': 1.0, 'restitution': 1.0}
     """
@@ -152,7 +152,7 @@ def orbit_of_motion(
     phi = checked_number("phase", phase, STATE)
     before = checked_number("velocity", velocity, STATE)
     most = checked_number("impacts", impacts, FOLLOWED)
-    family = family_of(a_single_ball(a_ball(ball)).model, lam)
+    family = family_of(a_single_ball(a_ball(ball)), lam)
     return switching.of_motion(family, phi, before, LAMBDA, most)
 
 

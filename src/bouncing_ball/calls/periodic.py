@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.calls.balls import Ball, a_ball, a_known_ball, a_single_ball
 from bouncing_ball.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
     FAMILY,
@@ -25,6 +24,7 @@ from bouncing_ball.datasets.arguments import (
     is_array,
 )
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.ball import Ball, a_ball, a_known_ball, a_single_ball
 from bouncing_ball.numerics.arrays import in_words
 from bouncing_ball.periodic.model import ImpactModel
 from bouncing_ball.periodic.orbit import OBSERVABLES, Orbit
@@ -215,7 +215,7 @@ release='displacement')
         from bouncing_ball.calls.periodic_on_grid import orbits_on_grid
 
         return orbits_on_grid(ball, family, lam, branch_side)
-    model = ball.at_orbit(family, lam, branch_side).model
+    model = ball.at_orbit(family, lam, branch_side)
     return PeriodicOrbit.of(model, model.require_orbit(family, lam, branch_side))
 
 
@@ -249,7 +249,7 @@ def orbits(ball: Ball, n: int = 1, *, amplitude: float) -> list[PeriodicOrbit]:
     """
     family = checked_number("n", n, FAMILY)
     lam = checked_number("amplitude", amplitude, AMPLITUDE_OF_ORBIT)
-    model = a_single_ball(a_ball(ball).at_orbit(family, lam)).model
+    model = a_single_ball(a_ball(ball).at_orbit(family, lam))
     found = model.orbits(family, lam)
     if not found.size:
         raise NoOrbitError(f"no {family}-T orbit at Λ = {lam:g} for {model.label}")
@@ -288,7 +288,7 @@ def limits(ball: Ball, n: Family = 1) -> TwoLimits | Result:
         from bouncing_ball.calls.periodic_on_grid import limits_on_grid
 
         return limits_on_grid(ball, family)
-    model = ball.at_limits(family).model
+    model = ball.at_limits(family)
     return TwoLimits(
         saddle_node=PeriodicOrbit.of(model, model.saddle_node(family)),
         period_doubling=PeriodicOrbit.of(model, model.period_doubling(family)),
@@ -375,7 +375,7 @@ def permanent_contact(ball: Ball) -> float | Result:
         from bouncing_ball.calls.periodic_on_grid import permanent_contact_on_grid
 
         return permanent_contact_on_grid(known)
-    return float(known.model.permanent_contact_threshold())
+    return float(known.permanent_contact_threshold())
 
 
 def _is_grid(ball: Ball, *arguments: Any) -> bool:

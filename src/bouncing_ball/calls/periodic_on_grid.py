@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.calls.balls import Ball, ModelBall
 from bouncing_ball.datasets import CASE
 from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.ball import Ball
 from bouncing_ball.numerics.continuation import ContinuationError
 from bouncing_ball.periodic import observables
 from bouncing_ball.periodic.branch import whole_branch
@@ -36,10 +36,10 @@ def orbits_on_grid(ball: Ball, n: Any, amplitude: Any, side: Side) -> Result:
     """The orbit on one side of the saddle-node at each point of a grid; NaN where there is none."""
 
     def found(one: Ball, n: Any, amplitude: Any) -> dict[str, np.ndarray]:
-        model = one.at_orbit(n, amplitude, side).model
+        model = one.at_orbit(n, amplitude, side)
         return _observables(model, n, amplitude, side)
 
-    grid = Grid(n=n, amplitude=amplitude, **ball.parameters)
+    grid = ball.grid(n=n, amplitude=amplitude)
     missing = _observables(RestitutionModel(1.0), 1, np.nan, Side.STABLE)
     rows = _each_place(grid, ball, ("n", "amplitude"), found, missing)
     return Result.of(grid.unfold(describe(rows, observables.VARIABLES)), "orbit")
@@ -57,7 +57,7 @@ def limits_on_grid(ball: Ball, n: Any) -> Result:
     """
 
     def found(one: Ball, n: Any) -> dict[str, np.ndarray]:
-        model = one.at_limits(n).model
+        model = one.at_limits(n)
         saddle_node = model.saddle_node(n)
         period_doubling = model.period_doubling(n)
         return {
@@ -67,15 +67,15 @@ def limits_on_grid(ball: Ball, n: Any) -> Result:
             "period_doubling_phase": period_doubling.phase,
         }
 
-    grid = Grid(n=n, **ball.parameters)
+    grid = ball.grid(n=n)
     rows = _each_place(grid, ball, ("n",), found, {})
     return Result.of(grid.unfold(describe(rows, observables.VARIABLES)), "limits")
 
 
-def permanent_contact_on_grid(ball: ModelBall) -> Result:
+def permanent_contact_on_grid(ball: Ball) -> Result:
     """The Λ up to which a ball stays on the table, at each point of the grid of its parameters."""
-    grid = Grid(**ball.parameters)
-    threshold = ball.row(grid).model.permanent_contact_threshold()
+    grid = ball.grid()
+    threshold = ball.row(grid).permanent_contact_threshold()
     rows = xr.Dataset({"threshold_amplitude": (CASE, threshold)})
     return Result.of(grid.unfold(describe(rows)), "permanent-contact")
 
@@ -138,9 +138,9 @@ def branches_on_grid(ball: Ball, n: Any, amplitude_max: float | None, points: in
     """
 
     def found(one: Ball, n: int) -> xr.Dataset:
-        return branch_of(one.at_limits(n).model, n, amplitude_max, points)
+        return branch_of(one.at_limits(n), n, amplitude_max, points)
 
-    grid = Grid(n=n, **ball.parameters)
+    grid = ball.grid(n=n)
     whole = _by_place(grid, ball, ("n",), found, partial(no_branch, points), joined)
     branches = Result.of(grid.unfold(describe(whole, observables.VARIABLES)), "branch")
     return branches if amplitude_max is None else branches.assign_attrs(amplitude_max=amplitude_max)

@@ -2,8 +2,6 @@
 
 from typing import Any
 
-from bouncing_ball.calls.balls import LOSSES, Ball, corrected, rigid, spring_damper, the_loss
-from bouncing_ball.calls.law_balls import contact_law
 from bouncing_ball.cli.options import (
     Parser,
     add_assignments,
@@ -21,8 +19,11 @@ from bouncing_ball.datasets.arguments import (
     Rule,
 )
 from bouncing_ball.errors import ModelError, ParameterError
+from bouncing_ball.models.ball import Ball
+from bouncing_ball.models.balls import LOSSES, corrected, rigid, spring_damper, the_loss
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.registry import law_named
+from bouncing_ball.periodic.law_balls import contact_law
 
 MODELS = ("restitution", "spring-damper", "corrected")
 

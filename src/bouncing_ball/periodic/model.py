@@ -26,6 +26,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.ball import Ball
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.models.sequence import Cycle, ImpactSequence
@@ -45,7 +46,7 @@ class Absence(StrEnum):
     NOT_FOUND = "none was found, but one may exist"
 
 
-class ImpactModel(Batch, ABC):
+class ImpactModel(Batch, Ball, ABC):
     """A law of the impact together with its n-T orbits.
 
     A subclass is a frozen dataclass with one field, which holds the law. ``name`` is the name of

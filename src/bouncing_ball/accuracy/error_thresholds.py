@@ -11,7 +11,6 @@ import xarray as xr
 from bouncing_ball.accuracy.corrected_errors import SIMPLE, search
 from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.accuracy.thresholds import RATIOS
-from bouncing_ball.calls.balls import Ball, a_known_ball
 from bouncing_ball.datasets import CASE
 from bouncing_ball.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
@@ -28,6 +27,7 @@ from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import ParameterError
+from bouncing_ball.models.ball import Ball, a_known_ball
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.periodic.restitution_model import RestitutionModel
 
@@ -84,7 +84,7 @@ def error_thresholds(
     >>> found.error_threshold.values.round(3).tolist()
     [[82.177], [2.29]]
     """
-    if not isinstance(a_known_ball(ball).model, RestitutionModel):
+    if not isinstance(a_known_ball(ball), RestitutionModel):
         raise ParameterError("error_thresholds needs a ball made by rigid, because it finds ϖ")
     family = checked("n", n, FAMILY)
     lam = checked("amplitude", amplitude, AMPLITUDE_OF_ORBIT)

@@ -6,8 +6,6 @@ import math
 
 import numpy as np
 
-from bouncing_ball.calls.balls import Ball, a_ball, a_single_ball
-from bouncing_ball.calls.over_time import Starts
 from bouncing_ball.datasets.arguments import (
     AMPLITUDE,
     FOLLOWED,
@@ -24,6 +22,8 @@ from bouncing_ball.datasets.arguments import (
 from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import ParameterError
 from bouncing_ball.long_run import grids
+from bouncing_ball.models.ball import Ball, a_ball, a_single_ball
+from bouncing_ball.models.over_time import Starts
 
 
 def motion_of(
@@ -174,7 +174,7 @@ def orbit_diagram(
     if lam.ndim > 1 or np.any(np.diff(lam) <= 0):
         raise ParameterError("{amplitudes} must be at least one Λ, in rising order")
     found = grids.diagram(
-        a_single_ball(ball).model,
+        a_single_ball(ball),
         lam,
         starts=checked_number("starts", starts, SAMPLES),
         samples=checked_number("samples", samples, SAMPLES),
@@ -231,7 +231,7 @@ def basins(
     if velocity_max is not None:
         fastest = checked_number("velocity_max", velocity_max, POSITIVE)
     found = grids.basins(
-        a_single_ball(ball).model,
+        a_single_ball(ball),
         lam,
         starts=checked_number("starts", starts, SAMPLES),
         fast=fastest,

@@ -7,11 +7,10 @@ first in every result.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.calls.balls import Ball, a_ball
 from bouncing_ball.datasets import CASE
 from bouncing_ball.datasets.arguments import (
     AMPLITUDE,
@@ -30,10 +29,10 @@ from bouncing_ball.datasets.arguments import (
     checked_number,
 )
 from bouncing_ball.errors import ModelError, require
+from bouncing_ball.models.ball import Ball, a_ball
 from bouncing_ball.models.flight import Flight, land, table
 from bouncing_ball.models.history import history as of_one_ball
 from bouncing_ball.models.sequence import ImpactSequence, Status
-from bouncing_ball.periodic.model import ImpactModel
 
 # A single simulation of the command line needs no labels, and importing xarray takes longer: it is
 # imported where results are labelled.
@@ -64,10 +63,10 @@ class Starts(NamedTuple):
         """The first impacts that are given by the arguments of a call."""
         return cls(grid.row("amplitude"), grid.row("phase"), grid.row("velocity"))
 
-    def model(self, ball: Ball, grid: Grid) -> ImpactModel:
+    def model(self, ball: Ball, grid: Grid) -> Any:
         """The model of each ball, whose law may depend on the speed of its first impact."""
         speed = self.amplitude * np.cos(self.phase) - self.velocity
-        return ball.row(grid).at_speed(speed if grid.shape else float(speed[0])).model
+        return ball.row(grid).at_speed(speed if grid.shape else float(speed[0]))
 
 
 def simulate(
@@ -286,7 +285,7 @@ def _dropped(ball: Ball, grid: Grid, time: np.ndarray) -> dict[str, np.ndarray]:
     return found
 
 
-def _followed(model: ImpactModel, starts: Starts, time: np.ndarray) -> dict[str, np.ndarray]:
+def _followed(model: Any, starts: Starts, time: np.ndarray) -> dict[str, np.ndarray]:
     """The variables of a history for balls at times (ball, sample) since their first
     impacts.
     """
@@ -306,7 +305,7 @@ def _followed(model: ImpactModel, starts: Starts, time: np.ndarray) -> dict[str,
     }
 
 
-def _until(model: ImpactModel, starts: Starts, end: np.ndarray) -> ImpactSequence:
+def _until(model: Any, starts: Starts, end: np.ndarray) -> ImpactSequence:
     """The impacts of balls up to a time since their first impacts, shape (ball,).
 
     Raises

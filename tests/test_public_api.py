@@ -172,7 +172,6 @@ def test_the_models_of_the_library_are_the_balls_of_all_calls(model, ball):
     for call in (
         lambda one: simulate(one, amplitude=[0.9, 1.0], impacts=3),
         lambda one: bouncing_ball.history(one, amplitude=0.9, periods=1.0),
-        lambda one: bouncing_ball.branch(one, points=10),
         lambda one: bouncing_ball.motion_of(one, amplitude=0.9, phase=1.0),
         lambda one: bouncing_ball.follow(orbit(one, amplitude=0.9), to=0.95),
     ):

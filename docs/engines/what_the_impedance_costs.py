@@ -4,9 +4,10 @@ import numpy as np
 
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.laws.impedance import Impedance
+from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.law_orbits import LawModel
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic import n_t
 
 MASS, TABLE, R, AMPLITUDE = 0.5, 2 * np.pi * 20, 0.75, 0.8  # kg, rad/s, r, acceleration in g
 zeta = float(damping_ratio(R, Release.FORCE))
@@ -16,9 +17,9 @@ print("k in kN/m  d = 0.95  default")
 for stiffness in (1e5, 1e6, 1e7):
     ratio = np.sqrt(stiffness / MASS) / TABLE
     spring = SpringDamperModel(SpringDamper(ratio, zeta, Release.FORCE))
-    heights = [spring.require_orbit(1, AMPLITUDE).max_height]
+    heights = [n_t.require_orbit(spring, 1, AMPLITUDE).max_height]
     for least in (0.95, 0.9):
         law = LawModel(Impedance(ratio, zeta, 0.95, least, width))
-        heights.append(law.require_orbit(1, AMPLITUDE).max_height)
+        heights.append(n_t.require_orbit(law, 1, AMPLITUDE).max_height)
     errors = (f"{height / heights[0] - 1:+.2%}" for height in heights[1:])
     print(f"{stiffness / 1000:<9g}  {'    '.join(errors)}")

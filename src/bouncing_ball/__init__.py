@@ -67,10 +67,10 @@ if TYPE_CHECKING:
     from bouncing_ball.long_run.motion_of import basins, lyapunov_exponent, motion_of, orbit_diagram
     from bouncing_ball.models.balls import corrected, rigid, spring_damper
     from bouncing_ball.models.over_time import drop, history, simulate
+    from bouncing_ball.models.rigid import RestitutionModel
     from bouncing_ball.models.spring_damper import SpringDamper
+    from bouncing_ball.models.spring_damper_model import SpringDamperModel
     from bouncing_ball.periodic.law_balls import contact_law
-    from bouncing_ball.periodic.restitution_model import RestitutionModel
-    from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 
 __version__ = "0.1.0"
 
@@ -147,9 +147,9 @@ def __getattr__(name: str) -> Any:
         case "SpringDamper":
             from bouncing_ball.models import spring_damper as module
         case "SpringDamperModel":
-            from bouncing_ball.periodic import spring_damper_model as module
+            from bouncing_ball.models import spring_damper_model as module
         case "RestitutionModel":
-            from bouncing_ball.periodic import restitution_model as module
+            from bouncing_ball.models import rigid as module
         case "ModelError" | "NoOrbitError":
             from bouncing_ball import errors as module
         case _:

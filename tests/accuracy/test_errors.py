@@ -12,9 +12,10 @@ from bouncing_ball.accuracy.errors import (
     relative_errors,
     values,
 )
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.restitution_model import RestitutionModel
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic import n_t
 
 
 def test_each_quantity_is_one_of_orbits_or_of_limits():
@@ -33,11 +34,11 @@ def test_the_values_are_those_of_the_orbits_and_bifurcations_of_each_model():
     found = values(RestitutionModel(r), n, lam, Quantity)
     expected = [lam * np.sin(phi) + half**2 / 2, half, phi, r, fold, flip, 1.0]
     np.testing.assert_allclose(found, expected, rtol=1e-14)
-    orbit = exact.orbit(n, lam)
+    orbit = n_t.orbit(exact, n, lam)
     of_contact = values(exact, n, lam, Quantity)
     np.testing.assert_array_equal(of_contact[:4], [getattr(orbit, q) for q in OF_ORBITS])
-    assert of_contact[4] == exact.saddle_node(n).amplitude
-    assert of_contact[5] == exact.period_doubling(n).amplitude
+    assert of_contact[4] == n_t.saddle_node(exact, n).amplitude
+    assert of_contact[5] == n_t.period_doubling(exact, n).amplitude
     held = np.hypot(1 - omega**-2, 2 * zeta / omega)
     assert of_contact[6] == pytest.approx(held, rel=1e-14)
     # Eqs. 37-38, over the value of the restitution model and not of the contact.

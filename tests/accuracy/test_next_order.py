@@ -7,8 +7,9 @@ from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.linear import LinearLaw
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic import corrected_branch as corrected_branch
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic import n_t
 
 
 def constants(contact):
@@ -67,14 +68,14 @@ def test_the_next_order_is_right_to_third_order(n, zeta, release):
         _, psi, over = shifted(instant, n, squared, jerk, lam)
         delay = instant.delay + tau * over
         duration = instant.duration + later * over
-        orbit = exact.orbit(n, lam)
+        orbit = n_t.orbit(exact, n, lam)
         fold, _, _ = shifted(instant, n, squared, jerk, None)
         errors.append(
             [
                 psi - delay - orbit.phase,
                 n * np.pi + delay - duration - orbit.bounce_velocity,
                 lam * np.sin(psi - delay) + (n * np.pi - delay) ** 2 / 2 - orbit.max_height,
-                fold - exact.saddle_node(n).amplitude,
+                fold - n_t.saddle_node(exact, n).amplitude,
             ]
         )
     order = np.diff(-np.log2(np.abs(np.array(errors, dtype=float))), axis=0)

@@ -11,9 +11,9 @@ from bouncing_ball.accuracy.thresholds import (
     thresholds,
 )
 from bouncing_ball.models.damping import Release
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.restitution_model import RestitutionModel
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 
 RATIOS = np.geomspace(1.0, 1e4, 41)
 FOUND, ALWAYS, NEVER = ThresholdStatus

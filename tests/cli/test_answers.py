@@ -13,11 +13,12 @@ from bouncing_ball import corrected, rigid, spring_damper
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.hertzian import HuntCrossley, tsuji_damping
+from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.laws.registry import LAWS
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.law_orbits import LawModel
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.orbit import OBSERVABLES
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 
 ORBIT = ("orbit", "--n", "1", "--restitution", "0.85", "--amplitude", "1.0")
 FORCE = ("--frequency-ratio", "10", "--release", "force")
@@ -139,7 +140,7 @@ def test_a_ball_that_starts_on_a_stable_orbit_stays_on_it(ask, said):
 def test_an_orbit_on_a_contact_law_is_that_of_its_model(ask):
     answer = ask("orbit", *HERTZ, "--amplitude", "1")
     assert set(FIELDS) <= set(answer)
-    orbit = LawModel(HuntCrossley(1000.0, 0.08)).orbit(1, 1.0)
+    orbit = n_t.orbit(LawModel(HuntCrossley(1000.0, 0.08)), 1, 1.0)
     assert answer["max_height"] == float(orbit.max_height)
     assert answer["parameters"] == {"stiffness": 1000.0, "damping": 0.08}
     assert answer["frequency_ratio"] == pytest.approx(math.pi / answer["free_duration"])

@@ -14,6 +14,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from bouncing_ball import Contact, NoOrbitError, Question, Table, assess_contact
+from bouncing_ball.periodic import n_t
 
 G = 9.80665
 PRECISE = {"rtol": 1e-11, "atol": 1e-14, "method": "DOP853"}
@@ -136,7 +137,7 @@ def test_the_heights_of_twelve_random_designs_are_those_of_an_integration(short_
             ("spring-damper", true, None),
             ("restitution", predicted, answer.measured_restitution),
         ):
-            orbit = answer.case.models[name].orbit(answer.n, answer.amplitude)
+            orbit = n_t.orbit(answer.case.models[name], answer.n, answer.amplitude)
             start = float(orbit.phase) / case.omega
             speed = float(orbit.impact_velocity) * G / case.omega
             # The orbit repeats: the errors of integration are 1e-11 in each contact.

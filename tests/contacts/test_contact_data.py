@@ -14,7 +14,7 @@ from bouncing_ball.errors import ModelError
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.signature import free_impact
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 
 STEEL_ON_GLASS = {
     "youngs_modulus": 2.1e11,

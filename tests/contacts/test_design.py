@@ -17,9 +17,10 @@ from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.linear import LinearLaw
 from bouncing_ball.models.laws.registry import LAWS
 from bouncing_ball.models.laws.signature import Signature
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.restitution_model import RestitutionModel
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic import n_t
 
 pytestmark = pytest.mark.usefixtures("short_runs")
 
@@ -71,7 +72,7 @@ def test_every_family_has_its_errors_margins_and_orbit(steel):
         for quantity, k in law.items():
             by_law = -float(k) / steel.frequency_ratio
             assert one.law_errors[quantity] == pytest.approx(by_law, rel=1e-12)
-        orbit = SpringDamperModel(contact).orbit(one.n, steel.amplitude)
+        orbit = n_t.orbit(SpringDamperModel(contact), one.n, steel.amplitude)
         speed = -9.80665 / (100 * math.pi) * float(orbit.relative_impact_velocity)
         assert one.impact_speed == pytest.approx(speed, rel=1e-12)
         for name, standing in one.standing.items():
@@ -85,7 +86,7 @@ def test_every_family_has_its_errors_margins_and_orbit(steel):
 def test_loads_of_a_damped_contact_by_a_fine_sample():
     found = design(**STEEL, restitution=0.3, n=1, release="force", tolerance=0.5, gravity="0.3 g")
     contact = found.case.contact
-    orbit = SpringDamperModel(contact).orbit(1, found.amplitude)
+    orbit = n_t.orbit(SpringDamperModel(contact), 1, found.amplitude)
     time = np.linspace(0, float(orbit.contact_duration), 200_001)
     flow = contact.flow(time, 0.0, orbit.relative_impact_velocity, orbit.phase, found.amplitude)
     force = contact.force(-flow.displacement, -flow.velocity)
@@ -214,7 +215,7 @@ def test_the_verdict_gives_both_values_and_the_error_against_the_contact():
     found = design(**UNIT | {"restitution": 0.65}, acceleration=1.0, stiffness=2.0, tolerance=0.6)
     contact = SpringDamper.from_restitution(0.65, math.sqrt(2.0))
     exact, predicted = (
-        float(model.orbit(1, 1.0).max_height)
+        float(n_t.orbit(model, 1, 1.0).max_height)
         for model in (SpringDamperModel(contact), RestitutionModel(0.65))
     )
     one = found.orbits[0]
@@ -285,7 +286,7 @@ def test_a_stable_orbit_on_which_another_impact_comes_first_is_not_preferred():
     parameters = UNIT | {"n": None, "restitution": 0.15}
     found = design(**parameters, acceleration=3.5, stiffness=1.0, quantity="permanent_contact")
     one, two = found.orbits[:2]
-    orbit = SpringDamperModel(SpringDamper.from_restitution(0.15, 1.0)).orbit(2, 3.5)
+    orbit = n_t.orbit(SpringDamperModel(SpringDamper.from_restitution(0.15, 1.0)), 2, 3.5)
     inside = np.linspace(0.0, float(orbit.contact_duration), 200)
     assert np.max(orbit.contact_motion(inside)[0]) > 0.7
     assert two.is_stable and not two.is_admissible and not one.is_stable and found.n == 1
@@ -393,7 +394,7 @@ def test_the_orbit_of_a_choice_is_that_of_the_restitution_model():
         **UNIT | {"n": None, "restitution": 0.614},
         acceleration=3.118, quantity="saddle_node", tolerance=0.2,
     )  # fmt: skip
-    assert RestitutionModel(0.614).orbit(4, 3.118).is_stable()
+    assert n_t.orbit(RestitutionModel(0.614), 4, 3.118).is_stable()
     assert found.n == 4 and "of the 4-T orbit" in found.verdict
     assert [one.exists for one in found.orbits if one.n == 4] == [False]
     assert found.notes[0] == "at this Λ the contact has no 4-T orbit"

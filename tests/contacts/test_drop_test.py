@@ -10,6 +10,7 @@ from bouncing_ball import design
 from bouncing_ball.contacts.drop_test import rebound
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.damping import Release
+from bouncing_ball.periodic import n_t
 
 G = 9.80665
 PRECISE = {"rtol": 1e-11, "atol": 1e-15, "method": "DOP853"}
@@ -124,7 +125,7 @@ def test_the_orbit_of_a_design_is_that_of_an_integration(
     one = found.judged
     assert one.is_stable
     table = (found.case.table.table_amplitude, found.case.table.angular_frequency)
-    orbit = found.case.models["spring-damper"].orbit(1, found.amplitude)
+    orbit = n_t.orbit(found.case.models["spring-damper"], 1, found.amplitude)
     start = float(orbit.phase) / table[1]
     speed = float(orbit.impact_velocity) * G / table[1]
     numbers = (0.02, found.stiffness, found.damping)
@@ -137,7 +138,7 @@ def test_the_orbit_of_a_design_is_that_of_an_integration(
     back = height + velocity * flight - G * flight**2 / 2
     assert back == pytest.approx(table[0] * math.sin(table[1] * start), abs=1e-9)
     assert velocity - G * flight == pytest.approx(speed, rel=1e-7)
-    simple = found.case.models["restitution"].orbit(1, found.amplitude).max_height
+    simple = n_t.orbit(found.case.models["restitution"], 1, found.amplitude).max_height
     predicted = float(simple) * found.case.table.length
     assert one.errors["max_height"] == pytest.approx(predicted / top - 1, abs=1e-7)
     assert np.sign(one.errors["max_height"]) == np.sign(predicted - top)

@@ -8,7 +8,7 @@ from bouncing_ball import design
 from bouncing_ball.contacts.engines.choice import ENGINES
 from bouncing_ball.contacts.engines.physical import Physical
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 
 pytestmark = pytest.mark.usefixtures("short_runs")
 

@@ -11,9 +11,9 @@ from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.means import means as means_of
 from bouncing_ball.long_run.sampled_means import Starts, follow, start
 from bouncing_ball.models.laws.linear import LinearLaw
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.restitution_model import RestitutionModel
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 
 UNIT = {"mass": 1.0, "angular_frequency": 1.0, "gravity": 1.0, "restitution": 0.85, "n": 1}
 

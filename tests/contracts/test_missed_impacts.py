@@ -4,11 +4,11 @@ import mpmath
 import numpy as np
 import pytest
 
+from bouncing_ball.models.corrected.model import CorrectedModel
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics import first_zero
-from bouncing_ball.periodic.corrected_orbits import CorrectedModel
-from bouncing_ball.periodic.restitution_model import RestitutionModel
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 
 MODELS = ("restitution", "spring-damper", "corrected")
 

@@ -15,23 +15,24 @@ import numpy as np
 import pytest
 
 from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball.models.laws.hertzian import KuwabaraKono, Tsuji
 from bouncing_ball.models.laws.impedance import Impedance
 from bouncing_ball.models.laws.linear import LinearLaw
+from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.laws.signature import Signature
+from bouncing_ball.models.model import Model
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.corrector import NewtonSettings, newton
 from bouncing_ball.numerics.events import vanishing
-from bouncing_ball.periodic.continued_orbits import bifurcation, orbit_at, orbits_at
-from bouncing_ball.periodic.corrected_orbits import CorrectedModel
-from bouncing_ball.periodic.law_orbits import LawModel
-from bouncing_ball.periodic.model import ImpactModel
-from bouncing_ball.periodic.orbit import OBSERVABLES
-from bouncing_ball.periodic.restitution_model import RestitutionModel
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.orbit import OBSERVABLES, Orbit
 from bouncing_ball.periodic.stability import Bifurcation, Side
+from bouncing_ball.periodic.start import bifurcation, orbit_at, orbits_at
 
 EPS = np.finfo(float).eps
 COMPLIANT = SpringDamper.from_restitution(0.85, 4.0)
@@ -90,14 +91,14 @@ every_side = pytest.mark.parametrize("side", list(Side))
 
 @cache
 def bifurcations(name, n):
-    return MODELS[name].saddle_node(n), MODELS[name].period_doubling(n)
+    return n_t.saddle_node(MODELS[name], n), n_t.period_doubling(MODELS[name], n)
 
 
 @cache
 def some_orbit(name, n, above, side):
     model = MODELS[name]
     node = float(bifurcations(name, n)[0].amplitude)
-    return model.require_orbit(n, (0.0 if np.isnan(node) else node) + above, side)
+    return n_t.require_orbit(model, n, (0.0 if np.isnan(node) else node) + above, side)
 
 
 @pytest.fixture(params=cases(MODELS))
@@ -210,9 +211,9 @@ def test_the_orbits_at_the_bifurcations_have_a_multiplier_plus_or_minus_one(name
     # The multiplier at a fold is as exact as the root of its distance to 1.
     assert np.min(np.abs(node.multipliers() - 1)) < 1e-6
     assert np.min(np.abs(doubling.multipliers() + 1)) < 1e-6
-    between = model.orbit(n, (node.amplitude + doubling.amplitude) / 2)
+    between = n_t.orbit(model, n, (node.amplitude + doubling.amplitude) / 2)
     assert between.is_stable()
-    assert not model.orbit(n, node.amplitude + 0.01 * above, Side.UNSTABLE).is_stable()
+    assert not n_t.orbit(model, n, node.amplitude + 0.01 * above, Side.UNSTABLE).is_stable()
     # The continuation's own extended system meets them.
     system = model.system(n)
     events = {event.name: event.function for event in system.events()}
@@ -278,10 +279,10 @@ def test_the_ball_is_held_in_contact_and_above_the_table_in_flight(some):
 def test_arrays_are_their_elements(name):
     model = MODELS[name]
     amplitude = np.array([[0.01], [1.0]])
-    orbits = model.orbit(np.array([1, 2]), amplitude)
+    orbits = n_t.orbit(model, np.array([1, 2]), amplitude)
     assert orbits.shape == (2, 2) and len(orbits) == 2
     for k in np.ndindex(2, 2):
-        single = model.orbit(k[1] + 1, amplitude[k[0], 0])
+        single = n_t.orbit(model, k[1] + 1, amplitude[k[0], 0])
         one = orbits[k]
         for quantity in OBSERVABLES:
             assert getattr(one, quantity) == pytest.approx(
@@ -291,27 +292,27 @@ def test_arrays_are_their_elements(name):
     assert there.size == orbits.exists.sum() > 0
     # The orbits known by their numbers are the same ones.
     values = (there.amplitude, there.phase, there.contact_duration, there.impact_velocity)
-    known = model.orbit_of(there.n, *values)
+    known = Orbit.of(model, there.n, *values)
     np.testing.assert_allclose(known.bounce_velocity, there.bounce_velocity)
 
 
 @pytest.mark.parametrize("name", often(DISSIPATIVE))
 def test_both_sides_are_among_all_orbits_at_an_amplitude(name):
     model = MODELS[name]
-    found = model.orbits(1, 0.9)
+    found = n_t.orbits(model, 1, 0.9)
     assert np.all(np.diff(found.contact_duration) >= 0)
     for side in Side:
-        assert np.min(found.distance(model.orbit(1, 0.9, side))) < 1e-9
-    assert model.orbits(1, 1e-3).size == 0
+        assert np.min(found.distance(n_t.orbit(model, 1, 0.9, side))) < 1e-9
+    assert n_t.orbits(model, 1, 1e-3).size == 0
 
 
 @every_model
 def test_a_side_may_be_given_by_its_name(name):
     model = MODELS[name]
     for side in Side:
-        named = model.orbit(1, 0.9, str(side))
-        assert named.distance(model.orbit(1, 0.9, side)) == 0
-        assert model.absence(1, 0.9, str(side)) == model.absence(1, 0.9, side)
+        named = n_t.orbit(model, 1, 0.9, str(side))
+        assert named.distance(n_t.orbit(model, 1, 0.9, side)) == 0
+        assert n_t.absence(model, 1, 0.9, str(side)) == n_t.absence(model, 1, 0.9, side)
 
 
 @pytest.mark.parametrize("name", [name for name in DISSIPATIVE if MODELS[name].has_closed_form])
@@ -327,16 +328,16 @@ def test_a_closed_form_is_what_the_continuation_finds(name):
         np.testing.assert_allclose(
             bifurcation(model, n, kind).amplitude, exact.amplitude, rtol=1e-9
         )
-    lam = model.saddle_node(n).amplitude + np.array([[1e-3], [0.3], [0.8]])
+    lam = n_t.saddle_node(model, n).amplitude + np.array([[1e-3], [0.3], [0.8]])
     for side in Side:
         found = orbit_at(model, n, lam, side)
-        exact = model.orbit(n, lam, side)
+        exact = n_t.orbit(model, n, lam, side)
         assert found.exists.tolist() == exact.exists.tolist()
         # Next to the fold a rounding of Λ is its root in the phase.
         assert np.nanmax(found.distance(exact)) < 1e-10
-        assert (ImpactModel.absence(model, n, lam, side) == model.absence(n, lam, side)).all()
+        assert (n_t.absence(Model, model, n, lam, side) == n_t.absence(model, n, lam, side)).all()
     # A closed form may know orbits with long contacts that no branch from here leads to.
-    exact = model.orbits(1, 0.9)
+    exact = n_t.orbits(model, 1, 0.9)
     for orbit in map(orbits_at(model, 1, 0.9).__getitem__, range(2)):
         assert np.min(orbit.distance(exact)) < 1e-10
     assert np.isnan(orbit_at(model, 1, 1e-3, Side.STABLE).phase)
@@ -353,12 +354,12 @@ def test_the_closed_form_is_nearest_to_its_own_orbits(name, side):
 def test_a_wrong_index_and_an_orbit_below_the_fold_are_refused(name):
     model = MODELS[name]
     for n in (0, -1, 1.5, np.nan):
-        for ask in (model.saddle_node, model.period_doubling, lambda n: model.orbit(n, 1.0)):
+        for ask in (model.saddle_node, model.period_doubling, lambda n: n_t.orbit(model, n, 1.0)):
             with pytest.raises(ModelError, match="not a positive integer"):
                 ask(n)
     if name in DISSIPATIVE:
         with pytest.raises(NoOrbitError, match=r"Λ = 0\.001 .*below the saddle-node"):
-            model.require_orbit(1, 1e-3)
+            n_t.require_orbit(model, 1, 1e-3)
     assert model.permanent_contact_threshold() > 0
 
 
@@ -372,9 +373,9 @@ def test_the_orbits_of_a_simple_restitution_law_are_those_found_by_hand(n):
     r = c / w
     # d(r v)/dv = 3r/4, and 1 + tr + det = 0 at Λ sin φ = 2(1 + ¾r²)/((1 + r)(1 + ¾r)).
     lift = 2 * (1 + 0.75 * r * r) / ((1 + r) * (1 + 0.75 * r))
-    assert float(model.saddle_node(n).amplitude) == pytest.approx(level, rel=1e-12)
-    assert float(model.period_doubling(n).amplitude) == pytest.approx(np.hypot(level, lift))
-    orbit = model.orbit(n, level + 0.5)
+    assert float(n_t.saddle_node(model, n).amplitude) == pytest.approx(level, rel=1e-12)
+    assert float(n_t.period_doubling(model, n).amplitude) == pytest.approx(np.hypot(level, lift))
+    orbit = n_t.orbit(model, n, level + 0.5)
     assert float(orbit.phase) == pytest.approx(np.arccos(level / (level + 0.5)), rel=1e-12)
     assert float(orbit.apparent_restitution) == pytest.approx(r, rel=1e-12)
 

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.deviations import Jacobian
 from bouncing_ball.models.laws.hertzian import Tsuji, tsuji_damping
 from bouncing_ball.models.laws.linear import LinearLaw
 from bouncing_ball.models.laws.signature import Signature
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.corrected_orbits import CorrectedModel
-from bouncing_ball.periodic.restitution_model import RestitutionModel
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 
 LAM, STEP = 1.8, 1e-6
 LAWS = [

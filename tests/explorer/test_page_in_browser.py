@@ -25,9 +25,9 @@ from bouncing_ball.explorer.engine_cases import as_json
 from bouncing_ball.long_run.motions import Kind
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.history import history
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.restitution_model import RestitutionModel
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.pipeline.configuration import typed
 
 pytestmark = pytest.mark.slow

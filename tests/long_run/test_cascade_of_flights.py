@@ -13,7 +13,7 @@ from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 
 
 def motions(r, ratio, excess):

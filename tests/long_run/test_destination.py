@@ -7,10 +7,11 @@ import pytest
 
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.motions import Kind, Reason
+from bouncing_ball.models.corrected.model import CorrectedModel
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.corrected_orbits import CorrectedModel
-from bouncing_ball.periodic.restitution_model import RestitutionModel
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic import n_t
 
 PHASES = np.linspace(-3, 3, 7)
 
@@ -21,7 +22,7 @@ def contact(r, ratio, release="displacement"):
 
 def beside(model, n, amplitude, moved=1e-3):
     """A start beside the n-T orbit."""
-    orbit = model.orbit(n, amplitude)
+    orbit = n_t.orbit(model, n, amplitude)
     phase = orbit.phase + moved
     return phase, amplitude * np.cos(phase) + orbit.relative_impact_velocity
 
@@ -80,7 +81,7 @@ def test_the_exponent_of_an_orbit_is_that_of_its_multiplier(model):
     assert set(found.kind) == {Kind.ORBIT}
     assert found.periods.tolist() == n.tolist()
     assert set(found.impacts) == {1}
-    modulus = np.abs(model.orbit(n, amplitude).multipliers()).max(axis=-1)
+    modulus = np.abs(n_t.orbit(model, n, amplitude).multipliers()).max(axis=-1)
     # At a state that is within 10⁻⁶ of the orbit.
     np.testing.assert_allclose(found.exponent, np.log(modulus) / n, atol=1e-5)
 

@@ -7,6 +7,7 @@ import pytest
 
 import bouncing_ball as bb
 from bouncing_ball.cli.main import main
+from bouncing_ball.periodic import n_t
 
 R = bb.rigid(restitution=0.5)
 STIFF = bb.spring_damper(restitution=0.5, frequency_ratio=100.0)
@@ -38,7 +39,7 @@ def test_the_diagram_has_the_orbits_and_their_period_doubling(ball):
     ends = [limit.amplitude for limit in bb.limits(ball)]
     lam = np.linspace(ends[0] + 0.02, ends[1] + 0.05, 8)
     found = bb.orbit_diagram(ball, amplitudes=lam, starts=2)
-    orbit = ball.orbit(1, lam)
+    orbit = n_t.orbit(ball, 1, lam)
     for k, exact in enumerate(orbit.phase):
         at = found.isel(amplitude=k)
         of = at.where((at.kind == "orbit") & (at.periods == 1) & (at.impacts == 1), drop=True)

@@ -7,7 +7,7 @@ from bouncing_ball.beyond.exhibits.motion_samples import three_models
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.lift_off import returns
 from bouncing_ball.models.damping import Release
-from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.models.rigid import RestitutionModel
 
 LYING = -np.pi / 2, 0.0
 

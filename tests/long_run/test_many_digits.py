@@ -9,7 +9,7 @@ import pytest
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.lift_off import returns
 from bouncing_ball.long_run.many_digits import Table
-from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.models.rigid import RestitutionModel
 
 
 def landing(height, speed, phase, lam):

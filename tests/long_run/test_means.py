@@ -10,9 +10,9 @@ from bouncing_ball.long_run.means import means
 from bouncing_ball.long_run.sampled_means import Starts, follow, start
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.hertzian import LinearHuntCrossley
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.restitution_model import RestitutionModel
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 
 RELEASE = Release.DISPLACEMENT
 

@@ -7,10 +7,11 @@ from mpmath import mp, mpf
 from bouncing_ball.errors import ModelError
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.period_doublings import FEIGENBAUM, cascade
+from bouncing_ball.models.corrected.model import CorrectedModel
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.corrected_orbits import CorrectedModel
-from bouncing_ball.periodic.restitution_model import RestitutionModel
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic import n_t
 
 R = 0.5
 RATIOS = np.array([20.0, 40.0, 80.0, 160.0])
@@ -20,7 +21,7 @@ MODELS = [SpringDamperModel(CONTACT), CorrectedModel.of_contact(CONTACT)]
 
 @pytest.fixture(scope="module")
 def restitution():
-    return cascade(RestitutionModel(R).period_doubling(1), 6)
+    return cascade(n_t.period_doubling(RestitutionModel(R), 1), 6)
 
 
 @pytest.fixture(scope="module", params=MODELS, ids=lambda model: model.name)
@@ -30,7 +31,7 @@ def model(request):
 
 @pytest.fixture(scope="module")
 def found(model):
-    return cascade(model.period_doubling(1), 4)
+    return cascade(n_t.period_doubling(model, 1), 4)
 
 
 def test_the_ratios_tend_to_feigenbaums(restitution):
@@ -121,7 +122,7 @@ def test_a_contact_shifts_the_cascade_by_the_first_order_and_corrected_by_the_se
 ):
     """Halving 1/ϖ halves the distance from the limit, and quarters it for what is left."""
     if isinstance(model, CorrectedModel):
-        exact = cascade(SpringDamperModel(CONTACT).period_doubling(1), 4)
+        exact = cascade(n_t.period_doubling(SpringDamperModel(CONTACT), 1), 4)
         error = found.amplitude / exact.amplitude - 1
         order = 2
     else:
@@ -136,4 +137,4 @@ def test_a_contact_shifts_the_cascade_by_the_first_order_and_corrected_by_the_se
 
 def test_a_cascade_of_no_doublings_or_too_many_is_refused(refusal):
     with refusal(ModelError, "number of period doublings = 9", "from 1 to 8"):
-        cascade(RestitutionModel(R).period_doubling(1), 9)
+        cascade(n_t.period_doubling(RestitutionModel(R), 1), 9)

@@ -7,10 +7,10 @@ import sys
 CODE = """
 import numpy as np, hashlib
 from bouncing_ball.long_run.destination import final_motions
-from bouncing_ball.periodic.corrected_orbits import CorrectedModel
+from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.restitution_model import RestitutionModel
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.rigid import RestitutionModel
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 rng = np.random.default_rng(5)
 r, lam, phase = rng.uniform([[0.1], [0.9], [-3]], [[0.95], [5], [3]], (3, 60))
 contact = SpringDamper.from_restitution(r, 100.0)

@@ -14,9 +14,9 @@ from bouncing_ball.long_run.sampled_means import (
     start,
     sums_at,
 )
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.restitution_model import RestitutionModel
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 
 LAMBDA = 4.0
 MODELS = [

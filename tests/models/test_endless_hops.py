@@ -6,7 +6,7 @@ import pytest
 
 import bouncing_ball as bb
 from bouncing_ball.models import over_time
-from bouncing_ball.periodic.model import ImpactModel
+from bouncing_ball.models.model import Model
 
 BALLS = {
     "rigid": bb.rigid(restitution=1.0),
@@ -20,13 +20,13 @@ BALLS = {
 def simulated(monkeypatch):
     """The numbers of impacts that are simulated."""
     numbers = []
-    simulate = ImpactModel.simulate
+    simulate = Model.simulate
 
     def counted(model, amplitude, phase, velocity, impacts):
         numbers.append(impacts)
         return simulate(model, amplitude, phase, velocity, impacts)
 
-    monkeypatch.setattr(ImpactModel, "simulate", counted)
+    monkeypatch.setattr(Model, "simulate", counted)
     return numbers
 
 

@@ -7,7 +7,7 @@ from bouncing_ball.models.damping import Release
 from bouncing_ball.models.flight import Flight, land, table
 from bouncing_ball.models.linear_contact import LinearContactDynamics
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.spring_damper_orbit import SpringDamperOrbit
+from bouncing_ball.periodic.spring_damper_branch import orbits_on_branch
 
 # A gap function is known to about four units in the last place of its terms,
 # which are of order 10 here.
@@ -153,7 +153,7 @@ def test_a_release_that_is_due_now_is_not_put_off_by_a_turn():
     ratio = np.linspace(60.0, 70.0, 2000)
     contact = SpringDamper.from_restitution(0.65, ratio)
     excess = (2 * np.pi - 0.19) * contact.damped_frequency - contact.free_angle
-    orbit = SpringDamperOrbit.on_branch(excess, contact, 1)
+    orbit = orbits_on_branch(excess, contact, 1)
     cycle = orbit.cycle(orbit.phase, orbit.relative_impact_velocity)
     good = orbit.is_stable()
     assert good.sum() > 1000

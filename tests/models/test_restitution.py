@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.history import history
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.models.sticking import lift_off_phase
-from bouncing_ball.periodic.restitution_model import RestitutionModel
 
 
 def test_an_elastic_ball_on_a_table_at_rest_keeps_its_energy():

@@ -1,14 +1,16 @@
 """Families of balls by name, and orbits with two to five impacts on which simulated balls end."""
 
-from bouncing_ball.errors import FREQUENCY_RATIO, RESTITUTION, Range
-from bouncing_ball.models.laws.hertzian import Tsuji
-from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.corrected_orbits import CorrectedModel
 from bouncing_ball.periodic.family import Family
-from bouncing_ball.periodic.law_orbits import LawModel
-from bouncing_ball.periodic.restitution_model import RestitutionModel
+
+from bouncing_ball.errors import FREQUENCY_RATIO, RESTITUTION, Range
+from bouncing_ball.models.corrected.model import CorrectedModel
+from bouncing_ball.models.laws.hertzian import Tsuji
+from bouncing_ball.models.laws.model import LawModel
+from bouncing_ball.models.rigid import RestitutionModel
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.simulation import simulated
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 
 RANGES = {"amplitude": Range(0, 1e8), "restitution": RESTITUTION, "stiffness": Range(0, 1e9)}
 RANGES |= {"frequency_ratio": FREQUENCY_RATIO}
@@ -41,7 +43,7 @@ def family(name, amplitude, restitution=0.5, frequency_ratio=10.0, stiffness=500
 def known_orbit(name, amplitude, along, n=1, side="stable"):
     """The n-T orbit of a model in closed form as a point of the problem with one impact."""
     balls = family(name, amplitude)
-    orbit = balls.make(balls.values).orbit(n, amplitude, side)
+    orbit = n_t.orbit(balls.make(balls.values), n, amplitude, side)
     dynamics = balls.dynamics({})
     row, start, _ = dynamics.in_a_row([float(orbit.phase)], [float(orbit.relative_impact_velocity)])
     phase, velocity = row.section(row.start(*start))

@@ -5,12 +5,13 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from bouncing_ball.models.damping import Release
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.restitution_model import RestitutionModel, RestitutionOrbit
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.spring_damper_bifurcations import orbit_at
-from bouncing_ball.periodic.spring_damper_branch import branch_point
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic.spring_damper_orbit import SpringDamperOrbit
+from bouncing_ball.periodic.spring_damper_branch import branch_point, orbits_of, orbits_on_branch
 from bouncing_ball.periodic.stability import Side
 
 SHARES = np.linspace(0, 1, 2001)[1:-1, np.newaxis]
@@ -56,7 +57,7 @@ def test_admissible_orbits_are_those_without_an_earlier_event_in_dense_samples(r
     free = np.pi if release is Release.DISPLACEMENT else np.pi - 2 * np.arcsin(zeta)
     excess = duration * omega * np.sqrt(1 - zeta**2) - free
     contact = SpringDamper(omega, zeta, release)
-    orbit = SpringDamperOrbit.from_branch(branch_point(excess, contact, n), contact, n)
+    orbit = orbits_of(branch_point(excess, contact, n), contact, n)
     admissible = orbit.is_admissible()
     assert np.array_equal(admissible, sampled(orbit))
     assert 0.2 < admissible.mean() < 0.8
@@ -88,7 +89,7 @@ def test_unstable_restitution_orbits_are_admissible_until_they_graze():
     lam = np.linspace(0.3, 4.0, 200)
     fold = np.pi * 0.15 / 1.85
     phase = -np.arccos(fold / lam)
-    admissible = RestitutionOrbit.of(1, 0.85, lam, phase).is_admissible()
+    admissible = Orbit.of(RestitutionModel(0.85), 1, lam, phase).is_admissible()
     assert admissible[0] and not admissible[-1]
     assert np.sum(np.diff(admissible.astype(int)) != 0) == 1
     time = np.linspace(0, 2 * np.pi, 4001)[1:-1, np.newaxis]
@@ -100,19 +101,19 @@ def test_an_earlier_release_at_the_undamped_resonance_makes_an_orbit_inadmissibl
     # There the motion has no steady part, and the flow gives it, with certified steps. One
     # longer than the period of the contact's own oscillation opens on the way.
     duration = np.array([[3.5, 6.0, 9.0, 11.0]])
-    orbit = SpringDamperOrbit.on_branch(duration - np.pi, SpringDamper(1.0, 0.0), 2)
+    orbit = orbits_on_branch(duration - np.pi, SpringDamper(1.0, 0.0), 2)
     assert orbit.is_admissible().tolist() == [[True, True, False, False]]
 
 
 def test_an_orbit_that_does_not_return_to_its_start_is_inadmissible():
     # By less than what an event that was overlooked would do, and by more than rounding.
     model = RestitutionModel(0.85)
-    phase = float(model.orbit(1, 1.0).phase)
+    phase = float(n_t.orbit(model, 1, 1.0).phase)
     for off, same in ((0.0, True), (1e-9, True), (1e-4, False)):
-        late = RestitutionOrbit.of(1, 0.85, 1.0, phase + off)
-        fast = RestitutionOrbit.of(1, 0.85, 1.0, phase, 0.0, -np.pi * (1 + off))
+        late = Orbit.of(RestitutionModel(0.85), 1, 1.0, phase + off)
+        fast = Orbit.of(RestitutionModel(0.85), 1, 1.0, phase, 0.0, -np.pi * (1 + off))
         assert late.is_admissible() == fast.is_admissible() == same
     # Thrown up at nπ from an earlier phase the ball lands in time, and with another velocity.
     pace = np.cos(phase - 0.1)
-    early = RestitutionOrbit.of(1, 0.85, 1.0, phase - 0.1, 0.0, pace - (np.pi - pace) / 0.85)
+    early = Orbit.of(RestitutionModel(0.85), 1, 1.0, phase - 0.1, 0.0, pace - (np.pi - pace) / 0.85)
     assert not early.is_admissible()

@@ -5,8 +5,9 @@ import pytest
 
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.spring_damper_branch import branch_point
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.stability import Bifurcation
 
 EPS = np.finfo(float).eps
@@ -78,9 +79,9 @@ def test_no_bifurcation_of_a_fine_grid_is_missing(release, _, count):
         for kind in KINDS:
             orbit = getattr(model, kind)(n)
             excess = orbit.contact_duration * frequency - start
-            if kind == "period_doubling" and model.saddle_node(n).exists:
+            if kind == "period_doubling" and n_t.saddle_node(model, n).exists:
                 edges = edges[
-                    edges < float(model.saddle_node(n).contact_duration) * frequency - start
+                    edges < float(n_t.saddle_node(model, n).contact_duration) * frequency - start
                 ]
             low, high = first_zero(contact, int(n), kind, edges)
             assert np.isnan(low) == np.isnan(excess), (contact, n, kind)

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.continued_orbits import continued, orbit_at
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.stability import Bifurcation, Side
+from bouncing_ball.periodic.start import continued, orbit_at
 
 # The branch of the compliant contact has saddle-nodes at Λ = 0.188 and 1.176 and a second stable
 # side; that of the other one ends at Λ = 2.004, where the ball no longer leaves the table.
@@ -17,7 +18,7 @@ SHORT = SpringDamperModel(SpringDamper.from_restitution(0.65, 3.0))
 @pytest.fixture
 def along_the_branch(monkeypatch):
     """Newton's method finds no orbit at Λ itself, nor beside the fold: the branch is followed."""
-    module = "bouncing_ball.periodic.continued_orbits"
+    module = "bouncing_ball.periodic.start"
     monkeypatch.setattr(f"{module}._beside_fold", lambda _, fold, *__: np.full_like(fold, np.nan))
 
     def found(model, amplitude, side):
@@ -44,7 +45,7 @@ def along_the_branch(monkeypatch):
 def test_the_orbit_on_the_branch_is_the_one_next_to_the_fold(along_the_branch, amplitude, side):
     """Beyond the second saddle-node there is a third orbit at each of these Λ but the first."""
     found = along_the_branch(COMPLIANT, amplitude, side)
-    assert float(found.distance(COMPLIANT.orbit(1, amplitude, side))) < 1e-10
+    assert float(found.distance(n_t.orbit(COMPLIANT, 1, amplitude, side))) < 1e-10
 
 
 def test_a_side_that_does_not_reach_an_amplitude_has_no_orbit_there():

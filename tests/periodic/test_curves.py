@@ -11,6 +11,7 @@ from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.long_run.cascade_of_flights import openings
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
+from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic import restitution_branch as formulas
 from bouncing_ball.periodic.curves import Degenerate, Window, curve
 from bouncing_ball.periodic.following import STEPS, State, follow
@@ -42,7 +43,7 @@ def test_along_the_stiffness_the_curve_is_that_of_the_closed_form():
                   across_window=Window(3.0, 50.0))  # fmt: skip
     for state in list(found)[::10]:
         balls = state.orbits.family.at(state.parameters)
-        expected = balls.make(balls.values).period_doubling(1).amplitude
+        expected = n_t.period_doubling(balls.make(balls.values), 1).amplitude
         assert state.parameters["amplitude"] == pytest.approx(float(expected), abs=1e-12)
 
 

@@ -11,6 +11,7 @@ from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.flight import Flight, table
 from bouncing_ball.numerics.corrector import newton, plane
 from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.branch import whole_branch
 from bouncing_ball.periodic.following import State, follow
 from bouncing_ball.periodic.observables import GRAZING, branch_columns
@@ -33,10 +34,10 @@ def test_the_bifurcations_of_one_impact_are_those_of_the_closed_form(name):
     down = follow(start(name), 0.1).first(Special.SADDLE_NODE)
     up = follow(start(name), 2.0).first(Special.PERIOD_DOUBLING)
     assert down.parameters["amplitude"] == pytest.approx(
-        float(closed.saddle_node(1).amplitude), abs=1e-12
+        float(n_t.saddle_node(closed, 1).amplitude), abs=1e-12
     )
     assert up.parameters["amplitude"] == pytest.approx(
-        float(closed.period_doubling(1).amplitude), abs=1e-12
+        float(n_t.period_doubling(closed, 1).amplitude), abs=1e-12
     )
 
 
@@ -49,7 +50,7 @@ def test_a_branch_along_any_parameter_is_the_closed_form_at_each_point(name, alo
     assert str(found.branch.end) == f"{along.replace('_', ' ')} = {to:g} is reached"
     for state in list(found)[::4]:
         balls = state.orbits.family.at(state.parameters)
-        orbit = balls.make(balls.values).orbit(1, 1.3)
+        orbit = n_t.orbit(balls.make(balls.values), 1, 1.3)
         offset = np.abs(orbit.trace_and_determinant()[0] - state.orbits.trace_and_determinant(
             state.y)[0])  # fmt: skip
         assert offset < 1e-11
@@ -123,7 +124,7 @@ def test_a_contact_law_is_followed_along_its_stiffness():
     assert str(found.branch.end) == "stiffness = 800 is reached"
     last = list(found)[-1]
     balls = last.orbits.family.at(last.parameters)
-    orbit = balls.make(balls.values).orbit(1, 1.0)
+    orbit = n_t.orbit(balls.make(balls.values), 1, 1.0)
     assert float(orbit.phase) == pytest.approx(last.phase[0], abs=1e-11)
 
 

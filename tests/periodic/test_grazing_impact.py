@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 
 from bouncing_ball.models.flight import table
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
+from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.following import STEPS, State, follow
 from bouncing_ball.periodic.special import Special
 
@@ -62,13 +63,13 @@ def test_an_impact_grazes_where_bisection_finds_the_grazing_flight(restitution):
     closed = model.make(model.values)
 
     def height(amplitude):
-        orbit = closed.orbit(1, amplitude, "unstable")
+        orbit = n_t.orbit(closed, 1, amplitude, "unstable")
         leaving = -restitution * float(orbit.relative_impact_velocity)
         return touching(orbit, amplitude, 0.0, leaving)[1]
 
     # The first flight is above the table, and the second below it.
     amplitude = brentq(height, 2.4, 3.0, xtol=1e-15)
-    orbit = closed.orbit(1, amplitude, "unstable")
+    orbit = n_t.orbit(closed, 1, amplitude, "unstable")
     leaving = -restitution * float(orbit.relative_impact_velocity)
     problem = replace(known_orbit("restitution", 1.3, ("amplitude",))[1], family=model)
     state = with_a_slow_impact(problem, orbit, amplitude, 0.0, leaving)
@@ -87,7 +88,7 @@ def test_an_impact_of_a_compliant_contact_disappears_with_its_contact():
     _, problem, y = known_orbit("spring-damper", 2.0, ("amplitude",))
     grazing = follow(State(problem, y), 0.9).first(Special.GRAZING_FLIGHT)
     amplitude = grazing.parameters["amplitude"]
-    orbit = problem.family.make(problem.family.values).orbit(1, amplitude, "unstable")
+    orbit = n_t.orbit(problem.family.make(problem.family.values), 1, amplitude, "unstable")
     legs = grazing.orbits.legs(grazing.y)
     duration = float(legs.duration[0])
     leaving = float(legs.departure.flight.velocity[0])

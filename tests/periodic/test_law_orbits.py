@@ -6,21 +6,23 @@ import pytest
 from bouncing_ball.accuracy.error_law import first_order
 from bouncing_ball.accuracy.errors import OF_ORBITS, relative
 from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.laws.hertzian import HuntCrossley, KuwabaraKono, Tsuji
 from bouncing_ball.models.laws.impedance import Impedance
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
 from bouncing_ball.models.laws.linear import LinearLaw
+from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.laws.registry import LAWS, law_named
 from bouncing_ball.models.laws.signature import Signature, free_impact
-from bouncing_ball.periodic.continued_orbits import orbits_at as by_branch
-from bouncing_ball.periodic.continued_orbits import restitution_speed
-from bouncing_ball.periodic.corrected_orbits import CorrectedModel
-from bouncing_ball.periodic.law_orbits import LawModel, law_at_orbit
+from bouncing_ball.models.rigid import RestitutionModel
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.law_at_orbit import law_at_orbit
 from bouncing_ball.periodic.restitution_branch import rigid_speed
-from bouncing_ball.periodic.restitution_model import RestitutionModel
 from bouncing_ball.periodic.spring_damper_bifurcations import orbits_at as by_formula
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.stability import Side
+from bouncing_ball.periodic.start import orbits_at as by_branch
+from bouncing_ball.periodic.start import restitution_speed
 
 KINDS = [LinearLaw, *LAWS.values()]
 every_kind = pytest.mark.parametrize("kind", KINDS, ids=[kind.name for kind in KINDS])
@@ -52,11 +54,12 @@ def test_the_corrected_model_and_the_error_law_leave_errors_of_second_order(name
         else:
             law = law_at_orbit(LAWS[name], 0.65, duration, 1, 1.0)
         orbit, corrected = (
-            model.require_orbit(1, 1.0) for model in (LawModel(law), CorrectedModel(Signature(law)))
+            n_t.require_orbit(model, 1, 1.0)
+            for model in (LawModel(law), CorrectedModel(Signature(law)))
         )
         # The simple models compared have the r of the speed at the instant.
         instant = corrected.instant
-        rigid = RestitutionModel(float(instant.restitution)).require_orbit(1, 1.0)
+        rigid = n_t.require_orbit(RestitutionModel(float(instant.restitution)), 1, 1.0)
         simple, left = (
             np.array([relative(getattr(orbit, q), getattr(one, q)) for q in OF_ORBITS])
             for one in (rigid, corrected)
@@ -97,14 +100,14 @@ def test_an_unknown_law_and_an_impossible_impact_are_refused():
 
 def test_far_above_the_fold_an_orbit_is_followed_to_or_reported_as_not_found(monkeypatch):
     model = LawModel(Tsuji(1e3, 0.3))
-    orbit = model.require_orbit(20, 300.0, Side.UNSTABLE)
+    orbit = n_t.require_orbit(model, 20, 300.0, Side.UNSTABLE)
     # The contact is one of the collocation's; the equations hold to rounding of z ≈ Λ.
     assert np.abs(orbit.residual()).max() < 1e-12 * 300
     assert orbit.trace_and_determinant()[0] > 2
     # A walk of a few steps does not arrive, and one of 300 takes seconds.
-    monkeypatch.setattr("bouncing_ball.periodic.continued_orbits._POINTS", 20)
+    monkeypatch.setattr("bouncing_ball.periodic.start._POINTS", 20)
     with pytest.raises(NoOrbitError, match="none was found, but one may exist"):
-        model.require_orbit(20, 1000.0, Side.UNSTABLE)
+        n_t.require_orbit(model, 20, 1000.0, Side.UNSTABLE)
 
 
 @pytest.mark.parametrize(
@@ -112,10 +115,12 @@ def test_far_above_the_fold_an_orbit_is_followed_to_or_reported_as_not_found(mon
 )
 def test_just_above_the_fold_two_orbits_part_as_the_root_of_the_distance(r, duration):
     model = LawModel(law_of_impact(HuntCrossley, r, duration, rigid_speed(1, r)))
-    fold = model.saddle_node(1)
+    fold = n_t.saddle_node(model, 1)
     apart = []
     for above in (1e-6, 1e-4, 1e-2):
-        stable, unstable = (model.orbit(1, fold.amplitude * (1 + above), side) for side in Side)
+        stable, unstable = (
+            n_t.orbit(model, 1, fold.amplitude * (1 + above), side) for side in Side
+        )
         assert stable.defect() < 1e-11 and unstable.defect() < 1e-11
         assert stable.phase > fold.phase > unstable.phase
         apart.append(float(stable.phase - unstable.phase))

@@ -6,6 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.models.rigid import RestitutionModel
+from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.restitution_branch import (
     ImpactMap,
     branch,
@@ -14,7 +17,6 @@ from bouncing_ball.periodic.restitution_branch import (
     phase,
     saddle_node,
 )
-from bouncing_ball.periodic.restitution_model import RestitutionModel, RestitutionOrbit
 
 EPS = np.finfo(float).eps
 
@@ -64,7 +66,7 @@ def test_the_orbits_are_fixed_points_of_both_maps(n, r, excess, stable):
 def floquet(kind, n, r, lam, phi):
     """Trace and determinant of either map at an n-T orbit."""
     if kind is ImpactMap.EXACT:
-        return RestitutionOrbit.of(n, r, lam, phi).trace_and_determinant()
+        return Orbit.of(RestitutionModel(r), n, lam, phi).trace_and_determinant()
     jacobian = holmes_map_jacobian(phi, n * np.pi, lam, r)
     return np.trace(jacobian), np.linalg.det(jacobian)
 
@@ -128,7 +130,7 @@ def test_what_is_no_number_is_refused_where_the_model_is_made(value, refusal):
     with refusal(ModelError, f"restitution coefficient r = {value!r} is not in (0, 1]"):
         RestitutionModel(value)
     with refusal(ModelError, f"family n = {value!r} is not a positive integer"):
-        RestitutionModel(0.5).orbit(value, 1.0)
+        n_t.orbit(RestitutionModel(0.5), value, 1.0)
     with refusal(ModelError, f"amplitude Λ = {value!r} is not finite and ≥ 0"):
         RestitutionModel(0.5).simulate(value, 0.0, -1.0, 3)
 
@@ -143,5 +145,5 @@ def test_the_phase_of_an_orbit_below_the_saddle_node_is_refused(lam, refusal):
 
 
 def test_the_orbit_with_the_larger_phase_comes_first():
-    phase = RestitutionModel(0.85).orbits(1, 1.0).phase
+    phase = n_t.orbits(RestitutionModel(0.85), 1, 1.0).phase
     assert phase[0] == -phase[1] > 0

@@ -10,9 +10,8 @@ from bouncing_ball.models.damping import Release
 from bouncing_ball.models.oscillator import responses
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.spring_damper_branch import branch_point, nearest_excess
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic.spring_damper_orbit import SpringDamperOrbit
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic.spring_damper_branch import branch_point, nearest_excess, orbits_of
 
 EPS = np.finfo(float).eps
 
@@ -113,7 +112,7 @@ def test_permanent_contact_continues_into_a_stable_orbit(restitution, omega):
     assert point.determinant == pytest.approx(decay**2, rel=2 * zeta * omega * flight[0] * 1.1)
     # At ϖ = 100 a flight of 1e-3 rises by 1e-11, well above the rounding of heights.
     excess = (2 * np.pi - 1e-3) * contact.damped_frequency - contact.free_angle
-    orbit = SpringDamperOrbit.from_branch(branch_point(excess, contact, 1), contact, 1)
+    orbit = orbits_of(branch_point(excess, contact, 1), contact, 1)
     assert bool(orbit.is_stable()) and bool(orbit.is_admissible())
 
 
@@ -125,7 +124,7 @@ def test_a_contact_of_several_periods_opens_in_each_of_them(omega, zeta):
     for n in (1, 2, 3):
         duration = 2 * np.pi * n - 0.05
         excess = float(duration * contact.damped_frequency - contact.free_angle)
-        orbit = SpringDamperOrbit.from_branch(branch_point(excess, contact, n), contact, n)
+        orbit = orbits_of(branch_point(excess, contact, n), contact, n)
         assert orbit.defect() < 1e-10
         assert bool(orbit.is_admissible()) == (n == 1)
         touches = 2 * np.pi * np.arange(1, n) - 0.05 / 2

@@ -8,10 +8,10 @@ from scipy.optimize import brentq
 
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.spring_damper_bifurcations import orbit_at
-from bouncing_ball.periodic.spring_damper_branch import branch_point
-from bouncing_ball.periodic.spring_damper_orbit import SpringDamperOrbit
+from bouncing_ball.periodic.spring_damper_branch import branch_point, orbits_of
 
 
 def test_the_greatest_height_of_a_ball_released_downwards_is_in_contact():
@@ -38,12 +38,12 @@ def test_the_distance_of_orbits_is_their_largest_difference():
         "contact_duration": point.contact_duration,
         "impact_velocity": point.u + point.x,
     }
-    orbit = SpringDamperOrbit.from_branch(point, contact, 1)
-    assert float(SpringDamperOrbit(**base).distance(orbit)) < 1e-14
+    orbit = orbits_of(point, contact, 1)
+    assert float(Orbit(**base).distance(orbit)) < 1e-14
     sizes = {"amplitude": 1, "phase": 1, "contact_duration": 10, "impact_velocity": 1}
     for name, size in sizes.items():
         moved = base | {name: base[name] + 1e-3}
-        found = SpringDamperOrbit(**moved).distance(orbit)
+        found = Orbit(**moved).distance(orbit)
         assert float(found) == pytest.approx(size * 1e-3, rel=1e-9)
 
 
@@ -57,6 +57,8 @@ def test_the_highest_point_of_a_contact_is_found_next_to_its_ends(top):
 
 def test_a_contact_that_only_touches_its_release_has_no_derivatives():
     # δ′ = 0 at the impact and at the release of a contact without duration.
-    orbit = SpringDamperOrbit.of(1, SpringDamper(10.0, 0.05), 1.0, 0.0, 0.0, impact_velocity=1.0)
+    orbit = Orbit.of(
+        SpringDamperModel(SpringDamper(10.0, 0.05)), 1, 1.0, 0.0, 0.0, impact_velocity=1.0
+    )
     assert np.all(np.isnan(orbit.contact_jacobian()[0]))
     assert not orbit.is_stable() and not orbit.is_admissible()

@@ -8,11 +8,11 @@ from hypothesis import strategies as st
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.continuation import StepControl, continue_branch
 from bouncing_ball.numerics.events import parameter_bound
 from bouncing_ball.periodic.spring_damper_bifurcations import orbit_at
 from bouncing_ball.periodic.spring_damper_branch import branch_point
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 
 releases = st.sampled_from(list(Release))
 

@@ -18,9 +18,9 @@ from mpmath import findroot, mp, mpf, workdps
 from orbits_found import family
 
 from bouncing_ball.errors import ParameterError
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.periodic.curves import curve
 from bouncing_ball.periodic.following import follow
-from bouncing_ball.periodic.restitution_model import RestitutionModel
 from bouncing_ball.periodic.special import Special
 from bouncing_ball.periodic.switching import of_motion
 

@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 
 from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.model import Absence
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
+from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic import restitution_branch as restitution
-from bouncing_ball.periodic.model import Absence
 from bouncing_ball.periodic.spring_damper_bifurcations import orbit_at
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.stability import Side
 
 # For each of two rules and two sides.
@@ -50,7 +51,7 @@ def drawn(request, rule, side):
 def test_every_missing_orbit_has_its_reason(drawn):
     contact, n, lam, side, orbit = drawn
     missing = np.isnan(orbit.contact_duration)
-    reasons = SpringDamperModel(contact).absence(n, lam, side)
+    reasons = n_t.absence(SpringDamperModel(contact), n, lam, side)
     assert np.all((reasons == Absence.NONE) == ~missing)
     # The sample reaches below the saddle-nodes, and most of it lies above.
     assert np.mean(reasons == Absence.BELOW_SADDLE_NODE) > 1 / 50

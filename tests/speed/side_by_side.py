@@ -25,11 +25,12 @@ from bouncing_ball.contacts.engines.mujoco import MuJoCo
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.linear_contact import LinearContactDynamics
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.corrector import newton, plane
+from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.curves import CurveProblem, Window, condition_of, curve
 from bouncing_ball.periodic.following import follow
 from bouncing_ball.periodic.special import Special
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "speed.md"
 R = 0.5
@@ -244,7 +245,7 @@ def simulation_row() -> Row:
     contact = SpringDamper.from_restitution(0.85, 20.0)
     impacts = 300
     # Beside the stable 1-T orbit, so that rounding errors do not grow.
-    orbit = SpringDamperModel(contact).orbit(1, 0.9)
+    orbit = n_t.orbit(SpringDamperModel(contact), 1, 0.9)
     phase = float(orbit.phase) + 0.01
     velocity = float(orbit.impact_velocity)
     dynamics = LinearContactDynamics.of(contact, 0.9)
@@ -270,7 +271,7 @@ def simulation_row() -> Row:
 def engine_row() -> Row:
     """Bounces on an orbit, against the time steps of MuJoCo with which r is met within an error."""
     contact = SpringDamper.from_restitution(0.85, 20.0, Release.FORCE)
-    orbit = SpringDamperModel(contact).orbit(1, 0.9)
+    orbit = n_t.orbit(SpringDamperModel(contact), 1, 0.9)
     phase = float(orbit.phase)
     velocity = float(orbit.impact_velocity)
     highest = float(orbit.max_height)

@@ -20,12 +20,12 @@ from bouncing_ball.accuracy.thresholds import (
     last_crossing,
     thresholds,
 )
+from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import Release
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.corrected_orbits import CorrectedModel
-from bouncing_ball.periodic.restitution_model import RestitutionModel
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic.spring_damper_orbit import SpringDamperOrbit
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic.orbit import Orbit
 
 SIMPLE = ("restitution", "corrected")
 """The simple models, which are compared with the exact model."""
@@ -73,7 +73,7 @@ def errors(
     return relative_errors(exact, simple, n, amplitude, quantities)
 
 
-def orbit_errors(orbit: SpringDamperOrbit) -> np.ndarray:
+def orbit_errors(orbit: Orbit) -> np.ndarray:
     """Errors of the four quantities of exact orbits, shape (model, quantity, ...); NaN where there
     is no orbit.
 

@@ -29,7 +29,7 @@ from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import ParameterError
 from bouncing_ball.models.ball import Ball, a_known_ball
 from bouncing_ball.models.damping import Release, damping_ratio
-from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.models.rigid import RestitutionModel
 
 
 def error_thresholds(
@@ -91,7 +91,7 @@ def error_thresholds(
     level = checked("tolerance", tolerance, TOLERANCE)
     rule = Release.of(chosen("release", release, [str(each) for each in Release]))
     asked = _names(quantities)
-    grid = ball.grid(n=family, amplitude=lam, tolerance=level)
+    grid = Grid(n=family, amplitude=lam, tolerance=level, **ball.parameters)
     found = _on_grid(grid, asked, rule)
     return Result.of(grid.unfold(found), "error_thresholds")
 

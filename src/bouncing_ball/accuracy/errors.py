@@ -12,7 +12,8 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.periodic.model import ImpactModel
+from bouncing_ball.models.model import Model
+from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.stability import Bifurcation
 
 
@@ -49,14 +50,20 @@ QUANTITIES = {
 """The names of the quantities in sentences."""
 
 
+_BIFURCATIONS = {
+    Quantity.SADDLE_NODE: n_t.saddle_node,
+    Quantity.PERIOD_DOUBLING: n_t.period_doubling,
+}
+
+
 def values(
-    model: ImpactModel, n: ArrayLike, amplitude: ArrayLike, quantities: Iterable[str] = OF_IMPACTS
+    model: Model, n: ArrayLike, amplitude: ArrayLike, quantities: Iterable[str] = OF_IMPACTS
 ) -> np.ndarray:
     """Values of quantities in a model; one search for the orbit serves all its quantities.
 
     Parameters
     ----------
-    model : ImpactModel
+    model : Model
     n, amplitude : array_like
         Index of the family and Λ of the stable orbits; they broadcast with the model.
     quantities : iterable of str
@@ -68,18 +75,18 @@ def values(
 
     Examples
     --------
-    >>> from bouncing_ball.periodic.restitution_model import RestitutionModel
+    >>> from bouncing_ball.models.rigid import RestitutionModel
     >>> names = "bounce_velocity", "permanent_contact"
     >>> bool(np.all(values(RestitutionModel(0.5), 1, 2.0, names) == [np.pi, 1.0]))
     True
     """
-    orbit = cache(lambda: model.orbit(n, amplitude))
+    orbit = cache(lambda: n_t.orbit(model, n, amplitude))
 
     def value(quantity: str) -> np.ndarray:
         if quantity == Quantity.PERMANENT_CONTACT:
             return model.permanent_contact_threshold()
         if quantity in OF_LIMITS:
-            return getattr(model, quantity)(n).amplitude
+            return _BIFURCATIONS[Quantity(quantity)](model, n).amplitude
         return getattr(orbit(), quantity)
 
     return np.stack(np.broadcast_arrays(*map(value, quantities)))
@@ -113,8 +120,8 @@ def modulus(error: ArrayLike) -> np.ndarray:
 
 
 def relative_errors(
-    exact: ImpactModel,
-    simple: Sequence[ImpactModel],
+    exact: Model,
+    simple: Sequence[Model],
     n: ArrayLike,
     amplitude: ArrayLike,
     quantities: Sequence[str] = OF_IMPACTS,
@@ -123,8 +130,8 @@ def relative_errors(
 
     Parameters
     ----------
-    exact : ImpactModel
-    simple : sequence of ImpactModel
+    exact : Model
+    simple : sequence of Model
     n, amplitude : array_like
         Index of the family and Λ of the stable orbits; they broadcast with the models.
     quantities : sequence of str
@@ -139,8 +146,8 @@ def relative_errors(
     Without damping, Λ_SD = 1 - 1/ϖ² above the resonance:
 
     >>> from bouncing_ball.models.spring_damper import SpringDamper
-    >>> from bouncing_ball.periodic.restitution_model import RestitutionModel
-    >>> from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+    >>> from bouncing_ball.models.rigid import RestitutionModel
+    >>> from bouncing_ball.models.spring_damper_model import SpringDamperModel
     >>> stiff = SpringDamperModel(SpringDamper.from_restitution(1.0, np.array([2.0])))
     >>> relative_errors(stiff, [RestitutionModel(1.0)], 1, 1.0, ["permanent_contact"]).tolist()
     [[[-0.25]]]

@@ -25,9 +25,9 @@ from bouncing_ball.accuracy.errors import (
     relative_errors,
 )
 from bouncing_ball.models.damping import Release
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.restitution_model import RestitutionModel
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 
 Numbered = Callable[[np.ndarray, np.ndarray], np.ndarray]
 """Values, at ratios ϖ, of the functions with given numbers; all three arrays have one shape."""

@@ -4,123 +4,34 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import fields, is_dataclass, replace
-from typing import Any
-
-import numpy as np
+from dataclasses import replace
+from typing import Any, overload
 
 from bouncing_ball.calls.labelled_branches import FollowedBranch, SpecialCurve
-from bouncing_ball.calls.periodic import PeriodicOrbit
 from bouncing_ball.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
-    DAMPING_RATIO,
     FINITE,
     FOLLOWED,
-    FREQUENCY_RATIO,
     POINTS,
-    RESTITUTION,
     STATE,
     Impacts,
     Points,
     checked_number,
     chosen,
 )
-from bouncing_ball.errors import ParameterError
-from bouncing_ball.models.ball import Ball, a_ball, a_single_ball
-from bouncing_ball.models.damping import Release, damping_ratio, restitution_coefficient
-from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.errors import NoOrbitError, ParameterError
+from bouncing_ball.long_run import orbit_of_motion as motions
+from bouncing_ball.models.ball import Ball, a_single_ball
 from bouncing_ball.periodic import curves, following, switching
+from bouncing_ball.periodic.balls import LAMBDA, Balls
 from bouncing_ball.periodic.curves import Window
-from bouncing_ball.periodic.family import AMPLITUDE as LAMBDA
-from bouncing_ball.periodic.family import Family, nothing
-from bouncing_ball.periodic.following import State
-from bouncing_ball.periodic.model import ImpactModel
-from bouncing_ball.periodic.special import Special
+from bouncing_ball.periodic.orbit import Orbit
+from bouncing_ball.periodic.special import MEANINGS, Special
 
-_RANGES = {
-    LAMBDA: AMPLITUDE_OF_ORBIT,
-    "frequency_ratio": FREQUENCY_RATIO,
-    "restitution": RESTITUTION,
-    "damping_ratio": DAMPING_RATIO,
-}
 BRANCH, CURVE = 500, 500
 """Default of the largest number of points of a branch, and of a curve in each direction."""
-
-
-def _numbers(law: Any) -> dict[str, float]:
-    """The numerical parameters of a law, or of the law inside of a law, by name."""
-    found: dict[str, float] = {}
-    for field in fields(law):
-        value = getattr(law, field.name)
-        if is_dataclass(value):
-            found |= _numbers(value)
-        elif isinstance(value, int | float | np.number) and not isinstance(value, bool):
-            found[field.name] = float(value)
-    return found
-
-
-def _with_numbers(law: Any, values: Mapping[str, Any]) -> Any:
-    """The law with other values of its parameters."""
-    changed: dict[str, Any] = {}
-    for field in fields(law):
-        inner = getattr(law, field.name)
-        if is_dataclass(inner):
-            changed[field.name] = _with_numbers(inner, values)
-        elif field.name in values:
-            changed[field.name] = values[field.name]
-    return replace(law, **changed)
-
-
-def family_of(model: ImpactModel, amplitude: float) -> Family:
-    """The balls of a single model, with Λ and the parameters of the law by name.
-
-    A spring and a damper have a restitution coefficient (Eq. 16) beside their damping ratio; of the
-    two, that which does not vary follows from the other.
-
-    Examples
-    --------
-    >>> from bouncing_ball import spring_damper
-    >>> family = family_of(spring_damper(frequency_ratio=9.0, damping_ratio=0.0), 1.0)
-    >>> dict(family.values)
-    {'frequency_ratio': 9.0, 'damping_ratio': 0.0, 'amplitude': 1.0, 'restitution': 1.0}
-    """
-    values = {**_numbers(model), LAMBDA: amplitude}
-    linear = isinstance(getattr(model.impact_law, "law", model.impact_law), SpringDamper)
-    if linear:
-        zeta = values["damping_ratio"]
-        values["restitution"] = float(restitution_coefficient(zeta, Release.DISPLACEMENT))
-
-    return Family(
-        make=lambda given: _with_numbers(model, given),
-        values=values,
-        ranges={name: _RANGES.get(name, FINITE) for name in values},
-        implied=_loss if linear else nothing,
-    )
-
-
-def _loss(varied: Mapping[str, Any]) -> dict[str, Any]:
-    """ζ of r, or r of ζ, of linear contacts."""
-    if "restitution" in varied:
-        return {"damping_ratio": damping_ratio(varied["restitution"])}
-    if "damping_ratio" in varied:
-        zeta = varied["damping_ratio"]
-        return {"restitution": restitution_coefficient(zeta, Release.DISPLACEMENT)}
-    return {}
-
-
-def _state(orbit: Any, along: str) -> State:
-    """An orbit as the start of a branch along a parameter."""
-    if isinstance(orbit, State):
-        return orbit.along(along)
-    if not isinstance(orbit, PeriodicOrbit):
-        how = "orbit, orbit_of_motion, switch or by a branch"
-        kind = type(orbit).__name__
-        raise ParameterError(f"the orbit, a {kind}, is not one that was made by {how}")
-    family = family_of(orbit.model, orbit.amplitude)
-    family.bounds(along)
-    return switching.of_single_impact(
-        family, orbit.phase, orbit.impact_velocity, orbit.contact_duration, orbit.n, along
-    )
+# A branch ends at these orbits, because an impact or a rest disappears there.
+_ENDS = (Special.GRAZING_IMPACT, Special.STICKING)
 
 
 def orbit_of_motion(
@@ -130,7 +41,7 @@ def orbit_of_motion(
     phase: float = 0.0,
     velocity: float = -math.pi,
     impacts: Impacts = 4000,
-) -> State:
+) -> Orbit:
     """The periodic orbit on which a ball ends, as a start for :func:`follow`.
 
     The parameters are those of :func:`bouncing_ball.motion_of`, for a single ball.
@@ -146,42 +57,78 @@ def orbit_of_motion(
     --------
     >>> from bouncing_ball import rigid
     >>> orbit_of_motion(rigid(restitution=0.5), amplitude=1.6)
-    orbit with 2 impacts in 2 periods: amplitude = 1.6
+    Orbit
+      impacts               2
+      periods               2
+      law                   0.5
+      amplitude             1.6
+      phase                 [0.541338 1.10023]
+      contact_duration      [0 0]
+      impact_velocity       [-2.44155 -3.27003]
+      bounce_velocity       [2.45404 3.82863]
+      apparent_restitution  [0.5 0.5]
+      max_height            8.34459
     """
     lam = checked_number("amplitude", amplitude, AMPLITUDE_OF_ORBIT)
     phi = checked_number("phase", phase, STATE)
     before = checked_number("velocity", velocity, STATE)
     most = checked_number("impacts", impacts, FOLLOWED)
-    family = family_of(a_single_ball(a_ball(ball)), lam)
-    return switching.of_motion(family, phi, before, LAMBDA, most)
+    model = a_single_ball(ball)
+    return motions.of_motion(model, lam, phi, before, most)
+
+
+@overload
+def follow(
+    orbit: Orbit, *, along: str | None = None, to: float | None = None, points: Points = BRANCH
+) -> FollowedBranch: ...
+
+
+@overload
+def follow(
+    orbit: Orbit,
+    *,
+    along: tuple[str, str],
+    points: Points = BRANCH,
+    ranges: Mapping[str, Sequence[float]] | None = None,
+) -> SpecialCurve: ...
 
 
 def follow(
-    orbit: PeriodicOrbit | State,
+    orbit: Orbit,
     *,
-    along: str = LAMBDA,
+    along: str | tuple[str, str] | None = None,
     to: float | None = None,
     points: Points = BRANCH,
-) -> FollowedBranch:
-    """The branch of a periodic orbit along a parameter, up to a value or to the end of the branch.
+    ranges: Mapping[str, Sequence[float]] | None = None,
+) -> FollowedBranch | SpecialCurve:
+    """The branch of a periodic orbit along a parameter, or the curve of a special orbit in two.
+
+    An ordinary orbit is followed up to a value of the parameter or to the end of its branch. From a
+    period doubling the branch of twice the period is followed, and from a saddle-node or the
+    grazing of a flight or of a release the branch on which it lies. At the grazing of an impact and
+    at the end of sticking a branch ends. With two parameters the curve of special orbits of this
+    kind is followed in both directions.
 
     Parameters
     ----------
-    orbit : PeriodicOrbit or State
-        An orbit of :func:`bouncing_ball.orbit`, :func:`orbit_of_motion` or :func:`switch`, or one
-        of a branch.
-    along : str
+    orbit : Orbit
+        An orbit of :func:`bouncing_ball.orbit`, :func:`orbit_of_motion` or of a branch, such as
+        ``found.first("period doubling")``.
+    along : str or two of them, optional
         The parameter: "amplitude", or one of the law, such as "frequency_ratio", "damping_ratio",
-        "restitution" or the "stiffness" of a contact law.
+        "restitution" or the "stiffness" of a contact law. The default is that of the branch from
+        which the orbit comes, otherwise the amplitude.
     to : float, optional
         The value at which the branch ends; by default the parameter rises to the end of its range.
         Behind a saddle-node the parameter moves back, at most as far beyond its first value.
     points : int
-        The largest number of points.
+        The largest number of points, of a curve in each direction.
+    ranges : mapping, optional
+        For a curve, the ranges of its parameters outside which it is not followed, by name.
 
     Returns
     -------
-    FollowedBranch
+    FollowedBranch or SpecialCurve
         The parameter at each ``point``, ``phase``, ``contact_duration`` and the other observables
         of :func:`bouncing_ball.branch` for each ``impact``, and whether the orbit is ``stable`` and
         ``admissible``; ``special_kind`` and the place of the special orbits; ``end_reason`` says
@@ -190,7 +137,7 @@ def follow(
     Raises
     ------
     NoOrbitError
-        If there is no orbit at the start.
+        If there is no orbit at the start, or if no branch leaves from it.
     ModelError
         If a parameter is unknown, of a wrong type, or out of range.
 
@@ -203,19 +150,96 @@ def follow(
     (['period doubling'], [1.037456])
     >>> str(found.end_reason[1].values)
     'amplitude = 1.2 is reached'
+
+    The branch of twice the period, and the curve of period doublings in two parameters:
+
+    >>> doubling = found.first("period doubling")
+    >>> twice = follow(doubling, to=1.1)
+    >>> twice.attrs["impacts"], bool(twice.stable[-1])
+    (2, True)
+    >>> curve = follow(doubling, along=("amplitude", "restitution"), points=10)
+    >>> curve.attrs["curve_kind"], curve.sizes["point"]
+    ('period doubling', 19)
     """
-    start = _state(orbit, along)
+    _check_orbit("follow", orbit)
     most = checked_number("points", points, POINTS)
-    value = None if to is None else checked_number("to", to, start.orbits.family.ranges[along])
-    return FollowedBranch.of_orbits(following.follow(start, value, most=most), "follow")
+    names = _names(orbit, along)
+    if len(names) == 2:
+        if to is not None:
+            raise ParameterError(
+                "{to} is the end of a branch: a curve in two parameters has ranges"
+            )
+        return _curve(orbit, names, ranges or {}, most)
+    if ranges is not None:
+        raise ParameterError("{ranges} are those of a curve in two parameters: a branch has {to}")
+    (name,) = names
+    balls = Balls(orbit.model, orbit.amplitude)
+    allowed = AMPLITUDE_OF_ORBIT if name == LAMBDA else balls.range_of(name)
+    value = None if to is None else checked_number("to", to, allowed)
+    if orbit.kind in _ENDS:
+        kind = Special(orbit.kind)
+        raise NoOrbitError(f"the branch ends at the {kind}: {MEANINGS[kind]}")
+    start = orbit
+    if orbit.kind == Special.PERIOD_DOUBLING:
+        start = switching.switch(orbit, name)
+    return FollowedBranch.of_orbits(following.follow(start, name, value, most=most))
 
 
-def switch(orbit: State) -> State:
+def _check_orbit(call: str, orbit: Any) -> None:
+    if not isinstance(orbit, Orbit):
+        kind = type(orbit).__name__
+        raise ParameterError(f"{call} needs an orbit of bouncing_ball, not {{}}", kind)
+    if orbit.shape:
+        raise ParameterError(f"{call} needs a single orbit, not {{}}", str(orbit.size))
+
+
+def _names(orbit: Orbit, along: str | tuple[str, ...] | None) -> tuple[str, ...]:
+    """The one or two parameters along which an orbit is followed."""
+    if along is None:
+        return orbit.along[:1]
+    names = (along,) if isinstance(along, str) else tuple(along)
+    if len(names) not in (1, 2) or len(set(names)) < len(names):
+        raise ParameterError("{along} = {} is not one parameter or two different ones", repr(along))
+    balls = Balls(orbit.model, orbit.amplitude)
+    for name in names:
+        balls.range_of(name)
+    return names
+
+
+def _curve(
+    orbit: Orbit, names: tuple[str, ...], ranges: Mapping[str, Sequence[float]], most: int
+) -> SpecialCurve:
+    """The curve of special orbits of the orbit's kind in two parameters."""
+    if not orbit.kind:
+        raise NoOrbitError(
+            "an ordinary orbit has no curve in two parameters: give a special one, such as "
+            'follow(orbit).first("saddle-node")'
+        )
+    for name in ranges:
+        chosen("ranges", name, names)
+    first, second = names
+    values = Balls(orbit.model, orbit.amplitude).values
+    windows = [_window(name, ranges.get(name), float(values[name])) for name in names]
+    found = curves.curve(
+        orbit,
+        Special(orbit.kind),
+        first,
+        second,
+        along_window=windows[0],
+        across_window=windows[1],
+        most=most,
+    )
+    return SpecialCurve.of_orbits(found, curve_kind=str(orbit.kind))
+
+
+def switch(orbit: Orbit) -> Orbit:
     """The first orbit of twice the period, on the branch that begins at a period doubling.
+
+    :func:`follow` gives the whole branch.
 
     Parameters
     ----------
-    orbit : State
+    orbit : Orbit
         A period doubling of a branch, such as ``found.first("period doubling")``.
 
     Raises
@@ -233,13 +257,15 @@ def switch(orbit: State) -> State:
     >>> round(float(follow(two, to=1.8).special_amplitude[0]), 6)
     1.667131
     """
-    if not isinstance(orbit, State):
-        raise ParameterError("switch needs an orbit of a branch, not {}", type(orbit).__name__)
-    return switching.switch(orbit)
+    _check_orbit("switch", orbit)
+    if orbit.kind != Special.PERIOD_DOUBLING:
+        found = f"a {orbit.kind}" if orbit.kind else "an ordinary orbit"
+        raise ParameterError(f"switch needs a period doubling of a branch, not {found}")
+    return switching.switch(orbit, orbit.along[0])
 
 
 def curve(
-    orbit: State,
+    orbit: Orbit,
     *,
     kind: str,
     across: str,
@@ -247,11 +273,12 @@ def curve(
     across_range: Sequence[float] | None = None,
     points: Points = CURVE,
 ) -> SpecialCurve:
-    """The curve of special orbits in two parameters, through one of them.
+    """The curve of special orbits in two parameters, through one of them: :func:`follow` with two
+    parameters.
 
     Parameters
     ----------
-    orbit : State
+    orbit : Orbit
         A special orbit of a branch, such as ``found.first("saddle-node")``. The first parameter is
         that of the branch.
     kind : str
@@ -264,19 +291,6 @@ def curve(
     points : int
         The largest number of points in each direction.
 
-    Returns
-    -------
-    SpecialCurve
-        Both parameters at each ``point``, the states of the impacts as for :func:`follow`, and
-        ``special_kind`` with the place of each "cusp", "1:1 resonance" and "1:2 resonance".
-
-    Raises
-    ------
-    NoOrbitError
-        If there is no such special orbit.
-    ModelError
-        If a parameter or the kind is unknown.
-
     Examples
     --------
     The saddle-nodes of the restitution model are at Λ = π (1 - r)/(1 + r):
@@ -286,45 +300,32 @@ def curve(
     >>> fold = follow(one, to=0.5).first("saddle-node")
     >>> found = curve(fold, kind="saddle-node", across="restitution", across_range=(0.2, 0.8))
     >>> r = found.restitution
-    >>> bool(abs(found.amplitude - np.pi * (1 - r) / (1 + r)).max() < 1e-12)
+    >>> bool(abs(found.amplitude - math.pi * (1 - r) / (1 + r)).max() < 1e-12)
     True
     """
-    if not isinstance(orbit, State):
-        raise ParameterError("curve needs an orbit of a branch, not {}", type(orbit).__name__)
-    if len(orbit.orbits.along) != 1 or across in orbit.orbits.along:
-        raise ParameterError("{across} must be another parameter than that of the branch")
+    _check_orbit("curve", orbit)
     name = chosen("kind", kind, [str(each) for each in Special])
-    most = checked_number("points", points, POINTS)
-    family = orbit.orbits.family
-    family.bounds(across)
-    at = {**family.values, **orbit.parameters}
-    along = orbit.orbits.along[0]
-    found = curves.curve(
-        orbit,
-        Special(name),
-        across,
-        along_window=_window("along_range", along_range, along, at[along]),
-        across_window=_window("across_range", across_range, across, at[across]),
-        most=most,
-    )
-    return SpecialCurve.of_orbits(found, "curve", curve_kind=name)
+    along = orbit.along[0]
+    given = {along: along_range, across: across_range}
+    ranges = {each: limits for each, limits in given.items() if limits is not None}
+    special = replace(orbit, kind=name)
+    return follow(special, along=(along, across), points=points, ranges=ranges)
 
 
-def _window(
-    name: str, given: Sequence[float] | None, parameter: str, start: float
-) -> Window | None:
+def _window(name: str, given: Sequence[float] | None, start: float) -> Window | None:
     """The range of a parameter on a curve, which contains its value at the start."""
     if given is None:
         return None
-    numbers = [checked_number(name, value, FINITE) for value in given]
+    numbers = [checked_number("ranges", value, FINITE) for value in given]
     if len(numbers) != 2 or not numbers[0] < numbers[1]:
         raise ParameterError(
-            f"{{{name}}} = {{}} is not two numbers of which the second is larger", repr(given)
+            f"the range of {name} = {{}} is not two numbers of which the second is larger",
+            repr(given),
         )
     low, high = numbers
     if not low <= start <= high:
         raise ParameterError(
-            f"{{{name}}} = {low:g} to {high:g} does not contain {parameter} = {start:g}, at which "
-            "the curve starts"
+            f"the range {low:g} to {high:g} does not contain {name} = {start:g}, "
+            "at which the curve starts"
         )
     return Window(low, high)

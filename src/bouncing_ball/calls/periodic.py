@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
-
-import numpy as np
-from numpy.typing import ArrayLike
 
 from bouncing_ball.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
@@ -25,129 +20,12 @@ from bouncing_ball.datasets.arguments import (
 )
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.ball import Ball, a_ball, a_known_ball, a_single_ball
-from bouncing_ball.numerics.arrays import in_words
-from bouncing_ball.periodic.model import ImpactModel
-from bouncing_ball.periodic.orbit import OBSERVABLES, Orbit
+from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.stability import Side
 
 if TYPE_CHECKING:
     from bouncing_ball.drawing.result import Result
-
-
-@dataclass(frozen=True, repr=False)
-class PeriodicOrbit:
-    """One n-T orbit, in Python numbers, which are NaN where there is no such orbit.
-
-    Parameters
-    ----------
-    n : int
-        Index of the family.
-    model : ImpactModel
-        The single model whose orbit this is.
-    amplitude, phase : float
-        Λ, and the table's phase φ at the start of contact.
-    contact_duration : float
-        D = τ_b, which is 0 for an instantaneous impact.
-    impact_velocity : float
-        Absolute velocity z′_i of the ball at the start of contact.
-    """
-
-    n: int
-    model: ImpactModel
-    amplitude: float
-    phase: float
-    contact_duration: float
-    impact_velocity: float
-
-    @classmethod
-    def of(cls, model: ImpactModel, orbit: Orbit) -> PeriodicOrbit:
-        """The single orbit of a single model."""
-        known = {each.name: getattr(orbit, each.name) for each in fields(Orbit)}
-        found = cls(
-            n=int(known["n"]),
-            model=model,
-            amplitude=float(known["amplitude"]),
-            phase=float(known["phase"]),
-            contact_duration=float(known["contact_duration"]),
-            impact_velocity=float(known["impact_velocity"]),
-        )
-        # The cached property below would compute the contact of this orbit again.
-        vars(found)["_orbit"] = orbit
-        return found
-
-    @cached_property
-    def _orbit(self) -> Orbit:
-        return self.model.orbit_of(
-            self.n, self.amplitude, self.phase, self.contact_duration, self.impact_velocity
-        )
-
-    def __repr__(self) -> str:
-        names = ("n", "law", *OBSERVABLES)
-        values = (f"  {name:<22}{in_words(getattr(self, name))}" for name in names)
-        return "\n".join([type(self).__name__, *values])
-
-    @property
-    def law(self) -> Any:
-        """The law of the impact: a contact law, its signature, or r."""
-        return self.model.impact_law
-
-    @property
-    def exists(self) -> bool:
-        """Whether there is such an orbit."""
-        return bool(self._orbit.exists)
-
-    @property
-    def bounce_velocity(self) -> float:
-        """Absolute velocity z′_b at release (Eq. 27)."""
-        return float(self._orbit.bounce_velocity)
-
-    @property
-    def apparent_restitution(self) -> float:
-        """r_a, the relative speed at release over that at impact (Eq. 17)."""
-        return float(self._orbit.apparent_restitution)
-
-    @property
-    def max_height(self) -> float:
-        """The greatest height of the ball over a period."""
-        return float(self._orbit.max_height)
-
-    @property
-    def release_phase(self) -> float:
-        """The table's phase φ + τ_b at release."""
-        return float(self._orbit.release_phase)
-
-    @property
-    def flight_time(self) -> float:
-        """2πn - τ_b (Eq. 19)."""
-        return float(self._orbit.flight_time)
-
-    @property
-    def relative_impact_velocity(self) -> float:
-        """δ′ at the start of contact, below 0."""
-        return float(self._orbit.relative_impact_velocity)
-
-    def multipliers(self) -> np.ndarray:
-        """The two Floquet multipliers, complex; that of larger modulus comes first."""
-        return self._orbit.multipliers()
-
-    def is_stable(self) -> bool:
-        """Whether both multipliers lie inside the unit circle."""
-        return bool(self._orbit.is_stable())
-
-    def is_admissible(self) -> bool:
-        """Whether a simulated ball follows the orbit, without an earlier release or landing."""
-        return bool(self._orbit.is_admissible())
-
-    def defect(self) -> float:
-        """Largest absolute value of the defects of the model's equations."""
-        return float(self._orbit.defect())
-
-    def path(self, time: ArrayLike) -> tuple[Any, Any]:
-        """Height and velocity at times τ since an impact: floats for a number, or arrays."""
-        height, velocity = self._orbit.path(time)
-        if np.ndim(time):
-            return height, velocity
-        return float(height), float(velocity)
 
 
 class TwoLimits(NamedTuple):
@@ -155,8 +33,8 @@ class TwoLimits(NamedTuple):
     bifurcation does not exist.
     """
 
-    saddle_node: PeriodicOrbit
-    period_doubling: PeriodicOrbit
+    saddle_node: Orbit
+    period_doubling: Orbit
 
     def __repr__(self) -> str:
         return f"saddle-node: {self.saddle_node!r}\nperiod doubling: {self.period_doubling!r}"
@@ -164,7 +42,7 @@ class TwoLimits(NamedTuple):
 
 def orbit(
     ball: Ball, n: Family = 1, *, amplitude: AmplitudeOfOrbit, side: SideName = "stable"
-) -> PeriodicOrbit | Result:
+) -> Orbit | Result:
     """The n-T orbit at the excitation amplitude Λ.
 
     Parameters
@@ -179,7 +57,7 @@ def orbit(
 
     Returns
     -------
-    PeriodicOrbit or Result
+    Orbit or Result
         One orbit, with Python floats. If a parameter is an array, a dataset of the observables
         of all orbits with an axis named after each array; NaN where there is no orbit.
 
@@ -194,7 +72,7 @@ def orbit(
     --------
     >>> from bouncing_ball import spring_damper
     >>> orbit(spring_damper(restitution=0.85, frequency_ratio=10.0), amplitude=1.0)
-    PeriodicOrbit
+    Orbit
       n                     1
       law                   SpringDamper(frequency_ratio=10, damping_ratio=0.0516623, \
 release='displacement')
@@ -216,10 +94,10 @@ release='displacement')
 
         return orbits_on_grid(ball, family, lam, branch_side)
     model = ball.at_orbit(family, lam, branch_side)
-    return PeriodicOrbit.of(model, model.require_orbit(family, lam, branch_side))
+    return n_t.require_orbit(model, family, lam, branch_side)
 
 
-def orbits(ball: Ball, n: int = 1, *, amplitude: float) -> list[PeriodicOrbit]:
+def orbits(ball: Ball, n: int = 1, *, amplitude: float) -> list[Orbit]:
     """All n-T orbits at one excitation amplitude Λ, in order of contact duration.
 
     Parameters
@@ -250,10 +128,10 @@ def orbits(ball: Ball, n: int = 1, *, amplitude: float) -> list[PeriodicOrbit]:
     family = checked_number("n", n, FAMILY)
     lam = checked_number("amplitude", amplitude, AMPLITUDE_OF_ORBIT)
     model = a_single_ball(a_ball(ball).at_orbit(family, lam))
-    found = model.orbits(family, lam)
+    found = n_t.orbits(model, family, lam)
     if not found.size:
         raise NoOrbitError(f"no {family}-T orbit at Λ = {lam:g} for {model.label}")
-    return [PeriodicOrbit.of(model, found[k]) for k in range(found.size)]
+    return [found[k] for k in range(found.size)]
 
 
 def limits(ball: Ball, n: Family = 1) -> TwoLimits | Result:
@@ -290,8 +168,8 @@ def limits(ball: Ball, n: Family = 1) -> TwoLimits | Result:
         return limits_on_grid(ball, family)
     model = ball.at_limits(family)
     return TwoLimits(
-        saddle_node=PeriodicOrbit.of(model, model.saddle_node(family)),
-        period_doubling=PeriodicOrbit.of(model, model.period_doubling(family)),
+        saddle_node=n_t.saddle_node(model, family),
+        period_doubling=n_t.period_doubling(model, family),
     )
 
 
@@ -327,11 +205,12 @@ def branch(
 
     Examples
     --------
+    >>> import math
     >>> from bouncing_ball import rigid
     >>> found = branch(rigid(restitution=0.85), points=50)
     >>> found.special_kind.values.tolist()
     ['saddle-node', 'period doubling']
-    >>> round(float(found.special_amplitude[0]) / np.pi * 1.85 / 0.15, 12)
+    >>> round(float(found.special_amplitude[0]) / math.pi * 1.85 / 0.15, 12)
     1.0
     """
     family = checked("n", n, FAMILY)

@@ -17,13 +17,13 @@ from bouncing_ball.datasets.variables import describe
 from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.ball import Ball
+from bouncing_ball.models.model import Model
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.numerics.continuation import ContinuationError
-from bouncing_ball.periodic import observables
+from bouncing_ball.periodic import n_t, observables
 from bouncing_ball.periodic.branch import whole_branch
-from bouncing_ball.periodic.model import ImpactModel
 from bouncing_ball.periodic.observables import branch_columns, columns, joined, no_branch
 from bouncing_ball.periodic.orbit import OBSERVABLES
-from bouncing_ball.periodic.restitution_model import RestitutionModel
 from bouncing_ball.periodic.stability import Side
 
 # The longest step along a branch, and as a fraction of the largest Λ, if that is large: a branch
@@ -39,15 +39,15 @@ def orbits_on_grid(ball: Ball, n: Any, amplitude: Any, side: Side) -> Result:
         model = one.at_orbit(n, amplitude, side)
         return _observables(model, n, amplitude, side)
 
-    grid = ball.grid(n=n, amplitude=amplitude)
+    grid = Grid(n=n, amplitude=amplitude, **ball.parameters)
     missing = _observables(RestitutionModel(1.0), 1, np.nan, Side.STABLE)
     rows = _each_place(grid, ball, ("n", "amplitude"), found, missing)
     return Result.of(grid.unfold(describe(rows, observables.VARIABLES)), "orbit")
 
 
-def _observables(model: ImpactModel, n: Any, amplitude: Any, side: Side) -> dict[str, np.ndarray]:
+def _observables(model: Model, n: Any, amplitude: Any, side: Side) -> dict[str, np.ndarray]:
     names = (name for name in OBSERVABLES if name != "amplitude")
-    return columns(model.orbit(n, amplitude, side), *names)
+    return columns(n_t.orbit(model, n, amplitude, side), *names)
 
 
 def limits_on_grid(ball: Ball, n: Any) -> Result:
@@ -58,8 +58,8 @@ def limits_on_grid(ball: Ball, n: Any) -> Result:
 
     def found(one: Ball, n: Any) -> dict[str, np.ndarray]:
         model = one.at_limits(n)
-        saddle_node = model.saddle_node(n)
-        period_doubling = model.period_doubling(n)
+        saddle_node = n_t.saddle_node(model, n)
+        period_doubling = n_t.period_doubling(model, n)
         return {
             "saddle_node_amplitude": saddle_node.amplitude,
             "saddle_node_phase": saddle_node.phase,
@@ -67,14 +67,14 @@ def limits_on_grid(ball: Ball, n: Any) -> Result:
             "period_doubling_phase": period_doubling.phase,
         }
 
-    grid = ball.grid(n=n)
+    grid = Grid(n=n, **ball.parameters)
     rows = _each_place(grid, ball, ("n",), found, {})
     return Result.of(grid.unfold(describe(rows, observables.VARIABLES)), "limits")
 
 
-def permanent_contact_on_grid(ball: Ball) -> Result:
+def permanent_contact_on_grid(ball: Model) -> Result:
     """The Λ up to which a ball stays on the table, at each point of the grid of its parameters."""
-    grid = ball.grid()
+    grid = Grid(**ball.parameters)
     threshold = ball.row(grid).permanent_contact_threshold()
     rows = xr.Dataset({"threshold_amplitude": (CASE, threshold)})
     return Result.of(grid.unfold(describe(rows)), "permanent-contact")
@@ -140,7 +140,7 @@ def branches_on_grid(ball: Ball, n: Any, amplitude_max: float | None, points: in
     def found(one: Ball, n: int) -> xr.Dataset:
         return branch_of(one.at_limits(n), n, amplitude_max, points)
 
-    grid = ball.grid(n=n)
+    grid = Grid(n=n, **ball.parameters)
     whole = _by_place(grid, ball, ("n",), found, partial(no_branch, points), joined)
     branches = Result.of(grid.unfold(describe(whole, observables.VARIABLES)), "branch")
     return branches if amplitude_max is None else branches.assign_attrs(amplitude_max=amplitude_max)
@@ -157,6 +157,6 @@ def branch_of(model: Any, n: int, amplitude_max: float | None, points: int) -> x
     longest = max(_LARGEST_STEP, _STRIDE * (amplitude_max or 0.0))
     try:
         found = whole_branch(model, n, amplitude_max, longest)
-        return branch_columns(model.system(n), found, points)
+        return branch_columns(found, points)
     except ContinuationError as error:
         raise NoOrbitError(f"the branch of {n}-T orbits for {model.label}: {error}") from None

@@ -28,7 +28,7 @@ from bouncing_ball.datasets.arguments import (
 from bouncing_ball.datasets.files import PICTURES, require_writable
 from bouncing_ball.errors import ParameterError, Range
 from bouncing_ball.periodic.curves import Degenerate
-from bouncing_ball.periodic.following import State
+from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.special import MEANINGS, Special
 
 _DOUBLINGS = Range(0, 8, "[]", whole=True)
@@ -135,16 +135,16 @@ def _branch(start: Any, along: str, to: float, doublings: int) -> FollowedBranch
     name = along.replace("-", "_")
     found = calls.follow(start, along=name, to=to)
     for _ in range(doublings):
-        found = calls.follow(calls.switch(found.first("period doubling")), along=name, to=to)
+        found = calls.follow(found.first("period doubling"), along=name, to=to)
     return found
 
 
-def _answer(special: list[tuple[str, State]], found: Any) -> Answer:
+def _answer(special: list[tuple[str, Orbit]], found: Any) -> Answer:
     orbits = [
         {
             "kind": kind,
             **state.parameters,
-            "phase": float(state.phase[0]),
+            "phase": float(state.phases[0]),
             "meaning": MEANINGS.get(Special(kind), "") if kind in list(Special) else "",
         }
         for kind, state in special
@@ -197,8 +197,7 @@ def curve(
     words = str(Special[kind.replace("-", "_").upper()])
     name = across.replace("-", "_")
     special = found.first(words)
-    other = name not in special.orbits.along
-    start = special.orbits.family.values.get(name) if other else None
+    start = None if name in special.along else special.model.numbers().get(name)
     first = along.replace("-", "_")
     traced = calls.curve(
         special,

@@ -22,10 +22,10 @@ from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.signature import Signature, free_impact
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.continued_orbits import restitution_speed
-from bouncing_ball.periodic.orbit import OBSERVABLES
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic.orbit import OBSERVABLES, Orbit
 from bouncing_ball.periodic.stability import Bifurcation
+from bouncing_ball.periodic.start import restitution_speed
 
 Answer = dict[str, Any]
 Side = Literal["stable", "unstable", "all"]
@@ -95,7 +95,7 @@ def orbit(*, n: int, amplitude: float, side: Side, index: int | None, **impact: 
     return _orbit(one) | _law_of(one)
 
 
-def _numbered(found: list[calls.PeriodicOrbit], index: int) -> calls.PeriodicOrbit:
+def _numbered(found: list[Orbit], index: int) -> Orbit:
     if index > len(found):
         first = found[0]
         raise NoOrbitError(
@@ -105,7 +105,7 @@ def _numbered(found: list[calls.PeriodicOrbit], index: int) -> calls.PeriodicOrb
     return found[index - 1]
 
 
-def _orbit(found: calls.PeriodicOrbit) -> Answer:
+def _orbit(found: Orbit) -> Answer:
     return {
         **{name: getattr(found, name) for name in OBSERVABLES if name != "amplitude"},
         "multipliers": [[x.real, x.imag] for x in found.multipliers().tolist()],
@@ -115,7 +115,7 @@ def _orbit(found: calls.PeriodicOrbit) -> Answer:
     }
 
 
-def _law_of(found: calls.PeriodicOrbit) -> Answer:
+def _law_of(found: Orbit) -> Answer:
     return described(found.law, -found.relative_impact_velocity)
 
 

@@ -9,19 +9,19 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.accuracy.corrected_errors import exact_and_simple_models
+from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.hertzian import Tsuji
 from bouncing_ball.models.laws.linear import LinearLaw
+from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.laws.permanent_contact import known_threshold
 from bouncing_ball.models.laws.scales import rest
 from bouncing_ball.models.laws.signature import Signature
+from bouncing_ball.models.model import Model
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.corrected_orbits import CorrectedModel
-from bouncing_ball.periodic.law_orbits import LawModel
-from bouncing_ball.periodic.model import ImpactModel
 from bouncing_ball.periodic.restitution_branch import rigid_speed
-from bouncing_ball.periodic.restitution_model import RestitutionModel
 
 # Restitution coefficients that differ by less are taken for equal, because a contact law is fitted
 # to a free impact, and its signature interpolated, to 1e-12.
@@ -98,7 +98,7 @@ class PhysicalCase:
     law: ContactLaw | None = None
 
     @cached_property
-    def models(self) -> dict[str, ImpactModel]:
+    def models(self) -> dict[str, Model]:
         """The models by name: first the exact model, then the two simple models, in which r is
         that of a free impact.
         """

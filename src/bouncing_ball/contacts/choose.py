@@ -24,8 +24,9 @@ from bouncing_ball.contacts.results import Choice, Needed
 from bouncing_ball.contacts.units import percent
 from bouncing_ball.contacts.verdict import chosen
 from bouncing_ball.errors import NoOrbitError, ParameterError
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.periodic import n_t
 
 # Largest number of times that the damping of a drop test is fitted to the stiffness chosen.
 _REFITS = 12
@@ -114,7 +115,7 @@ def _with_ratio(
     r = float(unit.restitution)
     n = meant(question.families, r, table.amplitude)
     if quantity in OF_ORBITS:
-        RestitutionModel(r).require_orbit(n, table.amplitude)
+        n_t.require_orbit(RestitutionModel(r), n, table.amplitude)
     need = needed(quantity, question.tolerance, unit, n, table.amplitude)
     if need.status == ThresholdStatus.NEVER_WITHIN:
         raise NoOrbitError(

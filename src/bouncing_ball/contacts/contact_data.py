@@ -33,9 +33,10 @@ from bouncing_ball.models.laws.law_of_impact import law_of_impact
 from bouncing_ball.models.laws.linear import LinearLaw
 from bouncing_ball.models.laws.registry import law_named
 from bouncing_ball.models.laws.signature import Signature, free_impact
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.restitution_branch import rigid_speed
-from bouncing_ball.periodic.restitution_model import RestitutionModel
 
 # Parameters that determine the stiffness of a contact; a modulus needs the radius, too.
 STIFF = ("stiffness", "contact_time", "reduced_modulus", "youngs_modulus")
@@ -223,7 +224,7 @@ def meant(asked: Sequence[int], restitution: float | np.ndarray, amplitude: floa
     >>> meant([1, 2, 3], 0.85, 1.1)
     2
     """
-    orbits = RestitutionModel(restitution).orbit(np.array(asked), amplitude)
+    orbits = n_t.orbit(RestitutionModel(restitution), np.array(asked), amplitude)
     return asked[int(np.argmax(orbits.exists & orbits.is_stable()))]
 
 

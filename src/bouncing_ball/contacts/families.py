@@ -20,9 +20,10 @@ from bouncing_ball.contacts.case import PhysicalCase, TableMotion
 from bouncing_ball.contacts.results import Errors, Family, Needed, Standing
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.laws.contact_law import ContactLaw
+from bouncing_ball.models.model import Model
 from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.model import ImpactModel
+from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.orbit import Orbit
 
 # Samples of a contact, and further samples for each radian of the table's motion, because a long
@@ -110,7 +111,7 @@ def by_error_law(case: PhysicalCase, n: np.ndarray) -> tuple[np.ndarray, np.ndar
     contact = case.contact
     predicted = np.full((len(Quantity), n.size), np.nan)
     holds = np.zeros(n.size, dtype=bool)
-    there = case.models["restitution"].orbit(n, lam).exists
+    there = n_t.orbit(case.models["restitution"], n, lam).exists
     instant = case.instant(n[there])
     predicted[: len(OF_IMPACTS), there] = [*error_law.first_order(n[there], instant, lam).values()]
     is_small = error_law.small_parameter(n[there], instant, lam) < error_law.VALID_BELOW
@@ -191,13 +192,13 @@ def families(
 
 
 def _in_model(
-    model: ImpactModel, n: np.ndarray, amplitude: float, permanent_contact: float
+    model: Model, n: np.ndarray, amplitude: float, permanent_contact: float
 ) -> tuple[Orbit, list[np.ndarray]]:
     """The n-T orbits of one model and the values of all quantities, in the order of Quantity."""
-    node = model.saddle_node(n).amplitude
-    doubling = model.period_doubling(n).amplitude
+    node = n_t.saddle_node(model, n).amplitude
+    doubling = n_t.period_doubling(model, n).amplitude
     # Below its saddle-node a model has no orbit, so that none is searched for.
-    orbit = model.orbit(n, np.where(amplitude < node, np.nan, amplitude))
+    orbit = n_t.orbit(model, n, np.where(amplitude < node, np.nan, amplitude))
     of_orbits = [getattr(orbit, quantity) for quantity in OF_ORBITS]
     return orbit, [*of_orbits, node, doubling, np.full(n.shape, permanent_contact)]
 

@@ -39,6 +39,7 @@ from bouncing_ball.long_run.sampled_means import (
     sums_at,
 )
 from bouncing_ball.models.sequence import ImpactSequence
+from bouncing_ball.periodic import n_t
 
 # Relative change of an orbit's impact velocity for a start beside the orbit.
 _BESIDE = 1e-3
@@ -148,7 +149,7 @@ def _followed(case: PhysicalCase) -> int:
 def _first_orbit(case: PhysicalCase, n: int) -> Any | None:
     """The n-T orbit of the first model that has one: exact, restitution or corrected."""
     for model in case.models.values():
-        orbit = model.orbit(n, case.table.amplitude)
+        orbit = n_t.orbit(model, n, case.table.amplitude)
         if orbit.exists:
             return orbit
     return None
@@ -211,7 +212,7 @@ def _end(case: PhysicalCase, name: str, first: _Start) -> _End:
 
 def _on_orbit(case: PhysicalCase, n: int) -> _End:
     """The n-T orbit of the restitution model."""
-    orbit = case.models["restitution"].orbit(n, case.table.amplitude)
+    orbit = n_t.orbit(case.models["restitution"], n, case.table.amplitude)
     impact = Starts(np.atleast_1d(orbit.phase), np.atleast_1d(orbit.impact_velocity))
     return _End(_Kind(str(Kind.ORBIT), n, 1), impact)
 

@@ -8,6 +8,7 @@ from bouncing_ball.accuracy.thresholds import RATIOS, ThresholdStatus
 from bouncing_ball.contacts.families import against_contact
 from bouncing_ball.contacts.results import Assessment
 from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.periodic import n_t
 
 # Number of restitution coefficients of the chart, enough for smooth lines, and the smallest
 # coefficient, because an underdamped contact that only pushes has r > e⁻².
@@ -48,7 +49,7 @@ def page(design: Assessment) -> xr.Dataset:
     from_there_on = np.where(always, RATIOS[0], found.threshold)[:, 0]
     # One cycle from phase 0 of the table, and a quarter of a period more.
     angle = np.linspace(0.0, 2 * np.pi * (design.n + 0.25), _SAMPLES)
-    orbits = {name: model.orbit(design.n, lam) for name, model in design.case.models.items()}
+    orbits = {name: n_t.orbit(model, design.n, lam) for name, model in design.case.models.items()}
     # Around the impact in the exact model, or in the first model that has an orbit.
     start = next(float(orbit.phase) for orbit in orbits.values() if orbit.exists)
     duration = float(design.case.contact.free_duration)

@@ -19,7 +19,8 @@ from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.hertzian import Tsuji
 from bouncing_ball.models.laws.impedance import Impedance
 from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic import n_t
 
 _UNITS = {Quantity.MAX_HEIGHT: "m", Quantity.BOUNCE_VELOCITY: "m/s"}
 # Units of the means over time.
@@ -269,7 +270,7 @@ def chosen(si: Mapping[str, float], needed: Needed, n: int) -> Verdict:
 def _cost_of(law: Impedance, case: PhysicalCase, family: Family) -> str:
     """A sentence on the change of the greatest height that an impedance causes."""
     about = "stiffness, damping, ϖ and ζ are those of the spring and damper of this solref"
-    spring = SpringDamperModel(case.contact).orbit(family.n, case.table.amplitude)
+    spring = n_t.orbit(SpringDamperModel(case.contact), family.n, case.table.amplitude)
     if family.greatest_compression is None or family.max_height is None or not spring.exists:
         return about
     depth = np.array(family.greatest_compression / case.table.length)

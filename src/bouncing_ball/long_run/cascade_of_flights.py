@@ -30,16 +30,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
-from bouncing_ball.errors import Range, require
+from bouncing_ball.errors import require
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.corrector import NewtonSettings, newton
-from bouncing_ball.periodic.family import AMPLITUDE, Family
+from bouncing_ball.periodic.balls import LAMBDA, Balls
 from bouncing_ball.periodic.problem import PeriodicOrbits
 from bouncing_ball.periodic.release import release_condition
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 
 # Number of samples of an oscillation, among which its first maximum is bracketed.
 _FINE = 400
@@ -330,7 +330,7 @@ def _stepped(zeta: np.ndarray, ratio: float, place: _Place) -> _Place:
     exists = solved.converged & (multiplier < 1)
     y = np.where(exists[:, np.newaxis], solved.point, np.nan)
     scaled = (y - origin) / orbits.unit
-    opening = Openings(orbits.values(y)[AMPLITUDE], np.where(exists, multiplier, np.nan))
+    opening = Openings(orbits.values(y)[LAMBDA], np.where(exists, multiplier, np.nan))
     return _Place(ratio, scaled, (scaled - place.scaled) / ahead, opening)
 
 
@@ -343,17 +343,14 @@ def _scaled(
     ϖ⁻².
     """
     threshold = permanent_contact_threshold(frequency_ratio, zeta)
-    family = Family(
-        lambda given: SpringDamperModel(SpringDamper(frequency_ratio, given["damping_ratio"])),
-        {AMPLITUDE: threshold, "damping_ratio": zeta},
-        {AMPLITUDE: Range(0)},
-    )
+    model = SpringDamperModel(SpringDamper(np.full(zeta.shape, frequency_ratio), zeta))
+    balls = Balls(model, threshold)
     power = np.array([1.0, 3.0] * impacts + [1.0] * impacts + [2.0])
     unit = np.broadcast_to(frequency_ratio**-power, (zeta.size, power.size)).copy()
     # The coordinate is arsinh Λ.
     unit[:, -1] /= np.hypot(1, threshold)
     turns = np.eye(impacts, dtype=int)[-1]
-    orbits = PeriodicOrbits(family, impacts, turns, (AMPLITUDE,), selects=True, unit=unit)
+    orbits = PeriodicOrbits(balls, impacts, turns, (LAMBDA,), selects=True, unit=unit)
     none = np.zeros((zeta.size, impacts))
     periods = np.broadcast_to(2 * np.pi * turns, none.shape)
     return orbits, orbits.point(none + np.pi / 2, none, periods, amplitude=threshold)

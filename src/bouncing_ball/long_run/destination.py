@@ -102,7 +102,7 @@ def final_motions(
     --------
     Below and above the period doubling at Λ = 1.527, and a motion that sticks to the table:
 
-    >>> from bouncing_ball.periodic.restitution_model import RestitutionModel
+    >>> from bouncing_ball.models.rigid import RestitutionModel
     >>> model = RestitutionModel(0.5)
     >>> found = final_motions(model, [1.2, 1.6, 2.5], 1.0, -3.0)
     >>> found.kind.tolist(), found.periods.tolist(), found.impacts.tolist()[:2]

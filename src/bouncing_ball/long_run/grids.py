@@ -14,7 +14,7 @@ from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.errors import ParameterError
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.motions import Kind, Motions
-from bouncing_ball.models.instant import instant_of
+from bouncing_ball.periodic import n_t
 
 VARIABLES = {
     "digits_lost": Variable(
@@ -100,12 +100,12 @@ def fastest(model: Any, amplitude: Any) -> np.ndarray:
 
     Examples
     --------
-    >>> from bouncing_ball.periodic.restitution_model import RestitutionModel
+    >>> from bouncing_ball.models.rigid import RestitutionModel
     >>> float(fastest(RestitutionModel(0.5), 2.0))
     6.0
     """
     lam = np.asarray(amplitude, dtype=float)
-    r = np.asarray(instant_of(model, 2 * np.pi).restitution)
+    r = np.asarray(model.signature(2 * np.pi).restitution)
     return (1 + r) * np.maximum(lam, 1.0) / np.maximum(1 - r, 0.05)
 
 
@@ -151,7 +151,7 @@ def _first_starts(model: Any, lam: np.ndarray, starts: int) -> tuple[np.ndarray,
     even_phase = 2 * np.pi * even[:, 0] - np.pi + 0 * lam
     even_speed = even[:, 1] * fastest(model, lam)
     # More balls start beside the orbits with one impact, which may attract few of the other balls.
-    orbit = model.orbit(np.array(_FAMILIES), np.where(lam > 0, lam, np.nan))
+    orbit = n_t.orbit(model, np.array(_FAMILIES), np.where(lam > 0, lam, np.nan))
     phase = np.concatenate([even_phase, orbit.phase + _BESIDE], axis=1)
     speed = np.concatenate([even_speed, -orbit.relative_impact_velocity], axis=1)
     return phase, speed

@@ -30,14 +30,14 @@ from typing import NamedTuple, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.dynamics import Departure, Dynamics, Impact
 from bouncing_ball.models.flight import table
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.periodic.corrected_orbits import CorrectedModel
-from bouncing_ball.periodic.restitution_model import RestitutionModel
 
 # The ϖ of the corrected model from whose map the first order is computed. The relative error from
 # the second order is of order 1/ϖ, and that from rounding of order ε ϖ.

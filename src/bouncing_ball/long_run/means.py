@@ -142,7 +142,7 @@ def means(model: HasDynamics, amplitude: ArrayLike, found: Motions, samples: int
     In each period the 1-T orbit dissipates ½(1 - r²)v², where (1 + r) v = 2π:
 
     >>> from bouncing_ball.long_run.destination import final_motions
-    >>> from bouncing_ball.periodic.restitution_model import RestitutionModel
+    >>> from bouncing_ball.models.rigid import RestitutionModel
     >>> model = RestitutionModel(0.5)
     >>> flights, _, power, _ = means(model, 1.2, final_motions(model, 1.2, 1.0, -3.0), 100)
     >>> float(flights.round(6)), bool(np.isclose(power, np.pi / 3))

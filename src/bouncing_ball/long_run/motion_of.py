@@ -19,6 +19,7 @@ from bouncing_ball.datasets.arguments import (
     checked,
     checked_number,
 )
+from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import ParameterError
 from bouncing_ball.long_run import grids
@@ -80,7 +81,7 @@ def motion_of(
     phi = checked("phase", phase, STATE)
     before = checked("velocity", velocity, STATE)
     most = checked_number("impacts", impacts, FOLLOWED)
-    grid = a_ball(ball).grid(amplitude=lam, phase=phi, velocity=before)
+    grid = Grid(amplitude=lam, phase=phi, velocity=before, **a_ball(ball).parameters)
     starts = Starts.on(grid)
     found = grids.motions(starts.model(ball, grid), *starts, most)
     return Result.of(grid.unfold(found), "motion")
@@ -180,7 +181,7 @@ def orbit_diagram(
         samples=checked_number("samples", samples, SAMPLES),
         impacts=checked_number("impacts", impacts, FOLLOWED),
     )
-    return Result.of(ball.grid().unfold(found), "diagram")
+    return Result.of(Grid(**ball.parameters).unfold(found), "diagram")
 
 
 def basins(
@@ -237,5 +238,5 @@ def basins(
         fast=fastest,
         impacts=checked_number("impacts", impacts, FOLLOWED),
     )
-    whole = ball.grid().unfold(found.assign_attrs(amplitude=lam))
+    whole = Grid(**ball.parameters).unfold(found.assign_attrs(amplitude=lam))
     return Result.of(whole, "basins")

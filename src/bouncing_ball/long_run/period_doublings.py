@@ -5,17 +5,14 @@ of twice the period branches off (:mod:`bouncing_ball.periodic.switching`). Newt
 finds the doubling of the new orbit from a point on its branch; many cascades are computed together.
 """
 
-from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import Range, require
-from bouncing_ball.models.dynamics import Dynamics
+from bouncing_ball.errors import require
 from bouncing_ball.numerics.corrector import NewtonSettings, newton
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.periodic.family import AMPLITUDE, Family
+from bouncing_ball.periodic.balls import LAMBDA
 from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.problem import PeriodicOrbits
 from bouncing_ball.periodic.stability import Bifurcation
@@ -72,8 +69,9 @@ def cascade(orbit: Orbit, doublings: int) -> Cascade:
 
     Examples
     --------
-    >>> from bouncing_ball.periodic.restitution_model import RestitutionModel
-    >>> found = cascade(RestitutionModel(0.5).period_doubling(1), 4)
+    >>> from bouncing_ball.models.rigid import RestitutionModel
+    >>> from bouncing_ball.periodic import n_t
+    >>> found = cascade(n_t.period_doubling(RestitutionModel(0.5), 1), 4)
     >>> found.amplitude.round(6).tolist(), found.ratios().round(2).tolist()
     ([1.526824, 1.667131, 1.696781, 1.703181], [4.73, 4.63])
     """
@@ -81,41 +79,18 @@ def cascade(orbit: Orbit, doublings: int) -> Cascade:
     existing = np.flatnonzero(np.broadcast_to(orbit.exists, orbit.shape))
     found = np.full((doublings, orbit.size, 3), np.nan)
     if existing.size:
-        row = orbit.flat(orbit.shape).take(existing)
+        row = orbit.in_a_row().take(existing)
         found[:, existing] = _followed(row, doublings)
     phase, velocity, amplitude = np.moveaxis(found, -1, 0).reshape(3, doublings, *orbit.shape)
     return Cascade(amplitude, reduce_angle(phase), velocity)
 
 
-@dataclass(frozen=True)
-class _Rows:
-    """The balls on some orbits of a row, each at its own Λ."""
-
-    orbits: Orbit
-
-    def dynamics(self, amplitude: ArrayLike) -> Dynamics:
-        return self.orbits.dynamics(self.orbits.law, amplitude)
-
-
-def _family(row: Orbit) -> Family:
-    """The balls of a row of orbits, which differ by their number in the row."""
-    values = {AMPLITUDE: row.amplitude, "number": np.arange(row.size)}
-    return Family(
-        lambda given: _Rows(row.take(given["number"])), values, {AMPLITUDE: Range(0, 1e8)}
-    )
-
-
 def _followed(row: Orbit, doublings: int) -> np.ndarray:
     """φ, δ′ and Λ at the doublings of a one-dimensional array of orbits, (doublings, orbits, 3)."""
-    dynamics = row.dynamics(row.law, row.amplitude)
-    dynamics, start, _ = dynamics.in_a_row(row.phase, row.relative_impact_velocity)
-    phase, velocity = dynamics.section(dynamics.start(*start))
-    rows = np.broadcast_arrays(phase, velocity, row.contact_duration, row.amplitude, row.n)
-    phase, velocity, duration, amplitude, n = rows
-    selects = dynamics.continues and bool(np.nanmax(duration) > 0)
-    orbits = PeriodicOrbits(_family(row), 1, n[:, np.newaxis], (AMPLITUDE,), selects)
-    state = (x[:, np.newaxis] for x in (phase, velocity, duration))
-    y = orbits.point(*state, amplitude=amplitude)
+    orbits = row.problem(LAMBDA)
+    y = row.point(orbits)
+    phase, velocity = (x[:, 0] for x in orbits.states(y))
+    amplitude = np.broadcast_to(row.amplitude, phase.shape)
     found = np.full((doublings, row.size, 3), np.nan)
     found[0] = np.stack([phase, velocity, amplitude], axis=-1)
     gap = _FIRST * np.abs(np.sin(phase))
@@ -129,18 +104,17 @@ def _followed(row: Orbit, doublings: int) -> np.ndarray:
             guess = ahead(orbits, y, _SHARE * gap / np.hypot(1, before))
             orbits, _ = twice(orbits, y)
             solved = newton(orbits, guess, _condition(orbits), _SETTINGS)
-        amplitude = orbits.values(solved.point)[AMPLITUDE]
+        amplitude = orbits.values(solved.point)[LAMBDA]
         step = amplitude - before
         # Λ rises along a cascade; a doubling at or below the previous Λ is that of the old orbit.
         # Feigenbaum's number underestimates a distance by a factor of at most 1.8 in all cascades
         # that were tried; a doubling farther away is that of another orbit.
         good = np.flatnonzero(solved.converged & (step > 0) & ((k == 1) | (step < 2 * gap)))
-        row = row.take(good)
         which = which[good]
         y = solved.point[good]
         before = amplitude[good]
         gap = step[good] / FEIGENBAUM
-        orbits = replace(orbits, family=_family(row), turns=orbits.turns[good])
+        orbits = orbits.take(good)
         phases, velocities = orbits.states(y)
         found[k, which] = np.stack([phases[:, 0], velocities[:, 0], before], axis=-1)
     return found

@@ -165,7 +165,7 @@ def follow(
     The mean height of an elastic ball on a table at rest is two thirds of its greatest height, and
     the ball receives no power:
 
-    >>> from bouncing_ball.periodic.restitution_model import RestitutionModel
+    >>> from bouncing_ball.models.rigid import RestitutionModel
     >>> once = Starts(np.zeros(1), np.full(1, -2.0))
     >>> _, (time, height, work) = follow(*start(RestitutionModel(1.0), 0.0, once), 5)
     >>> (height / time).round(12).tolist(), work.tolist()
@@ -191,7 +191,7 @@ def sections(dynamics: Dynamics, impact: Impact, impacts: int) -> np.ndarray:
 
     Examples
     --------
-    >>> from bouncing_ball.periodic.restitution_model import RestitutionModel
+    >>> from bouncing_ball.models.rigid import RestitutionModel
     >>> once = Starts(np.zeros(1), np.full(1, -2.0))
     >>> sections(*start(RestitutionModel(1.0), 0.0, once), 7)[0].tolist()
     [8.0, 8.0, 12.0]

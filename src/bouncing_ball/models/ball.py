@@ -1,6 +1,6 @@
 """Balls, which all public functions take: models of the impact, with their parameters as labels.
 
-Every model is a ball (:class:`~bouncing_ball.periodic.model.ImpactModel`), also an array of models.
+Every model is a ball (:class:`~bouncing_ball.models.model.Model`), also an array of models.
 A contact law that is given by the r and D of a free impact has a model only at a speed
 (:class:`~bouncing_ball.periodic.law_balls.FreeImpactBall`).
 """
@@ -40,7 +40,7 @@ class Ball:
         Examples
         --------
         >>> from bouncing_ball.models.spring_damper import SpringDamper
-        >>> from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+        >>> from bouncing_ball.models.spring_damper_model import SpringDamperModel
         >>> dict(SpringDamperModel(SpringDamper(10.0, 0.1)).parameters)
         {'frequency_ratio': 10.0, 'damping_ratio': 0.1, 'release': 'displacement'}
         """
@@ -85,13 +85,6 @@ class Ball:
     def take(self, which: Any) -> Any:
         """The balls of a row with these indices; a single ball is unchanged."""
         raise NotImplementedError
-
-    def grid(self, **arguments: Any) -> Grid:
-        """The grid that the arguments of a call and the parameters span, in this order."""
-        # Imported here, because a single orbit needs no labels.
-        from bouncing_ball.datasets.labelled import Grid
-
-        return Grid(**arguments, **self.parameters)
 
     def row(self, grid: Grid) -> Any:
         """The balls at the places of a grid of which the parameters are arguments, one after

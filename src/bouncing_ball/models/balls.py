@@ -26,13 +26,13 @@ from bouncing_ball.datasets.arguments import (
 )
 from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.models.ball import Ball, a_ball
+from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.signature import Signature
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.corrected_orbits import CorrectedModel
-from bouncing_ball.periodic.restitution_model import RestitutionModel
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 
 LOSSES = ("restitution", "damping_ratio", "measured_restitution")
 """The parameters that determine the loss of an impact; exactly one of them is needed."""

@@ -53,6 +53,13 @@ class Deviation(NamedTuple):
         return at_end.to_event(velocity, y1 - _ONE, lag)
 
 
+class Released(NamedTuple):
+    """The deviations at the releases of unit deviations of φ and of δ′ at the impacts."""
+
+    by_phase: Deviation
+    by_velocity: Deviation
+
+
 class Jacobian(NamedTuple):
     """The matrix ∂(φ₁, δ′₁)/∂(φ, δ′), row by row, as arrays with one entry per ball."""
 

@@ -146,6 +146,44 @@ class Dynamics(Batch, ABC):
         """
         return None
 
+    def duration_slopes(
+        self, impact: Impact, departure: Departure
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Derivatives of the durations of contacts with respect to φ and δ′ at their starts.
+
+        They are needed only where the model :attr:`continues` contacts.
+        """
+        raise NotImplementedError(f"{type(self).__name__} does not continue its contacts")
+
+    @property
+    def clock(self) -> Any:
+        """Frequency of the contacts over that of the table, 1 for instants. Durations of contacts
+        times the clock are of order one.
+        """
+        return 1.0
+
+    def within(
+        self, impact: Impact, departure: Departure, time: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """δ and δ′ at times 0 ≤ s ≤ D since the starts of contacts, of shape (..., contacts).
+
+        A ball whose impact is an instant rests on the table until it leaves.
+        """
+        return np.zeros(time.shape), np.zeros(time.shape)
+
+    def gap_at_start(self, impact: Impact) -> np.ndarray:
+        """δ of the flight that ends with each impact, at the start of the contact."""
+        return impact.displacement
+
+    @abstractmethod
+    def contraction(self, impact: Impact, departure: Departure) -> np.ndarray:
+        """The factor by which the contacts multiply areas of the phase plane; flights keep them.
+
+        The determinant of the monodromy of a periodic orbit is the product of these factors.
+        Without dissipation it is exactly 1, whereas the rounding errors of the entries of the
+        monodromy would decide about stability.
+        """
+
     def settles(self, impact: Impact) -> np.ndarray:
         """Whether a contact that :meth:`depart_after` ends at a given duration can begin with these
         impacts; always, unless bounces must first end before the next lift-off.

@@ -8,14 +8,12 @@ are in closed form, with κ as in :mod:`bouncing_ball.models.damping`::
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.restitution_model import RestitutionModel
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 
 
 class Instant(NamedTuple):
@@ -103,17 +101,3 @@ def rigid_instant(restitution: ArrayLike, slope: ArrayLike, speed: ArrayLike) ->
         duration=none,
         d_restitution=(np.asarray(slope) - r) / v,
     )
-
-
-def instant_of(model: Any, speed: ArrayLike) -> Instant:
-    """The impact of any model as an instant, at impact speeds v > 0.
-
-    The models of the paper do not know this view of an impact; all others have it as their method
-    ``signature``.
-    """
-    match model:
-        case RestitutionModel():
-            return rigid_instant(model.restitution, model.restitution, speed)
-        case SpringDamperModel():
-            return linear_instant(model.contact).at(speed)
-    return model.signature(speed)

@@ -26,9 +26,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from bouncing_ball.models.deviations import Deviation, Jacobian
+from bouncing_ball.models.deviations import Deviation, Jacobian, Released
 from bouncing_ball.models.dynamics import Departure, Impact
 from bouncing_ball.models.flight import Flight, table
+from bouncing_ball.models.oscillator import responses
 from bouncing_ball.models.resumption import ResumingDynamics
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.models.spring_damper import SpringDamper
@@ -44,6 +45,9 @@ from bouncing_ball.numerics.first_zero import Motion, State, Zero, first_zero, n
 _RESONANCE = 1e-4
 # Number of steps after which the expensive bound of :meth:`ContactMotion.skip` is used.
 _PATIENCE = 12
+# Bound of |p(ν)|² s⁴ below which the responses to the table are computed by their integrals: above
+# it the terms of the quotients exceed the result by a factor of 16 at most.
+_DELICATE = np.array(0.25)
 # Bound of the rounding errors of the three terms of the inequality above.
 _ROUNDING = np.array(8 * np.finfo(float).eps)
 # Constants are arrays without an axis, as in :mod:`bouncing_ball.numerics.elementary`.
@@ -266,7 +270,8 @@ class LinearContactDynamics(ResumingDynamics):
     def depart_after(self, impact: Impact, duration: np.ndarray) -> Departure:
         """The ends of the contacts nearest to given durations, also beyond an earlier end."""
         motion = self._motion(impact)
-        return self._ended(impact, motion, nearest_zero(motion, duration))
+        departure = self._ended(impact, motion, nearest_zero(motion, duration))
+        return departure._replace(by=self._released(impact, departure))
 
     def release_function(
         self, impact: Impact, departure: Departure
@@ -274,6 +279,16 @@ class LinearContactDynamics(ResumingDynamics):
         """δ + κ δ′ within contacts, in closed form."""
         motion = self._motion(impact)
         return lambda time: motion(time).value
+
+    @property
+    def clock(self) -> np.ndarray | float:
+        """ϖ, the frequency of the contact over that of the table."""
+        return self.law.frequency_ratio
+
+    def contraction(self, impact: Impact, departure: Departure) -> np.ndarray:
+        """exp(-2ζϖD), because areas contract only in contact, at the rate 2ζϖ."""
+        loss = np.asarray(self.law.damping_ratio) * self.law.frequency_ratio
+        return np.exp(-2 * loss * departure.duration)
 
     def _motion(self, impact: Impact) -> ContactMotion:
         x, y = self.table_at(impact)
@@ -302,48 +317,82 @@ class LinearContactDynamics(ResumingDynamics):
         sticks = duration * self.law.damped_frequency > _TURN
         return Departure(phase, duration, flight, status, sticks=sticks)
 
+    def duration_slopes(
+        self, impact: Impact, departure: Departure
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Derivatives of the durations with respect to φ and δ′, through the release condition."""
+        by_phase, by_velocity = departure.by or self._released(impact, departure)
+        return by_phase.phase - _ONE, by_velocity.phase
+
     def jacobian(
         self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
     ) -> Jacobian:
         """Derivative of the map over contact and flight, in closed form."""
+        lag = self.law.lag * (after.displacement < _ZERO)
+        released = departure.by or self._released(impact, departure)
+        return self.landed(released, departure, after, passed, lag)
+
+    def _released(self, impact: Impact, departure: Departure) -> Released:
+        """The deviations at the release of unit deviations of φ and of δ′ at the impact.
+
+        The responses Q and P to the table (:mod:`bouncing_ball.models.oscillator`) give that of φ.
+        """
         contact = self.law
         flight = departure.flight
+        duration = departure.duration
         omega = contact.frequency_ratio
         stiffness = omega**2
         loss = 2 * contact.damping_ratio * omega
         half = loss / _TWO
         # The impulse response g, g′, and g′ + 2ζϖ g, the response to a unit displacement.
-        sine, versine = sine_and_versine(contact.damped_frequency * departure.duration)
-        decay = exponential(-half * departure.duration)
+        sine, versine = sine_and_versine(contact.damped_frequency * duration)
+        decay = exponential(-half * duration)
         impulse = decay * sine / contact.damped_frequency
         impulse_rate = decay * (_ONE - versine) - half * impulse
         level = impulse_rate + loss * impulse
-
-        def acceleration(displacement, velocity, y):
-            return (y - _ONE) - loss * velocity - stiffness * displacement
-
-        _, y = self.table_at(impact)
-        rate = impact.velocity
+        in_phase, quadrature = self._table_response(duration, impulse, level)
+        x, y = self.table_at(impact)
         speed = flight.velocity
-        first = acceleration(impact.displacement, rate, y)
-        last = acceleration(flight.displacement, speed, flight.y)
-        # A contact that resumes starts, and the flight before it ends, at δ + κ δ′ = 0.
-        lag_before = contact.lag * (impact.displacement < _ZERO)
-        lag_after = contact.lag * (after.displacement < _ZERO)
-        one = np.ones(passed.shape)
-        none = np.zeros(passed.shape)
-        # A deviation along the motion changes only the time. (1, 0, 0) is therefore (1, δ′, δ″),
-        # which becomes (1, δ′, δ″) at the release, less (0, δ′, δ″).
+        last = (flight.y - _ONE) - loss * speed - stiffness * flight.displacement
+        # A contact that resumes starts at δ + κ δ′ = 0: its displacement deviates by -κ dδ′.
+        lag = contact.lag * (impact.displacement < _ZERO)
         by_phase = Deviation(
-            phase=one,
-            displacement=speed - level * rate - impulse * first,
-            velocity=last + stiffness * impulse * rate - impulse_rate * first,
+            phase=np.ones(duration.shape),
+            displacement=x * in_phase - y * quadrature,
+            velocity=x * (impulse - quadrature) - y * in_phase,
         )
         by_velocity = Deviation(
-            phase=none,
-            displacement=impulse - lag_before * level,
-            velocity=impulse_rate + lag_before * stiffness * impulse,
+            phase=np.zeros(duration.shape),
+            displacement=impulse - lag * level,
+            velocity=impulse_rate + lag * stiffness * impulse,
         )
-        moved = (by_phase, by_velocity)
-        released = (each.to_event(speed, last, contact.lag) for each in moved)
-        return self.landed(released, departure, after, passed, lag_after)
+        return Released(
+            by_phase.to_event(speed, last, contact.lag),
+            by_velocity.to_event(speed, last, contact.lag),
+        )
+
+    def _table_response(
+        self, duration: np.ndarray, impulse: np.ndarray, level: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Q and P at the ends of the contacts, from g and g′ + 2ζϖ g there.
+
+        In short or resonant contacts the quotients lose digits, and the values come from
+        :func:`.responses` instead.
+        """
+        detuning, loss = _resistance(self.law)
+        gamma = detuning * detuning + loss * loss
+        square = duration * duration
+        delicate = gamma * square * square < _DELICATE
+        sine, versine = sine_and_versine(duration)
+        real = (_ONE - versine) - level
+        imaginary = sine - impulse
+        with np.errstate(divide="ignore", invalid="ignore"):
+            in_phase = np.asarray((real * detuning + imaginary * loss) / gamma)
+            quadrature = np.asarray((imaginary * detuning - real * loss) / gamma)
+        if delicate.any():
+            arrays = (duration, self.law.frequency_ratio, self.law.damping_ratio)
+            some = (np.broadcast_to(x, duration.shape)[delicate] for x in arrays)
+            exact = responses(*some).table.value
+            in_phase[delicate] = exact.real
+            quadrature[delicate] = exact.imag
+        return in_phase, quadrature

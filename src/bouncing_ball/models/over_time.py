@@ -20,6 +20,7 @@ from bouncing_ball.datasets.arguments import (
     SAMPLES,
     STATE,
     Amplitude,
+    Axis,
     Impacts,
     Periods,
     Positive,
@@ -116,7 +117,7 @@ def simulate(
     phi = checked("phase", phase, STATE)
     before = checked("velocity", velocity, STATE)
     count = checked_number("impacts", impacts, IMPACTS)
-    grid = a_ball(ball).grid(amplitude=lam, phase=phi, velocity=before)
+    grid = _grid(ball, amplitude=lam, phase=phi, velocity=before)
     starts = Starts.on(grid)
     return _labelled_impacts(grid, starts.model(ball, grid).simulate(*starts, count))
 
@@ -172,7 +173,7 @@ def history(
     before = checked("velocity", velocity, STATE)
     length = checked_number("periods", periods, PERIODS)
     count = checked_number("samples", samples, SAMPLES)
-    grid = a_ball(ball).grid(amplitude=lam, phase=phi, velocity=before)
+    grid = _grid(ball, amplitude=lam, phase=phi, velocity=before)
     time = instants(length, count, grid.size)
     starts = Starts.on(grid)
     since = np.broadcast_to(time, (grid.size, time.size))
@@ -229,12 +230,19 @@ def drop(
     phi = checked("phase", phase, STATE)
     length = checked_number("periods", periods, PERIODS)
     count = checked_number("samples", samples, SAMPLES)
-    grid = a_ball(ball).grid(height=start, amplitude=lam, phase=phi)
+    grid = _grid(ball, height=start, amplitude=lam, phase=phi)
     time = instants(length, count, grid.size)
     found = _dropped(ball, grid, time)
     labelled = _labelled_history(grid, time, found)
     labelled.time.attrs["long_name"] = "time since the ball was let go"
     return labelled
+
+
+def _grid(ball: Ball, **arguments: Axis) -> Grid:
+    """The grid that the arguments of a call and the parameters of the ball span, in this order."""
+    from bouncing_ball.datasets.labelled import Grid
+
+    return Grid(**arguments, **a_ball(ball).parameters)
 
 
 def instants(periods: float, samples: int, balls: int) -> np.ndarray:

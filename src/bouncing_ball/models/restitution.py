@@ -194,3 +194,15 @@ class RestitutionDynamics(Dynamics):
         by_phase = Deviation(free, none, none)
         by_velocity = Deviation(none, none, -slope * free)
         return self.landed((by_phase, by_velocity), departure, after, passed)
+
+    def duration_slopes(
+        self, impact: Impact, departure: Departure
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """-1 and 0 for a rest, which lasts until the lift-off at a fixed phase, otherwise 0."""
+        none = np.zeros(impact.phase.shape)
+        return np.where(departure.sticks, -1.0, none), none
+
+    def contraction(self, impact: Impact, departure: Departure) -> np.ndarray:
+        """r d(r v)/dv, which is r² for a constant r; 0 if the ball sticks."""
+        r, slope = self._rebound_of(impact)
+        return np.where(departure.sticks, 0.0, r * slope)

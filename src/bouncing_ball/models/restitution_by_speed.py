@@ -10,11 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.models.instant import Instant, rigid_instant
+from bouncing_ball.models.model import Model
 from bouncing_ball.models.restitution import RestitutionDynamics
 from bouncing_ball.numerics.arrays import Batch
-from bouncing_ball.periodic.continued_orbits import ContinuedModel
-from bouncing_ball.periodic.orbit import Orbit
-from bouncing_ball.periodic.restitution_model import RestitutionOrbit
 
 # The imaginary step relative to the speed; its square is lost in rounding.
 _IMAGINARY = 1e-20
@@ -83,25 +81,14 @@ class RestitutionLawDynamics(RestitutionDynamics):
         return self.law.restitution(speed), self.law.slope(speed)
 
 
-class RestitutionLawOrbit(RestitutionOrbit):
-    """n-T orbits with instantaneous impacts; ``law`` is a :class:`RestitutionLaw`."""
-
-    dynamics = RestitutionLawDynamics.of
-
-    def rebound(self) -> tuple[np.ndarray, np.ndarray]:
-        """r and d(r v)/dv at the impact speed v."""
-        speed = -self.relative_impact_velocity
-        return self.law.restitution(speed), self.law.slope(speed)
-
-
 @dataclass(frozen=True, repr=False)
-class RestitutionLawModel(ContinuedModel):
+class RestitutionLawModel(Model):
     """A ball whose impacts are instants with a restitution coefficient r(v).
 
     Parameters
     ----------
     law : RestitutionLaw
-        The law r(v). The orbits have no closed form and are found by continuation.
+        The law r(v).
 
     Examples
     --------
@@ -112,15 +99,18 @@ class RestitutionLawModel(ContinuedModel):
     ...
     ...     def restitution(self, speed):
     ...         return 1 / (1 + speed / self.scale)
-    >>> orbit = RestitutionLawModel(Slowing(50.0)).orbit(1, 1.0)
-    >>> round(float(orbit.bounce_velocity / np.pi), 12)
-    1.0
+    >>> found = RestitutionLawModel(Slowing(2.0)).simulate(0.0, 0.0, -2.0, 3)
+    >>> found.time.round(12).tolist()
+    [0.0, 2.0, 3.333333333333]
     """
 
     law: RestitutionLaw
 
     name: ClassVar[str] = "restitution-law"
-    orbit_type: ClassVar[type[Orbit]] = RestitutionLawOrbit
+
+    def dynamics(self, amplitude: ArrayLike) -> RestitutionLawDynamics:
+        """The impacts and flights of these balls on a table of amplitude Λ."""
+        return self.law.dynamics(amplitude)
 
     def signature(self, speed: ArrayLike) -> Instant:
         """The restitution r(v), without delay, load sensitivity and duration."""

@@ -19,9 +19,10 @@ All quantities are dimensionless: time Ωt, length Ω²y/g.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -134,6 +135,22 @@ class SpringDamper(Batch):
         rule = Release.of(release)
         zeta = damping_ratio(restitution, rule if measured else Release.DISPLACEMENT)
         return cls(check_positive(frequency_ratio, "frequency ratio ϖ"), zeta, rule)
+
+    def implied(self, values: Mapping[str, Any]) -> dict[str, Any]:
+        """ζ of a given r, or r of a given ζ (Eq. 16); nothing if neither is given.
+
+        Examples
+        --------
+        >>> contact = SpringDamper(2.0, 0.1)
+        >>> float(contact.implied({"restitution": 1.0})["damping_ratio"])
+        0.0
+        """
+        if "restitution" in values:
+            return {"damping_ratio": damping_ratio(values["restitution"])}
+        if "damping_ratio" in values:
+            zeta = values["damping_ratio"]
+            return {"restitution": restitution_coefficient(zeta, Release.DISPLACEMENT)}
+        return {}
 
     @cached_property
     def release_sine(self) -> np.ndarray:

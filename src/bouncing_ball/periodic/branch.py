@@ -1,16 +1,17 @@
 """The branch of n-T orbits of a model, followed from one end to the other.
 
-The branch is a solution curve of the model's equations
-(:mod:`bouncing_ball.periodic.equations`), with Λ as the parameter. It is followed to both sides
-from an orbit in the stable range, until the orbits end or Λ leaves a window.
+The branch is a solution curve of the equations of n-T orbits in the unknowns of the paper
+(:mod:`bouncing_ball.periodic.paper_unknowns`), with Λ as the parameter. It is followed to both
+sides from an orbit in the stable range, until the orbits end or Λ leaves a window.
 """
 
 from collections.abc import Collection
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.model import Model
 from bouncing_ball.numerics.continuation import (
     Branch,
     ContinuationError,
@@ -18,8 +19,10 @@ from bouncing_ball.numerics.continuation import (
     continue_both_ways,
 )
 from bouncing_ball.numerics.events import Event, parameter_bound
-from bouncing_ball.periodic.equations import OrbitSystem
-from bouncing_ball.periodic.model import ImpactModel
+from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.orbit import Orbit
+from bouncing_ball.periodic.paper_unknowns import PaperUnknowns
+from bouncing_ball.periodic.special import bifurcations, ends_of_contact
 from bouncing_ball.periodic.stability import Bifurcation
 
 # By default a branch ends at this multiple of the Λ of its period doubling.
@@ -30,13 +33,25 @@ _LOWEST = 1e-4
 _STARTS = 16
 
 
+@dataclass(frozen=True)
+class WholeBranch:
+    """A branch of n-T orbits: its points, and the equations that give them a meaning."""
+
+    problem: PaperUnknowns
+    branch: Branch
+
+    def orbit(self, y: np.ndarray) -> Orbit:
+        """The orbits at points of the branch."""
+        return self.problem.orbit(y)
+
+
 def whole_branch(
-    model: ImpactModel,
+    model: Model,
     n: int,
     amplitude_max: float | None,
     largest_step: float,
     ends: Collection[Bifurcation] = (),
-) -> Branch:
+) -> WholeBranch:
     """The branch of n-T orbits of a single model, from one end to the other, up to some Λ.
 
     It is followed to both sides from the orbit in the middle of the stable range, or from the
@@ -44,7 +59,7 @@ def whole_branch(
 
     Parameters
     ----------
-    model : ImpactModel
+    model : Model
     n : int
         Index of the family.
     amplitude_max : float, optional
@@ -63,17 +78,17 @@ def whole_branch(
 
     Examples
     --------
-    >>> from bouncing_ball.periodic.restitution_model import RestitutionModel
+    >>> from bouncing_ball.models.rigid import RestitutionModel
     >>> found = whole_branch(RestitutionModel(0.85), 1, 1.2, largest_step=0.1)
-    >>> for special in found.special:
+    >>> for special in found.branch.special:
     ...     print(special.name, round(float(special.point[-1]), 4))
     parameter bound 1.2
     saddle-node 0.2547
     period doubling 1.0383
     parameter bound 1.2
     """
-    fold = float(model.saddle_node(n).amplitude)
-    doubling = float(model.period_doubling(n).amplitude)
+    fold = n_t.saddle_node(model, n).amplitude
+    doubling = n_t.period_doubling(model, n).amplitude
     low = fold if fold > 0 else 0.0
     top = amplitude_max or _default_top(low, doubling)
     if low >= top:
@@ -81,14 +96,14 @@ def whole_branch(
     stable = min(doubling, top)
     middle = (low + (stable if stable > low else top)) / 2
     start = _start(model, n, middle, low, top)
-    system = model.system(n)
-    events = _events(system, top, ends)
+    problem = PaperUnknowns.of(start)
+    events = _events(problem, top, ends)
     control = StepControl(largest=largest_step)
-    found = continue_both_ways(system, start, events=events, control=control)
+    found = continue_both_ways(problem, problem.point(start), events=events, control=control)
     for end in (found.start, found.end):
         if not end.finished:
             raise ContinuationError(f"the branch is not followed to its end: {end}")
-    return found
+    return WholeBranch(problem, found)
 
 
 def _default_top(low: float, doubling: float) -> float:
@@ -96,25 +111,28 @@ def _default_top(low: float, doubling: float) -> float:
     return _BEYOND_DOUBLING * (doubling if doubling > low else max(2 * low, 1.0))
 
 
-def _none(model: ImpactModel, n: int, top: float) -> str:
+def _none(model: Model, n: int, top: float) -> str:
     return f"no {n}-T orbit up to Λ = {top:g} for {model.label}"
 
 
-def _start(model: ImpactModel, n: int, middle: float, low: float, top: float) -> np.ndarray:
-    """The point of an orbit at Λ = ``middle``, or at the nearest of several Λ that has one."""
+def _start(model: Model, n: int, middle: float, low: float, top: float) -> Orbit:
+    """The orbit at Λ = ``middle``, or at the nearest of several Λ that has one."""
     others = np.linspace(low, top, _STARTS + 1)[1:]
     nearest_first = others[np.argsort(np.abs(others - middle))]
-    orbits = model.orbit(n, np.append(middle, nearest_first))
+    orbits = n_t.orbit(model, n, np.append(middle, nearest_first))
     if not np.any(orbits.exists):
         raise NoOrbitError(f"{_none(model, n, top)} was found to start from")
-    first = int(np.argmax(orbits.exists))
-    return model.system(n).point(orbits[first])
+    return orbits[int(np.argmax(orbits.exists))]
 
 
-def _events(system: OrbitSystem, top: float, ends: Collection[Bifurcation]) -> list[Event]:
-    """The events of the equations, of which those in ``ends`` are terminal, and the bounds of Λ."""
+def _events(problem: PaperUnknowns, top: float, ends: Collection[Bifurcation]) -> list[Event]:
+    """The bifurcations, of which those in ``ends`` are terminal, the ends of the domain in which
+    orbits exist, and the bounds of Λ.
+    """
+    of_orbits = [*bifurcations(problem.orbits), *ends_of_contact(problem.orbits)]
     events = [
-        replace(event, terminal=event.terminal or event.name in ends) for event in system.events()
+        replace(problem.event(event), terminal=event.terminal or event.name in ends)
+        for event in of_orbits
     ]
     for bound, upper in ((_LOWEST, False), (top, True)):
         events.append(parameter_bound(bound, upper, f"left the window at amplitude {bound:g}"))

@@ -29,14 +29,8 @@ from bouncing_ball.numerics.continuation import (
 )
 from bouncing_ball.numerics.corrector import Condition, NewtonSettings, corrected, null_vector
 from bouncing_ball.numerics.events import Event, SpecialPoint, locate, vanishing
-from bouncing_ball.periodic.following import (
-    PATIENT,
-    STEPS,
-    State,
-    States,
-    explained,
-    limit,
-)
+from bouncing_ball.periodic.following import PATIENT, STEPS, Orbits, explained, limit
+from bouncing_ball.periodic.orbit import Orbit, orbit_at
 from bouncing_ball.periodic.problem import PeriodicOrbits
 from bouncing_ball.periodic.release import release_condition
 from bouncing_ball.periodic.special import Special, flight_margin, impact_margin
@@ -114,7 +108,7 @@ class CurveProblem:
 
 
 @dataclass(frozen=True)
-class Curve(States):
+class Curve(Orbits):
     """A curve of special orbits of a kind in two parameters."""
 
     kind: Special
@@ -123,8 +117,9 @@ class Curve(States):
 
 
 def curve(
-    start: State,
+    start: Orbit,
     kind: Special,
+    along: str,
     across: str,
     *,
     along_window: Window | None = None,
@@ -136,12 +131,11 @@ def curve(
 
     Parameters
     ----------
-    start : State
-        A special orbit of the kind, for example one of :attr:`.Followed.special`, with a single
-        parameter that varies.
+    start : Orbit
+        A special orbit of the kind, for example one of :attr:`.Followed.special`.
     kind : Special
-    across : str
-        The second parameter.
+    along, across : str
+        The two parameters.
     along_window, across_window : Window, optional
         The ranges of the two parameters outside which the curve is not followed.
     control : StepControl
@@ -155,15 +149,16 @@ def curve(
     ParameterError
         If the balls have no such parameter, or no curve is defined for the kind.
     """
-    (along,) = start.orbits.along
-    state = start.along(along, across)
-    problem = CurveProblem(state.orbits, condition_of(state.orbits, kind))
+    orbits = start.problem(along, across)
+    guess = start.point(orbits)
+    problem = CurveProblem(orbits, condition_of(orbits, kind))
     windows = {along: along_window, across: across_window}
-    limits = _limits(state.orbits, windows)
-    first = _corrected(problem, state.y)
-    if np.linalg.norm(first - state.y) > _ANOTHER:
-        found = State(state.orbits, first)
-        raise NoOrbitError(f"the start is no {kind}; Newton's method leads to another {found!r}")
+    limits = _limits(orbits, windows)
+    first = _corrected(problem, guess)
+    if np.linalg.norm(first - guess) > _ANOTHER:
+        places = orbit_at(orbits, first).parameters.items()
+        where = ", ".join(f"{name} = {x:.10g}" for name, x in places)
+        raise NoOrbitError(f"the start is no {kind}; Newton's method leads to another at {where}")
     with np.errstate(all="ignore"):
         try:
             branch = continue_both_ways(
@@ -179,7 +174,7 @@ def curve(
             start=explained(backwards, (), limits),
             end=explained(branch, (), limits),
         )
-    return Curve(state.orbits, named, kind)
+    return Curve(orbits, named, kind)
 
 
 def _corrected(problem: CurveProblem, y: np.ndarray) -> np.ndarray:
@@ -195,7 +190,7 @@ def _limits(orbits: PeriodicOrbits, windows: dict[str, Window | None]) -> list[E
     """The ends of the ranges of both parameters, as terminal events."""
     found = []
     for j, (name, window) in enumerate(windows.items()):
-        low, high = orbits.family.bounds(name)
+        low, high = orbits.balls.bounds(name)
         if window is not None:
             low = max(low, window.low)
             high = min(high, window.high)

@@ -3,11 +3,11 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
-from bouncing_ball.errors import NoOrbitError, ParameterError
+from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics import corrector
 from bouncing_ball.numerics.continuation import (
     Branch,
@@ -19,9 +19,9 @@ from bouncing_ball.numerics.continuation import (
 from bouncing_ball.numerics.corrector import NewtonSettings, newton
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import Event, SpecialPoint
-from bouncing_ball.periodic import stability
+from bouncing_ball.periodic.balls import LAMBDA
+from bouncing_ball.periodic.orbit import Orbit, orbit_at
 from bouncing_ball.periodic.problem import PeriodicOrbits, twice
-from bouncing_ball.periodic.simulation import is_admissible
 from bouncing_ball.periodic.special import (
     MEANINGS,
     Special,
@@ -52,103 +52,15 @@ _CLOSE = 1e-2
 _AT_END = 1e-6
 
 
-@dataclass(frozen=True, eq=False)
-class State:
-    """One orbit with k impacts in m periods of the table.
-
-    Parameters
-    ----------
-    orbits : PeriodicOrbits
-        The equations, which give the unknowns a meaning.
-    y : array
-        The unknowns, and the coordinates of the parameters that vary.
-    """
-
-    orbits: PeriodicOrbits
-    y: np.ndarray
-
-    def __repr__(self) -> str:
-        impacts = f"{self.impacts} impact{'s' if self.impacts > 1 else ''}"
-        periods = f"{self.periods} period{'s' if self.periods > 1 else ''}"
-        values = ", ".join(f"{name} = {x:.10g}" for name, x in self.parameters.items())
-        return f"orbit with {impacts} in {periods}: {values}"
-
-    @property
-    def impacts(self) -> int:
-        """k."""
-        return self.orbits.impacts
-
-    @property
-    def periods(self) -> int:
-        """m."""
-        return int(self.orbits.periods)
-
-    @property
-    def parameters(self) -> dict[str, float]:
-        """The values of the parameters that vary."""
-        return {name: float(x) for name, x in self.orbits.values(self.y).items()}
-
-    @property
-    def phase(self) -> np.ndarray:
-        """The phases of the impacts on the section, in [-π, π], shape (k,)."""
-        return reduce_angle(self.orbits.states(self.y)[0])
-
-    @property
-    def velocity(self) -> np.ndarray:
-        """δ′ of the impacts on the section, shape (k,)."""
-        return self.orbits.states(self.y)[1]
-
-    @property
-    def contact_duration(self) -> np.ndarray:
-        """The durations of the contacts, shape (k,)."""
-        return self.orbits.legs(self.y).duration
-
-    def along(self, *names: str) -> "State":
-        """The same orbit with other parameters that vary.
-
-        Raises
-        ------
-        ParameterError
-            If the balls have no such parameter, or if one of them follows from another.
-        """
-        family = self.orbits.family.at(self.parameters)
-        for name in names:
-            family.bounds(name)
-            for other in family.implied({name: family.values[name]}):
-                if other in names:
-                    raise ParameterError(f"{other} follows from {name}: both cannot vary")
-        orbits = replace(self.orbits, family=family, along=names)
-        phase, velocity = self.orbits.states(self.y)
-        durations = self.orbits.durations(self.y)
-        values = {name: family.values[name] for name in names}
-        return State(orbits, orbits.point(phase, velocity, durations, **values))
-
-    def multipliers(self) -> np.ndarray:
-        """The two Floquet multipliers, complex; that of larger modulus comes first."""
-        return stability.multipliers(*self.orbits.trace_and_determinant(self.y))
-
-    def is_stable(self) -> bool:
-        """Whether both multipliers lie inside the unit circle."""
-        return bool(stability.is_stable(*self.orbits.trace_and_determinant(self.y)))
-
-    def is_admissible(self) -> bool:
-        """Whether a simulated ball follows the orbit, without an earlier release or landing."""
-        return bool(is_admissible(self.orbits, self.y))
-
-    def defect(self) -> float:
-        """Largest absolute value of the defects of the equations."""
-        return float(np.abs(self.orbits.residual(self.y)).max())
-
-
 @dataclass(frozen=True)
-class States:
+class Orbits:
     """Orbits in order, one after another: a branch, or a curve of special orbits.
 
-    ``branch`` has the points in order and the special points; ``branch.end`` gives the reason why
-    the branch ends, in words.
+    ``problem`` gives the unknowns a meaning, and ``branch`` has the points in order and the special
+    points; ``branch.end`` gives the reason why the branch ends, in words.
     """
 
-    orbits: PeriodicOrbits
+    problem: PeriodicOrbits
     branch: Branch
 
     kinds: ClassVar[type[StrEnum]]
@@ -157,26 +69,27 @@ class States:
     def __len__(self) -> int:
         return len(self.branch.points)
 
-    def __iter__(self) -> Iterator[State]:
-        return (State(self.orbits, y) for y in self.branch.points)
+    def __iter__(self) -> Iterator[Orbit]:
+        return (orbit_at(self.problem, y) for y in self.branch.points)
 
     @property
-    def special(self) -> list[tuple[Any, State]]:
+    def special_points(self) -> list[SpecialPoint]:
+        """The special points of these kinds, in order."""
+        return [each for each in self.branch.special if each.name in list(self.kinds)]
+
+    @property
+    def special(self) -> list[Orbit]:
         """The special orbits in order, with their kinds."""
-        return [
-            (self.kinds(each.name), State(self.orbits, each.point))
-            for each in self.branch.special
-            if each.name in list(self.kinds)
-        ]
+        return [orbit_at(self.problem, each.point, each.name) for each in self.special_points]
 
 
 @dataclass(frozen=True)
-class Followed(States):
+class Followed(Orbits):
     """A branch of orbits with k impacts in m periods along one parameter."""
 
     kinds = Special
 
-    def first(self, kind: Special) -> State:
+    def first(self, kind: Special) -> Orbit:
         """The first special orbit of a kind.
 
         Raises
@@ -184,14 +97,14 @@ class Followed(States):
         NoOrbitError
             If there is none on the branch.
         """
-        for name, state in self.special:
-            if name is kind:
-                return state
+        for each in self.special_points:
+            if each.name == kind:
+                return orbit_at(self.problem, each.point, each.name)
         raise NoOrbitError(f"the branch has no {kind}; it ends because {self.branch.end}")
 
 
-def corrected(state: State) -> State:
-    """The orbit at the parameters of an approximate one.
+def corrected(problem: PeriodicOrbits, guess: np.ndarray) -> np.ndarray:
+    """The point of the orbit at the parameters of an approximate one.
 
     Raises
     ------
@@ -199,24 +112,23 @@ def corrected(state: State) -> State:
         If Newton's method does not converge.
     """
     with np.errstate(all="ignore"):
-        point, why = corrector.corrected(state.orbits, state.y, PATIENT)
+        point, why = corrector.corrected(problem, guess, PATIENT)
     if why:
-        k = state.orbits.impacts
+        k = problem.impacts
         raise NoOrbitError(
             f"no orbit with {k} impact{'s' if k > 1 else ''} was found near this motion: {why}"
         )
-    return State(state.orbits, point)
+    return point
 
 
-def bounds(start: State, to: float | None) -> list[Event]:
+def bounds(orbits: PeriodicOrbits, start: np.ndarray, to: float | None) -> list[Event]:
     """The ends of the branch at the ends of the parameter's range, at the value ``to``, and as far
     beyond the start.
     """
-    orbits = start.orbits
     (name,) = orbits.along
-    low, high = orbits.family.bounds(name)
+    low, high = orbits.balls.bounds(name)
     if to is not None:
-        back = 2 * start.parameters[name] - to
+        back = 2 * float(orbits.values(start)[name]) - to
         low = max(low, min(to, back))
         high = min(high, max(to, back))
     found = []
@@ -236,19 +148,22 @@ def limit(name: str, bound: float, sign: float, column: int) -> Event:
 
 
 def follow(
-    start: State,
+    start: Orbit,
+    along: str = LAMBDA,
     to: float | None = None,
     *,
     increasing: bool = True,
     control: StepControl = STEPS,
     most: int = 2000,
 ) -> Followed:
-    """Follow an orbit along its parameter, up to a value, the end of the branch or of the range.
+    """Follow an orbit along a parameter, up to a value, the end of the branch or of the range.
 
     Parameters
     ----------
-    start : State
-        An orbit, or an approximation to one, with a single parameter that varies.
+    start : Orbit
+        An orbit, or an approximation to one.
+    along : str
+        The parameter.
     to : float, optional
         The value at which the branch ends. The parameter first moves towards it. Behind a
         saddle-node it moves back, at most as far beyond the start as the value is before it.
@@ -262,29 +177,32 @@ def follow(
     ------
     NoOrbitError
         If there is no orbit near the start.
+    ParameterError
+        If the balls have no such parameter.
     """
-    here = corrected(start)
-    (name,) = here.orbits.along
+    orbits = start.problem(along)
+    here = corrected(orbits, start.point(orbits))
     if to is not None:
-        increasing = to > here.parameters[name]
-    limits = bounds(here, to)
-    near = min(_NEAR, float(turns_apart(here.orbits, here.y)) / 2)
+        increasing = bool(to > orbits.values(here)[along])
+    limits = bounds(orbits, here, to)
+    near = min(_NEAR, float(turns_apart(orbits, here)) / 2)
     with np.errstate(all="ignore"):
         for _ in range(_TRIES):
-            branch = _followed(here, limits, near, increasing, control, most)
+            branch = _followed(orbits, here, limits, near, increasing, control, most)
             if branch.end.sentence != _HALVES:
                 break
-            whole = _up_to_halving(here.orbits, branch)
+            whole = _up_to_halving(orbits, branch)
             if whole is not None:
                 branch = whole
                 break
             near *= _CLOSER
-        tests = [*events(here.orbits), loss_of_release(here.orbits)]
-        return Followed(here.orbits, replace(branch, end=explained(branch, tests, limits)))
+        tests = [*events(orbits), loss_of_release(orbits)]
+        return Followed(orbits, replace(branch, end=explained(branch, tests, limits)))
 
 
 def _followed(
-    start: State,
+    orbits: PeriodicOrbits,
+    start: np.ndarray,
     limits: list[Event],
     near: float,
     increasing: bool,
@@ -292,7 +210,6 @@ def _followed(
     most: int,
 ) -> Branch:
     """The branch from a solution on, at most up to where its turns are so near to each other."""
-    orbits = start.orbits
 
     def two_turns(y: np.ndarray) -> np.ndarray:
         return turns_apart(orbits, y) - near
@@ -304,7 +221,7 @@ def _followed(
     try:
         branch = continue_branch(
             orbits,
-            start.y,
+            start,
             increasing=increasing,
             events=[*events(orbits), halves, *limits],
             control=replace(control, initial=initial),

@@ -23,16 +23,20 @@ class Legs(NamedTuple):
     """The legs of orbits, arrays of shape (..., k).
 
     ``residual`` are the two sides of Eq. 2 of :mod:`bouncing_ball.periodic.problem`, shape
-    (..., k, 2), and ``duration`` the durations of the contacts. ``tangent`` is DP. ``near`` is the
-    same matrix as if the contact began at the phase θ_{i+1}, and ``velocity`` and ``acceleration``
-    are y′ and δ″ there, with y = δ, or δ + κ δ′ where a contact resumes. ``dynamics``, ``impact``,
-    ``departure`` and ``passed``, the time of the leg, are flat.
+    (..., k, 2), and ``duration`` the durations of the contacts. ``tangent`` is DP, and
+    ``contraction`` the factor by which the contacts multiply areas. ``longer`` are the derivatives
+    of the durations by θ and v, shape (..., k, 2), if the durations are unknowns. ``near`` is the
+    same matrix as ``tangent`` as if the contact began at the phase θ_{i+1}, and ``velocity`` and
+    ``acceleration`` are y′ and δ″ there, with y = δ, or δ + κ δ′ where a contact resumes.
+    ``dynamics``, ``impact``, ``departure`` and ``passed``, the time of the leg, are flat.
     """
 
     residual: np.ndarray
     duration: np.ndarray
     tangent: Jacobian
     near: Jacobian
+    contraction: np.ndarray
+    longer: np.ndarray
     velocity: np.ndarray
     acceleration: np.ndarray
     dynamics: Any
@@ -49,6 +53,8 @@ def no_legs(shape: tuple[int, ...]) -> Legs:
         duration=none,
         tangent=Jacobian(none, none, none, none),
         near=Jacobian(none, none, none, none),
+        contraction=none,
+        longer=np.full((*shape, 2), np.nan),
         velocity=none,
         acceleration=none,
         dynamics=None,

@@ -12,11 +12,10 @@ import xarray as xr
 
 from bouncing_ball.datasets import GRAZING
 from bouncing_ball.datasets.variables import Variable
-from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.numerics.continuation import Branch, resample
-from bouncing_ball.periodic.equations import OrbitSystem
+from bouncing_ball.models.rigid import RestitutionModel
+from bouncing_ball.numerics.continuation import resample
+from bouncing_ball.periodic.branch import WholeBranch
 from bouncing_ball.periodic.orbit import Orbit
-from bouncing_ball.periodic.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.periodic.stability import Bifurcation
 
 VARIABLES = {
@@ -68,16 +67,16 @@ def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:
 
     Examples
     --------
-    >>> from bouncing_ball.periodic.restitution_model import RestitutionModel
-    >>> found = columns(RestitutionModel(1.0).orbit(1, 0.5), "phase")
-    >>> {name: value.item() for name, value in found.items()}
+    >>> from bouncing_ball.models.rigid import RestitutionModel
+    >>> found = columns(Orbit.of(RestitutionModel(1.0), 1, 0.5, np.pi / 2), "phase")
+    >>> found
     {'phase': 1.5707963267948966, 'stable': False, 'admissible': True}
     """
     judged = {"stable": orbit.is_stable(), "admissible": orbit.is_admissible()}
     return {name: getattr(orbit, name) for name in names} | judged
 
 
-def branch_columns(system: OrbitSystem, branch: Branch, count: int) -> xr.Dataset:
+def branch_columns(found: WholeBranch, count: int) -> xr.Dataset:
     """A branch at ``count`` points with equal steps of arclength, and its special orbits.
 
     The variables are those of :func:`orbits_in_columns`, and ``special_arclength``, the place of
@@ -88,23 +87,24 @@ def branch_columns(system: OrbitSystem, branch: Branch, count: int) -> xr.Datase
     ContinuationError
         If the steps along the branch were too long for it to be resampled.
     """
-    y = resample(system, branch, count)
+    branch = found.branch
+    y = resample(found.problem, branch, count)
     points = []
     kinds = []
     for special in branch.special:
         if special.name in list(Bifurcation):
             points.append(special.point)
             kinds.append(str(special.name))
-    for point in system.grazing(y):
+    for point in found.problem.grazing(y):
         points.append(point)
         kinds.append(GRAZING)
     special = np.array(points).reshape(-1, y.shape[-1])
     place = _places(special, y)
     order = np.argsort(place)
-    special_orbits = system.orbit(special[order])
+    special_orbits = found.orbit(special[order])
     ends = [str(branch.start), str(branch.end)]
-    found = orbits_in_columns(system.orbit(y), special_orbits, [kinds[k] for k in order], ends)
-    return found.assign(special_arclength=("special", place[order]))
+    columns = orbits_in_columns(found.orbit(y), special_orbits, [kinds[k] for k in order], ends)
+    return columns.assign(special_arclength=("special", place[order]))
 
 
 def _places(special: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -155,8 +155,7 @@ def orbits_in_columns(
 
 def no_branch(count: int, error: Exception) -> xr.Dataset:
     """A dataset like that of :func:`branch_columns`, of NaN, with the error as its end reasons."""
-    system = OrbitSystem(1, SpringDamper(1.0, 0.0), SpringDamperOrbit.at)
-    none = system.orbit(np.full((count, 4), np.nan))
+    none = Orbit.of(RestitutionModel(1.0), 1, np.full(count, np.nan), np.nan)
     found = orbits_in_columns(none, none[:0], [], [str(error)] * 2)
     return found.assign(special_arclength=("special", np.empty(0)))
 

@@ -1,26 +1,31 @@
-"""One n-T orbit of any model, or an array of orbits: the results that follow from the flight alone.
+"""A periodic orbit of any model, or an array of orbits.
 
-Time runs from the start of contact, τ_i = 0. The contact ends at τ_b = D, and the next contact
-starts at τ_2 = 2πn. Heights and velocities are absolute unless they are called relative, which
-means relative to the table: δ = z - w.
+An orbit has k impacts in m periods of the table; an n-T orbit of the paper has one impact in n
+periods. An impact is the start of a contact, at the phase φ of the table. The contact lasts for
+D = τ_b, and the flight after it ends at the next impact. Heights and velocities are absolute unless
+they are called relative, which means relative to the table: δ = z - w.
 """
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Any, ClassVar, Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import require
-from bouncing_ball.models.sequence import Cycle
+from bouncing_ball.errors import ParameterError, require
+from bouncing_ball.models.dynamics import Dynamics, Impact
+from bouncing_ball.models.model import Model
 from bouncing_ball.numerics.arrays import Batch, as_numbers, blocks, in_words
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic import stability
+from bouncing_ball.periodic.balls import LAMBDA, Balls
+from bouncing_ball.periodic.legs import Legs, lag_of, time_to_section, without_force
+from bouncing_ball.periodic.problem import PeriodicOrbits
+from bouncing_ball.periodic.simulation import is_admissible
 
 OBSERVABLES = (
     "amplitude",
@@ -32,17 +37,16 @@ OBSERVABLES = (
     "max_height",
 )
 """The seven observables of an orbit, with their names in datasets and on the command line."""
-# An earlier impact or release that the equations do not model shifts the next impact by a
-# considerable part of a period. Rounding errors, amplified by one unstable cycle, shift it by far
-# less.
-_SAME = 1e-6
 # The highest point of a contact is searched among this many samples. New samples are then taken
 # between the neighbours of the highest sample. The last steps are 16⁻⁵ of the first, and the error
 # of the height is of the order of the square of the last step.
 _SAMPLES = 33
 _REFINEMENTS = 6
-# Number of orbits whose samples are in memory at the same time.
+# Number of orbits whose samples or legs are in memory at the same time.
 _BLOCK = 1024
+_LEGS = 8192
+# The fields with an entry for each impact.
+_OF_IMPACTS = ("turns", "phases", "velocities", "durations")
 
 
 def check_index(n: ArrayLike) -> None:
@@ -62,338 +66,562 @@ def check_index(n: ArrayLike) -> None:
     require(whole, np.asarray(n), name, allowed)
 
 
-def as_columns(*arrays: ArrayLike) -> Iterator[np.ndarray]:
-    """The arrays with a last axis of length one, for derivatives along it."""
-    return (np.asarray(x)[..., np.newaxis] for x in arrays)
-
-
 @dataclass(frozen=True, repr=False)
-class Orbit(Batch, ABC):
-    """n-T orbits of one model, one for each element of the (broadcast) fields.
+class Orbit(Batch):
+    """Orbits with k impacts in m periods of one model.
+
+    The quantities of an impact, such as :attr:`phase`, have the shape of the orbits if k = 1, and
+    otherwise a last axis with an entry for each impact; those of a single orbit are floats or
+    arrays of shape (k,).
 
     Parameters
     ----------
-    n : int or array of int
-        Index of the family.
-    law : Batch
-        The law of the impact, which is the only field of the model.
-    amplitude, phase : array
-        Λ, and the table's phase φ at the start of contact.
-    contact_duration : array
-        D = τ_b, which is 0 for an instantaneous impact and NaN where there is no orbit.
-    impact_velocity : array
-        Absolute velocity z′_i of the ball at the start of contact.
+    model : Model
+        A single model, or a model for each orbit.
+    amplitude : float or array
+        Λ.
+    turns : array of int
+        The whole turns of the table between the impacts, shape (..., k) or (k,): the impact after
+        impact i is later by ``φ_{i+1} - φ_i + 2π turns_i``, and m is their sum.
+    phases, velocities, durations : array
+        φ, the absolute velocity z′_i of the ball, and D of the contacts, shape (..., k). D is 0 for
+        an instantaneous impact, and NaN where there is no orbit.
+    resumes : array of bool
+        Which contacts resume below the level of the table, shape (k,); by default none.
+    kind : str
+        The kind of a special orbit, such as "saddle-node"; empty for an ordinary orbit.
+    along : tuple of str
+        The parameters of the branch or curve from which the orbit comes.
+
+    Examples
+    --------
+    The restitution model's orbit at φ = π/2, where an elastic ball bounces on the resting table:
+
+    >>> from bouncing_ball.models.rigid import RestitutionModel
+    >>> orbit = Orbit.of(RestitutionModel(1.0), 1, 0.5, np.pi / 2)
+    >>> orbit.bounce_velocity == np.pi, orbit.is_stable(), orbit.is_admissible()
+    (True, False, True)
     """
 
-    n: Any
-    law: Any
-    amplitude: np.ndarray
-    phase: np.ndarray
-    contact_duration: np.ndarray
-    impact_velocity: np.ndarray
-
-    def __repr__(self) -> str:
-        names = ("n", "law", *OBSERVABLES)
-        values = (f"  {name:<22}{in_words(getattr(self, name))}" for name in names)
-        return "\n".join([type(self).__name__, *values])
+    model: Model
+    amplitude: Any
+    turns: Any
+    phases: np.ndarray
+    velocities: np.ndarray
+    durations: np.ndarray
+    resumes: Any = False
+    kind: str = ""
+    along: tuple[str, ...] = (LAMBDA,)
 
     @classmethod
     def of(
         cls,
+        model: Model,
         n: ArrayLike,
-        law: Any,
         amplitude: ArrayLike,
         phase: ArrayLike,
         contact_duration: ArrayLike = 0.0,
         impact_velocity: ArrayLike | None = None,
     ) -> Self:
-        """Orbits from the values of their fields; there is no orbit where the phase is NaN.
+        """n-T orbits with one impact; there is no orbit where the phase is NaN.
 
         Λ and φ suffice for an impact without duration, because z′_i is then -nπ.
         """
         if impact_velocity is None:
             impact_velocity = -np.asarray(n) * np.pi
         missing = np.where(np.isnan(phase), np.nan, 0.0)
-        amplitude, phase, contact_duration, impact_velocity = np.broadcast_arrays(
+        lam, phi, duration, velocity, _ = np.broadcast_arrays(
             np.asarray(amplitude, dtype=float),
             np.asarray(phase, dtype=float),
             contact_duration + missing,
             impact_velocity + missing,
+            n,
         )
-        return cls(n, law, amplitude, phase, contact_duration, impact_velocity)
+        return cls(
+            model=model,
+            amplitude=lam if lam.ndim else float(lam),
+            turns=np.asarray(n)[..., np.newaxis],
+            phases=phi[..., np.newaxis],
+            velocities=velocity[..., np.newaxis],
+            durations=duration[..., np.newaxis],
+        )
 
-    # A model's orbits define the following.
+    def __repr__(self) -> str:
+        counts = ("n",) if self.impacts == 1 else ("impacts", "periods")
+        kind = ("kind",) if self.kind else ()
+        names = (*kind, *counts, "law", *OBSERVABLES)
+        values = (f"  {name:<22}{in_words(getattr(self, name))}" for name in names)
+        return "\n".join([type(self).__name__, *values])
 
-    dynamics: ClassVar[Any]
-    """The :class:`~bouncing_ball.models.dynamics.Dynamics` of a law of the impact at Λ."""
-
-    @property
-    def unknowns(self) -> tuple[np.ndarray, ...]:
-        """The unknowns that determine the contact: (φ, z′_i), unless a model has fewer unknowns."""
-        return self.phase, self.impact_velocity
-
-    @property
-    def clock(self) -> ArrayLike:
-        """Frequency of the contact over that of the table; 1 for an instantaneous impact.
-
-        Durations are compared after multiplication by this factor, because the durations of stiff
-        contacts are then of order one.
-        """
-        return 1.0
-
-    def contact_motion(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """δ and δ′ at times 0 ≤ τ ≤ τ_b in contact, of the shape of the times."""
-        return np.zeros_like(time), np.zeros_like(time)
-
-    def contact_path(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Height z and velocity z′ at times 0 ≤ τ ≤ τ_b in contact, of the shape of the times."""
-        displacement, velocity = self.contact_motion(time)
-        table_phase = self.phase + time
-        height = displacement + self.amplitude * np.sin(table_phase)
-        return height, velocity + self.amplitude * np.cos(table_phase)
-
-    @abstractmethod
-    def residual(self) -> np.ndarray:
-        """Defects of the model's equations along the last axis; all are 0 for an orbit."""
-
-    def contact_jacobian(self) -> np.ndarray:
-        """Jacobian of (τ_b, δ_b, δ′_b) in (τ, δ′, Λ) at the impact, shape (..., 3, 3).
-
-        The column of Λ is taken at a fixed δ′; the equations of the orbits need it. A model that
-        defines both the Jacobian of its equations and its monodromy does not need this method.
-        """
-        raise NotImplementedError(f"{type(self).__name__} has a monodromy of its own")
-
-    @abstractmethod
-    def determinant(self) -> np.ndarray:
-        """Determinant of the monodromy, computed from the contraction of areas in the contact.
-
-        Without dissipation it is 1. If it were computed from the entries of the monodromy, their
-        rounding errors would decide about stability.
-        """
-
-    # Everything below follows from the law and the flight.
-
-    def cycle(self, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
-        """The simulated map from impacts (φ, δ′) to the next impacts, at the parameters of these
-        orbits.
-        """
-        dynamics = self.dynamics(self.law, self.amplitude)
-        return dynamics.next_impact(phase, relative_velocity)
-
-    def flight_defects(
-        self, displacement: ArrayLike, velocity: ArrayLike
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Velocity and landing defects (Eqs. 24-25) of contacts that end with (δ_b, δ′_b).
-
-        They are ``δ′_b + Λ cos(φ + D) - z′_b`` and
-        ``δ_b + Λ sin(φ + D) - Λ sin φ + (z′_b - T/2) T``, with z′_b = z′_i + T and T = 2πn - D.
-        """
-        lam = self.amplitude
-        end = self.release_phase
-        bounce = self.bounce_velocity
-        # From the table's level at the impact to the ball at its release, and then to the landing.
-        at_release = lam * (np.sin(end) - np.sin(self.phase)) + displacement
-        flown = (bounce - self.flight_time / 2) * self.flight_time
-        return velocity + lam * np.cos(end) - bounce, at_release + flown
+    # The shape of the orbits is that of the model, of Λ and of the impacts without their last axis.
 
     @property
-    def exists(self) -> np.ndarray:
-        """Whether there is an orbit, which is the case where the contact duration is finite."""
-        return np.isfinite(self.contact_duration)
+    def shape(self) -> tuple[int, ...]:
+        """The shape of the orbits, without the axis of the impacts."""
+        turns = np.shape(self.turns)[:-1]
+        return np.broadcast_shapes(
+            self.model.shape, np.shape(self.amplitude), turns, self.phases.shape[:-1]
+        )
+
+    def _entries(self, shape: tuple[int, ...], index: Any) -> Self:
+        whole = (*shape, self.impacts)
+        values = {field.name: getattr(self, field.name) for field in fields(self)}
+        for name in _OF_IMPACTS:
+            values[name] = np.broadcast_to(values[name], whole)[index]
+        if self.model.shape:
+            numbers = np.arange(self.model.size).reshape(self.model.shape)
+            which = np.broadcast_to(numbers, shape)[index]
+            values["model"] = self.model.flat(self.model.shape)[which]
+        if np.ndim(self.amplitude):
+            lam = np.broadcast_to(self.amplitude, shape)[index]
+            values["amplitude"] = lam if lam.ndim else float(lam)
+        return type(self)(**values)
+
+    def in_a_row(self) -> Self:
+        """The orbits as a row; a single orbit is a row of length one."""
+        if self.shape:
+            return self.flat(self.shape)
+        return replace(
+            self,
+            amplitude=np.array([self.amplitude]),
+            turns=np.asarray(self.turns)[np.newaxis],
+            phases=self.phases[np.newaxis],
+            velocities=self.velocities[np.newaxis],
+            durations=self.durations[np.newaxis],
+        )
+
+    def _shaped(self, values: np.ndarray) -> Any:
+        """Quantities of the impacts, shape (..., k), without this axis if k = 1."""
+        if self.impacts > 1:
+            return values
+        first = values[..., 0]
+        return first if first.ndim else first.item()
+
+    def _single(self, values: Any) -> Any:
+        """Quantities of the orbits; a Python number for a single orbit."""
+        return values if np.ndim(values) else np.asarray(values).item()
 
     @property
-    def flight_time(self) -> np.ndarray:
-        """T = τ_2 - τ_b = 2πn - D (Eq. 19)."""
-        return 2 * np.pi * np.asarray(self.n) - self.contact_duration
+    def impacts(self) -> int:
+        """k."""
+        return self.phases.shape[-1]
 
     @property
-    def release_phase(self) -> np.ndarray:
+    def periods(self) -> Any:
+        """m."""
+        return self._single(np.sum(self.turns, axis=-1))
+
+    @property
+    def n(self) -> Any:
+        """Index of the family of an n-T orbit: the number m of periods."""
+        return self.periods
+
+    @property
+    def law(self) -> Any:
+        """The law of the impact: a contact law, its signature, or r."""
+        return self.model.impact_law
+
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """The values of the parameters of the branch from which the orbit comes."""
+        values = Balls(self.model, self.amplitude).values
+        return {name: float(values[name]) for name in self.along}
+
+    @property
+    def exists(self) -> Any:
+        """Whether there is an orbit: its contacts have durations."""
+        return self._single(np.all(np.isfinite(self.durations), axis=-1))
+
+    @property
+    def phase(self) -> Any:
+        """φ, the table's phase at the impacts."""
+        return self._shaped(self.phases)
+
+    @property
+    def contact_duration(self) -> Any:
+        """D = τ_b."""
+        return self._shaped(self.durations)
+
+    @property
+    def impact_velocity(self) -> Any:
+        """Absolute velocity z′_i of the ball at the start of contact."""
+        return self._shaped(self.velocities)
+
+    @property
+    def _lam(self) -> np.ndarray:
+        """Λ with an axis for the impacts."""
+        return np.asarray(self.amplitude)[..., np.newaxis]
+
+    @cached_property
+    def _intervals(self) -> np.ndarray:
+        """The times from impact to impact, shape (..., k)."""
+        return (np.roll(self.phases, -1, axis=-1) - self.phases) + 2 * np.pi * np.asarray(
+            self.turns
+        )
+
+    @property
+    def _flights(self) -> np.ndarray:
+        return self._intervals - self.durations
+
+    @property
+    def _bounces(self) -> np.ndarray:
+        # In flight the velocity falls by the flight time.
+        return np.roll(self.velocities, -1, axis=-1) + self._flights
+
+    @property
+    def flight_time(self) -> Any:
+        """T, the time from the release to the next impact, 2πn - D for an n-T orbit (Eq. 19)."""
+        return self._shaped(self._flights)
+
+    @property
+    def release_phase(self) -> Any:
         """The table's phase φ + τ_b at release."""
-        return self.phase + self.contact_duration
+        return self._shaped(self.phases + self.durations)
 
     @property
-    def bounce_velocity(self) -> np.ndarray:
-        """Absolute velocity z′_b at release, z′_i + 2πn - τ_b (Eq. 27)."""
-        return self.impact_velocity + self.flight_time
+    def bounce_velocity(self) -> Any:
+        """Absolute velocity z′_b at release, z′_i + 2πn - τ_b for an n-T orbit (Eq. 27)."""
+        return self._shaped(self._bounces)
 
     @property
-    def relative_impact_velocity(self) -> np.ndarray:
-        """δ′ = z′_i - w′_i at the start of contact, negative."""
-        return self.impact_velocity - self.amplitude * np.cos(self.phase)
+    def _closing(self) -> np.ndarray:
+        return self.velocities - self._lam * np.cos(self.phases)
 
     @property
-    def relative_bounce_velocity(self) -> np.ndarray:
+    def _leaving(self) -> np.ndarray:
+        return self._bounces - self._lam * np.cos(self.phases + self.durations)
+
+    @property
+    def relative_impact_velocity(self) -> Any:
+        """δ′ = z′_i - w′_i at the start of contact: negative unless a contact resumes."""
+        return self._shaped(self._closing)
+
+    @property
+    def relative_bounce_velocity(self) -> Any:
         """δ′ = z′_b - w′_b at release, positive."""
-        return self.bounce_velocity - self.amplitude * np.cos(self.release_phase)
+        return self._shaped(self._leaving)
 
     @property
-    def apparent_restitution(self) -> np.ndarray:
+    def apparent_restitution(self) -> Any:
         """r_a = -(z′_b - w′_b)/(z′_i - w′_i) (Eq. 17)."""
-        return -self.relative_bounce_velocity / self.relative_impact_velocity
+        return self._shaped(-self._leaving / self._closing)
 
-    @property
-    def bounce_height(self) -> np.ndarray:
-        """Absolute height z_b of the ball at release.
+    # What needs the motion in contact.
 
-        It follows from the flight, which ends at the level Λ sin φ of the table.
+    @cached_property
+    def _start(self) -> tuple[Dynamics, Impact]:
+        """The dynamics and the impacts in a row, which is k times as long as that of the orbits."""
+        lam = np.asarray(self.amplitude, dtype=float)
+        known = np.where(np.isfinite(lam), lam, 1.0)
+        dynamics = Balls(self.model, known).row(self.shape, self.impacts).dynamics()
+        whole = (*self.shape, self.impacts)
+        phase = np.broadcast_to(self.phases, whole).ravel()
+        velocity = np.broadcast_to(self._closing, whole).ravel()
+        with np.errstate(invalid="ignore"):
+            impact = dynamics.start(phase, velocity)
+        resumes = np.broadcast_to(self.resumes, whole).ravel()
+        return dynamics, without_force(impact, lag_of(dynamics, resumes))
+
+    def problem(self, *along: str) -> PeriodicOrbits:
+        """The equations of these orbits, with parameters that vary.
+
+        Raises
+        ------
+        ParameterError
+            If the balls have no such parameter, or if one of them follows from another.
         """
-        landing = self.amplitude * np.sin(self.phase)
-        mean_velocity = (self.bounce_velocity + self.impact_velocity) / 2
-        return landing - mean_velocity * self.flight_time
+        balls = Balls(self.model, self.amplitude)
+        for name in along:
+            if name != LAMBDA:
+                balls.range_of(name)
+            for other in self.model.implied({name: balls.values[name]}):
+                if other in along:
+                    raise ParameterError(f"{other} follows from {name}: both cannot vary")
+        dynamics, _ = self._start
+        lasting = bool(np.any(self.durations > 0))
+        return PeriodicOrbits(
+            balls=balls,
+            impacts=self.impacts,
+            turns=self.turns,
+            along=along,
+            selects=dynamics.continues and lasting,
+            resumes=np.broadcast_to(self.resumes, (self.impacts,)),
+        )
+
+    def point(self, problem: PeriodicOrbits) -> np.ndarray:
+        """y of these orbits among the unknowns of a problem, shape (..., N + parameters)."""
+        dynamics, impact = self._start
+        whole = (*self.shape, self.impacts)
+        with np.errstate(invalid="ignore"):
+            phase = self.phases + time_to_section(dynamics, impact).reshape(whole)
+            _, velocity = dynamics.section(impact)
+        duration = np.broadcast_to(self.durations, whole)
+        values = Balls(self.model, self.amplitude).values
+        given = {name: values[name] for name in problem.along}
+        return problem.point(phase, velocity.reshape(whole), duration, **given)
+
+    @cached_property
+    def _own(self) -> tuple[PeriodicOrbits, np.ndarray]:
+        """The equations with no parameter that varies, and the unknowns."""
+        problem = self.problem()
+        return problem, self.point(problem)
+
+    @cached_property
+    def _legs(self) -> Legs:
+        problem, y = self._own
+        return problem.legs(y)
+
+    def _of_existing(self, quantity: Callable[[Orbit], np.ndarray], tail: int = 0) -> np.ndarray:
+        """A quantity of the orbits that exist, NaN for others, computed in blocks.
+
+        ``tail`` is the length of its last axis, 0 if it has the shape of the orbits.
+        """
+        exists = np.broadcast_to(self.exists & np.isfinite(self.amplitude), self.shape)
+        if np.all(exists) and self.size <= _LEGS:
+            return quantity(self)
+        ends = (tail,) if tail else ()
+        found = np.full((self.size, *ends), np.nan)
+        which = np.flatnonzero(exists)
+        row = self.flat(self.shape)
+        for part in blocks(which.size, _LEGS):
+            found[which[part]] = quantity(row.take(which[part]))
+        return found.reshape(*self.shape, *ends)
+
+    def _landing_gap(self) -> np.ndarray:
+        """δ of the flights at the impacts with which they end, shape (..., k)."""
+        dynamics, impact = self._start
+        gap = dynamics.gap_at_start(impact).reshape(*self.shape, self.impacts)
+        return np.roll(gap, -1, axis=-1)
 
     @property
-    def max_height(self) -> np.ndarray:
-        """Greatest absolute height z over the cycle, in flight or in contact.
+    def _heights(self) -> np.ndarray:
+        """Absolute heights at release, which follow from the flights to the next impacts."""
+        landing = self._lam * np.sin(np.roll(self.phases, -1, axis=-1))
+        landing = landing + self._of_existing(Orbit._landing_gap, self.impacts)
+        mean_velocity = (self._bounces + np.roll(self.velocities, -1, axis=-1)) / 2
+        return landing - mean_velocity * self._flights
 
-        If the apex of the flight reaches Λ, it is the greatest height, because a ball in contact is
+    @property
+    def bounce_height(self) -> Any:
+        """Absolute height z_b of the ball at release."""
+        return self._shaped(self._heights)
+
+    @property
+    def max_height(self) -> Any:
+        """Greatest absolute height z over the orbit, in flight or in contact.
+
+        If the apex of a flight reaches Λ, it is the greatest height, because a ball in contact is
         below the table and thus below Λ. Otherwise the table may lift the ball higher during a long
         contact.
         """
-        rising = np.maximum(self.bounce_velocity, 0.0)
-        apex = self.bounce_height + rising * rising / 2
+        rising = np.maximum(self._bounces, 0.0)
+        apex = np.max(self._heights + rising * rising / 2, axis=-1)
         top = np.array(np.broadcast_to(apex, self.shape))
-        low = np.flatnonzero((top < self.amplitude) & (self.contact_duration > 0))
+        lasting = np.any(self.durations > 0, axis=-1)
+        low = np.flatnonzero((top < self.amplitude) & lasting)
         # The samples of all orbits at once would take gigabytes.
         for part in blocks(low.size, _BLOCK):
             lifted = self.flat(self.shape).take(low[part])._contact_top()
             top.flat[low[part]] = np.maximum(top.flat[low[part]], lifted)
-        return top
+        return self._single(top)
 
     def _contact_top(self) -> np.ndarray:
         """Greatest height in contact, from samples that are refined around the highest sample."""
-        steps = np.arange(_SAMPLES).reshape(-1, *(1,) * len(self.shape))
-        low = 0.0 * self.contact_duration
-        step = self.contact_duration / (_SAMPLES - 1)
+        steps = np.arange(_SAMPLES).reshape(-1, *(1,) * (len(self.shape) + 1))
+        low = 0.0 * self.durations
+        step = self.durations / (_SAMPLES - 1)
         for _ in range(_REFINEMENTS):
-            height = self.contact_path(low + step * steps)[0]
+            gap, _ = self._in_contact(low + step * steps)
+            height = gap + self._lam * np.sin(self.phases + low + step * steps)
             highest = np.argmax(np.where(np.isnan(height), -np.inf, height), axis=0)
             # Refine from one step before the highest sample to one step after it, in the contact.
             low = low + step * np.clip(highest - 1, 0, _SAMPLES - 3)
             step = 2 * step / (_SAMPLES - 1)
-        return np.max(height, axis=0)
+        return np.max(height, axis=(0, -1))
 
-    def flight_path(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Absolute position and velocity at times τ_b ≤ τ ≤ τ_2 in flight (Eqs. 14-15)."""
-        s = time - self.contact_duration
-        velocity = self.bounce_velocity - s
-        return self.bounce_height + (self.bounce_velocity + velocity) / 2 * s, velocity
+    def _in_contact(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """δ and δ′ at times since the starts of all contacts, shape (..., orbits, k)."""
+        legs = self._legs
+        flat = time.reshape(-1, self.size * self.impacts)
+        found = legs.dynamics.within(legs.impact, legs.departure, flat)
+        displacement, velocity = (x.reshape(time.shape) for x in found)
+        return displacement, velocity
 
-    def path(self, time: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-        """Absolute height and velocity at any time τ since an impact, with period 2πn.
+    def contact_motion(self, time: ArrayLike, impact: int = 0) -> tuple[np.ndarray, np.ndarray]:
+        """δ and δ′ at times 0 ≤ s ≤ τ_b in the contact of one impact.
 
-        The shape is that to which the times and the orbits broadcast. At the time of an impact
-        without duration, the velocity is that after the impact.
+        The results have the shape to which the times and the orbits broadcast.
         """
-        s = np.mod(np.asarray(time, dtype=float), 2 * np.pi * np.asarray(self.n))
-        touching = s < self.contact_duration
-        inside = self.contact_path(np.where(touching, s, 0.0))
-        outside = self.flight_path(np.where(touching, self.contact_duration, s))
-        height = np.where(touching, inside[0], outside[0])
-        velocity = np.where(touching, inside[1], outside[1])
-        return height, velocity
+        s = np.asarray(time, dtype=float)
+        shape = np.broadcast_shapes(s.shape, self.shape)
+        legs = self._legs
+        number = np.broadcast_to(np.arange(self.size).reshape(self.shape), shape).ravel()
+        which = number * self.impacts + impact
+        dynamics, start, departure = legs.dynamics.kept(which, legs.impact, legs.departure)
+        found = dynamics.within(start, departure, np.broadcast_to(s, shape).ravel())
+        displacement, velocity = (x.reshape(shape) for x in found)
+        return displacement, velocity
 
-    def flight_jacobian(
-        self, start: Iterable[np.ndarray], contact: Iterable[np.ndarray]
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives of :meth:`flight_defects` along the last axis, by the chain rule.
+    def contact_path(self, time: ArrayLike, impact: int = 0) -> tuple[np.ndarray, np.ndarray]:
+        """Height z and velocity z′ at times 0 ≤ s ≤ τ_b in the contact of one impact."""
+        displacement, velocity = self.contact_motion(time, impact)
+        phase = self.phases[..., impact] + np.asarray(time)
+        height = displacement + self.amplitude * np.sin(phase)
+        return height, velocity + self.amplitude * np.cos(phase)
 
-        ``start`` holds the derivatives of (φ, z′_i, Λ) at the start of contact, ``contact`` those
-        of (τ_b, δ_b, δ′_b) at its end.
+    def flight_path(self, time: ArrayLike, impact: int = 0) -> tuple[np.ndarray, np.ndarray]:
+        """Height and velocity in the flight after one impact, from which the time is counted
+        (Eqs. 14-15).
         """
-        d_phase, d_impact, d_lam = start
-        d_duration, d_displacement, d_velocity = contact
-        lam, phase, end = as_columns(self.amplitude, self.phase, self.release_phase)
-        bounce, flight = as_columns(self.bounce_velocity, self.flight_time)
-        # The release is at φ + τ_b, the velocity there is z′_b = z′_i + T, and T = 2πn - τ_b.
-        d_end = d_phase + d_duration
-        d_bounce = d_impact - d_duration
-        velocity = d_velocity + np.cos(end) * d_lam - lam * np.sin(end) * d_end - d_bounce
-        rise = (np.sin(end) - np.sin(phase)) * d_lam
-        rise = rise + lam * (np.cos(end) * d_end - np.cos(phase) * d_phase)
-        landing = d_displacement + rise + flight * d_bounce - (bounce - flight) * d_duration
-        return velocity, landing
+        s = np.asarray(time) - self.durations[..., impact]
+        bounce = self._bounces[..., impact]
+        velocity = bounce - s
+        return self._heights[..., impact] + (bounce + velocity) / 2 * s, velocity
 
-    def jacobian(self) -> np.ndarray:
-        """Jacobian of the flight's two defects in (φ, z′_i, Λ), shape (..., 2, 3).
+    def path(self, time: ArrayLike) -> tuple[Any, Any]:
+        """Absolute height and velocity at any time since the first impact, with period 2πm.
 
-        The contact is determined by its start (φ, z′_i): its duration depends on (φ, z′_i, Λ), and
-        the field ``contact_duration`` is not held fixed.
+        The shape is that to which the times and the orbits broadcast; both are floats for one
+        orbit at one time. At the time of an impact without duration, the velocity is that after
+        the impact.
         """
-        inner = np.tile(np.eye(3), (*self.shape, 1, 1))
-        inner[..., 1, 0] = self.amplitude * np.sin(self.phase)
-        inner[..., 1, 2] = -np.cos(self.phase)
-        contact = np.moveaxis(self.contact_jacobian() @ inner, -2, 0)
-        return np.stack(self.flight_jacobian(np.eye(3), contact), axis=-2)
+        t = np.mod(np.asarray(time, dtype=float), 2 * np.pi * np.asarray(self.periods))
+        passed = np.cumsum(self._intervals, axis=-1)
+        height = np.zeros(np.broadcast_shapes(t.shape, self.shape))
+        velocity = np.zeros_like(height)
+        for k in range(self.impacts):
+            begun = passed[..., k] - self._intervals[..., k]
+            s = t - begun
+            duration = self.durations[..., k]
+            here = (t >= begun) & (t < passed[..., k]) if self.impacts > 1 else True
+            touching = s < duration
+            inside = self.contact_path(np.where(touching & here, s, 0.0), k)
+            outside = self.flight_path(np.where(touching, duration, s), k)
+            height = np.where(here, np.where(touching, inside[0], outside[0]), height)
+            velocity = np.where(here, np.where(touching, inside[1], outside[1]), velocity)
+        return self._single(height), self._single(velocity)
 
-    def system_jacobian(self) -> np.ndarray:
-        """Jacobian of the equations by the :attr:`unknowns` and Λ, shape (..., N, N + 1)."""
-        return self.jacobian()
+    # Stability and admissibility.
 
     def monodromy(self) -> np.ndarray:
-        """Jacobian of the return map (τ, δ′) → (τ₁, δ′₁), shape (..., 2, 2).
+        """Jacobian of the return map at the first impact, shape (..., 2, 2).
 
-        Its eigenvalues are the Floquet multipliers; the Poincaré section is the start of contact.
-        If the start is moved by (dφ, dz′_i), the defects of velocity and height are (dV, dH), and
-        the flight time to the table changes by s. Here ``u s = -(dH + T dV)``, where u is the
-        relative impact velocity. The next start is therefore moved by (dφ + s, dz′_i + dV - s).
+        It is that of the state on the Poincaré section of the model: the phase and δ′ at the start
+        of contact, or at the instant of the corrected model. Its eigenvalues are the Floquet
+        multipliers.
         """
-        # The rows of the two defects; the columns of φ and z′_i.
-        d_velocity, d_height = np.moveaxis(self.jacobian()[..., :2], -2, 0)
-        flight, speed = as_columns(self.flight_time, self.relative_impact_velocity)
-        later = -(d_height + flight * d_velocity) / speed
-        moved = np.eye(2) + np.stack([later, d_velocity - later], axis=-2)
-        # From (φ, z′_i) to (φ, δ′): δ′ = z′_i - Λ cos φ.
-        turn = np.zeros_like(moved)
-        turn[..., 1, 0] = self.amplitude * np.sin(self.phase)
-        return (np.eye(2) + turn) @ moved @ (np.eye(2) - turn)
 
-    def trace_and_determinant(self) -> tuple[np.ndarray, np.ndarray]:
+        def matrix(part: Orbit) -> np.ndarray:
+            problem, y = part._own
+            rows = np.stack(problem.monodromy(y), axis=-1)
+            return rows if part.shape else rows.reshape(4)
+
+        return self._of_existing(matrix, 4).reshape(*self.shape, 2, 2)
+
+    def trace_and_determinant(self) -> tuple[Any, Any]:
         """Trace and determinant of the monodromy, each with the shape of the orbits."""
-        return self._trace, self.determinant()
+        trace, determinant = np.moveaxis(self._trace_and_determinant, -1, 0)
+        return self._single(trace), self._single(determinant)
 
     @cached_property
-    def _trace(self) -> np.ndarray:
-        return np.trace(self.monodromy(), axis1=-2, axis2=-1)
+    def _trace_and_determinant(self) -> np.ndarray:
+        def both(part: Orbit) -> np.ndarray:
+            problem, y = part._own
+            return np.stack(problem.trace_and_determinant(y), axis=-1)
+
+        return self._of_existing(both, 2)
+
+    def determinant(self) -> Any:
+        """Determinant of the monodromy, from the contraction of areas in the contacts."""
+        return self.trace_and_determinant()[1]
 
     def multipliers(self) -> np.ndarray:
         """Floquet multipliers, complex, shape (..., 2); that of larger modulus comes first."""
         return stability.multipliers(*self.trace_and_determinant())
 
-    def is_stable(self) -> np.ndarray:
+    def is_stable(self) -> Any:
         """Whether both multipliers lie inside the unit circle: asymptotic stability."""
-        return stability.is_stable(*self.trace_and_determinant())
+        return self._single(stability.is_stable(*self.trace_and_determinant()))
 
-    def is_admissible(self) -> np.ndarray:
-        """Whether the simulated ball follows the orbit for a cycle.
+    def is_admissible(self) -> Any:
+        """Whether the simulated ball follows the orbit, without an earlier release or landing.
 
-        The ball follows the orbit if there is no earlier release and no earlier landing, so that
-        the next impact of the simulation, whose events are certified, is that of the orbit. The
-        result is False where there is no orbit.
+        The events of the simulation are certified. The result is False where there is no orbit.
         """
-        approaches = self.relative_impact_velocity < 0
-        possible = approaches & (self.contact_duration >= 0) & (self.flight_time > 0)
-        admissible = np.zeros(self.shape, dtype=bool)
-        if np.any(possible):
-            part = self[possible] if self.shape else self
-            speed = part.relative_impact_velocity
-            cycle = part.cycle(part.phase, speed)
-            returned = np.abs(cycle.relative_velocity / speed - 1) < _SAME
-            same = np.abs(cycle.time - 2 * np.pi * np.asarray(part.n)) < _SAME
-            # The next impact may be a contact that resumes below the level of the table. It starts
-            # with a rising ball, so that its velocity differs from that of the orbit.
-            admissible[possible] = same & returned
-        return admissible
 
-    def defect(self) -> np.ndarray:
-        """Largest absolute value of the defects of the model's equations."""
-        return np.max(np.abs(self.residual()), axis=-1)
+        def judged(part: Orbit) -> np.ndarray:
+            possible = np.all((part.durations >= 0) & (part._flights > 0), axis=-1)
+            return is_admissible(*part._own) & possible
 
-    def distance(self, other: Orbit) -> np.ndarray:
+        return self._single(np.nan_to_num(self._of_existing(judged)) > 0)
+
+    def defect(self) -> Any:
+        """Largest absolute value of the defects of the equations."""
+
+        def largest(part: Orbit) -> np.ndarray:
+            problem, y = part._own
+            return np.max(np.abs(problem.residual(y)), axis=-1)
+
+        return self._single(self._of_existing(largest))
+
+    @property
+    def clock(self) -> Any:
+        """π/D, about the frequency of the contact over that of the table; 1 for an instant."""
+        lasts = np.where(self.durations > 0, self.durations, np.pi)
+        return self._shaped(np.pi / lasts)
+
+    def distance(self, other: Orbit) -> Any:
         """Largest difference to other orbits in Λ, φ, z′_i, and in D times :attr:`clock`."""
-        turned = reduce_angle(self.phase - other.phase)
-        longer = (self.contact_duration - other.contact_duration) * self.clock
-        faster = self.impact_velocity - other.impact_velocity
-        larger = self.amplitude - other.amplitude
-        differences = np.broadcast_arrays(larger, turned, longer, faster)
-        return np.max(np.abs(differences), axis=0)
+        turned = reduce_angle(self.phases - other.phases)
+        lasts = np.where(self.durations > 0, self.durations, np.pi)
+        longer = (self.durations - other.durations) * np.pi / lasts
+        faster = self.velocities - other.velocities
+        of_impacts = np.max(np.abs(np.broadcast_arrays(turned, longer, faster)), axis=(0, -1))
+        larger = np.abs(np.asarray(self.amplitude) - other.amplitude)
+        return self._single(np.maximum(of_impacts, larger))
+
+
+def orbit_at(problem: PeriodicOrbits, y: np.ndarray, kind: str = "") -> Orbit:
+    """The orbits at points y of a problem, with phases in [-π, π]."""
+    dynamics, _ = problem.dynamics(y)
+    theta, v = problem.states(y)
+    lam = problem.amplitude(y)
+    along = problem.along or (LAMBDA,)
+    turns = np.broadcast_to(problem.turns, theta.shape)
+    if dynamics is None:
+        none = np.full(theta.shape, np.nan)
+        return Orbit(problem.balls.model, lam, turns, none, none, none, along=along)
+    impact = problem.impact(dynamics, y)
+    with np.errstate(invalid="ignore"):
+        started = theta - time_to_section(dynamics, impact).reshape(theta.shape)
+        phase = reduce_angle(started)
+        whole = np.round((started - phase) / (2 * np.pi))
+        velocity = impact.velocity.reshape(v.shape) + lam[..., np.newaxis] * np.cos(phase)
+    shift = np.nan_to_num(np.roll(whole, -1, axis=-1) - whole).astype(int)
+    balls = problem.at(y)
+    return Orbit(
+        model=balls.model,
+        amplitude=lam if lam.ndim else float(lam),
+        turns=turns + shift,
+        phases=phase,
+        velocities=velocity,
+        durations=problem.legs(y).duration,
+        resumes=problem.resuming,
+        kind=kind,
+        along=along,
+    )
+
+
+def in_order(orbits: list[Orbit], none: Orbit) -> Orbit:
+    """Those of the single n-T orbits of one model at one Λ that exist, as a row in order of contact
+    duration.
+
+    Both sides of a saddle-node are one orbit at the saddle-node itself. ``none`` is an orbit of
+    this model, which determines an empty row.
+    """
+    places = {(x.phase, x.contact_duration, x.impact_velocity, x.amplitude) for x in orbits}
+    known = [place for place in places if not any(np.isnan(place))]
+    # The orbit with the larger phase, which is on the stable side, comes first of two instants.
+    known.sort(key=lambda place: (place[1], -place[0]))
+    phase, duration, velocity, lam = np.array(known).reshape(-1, 4).T
+    return Orbit.of(none.model, none.n, lam, phase, duration, velocity)

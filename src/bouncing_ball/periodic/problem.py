@@ -26,33 +26,40 @@ the duration D_i of each contact is a further unknown. It selects the release ne
 else depends on it: its equation is that D_i is the duration of the contact. The equations of such a
 model are smooth also where a contact grazes the release.
 
-The derivatives of Eq. 2 with respect to the states follow from the tangent maps of the models,
-exactly at a solution. Those of the durations, and those with respect to a parameter, are central
+The derivatives of Eq. 2 and of the durations with respect to the states follow from the tangent
+maps of the models, exactly at a solution. Those with respect to a parameter are central
 differences, whose error of 1e-9 only affects how fast Newton's method converges and not the
-solution.
+solution. Their step is small against the slowest impact, because the legs change rapidly next to a
+grazing impact.
 
 A parameter p enters as arsinh p, which is p for small p and ln 2p for large p, so that steps along
-ϖ = 2…1000 are as long as those along Λ.
+ϖ = 2…1000 are as long as those along Λ. If no parameter varies there are as many unknowns as
+equations.
 """
 
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
 from bouncing_ball.models.deviations import Jacobian
-from bouncing_ball.models.dynamics import Dynamics, Impact
+from bouncing_ball.models.dynamics import Departure, Dynamics, Impact
 from bouncing_ball.models.flight import table
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.periodic.family import Family, known
+from bouncing_ball.periodic.balls import LAMBDA, Balls, dynamics_inside
 from bouncing_ball.periodic.legs import Legs, lag_of, landed, no_legs, without_force
 from bouncing_ball.periodic.products import matrices_of, product_of, shifted_determinant
 from bouncing_ball.periodic.stability import Bifurcation
 
 # Step of the central differences, near the optimum ε^(1/3).
 _DIFFERENCE = 6e-6
+# The step in a parameter is shorter by the ratio of the slowest impact to this speed, and by this
+# factor at most.
+_SLOW = 0.1
+_LEAST = 1e-3
 # Where the second difference of a side of Eq. 2 is larger than this and than half of the first one,
 # the side has no derivative but a jump. At an end of a range both differences are equal, and
 # smaller. A jump that is not noticed spoils a solution by 1e-7 of its size.
@@ -71,8 +78,9 @@ class PeriodicOrbits:
 
     Parameters
     ----------
-    family : Family
-        The balls, with the values of the parameters that do not vary.
+    balls : Balls
+        The balls, with the values of the parameters that do not vary; an array of balls has the
+        leading shape of y.
     impacts : int
         k.
     turns : array of int
@@ -89,10 +97,10 @@ class PeriodicOrbits:
         Which contacts resume below the level of the table, shape (k,); by default none.
     """
 
-    family: Family
+    balls: Balls
     impacts: int
     turns: Any
-    along: tuple[str, ...]
+    along: tuple[str, ...] = ()
     selects: bool = False
     unit: Any = 1.0
     resumes: Any = False
@@ -133,11 +141,12 @@ class PeriodicOrbits:
         """y of orbits from θ, v and D, shape (..., k), and the parameters that vary."""
         state = np.stack([phase, velocity], axis=-1).reshape(*phase.shape[:-1], -1)
         coordinates = [np.arcsinh(np.asarray(values[name])) for name in self.along]
-        of_parameters = np.stack(np.broadcast_arrays(*coordinates), axis=-1)
-        parts = [state, of_parameters]
+        parts = [state]
         if self.selects:
-            parts.insert(1, duration)
-        return np.concatenate(parts, axis=-1)
+            parts.append(duration)
+        parts.extend(x[..., np.newaxis] for x in coordinates)
+        leading = np.broadcast_shapes(*(x.shape[:-1] for x in parts))
+        return np.concatenate([np.broadcast_to(x, (*leading, x.shape[-1])) for x in parts], axis=-1)
 
     @cached_property
     def _cached(self) -> Any:
@@ -156,12 +165,29 @@ class PeriodicOrbits:
     def dynamics(self, y: np.ndarray) -> tuple[Dynamics | None, np.ndarray]:
         """The dynamics of the legs in a row, and which legs are inside the ranges."""
         leading = y.shape[:-1]
-        given = {**self.family.values, **self.values(y)}
-        each = {}
-        for name, value in given.items():
-            if name in self.along or np.ndim(value):
-                each[name] = np.repeat(np.broadcast_to(value, leading).ravel(), self.impacts)
-        return known(self.family, each, self.along)
+        row = self.balls.row(leading, self.impacts)
+        if not self.along:
+            return row.dynamics(), np.ones(math.prod(leading) * self.impacts, dtype=bool)
+        varied = {name: np.repeat(x.ravel(), self.impacts) for name, x in self.values(y).items()}
+        return dynamics_inside(row, varied, self.along)
+
+    def amplitude(self, y: np.ndarray) -> np.ndarray:
+        """Λ of the orbits, of the leading shape of y."""
+        lam = self.values(y).get(LAMBDA, self.balls.amplitude)
+        return np.broadcast_to(lam, y.shape[:-1])
+
+    def at(self, y: np.ndarray) -> Balls:
+        """The balls with the parameters of the orbits."""
+        return self.balls.at(self.values(y)) if self.along else self.balls
+
+    def take(self, which: Any) -> Self:
+        """The problem of some orbits of a row."""
+        turns = np.asarray(self.turns)
+        return replace(
+            self,
+            balls=self.balls.take(which),
+            turns=turns[which] if turns.ndim > 1 else turns,
+        )
 
     def impact(self, dynamics: Dynamics, y: np.ndarray) -> Impact:
         """The impacts of the orbits in a row."""
@@ -204,6 +230,8 @@ class PeriodicOrbits:
             duration=duration.reshape(shape),
             tangent=Jacobian(*(entry.reshape(shape) for entry in tangent)),
             near=Jacobian(*(entry.reshape(shape) for entry in near)),
+            contraction=np.reshape(dynamics.contraction(impact, departure), shape),
+            longer=self._longer(dynamics, impact, departure).reshape(*shape, 2),
             velocity=speed.reshape(shape),
             acceleration=acceleration.reshape(shape),
             dynamics=dynamics,
@@ -212,23 +240,33 @@ class PeriodicOrbits:
             passed=landing.passed,
         )
 
+    def _longer(self, dynamics: Dynamics, impact: Impact, departure: Departure) -> np.ndarray:
+        """Derivatives of the durations by θ and v, shape (legs, 2); 0 if they are no unknowns."""
+        if not self.selects:
+            return np.zeros((impact.phase.size, 2))
+        return np.stack(dynamics.duration_slopes(impact, departure), axis=-1)
+
     def residual(self, y: np.ndarray) -> np.ndarray:
         """Both sides of Eq. 2, and the errors of the durations, shape (..., N)."""
-        legs = self.legs(self.around(y))
+        legs = self._beside(y)
         here = legs.residual[0].reshape(*y.shape[:-1], -1)
         if not self.selects:
             return here
         return np.concatenate([here, self.durations(y) - legs.duration[0]], axis=-1)
 
+    def _beside(self, y: np.ndarray) -> Legs:
+        """The legs at y and, if a parameter varies, beside it, where the Jacobian needs them."""
+        return self.legs(self.around(y) if self.along else y[np.newaxis])
+
     def around(self, y: np.ndarray, everywhere: bool = False) -> np.ndarray:
         """The points at which legs are compared: y and the points beside it, along a first axis.
 
-        They are y itself, y moved by ± the step of the differences in each parameter, and, if the
-        durations are unknowns or ``everywhere`` is set, y with all θ or all v moved: a leg depends
-        on the state at its start alone.
+        They are y itself, y moved by ± the step of the differences in each parameter, and, if
+        ``everywhere`` is set, y with all θ or all v moved: a leg depends on the state at its start
+        alone.
         """
         columns: list[Any] = [self.equations + j for j in range(len(self.along))]
-        if self.selects or everywhere:
+        if everywhere:
             columns += [slice(0, 2 * self.impacts, 2), slice(1, 2 * self.impacts, 2)]
         points = np.repeat(y[np.newaxis], 1 + 2 * len(columns), axis=0)
         step = self._step(y)
@@ -239,12 +277,16 @@ class PeriodicOrbits:
 
     def _step(self, y: np.ndarray) -> np.ndarray:
         """The steps of the central differences, of the shape of y."""
-        return np.broadcast_to(_DIFFERENCE * np.asarray(self.unit), y.shape)
+        step = np.array(np.broadcast_to(_DIFFERENCE * np.asarray(self.unit), y.shape))
+        _, velocity = self.states(y)
+        share = np.clip(np.abs(velocity).min(axis=-1) / _SLOW, _LEAST, 1.0)
+        step[..., self.equations :] *= np.where(np.isnan(share), 1.0, share)[..., np.newaxis]
+        return step
 
     def _within(self, y: np.ndarray) -> np.ndarray:
         """Points beside y, moved back to the ends of the ranges of the parameters."""
         for j, name in enumerate(self.along):
-            low, high = np.arcsinh(self.family.bounds(name))
+            low, high = np.arcsinh(self.balls.bounds(name))
             here = y[0, ..., self.equations + j]
             beside = np.clip(y[1:, ..., self.equations + j], low, high)
             # A point that is itself outside the range is left where it is.
@@ -286,15 +328,11 @@ class PeriodicOrbits:
         contact = np.arange(self.impacts)
         row = 2 * self.impacts + contact
         matrix[..., row, row] = 1
-        count = len(self.along)
-        step = self._step(y)
         for j, length in enumerate(self._lengths(y)):
             longer = legs.duration[1 + 2 * j] - legs.duration[2 + 2 * j]
             matrix[..., row, self.equations + j] = -longer / length
         for j in range(2):
-            longer = legs.duration[1 + 2 * (count + j)] - legs.duration[2 + 2 * (count + j)]
-            start = 2 * contact + j
-            matrix[..., row, start] = -longer / (2 * step[..., start])
+            matrix[..., row, 2 * contact + j] = -legs.longer[0, ..., j]
 
     def _lengths(self, y: np.ndarray) -> list[np.ndarray]:
         """The lengths of the central differences in each parameter, shape (..., 1): shorter where
@@ -308,7 +346,7 @@ class PeriodicOrbits:
 
     def matrices(self, y: np.ndarray) -> np.ndarray:
         """DP of the legs, shape (..., k, 2, 2)."""
-        return matrices_of(self.legs(self.around(y)).tangent)[0]
+        return matrices_of(self._beside(y).tangent)[0]
 
     def monodromy(self, y: np.ndarray) -> Jacobian:
         """The derivative of the map Pᵏ at the first impact; entries of the leading shape of y."""
@@ -316,9 +354,12 @@ class PeriodicOrbits:
         return Jacobian(*(product[..., i, j] for i, j in ((0, 0), (0, 1), (1, 0), (1, 1))))
 
     def trace_and_determinant(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Trace and determinant of the monodromy, each with the leading shape of y."""
+        """Trace and determinant of the monodromy, each with the leading shape of y.
+
+        The determinant is the product of the contractions.
+        """
         m = self.monodromy(y)
-        return m.a + m.d, m.a * m.d - m.b * m.c
+        return m.a + m.d, self._beside(y).contraction[0].prod(axis=-1)
 
     def bifurcation(self, kind: Bifurcation, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The test function det(M - μ) of a bifurcation, μ = ±1, and its gradient.

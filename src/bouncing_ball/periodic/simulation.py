@@ -9,7 +9,7 @@ from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.periodic.family import Family
+from bouncing_ball.periodic.balls import Balls
 from bouncing_ball.periodic.legs import lag_of, time_to_section, without_force
 from bouncing_ball.periodic.problem import PeriodicOrbits
 from bouncing_ball.periodic.special import sticking
@@ -20,7 +20,7 @@ _SAME = 1e-6
 
 
 def simulated(
-    family: Family, phase: float, velocity: float, impacts: int, along: Sequence[str]
+    balls: Balls, phase: float, velocity: float, impacts: int, along: Sequence[str]
 ) -> tuple[PeriodicOrbits, np.ndarray]:
     """The problem and the guess y of an orbit with k impacts near a simulated impact.
 
@@ -34,7 +34,7 @@ def simulated(
     NoOrbitError
         If a contact resumes, and its law has no fixed κ.
     """
-    dynamics = family.dynamics({})
+    dynamics = balls.dynamics()
     dynamics, start, _ = dynamics.in_a_row([phase], [velocity])
     impact = dynamics.at_section(*start)
     if velocity > 0:
@@ -62,14 +62,14 @@ def simulated(
         _check_resumption(dynamics)
     selects = dynamics.continues and max(durations) > 0
     problem = PeriodicOrbits(
-        family=family,
+        balls=balls,
         impacts=impacts,
         turns=np.array(turns),
         along=tuple(along),
         selects=selects,
         resumes=np.array(resumes),
     )
-    values = {name: family.values[name] for name in along}
+    values = {name: balls.values[name] for name in along}
     rows = (np.array(row) for row in (phases[:-1], velocities, durations))
     return problem, problem.point(*rows, **values)
 

@@ -15,7 +15,7 @@ A minimum of δ in flight is unique in each interval in which Λ sin τ > 1, bec
 is positive there and nowhere else. All minima are therefore found.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from enum import StrEnum
 
@@ -33,6 +33,9 @@ from bouncing_ball.periodic.stability import Bifurcation
 # A time is bisected until a minimum is known to 2⁻²⁶ of an interval of at most π; its height then
 # has an error of the order of the square.
 _BISECTIONS = 26
+# Rounding errors of 1e-16 are divided by the impact speed and by the flight time where both vanish:
+# the margin limits each of them to about 1e-12.
+_MARGIN = 1e-4
 # The value of a function where there is no minimum or maximum, and thus no event near.
 _FAR = 1.0
 
@@ -156,7 +159,7 @@ def loss_of_release(orbits: PeriodicOrbits) -> Event:
         _, closing = orbits.states(y)
         velocity = legs.departure.flight.velocity.reshape(closing.shape)
         # The bounces before a rest on the table become arbitrarily slow.
-        rests = np.any(legs.departure.sticks) if orbits.family.dynamics({}).forgets else False
+        rests = np.any(legs.departure.sticks) if legs.dynamics.forgets else False
         lowest = (velocity / np.abs(closing)).min(axis=-1)
         return np.full(lowest.shape, _FAR) if rests else lowest
 
@@ -177,8 +180,8 @@ def turns_apart(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
     return np.sqrt(np.mean(turned**2 + faster**2, axis=-1))
 
 
-def events(orbits: PeriodicOrbits) -> Sequence[Event]:
-    """The events along a branch, which ends where an impact grazes and where sticking ends."""
+def bifurcations(orbits: PeriodicOrbits) -> list[Event]:
+    """The saddle-node and the period doubling."""
 
     def bifurcation(kind: Bifurcation) -> Event:
         return Event(
@@ -187,13 +190,18 @@ def events(orbits: PeriodicOrbits) -> Sequence[Event]:
             condition=lambda y: orbits.bifurcation(kind, y),
         )
 
+    return [bifurcation(kind) for kind in Bifurcation]
+
+
+def events(orbits: PeriodicOrbits) -> Sequence[Event]:
+    """The events along a branch, which ends where an impact grazes and where sticking ends."""
+
     def end(kind: Special, margin) -> Event:
         reason = f"{kind}: {MEANINGS[kind]}"
         return Event(kind, lambda y: margin(orbits, y), terminal=True, reason=reason)
 
     return (
-        bifurcation(Bifurcation.SADDLE_NODE),
-        bifurcation(Bifurcation.PERIOD_DOUBLING),
+        *bifurcations(orbits),
         Event(Special.GRAZING_FLIGHT, lambda y: flight_margin(orbits, y)),
         Event(
             Special.GRAZING_RELEASE,
@@ -203,3 +211,35 @@ def events(orbits: PeriodicOrbits) -> Sequence[Event]:
         end(Special.GRAZING_IMPACT, impact_margin),
         replace(end(Special.STICKING, sticking), is_sign=True),
     )
+
+
+def ends_of_contact(orbits: PeriodicOrbits) -> list[Event]:
+    """Where an orbit with one impact ceases to exist: the ball no longer approaches the table at
+    impact, it no longer leaves the table at the end of contact, or its flight time vanishes.
+
+    On such a branch an orbit that is not admissible is followed as well, so that it does not end
+    where it grazes. The relative impact velocity and the flight time vanish together where an orbit
+    merges with permanent contact, and the equations are singular there.
+    """
+
+    def end(name: str, why: str, left: Callable[[np.ndarray], np.ndarray]) -> Event:
+        return Event(name, left, terminal=True, reason=f"{name}: {why}")
+
+    def released(y: np.ndarray) -> np.ndarray:
+        legs = orbits.legs(y)
+        if legs.departure is None:
+            return np.full(y.shape[:-1], np.nan)
+        return legs.departure.flight.velocity.reshape(legs.duration.shape).min(axis=-1)
+
+    def aloft(y: np.ndarray) -> np.ndarray:
+        return (orbits.intervals(y) - orbits.legs(y).duration).min(axis=-1)
+
+    return [
+        end(
+            "contact lost",
+            "the ball no longer closes in on the table at impact",
+            lambda y: impact_margin(orbits, y) - _MARGIN,
+        ),
+        end("release lost", "the ball no longer leaves the table as the contact ends", released),
+        end("flight lost", "the contact fills the whole cycle", lambda y: aloft(y) - _MARGIN),
+    ]

@@ -19,9 +19,8 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.numerics.arrays import blocks
-from bouncing_ball.periodic.orbit import check_index
-from bouncing_ball.periodic.spring_damper_branch import BranchPoint, branch_point
-from bouncing_ball.periodic.spring_damper_orbit import SpringDamperOrbit
+from bouncing_ball.periodic.orbit import Orbit, check_index
+from bouncing_ball.periodic.spring_damper_branch import BranchPoint, branch_point, orbits_on_branch
 from bouncing_ball.periodic.stability import Bifurcation, Side
 
 # Points of the scan on each side of ε = 0, spaced geometrically from this small
@@ -268,7 +267,7 @@ def _unstable_side(curves: _Curves, lam: np.ndarray) -> np.ndarray:
 
 def orbit_at(
     contact: SpringDamper, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE
-) -> SpringDamperOrbit:
+) -> Orbit:
     """The n-T orbits at given Λ; NaN entries where there is no orbit.
 
     Parameters
@@ -284,7 +283,7 @@ def orbit_at(
 
     Returns
     -------
-    SpringDamperOrbit
+    Orbit
         Of the shape to which the arguments broadcast.
 
     Raises
@@ -300,10 +299,10 @@ def orbit_at(
     """
     search = _stable_side if Side(side) is Side.STABLE else _unstable_side
     excess = _searched(search, contact, n, amplitude)
-    return SpringDamperOrbit.on_branch(excess, contact, n)
+    return orbits_on_branch(excess, contact, n)
 
 
-def orbits_at(contact: SpringDamper, n: int, amplitude: float) -> SpringDamperOrbit:
+def orbits_at(contact: SpringDamper, n: int, amplitude: float) -> Orbit:
     """All n-T orbits of one contact at one Λ, in order of contact duration, shape (count,).
 
     These are the points of the branch with the given Λ at which the ball approaches the table at
@@ -330,11 +329,11 @@ def orbits_at(contact: SpringDamper, n: int, amplitude: float) -> SpringDamperOr
     low, high = curve.ends()
     # Even a contact that fills the cycle may be shorter than the shortest one of the branch.
     if _is_too_soft(contact, n, amplitude) or low >= high:
-        return SpringDamperOrbit.on_branch(np.empty(0), contact, n)
+        return orbits_on_branch(np.empty(0), contact, n)
     grid = _fine_grid(curve, float(contact.damped_frequency))
     turns = _all_roots(curve, _fold, grid)
     grid = np.sort(np.concatenate([grid, turns]))
-    found = SpringDamperOrbit.on_branch(_all_roots(curve, _deficit, grid, amplitude), contact, n)
+    found = orbits_on_branch(_all_roots(curve, _deficit, grid, amplitude), contact, n)
     # A sign change at a pole of the branch is not a root.
     at_amplitude = np.abs(found.amplitude - amplitude) <= 1e-6 * amplitude
     approaches = found.relative_impact_velocity < 0

@@ -47,7 +47,9 @@ from numpy.typing import ArrayLike
 from bouncing_ball.errors import require
 from bouncing_ball.models.oscillator import responses
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.arrays import blocks, pick
+from bouncing_ball.periodic.orbit import Orbit
 
 # Number of points computed at the same time, so that the intermediate arrays stay in the cache.
 _BLOCK = 8192
@@ -336,6 +338,34 @@ def _branch_point(eps, omega, zeta, sine, n) -> BranchPoint:
         saddle_node=saddle_node,
         determinant=end.decay * end.decay + none,
     )
+
+
+def orbits_of(point: BranchPoint, contact: SpringDamper, n: ArrayLike) -> Orbit:
+    """The orbits at points of the branch."""
+    return Orbit.of(
+        SpringDamperModel(contact),
+        n,
+        point.amplitude,
+        point.phase,
+        point.contact_duration,
+        point.u + point.x,
+    )
+
+
+def orbits_on_branch(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> Orbit:
+    """The orbits with excess angles ε of the contact; NaN where ε is NaN.
+
+    Raises
+    ------
+    ModelError
+        If ζ ≥ 1.
+
+    Examples
+    --------
+    >>> float(orbits_on_branch(0.0, SpringDamper(5.0, 0.0), 1).determinant())
+    1.0
+    """
+    return orbits_of(branch_point(excess, contact, n), contact, n)
 
 
 # Number of Gauss-Newton steps. The start is exact up to the rounding of D, so that few suffice.

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.models.damping import Release
-from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.models.rigid import RestitutionModel
 
 
 def test_every_node_is_in_its_tile_and_within_the_stable_range(small, every_node):

@@ -17,6 +17,7 @@ from bouncing_ball.beyond.atlas.summary import (
 )
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic import restitution_branch as restitution_orbit
 
 
@@ -54,8 +55,8 @@ def test_the_corrected_model_is_judged_below_the_saddle_node_of_the_restitution_
     assert found.restitution == 0.05 and found.position < 1e-11
     contact = SpringDamper(ratio, float(damping_ratio(0.05)))
     exact, rigid, corrected = exact_and_simple_models(contact)
-    higher = max(float(one.saddle_node(1).amplitude) for one in (exact, corrected))
-    assert higher < rigid.saddle_node(1).amplitude
+    higher = max(float(n_t.saddle_node(one, 1).amplitude) for one in (exact, corrected))
+    assert higher < n_t.saddle_node(rigid, 1).amplitude
     # A grid over the whole range, from just above the higher saddle-node on.
     top = float(restitution_orbit.period_doubling(1, 0.05))
     lam = higher * (1 + 1e-12) + np.linspace(0, 1, 101) ** 2 * (top - higher)

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from bouncing_ball.beyond.atlas.walk import REACHED, extrapolated, stiff_start, walk
+from bouncing_ball.models.rigid import RestitutionModel
+from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic import spring_damper_bifurcations as bifurcations
-from bouncing_ball.periodic.restitution_model import RestitutionModel
 from bouncing_ball.periodic.spring_damper_branch import branch_point
 
 COMPARED = [3.0, 10.0, 100.0, 1e4]
@@ -67,7 +68,7 @@ def test_the_start_is_the_limit_of_stiff_contacts(small, every_node, ratio):
     for row in rows(plan, 4):
         nodes = every_node(plan, row)
         point = branch_point(stiff_start(nodes) / ratio, nodes.contact(ratio), nodes.n)
-        expected = RestitutionModel(nodes.restitution).orbit(nodes.n, nodes.amplitude)
+        expected = n_t.orbit(RestitutionModel(nodes.restitution), nodes.n, nodes.amplitude)
         lift = expected.amplitude * np.sin(expected.phase)
         # Of the order of 1/ϖ, with the load over the speed of the ball that leaves.
         assert np.max(np.abs(point.y - lift)) < 200 / ratio

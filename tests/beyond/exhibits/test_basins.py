@@ -6,6 +6,7 @@ import pytest
 from bouncing_ball.beyond.exhibits.basins import MOTIONS, Basins, basins
 from bouncing_ball.beyond.exhibits.motion_samples import three_models
 from bouncing_ball.models.damping import Release
+from bouncing_ball.periodic import n_t
 from bouncing_ball.pipeline.configuration import typed
 
 CASE = {"restitution": 0.5, "frequency_ratio": 1e5, "amplitude": 1.3}
@@ -19,7 +20,7 @@ def data():
 
 def test_a_stable_orbit_lies_in_its_basin(data):
     for k, model in enumerate(three_models(np.array(0.5), 1e5, Release.DISPLACEMENT)):
-        orbit = model.orbit(1, 1.3)
+        orbit = n_t.orbit(model, 1, 1.3)
         place = {"start_phase": orbit.phase, "start_speed": -orbit.relative_impact_velocity}
         end = data.destination.isel(case=0, model=k).sel(place, method="nearest")
         assert MOTIONS[int(end)] == "1-T orbit"

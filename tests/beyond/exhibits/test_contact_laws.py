@@ -14,13 +14,13 @@ from bouncing_ball.beyond.exhibits.contact_laws import (
     law_errors,
 )
 from bouncing_ball.models.damping import Release, damping_ratio
-from bouncing_ball.models.instant import instant_of
 from bouncing_ball.models.laws.collocation import contacts
 from bouncing_ball.models.laws.linear import LinearLaw
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.restitution_branch import rigid_speed
-from bouncing_ball.periodic.restitution_model import RestitutionModel
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 from bouncing_ball.pipeline.configuration import typed
 
 slow = pytest.mark.slow
@@ -55,8 +55,8 @@ def test_the_linear_law_is_that_of_the_paper():
     expected = search(*asked).threshold[0, 0, 0]
     assert contacts.threshold(ratios, 0.01) / root == pytest.approx(expected, rel=1e-9)
     model = SpringDamperModel(SpringDamper(ratios / root, zeta))
-    rigid = RestitutionModel(0.65).orbit(1, 1.0)
-    expected = abs(model.orbit(1, 1.0).max_height / rigid.max_height - 1)
+    rigid = n_t.orbit(RestitutionModel(0.65), 1, 1.0)
+    expected = abs(n_t.orbit(model, 1, 1.0).max_height / rigid.max_height - 1)
     np.testing.assert_allclose(contacts.height_error(ratios), expected, rtol=1e-9)
 
 
@@ -67,7 +67,7 @@ def test_a_contact_has_its_restitution_and_its_centroid_at_the_speed_of_its_cali
     model = CalibratedContacts("hunt-crossley", LawOrbit(**ONE), calibration).models(
         np.array([80.0])
     )
-    on_contact = -model.orbit(1, 1.0).relative_impact_velocity
+    on_contact = -n_t.orbit(model, 1, 1.0).relative_impact_velocity
     speeds = {
         Calibration.CONTACT: on_contact,
         Calibration.RESTITUTION: 2 * np.pi / 1.65,
@@ -75,9 +75,9 @@ def test_a_contact_has_its_restitution_and_its_centroid_at_the_speed_of_its_cali
     right = speeds.pop(calibration)
     (wrong,) = speeds.values()
     # The speeds differ by 0.14 %, and the r of this law at these speeds by some 0.05 %.
-    assert instant_of(model, right).restitution == pytest.approx(0.65, abs=1e-9)
-    assert abs(instant_of(model, right).delay / (0.65 / 1.65 * np.pi / 80) - 1) < 1e-8
-    assert abs(instant_of(model, wrong).restitution - 0.65) > 2e-4
+    assert model.signature(right).restitution == pytest.approx(0.65, abs=1e-9)
+    assert abs(model.signature(right).delay / (0.65 / 1.65 * np.pi / 80) - 1) < 1e-8
+    assert abs(model.signature(wrong).restitution - 0.65) > 2e-4
 
 
 def test_a_threshold_that_the_grid_does_not_have_is_nan():
@@ -121,10 +121,10 @@ def height_by_one_impact(law):
     "name", [pytest.param(x, marks=() if "linear" in x else pytest.mark.long) for x in TRIED]
 )
 def test_the_errors_are_those_of_the_trial(name):
-    rigid = float(RestitutionModel(0.65).orbit(1, 1.0).max_height)
+    rigid = float(n_t.orbit(RestitutionModel(0.65), 1, 1.0).max_height)
     for duration, (restitution, corrected) in zip(DURATIONS, TRIED[name], strict=True):
         model, law = law_at_rigid_speed(name, duration)
-        exact = float(model.orbit(1, 1.0).max_height)
+        exact = float(n_t.orbit(model, 1, 1.0).max_height)
         # One unit of the second digit: both printed and computed are rounded to it.
         assert rigid / exact - 1 == pytest.approx(restitution, abs=unit(restitution))
         assert abs(height_by_one_impact(law) / exact - 1) == pytest.approx(
@@ -182,8 +182,8 @@ def test_the_threshold_of_a_further_orbit_is_that_of_its_own_search(errors):
 def test_contacts_of_one_centroid_take_different_times(errors):
     for name in NAMES:
         models = CalibratedContacts(name, LawOrbit(**ONE)).models(np.array([100.0]))
-        speed = -models.orbit(1, 1.0).relative_impact_velocity
-        impact = instant_of(models, speed)
+        speed = -n_t.orbit(models, 1, 1.0).relative_impact_velocity
+        impact = models.signature(speed)
         assert impact.delay == pytest.approx(0.65 / 1.65 * np.pi / 100, rel=1e-8)
         # A contact that ends by its force is released below the table's level.
         ends_early = name in ("linear, force release", "kuwabara-kono")

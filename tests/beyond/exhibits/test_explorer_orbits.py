@@ -4,7 +4,8 @@ import numpy as np
 
 from bouncing_ball.beyond.exhibits.explorer_orbits import reference_orbits
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.pipeline.configuration import typed
 
 GIVEN = {"frequency_ratio": {"min": 1.0, "max": 1e4, "samples": 40}, "seed": 31}
@@ -18,8 +19,10 @@ def test_the_reference_orbits_satisfy_the_equations_of_the_contact():
             part.restitution.values, part.frequency_ratio.values, rule
         )
         names = ("amplitude", "phase", "contact_duration", "impact_velocity")
-        orbit = SpringDamperModel(contact).orbit_of(
-            part.n.values.astype(int), *(part[name].values for name in names)
+        orbit = Orbit.of(
+            SpringDamperModel(contact),
+            part.n.values.astype(int),
+            *(part[name].values for name in names),
         )
         there = np.isfinite(part.phase.values)
         assert there.mean() > 0.8

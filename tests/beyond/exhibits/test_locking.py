@@ -8,7 +8,8 @@ from bouncing_ball.beyond.exhibits.motion_samples import three_models
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.motions import Kind, Motions
 from bouncing_ball.models.damping import Release
-from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.models.rigid import RestitutionModel
+from bouncing_ball.periodic import n_t
 from bouncing_ball.pipeline.configuration import typed
 from bouncing_ball.pipeline.diff.datasets import compare_datasets
 
@@ -27,7 +28,7 @@ def test_exponents_of_orbits_are_those_of_their_multipliers():
     models = three_models(data.restitution.values[:, None], 100.0, Release.DISPLACEMENT)
     for model, name in zip(models, data["model"].values, strict=True):
         one = data.sel(model=name)
-        orbit = model.orbit(1, data["amplitude"].values)
+        orbit = n_t.orbit(model, 1, data["amplitude"].values)
         larger = np.abs(orbit.multipliers()).max(axis=-1)
         there = ((one.kind == "orbit") & (one.periods == 1) & (one.impacts == 1)).values
         assert there.any() and np.all(larger[there] < 1)

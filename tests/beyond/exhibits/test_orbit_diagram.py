@@ -6,6 +6,7 @@ import xarray as xr
 from bouncing_ball.beyond.exhibits.motion_samples import three_models
 from bouncing_ball.beyond.exhibits.orbit_diagram import orbit_diagrams
 from bouncing_ball.models.damping import Release
+from bouncing_ball.periodic import n_t
 from bouncing_ball.pipeline.configuration import typed
 
 
@@ -17,7 +18,7 @@ def test_diagrams_have_the_stable_orbit_with_its_phase_and_exponent():
     assert np.allclose(data.phase_density.sum("bin_phase"), 1)
     for k, model in enumerate(three_models(np.array(0.6), 100.0, Release.DISPLACEMENT)):
         one = data.isel(model=k)
-        orbit = model.orbit(1, data["amplitude"].values)
+        orbit = n_t.orbit(model, 1, data["amplitude"].values)
         here = one.phase_density.sel(
             bin_phase=xr.DataArray(orbit.phase, dims="x"), method="nearest"
         )

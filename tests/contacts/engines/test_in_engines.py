@@ -38,8 +38,9 @@ from bouncing_ball.models.damping import Release, damping_ratio, restitution_coe
 from bouncing_ball.models.laws.collocation import contacts
 from bouncing_ball.models.laws.impedance import Impedance
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.restitution_branch import rigid_speed
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 from bouncing_ball.pipeline.configuration import read_yaml
 from bouncing_ball.pipeline.provenance import CONFIGURATION, gather
 
@@ -67,7 +68,7 @@ def exact_orbit(release, restitution, n, frequency_ratio):
     zeta = float(damping_ratio(restitution, release))
     ball = spring_damper(frequency_ratio=frequency_ratio, damping_ratio=zeta, release=str(release))
     ends = limits(ball, n)
-    return ball.orbit(n, (ends.saddle_node.amplitude + ends.period_doubling.amplitude) / 2)
+    return n_t.orbit(ball, n, (ends.saddle_node.amplitude + ends.period_doubling.amplitude) / 2)
 
 
 @cache
@@ -139,7 +140,7 @@ def simulated(name, case, steps):
     """
     release, restitution, n, ratio = case
     contact = SpringDamper(np.array([ratio]), damping_ratio(restitution, release), release)
-    orbit = SpringDamperModel(contact).orbit(n, exact_orbit(*case).amplitude)
+    orbit = n_t.orbit(SpringDamperModel(contact), n, exact_orbit(*case).amplitude)
     asked = {"n": n, "restitution": restitution, "release": release, "steps": steps}
     errors = step_errors(orbit, EngineOrbit(**PARAMETERS | asked))
     level = model_errors(orbit, 1)[SIMPLE.index("corrected"), 0]

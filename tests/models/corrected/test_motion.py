@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
+from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.linear import LinearLaw
 from bouncing_ball.models.laws.signature import Signature
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.sequence import Status
-from bouncing_ball.periodic.corrected_orbits import CorrectedModel
-from bouncing_ball.periodic.restitution_model import RestitutionModel
 
 RELEASES = list(Release)
 BALLS = 400

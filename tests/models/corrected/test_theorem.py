@@ -3,15 +3,16 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.laws.collocation import contacts
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
 from bouncing_ball.models.laws.linear import LinearLaw
+from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.laws.registry import LAWS
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.periodic.corrected_orbits import CorrectedModel
-from bouncing_ball.periodic.law_orbits import LawModel
+from bouncing_ball.periodic import n_t
 
 R, LAM = 0.7, 1.3
 NAMES = ("displacement", "force", "hunt-crossley", "tsuji", "kuwabara-kono")
@@ -105,7 +106,7 @@ def test_the_multipliers_need_the_derivatives_of_delay_and_restitution(name):
     missed = []
     for duration in DURATIONS:
         contact = law(name, duration)
-        orbit = LawModel(contact).orbit(1, 1.0)
+        orbit = n_t.orbit(LawModel(contact), 1, 1.0)
         signature = Signature(contact)
         psi = float(orbit.phase)
         for _ in range(30):

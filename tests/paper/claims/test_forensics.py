@@ -1,22 +1,26 @@
 """Readings of Table 1: the altered equations against an independent return map."""
 
+from functools import partial
+
 import numpy as np
 import pytest
+from bouncing_ball.periodic.orbit import Orbit
+from bouncing_ball.periodic.spring_damper_branch import orbits_on_branch
 from scipy.optimize import brentq
 
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.claims.forensics import (
     PRINTED_DAMPING,
-    WeightlessOrbit,
     altered_ends,
     forensics,
-    high_bounce_monodromy,
+    monodromy,
+    weightless_orbits,
 )
 from bouncing_ball.paper.claims.tables import forensics as rows
+from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic import restitution_branch as restitution_orbit
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic.spring_damper_orbit import SpringDamperOrbit
 
 ZETA = float(damping_ratio(0.85))
 WEIGHTLESS, HIGH_BOUNCE = "no gravity in contact", "high-bounce stability"
@@ -58,15 +62,16 @@ def cycle(phase, u, orbit, reference, *, weight, rise):
 
 @pytest.mark.parametrize(("omega", "n"), [(10.0, 1), (2.0, 2)])
 @pytest.mark.parametrize(
-    ("orbit_at", "monodromy", "weight", "rise"),
+    ("orbit_at", "linearised", "weight", "rise"),
     [
-        (WeightlessOrbit.on_branch, WeightlessOrbit.monodromy, 0, True),
-        (SpringDamperOrbit.on_branch, high_bounce_monodromy, 1, False),
-        (SpringDamperOrbit.on_branch, SpringDamperOrbit.monodromy, 1, True),
+        (weightless_orbits, partial(monodromy, weight=0.0), 0, True),
+        (orbits_on_branch, partial(monodromy, high_bounce=True), 1, False),
+        (orbits_on_branch, monodromy, 1, True),
+        (orbits_on_branch, Orbit.monodromy, 1, True),
     ],
 )
 def test_orbit_and_monodromy_are_those_of_the_altered_return_map(
-    reference, omega, n, orbit_at, monodromy, weight, rise
+    reference, omega, n, orbit_at, linearised, weight, rise
 ):
     orbit = orbit_at(np.array(-0.05), SpringDamper(omega, ZETA), np.array(n))
     start = np.array([float(orbit.phase), float(orbit.relative_impact_velocity)])
@@ -78,15 +83,17 @@ def test_orbit_and_monodromy_are_those_of_the_altered_return_map(
     # Central differences: 1e-10 of truncation, 1e-10/1e-5 of rounding.
     steps = 1e-5 * np.eye(2)
     expected = np.stack([once(start + h) - once(start - h) for h in steps], axis=-1) / 2e-5
-    assert monodromy(orbit) == pytest.approx(expected, abs=5e-5)
+    assert linearised(orbit) == pytest.approx(expected, abs=5e-5)
 
 
 def test_the_ends_of_an_unaltered_branch_are_those_of_the_model():
     contact = SpringDamper(np.array([2.0, 10.0, 1e4]), ZETA)
     n = np.full(3, 2)
     model = SpringDamperModel(contact)
-    found = altered_ends(contact, n, SpringDamperOrbit.on_branch, SpringDamperOrbit.monodromy)
-    expected = np.stack([model.saddle_node(n).amplitude, model.period_doubling(n).amplitude], -1)
+    found = altered_ends(contact, n, orbits_on_branch, Orbit.monodromy)
+    expected = np.stack(
+        [n_t.saddle_node(model, n).amplitude, n_t.period_doubling(model, n).amplitude], -1
+    )
     # At a fold Λ is known to rounding; at the other end ε has the digits of D.
     assert found == pytest.approx(expected, abs=1e-10)
 
@@ -109,7 +116,7 @@ def test_each_reading_of_the_damping_has_the_saddle_node_of_its_zeta(study):
         ("damping to first order", -np.log(0.85) / np.pi),
         ("equations as they stand", ZETA),
     ):
-        node = SpringDamperModel(SpringDamper(10.0, zeta)).saddle_node(3).amplitude
+        node = n_t.saddle_node(SpringDamperModel(SpringDamper(10.0, zeta)), 3).amplitude
         found = study.computed.sel(reading=reading, frequency_ratio=10, n=3, bound="saddle-node")
         assert float(found) == float(node)
 

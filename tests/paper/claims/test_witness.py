@@ -7,6 +7,7 @@ import pytest
 from declared_artifacts import ARTIFACTS
 
 from bouncing_ball.errors import ModelError
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.corrector import newton
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.claims.tables import witness as rows
@@ -21,8 +22,7 @@ from bouncing_ball.paper.claims.witness import (
     witness,
 )
 from bouncing_ball.paper.exhibits.continuation_of_orbits import Domains, orbit_branches
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic.spring_damper_orbit import SpringDamperOrbit
+from bouncing_ball.periodic.orbit import Orbit
 
 
 @pytest.fixture(scope="module")
@@ -137,13 +137,13 @@ def test_what_newtons_method_has_not_found_is_no_orbit(recorded, monkeypatch):
 
 
 def test_the_comparison_with_the_simulation_can_fail(recorded, monkeypatch):
-    original = SpringDamperOrbit.cycle
+    original = Orbit.cycle
 
     def late(self, *start):
         cycle = original(self, *start)
         return cycle._replace(time=cycle.time + 1e-7)
 
-    monkeypatch.setattr(SpringDamperOrbit, "cycle", late)
+    monkeypatch.setattr(Orbit, "cycle", late)
     assert off("fig08", recorded["fig08"]) == {CLOSES}
 
 

@@ -19,7 +19,6 @@ from bouncing_ball.paper.exhibits.continuation_of_orbits import (
 from bouncing_ball.paper.exhibits.continuation_of_orbits_figures import domains
 from bouncing_ball.periodic.spring_damper_bifurcations import period_doubling, saddle_node
 from bouncing_ball.periodic.spring_damper_branch import branch_point
-from bouncing_ball.periodic.spring_damper_orbit import SpringDamperOrbit
 from bouncing_ball.pipeline.configuration import typed
 
 # As the configuration gives them.
@@ -60,7 +59,7 @@ def test_points_are_orbits(figure_8):
     assert float(figure_8.residual.max()) < 1e-12
     for omega in FIGURE_8["frequency_ratio"]:
         row = figure_8.sel(frequency_ratio=omega)
-        orbit = SpringDamperOrbit(
+        orbit = Orbit(
             1,
             SpringDamper(omega, zeta),
             row.amplitude.values,

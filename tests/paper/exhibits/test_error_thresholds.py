@@ -7,12 +7,13 @@ from bouncing_ball.accuracy.errors import Quantity, modulus, relative_errors
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.exhibits.error_thresholds import error_thresholds, height_error
 from bouncing_ball.paper.exhibits.permanent_contact import permanent_contact_error
-from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.spring_damper_bifurcations import orbit_at
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 from bouncing_ball.pipeline.configuration import typed
 
 PARAMETERS = {
@@ -97,7 +98,7 @@ def test_a_threshold_at_the_end_of_the_bifurcation():
     fine = np.geomspace(1.0, 10.0, 20001)
     threshold = data.error_threshold.item()
     exact = SpringDamperModel(SpringDamper.from_restitution(0.0893, fine))
-    there = np.isfinite(exact.saddle_node(1).amplitude)
+    there = np.isfinite(n_t.saddle_node(exact, 1).amplitude)
     first = int(np.argmax(there))
     assert np.all(there[first:]) and fine[first - 1] <= threshold <= fine[first]
     assert np.array_equal(np.isinf(data.relative_error[0]), data.frequency_ratio < threshold)

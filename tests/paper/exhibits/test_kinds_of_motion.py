@@ -5,6 +5,7 @@ import pytest
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.restitution import RestitutionDynamics
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.paper.exhibits.kinds_of_motion import (
     Path,
     follow,
@@ -12,7 +13,7 @@ from bouncing_ball.paper.exhibits.kinds_of_motion import (
     impacts_until_repetition,
     kinds_of_motion,
 )
-from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.periodic import n_t
 from bouncing_ball.pipeline.configuration import typed
 
 PARAMETERS = {
@@ -43,13 +44,13 @@ def test_the_three_balls_are_periodic_subharmonic_and_chaotic(balls, described):
 
 def test_the_periodic_ball_ends_on_the_orbit_of_the_restitution_model():
     path = follow(dynamics(1.2), 1.0, 5.0, 256)
-    assert path.phase[-1, 0] == pytest.approx(float(RestitutionModel(0.5).orbit(1, 1.2).phase))
+    assert path.phase[-1, 0] == pytest.approx(float(n_t.orbit(RestitutionModel(0.5), 1, 1.2).phase))
 
 
 def test_next_to_an_orbit_a_deviation_grows_by_its_floquet_multiplier():
     # At the period doubling the multipliers are real beyond it, and the larger one decides.
     amplitude = 1.52
-    orbit = RestitutionModel(0.5).orbit(1, amplitude)
+    orbit = n_t.orbit(RestitutionModel(0.5), 1, amplitude)
     multiplier = np.abs(orbit.multipliers()).max()
     rate, _ = growth_rate(follow(dynamics(amplitude), float(orbit.phase), 4.5, 2048))
     assert rate[0] == pytest.approx(np.log(multiplier), rel=1e-3)

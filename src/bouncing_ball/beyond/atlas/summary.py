@@ -33,8 +33,9 @@ from bouncing_ball.accuracy.thresholds import thresholds
 from bouncing_ball.beyond.atlas.plan import Nodes, Plan
 from bouncing_ball.beyond.atlas.shards import VARIABLES as OF_SHARDS
 from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.models.model import Model
+from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic import restitution_branch as restitution_orbit
-from bouncing_ball.periodic.model import ImpactModel
 
 VARIABLES = {
     "needed": Variable("ϖ from which the error of all nodes of a tile is tolerated", symbol="ϖ"),
@@ -100,7 +101,7 @@ class Largest(NamedTuple):
     position: float
 
 
-def compared(plan: Plan, row: int, model: str, ratio: float, r: np.ndarray) -> list[ImpactModel]:
+def compared(plan: Plan, row: int, model: str, ratio: float, r: np.ndarray) -> list[Model]:
     """The exact and a simple model of the contacts of a row that have r, at one ϖ."""
     contact = plan.placed(row, r, np.zeros_like(r)).contact(ratio)
     exact, *simple = exact_and_simple_models(contact)
@@ -130,7 +131,7 @@ def in_common_range(
     each, where = np.unique(r, return_inverse=True)
     nodes = plan.placed(row, r, np.zeros_like(r))
     exact, simple = (
-        one.saddle_node(nodes.n).amplitude for one in compared(plan, row, model, ratio, each)
+        n_t.saddle_node(one, nodes.n).amplitude for one in compared(plan, row, model, ratio, each)
     )
     low = np.fmax(exact, simple)[where.reshape(r.shape)]
     high = restitution_orbit.period_doubling(nodes.n, r)

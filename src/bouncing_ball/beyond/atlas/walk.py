@@ -29,10 +29,11 @@ import numpy as np
 
 from bouncing_ball.beyond.atlas.plan import Nodes
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic import restitution_branch as restitution_orbit
 from bouncing_ball.periodic import spring_damper_bifurcations as bifurcations
-from bouncing_ball.periodic.spring_damper_branch import BranchPoint, branch_point
-from bouncing_ball.periodic.spring_damper_orbit import SpringDamperOrbit
+from bouncing_ball.periodic.orbit import Orbit
+from bouncing_ball.periodic.spring_damper_branch import BranchPoint, branch_point, orbits_of
 from bouncing_ball.periodic.stability import is_stable
 
 REACHED = 1e-6
@@ -50,7 +51,7 @@ class Step(NamedTuple):
     """The orbits of the nodes at several ϖ, shape (ϖ, nodes); NaN where there is no orbit."""
 
     frequency_ratio: np.ndarray
-    orbit: SpringDamperOrbit
+    orbit: Orbit
     stable: np.ndarray
     sought: np.ndarray
     """Whether each orbit was found by the root finder, because the walk did not reach it."""
@@ -144,7 +145,7 @@ def walk(nodes: Nodes, ratios: np.ndarray) -> Iterator[Step]:
         point = branch_point(excess, contact, nodes.n)
         at = along
         past = excess * ratio
-        orbit = SpringDamperOrbit.from_branch(point, contact, nodes.n)
+        orbit = orbits_of(point, contact, nodes.n)
         stable = is_stable(point.trace, point.determinant)
         sought = ~(np.abs(point.amplitude / nodes.amplitude - 1) <= REACHED)
         if np.any(sought):
@@ -153,7 +154,7 @@ def walk(nodes: Nodes, ratios: np.ndarray) -> Iterator[Step]:
         yield Step(ratio[:, 0], orbit, stable, sought)
 
 
-def _replaced(orbit: SpringDamperOrbit, sought: np.ndarray, contact: SpringDamper, nodes: Nodes):
+def _replaced(orbit: Orbit, sought: np.ndarray, contact: SpringDamper, nodes: Nodes):
     """The orbits, where those that the walk did not reach are computed by the root finder."""
     asked = np.broadcast_to(nodes.amplitude, sought.shape)[sought]
     found = bifurcations.orbit_at(contact[sought], nodes.n, asked)
@@ -161,4 +162,4 @@ def _replaced(orbit: SpringDamperOrbit, sought: np.ndarray, contact: SpringDampe
     columns = [np.array(getattr(orbit, name)) for name in names]
     for column, name in zip(columns, names, strict=True):
         column[sought] = getattr(found, name)
-    return SpringDamperOrbit.of(nodes.n, contact, *columns)
+    return Orbit.of(SpringDamperModel(contact), nodes.n, *columns)

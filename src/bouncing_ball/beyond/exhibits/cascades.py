@@ -26,7 +26,8 @@ from bouncing_ball.long_run.cascade_of_flights import openings, stiff_openings
 from bouncing_ball.long_run.period_doublings import MOST, cascade
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic import n_t
 
 VARIABLES = {
     "flights": Variable("flights of the orbit in a period", symbol="k"),
@@ -172,7 +173,7 @@ def cascades(parameters: Cascades, release: Release) -> xr.Dataset:
     _, restitution_model, _ = exact_and_simple_models(contact[:, :1])
     # Arrays over (doubling, restitution, ϖ).
     simple, corrected, exact = (
-        cascade(model.period_doubling(parameters.n), parameters.doublings)
+        cascade(n_t.period_doubling(model, parameters.n), parameters.doublings)
         for model in (restitution_model, corrected_model, exact_model)
     )
     simple_error = exact.amplitude / simple.amplitude - 1

@@ -33,19 +33,20 @@ from bouncing_ball.accuracy.errors import Quantity, relative, values
 from bouncing_ball.datasets.parameters import LawRestitution, Many, Tolerance
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import Release, damping_ratio
-from bouncing_ball.models.instant import instant_of
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
+from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.laws.registry import LAWS
 from bouncing_ball.models.laws.signature import Signature
+from bouncing_ball.models.model import Model
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.exhibits.orbit_parameters import OrbitParameters, OrbitsAlongRatio
-from bouncing_ball.periodic.corrected_orbits import CorrectedModel
-from bouncing_ball.periodic.law_orbits import LawModel, law_at_orbit
-from bouncing_ball.periodic.model import ImpactModel
+from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.law_at_orbit import law_at_orbit
 from bouncing_ball.periodic.restitution_branch import rigid_speed
-from bouncing_ball.periodic.restitution_model import RestitutionModel
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 
 VARIABLES = {
     "law": Variable("law of the contact"),
@@ -106,13 +107,11 @@ def share_in_contact(name: str, restitution: float) -> float:
     >>> share_in_contact("linear", 0.5)
     1.0
     """
-    impact = instant_of(exact_model(name, restitution, 1.0, 1.0), 1.0)
+    impact = exact_model(name, restitution, 1.0, 1.0).signature(1.0)
     return float(impact.restitution / ((1 + impact.restitution) * impact.delay))
 
 
-def exact_model(
-    name: str, restitution: float, duration: ArrayLike, speed: ArrayLike
-) -> ImpactModel:
+def exact_model(name: str, restitution: float, duration: ArrayLike, speed: ArrayLike) -> Model:
     """The exact models of contacts that have r and D at given speeds, arrays of one shape.
 
     Parameters
@@ -192,8 +191,8 @@ class CalibratedContacts:
     def height_error(self, ratios: np.ndarray) -> np.ndarray:
         """Moduli of the relative errors of the restitution model's greatest height, shape (m,)."""
         one = self.orbit
-        simple = RestitutionModel(one.restitution).orbit(one.n, one.amplitude).max_height
-        exact = self.along(ratios, lambda x: x.orbit(one.n, one.amplitude).max_height)
+        simple = n_t.orbit(RestitutionModel(one.restitution), one.n, one.amplitude).max_height
+        exact = self.along(ratios, lambda x: n_t.orbit(x, one.n, one.amplitude).max_height)
         return np.abs(relative(exact, simple))
 
     def threshold(self, ratios: np.ndarray, tolerance: float) -> float:
@@ -218,7 +217,7 @@ class CalibratedContacts:
         """Whether the orbit at one π/(D + κ) is stable and admissible; False for NaN."""
         if np.isnan(ratio):
             return False
-        found = self.models(np.array([ratio])).orbit(self.orbit.n, self.orbit.amplitude)
+        found = n_t.orbit(self.models(np.array([ratio])), self.orbit.n, self.orbit.amplitude)
         return bool(np.all(found.is_stable() & found.is_admissible()))
 
 

@@ -24,9 +24,10 @@ from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.laws.linear import LinearLaw
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.exhibits.orbit_parameters import OrbitErrors
 from bouncing_ball.paper.exhibits.time_histories import ContactHistory
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic import n_t
 
 VARIABLES = {
     "coefficient": Variable("relative error times the frequency ratio, to first order", symbol="K"),
@@ -82,7 +83,7 @@ def meeting_flights(parameters: ContactHistory, release: Release) -> xr.Dataset:
     contact = SpringDamper.from_restitution(
         parameters.restitution, parameters.frequency_ratio, release
     )
-    orbit = SpringDamperModel(contact).require_orbit(parameters.n, parameters.amplitude)
+    orbit = n_t.require_orbit(SpringDamperModel(contact), parameters.n, parameters.amplitude)
     end = float(orbit.contact_duration)
     time = np.linspace(-0.6 * end, 1.6 * end, parameters.samples)
     start, velocity = orbit.contact_path(np.zeros(()))

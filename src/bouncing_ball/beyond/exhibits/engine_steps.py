@@ -23,8 +23,9 @@ from bouncing_ball.datasets.selection import index_of
 from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.orbit import Orbit
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 
 VARIABLES = {
     "engine": Variable("physics engine"),
@@ -115,8 +116,8 @@ def greatest_heights(orbit: Orbit, restitution: np.ndarray) -> np.ndarray:
 
     Examples
     --------
-    >>> from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
-    >>> orbit = SpringDamperModel(SpringDamper(10.0, damping_ratio(0.85))).orbit(1, 1.0)
+    >>> from bouncing_ball.models.spring_damper_model import SpringDamperModel
+    >>> orbit = n_t.orbit(SpringDamperModel(SpringDamper(10.0, damping_ratio(0.85))), 1, 1.0)
     >>> tops = greatest_heights(orbit, np.full(5, 0.85))
     >>> bool(np.all(abs(tops / orbit.max_height - 1) < 1e-12))
     True
@@ -236,7 +237,7 @@ def conformance(data: Mapping[str, xr.Dataset], parameters: EngineOrbit) -> xr.D
     for rule in map(Release.of, runs.release.values):
         contact = SpringDamper(ratio, damping_ratio(r[:, np.newaxis, np.newaxis], rule), rule)
         lam = runs.amplitude.sel(release=rule).transpose(*along).values
-        orbit = SpringDamperModel(contact).orbit(n[:, np.newaxis], lam)
+        orbit = n_t.orbit(SpringDamperModel(contact), n[:, np.newaxis], lam)
         orbits.append(orbit)
         model_error.append(model_errors(orbit, parameters.transient + parameters.impacts))
         contacts_in_bounce.append(2 * np.pi * n[:, np.newaxis] / contact.free_duration)

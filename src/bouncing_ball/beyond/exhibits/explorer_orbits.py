@@ -14,11 +14,12 @@ from bouncing_ball.datasets.parameters import Parameters, Seed, Span
 from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.models.damping import Release, restitution_coefficient
+from bouncing_ball.models.model import Model
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.model import ImpactModel
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.orbit import OBSERVABLES
-from bouncing_ball.periodic.restitution_model import RestitutionModel
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 
 VARIABLES = {
     "end_speed": Variable("speed of the ball towards the table at that impact", symbol="-δ′"),
@@ -100,9 +101,7 @@ def _followed() -> xr.Dataset:
     return start.merge(xr.concat(of_models, models))
 
 
-def _ends(
-    model: ImpactModel, lam: np.ndarray, phase: np.ndarray, velocity: np.ndarray
-) -> dict[str, Any]:
+def _ends(model: Model, lam: np.ndarray, phase: np.ndarray, velocity: np.ndarray) -> dict[str, Any]:
     """The motions of balls, and their states at the last of 100 impacts or before they rest."""
     found = final_motions(model, lam, phase, velocity)
     run = model.simulate(lam, phase, velocity, 100)
@@ -125,11 +124,11 @@ def _under(rule: Release, omega: np.ndarray, seed: int) -> xr.Dataset:
     exact, simple, corrected = exact_and_simple_models(
         SpringDamper.from_restitution(r, omega, rule)
     )
-    orbit = exact.orbit(n, lam)
+    orbit = n_t.orbit(exact, n, lam)
     trace, determinant = orbit.trace_and_determinant()
-    simple_orbit = simple.orbit(n, lam)
+    simple_orbit = n_t.orbit(simple, n, lam)
     simple_trace, _ = simple_orbit.trace_and_determinant()
-    corrected_orbit = corrected.orbit(n, lam)
+    corrected_orbit = n_t.orbit(corrected, n, lam)
     corrected_trace, _ = corrected_orbit.trace_and_determinant()
     middle = orbit.contact_duration / 2
     values = {
@@ -140,17 +139,17 @@ def _under(rule: Release, omega: np.ndarray, seed: int) -> xr.Dataset:
         **{name: getattr(orbit, name) for name in OBSERVABLES[1:]},
         "trace": trace,
         "determinant": determinant,
-        "saddle_node_amplitude": exact.saddle_node(n).amplitude,
-        "period_doubling_amplitude": exact.period_doubling(n).amplitude,
+        "saddle_node_amplitude": n_t.saddle_node(exact, n).amplitude,
+        "period_doubling_amplitude": n_t.period_doubling(exact, n).amplitude,
         "ball": orbit.contact_path(middle)[0],
         "contact_force": exact.contact.force(*-np.array(orbit.contact_motion(middle))),
         "restitution_phase": simple_orbit.phase,
         "restitution_trace": simple_trace,
-        "restitution_period_doubling": simple.period_doubling(n).amplitude,
+        "restitution_period_doubling": n_t.period_doubling(simple, n).amplitude,
         "corrected_phase": corrected_orbit.phase,
         "corrected_max_height": corrected_orbit.max_height,
         "corrected_trace": corrected_trace,
-        "corrected_saddle_node": corrected.saddle_node(n).amplitude,
-        "corrected_period_doubling": corrected.period_doubling(n).amplitude,
+        "corrected_saddle_node": n_t.saddle_node(corrected, n).amplitude,
+        "corrected_period_doubling": n_t.period_doubling(corrected, n).amplitude,
     }
     return xr.Dataset({name: ("sample", np.asarray(value)) for name, value in values.items()})

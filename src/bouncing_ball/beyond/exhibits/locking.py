@@ -19,6 +19,7 @@ from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.motions import Kind, Motions
 from bouncing_ball.models.damping import Release
+from bouncing_ball.periodic import n_t
 
 VARIABLES = {
     "kind_nodes": Variable("nodes at which the ball of a model ends on a motion of this group"),
@@ -142,8 +143,8 @@ def locking(parameters: Locking, release: Release, found: Found = None) -> xr.Da
     }
     r = parameters.restitution.grid()
     models = three_models(r, ratios[0], release)
-    saddle_nodes = [model.saddle_node(1).amplitude for model in models]
-    period_doublings = [model.period_doubling(1).amplitude for model in models]
+    saddle_nodes = [n_t.saddle_node(model, 1).amplitude for model in models]
+    period_doublings = [n_t.period_doubling(model, 1).amplitude for model in models]
     return described(
         {
             "kind": (dims, at_first_ratio["kind"]),

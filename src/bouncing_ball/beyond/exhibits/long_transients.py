@@ -25,7 +25,7 @@ from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.grids import VARIABLES as OF_GRIDS
 from bouncing_ball.long_run.many_digits import Table
 from bouncing_ball.long_run.motions import Kind, Motions
-from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.models.rigid import RestitutionModel
 
 VARIABLES = {
     "band": Variable("range of restitution coefficients"),

@@ -5,8 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from bouncing_ball.models.damping import Release
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.restitution_model import RestitutionModel
+from bouncing_ball.periodic import n_t
 
 
 def random_orbits(
@@ -42,8 +43,8 @@ def random_orbits(
     r = rng.uniform(lowest, 0.98, size)
     n = rng.integers(1, 6, size)
     model = RestitutionModel(r)
-    low = model.saddle_node(n).amplitude
-    high = model.period_doubling(n).amplitude
+    low = n_t.saddle_node(model, n).amplitude
+    high = n_t.period_doubling(model, n).amplitude
     lam = low + rng.uniform(*places, size) * (high - low)
     zeta = SpringDamper.from_restitution(r, 1.0, release, measured=True).damping_ratio
     return n, zeta, lam, rng

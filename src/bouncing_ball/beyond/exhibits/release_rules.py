@@ -28,10 +28,11 @@ from bouncing_ball.datasets.variables import Variable, describe, described
 from bouncing_ball.models.damping import Release, damping_ratio, restitution_coefficient
 from bouncing_ball.models.oscillator import responses
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.exhibits.error_thresholds import ErrorsAlongRatio
 from bouncing_ball.paper.exhibits.errors_along_ratio import errors_along_ratio
 from bouncing_ball.paper.exhibits.lowest_period_doubling import lowest_along_ratio
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.stability import Bifurcation
 
 VARIABLES = {
@@ -68,8 +69,8 @@ def _bifurcations(parameters: ReleaseRules, rule: Release) -> xr.Dataset:
     ratios = parameters.frequency_ratio.grid()
     zeta = float(damping_ratio(parameters.restitution))
     model = SpringDamperModel(SpringDamper(ratios, zeta, rule))
-    saddle_nodes = model.saddle_node(families[:, np.newaxis]).amplitude
-    doublings = model.period_doubling(families[:, np.newaxis]).amplitude
+    saddle_nodes = n_t.saddle_node(model, families[:, np.newaxis]).amplitude
+    doublings = n_t.period_doubling(model, families[:, np.newaxis]).amplitude
     ends = np.stack([saddle_nodes, doublings], axis=-1)
     turns = lowest_along_ratio(ratios, doublings, zeta, rule, families)
     return xr.Dataset(

@@ -33,6 +33,11 @@ from bouncing_ball.numerics.first_zero import Zero
 # Newton steps from the landing to the instant: the start has an error of third
 # order in t_c, and each step doubles the order.
 _DESCENT = 4
+# A time that exceeds the duration of a contact by rounding still belongs to it.
+_LATER = 1e-12
+# Errors of the tabulated signature of an elastic contact, multiplied by the ratio of flight
+# time to delay.
+_ELASTIC = 1e-10
 
 
 @dataclass(frozen=True, repr=False)
@@ -140,3 +145,38 @@ class CorrectedDynamics(Dynamics):
         """The phase of the instant and the relative velocity before it."""
         hit = impact.known
         return reduce_angle(hit.phase), -hit.speed
+
+    def contraction(self, impact: Impact, departure: Departure) -> np.ndarray:
+        """The factor of areas at the instant, 0 if the ball sticks.
+
+        With X = Λ cos ψ, Y = Λ sin ψ, the velocity w after the impact, dw = W dψ - b dp and the
+        depth's slope e, it is ``[b (w - X - e Y) - e (W + 1)]/(v - e a)``. Without dissipation it
+        is 1 up to the error of a tabulated signature, which is set to 1.
+        """
+        hit = impact.known
+        x, y = table(hit.phase, self.amplitude)
+        here, _ = hit.instant.tangent(hit.speed, 1 - y)
+        by_phase = -(1 + here.restitution) * y - here.load * x
+        after = here.restitution * (hit.velocity - x - here.delay * y) - here.delay * (by_phase + 1)
+        factor = after / (hit.speed - here.delay * (1 - y))
+        factor = np.where(np.abs(factor - 1) < _ELASTIC, 1.0, factor)
+        return np.where(departure.sticks, 0.0, factor)
+
+    def within(
+        self, impact: Impact, departure: Departure, time: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """δ and δ′ on the parabolas of the flights before and after the instants, 0 at rest."""
+        hit = impact.known
+        since = time - hit.instant.delay
+        start = np.where(since < 0, hit.arrival, hit.velocity)
+        x, y = table(hit.phase + since, self.amplitude)
+        rests = time > hit.instant.duration * (1 + _LATER)
+        displacement = hit.height + (start - since / 2) * since - y
+        return np.where(rests, 0.0, displacement), np.where(rests, 0.0, start - since - x)
+
+    def gap_at_start(self, impact: Impact) -> np.ndarray:
+        """δ of the flight, which passes the table's level about a t_c²/2 from there."""
+        hit = impact.known
+        delay = hit.instant.delay
+        _, y = table(impact.phase, self.amplitude)
+        return hit.height - (hit.arrival + delay / 2) * delay - y

@@ -22,7 +22,6 @@ from typing import ClassVar
 
 import numpy as np
 
-from bouncing_ball.models.contact import Span
 from bouncing_ball.models.deviations import Deviation, Jacobian
 from bouncing_ball.models.dynamics import Departure, Impact
 from bouncing_ball.models.flight import Flight, Rise, table
@@ -38,7 +37,6 @@ from bouncing_ball.models.resumption import (
     of_slow_balls,
 )
 from bouncing_ball.models.sequence import Status
-from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.first_zero import first_zero
 
 # Panels of two periods of the table on a contact with up to some twenty oscillations in one, and
@@ -87,7 +85,7 @@ class ContactDynamics(ResumingDynamics):
             duration=np.where(no_end, np.inf, duration),
             flight=Flight(displacement, velocity, x, y, self.amplitude),
             status=status,
-            by=end.jacobian,
+            by=end,
         )
         return self._with_sticking(impact, departure) if differentiate else departure
 
@@ -95,24 +93,13 @@ class ContactDynamics(ResumingDynamics):
         self, impact: Impact, departure: Departure
     ) -> Callable[[np.ndarray], np.ndarray] | None:
         """δ + κ δ′ within contacts, by the motion of the law; None for a law without a κ."""
-        law = self.law
-        if law.lag is None:
+        if self.law.lag is None:
             return None
-        span = Span(
-            displacement=impact.displacement,
-            velocity=impact.velocity,
-            phase=impact.phase,
-            amplitude=np.broadcast_to(self.amplitude, impact.phase.shape),
-            duration=departure.duration,
-            release_displacement=departure.flight.displacement,
-            release_velocity=departure.flight.velocity,
-        )
+        lag = self.law.lag
 
         def at(time: np.ndarray) -> np.ndarray:
-            which = np.broadcast_to(np.arange(impact.phase.size), time.shape).ravel()
-            several = law.take(which)
-            displacement, velocity = several.during(pick(span, which), time.ravel())
-            return (displacement + several.lag * velocity).reshape(time.shape)
+            displacement, velocity = self.within(impact, departure, time)
+            return displacement + lag * velocity
 
         return at
 
@@ -171,14 +158,18 @@ class ContactDynamics(ResumingDynamics):
         """
         known = (impact.displacement >= 0) & (after.displacement >= 0)
         after = after._replace(velocity=np.where(known, after.velocity, np.nan))
-        by_phase = departure.by[:, :, 0]
+        by_phase = departure.by.jacobian[:, :, 0]
         # v = -δ′, so that the derivatives with respect to δ′ have the other sign.
-        by_speed = departure.by[:, :, 1]
+        by_speed = departure.by.jacobian[:, :, 1]
         released = (
             Deviation(1 + by_phase[:, 0], -by_phase[:, 1], -by_phase[:, 2]),
             Deviation(-by_speed[:, 0], by_speed[:, 1], by_speed[:, 2]),
         )
         return self.landed(released, departure, after, passed)
+
+    def contraction(self, impact: Impact, departure: Departure) -> np.ndarray:
+        """exp(-∫ ∂f/∂p′ dτ) over each contact."""
+        return departure.by.contraction
 
 
 def sampled_resumption(flight: Flight, law: ForceLaw) -> tuple[np.ndarray, np.ndarray]:

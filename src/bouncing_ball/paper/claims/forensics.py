@@ -6,7 +6,7 @@ linearised flight neglects the displacement of the table, as Holmes' map does.
 """
 
 from collections.abc import Callable
-from typing import Self
+from functools import partial
 
 import numpy as np
 import xarray as xr
@@ -17,10 +17,12 @@ from bouncing_ball.datasets.rounding import levels
 from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.spring_damper import ContactFlow, SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.claims import as_printed
 from bouncing_ball.paper.exhibits.printed_table1 import AXES, LAST_DIGIT, RESTITUTION, printed_table
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic.spring_damper_orbit import SpringDamperOrbit
+from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.orbit import Orbit
+from bouncing_ball.periodic.spring_damper_branch import orbits_on_branch
 from bouncing_ball.periodic.stability import Bifurcation
 
 VARIABLES = {
@@ -43,59 +45,90 @@ _SAMPLES = 401
 _REACH = 12.0
 
 
-class WeightlessOrbit(SpringDamperOrbit):
-    """n-T orbits with gravity in flight, but not in contact."""
+def contact_end(orbit: Orbit, weight: float) -> ContactFlow:
+    """The ends of the contacts of orbits, in which the ball has this part of its weight.
 
-    @classmethod
-    def on_branch(cls, excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> Self:
-        """The orbits with excess angles ε of the contact.
-
-        At a fixed duration Eqs. 23-25 are linear in u = δ′ at the start, Λ cos φ and Λ sin φ.
-        """
-        duration = (contact.free_angle + excess) / contact.damped_frequency
-
-        def orbit(u, x, y):
-            return cls(n, contact, np.hypot(x, y), np.arctan2(y, x), duration, u + x)
-
-        constant = orbit(0.0, 0.0, 0.0).residual()
-        columns = [orbit(*unit).residual() - constant for unit in np.eye(3)]
-        matrix = np.stack(columns, axis=-1)
-        solved = np.linalg.solve(matrix, -constant[..., np.newaxis])[..., 0]
-        return orbit(*np.moveaxis(solved, -1, 0))
-
-    def contact_flow(self, time: np.ndarray):
-        """The motion in contact, less the part of the weight, which acts on a table at rest."""
-        flow = super().contact_flow(time)
-        sag = self.law.flow(time, 0.0, 0.0, 0.0, 0.0)
-        jacobian = flow.jacobian.copy()
-        jacobian[..., 0] -= sag.jacobian[..., 0]
-        return ContactFlow(
-            displacement=flow.displacement - sag.displacement,
-            velocity=flow.velocity - sag.velocity,
-            acceleration=flow.acceleration - sag.acceleration,
-            jacobian=jacobian,
-        )
-
-
-def high_bounce_monodromy(orbit: SpringDamperOrbit) -> np.ndarray:
-    """Monodromy of orbits with the linearised flight of Holmes' map, shape (..., 2, 2).
-
-    This flight ends at the height at which it began, ``z′_b T - T²/2 = 0`` in place of Eq. 25, so
-    that ``dT = -T dz′_b/z′_i``.
+    The part of the weight that is missing is that of a ball on a table at rest.
     """
-    d_duration, _, d_velocity = np.moveaxis(orbit.contact_jacobian()[..., :2], -2, 0)
+    time = np.asarray(orbit.contact_duration)
+    contact = orbit.law
+    flow = contact.flow(time, 0.0, orbit.relative_impact_velocity, orbit.phase, orbit.amplitude)
+    sag = contact.flow(time, 0.0, 0.0, 0.0, 0.0)
+    missing = 1 - weight
+    jacobian = flow.jacobian.copy()
+    jacobian[..., 0] -= missing * sag.jacobian[..., 0]
+    return ContactFlow(
+        displacement=flow.displacement - missing * sag.displacement,
+        velocity=flow.velocity - missing * sag.velocity,
+        acceleration=flow.acceleration - missing * sag.acceleration,
+        jacobian=jacobian,
+    )
+
+
+def weightless_orbits(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> Orbit:
+    """n-T orbits with gravity in flight, but not in contact, with excess angles ε of the contact.
+
+    At a fixed duration Eqs. 23-25 are linear in u = δ′ at the start, Λ cos φ and Λ sin φ.
+    """
+    duration = (contact.free_angle + excess) / contact.damped_frequency
+    flight = 2 * np.pi * np.asarray(n) - duration
+
+    def orbit(u, x, y) -> Orbit:
+        model = SpringDamperModel(contact)
+        return Orbit.of(model, n, np.hypot(x, y), np.arctan2(y, x), duration, u + x)
+
+    def defects(u, x, y) -> np.ndarray:
+        tried = orbit(u, x, y)
+        end = contact_end(tried, weight=0.0)
+        release = tried.release_phase
+        bounce = tried.bounce_velocity
+        speed = end.velocity + tried.amplitude * np.cos(release) - bounce
+        height = end.displacement + tried.amplitude * np.sin(release) - y
+        landing = height + (bounce - flight / 2) * flight
+        return np.stack([contact.frequency_ratio * end.displacement, speed, landing], axis=-1)
+
+    constant = defects(0.0, 0.0, 0.0)
+    columns = [defects(*unit) - constant for unit in np.eye(3)]
+    matrix = np.stack(columns, axis=-1)
+    solved = np.linalg.solve(matrix, -constant[..., np.newaxis])[..., 0]
+    return orbit(*np.moveaxis(solved, -1, 0))
+
+
+def monodromy(orbit: Orbit, weight: float = 1.0, high_bounce: bool = False) -> np.ndarray:
+    """Monodromy of orbits with an altered contact or flight, shape (..., 2, 2).
+
+    ``weight`` is the part of the weight in contact. The flight ends at the table, or, with
+    ``high_bounce``, as that of Holmes' map at the height at which it began, ``z′_b T - T²/2 = 0``
+    in place of Eq. 25, so that ``dT = -T dz′_b/z′_i``.
+    """
+
+    def column(values: ArrayLike) -> np.ndarray:
+        return np.asarray(values)[..., np.newaxis]
+
+    end = contact_end(orbit, weight)
+    # Columns are the phase and δ′ at the start of contact.
+    by_start = end.jacobian[..., [3, 2]]
+    d_duration = -by_start[..., 0, :] / column(end.velocity)
+    d_velocity = by_start[..., 1, :] + column(end.acceleration) * d_duration
     d_release = d_duration + np.array([1.0, 0.0])
-    sine = orbit.amplitude * np.sin(orbit.release_phase)
-    d_bounce = d_velocity - sine[..., np.newaxis] * d_release
-    d_flight = -(orbit.flight_time / orbit.impact_velocity)[..., np.newaxis] * d_bounce
+    d_bounce = d_velocity - column(orbit.amplitude * np.sin(orbit.release_phase)) * d_release
+    rise = column(orbit.flight_time) * d_bounce
+    arrival = np.asarray(orbit.impact_velocity)
+    if high_bounce:
+        d_flight = -rise / column(arrival)
+    else:
+        landing = orbit.amplitude * np.cos(orbit.phase)
+        leaving = orbit.amplitude * np.cos(orbit.release_phase)
+        rise = rise + column(leaving - landing) * d_release
+        d_flight = rise / column(landing - arrival)
     d_landing = d_release + d_flight
-    table = (orbit.amplitude * np.sin(orbit.phase))[..., np.newaxis]
+    table = column(orbit.amplitude * np.sin(orbit.phase))
     return np.stack([d_landing, d_bounce - d_flight + table * d_landing], axis=-2)
 
 
 @np.errstate(divide="ignore", invalid="ignore")  # where the ball grazes
 def altered_ends(
-    contact: SpringDamper, n: np.ndarray, orbit_at: Callable, monodromy: Callable
+    contact: SpringDamper, n: np.ndarray, orbit_at: Callable, linearised: Callable
 ) -> np.ndarray:
     """Λ at the saddle-node and the period doubling of altered branches, shape (m, 2).
 
@@ -110,7 +143,7 @@ def altered_ends(
     n : ndarray, shape (m,)
     orbit_at : callable
         The orbits as a function of ε, the contact and n; their contacts last (θ₀ + ε)/ϖ_d.
-    monodromy : callable
+    linearised : callable
         The monodromy of these orbits, shape (..., 2, 2).
     """
 
@@ -118,7 +151,7 @@ def altered_ends(
         return orbit_at(excess, contact[which], n[which]).amplitude
 
     def doubling(excess, which):
-        matrix = monodromy(orbit_at(excess, contact[which], n[which]))
+        matrix = linearised(orbit_at(excess, contact[which], n[which]))
         trace = np.trace(matrix, axis1=-2, axis2=-1)
         return Bifurcation.PERIOD_DOUBLING.test(trace, np.linalg.det(matrix))
 
@@ -147,12 +180,12 @@ def readings() -> dict[str, np.ndarray]:
 
     def of_model(damping: float = zeta, release: Release = Release.DISPLACEMENT) -> np.ndarray:
         model = SpringDamperModel(SpringDamper(omega, damping, release))
-        ends = [model.saddle_node(n).amplitude, model.period_doubling(n).amplitude]
+        ends = [n_t.saddle_node(model, n).amplitude, n_t.period_doubling(model, n).amplitude]
         return np.stack(ends, axis=-1)
 
-    def altered(orbit_at: Callable, monodromy: Callable) -> np.ndarray:
+    def altered(orbit_at: Callable, linearised: Callable) -> np.ndarray:
         contact = SpringDamper(omega.ravel(), zeta)
-        return altered_ends(contact, n.ravel(), orbit_at, monodromy).reshape(*n.shape, 2)
+        return altered_ends(contact, n.ravel(), orbit_at, linearised).reshape(*n.shape, 2)
 
     plain = of_model()
     printed_ends = [
@@ -165,8 +198,8 @@ def readings() -> dict[str, np.ndarray]:
         "damping as printed": of_model(PRINTED_DAMPING),
         "damping to first order": of_model(-np.log(RESTITUTION) / np.pi),
         "force release": of_model(release=Release.FORCE),
-        "no gravity in contact": altered(WeightlessOrbit.on_branch, WeightlessOrbit.monodromy),
-        "high-bounce stability": altered(SpringDamperOrbit.on_branch, high_bounce_monodromy),
+        "no gravity in contact": altered(weightless_orbits, partial(monodromy, weight=0.0)),
+        "high-bounce stability": altered(orbits_on_branch, partial(monodromy, high_bounce=True)),
         "all rows from Eqs. 7-8": np.stack(printed_ends, axis=-1),
     }
 

@@ -17,12 +17,14 @@ from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.models.linear_contact import LinearContactDynamics
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.restitution import RestitutionDynamics
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.models.sticking import lift_off_phase
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.claims import as_printed as printed
-from bouncing_ball.periodic.restitution_model import RestitutionModel
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.stability import Bifurcation
 
 VARIABLES = {
@@ -125,11 +127,13 @@ def _restitution_orbits(rng, r) -> Checks:
     # The orbit with φ = 0, where both sides of the fold meet, exists at this Λ only.
     fold = printed.saddle_node(n, r)
     fold_phase, fold_velocity, _ = impact_cycle(0.0 * r, n * np.pi, r, fold)
-    at_fold = model.orbit_of(n, fold, 0.0 * r).trace_and_determinant()
+    at_fold = Orbit.of(model, n, fold, 0.0 * r).trace_and_determinant()
 
     doubling = printed.period_doubling(n, r)
     corrected = np.hypot(2 * (1 + r * r) / (1 + r) ** 2, along)
-    at_doubling = model.orbit_of(n, corrected, np.arccos(along / corrected)).trace_and_determinant()
+    at_doubling = Orbit.of(
+        model, n, corrected, np.arccos(along / corrected)
+    ).trace_and_determinant()
     # Holmes' map, whose next phase is φ + 2v, has the trace 1 + r - 2p and the determinant r.
     push = (1 + r) * np.sqrt(doubling**2 - along**2)
     holmes = Bifurcation.PERIOD_DOUBLING.test(1 + r - 2 * push, r)
@@ -236,13 +240,13 @@ def contact_orbits(rng, samples) -> Checks:
     n = rng.integers(1, 4, samples)
     contact = SpringDamper(omega, zeta)
     model = SpringDamperModel(contact)
-    lam = model.saddle_node(n).amplitude + rng.uniform(0.05, 0.5, samples)
-    orbit = model.orbit(n, lam)
+    lam = n_t.saddle_node(model, n).amplitude + rng.uniform(0.05, 0.5, samples)
+    orbit = n_t.orbit(model, n, lam)
     phase = orbit.phase
     impact = orbit.impact_velocity
     end = orbit.contact_duration
     u = orbit.relative_impact_velocity
-    again = orbit.cycle(phase, u)
+    again = model.cycle(lam, phase, u)
     repeated = reduce_angle(again.phase - phase), again.relative_velocity - u
 
     def simulated(time):

@@ -16,13 +16,15 @@ import xarray as xr
 
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.errors import ModelError
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane, tangent
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.numerics.events import vanishing
+from bouncing_ball.periodic.closed_forms import nearest
 from bouncing_ball.periodic.orbit import Orbit
-from bouncing_ball.periodic.restitution_model import RestitutionModel
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic.paper_unknowns import PaperUnknowns
+from bouncing_ball.periodic.special import bifurcations
 from bouncing_ball.periodic.stability import Bifurcation
 
 VARIABLES = {
@@ -75,7 +77,7 @@ def contact_orbits(data: xr.Dataset) -> Iterator[Shown]:
     """The orbits of the spring-damper model along Λ or ϖ."""
     names = ("contact_duration", "phase", "impact_velocity", "amplitude", "admissible")
     model, n, duration, phase, velocity, lam, admissible = _contacts(data, *names)
-    yield Shown(model, model.orbit_of(n, lam, phase, duration, velocity), None, admissible)
+    yield Shown(model, Orbit.of(model, n, lam, phase, duration, velocity), None, admissible)
 
 
 def restitution_orbits(data: xr.Dataset) -> Iterator[Shown]:
@@ -90,7 +92,7 @@ def restitution_orbits(data: xr.Dataset) -> Iterator[Shown]:
         "n",
     )
     model = RestitutionModel(r)
-    yield Shown(model, model.orbit_of(n, lam, phase), None, admissible)
+    yield Shown(model, Orbit.of(model, n, lam, phase), None, admissible)
 
 
 def restitution_bifurcations(data: xr.Dataset) -> Iterator[Shown]:
@@ -100,7 +102,7 @@ def restitution_bifurcations(data: xr.Dataset) -> Iterator[Shown]:
         name = kind.name.lower()
         phase, lam, r, n = _row(exact, f"{name}_phase", f"{name}_amplitude", "restitution", "n")
         model = RestitutionModel(r)
-        yield Shown(model, model.orbit_of(n, lam, phase), kind)
+        yield Shown(model, Orbit.of(model, n, lam, phase), kind)
 
 
 def located(data: xr.Dataset) -> Iterator[Shown]:
@@ -113,7 +115,7 @@ def located(data: xr.Dataset) -> Iterator[Shown]:
             part = data.assign(amplitude_there=data["computed"]).sel(bound=kind)
         names = ("amplitude_there", "special_phase", "special_contact_duration")
         model, n, lam, phase, duration = _contacts(part, *names)
-        yield Shown(model, model.orbit_of(n, lam, phase, duration), kind)
+        yield Shown(model, Orbit.of(model, n, lam, phase, duration), kind)
 
 
 SHOWN: dict[Callable[[xr.Dataset], Iterator[Shown]], tuple[str, ...]] = {
@@ -146,11 +148,12 @@ def _by_equations(shown: Shown, near: Orbit) -> Orbit:
     normal to its branch. This is well conditioned at a fold, too, where Λ determines only half of
     the digits.
     """
-    system = shown.model.system(near.n)
+    system = PaperUnknowns.of(near)
     kind = shown.bifurcation
     y = system.point(near)
     if kind:
-        condition = vanishing(next(one.function for one in system.events() if one.name == kind))
+        events = (system.event(each) for each in bifurcations(system.orbits))
+        condition = next(each.condition for each in events if each.name == kind)
     else:
         jacobian = np.nan_to_num(system.jacobian(y), posinf=0.0, neginf=0.0)
         condition = plane(tangent(jacobian, y), y)
@@ -168,7 +171,7 @@ def formula_and_equations(shown: Shown) -> np.ndarray:
     (orbits,) and is relative to the larger of Λ and n.
     """
     orbit = shown.orbit
-    near = shown.model.nearest(shown.orbit)
+    near = nearest(shown.orbit)
     found = _by_equations(shown, near)
     if not shown.bifurcation:
         return np.maximum(orbit.distance(near), orbit.distance(found)) / _size(orbit)
@@ -190,7 +193,7 @@ def simulation_returns(orbit: Orbit) -> np.ndarray:
     """
     phase = orbit.phase
     speed = orbit.relative_impact_velocity
-    cycle = orbit.cycle(phase, speed)
+    cycle = orbit.model.cycle(orbit.amplitude, phase, speed)
     turned = reduce_angle(cycle.phase - phase)
     faster = cycle.relative_velocity - speed
     return np.max(np.abs([cycle.time - 2 * np.pi * orbit.n, turned, faster]), axis=0) / _size(orbit)

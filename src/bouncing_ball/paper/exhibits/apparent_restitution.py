@@ -10,15 +10,16 @@ from pydantic import AfterValidator, ValidationInfo
 from bouncing_ball.datasets.parameters import Amplitude, Family, Many, Parameters, Restitution, Span
 from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball.models.damping import Release
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.exhibits.orbit_parameters import (
     OrbitAmplitude,
     require_any_orbit,
     require_orbit,
 )
+from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.observables import OBSERVED, columns
-from bouncing_ball.periodic.restitution_model import RestitutionModel
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
 
 VARIABLES = {
     "labelled": Variable("whether the figure marks this frequency ratio"),
@@ -105,7 +106,7 @@ def _sweep(
     """
     r, lam = np.broadcast_arrays(restitution, amplitude)
     contact = SpringDamper.from_restitution(r[:, np.newaxis], ratios, release)
-    orbits = SpringDamperModel(contact).orbit(n, lam[:, np.newaxis])
+    orbits = n_t.orbit(SpringDamperModel(contact), n, lam[:, np.newaxis])
     require_any_orbit(orbits.exists, n, lam, ratios)
     found = columns(orbits, *OBSERVED, "max_height")
     dims = ("case", "frequency_ratio")
@@ -159,7 +160,7 @@ def _with_limits(parameters: Sweep, ratios: np.ndarray, release: Release) -> xr.
     r = parameters.restitution
     lam = np.array(parameters.amplitude)
     return _sweep(n, r, lam, ratios, release).assign(
-        restitution_phase=("case", RestitutionModel(r).orbit(n, lam).phase),
+        restitution_phase=("case", n_t.orbit(RestitutionModel(r), n, lam).phase),
         restitution_bounce_velocity=n * np.pi,
         restitution_impact_velocity=-n * np.pi,
     )

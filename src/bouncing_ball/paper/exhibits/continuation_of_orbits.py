@@ -16,17 +16,17 @@ from bouncing_ball.datasets.parameters import (
 from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.continuation import Branch, ContinuationError
 from bouncing_ball.paper.exhibits.orbit_parameters import BranchEnd, Points
 from bouncing_ball.paper.exhibits.printed_table1 import printed_table
-from bouncing_ball.periodic import observables
+from bouncing_ball.periodic import n_t, observables
 from bouncing_ball.periodic import restitution_branch as restitution_orbits
-from bouncing_ball.periodic.branch import whole_branch
-from bouncing_ball.periodic.equations import OrbitSystem
+from bouncing_ball.periodic.branch import WholeBranch, whole_branch
 from bouncing_ball.periodic.observables import PLACE, branch_columns, columns, joined, no_branch
-from bouncing_ball.periodic.restitution_model import RestitutionModel
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.stability import Bifurcation
 
 VARIABLES = {
@@ -79,8 +79,8 @@ class Ranges(Parameters):
 
 def followed(
     n: int, ratio: float, given: Branches, release: Release, continuation: Continuation
-) -> tuple[OrbitSystem, Branch]:
-    """The equations of one contact, and their solutions from the unstable to the stable side.
+) -> WholeBranch:
+    """The orbits on one contact, from the unstable to the stable side.
 
     Raises
     ------
@@ -88,8 +88,7 @@ def followed(
         As :func:`~bouncing_ball.periodic.branch.whole_branch`.
     """
     model = SpringDamperModel(SpringDamper.from_restitution(given.restitution, ratio, release))
-    found = whole_branch(model, n, given.amplitude_max, continuation.largest_step)
-    return model.system(n), found
+    return whole_branch(model, n, given.amplitude_max, continuation.largest_step)
 
 
 def _branch(
@@ -98,7 +97,7 @@ def _branch(
     """The branch of one contact; NaN, with the reason, where it cannot be followed."""
     try:
         branch = followed(parameters.n, ratio, parameters, release, continuation)
-        found = branch_columns(*branch, parameters.points)
+        found = branch_columns(branch, parameters.points)
     except (NoOrbitError, ContinuationError) as error:
         found = no_branch(parameters.points, error)
     return found.assign_coords(frequency_ratio=ratio)
@@ -162,10 +161,10 @@ def both_domains(
     one = dict(parameters) | {"frequency_ratio": (parameters.frequency_ratio,)}
     contact = _branches(Domains(**one), release, continuation)
     model = RestitutionModel(r)
-    rigid = model.orbit_of(n, *restitution_orbits.branch(n, r, top, parameters.points))
+    rigid = Orbit.of(model, n, *restitution_orbits.branch(n, r, top, parameters.points))
     along = columns(rigid, "amplitude", "phase")
-    fold = model.saddle_node(n)
-    doubling = model.period_doubling(n)
+    fold = n_t.saddle_node(model, n)
+    doubling = n_t.period_doubling(model, n)
     both = contact.assign(
         {f"restitution_{name}": ("point", values) for name, values in along.items()}
     ).assign(
@@ -269,7 +268,7 @@ def _stability_range(
     branch = whole_branch(
         model, n, given.amplitude_max, continuation.largest_step, ends=list(Bifurcation)
     )
-    limits = model.system(n).orbit(first_limits(branch))
+    limits = branch.orbit(first_limits(branch.branch))
     return np.stack([getattr(limits, name) for name in PLACE], axis=-1)
 
 
@@ -277,6 +276,6 @@ def _restitution_ranges(
     n: np.ndarray, restitution: float, maps: list[restitution_orbits.ImpactMap]
 ) -> np.ndarray:
     """The stability ranges of the restitution model, shape (map, n, bound)."""
-    fold = RestitutionModel(restitution).saddle_node(n).amplitude
+    fold = n_t.saddle_node(RestitutionModel(restitution), n).amplitude
     doublings = [restitution_orbits.period_doubling(n, restitution, kind) for kind in maps]
     return np.array([np.stack([fold, doubling], axis=-1) for doubling in doublings])

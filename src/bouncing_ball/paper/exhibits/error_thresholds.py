@@ -9,15 +9,16 @@ from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.datasets.parameters import Many, Tolerance
 from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball.models.damping import Release
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.exhibits.errors_along_ratio import errors_along_ratio
 from bouncing_ball.paper.exhibits.orbit_parameters import (
     OrbitErrors,
     OrbitsAlongRatio,
     require_any_orbit,
 )
-from bouncing_ball.periodic.restitution_model import RestitutionModel
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic import n_t
 
 VARIABLES = {
     "restitution_max_height": Variable(
@@ -82,11 +83,11 @@ def height_error(parameters: OrbitErrors, release: Release) -> xr.Dataset:
         tolerances=[parameters.tolerance],
     )
     contact = SpringDamper.from_restitution(parameters.restitution, ratios, release)
-    orbit = SpringDamperModel(contact).orbit(n, lam)
+    orbit = n_t.orbit(SpringDamperModel(contact), n, lam)
     require_any_orbit(orbit.exists, n, lam, ratios)
     for name in ("max_height", "phase", "contact_duration", "impact_velocity"):
         dataset[name] = ("frequency_ratio", getattr(orbit, name))
     dataset["admissible"] = ("frequency_ratio", orbit.is_admissible())
-    rigid = RestitutionModel(parameters.restitution).orbit(n, lam)
+    rigid = n_t.orbit(RestitutionModel(parameters.restitution), n, lam)
     dataset["restitution_max_height"] = rigid.max_height
     return describe(dataset, variables=VARIABLES)

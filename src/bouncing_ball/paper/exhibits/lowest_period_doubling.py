@@ -12,7 +12,8 @@ from bouncing_ball.datasets.parameters import Family, LossyRestitution, Many, Pa
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic import n_t
 
 
 class FamiliesAlongRatio(Parameters):
@@ -48,7 +49,7 @@ def lowest_along_ratio(
 
     def doubling(log_ratio: np.ndarray, n: np.ndarray) -> np.ndarray:
         model = SpringDamperModel(SpringDamper(np.exp(log_ratio), zeta, release))
-        return model.period_doubling(n).amplitude
+        return n_t.period_doubling(model, n).amplitude
 
     lowest = np.argmin(np.where(np.isnan(amplitude), np.inf, amplitude), axis=-1)
     # Elsewhere the neighbours of the lowest sample are no bracket of a minimum.
@@ -71,12 +72,12 @@ def lowest_period_doublings(parameters: FamiliesAlongRatio, release: Release) ->
     ratios = parameters.frequency_ratio.grid()
     zeta = float(damping_ratio(parameters.restitution))
     scanned = SpringDamperModel(SpringDamper(ratios, zeta, release))
-    amplitude = scanned.period_doubling(families[:, np.newaxis]).amplitude
+    amplitude = n_t.period_doubling(scanned, families[:, np.newaxis]).amplitude
     turns = lowest_along_ratio(ratios, amplitude, zeta, release, families)
     known = np.isfinite(turns)
     lowest = np.full(turns.shape, np.nan)
     at_turns = SpringDamperModel(SpringDamper(turns[known], zeta, release))
-    lowest[known] = at_turns.period_doubling(families[known]).amplitude
+    lowest[known] = n_t.period_doubling(at_turns, families[known]).amplitude
     return described(
         {
             "period_doubling_turn": ("n", turns),

@@ -7,10 +7,13 @@ import xarray as xr
 
 from bouncing_ball.datasets.parameters import Samples, number
 from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.paper.exhibits.orbit_parameters import FamilyBranches, OrbitParameters
+from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic import restitution_branch as orbits
+from bouncing_ball.periodic.orbit import Orbit
+from bouncing_ball.periodic.paper_unknowns import PaperUnknowns
 from bouncing_ball.periodic.restitution_branch import ImpactMap
-from bouncing_ball.periodic.restitution_model import RestitutionModel, RestitutionOrbit
 
 VARIABLES = {
     "grazing_amplitude": Variable(
@@ -29,10 +32,10 @@ class RestitutionHistory(OrbitParameters):
     samples: Samples
 
 
-def _grazing(orbits: RestitutionOrbit) -> np.ndarray:
+def _grazing(orbits: Orbit) -> np.ndarray:
     """φ and Λ at which the unstable orbits of one family graze the table; NaN if they do not."""
-    system = RestitutionModel(orbits.law).system(int(orbits.n[0]))
-    found = system.grazing(system.point(orbits))
+    problem = PaperUnknowns.of(orbits)
+    found = problem.grazing(problem.point(orbits))
     if not len(found):
         return np.full(2, np.nan)
     # A solution is (φ, …, Λ).
@@ -56,7 +59,7 @@ def restitution_orbits(parameters: FamilyBranches) -> xr.Dataset:
     top = parameters.amplitude_max
     fold = orbits.saddle_node(n, r)
     amplitude, phase = orbits.branch(n, r, top, parameters.points)
-    shown = RestitutionOrbit.of(n[:, np.newaxis], r, amplitude, phase)
+    shown = Orbit.of(RestitutionModel(r), n[:, np.newaxis], amplitude, phase)
     grazing = np.array([_grazing(shown[k]) for k in range(n.size)])
     maps = list(ImpactMap)
     doubling = np.array([orbits.period_doubling(n, r, kind) for kind in maps])
@@ -92,7 +95,7 @@ def restitution_history(parameters: RestitutionHistory) -> xr.Dataset:
     """
     n = parameters.n
     lam = parameters.amplitude
-    orbit = RestitutionModel(parameters.restitution).require_orbit(n, lam)
+    orbit = n_t.require_orbit(RestitutionModel(parameters.restitution), n, lam)
     time = np.linspace(0.0, parameters.periods * 2 * np.pi * n, parameters.samples)
     height, velocity = orbit.path(time)
     return described(

@@ -6,10 +6,11 @@ import xarray as xr
 from bouncing_ball.datasets.parameters import FrequencyRatio, Many, Samples
 from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball.models.damping import Release
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.exhibits.orbit_parameters import OrbitParameters
-from bouncing_ball.periodic.restitution_model import RestitutionModel
-from bouncing_ball.periodic.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic import n_t
 
 VARIABLES = {
     "table_phase": Variable("phase of the table", symbol="τ + φ", units="rad"),
@@ -45,7 +46,7 @@ def _cycle(parameters: ContactHistory | Histories, ratio: float, release: Releas
     lam = parameters.amplitude
     half = parameters.samples // 2
     contact = SpringDamper.from_restitution(parameters.restitution, ratio, release)
-    orbit = SpringDamperModel(contact).require_admissible(n, lam)
+    orbit = n_t.require_admissible(SpringDamperModel(contact), n, lam)
     during = np.linspace(0.0, orbit.contact_duration, half)
     after = np.linspace(orbit.contact_duration, 2 * np.pi * n, parameters.samples - half)
     ball, velocity = np.hstack([orbit.contact_path(during), orbit.flight_path(after)])
@@ -97,7 +98,7 @@ def both_histories(parameters: Histories, release: Release) -> xr.Dataset:
     dataset = xr.concat([x.set_coords("frequency_ratio") for x in cycles], "frequency_ratio")
     n = parameters.n
     lam = parameters.amplitude
-    rigid = RestitutionModel(parameters.restitution).require_orbit(n, lam)
+    rigid = n_t.require_orbit(RestitutionModel(parameters.restitution), n, lam)
     time = np.linspace(0.0, 2 * np.pi * n, parameters.samples)
     height, _ = rigid.path(time)
     return describe(

@@ -1,4 +1,4 @@
-"""Orbits and bifurcations of any model, by continuation of its equations.
+"""Orbits and bifurcations of models without a closed form: where a branch begins.
 
 A search starts from the orbit of the corrected restitution model whose signature is that of an
 impact at the speed of the restitution model's orbit. Newton's method on the equations of the
@@ -8,19 +8,22 @@ followed instead, for one model at a time.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
-from typing import Any, ClassVar, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.models.instant import Instant, instant_of
+from bouncing_ball.models.instant import Instant
+from bouncing_ball.models.model import Model
 from bouncing_ball.numerics.continuation import ContinuationError, StepControl, continue_branch
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane, tangent
-from bouncing_ball.numerics.events import Event, SpecialPoint, parameter_bound, vanishing
+from bouncing_ball.numerics.events import Event, SpecialPoint, parameter_bound
 from bouncing_ball.periodic import corrected_branch as corrected
-from bouncing_ball.periodic.model import ImpactModel
-from bouncing_ball.periodic.orbit import check_index
+from bouncing_ball.periodic.balls import LAMBDA
+from bouncing_ball.periodic.orbit import Orbit, check_index, in_order
+from bouncing_ball.periodic.orbit import orbit_at as orbit_of_point
+from bouncing_ball.periodic.problem import PeriodicOrbits
+from bouncing_ball.periodic.special import bifurcations, ends_of_contact
 from bouncing_ball.periodic.stability import Bifurcation, Side
 
 # The largest number of Newton steps for the impact speed. They end after a step below a
@@ -42,8 +45,6 @@ _FARTHER = 4.0
 # A fold below this Λ belongs to a nearly elastic contact; the steps along a branch are too long
 # to resolve it.
 _LOWEST = 1e-4
-# The longest step as a fraction of Λ, where Λ is large.
-_STRIDE = 0.05
 # The parabola of a fold is measured at the first length along the branch. It is used up to the
 # second number times the rise of Λ at that length.
 _BESIDE = 1e-2
@@ -51,7 +52,7 @@ _PARABOLA = 4.0
 _HERE = "this amplitude"
 
 
-def restitution_speed(n: ArrayLike, model: Any) -> tuple[np.ndarray, Instant]:
+def restitution_speed(n: ArrayLike, model: Model) -> tuple[np.ndarray, Instant]:
     """v = 2πn/(1 + r(v)), the impact speed of the restitution model's n-T orbits, by Newton's
     method.
 
@@ -65,7 +66,7 @@ def restitution_speed(n: ArrayLike, model: Any) -> tuple[np.ndarray, Instant]:
     Examples
     --------
     >>> from bouncing_ball.models.laws.hertzian import HuntCrossley
-    >>> from bouncing_ball.periodic.law_orbits import LawModel
+    >>> from bouncing_ball.models.laws.model import LawModel
     >>> speed, _ = restitution_speed(1, LawModel(HuntCrossley(1e3, 0.0)))
     >>> round(float(speed / np.pi), 12)
     1.0
@@ -73,7 +74,7 @@ def restitution_speed(n: ArrayLike, model: Any) -> tuple[np.ndarray, Instant]:
     period = 2 * np.pi * np.asarray(n, dtype=float)
     speed = period / 1.7 + np.zeros(model.shape)
     for _ in range(_ROUNDS):
-        instant = instant_of(model, speed)
+        instant = model.signature(speed)
         slope = 1 + instant.restitution + instant.d_restitution * speed
         step = (period - (1 + instant.restitution) * speed) / slope
         speed = speed + step
@@ -85,15 +86,18 @@ def restitution_speed(n: ArrayLike, model: Any) -> tuple[np.ndarray, Instant]:
 class _Search(NamedTuple):
     """The orbits of a search along one axis: their models, n, and the signatures of the start.
 
-    A single model serves all orbits. Points y are rows of an array, with Λ as their last entry.
+    A single model serves all orbits. Points y are rows of an array, with arsinh Λ as their last
+    entry.
     """
 
-    model: Any
+    model: Model
     n: np.ndarray
     instant: Instant
 
     @classmethod
-    def of(cls, model: Any, n: ArrayLike, *more: ArrayLike) -> tuple["_Search", Any, Any]:
+    def of(
+        cls, model: Model, n: ArrayLike, *more: ArrayLike
+    ) -> tuple["_Search", list[np.ndarray], tuple[int, ...]]:
         """The search, the other arguments flattened like n, and the shape of the orbits."""
         check_index(n)
         instant = restitution_speed(n, model)[1]
@@ -102,48 +106,66 @@ class _Search(NamedTuple):
         shape = columns[0].shape
         index, *rows = (x.reshape(-1) for x in columns[:-1])
         size = len(instant)
-        return cls(model.flat(shape), index, Instant(*rows[:size])), rows[size:], shape
+        search = cls(model.flat(shape), index.astype(int), Instant(*rows[:size]))
+        return search, rows[size:], shape
 
-    def start(self, amplitude: np.ndarray, psi: np.ndarray) -> np.ndarray:
-        """Points y of the corrected model's orbits whose instants are at the phases ψ."""
+    def guess(self, amplitude: np.ndarray, psi: np.ndarray) -> tuple[PeriodicOrbits, np.ndarray]:
+        """The problem, and points y of the corrected model's orbits with instants at ψ."""
         t_c = self.instant.delay
-        orbit = self.model.orbit_of(
-            self.n, amplitude, psi - t_c, self.instant.duration, t_c - self.n * np.pi
+        orbit = Orbit.of(
+            self.model,
+            self.n,
+            amplitude,
+            psi - t_c,
+            self.instant.duration,
+            t_c - self.n * np.pi,
         )
-        return self.model.system(self.n).point(orbit)
-
-    def solved(self, guess: np.ndarray) -> np.ndarray:
-        """Solutions at the Λ of each guess; NaN where Newton's method does not converge."""
-        point = guess.copy()
-        y = np.full_like(guess, np.nan)
-        todo = np.flatnonzero(np.all(np.isfinite(guess), axis=-1))
-        axis = np.eye(guess.shape[-1])[-1]
-        for _ in range(_TRIES):
-            if not todo.size:
-                break
-            system = self.model.take(todo).system(self.n[todo])
-            at = plane(axis, point[todo])
-            found = newton(system, point[todo], at, _SETTINGS)
-            point[todo] = found.point
-            y[todo[found.converged]] = found.point[found.converged]
-            todo = todo[~found.converged & np.isfinite(found.step)]
-        return y
+        problem = orbit.problem(LAMBDA)
+        return problem, orbit.point(problem)
 
 
-def _shaped(model: Any, n: ArrayLike, y: np.ndarray, shape: tuple[int, ...]) -> Any:
-    return model.system(n).orbit(y.reshape(*shape, y.shape[-1]))
+def _solved(problem: PeriodicOrbits, guess: np.ndarray) -> np.ndarray:
+    """Solutions at the Λ of each guess; NaN where Newton's method does not converge."""
+    point = guess.copy()
+    y = np.full_like(guess, np.nan)
+    todo = np.flatnonzero(np.all(np.isfinite(guess), axis=-1))
+    axis = np.eye(guess.shape[-1])[-1]
+    for _ in range(_TRIES):
+        if not todo.size:
+            break
+        at = plane(axis, point[todo])
+        found = newton(problem.take(todo), point[todo], at, _SETTINGS)
+        point[todo] = found.point
+        y[todo[found.converged]] = found.point[found.converged]
+        todo = todo[~found.converged & np.isfinite(found.step)]
+    return y
 
 
-def orbit_at(model: Any, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Any:
+def _orbits(problem: PeriodicOrbits, y: np.ndarray, shape: tuple[int, ...]) -> Orbit:
+    """The orbits at a row of points, in the shape of the arguments; NaN where y is NaN."""
+    known = np.flatnonzero(np.all(np.isfinite(y), axis=-1))
+    columns = np.full((4, len(y)), np.nan)
+    if known.size:
+        found = orbit_of_point(problem.take(known), y[known])
+        values = (found.amplitude, found.phase, found.contact_duration, found.impact_velocity)
+        columns[:, known] = values
+    lam, phase, duration, velocity = columns.reshape(4, *shape)
+    model = problem.balls.model
+    n = np.broadcast_to(np.ravel(problem.periods), len(y)).reshape(shape)
+    if model.shape:
+        model = model[np.arange(len(y)).reshape(shape)]
+    return Orbit.of(model, n, lam, phase, duration, velocity)
+
+
+def orbit_at(model: Model, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Orbit:
     """The n-T orbits at Λ on one side of the saddle-node; NaN where no orbit is found.
 
     Parameters
     ----------
-    model : ImpactModel
+    model : Model
     n, amplitude : array_like
         Index of the family and Λ, which broadcast with the model.
     side : Side
-        Or its name, such as ``"stable"``.
 
     Returns
     -------
@@ -160,10 +182,11 @@ def orbit_at(model: Any, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Any:
     --------
     The restitution model, whose orbits have a closed form:
 
-    >>> from bouncing_ball.periodic.restitution_model import RestitutionModel
+    >>> from bouncing_ball.models.rigid import RestitutionModel
+    >>> from bouncing_ball.periodic import n_t
     >>> model = RestitutionModel(0.5)
     >>> found = orbit_at(model, [1, 2], 2.5, Side.STABLE)
-    >>> bool(np.all(found.distance(model.orbit([1, 2], 2.5)) < 1e-12))
+    >>> bool(np.all(found.distance(n_t.orbit(model, [1, 2], 2.5)) < 1e-12))
     True
     """
     side = Side(side)
@@ -171,32 +194,33 @@ def orbit_at(model: Any, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Any:
     psi = corrected.instant_phase(search.n, search.instant, lam, side is Side.STABLE)
     # Next to the fold, the given Λ may lie below the fold of the corrected model.
     psi = np.where(np.isnan(psi), corrected.saddle_node_phase(search.instant), psi)
-    y = search.solved(search.start(lam, psi))
-    found = _shaped(model, n, y, shape)
+    problem, guess = search.guess(lam, psi)
+    y = _solved(problem, guess)
+    found = _orbits(problem, y, shape)
     test = Bifurcation.SADDLE_NODE.test(*found.trace_and_determinant())
     on_side = test > 0 if side is Side.STABLE else test < 0
     if np.all(on_side):
         return found
     # The saddle-nodes of a single model, whose families have several Λ here.
-    folds: dict[int, Any] = {}
+    folds: dict[int, Orbit] = {}
     for k in np.flatnonzero(~np.broadcast_to(on_side, shape).reshape(-1) & np.isfinite(lam)):
         one = search.model.take(k)
         index = int(search.n[k])
         if model.shape or index not in folds:
-            folds[index] = one.saddle_node(index)
+            folds[index] = bifurcation(one, index, Bifurcation.SADDLE_NODE)
         y[k] = _on_branch(one, folds[index], float(lam[k]), side)
-    return _shaped(model, n, y, shape)
+    return _orbits(problem, y, shape)
 
 
-def _on_branch(model: Any, fold: Any, amplitude: float, side: Side) -> np.ndarray | float:
+def _on_branch(model: Model, fold: Orbit, amplitude: float, side: Side) -> np.ndarray | float:
     """The point at Λ on one side of the fold, on the part of the branch next to it, or NaN."""
-    n = int(fold.n)
-    if not amplitude >= float(fold.amplitude):
+    if not amplitude >= fold.amplitude:
         return np.nan
-    y = _beside_fold(model.system(n), model.system(n).point(fold), amplitude, side)
+    problem = fold.problem(LAMBDA)
+    y = _beside_fold(problem, fold.point(problem), float(np.arcsinh(amplitude)), side)
     if np.all(np.isfinite(y)):
         return y
-    found = continued(model, n, amplitude, farther=_ABOVE)
+    found = continued(model, fold.n, amplitude, farther=_ABOVE)
     names = [special.name for special in found]
     if Bifurcation.SADDLE_NODE not in names:
         return np.nan
@@ -206,37 +230,41 @@ def _on_branch(model: Any, fold: Any, amplitude: float, side: Side) -> np.ndarra
     return next((special.point for special in beside if special.name == _HERE), np.nan)
 
 
-def _beside_fold(system: Any, fold: np.ndarray, amplitude: float, side: Side) -> np.ndarray:
-    """The point at Λ on one side of a fold, by the parabola Λ - Λ_SN ~ s²; NaN far from the fold.
+def _beside_fold(
+    problem: PeriodicOrbits, fold: np.ndarray, coordinate: float, side: Side
+) -> np.ndarray:
+    """The point at a coordinate p of Λ on one side of a fold, by the parabola p - p_SN ~ s².
+
+    It is NaN far from the fold.
 
     The parabola is needed because one step of the continuation may pass both orbits at Λ where
     they are close to each other.
     """
-    along = tangent(system.jacobian(fold), np.ones_like(fold))
+    along = tangent(problem.jacobian(fold), np.ones_like(fold))
     beside = fold + _BESIDE * along
-    step = newton(system, beside, plane(along, beside), _SETTINGS).point - fold
+    step = newton(problem, beside, plane(along, beside), _SETTINGS).point - fold
     y = np.full_like(fold, np.nan)
-    if not (step[-1] > 0 and amplitude - fold[-1] < _PARABOLA * step[-1]):
+    if not (step[-1] > 0 and coordinate - fold[-1] < _PARABOLA * step[-1]):
         return y
-    share = np.sqrt((amplitude - fold[-1]) / step[-1])
+    share = np.sqrt((coordinate - fold[-1]) / step[-1])
     guesses = fold + share * np.outer([1, -1], step)
-    guesses[:, -1] = amplitude
+    guesses[:, -1] = coordinate
     for guess in guesses:
-        found = newton(system, guess, plane(np.eye(fold.size)[-1], guess), _EXTENDED)
-        test = Bifurcation.SADDLE_NODE.test(*system.orbit(found.point).trace_and_determinant())
+        found = newton(problem, guess, plane(np.eye(fold.size)[-1], guess), _EXTENDED)
+        test = Bifurcation.SADDLE_NODE.test(*problem.trace_and_determinant(found.point))
         if found.converged and (test > 0) == (side is Side.STABLE):
             y = found.point
     return y
 
 
 def continued(
-    model: Any, n: int, amplitude: float, farther: float = _FARTHER
+    model: Model, n: int, amplitude: float, farther: float = _FARTHER
 ) -> Sequence[SpecialPoint]:
     """Bifurcations and crossings of Λ along the branch of a single model.
 
     Parameters
     ----------
-    model : ImpactModel
+    model : Model
         A single model.
     n : int
     amplitude : float
@@ -250,25 +278,26 @@ def continued(
         In order from the stable side at large Λ down to the fold and beyond. Empty if no orbit
         is found to start from, or if the continuation fails before an end of the branch.
     """
-    system = model.system(n)
     search, _, _ = _Search.of(model, [n])
     fold = float(np.nan_to_num(corrected.saddle_node(n, search.instant)[0]))
-    start = np.array([max(amplitude, fold) * _ABOVE])
-    y = search.solved(search.start(start, corrected.instant_phase(n, search.instant, start)))[0]
-    most = max(farther * amplitude, farther, _ABOVE * float(start[0]))
-    events = (
-        *system.events(),
-        Event(_HERE, lambda y: y[..., -1] - amplitude),
-        parameter_bound(most, upper=True, reason=f"Λ = {most:g}"),
-        parameter_bound(_LOWEST, upper=False, reason=f"Λ = {_LOWEST:g}"),
-    )
+    above = np.array([max(amplitude, fold) * _ABOVE])
+    problem, guess = search.guess(above, corrected.instant_phase(n, search.instant, above))
+    y = _solved(problem, guess)[0]
+    problem = problem.take(0)
     if np.any(np.isnan(y)):
         return ()
-    # Far above the fold, Λ makes up most of the arclength.
-    control = replace(_STEPS, largest=max(_STEPS.largest, _STRIDE * amplitude))
+    most = max(farther * amplitude, farther, _ABOVE * float(above[0]))
+    here = float(np.arcsinh(amplitude))
+    events = (
+        *bifurcations(problem),
+        *ends_of_contact(problem),
+        Event(_HERE, lambda y: y[..., -1] - here),
+        parameter_bound(float(np.arcsinh(most)), upper=True, reason=f"Λ = {most:g}"),
+        parameter_bound(float(np.arcsinh(_LOWEST)), upper=False, reason=f"Λ = {_LOWEST:g}"),
+    )
     try:
         branch = continue_branch(
-            system, y, increasing=False, events=events, control=control, max_points=_POINTS
+            problem, y, increasing=False, events=events, control=_STEPS, max_points=_POINTS
         )
     except ContinuationError:
         return ()
@@ -277,7 +306,7 @@ def continued(
     return branch.special if branch.end.finished or len(branch.points) == _POINTS else ()
 
 
-def orbits_at(model: Any, n: int, amplitude: float) -> Any:
+def orbits_at(model: Model, n: int, amplitude: float) -> Orbit:
     """The n-T orbits of a single model at one Λ, in order of contact duration, shape (count,).
 
     These are the orbits on the branch that comes from large Λ on its stable side. If this branch
@@ -289,16 +318,18 @@ def orbits_at(model: Any, n: int, amplitude: float) -> Any:
         If n is not a positive integer.
     """
     check_index(n)
-    if amplitude >= float(model.saddle_node(n).amplitude):
+    none = Orbit.of(model, n, amplitude, np.nan)
+    if amplitude >= bifurcation(model, n, Bifurcation.SADDLE_NODE).amplitude:
         special = continued(model, int(n), float(amplitude))
         points = [each.point for each in special if each.name == _HERE]
         if points:
-            found = model.system(n).orbit(np.array(points))
-            return found[np.argsort(found.contact_duration)]
-    return ImpactModel.orbits(model, n, amplitude)
+            problem, _ = _Search.of(model, [n])[0].guess(np.array([amplitude]), np.zeros(1))
+            found = [orbit_of_point(problem.take(0), y) for y in points]
+            return in_order(found, none)
+    return in_order([orbit_at(model, n, amplitude, side) for side in Side], none)
 
 
-def bifurcation(model: Any, n: ArrayLike, kind: Bifurcation) -> Any:
+def bifurcation(model: Model, n: ArrayLike, kind: Bifurcation) -> Orbit:
     """The orbits at a bifurcation, with the broadcast shape of n and the model; NaN where none is
     found.
 
@@ -307,9 +338,9 @@ def bifurcation(model: Any, n: ArrayLike, kind: Bifurcation) -> Any:
 
     Examples
     --------
-    >>> from bouncing_ball.periodic.restitution_model import RestitutionModel
+    >>> from bouncing_ball.models.rigid import RestitutionModel
     >>> found = bifurcation(RestitutionModel(0.5), 1, Bifurcation.SADDLE_NODE)
-    >>> round(float(found.amplitude * 3 / np.pi), 10)
+    >>> round(found.amplitude * 3 / np.pi, 10)
     1.0
     """
     search, _, shape = _Search.of(model, n)
@@ -319,13 +350,12 @@ def bifurcation(model: Any, n: ArrayLike, kind: Bifurcation) -> Any:
         psi = corrected.saddle_node_phase(search.instant)
     else:
         lam, psi = corrected.period_doubling(index, search.instant)
-    system = search.model.system(index)
-    test = vanishing(lambda y: kind.test(*system.orbit(y).trace_and_determinant()))
-    found = newton(system, search.start(lam, psi), test, _EXTENDED)
+    problem, guess = search.guess(lam, psi)
+    found = newton(problem, guess, lambda y: problem.bifurcation(kind, y), _EXTENDED)
     low = (lam < _LOWEST) & (kind is Bifurcation.SADDLE_NODE)
     # The phase is not defined at Λ = 0: rounding decides where near it the fold of an elastic
     # contact is found.
-    reached = found.point[:, -1]
+    reached = np.sinh(found.point[:, -1])
     good = found.converged & (reached > _EXTENDED.tolerance) & (~low | (reached < 2 * lam))
     y = np.where(good[:, np.newaxis], found.point, np.nan)
     for k in np.flatnonzero(np.isnan(y[:, 0]) & ~low):
@@ -334,31 +364,4 @@ def bifurcation(model: Any, n: ArrayLike, kind: Bifurcation) -> Any:
         points = [each.point for each in special if each.name == kind]
         if points:
             y[k] = points[0 if kind is Bifurcation.SADDLE_NODE else -1]
-    return _shaped(model, n, y, shape)
-
-
-class ContinuedModel(ImpactModel):
-    """A model whose orbits at Λ and bifurcations are found by continuation from its signature."""
-
-    has_closed_form: ClassVar[bool] = False
-
-    def orbit(self, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> Any:
-        """The n-T orbits at Λ on one side of the saddle-node; NaN where no orbit is found.
-
-        Arguments, shape and errors are those of :meth:`.ImpactModel.orbit`.
-        """
-        return orbit_at(self, n, amplitude, side)
-
-    def saddle_node(self, n: ArrayLike) -> Any:
-        """The orbits at the saddle-node; NaN where none is found.
-
-        Arguments, shape and errors are those of :meth:`.ImpactModel.saddle_node`.
-        """
-        return bifurcation(self, n, Bifurcation.SADDLE_NODE)
-
-    def period_doubling(self, n: ArrayLike) -> Any:
-        """The orbits at the period doubling nearest to the saddle-node; NaN where none is found.
-
-        Arguments, shape and errors are those of :meth:`.ImpactModel.period_doubling`.
-        """
-        return bifurcation(self, n, Bifurcation.PERIOD_DOUBLING)
+    return _orbits(problem, y, shape)

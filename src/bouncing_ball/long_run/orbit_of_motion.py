@@ -1,0 +1,67 @@
+"""The periodic orbit on which a simulated ball ends."""
+
+import numpy as np
+
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.long_run.destination import final_motions
+from bouncing_ball.models.flight import table
+from bouncing_ball.models.model import Model
+from bouncing_ball.periodic.balls import LAMBDA, Balls
+from bouncing_ball.periodic.following import corrected
+from bouncing_ball.periodic.orbit import Orbit, orbit_at
+from bouncing_ball.periodic.simulation import simulated
+
+
+def of_motion(
+    model: Model, amplitude: float, phase: float, velocity: float, impacts: int = 4000
+) -> Orbit:
+    """The orbit on which a simulated ball ends.
+
+    Parameters
+    ----------
+    model : Model
+        A single model.
+    amplitude : float
+        Λ.
+    phase, velocity : float
+        The phase φ of the first impact and the absolute velocity z′ before it.
+    impacts : int
+        Number of impacts after which the search for a repetition ends.
+
+    Raises
+    ------
+    NoOrbitError
+        If the motion does not repeat, or the ball stays on the table.
+
+    Examples
+    --------
+    >>> from bouncing_ball.models.rigid import RestitutionModel
+    >>> found = of_motion(RestitutionModel(0.5), 1.6, 0.0, -np.pi)
+    >>> found.impacts, found.periods
+    (2, 2)
+    """
+    motion = final_motions(model, amplitude, phase, velocity, impacts=impacts)
+    count = int(motion.impacts)
+    if not count:
+        raise NoOrbitError(
+            f"the motion ends on no orbit that could be followed: it is {motion.kind}"
+            + (f", because {motion.reason}" if str(motion.reason) else "")
+        )
+    balls = Balls(model, amplitude)
+    return of_impact(balls, float(motion.end_phase), float(motion.end_velocity), count)
+
+
+def of_impact(balls: Balls, phase: float, velocity: float, impacts: int) -> Orbit:
+    """The orbit with k impacts near the impact of a simulation with φ and z′.
+
+    Raises
+    ------
+    NoOrbitError
+        If there is no such orbit.
+    """
+    dynamics = balls.dynamics()
+    relative = velocity - float(table(np.asarray(phase), dynamics.amplitude)[0])
+    row, (start, before), _ = dynamics.in_a_row([phase], [relative])
+    theta, closing = row.section(row.start(start, before))
+    problem, guess = simulated(balls, float(theta[0]), float(closing[0]), impacts, (LAMBDA,))
+    return orbit_at(problem, corrected(problem, guess))

@@ -1,0 +1,55 @@
+"""The corrected restitution model, whose impacts are instants at the centroid of a contact."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from numpy.typing import ArrayLike
+
+from bouncing_ball.models.corrected.motion import CorrectedDynamics
+from bouncing_ball.models.instant import Instant
+from bouncing_ball.models.laws.linear import LinearLaw
+from bouncing_ball.models.laws.signature import Signature
+from bouncing_ball.models.model import Model
+from bouncing_ball.models.spring_damper import SpringDamper
+
+
+@dataclass(frozen=True, repr=False)
+class CorrectedModel(Model):
+    """A ball whose impacts are instants at the centroid of the contact force.
+
+    Parameters
+    ----------
+    law : Signature
+        Delay, restitution, load sensitivity and duration of the impact as functions of its speed.
+
+    Examples
+    --------
+    >>> model = CorrectedModel.of_contact(SpringDamper.from_restitution(0.65, 10.0))
+    >>> round(float(model.signature(3.0).restitution), 12)
+    0.65
+    """
+
+    law: Signature
+
+    name: ClassVar[str] = "corrected"
+
+    @classmethod
+    def of_contact(cls, contact: SpringDamper) -> CorrectedModel:
+        """The corrected model of a spring-damper contact.
+
+        Raises
+        ------
+        ModelError
+            If ζ ≥ 1.
+        """
+        return cls(Signature(LinearLaw.of(contact)))
+
+    def dynamics(self, amplitude: ArrayLike) -> CorrectedDynamics:
+        """The impacts and flights of these balls on a table of amplitude Λ."""
+        return CorrectedDynamics.of(self.law, amplitude)
+
+    def signature(self, speed: ArrayLike) -> Instant:
+        """The signature at impact speeds v > 0."""
+        return self.law(speed)

@@ -1,0 +1,57 @@
+"""Balls on a contact of any law."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.models.dynamics import Dynamics
+from bouncing_ball.models.instant import Instant
+from bouncing_ball.models.laws.contact_law import ContactLaw
+from bouncing_ball.models.laws.permanent_contact import permanent_contact
+from bouncing_ball.models.laws.signature import free_impact
+from bouncing_ball.models.model import Model
+
+
+@dataclass(frozen=True, repr=False)
+class LawModel(Model):
+    """A ball on a contact of any law.
+
+    Parameters
+    ----------
+    law : ContactLaw
+        One law, or an array of laws.
+
+    Examples
+    --------
+    >>> from bouncing_ball.models.laws.hertzian import Tsuji, tsuji_damping
+    >>> round(float(LawModel(Tsuji(500.0, tsuji_damping(0.85))).signature(3.0).restitution), 12)
+    0.85
+    """
+
+    law: ContactLaw
+
+    name: ClassVar[str] = "contact-law"
+
+    def dynamics(self, amplitude: ArrayLike) -> Dynamics:
+        """The contacts and flights of these balls on a table of amplitude Λ."""
+        return self.law.dynamics(amplitude)
+
+    def signature(self, speed: ArrayLike) -> Instant:
+        """The signature of free impacts with speeds v > 0.
+
+        Raises
+        ------
+        ModelError
+            If the law does not release the ball.
+        """
+        return free_impact(self.law, speed)
+
+    def permanent_contact_threshold(self) -> np.ndarray:
+        """Λ up to which a steady contact never releases the ball, of the shape of the laws."""
+        laws = self.law.flat(self.law.shape)
+        found = [permanent_contact(laws.take(k)) for k in range(self.law.size)]
+        return np.array(found).reshape(self.law.shape)

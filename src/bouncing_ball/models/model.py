@@ -1,0 +1,174 @@
+"""The interface of every model of the impact.
+
+Code that uses a model calls only the methods of this interface and never asks for its class. A
+model says how a ball comes into contact, leaves the table and flies, and how small deviations grow
+on the way (:class:`~bouncing_ball.models.dynamics.Dynamics`); its periodic orbits follow from that
+(:mod:`bouncing_ball.periodic`)::
+
+    model = SpringDamperModel(SpringDamper.from_restitution(0.85, 10.0))  # or RestitutionModel(…)
+    model.simulate(0.9, phase=0.0, velocity=-3.0, impacts=100).phase
+    bouncing_ball.orbit(model, 1, amplitude=0.9)
+
+A new model is a subclass of :class:`Model`. Models are arrays: the fields of their laws broadcast,
+and they can be indexed, ``model[3]``.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Mapping
+from dataclasses import fields, is_dataclass, replace
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.errors import FREQUENCY_RATIO, RESTITUTION, Range
+from bouncing_ball.models.ball import Ball
+from bouncing_ball.models.dynamics import Dynamics
+from bouncing_ball.models.instant import Instant
+from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
+from bouncing_ball.models.sequence import Cycle, ImpactSequence
+from bouncing_ball.numerics.arrays import Batch
+
+RANGES: Mapping[str, Range] = {
+    "frequency_ratio": FREQUENCY_RATIO,
+    "restitution": RESTITUTION,
+    "damping_ratio": Range(0, 1, "[)"),
+}
+"""The ranges of the parameters of models that have one; other parameters are finite numbers."""
+
+
+class Model(Batch, Ball, ABC):
+    """A law of the impact, for one ball or for a row of balls.
+
+    A subclass is a frozen dataclass with one field, which holds the law. ``name`` is the name of
+    the model in messages.
+    """
+
+    name: ClassVar[str]
+
+    @property
+    def impact_law(self) -> Any:
+        """The law of the impact, which is the only field of the model."""
+        (law,) = (getattr(self, field.name) for field in fields(self))
+        return law
+
+    @property
+    def label(self) -> str:
+        """The parameters of a single model as text: the label of the law if it has one."""
+        return getattr(self.impact_law, "label", repr(self.impact_law))
+
+    @abstractmethod
+    def dynamics(self, amplitude: ArrayLike) -> Dynamics:
+        """The contacts and flights of the model's balls on a table of amplitude Λ.
+
+        Raises
+        ------
+        ModelError
+            If Λ is not finite and ≥ 0.
+        """
+
+    @abstractmethod
+    def signature(self, speed: ArrayLike) -> Instant:
+        """The impact as an instant, at impact speeds v > 0.
+
+        Raises
+        ------
+        ModelError
+            If a contact does not release the ball.
+        """
+
+    def permanent_contact_threshold(self) -> np.ndarray:
+        """Λ up to which the ball stays on the table, of the model's shape.
+
+        By default the threshold is 1, its value for instantaneous impacts (Eq. 9).
+        """
+        return np.full(self.shape, RESTITUTION_THRESHOLD)
+
+    def simulate(
+        self, amplitude: ArrayLike, phase: ArrayLike, velocity: ArrayLike, impacts: int
+    ) -> ImpactSequence:
+        """Impacts that follow a first impact at the phase φ, before which the ball has z′_i.
+
+        The arguments are those of :meth:`.Dynamics.simulate`.
+        """
+        return self.dynamics(amplitude).simulate(phase, velocity, impacts)
+
+    def cycle(self, amplitude: ArrayLike, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
+        """The Poincaré map, from an impact (φ, δ′) to the next one.
+
+        The arguments are those of :meth:`.Dynamics.next_impact`.
+        """
+        return self.dynamics(amplitude).next_impact(phase, relative_velocity)
+
+    def numbers(self) -> dict[str, Any]:
+        """The numerical parameters of the law by name, each of which can vary along a branch.
+
+        Examples
+        --------
+        >>> from bouncing_ball.models.rigid import RestitutionModel
+        >>> RestitutionModel(0.5).numbers()
+        {'restitution': 0.5}
+        """
+        return _numbers(self)
+
+    def implied(self, values: Mapping[str, Any]) -> dict[str, Any]:
+        """Parameters that follow from others, of which these values are given, as ζ from r."""
+        return _implied(self, values)
+
+    def varied(self, values: Mapping[str, Any]) -> Self:
+        """The model with other values of some parameters; arrays make a row of models.
+
+        Raises
+        ------
+        ModelError
+            If no law has these parameters.
+
+        Examples
+        --------
+        >>> from bouncing_ball.models.rigid import RestitutionModel
+        >>> RestitutionModel(0.5).varied({"restitution": 0.75})
+        RestitutionModel(restitution=0.75)
+        """
+        return _with_numbers(self, {**values, **self.implied(values)})
+
+
+def _is_number(value: Any) -> bool:
+    return np.asarray(value).dtype.kind in "iuf"
+
+
+def _inner(law: Any) -> Iterator[Any]:
+    """The laws inside of a law."""
+    values = (getattr(law, field.name) for field in fields(law))
+    return (value for value in values if is_dataclass(value))
+
+
+def _implied(model: Any, values: Mapping[str, Any]) -> dict[str, Any]:
+    """What the laws inside of a model say of parameters that follow from others."""
+    found: dict[str, Any] = {}
+    for law in _inner(model):
+        of_law = getattr(law, "implied", None)
+        found |= _implied(law, values) if of_law is None else of_law(values)
+    return found
+
+
+def _numbers(law: Any) -> dict[str, Any]:
+    """The numerical parameters of a law, or of the law inside of a law, by name."""
+    values = {field.name: getattr(law, field.name) for field in fields(law)}
+    found = {name: value for name, value in values.items() if _is_number(value)}
+    for inner in _inner(law):
+        found |= _numbers(inner)
+    return found | _implied(law, found)
+
+
+def _with_numbers(law: Any, values: Mapping[str, Any]) -> Any:
+    """The law with other values of its parameters."""
+    changed: dict[str, Any] = {}
+    for field in fields(law):
+        inner = getattr(law, field.name)
+        if is_dataclass(inner):
+            changed[field.name] = _with_numbers(inner, values)
+        elif field.name in values:
+            changed[field.name] = values[field.name]
+    return replace(law, **changed)

@@ -1,0 +1,61 @@
+"""The spring-damper model: balls on a linear contact (Eqs. 10-15)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.models.instant import Instant, linear_instant
+from bouncing_ball.models.linear_contact import LinearContactDynamics
+from bouncing_ball.models.model import Model
+from bouncing_ball.models.permanent_contact import permanent_contact_threshold
+from bouncing_ball.models.spring_damper import SpringDamper
+
+
+@dataclass(frozen=True, repr=False)
+class SpringDamperModel(Model):
+    """A ball on a table with a spring-damper contact (Eqs. 10-27).
+
+    Parameters
+    ----------
+    contact : SpringDamper
+        ϖ, ζ < 1 and the release rule.
+
+    Examples
+    --------
+    A parameter can vary; of r and ζ the other one follows (Eq. 16):
+
+    >>> model = SpringDamperModel(SpringDamper.from_restitution(1.0, 2.0))
+    >>> {name: float(x) for name, x in model.numbers().items()}
+    {'frequency_ratio': 2.0, 'damping_ratio': 0.0, 'restitution': 1.0}
+    """
+
+    contact: SpringDamper
+
+    name: ClassVar[str] = "spring-damper"
+
+    @property
+    def label(self) -> str:
+        contact = self.contact
+        return f"ϖ = {float(contact.frequency_ratio):g}, ζ = {float(contact.damping_ratio):.4g}"
+
+    def dynamics(self, amplitude: ArrayLike) -> LinearContactDynamics:
+        """The contacts and flights of these balls on a table of amplitude Λ."""
+        return LinearContactDynamics.of(self.contact, amplitude)
+
+    def signature(self, speed: ArrayLike) -> Instant:
+        """The signature in closed form, which is the same at every speed."""
+        return linear_instant(self.contact).at(speed)
+
+    def permanent_contact_threshold(self) -> np.ndarray:
+        """Λ up to which the ball stays on the table, of the model's shape.
+
+        It is Λ_SD(ϖ) for the displacement release and Λ_F(ϖ) for the force release.
+        """
+        contact = self.contact
+        return permanent_contact_threshold(
+            contact.frequency_ratio, contact.damping_ratio, contact.release
+        )

@@ -1,0 +1,91 @@
+"""The contact law whose impact on an orbit has a given restitution and duration."""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.laws.contact_law import ContactLaw
+from bouncing_ball.models.laws.law_of_impact import law_of_impact
+from bouncing_ball.models.laws.model import LawModel
+from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.restitution_branch import rigid_speed
+from bouncing_ball.periodic.stability import Side
+
+# The largest number of rounds that compute the law and the orbit in turn. At given r and D the
+# speed hardly depends on the law, and after a secant step less than a hundredth of the last step
+# is left.
+_ROUNDS = 20
+_SETTLED = 1e-10
+
+
+def law_at_orbit(
+    kind: type[ContactLaw],
+    restitution: float,
+    duration: ArrayLike,
+    n: int,
+    amplitude: float,
+    side: Side = Side.STABLE,
+) -> ContactLaw:
+    """The contact laws whose free impacts have r and D at the impact speed of their n-T orbit at Λ.
+
+    The restitution and the duration of a law may depend on the speed. To compare models, r and D
+    are therefore prescribed at the impact speed of the orbit in question. A secant iteration finds
+    this speed.
+
+    Parameters
+    ----------
+    kind : type of ContactLaw
+    restitution : float
+        r in (0, 1].
+    duration : array_like
+        D; there is one law for each D.
+    n : int
+        Index of the family.
+    amplitude : float
+        Λ.
+    side : Side
+
+    Returns
+    -------
+    ContactLaw
+        Has the shape of ``duration``.
+
+    Raises
+    ------
+    NoOrbitError
+        If there is no such orbit.
+    ModelError
+        If no law of this kind has these r and D.
+
+    Examples
+    --------
+    >>> from bouncing_ball.models.laws.signature import free_impact
+    >>> from bouncing_ball.models.laws.hertzian import Tsuji
+    >>> law = law_at_orbit(Tsuji, 0.65, 0.1, 1, 1.0)
+    >>> speed = -n_t.orbit(LawModel(law), 1, 1.0).relative_impact_velocity
+    >>> round(float(free_impact(law, speed).duration), 12)
+    0.1
+    """
+    side = Side(side)
+    taken = np.asarray(duration, dtype=float)
+    speed = np.full_like(taken, rigid_speed(n, restitution))
+    before = missed_before = np.full_like(taken, np.nan)
+    for _ in range(_ROUNDS):
+        law = law_of_impact(kind, restitution, taken, speed)
+        model = LawModel(law)
+        orbit = n_t.orbit(model, n, amplitude, side)
+        lost = np.flatnonzero(~np.atleast_1d(orbit.exists))
+        if lost.size:
+            n_t.require_orbit(LawModel(law.take(lost[0])), n, amplitude, side)
+        missed = -orbit.relative_impact_velocity - speed
+        slope = np.full_like(taken, -1.0)
+        np.divide(missed - missed_before, speed - before, out=slope, where=speed != before)
+        before = speed
+        missed_before = missed
+        speed = speed - missed / np.where(np.abs(slope + 1) < 0.5, slope, -1.0)
+        if np.all(np.abs(missed) <= _SETTLED * speed):
+            return law_of_impact(kind, restitution, taken, speed)
+    raise NoOrbitError(
+        f"no {n}-T orbit at Λ = {amplitude:g} whose impact has r = {restitution:g} and "
+        f"D = {float(taken.flat[0]):g} was found for {kind.name}"
+    )

@@ -1,0 +1,124 @@
+"""The equations of n-T orbits in the unknowns of the paper (Eqs. 21-26).
+
+Of the paper's six unknowns φ, z′_i, τ_b, z′_b, A and B, three are eliminated, all linearly: A and B
+by the start of contact (Eqs. 21-22) and z′_b by the periodicity (Eq. 27). The remaining ones are
+scaled to order one, ``y = (φ, z′_i, ϖ τ_b, Λ)``; an impact that is an instant has no τ_b. The
+equations are those of :mod:`~bouncing_ball.periodic.problem` with one impact, whose unknowns are
+``(φ, δ′, D, arsinh Λ)``: only the length of a step along a branch depends on this choice.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from bouncing_ball.numerics.corrector import Condition
+from bouncing_ball.numerics.events import Event, domain_limits
+from bouncing_ball.periodic.balls import LAMBDA
+from bouncing_ball.periodic.orbit import Orbit, orbit_at
+from bouncing_ball.periodic.problem import PeriodicOrbits
+from bouncing_ball.periodic.simulation import is_admissible
+
+
+@dataclass(frozen=True)
+class PaperUnknowns:
+    """The equations as a :class:`~bouncing_ball.numerics.corrector.Problem`, with Λ as the last
+    entry of y.
+
+    Parameters
+    ----------
+    orbits : PeriodicOrbits
+        The equations with one impact, along Λ.
+    clock : float or array
+        ϖ.
+
+    Examples
+    --------
+    The elastic orbit with φ = π/2, whose velocity after the impact is π:
+
+    >>> from bouncing_ball.models.rigid import RestitutionModel
+    >>> problem = PaperUnknowns.of(Orbit.of(RestitutionModel(1.0), 1, 1.0, np.pi / 2))
+    >>> defects = problem.residual(np.array([np.pi / 2, -np.pi, 1.0]))
+    >>> [abs(round(float(x), 12)) for x in defects]
+    [0.0, 0.0]
+    """
+
+    orbits: PeriodicOrbits
+    clock: Any = 1.0
+
+    @classmethod
+    def of(cls, orbit: Orbit) -> "PaperUnknowns":
+        """The equations of given n-T orbits."""
+        return cls(orbit.problem(LAMBDA), orbit.model.dynamics(1.0).clock)
+
+    def inner(self, y: np.ndarray) -> np.ndarray:
+        """The unknowns (φ, δ′, D, arsinh Λ) of y."""
+        inner = np.array(y, dtype=float)
+        lam = y[..., -1]
+        inner[..., 1] -= lam * np.cos(y[..., 0])
+        inner[..., 2:-1] /= np.asarray(self.clock)[..., np.newaxis]
+        inner[..., -1] = np.arcsinh(lam)
+        return inner
+
+    def _slopes(self, y: np.ndarray) -> np.ndarray:
+        """Derivatives of :meth:`inner` by y, shape (..., N + 1, N + 1)."""
+        lam = y[..., -1]
+        size = y.shape[-1]
+        slopes = np.broadcast_to(np.eye(size), (*y.shape, size)).copy()
+        slopes[..., 1, 0] = lam * np.sin(y[..., 0])
+        slopes[..., 1, -1] = -np.cos(y[..., 0])
+        for k in range(2, size - 1):
+            slopes[..., k, k] = 1 / np.asarray(self.clock)
+        slopes[..., -1, -1] = 1 / np.hypot(1, lam)
+        return slopes
+
+    def point(self, orbit: Orbit) -> np.ndarray:
+        """y of n-T orbits, shape (..., N + 1)."""
+        inner = orbit.point(self.orbits)
+        lam = np.sinh(inner[..., -1])
+        y = inner.copy()
+        y[..., 1] += lam * np.cos(inner[..., 0])
+        y[..., 2:-1] *= np.asarray(self.clock)[..., np.newaxis]
+        y[..., -1] = lam
+        return y
+
+    def orbit(self, y: np.ndarray) -> Orbit:
+        """The orbits at points y, with phases that pass ±π continuously along a branch."""
+        found = orbit_at(self.orbits, self.inner(y))
+        turned = np.round((y[..., :1] - found.phases) / (2 * np.pi))
+        return replace(found, phases=found.phases + 2 * np.pi * turned)
+
+    def _weights(self) -> np.ndarray:
+        """The factors of the equations; that of the duration is of the order of a velocity."""
+        weights = np.ones((*np.shape(self.clock), self.orbits.equations))
+        weights[..., 2:] = np.asarray(self.clock)[..., np.newaxis]
+        return weights
+
+    def residual(self, y: np.ndarray) -> np.ndarray:
+        """The defects of the equations, shape (..., N)."""
+        return self._weights() * self.orbits.residual(self.inner(y))
+
+    def jacobian(self, y: np.ndarray) -> np.ndarray:
+        """The Jacobian of the residual, shape (..., N, N + 1)."""
+        matrix = self.orbits.jacobian(self.inner(y)) @ self._slopes(y)
+        return self._weights()[..., np.newaxis] * matrix
+
+    def event(self, event: Event) -> Event:
+        """An event of the equations as a function of these unknowns."""
+        known = event.condition
+        condition: Condition | None = None
+        if known is not None:
+
+            def condition(y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+                value, gradient = known(self.inner(y))
+                return value, (gradient[..., np.newaxis, :] @ self._slopes(y))[..., 0, :]
+
+        return replace(event, function=lambda y: event.function(self.inner(y)), condition=condition)
+
+    def grazing(self, y: np.ndarray) -> np.ndarray:
+        """The last admissible points along a branch, one for each change of admissibility.
+
+        ``y`` holds points in order along the branch, shape (m, N + 1). The orbits at the k results,
+        shape (k, N + 1), graze the table.
+        """
+        return domain_limits(self, lambda z: is_admissible(self.orbits, self.inner(z)), y)

@@ -14,8 +14,8 @@ endif
 COMMA := ,
 # The target that every other target needs first; empty if another venv exists already.
 SETUP ?= setup
-# Print one line for each file, and errors; the rest of Snakemake's output is in .snakemake/log.
-QUIETLY := --quiet host rules reason progress
+# Print the files made, how many steps are done, and errors; the rest is in .snakemake/log.
+QUIETLY := --quiet host rules reason
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
 # Sixty jobs import the same modules, so that compiled modules are kept whatever the shell sets.
@@ -23,11 +23,15 @@ unexport PYTHONDONTWRITEBYTECODE
 
 # Targets run one after another, because clean, run and compare share results/.
 .NOTPARALLEL:
-.PHONY: all setup lint test quick speed test-cluster test-long setup-engines test-engines docs test-docs gallery mutants diff accept samples report clean ci setup-newest newest config-docs lock
+.PHONY: all replication setup lint test quick speed test-cluster test-long setup-engines test-engines docs test-docs gallery mutants diff accept samples report clean ci setup-newest newest config-docs lock
 
 all: $(SETUP)
 	$(BIN)/snakemake --cores 2 $(QUIETLY)
 	@echo "Results: results/paper.md, results/figures/. Compare with the record: make diff"
+
+# The paper alone, and its comparison with the record: results/diff/replication.html.
+replication: $(SETUP)
+	$(BIN)/snakemake --cores 2 replication diff $(QUIETLY)
 
 setup: $(VENV)/.installed
 

@@ -1,6 +1,6 @@
 # Carbonelli, Perret-Liaudet, Rigaud and Feki (2011), from the equations to the figures.
 # `snakemake --cores 2` makes everything, `snakemake --cores 2 replication` the paper alone,
-# `snakemake --cores 2 fig08` one figure, `snakemake --cores 1 accept` copies the results over the
+# `snakemake --cores 2 permanent_contact` a stage, `snakemake --cores 2 fig08` one figure, `snakemake --cores 1 accept` copies the results over the
 # record.
 
 from snakemake.utils import min_version
@@ -26,7 +26,7 @@ include: "workflow/rules/check.smk"
 include: "workflow/rules/shown.smk"
 # From datasets and tables to the article.
 include: "workflow/rules/article.smk"
-# A target for each artifact, with its name.
+# A target for each artifact and each stage, with its name.
 include: "workflow/rules/targets.smk"
 
 

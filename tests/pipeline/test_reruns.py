@@ -15,7 +15,7 @@ from declared_artifacts import ARTIFACTS, STUDIES
 
 from bouncing_ball.pipeline import sources as module
 from bouncing_ball.pipeline.configuration import arguments, read_yaml
-from bouncing_ball.pipeline.sources import digest, imports, keep_digest, keep_doubt, sources
+from bouncing_ball.pipeline.sources import digests, imports, keep_digests, sources
 
 ROOT = Path(__file__).resolve().parents[2]
 CONFIG = read_yaml(ROOT / "config" / "config.yaml")
@@ -105,8 +105,8 @@ def test_a_digest_follows_contents_and_names_and_not_times(tmp_path, monkeypatch
         path.write_text(text, encoding="utf-8")
         os.utime(path, (0, 0))
         # As in another process, which has read nothing yet.
-        module._digest_of_file.cache_clear()
-        return digest([path])
+        module._line_of_file.cache_clear()
+        return digests([path])
 
     first = digest_of("a.py", "r = 0.85")
     assert first == digest_of("a.py", "r = 0.85")
@@ -116,29 +116,12 @@ def test_a_digest_follows_contents_and_names_and_not_times(tmp_path, monkeypatch
 
 def test_the_file_of_a_digest_is_written_only_when_the_digest_changes(tmp_path):
     path = tmp_path / "fig02"
-    keep_digest(path, "one")
+    keep_digests(path, "one")
     os.utime(path, (0, 0))
-    keep_digest(path, "one")
+    keep_digests(path, "one")
     assert path.stat().st_mtime == 0
-    keep_digest(path, "two")
+    keep_digests(path, "two")
     assert path.read_text() == "two" and path.stat().st_mtime > 0
-
-
-@pytest.mark.parametrize(
-    ("digest_then", "output_time", "kept"),
-    [("one", 200, "one"), ("one", 50, "unknown"), ("other", 200, "unknown")],
-)
-def test_touch_keeps_a_digest_only_if_the_outputs_were_made_by_this_code(
-    tmp_path, digest_then, output_time, kept
-):
-    path = tmp_path / "code"
-    output = tmp_path / "fig02.nc"
-    path.write_text(digest_then)
-    output.touch()
-    os.utime(path, (100, 100))
-    os.utime(output, (output_time, output_time))
-    keep_doubt(path, "one", [output, tmp_path / "missing.nc"])
-    assert path.read_text() == kept
 
 
 def test_no_import_statement_is_missed():

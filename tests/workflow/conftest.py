@@ -98,6 +98,12 @@ class Tree:
         jobs = set(re.findall(r"^Job \d+: ([^:\n]*)", done.stdout + done.stderr, re.MULTILINE))
         return jobs - {"All figures, tables and the paper are up to date"}
 
+    def planned_files(self, *arguments: str) -> list[str]:
+        """The files under results/figures that a run would make."""
+        done = self.run("--cores", "1", "--detailed-summary", *arguments)
+        names = [line.split("\t")[0] for line in done.stdout.splitlines()]
+        return [name for name in names if name.startswith("results/figures/")]
+
     def configure(self, *keys, value) -> None:
         """Change one value of the configuration."""
         path = self.path / "config" / "config.yaml"

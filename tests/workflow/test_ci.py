@@ -42,14 +42,15 @@ def run_script(tmp_path, failing: str) -> tuple[int, list[str], str]:
     return done.returncode, called, done.stdout.splitlines()[-1] if done.stdout else ""
 
 
-STEPS = ["lint", "clean", "all", "diff", "test", "test-cluster"]
+STEPS = ["lint", "clean", "replication", "all", "diff", "test", "test-cluster"]
 
 
 @pytest.mark.parametrize("failing", ["", *STEPS, "lint test"])
 def test_every_step_runs_whatever_fails_and_the_diff_runs_before_the_tests(tmp_path, failing):
     status, called, last = run_script(tmp_path, failing)
     assert called[0] == "setup" and sorted(called[1:]) == sorted(STEPS)
-    assert called.index("clean") < called.index("all") < called.index("diff") < called.index("test")
+    order = ["clean", "replication", "all", "diff", "test"]
+    assert sorted(order, key=called.index) == order
     assert (status, last.startswith("Failed: ")) == ((1, True) if failing else (0, False))
     assert set(failing.split()) <= set(last.split())
 
@@ -75,8 +76,41 @@ def test_the_newest_versions_run_what_the_locked_ones_do():
     assert all(".venv-newest/bin/" in lines[k] for k in found if k != found[1])
 
 
+def jobs_of_ci():
+    return yaml.safe_load(WORKFLOW.read_text(encoding="utf-8"))["jobs"]
+
+
+def test_the_replication_is_a_job_of_its_own_and_each_comparison_is_in_the_summary():
+    jobs = jobs_of_ci()
+    assert "make replication" in [step.get("run") for step in jobs["replication"]["steps"]]
+    # It is not hidden by another job, nor does it hide one.
+    assert not any("needs" in job for job in jobs.values())
+    assert "continue-on-error" not in jobs["replication"]
+    for name in ("replication", "locked", "newest"):
+        (summary,) = [step for step in jobs[name]["steps"] if step.get("name") == "Summary"]
+        assert "GITHUB_STEP_SUMMARY" in summary["run"] and "always()" in summary["if"]
+
+
+def test_the_summary_has_the_verdict_or_says_that_there_is_none(tmp_path):
+    (command,) = {
+        step["run"]
+        for job in jobs_of_ci().values()
+        for step in job["steps"]
+        if step.get("name") == "Summary"
+    }
+    summary = tmp_path / "summary"
+    environment = without_make() | {"GITHUB_STEP_SUMMARY": str(summary)}
+    subprocess.run(["bash", "-e", "-c", command], cwd=tmp_path, env=environment, check=True)
+    assert summary.read_text(encoding="utf-8").strip() == "No results were compared."
+    report = tmp_path / "results" / "diff" / "replication.txt"
+    report.parent.mkdir(parents=True)
+    report.write_text("11 identical. The new artifacts agree with the record.\n", encoding="utf-8")
+    subprocess.run(["bash", "-e", "-c", command], cwd=tmp_path, env=environment, check=True)
+    said = summary.read_text(encoding="utf-8")
+    assert "replication" in said and "11 identical. The new artifacts agree" in said
+
+
 def test_the_jobs_of_ci_run_targets_of_make_that_exist():
-    steps = yaml.safe_load(WORKFLOW.read_text(encoding="utf-8"))["jobs"].values()
-    commands = [step.get("run", "") for job in steps for step in job["steps"]]
+    commands = [step.get("run", "") for job in jobs_of_ci().values() for step in job["steps"]]
     targets = [name for text in commands for name in re.findall(r"^make (\S+)$", text, re.M)]
     assert targets and ".ci/run" in commands and all(dry(target) for target in targets)

@@ -40,7 +40,7 @@ def heights(data: xr.Dataset) -> Figure:
 '''
 
 
-RULE = """use rule study as lowest with:
+RULE = """use rule study as lowest_study with:
     wildcard_constraints:
         artifact=stage(
             "beyond.exhibits.lowest",
@@ -82,12 +82,14 @@ def test_a_figure_and_a_stage_on_the_dataset_of_another_need_the_files_of_the_re
         module.write(DRAWING)
     assert changed(fresh) == {PAPER, CONFIG, FIGURES}
     (fresh.path / STAGE).write_text(STUDY, encoding="utf-8")
-    fresh.rewrite(BEYOND, "use rule study as basins with:", f"{RULE}use rule study as basins with:")
+    first = "use rule study as basins_study with:"
+    fresh.rewrite(BEYOND, first, RULE + first)
     fresh.rewrite(CONFIG, "beyond:\n", "beyond:\n  ext_lowest: { n: 110 }\n")
     assert changed(fresh) == {PAPER, BEYOND, CONFIG, FIGURES, STAGE}
     assert fresh.refusal().startswith("configuration: beyond.ext_lowest.n = 110 must be at most 20")
     fresh.rewrite(CONFIG, "ext_lowest: { n: 110 }", "ext_lowest: { n: 11 }")
-    fresh.run("--cores", "1", "heights", "ext_lowest")
+    # The stage has the name of its module, and the figure its own.
+    fresh.run("--cores", "1", "heights", "lowest")
     made = {path.name: path for path in (fresh.path / "results/figures").iterdir()}
     figure = {f"heights.{kind}" for kind in ("nc", "png", "svg")}
     assert made.keys() == {*figure, "fig11.nc", "ext_lowest.nc"}

@@ -41,6 +41,35 @@ def test_the_replication_makes_the_artifacts_of_the_paper_and_nothing_else(fresh
     assert made == {name for name, each in ARTIFACTS.items() if each.wing == "paper"}
 
 
+def stages():
+    """The artifacts of each stage of both wings; the atlas has rules of its own."""
+    found = {}
+    for each in ARTIFACTS.values():
+        if each.study or not each.accepted:
+            found.setdefault(each.stage, []).append(each)
+    return found
+
+
+@pytest.mark.parametrize("name", ["permanent_contact", "formulas", "schematics", "lives"])
+def test_a_stage_is_a_target_that_makes_its_datasets_pictures_and_tables(fresh, name):
+    made = set(fresh.planned_files(name))
+    own = {file for each in stages()[name] for file in (each.computed, *each.files) if file}
+    # The rest is what its studies read.
+    assert own and own <= made
+    assert all(ARTIFACTS[Path(file).stem].stage != name for file in made - own)
+
+
+def test_every_stage_is_a_target(fresh):
+    names = sorted(stages())
+    assert {"apparent_restitution", "continuation_of_orbits", "error_thresholds"} <= {*names}
+    listed = fresh.run("--list-target-rules").stdout.split()
+    assert {*names} <= {*listed}
+    made = set(fresh.planned_files(*names))
+    for artifacts in stages().values():
+        for each in artifacts:
+            assert {file for file in (each.computed, *each.files) if file} <= made
+
+
 def test_a_run_gives_the_accepted_datasets(pristine, recorded, coarse):
     # Statements on whole motions are about the maps at their whole size.
     whole = made_by_a_run() - {name for name, _ in coarse} - {"statements"}

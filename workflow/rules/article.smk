@@ -15,7 +15,6 @@ rule set_claims:
             "set_claims",
             "claims.py",
             files=WORDS,
-            outputs=["results/figures/claims.csv", "results/figures/claims.md"],
         ),
         data="results/figures/claims.nc",
     output:
@@ -37,7 +36,6 @@ rule paper:
             "paper",
             "paper.py",
             files=[*TEMPLATES, f"{ARTICLE}/references.yaml", f"{ARTICLE}/numbered.csl"],
-            outputs=["results/paper.md", "results/supplement.md", "results/tally.txt"],
         ),
         atlas="config/atlas.nc",
         data=[each.dataset for each in ARTIFACTS.values() if each.study],
@@ -65,7 +63,6 @@ rule paper_pdf:
             "paper_pdf",
             "paper_pdf.py",
             files=[f"{ARTICLE}/article.typ"],
-            outputs=["results/paper.pdf", "results/supplement.pdf"],
         ),
         texts=[rules.paper.output.paper, rules.paper.output.supplement],
         figures=[f"results/figures/{each.name}.svg" for each in ARTIFACTS.values() if each.drawing],

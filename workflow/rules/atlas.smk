@@ -12,9 +12,7 @@ rule atlas_shard:
     message:
         "Atlas: shard {wildcards.shard}"
     input:
-        code=lambda wildcards: code(
-            "atlas-shards", "atlas_shard.py", outputs=Path("results/atlas/shards").glob("*.nc")
-        ),
+        code=lambda wildcards: code("atlas-shards", "atlas_shard.py"),
     output:
         data="results/atlas/shards/{shard}.nc",
     wildcard_constraints:
@@ -36,7 +34,7 @@ rule atlas_merge:
     message:
         "Atlas: one file from its shards"
     input:
-        code=lambda wildcards: code("atlas", "atlas_merge.py", outputs=["results/atlas/atlas.nc"]),
+        code=lambda wildcards: code("atlas", "atlas_merge.py"),
         parts=lambda wildcards: expand(
             rules.atlas_shard.output.data, shard=[*names(ATLAS), "limits"]
         ),
@@ -55,9 +53,7 @@ rule atlas:
     message:
         "Atlas: its summary, with charts"
     input:
-        code=lambda wildcards: code(
-            "atlas-summary", "atlas.py", outputs=Path("results/atlas").glob("*.[ps]*")
-        ),
+        code=lambda wildcards: code("atlas-summary", "atlas.py"),
         parts=[rules.atlas_merge.output.data],
     output:
         data="results/atlas/summary.nc",

@@ -20,7 +20,7 @@ stage(
 )
 
 
-use rule study as corrected_model with:
+use rule study as corrected_model_study with:
     """The corrected restitution model, and how fast its errors fall along the frequency ratio."""
     wildcard_constraints:
         artifact=stage(
@@ -39,7 +39,7 @@ use rule study as corrected_model with:
         ),
 
 
-use rule study as release_rules with:
+use rule study as release_rules_study with:
     """Contacts with another release rule."""
     wildcard_constraints:
         artifact=stage(
@@ -56,7 +56,7 @@ use rule study as release_rules with:
         ),
 
 
-use rule study as contact_laws with:
+use rule study as contact_laws_study with:
     """Contacts with other laws."""
     wildcard_constraints:
         artifact=stage(
@@ -70,7 +70,7 @@ use rule study as contact_laws with:
         ),
 
 
-use rule study as cascades with:
+use rule study as cascades_study with:
     """Flights in a period, and cascades of period doublings."""
     wildcard_constraints:
         artifact=stage(
@@ -88,7 +88,7 @@ use rule study as cascades with:
         ),
 
 
-use rule study as orbit_diagram with:
+use rule study as orbit_diagram_study with:
     """Orbit diagrams over the amplitude."""
     wildcard_constraints:
         artifact=stage(
@@ -103,7 +103,7 @@ use rule study as orbit_diagram with:
         ),
 
 
-use rule study as locking with:
+use rule study as locking_study with:
     """The motions on which balls lock, over restitution and amplitude."""
     wildcard_constraints:
         artifact=stage(
@@ -118,7 +118,7 @@ use rule study as locking with:
         ),
 
 
-use rule study as long_transients with:
+use rule study as long_transients_study with:
     """Whether balls that seem chaotic lock after long transients."""
     wildcard_constraints:
         artifact=stage(
@@ -132,7 +132,7 @@ use rule study as long_transients with:
         ),
 
 
-use rule study as lives with:
+use rule study as lives_study with:
     """How long balls take to lock."""
     wildcard_constraints:
         artifact=stage(
@@ -146,7 +146,7 @@ use rule study as lives with:
         ),
 
 
-use rule study as locked_orbits with:
+use rule study as locked_orbits_study with:
     """What predicts a locked orbit."""
     wildcard_constraints:
         artifact=stage(
@@ -161,7 +161,7 @@ use rule study as locked_orbits with:
         ),
 
 
-use rule study as basins with:
+use rule study as basins_study with:
     """Basins of motions that coexist."""
     wildcard_constraints:
         artifact=stage(
@@ -176,7 +176,7 @@ use rule study as basins with:
         ),
 
 
-use rule study as means with:
+use rule study as means_study with:
     """Means over whole motions, such as the power and the height."""
     wildcard_constraints:
         artifact=stage(
@@ -191,7 +191,7 @@ use rule study as means with:
         ),
 
 
-use rule study as engine_steps with:
+use rule study as engine_steps_study with:
     """Time steps of physics engines."""
     wildcard_constraints:
         artifact=stage(
@@ -206,7 +206,7 @@ use rule study as engine_steps with:
         ),
 
 
-use rule study as explorer_orbits with:
+use rule study as explorer_orbits_study with:
     """Orbits with which the page of the explorer compares its results."""
     wildcard_constraints:
         artifact=stage(
@@ -219,7 +219,7 @@ use rule study as explorer_orbits with:
         ),
 
 
-use rule study as proofs with:
+use rule study as proofs_study with:
     """Numbers of the paper with intervals that certainly contain them."""
     wildcard_constraints:
         artifact=stage(
@@ -232,7 +232,7 @@ use rule study as proofs with:
         ),
 
 
-use rule study as certified_verdicts with:
+use rule study as certified_verdicts_study with:
     """The verdicts on printed numbers, decided by certified intervals."""
     wildcard_constraints:
         artifact=stage(

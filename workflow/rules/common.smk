@@ -33,15 +33,17 @@ if os.path.lexists("results") and not os.path.isdir("results"):
 
 from bouncing_ball.pipeline.artifacts import Artifact
 from bouncing_ball.pipeline.configuration import ConfigurationError, arguments
-from bouncing_ball.pipeline.sources import digest, keep_digest, keep_doubt, sources
+from bouncing_ball.pipeline.sources import digests, keep_digests, sources
 
 SCRIPTS = Path(ROOT, "workflow", "scripts")
 sys.path.append(str(SCRIPTS))
 
 from adapter import function
 
-# Snakemake writes these two lines before every job, and they do not name it.
-logger.addFilter(lambda record: not str(record.msg).startswith(("Select jobs", "Execute ")))
+# Snakemake writes these lines before and after every job, and they do not name what it makes.
+logger.addFilter(
+    lambda record: not str(record.msg).startswith(("Select jobs", "Execute ", "Finished jobid"))
+)
 
 # All artifacts by name, as the stages of both wings list them.
 ARTIFACTS = {}
@@ -76,31 +78,17 @@ def shards_of(wildcards):
     return expand(rules.shard.output.data, shard=names, **wildcards)
 
 
-# Whether some of the datasets of an artifact were made from other arguments.
-def others(artifact, datasets):
-    from bouncing_ball.pipeline.jobs import made_from
-
-    given = arguments_of(artifact)
-    return not all(made_from(each, given) for each in datasets if each.exists())
-
-
-# The one input that stands for the code of a job: a file with the digest of its script, of the
-# named modules, and of all modules and data that these import and read. It is written only if the
-# digest changes, and the job then runs again. `--touch` keeps outputs only if they were made by this
-# code and, if they are datasets of an artifact, from the arguments that its study has now.
-def code(job, script, *modules, outputs=(), files=(), made_by=None):
+# The one input that stands for the code of a job: a file with the digests of its script, of the
+# named modules, and of all modules and data that these import and read. It is written only if a
+# digest changes, and the job then runs again. `--touch` leaves it as it is, so that a digest that
+# has changed is written by the next run.
+def code(job, script, *modules, files=()):
     path = Path("results", "code", job)
-    if not workflow.is_main_process and path.exists():
+    if path.exists() and (workflow.touch or not workflow.is_main_process):
         return str(path)
     read = [Path(file).resolve() for file in (SCRIPTS / "adapter.py", SCRIPTS / script, *files)]
-    found = digest(sources([f"bouncing_ball.{module}" for module in modules], read))
     try:
-        if workflow.touch:
-            outputs = [Path(output) for output in outputs]
-            doubted = made_by is not None and others(made_by, outputs)
-            keep_doubt(path, found, outputs, doubted=doubted)
-        else:
-            keep_digest(path, found)
+        keep_digests(path, digests(sources([f"bouncing_ball.{module}" for module in modules], read)))
     except OSError as error:
         sys.exit(f"{path} cannot be written: {error.strerror}")
     return str(path)

@@ -1,6 +1,7 @@
 # The stages of the paper. Each names its module in the package, and for each artifact the functions
 # that compute its dataset (`study`), draw its figure (`drawing`) and list its table (`table`);
-# `reads` names the artifacts whose datasets the study reads.
+# `reads` names the artifacts whose datasets the study reads. The name of a rule is that of its module
+# with `_study`; the name without it is the target that makes everything of the stage (targets.smk).
 
 # The schematics have no dataset.
 stage(
@@ -16,7 +17,7 @@ stage(
 )
 
 
-use rule study as restitution_model with:
+use rule study as restitution_model_study with:
     """The restitution model: one orbit over time, and all orbits in closed form."""
     wildcard_constraints:
         artifact=stage(
@@ -34,7 +35,7 @@ use rule study as restitution_model with:
         ),
 
 
-use rule study as apparent_restitution with:
+use rule study as apparent_restitution_study with:
     """Apparent restitution, velocity and Poincaré map of orbits along the frequency ratio."""
     wildcard_constraints:
         artifact=stage(
@@ -62,7 +63,7 @@ use rule study as apparent_restitution with:
         ),
 
 
-use rule study as time_histories with:
+use rule study as time_histories_study with:
     """Time histories of orbits of the spring-damper model."""
     wildcard_constraints:
         artifact=stage(
@@ -80,7 +81,7 @@ use rule study as time_histories with:
         ),
 
 
-use rule study as continuation_of_orbits with:
+use rule study as continuation_of_orbits_study with:
     """Existence and stability of n-T orbits by continuation, and their ranges in Table 1."""
     wildcard_constraints:
         artifact=stage(
@@ -108,7 +109,7 @@ use rule study as continuation_of_orbits with:
         ),
 
 
-use rule study as permanent_contact with:
+use rule study as permanent_contact_study with:
     """Permanent contact: the amplitude from which on the table throws the ball off."""
     wildcard_constraints:
         artifact=stage(
@@ -126,7 +127,7 @@ use rule study as permanent_contact with:
         ),
 
 
-use rule study as error_thresholds with:
+use rule study as error_thresholds_study with:
     """Error thresholds: the frequency ratio from which on the restitution model is accurate."""
     wildcard_constraints:
         artifact=stage(
@@ -144,7 +145,7 @@ use rule study as error_thresholds with:
         ),
 
 
-use rule study as lowest_period_doubling with:
+use rule study as lowest_period_doubling_study with:
     """The frequency ratio at which the period doubling of each family is lowest."""
     wildcard_constraints:
         artifact=stage(
@@ -156,7 +157,7 @@ use rule study as lowest_period_doubling with:
         ),
 
 
-use rule study as kinds_of_motion with:
+use rule study as kinds_of_motion_study with:
     """A periodic, a subharmonic and a chaotic motion of the restitution model."""
     wildcard_constraints:
         artifact=stage(
@@ -168,8 +169,7 @@ use rule study as kinds_of_motion with:
         ),
 
 
-# The audit of the paper. A rule whose artifact has the name of its module ends in `_study`, because
-# the target of the artifact has this name already.
+# The audit of the paper.
 
 
 use rule study as formulas_study with:

@@ -3,11 +3,13 @@
 # Both rules have no outputs, so that Snakemake runs them at each call.
 
 from bouncing_ball.pipeline.diff.targets import (
+    name_of_reports,
+    remove_reports,
     requested_artifacts,
     requested_files,
-    requested_names,
 )
-from bouncing_ball.pipeline.jobs import begin, concluded
+from bouncing_ball.pipeline.jobs import concluded
+from bouncing_ball.pipeline.unfinished import listed, not_made
 
 
 # ONLY='fig08 table1' snakemake --cores 1 accept; without ONLY, all artifacts that have moved.
@@ -35,22 +37,34 @@ rule diff:
     params:
         record=ROOT,
         artifacts=lambda wildcards: requested_artifacts(workflow),
-        name=lambda wildcards: "-".join(requested_names(workflow)),
+        name=lambda wildcards: name_of_reports(workflow),
     log:
         "results/logs/diff.log",
     script:
         "../scripts/diff.py"
 
 
-# Each job that makes a file prints how many of these jobs are done.
 # The limit of jobs per second is off: with it, each job that starts or ends makes Snakemake examine
 # all waiting jobs again every second until the run ends.
 onstart:
     workflow.scheduler.job_rate_limiter = None
-    begin(sum(bool(job.is_script and job.output) for job in workflow.dag.needrun_jobs()))
+    remove_reports(workflow)
 
 
 # A difference or a refusal is not a failure of the job: it gives one line, and exit status 1.
 onsuccess:
     if conclusion := concluded():
         sys.exit(conclusion)
+
+
+# What can be made is made, although a job failed. The rest is listed, and `diff`, which the failed
+# job has stopped, compares what is there.
+onerror:
+    unmade = not_made(workflow)
+    if unmade and "diff" in workflow.dag_settings.targets:
+        from bouncing_ball.pipeline.diff.report import write_reports
+
+        names = requested_artifacts(workflow)
+        sys.exit(write_reports(Path(ROOT), names, name_of_reports(workflow), unmade))
+    if unmade:
+        sys.exit("\n".join(listed(unmade)))

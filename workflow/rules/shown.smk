@@ -17,7 +17,6 @@ for each in ARTIFACTS.values():
                 f"draw_{each.name}",
                 "figure.py",
                 each.figures,
-                outputs=[f"results/figures/{each.name}.{kind}" for kind in ("png", "svg")],
             ),
             data=[each.dataset] if each.dataset else [],
         params:
@@ -49,7 +48,6 @@ rule set_table:
             f"set_{w.table}",
             "table.py",
             ARTIFACTS[w.table].figures,
-            outputs=[f"results/figures/{w.table}.{kind}" for kind in ("csv", "md")],
         ),
         data="results/figures/{table}.nc",
     output:
@@ -72,9 +70,7 @@ rule draw_explorer:
     message:
         "Writing results/figures/explorer.html"
     input:
-        code=lambda wildcards: code(
-            "draw_explorer", "explorer.py", outputs=["results/figures/explorer.html"]
-        ),
+        code=lambda wildcards: code("draw_explorer", "explorer.py"),
         data="results/figures/explorer.nc",
     output:
         html="results/figures/explorer.html",

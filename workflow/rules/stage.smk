@@ -12,8 +12,6 @@ rule shard:
             f"{w.artifact}-shards",
             "shard.py",
             ARTIFACTS[w.artifact].module,
-            outputs=Path("results/shards", w.artifact).glob("*.nc"),
-            made_by=ARTIFACTS[w.artifact],
         ),
     output:
         data="results/shards/{artifact}/{shard}.nc",
@@ -37,8 +35,6 @@ rule study:
             w.artifact,
             "study.py",
             ARTIFACTS[w.artifact].module,
-            outputs=[f"results/figures/{w.artifact}.nc"],
-            made_by=ARTIFACTS[w.artifact],
         ),
         data=lambda w: [ARTIFACTS[name].dataset for name in ARTIFACTS[w.artifact].reads],
         shards=shards_of,

@@ -11,16 +11,13 @@ from collections.abc import Mapping
 from copy import copy
 from dataclasses import fields, is_dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.datasets.arguments import is_array
 from bouncing_ball.errors import ParameterError
-
-if TYPE_CHECKING:
-    from bouncing_ball.datasets.labelled import Grid
 
 
 class Ball:
@@ -86,9 +83,9 @@ class Ball:
         """The balls of a row with these indices; a single ball is unchanged."""
         raise NotImplementedError
 
-    def row(self, grid: Grid) -> Any:
-        """The balls at the places of a grid of which the parameters are arguments, one after
-        another.
+    def row(self, grid: Any) -> Any:
+        """The balls at the places of a :class:`~bouncing_ball.datasets.labelled.Grid` of which the
+        parameters are arguments, one after another.
         """
         return self.take(grid.numbers_of(self.parameters))
 

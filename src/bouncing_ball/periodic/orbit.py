@@ -385,7 +385,7 @@ class Orbit(Batch):
         row = self.flat(self.shape)
         for part in blocks(which.size, _LEGS):
             found[which[part]] = quantity(row.take(which[part]))
-        return found.reshape(*self.shape, *ends)
+        return found.reshape((*self.shape, *ends))
 
     def _landing_gap(self) -> np.ndarray:
         """δ of the flights at the impacts with which they end, shape (..., k)."""

@@ -10,7 +10,7 @@ all datasets. The measurements of physics engines, ``config/engines.nc``, are an
 run makes.
 """
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
@@ -77,8 +77,8 @@ class Artifact:
     ... )
     >>> artifact.files
     ['results/figures/table1.nc', 'results/figures/table1.csv', 'results/figures/table1.md']
-    >>> artifact.wing, artifact.dataset
-    ('paper', 'results/figures/table1.nc')
+    >>> artifact.wing, artifact.stage, artifact.dataset
+    ('paper', 'orbits', 'results/figures/table1.nc')
     """
 
     name: str
@@ -99,11 +99,19 @@ class Artifact:
         return self.module.partition(".")[0]
 
     @property
+    def stage(self) -> str:
+        """The name of its stage, which is that of the module."""
+        return self.module.rpartition(".")[2]
+
+    @property
+    def computed(self) -> str | None:
+        """The dataset that the study computes, also where an accepted one is read in its place."""
+        return f"{FOLDER}/{self.name}{DATASET}" if self.study else None
+
+    @property
     def dataset(self) -> str | None:
         """The dataset that others read; None for a figure without data, such as a schematic."""
-        if self.accepted:
-            return self.accepted
-        return f"{FOLDER}/{self.name}{DATASET}" if self.study else None
+        return self.accepted or self.computed
 
     @property
     def files(self) -> list[str]:
@@ -158,20 +166,25 @@ def _files_in(folder: Path) -> list[str]:
         for path in paths
         if path.suffix in _SUFFIXES and path.exists()
     ]
-    if not files:
-        raise ModelError(f"nothing to compare in {folder}: neither figures/ nor {TEXTS[0]}")
     return files
 
 
-def artifacts_in(*folders: Path) -> dict[str, ArtifactFiles]:
+def artifacts_in(*folders: Path, not_made: Collection[str] = ()) -> dict[str, ArtifactFiles]:
     """The artifacts of which at least one folder has a file, by name; the texts come last.
+
+    ``not_made`` are files that a run did not make, which may be in neither.
 
     Raises
     ------
     ModelError
-        If one of the folders has no artifact.
+        If one of the folders has no artifact, although nothing is known that was not made.
     """
-    files = {file for folder in folders for file in _files_in(folder)}
+    files = {file for file in not_made if PurePosixPath(file).suffix in _SUFFIXES}
+    for folder in folders:
+        found_here = _files_in(folder)
+        if not found_here and not not_made:
+            raise ModelError(f"nothing to compare in {folder}: neither figures/ nor {TEXTS[0]}")
+        files.update(found_here)
     if all((folder / MEASURED).is_file() for folder in folders):
         files.add(MEASURED)
     by_name: dict[str, list[str]] = {}
@@ -182,8 +195,8 @@ def artifacts_in(*folders: Path) -> dict[str, ArtifactFiles]:
     return {artifact.name: artifact for artifact in found}
 
 
-def digest_of_code(results: Path, file: str) -> str | None:
-    """The digest of the code with which a run would make a dataset or a PNG file now.
+def digests_of_code(results: Path, file: str) -> str | None:
+    """The digests of the code with which a run would make a dataset or a PNG file now.
 
     A run notes it in ``code/``; without this file, as in results from elsewhere, it is unknown.
     """

@@ -11,7 +11,6 @@ Every mistake gives a message of one line. A duplicate key is a mistake, because
 value would be used without a warning.
 """
 
-import codecs
 import inspect
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from difflib import get_close_matches
@@ -24,10 +23,6 @@ from pydantic import BaseModel, ConfigDict, ValidationError, create_model, valid
 from bouncing_ball.datasets.parameters import Parameters
 from bouncing_ball.errors import ModelError, escaped, printable
 
-# The loader of libyaml, where PyYAML was built with it, is ten times as fast. Both loaders read the
-# same language.
-_BASE = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-
 
 class ConfigurationError(ModelError):
     """A wrong key, type or value in a file. The message is one line that is safe to print."""
@@ -36,10 +31,8 @@ class ConfigurationError(ModelError):
         super().__init__(escaped(text))
 
 
-class _Constructor(yaml.constructor.SafeConstructor):
-    """The safe subset of YAML, without duplicate keys in a mapping, and without numbers that do not
-    mean what they seem to mean.
-    """
+class _Loader(yaml.SafeLoader):
+    """The loader with which Snakemake reads a configuration, but without duplicate keys."""
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict:
         seen = set()
@@ -49,51 +42,6 @@ class _Constructor(yaml.constructor.SafeConstructor):
                 raise ConfigurationError(f"duplicate key {key.value!r} in line {line}")
             seen.add(str(key.value))
         return super().construct_mapping(node, deep)
-
-    def construct_yaml_int(self, node: yaml.ScalarNode) -> int:
-        value = super().construct_yaml_int(node)
-        digits = node.value.lstrip("+-")
-        octal = len(digits) > 1 and digits.startswith("0") and digits.isdigit()
-        return self._meant(node, value, surprising=octal or ":" in digits)
-
-    def construct_yaml_float(self, node: yaml.ScalarNode) -> float:
-        value = super().construct_yaml_float(node)
-        return self._meant(node, value, surprising=":" in node.value)
-
-    @staticmethod
-    def _meant(node: yaml.ScalarNode, value: Any, *, surprising: bool) -> Any:
-        """The value itself, unless YAML reads the number to a base of 8 or of 60."""
-        if surprising:
-            line = node.start_mark.line + 1
-            raise ConfigurationError(
-                f"{node.value} in line {line} is {value} to YAML: write it as a decimal number, "
-                "without a leading zero and without a colon, or in quotes if it is a text"
-            )
-        return value
-
-
-_Constructor.add_constructor("tag:yaml.org,2002:int", _Constructor.construct_yaml_int)
-_Constructor.add_constructor("tag:yaml.org,2002:float", _Constructor.construct_yaml_float)
-# The class of which it is the first base is known at run time only.
-_Loader = type("_Loader", (_Constructor, _BASE), {})
-
-# The largest number of mappings and lists within each other; a configuration has five.
-_DEEPEST = 30
-
-
-def _check_depth(text: str) -> None:
-    """Refuse brackets or indentations that are too deep for Snakemake, which reads the file too."""
-    depth = 0
-    for event in yaml.parse(text, Loader=_BASE):
-        if isinstance(event, yaml.CollectionStartEvent):
-            depth += 1
-        elif isinstance(event, yaml.CollectionEndEvent):
-            depth -= 1
-        if depth > _DEEPEST:
-            line = event.start_mark.line + 1
-            raise ConfigurationError(
-                f"more than {_DEEPEST} lists or mappings within each other in line {line}"
-            )
 
 
 def parse_yaml(text: str) -> Any:
@@ -114,24 +62,10 @@ def parse_yaml(text: str) -> Any:
     bouncing_ball.pipeline.configuration.ConfigurationError: duplicate key 'n' in line 1
     """
     try:
-        _check_depth(text)
         return yaml.load(text, Loader=_Loader)
-    except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark
-        line = f" in line {mark.line + 1}" if mark else ""
-        problem = error.problem
-        if mark and _is_a_tab(text, mark):
-            problem = "a tab, where YAML allows only spaces"
-        raise ConfigurationError(f"not YAML{line}: {problem}") from None
-    except yaml.YAMLError as error:
-        # For example a character that is not allowed in YAML.
+    # Brackets within brackets, a thousand of them, are too deep for the reader.
+    except (yaml.YAMLError, RecursionError) as error:
         raise ConfigurationError(f"not YAML: {' '.join(str(error).split())}") from None
-
-
-def _is_a_tab(text: str, mark: yaml.Mark) -> bool:
-    """Whether the character at a place of the text is a tab."""
-    lines = text.split("\n")
-    return mark.line < len(lines) and lines[mark.line][mark.column : mark.column + 1] == "\t"
 
 
 def read_yaml(path: str | Path) -> Any:
@@ -144,29 +78,15 @@ def read_yaml(path: str | Path) -> Any:
         message does not name the file.
     """
     try:
-        content = Path(path).read_bytes()
+        text = Path(path).read_text(encoding="utf-8")
     except OSError as error:
         raise ConfigurationError(str(error.strerror)) from None
-    try:
-        text = content.decode("utf-8")
     except UnicodeDecodeError as error:
-        line = content.count(b"\n", 0, error.start) + 1
-        is_utf_16 = content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
-        kind = "but UTF-16" if is_utf_16 else f"in line {line}"
-        raise ConfigurationError(f"not UTF-8 text {kind}: save the file as UTF-8") from None
-    # As in a text file, which may end its lines as Windows does.
-    return parse_yaml(text.replace("\r\n", "\n"))
+        raise ConfigurationError(f"not YAML: {error}") from None
+    return parse_yaml(text)
 
 
 _GIVEN_BY_THE_JOB = ("data", "part", "found")
-
-RENAMED = {
-    "figures": "paper",
-    "tables": "paper",
-    "studies": "paper",
-    "extensions": "beyond",
-}
-"""Sections of earlier configurations, and the sections that hold their artifacts now."""
 
 
 def typed(study: Callable[..., Any]) -> Callable[..., Any]:
@@ -346,11 +266,8 @@ def _schemas(model: type[BaseModel], path: Sequence[str | int]) -> list[dict[str
     return found
 
 
-def _unknown_key(given: str, path: Sequence[str | int], known: list[str]) -> str:
+def _unknown_key(given: str, key: str, known: list[str]) -> str:
     """The sentence for a key that is not allowed at its place."""
-    key = str(path[-1])
-    if len(path) == 1 and key in RENAMED:
-        return f"the section {key} is now {RENAMED[key]}: write its keys under {RENAMED[key]}"
     close = get_close_matches(key, known, n=1)
     meant = f", did you mean {close[0]}?" if close else "."
     return f"unknown key {given}{meant} Allowed here: {', '.join(known)}"
@@ -366,7 +283,7 @@ def _sentence(model: type[BaseModel], error: Any) -> str:
     description = " ".join(schema.get("description", "").split())
     given = f"{name} = {printable(repr(error['input']), 60)}"
     if kind == "extra_forbidden":
-        return _unknown_key(given, path, list(schemas[-2]["properties"]))
+        return _unknown_key(given, str(path[-1]), list(schemas[-2]["properties"]))
     if kind == "missing":
         what = "section" if len(path) == 1 and "properties" in schema else "key"
         meaning = description or str(schema.get("title"))

@@ -11,8 +11,9 @@ from bouncing_ball.pipeline.configuration import resolved
 _HEAD = """# The configuration
 
 The keys of `config.yaml` with the allowed values and the reasons. `make config-docs` makes this
-page and `schema.json`, which editors read, from the types beside the studies. Change those, and
-not the page.
+page from the types beside the studies. Change those, and not the page. It also makes
+`config/schema.json`, which is not in git: with it, an editor that knows YAML schemas completes the
+keys of `config.yaml` and marks mistakes. Without it nothing is missing but this.
 
 The section `paper` holds the parameters of the paper's figures, tables and claims, and `beyond`
 those of everything built on it; `release` and `continuation` are settings of the whole run.

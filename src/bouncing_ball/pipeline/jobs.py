@@ -1,4 +1,4 @@
-"""A run of the workflow and its jobs: progress, logs, errors of one line, and datasets.
+"""A run of the workflow and its jobs: logs, errors of one line, and datasets.
 
 The scripts of the workflow are a few lines that call this module; ``snakemake`` is the object that
 Snakemake provides for them.
@@ -25,7 +25,7 @@ from bouncing_ball.datasets.files import (
 )
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.configuration import typed
-from bouncing_ball.pipeline.provenance import PREFIX, gather, parameters_of, read_attributes
+from bouncing_ball.pipeline.provenance import PREFIX, gather
 
 REFERENCE = (
     "Carbonelli, Perret-Liaudet, Rigaud and Feki, Investigation of restitution coefficient "
@@ -33,28 +33,7 @@ REFERENCE = (
 )
 HISTORY = "computed from the equations; the attributes provenance_* say by what and from what"
 
-_NOTES = Path(".snakemake/progress")
 _CONCLUSION = Path("results/logs/conclusion")
-
-
-# The progress of a run. Snakemake also counts its steps, but with three lines for each.
-
-
-def begin(jobs: int) -> None:
-    """Note that a run with this number of jobs begins."""
-    _NOTES.parent.mkdir(exist_ok=True)
-    _NOTES.write_text(f"{jobs}\n", encoding="ascii")
-
-
-def advance() -> str:
-    """Note that a job has ended, and return the share done, an empty text outside of a run."""
-    if not _NOTES.is_file():
-        return ""
-    # A short line is appended completely, even if other jobs append lines at the same time.
-    with _NOTES.open("a", encoding="ascii") as notes:
-        notes.write("done\n")
-    jobs, *ended = _NOTES.read_text(encoding="ascii").splitlines()
-    return f"{len(ended)} of {jobs}, {100 * len(ended) // int(jobs)} %"
 
 
 # The last sentence of a run. It may end with exit status 1 although no job failed, for example
@@ -81,24 +60,27 @@ def concluded() -> str:
 def logged(snakemake: Any) -> Iterator[list[str]]:
     """Collect lines for the log of the job; on failure print one line about the failure.
 
-    The traceback is then in the log, and the process exits with status 1.
+    The traceback is then in the log, whose last line is the same, and the process exits with status
+    1.
     """
     _prepare_process()
     lines: list[str] = []
     log = Path(snakemake.log[0])
+    log.unlink(missing_ok=True)
     with _without_pint():
         try:
             yield lines
             write_text(log, "".join(f"{line}\n" for line in lines))
-            _announce(list(snakemake.output))
+            if snakemake.output:
+                print("made", *snakemake.output, flush=True)
         except Exception as error:
-            # For example, writing the log fails if the disk is full.
-            with suppress(OSError):
-                write_text(log, traceback.format_exc())
             name = "/".join([snakemake.rule, *snakemake.wildcards])
             kind = "" if isinstance(error, ValueError) else f"{type(error).__name__}: "
-            message = " ".join(str(error).split())
-            sys.exit(f"{name}: {kind}{message} (details in {log})")
+            message = f"{name}: {kind}{' '.join(str(error).split())}"
+            # For example, writing the log fails if the disk is full.
+            with suppress(OSError):
+                write_text(log, f"{traceback.format_exc()}{message}\n")
+            sys.exit(f"{message} (details in {log})")
 
 
 def _prepare_process() -> None:
@@ -124,16 +106,6 @@ def _without_pint() -> Iterator[None]:
         yield
     finally:
         del sys.modules["pint"]
-
-
-def _announce(outputs: Sequence[str]) -> None:
-    """Print the files that the job has made, and how much of the run is done."""
-    if not outputs:
-        return
-    line = " ".join(["made", *outputs])
-    if done := advance():
-        line += f" ({done})"
-    print(line, flush=True)
 
 
 def read_input(path: str) -> xr.Dataset:
@@ -193,7 +165,7 @@ def joined(shards: Sequence[xr.Dataset]) -> dict[str, np.ndarray]:
 
 
 def provenance(snakemake: Any) -> dict[str, str]:
-    """The provenance of the files that the job writes, with the digest of its code.
+    """The provenance of the files that the job writes, with the digests of its code.
 
     It is gathered when a file is written and is not a parameter of the job, because Snakemake
     would then run every job again after each commit.
@@ -203,7 +175,7 @@ def provenance(snakemake: Any) -> dict[str, str]:
     code = snakemake.input.code
     inputs = [str(path) for path in snakemake.input if path != code]
     gathered = gather(str(snakemake.output[0]), inputs, repository, snakemake.config)
-    return gathered | {f"{PREFIX}code": Path(code).read_text(encoding="ascii")}
+    return gathered | {f"{PREFIX}code": Path(code).read_text(encoding="utf-8")}
 
 
 def recorded(arguments: Mapping[str, Any]) -> dict[str, Any]:
@@ -216,23 +188,6 @@ def recorded(arguments: Mapping[str, Any]) -> dict[str, Any]:
     """
     others = {name: value for name, value in arguments.items() if name != "parameters"}
     return parameter_attributes({**arguments.get("parameters", {}), **others})
-
-
-def made_from(path: Path, arguments: Mapping[str, Any]) -> bool:
-    """Whether a dataset records these arguments of its study; one without a record may have them.
-
-    A file that cannot be read was not made from them.
-    """
-    try:
-        found = parameters_of(read_attributes(path))
-    except ModelError:
-        return False
-    expected = parameters_of(recorded(arguments))
-    # NetCDF keeps a list of one number as a number.
-    return all(
-        np.array_equal(np.ravel(found[name]), np.ravel(expected[name]))
-        for name in found.keys() & expected.keys()
-    )
 
 
 def make_dataset(snakemake: Any, study: Callable[..., xr.Dataset]) -> list[str]:

@@ -1,10 +1,11 @@
-"""The code that a job uses, and a digest of its contents.
+"""The code that a job uses, and digests of its contents.
 
 Snakemake runs a job again when its script changes, but does not see the modules that the script
 imports, and it compares times, which an old file or ``--touch`` makes misleading. Each job
-therefore has one small file as its input, which holds the digest of all modules and data that the
-job uses. The file is written only when the digest changes, and is then newer than what the job has
-made.
+therefore has one small file as its input, which holds the digests of all modules and data that the
+job uses. The file is written only when a digest changes, and is then newer than what the job has
+made. A dataset and a picture record the same digests, so that a comparison names the files that
+have changed.
 """
 
 import re
@@ -124,36 +125,46 @@ def sources(modules: Iterable[str], files: Iterable[Path] = ()) -> list[Path]:
     return sorted(seen, key=str)
 
 
+# The first digits of SHA-256; two versions of a file share them with a chance of 2⁻⁴⁸.
+_DIGITS = 12
+
+
 @cache
-def _digest_of_file(path: Path) -> bytes:
-    """A digest of the name of a file in the repository and of its contents."""
-    name = path.relative_to(_REPOSITORY).as_posix()
-    return sha256(name.encode() + b"\0" + path.read_bytes()).digest()
+def _line_of_file(path: Path) -> str:
+    """A digest of the contents of a file, and its name in the package or in the repository."""
+    folder = _ROOT if path.is_relative_to(_ROOT) else _REPOSITORY
+    name = path.relative_to(folder).as_posix()
+    return f"{sha256(path.read_bytes()).hexdigest()[:_DIGITS]} {name}"
 
 
-def digest(paths: Iterable[Path]) -> str:
-    """A digest of the contents and the names of files, which does not depend on their folder."""
-    whole = sha256()
-    for path in paths:
-        whole.update(_digest_of_file(path))
-    return whole.hexdigest()
+def digests(paths: Iterable[Path]) -> str:
+    """A line for each file with the digest of its contents and its name, which tell code apart.
 
-
-def keep_digest(path: Path, found: str) -> None:
-    """Write a digest to a file if the file has another one."""
-    if not path.is_file() or path.read_text(encoding="ascii") != found:
-        write_text(path, found)
-
-
-def keep_doubt(path: Path, found: str, outputs: Iterable[Path], *, doubted: bool = False) -> None:
-    """What ``--touch`` does in place of :func:`keep_digest`.
-
-    Snakemake then makes all outputs newer than the file. If they were not made by the code with
-    this digest, the file must not have it, so that the next run writes it and makes them again.
-    The same holds if they are ``doubted`` for another reason, such as other parameters.
+    They do not depend on the folder of the repository.
     """
-    if not doubted and path.is_file() and path.read_text(encoding="ascii") == found:
-        written = path.stat().st_mtime_ns
-        if all(each.stat().st_mtime_ns >= written for each in outputs if each.exists()):
-            return
-    write_text(path, "unknown")
+    return "\n".join(map(_line_of_file, paths))
+
+
+def changed_files(record: str, new: str) -> list[str]:
+    """The names of the files that differ between two texts of :func:`digests`.
+
+    Earlier records have a single digest, which names no file.
+
+    Examples
+    --------
+    >>> changed_files("1f0e a.py\\n2a2a b.py", "1f0e a.py\\n3b3b b.py\\n4c4c c.py")
+    ['b.py', 'c.py']
+    >>> changed_files("5d5d", "1f0e a.py")
+    []
+    """
+    old, now = ([line.split(" ", 1) for line in text.splitlines()] for text in (record, new))
+    if any(len(line) < 2 for line in (*old, *now)):
+        return []
+    changed = {tuple(line) for line in old} ^ {tuple(line) for line in now}
+    return sorted({name for _, name in changed})
+
+
+def keep_digests(path: Path, found: str) -> None:
+    """Write digests to a file if the file has others."""
+    if not path.is_file() or path.read_text(encoding="utf-8") != found:
+        write_text(path, found)

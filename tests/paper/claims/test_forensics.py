@@ -4,8 +4,6 @@ from functools import partial
 
 import numpy as np
 import pytest
-from bouncing_ball.periodic.orbit import Orbit
-from bouncing_ball.periodic.spring_damper_branch import orbits_on_branch
 from scipy.optimize import brentq
 
 from bouncing_ball.models.damping import damping_ratio
@@ -21,6 +19,8 @@ from bouncing_ball.paper.claims.forensics import (
 from bouncing_ball.paper.claims.tables import forensics as rows
 from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic import restitution_branch as restitution_orbit
+from bouncing_ball.periodic.orbit import Orbit
+from bouncing_ball.periodic.spring_damper_branch import orbits_on_branch
 
 ZETA = float(damping_ratio(0.85))
 WEIGHTLESS, HIGH_BOUNCE = "no gravity in contact", "high-bounce stability"

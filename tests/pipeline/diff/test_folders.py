@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 from PIL import Image, ImageDraw
 from PIL.PngImagePlugin import PngInfo
 
@@ -17,6 +18,7 @@ from bouncing_ball.pipeline.diff.folders import compare_folders, compare_picture
 from bouncing_ball.pipeline.diff.outcome import Outcome
 from bouncing_ball.pipeline.diff.page import note, to_html, to_terminal
 from bouncing_ball.pipeline.diff.texts import compare_texts
+from bouncing_ball.pipeline.diff.words import headline
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -192,7 +194,13 @@ def versions(**libraries):
             {"provenance_code": "2a2a", "r": 0.7},
             "parameter changed, r 0.85 → 0.7; other code",
         ),
-        ({"provenance_code": "1f0e"}, {"provenance_code": "2a2a"}, "other code"),
+        (
+            {"provenance_code": "1f0e a.py\n0000 b.py"},
+            {"provenance_code": "2a2a a.py\n0000 b.py"},
+            "other code, a.py",
+        ),
+        # A record of an earlier day has one digest for all files.
+        ({"provenance_code": "1f0e"}, {"provenance_code": "2a2a a.py"}, "other code"),
         (
             {"provenance_versions": versions(numpy="2.2.0", scipy="1.15.0")},
             {"provenance_versions": versions(numpy="2.3.1", scipy="1.15.0")},
@@ -220,6 +228,14 @@ def test_pictures_and_tables_of_other_parameters_are_named_as_such(pair):
     assert outcomes == dict.fromkeys(changed, Outcome.PARAMETERS)
 
 
+def test_a_picture_that_other_code_has_drawn_from_the_same_data_names_this_code(pair):
+    for folder, digest in ((pair.record, "1f0e"), (pair.new, "2a2a")):
+        picture = Image.new("RGB", (12, 9), "white" if digest == "1f0e" else "black")
+        path = folder / "figures" / "fig08.png"
+        save_png(path, picture, provenance_code=f"{digest} drawing/style.py")
+    assert pair.artifact("fig08").cause == "other code, drawing/style.py"
+
+
 def test_what_is_made_from_a_changed_artifact_names_it(pair):
     remade(pair, "fig05", n=2)
     witness = pair.dataset("witness")
@@ -240,15 +256,63 @@ def test_an_artifact_of_older_code_is_stale_even_if_it_agrees(pair):
         write_dataset(data, folder / "figures" / "fig05.nc")
     assert pair.artifact("fig05").outcome is Outcome.IDENTICAL
     (pair.new / "code").mkdir()
-    # After `snakemake --touch`, nothing is known about the code.
-    for digest, outcome in (
-        ("1f0e", Outcome.IDENTICAL),
-        ("2a2a", Outcome.STALE),
-        ("unknown", Outcome.STALE),
-    ):
+    for digest, outcome in (("1f0e", Outcome.IDENTICAL), ("2a2a", Outcome.STALE)):
         (pair.new / "code" / "fig05").write_text(digest, encoding="utf-8")
         assert pair.artifact("fig05").outcome is outcome
     assert pair.artifact("fig05").cause == "made by older code than that of the working tree"
+
+
+def test_the_page_says_first_what_moved_each_thing_once_and_is_small_if_nothing_did(pair):
+    assert len(to_html(pair.compare())) < 20_000 and headline(pair.compare()) == []
+    data = pair.dataset("table1")
+    data.computed.values[0, 0, 0] *= 1.01
+    pair.write("table1", data)
+    pair.rewrite("figures/table1.md", "1.03830", "1.04830")
+    comparison = pair.compare()
+    (line,) = headline(comparison)
+    assert line.startswith("table1: +1 % in end of the stability range") and " → " in line
+    page = to_html(comparison)
+    assert page.index(line.partition(" at ")[0]) < page.index('id="table1"')
+    # The table follows its dataset; pictures that agree are not embedded.
+    assert "1.04830" not in page and "1.04830" not in to_terminal(comparison)
+    assert "data:image" not in page
+
+
+def test_words_that_changed_are_counted_and_named(pair):
+    data = pair.dataset("table1")
+    record, new = (
+        xr.Dataset({"verdict": ("claim", words)}, {"claim": ["a", "b, c"]})
+        for words in (["close", "close"], ["close", "contradicted"])
+    )
+    for folder, content in ((pair.record, record), (pair.new, new)):
+        write_dataset(content.assign_attrs(data.attrs), folder / "figures" / "claims.nc")
+    assert headline(pair.compare()) == ["claims: 1 changed in verdict: b, c close → contradicted"]
+
+
+def test_a_large_relative_change_does_not_hide_in_an_absolute_budget(pair):
+    budget = {"budget": 0.1, "scale": "1"}
+    for folder, share in ((pair.record, 0.005), (pair.new, 0.045)):
+        data = xr.Dataset({"share": ("t", [share, 1.0, 1e-13 * share], budget)})
+        write_dataset(data, folder / "figures" / "ext_shares.nc")
+    comparison = pair.compare()
+    (line,) = headline(comparison)
+    assert line.startswith("ext_shares: within its budget, +800 % in share at t = 0: ")
+    assert comparison.outcome.status == 0
+
+
+def test_what_was_not_made_has_its_reason_even_if_an_older_version_or_nothing_is_there(pair):
+    shutil.rmtree(pair.new / "figures")
+    files = {"figures/fig05.nc": "fig05: no orbit", "figures/fig08.png": "needs fig05"}
+    found = compare_folders(pair.record, pair.new, not_made=files)
+    causes = {artifact.name: artifact.cause for artifact in found.moved}
+    assert causes["fig05"] == "not made, fig05: no orbit"
+    assert causes["fig08"] == "not made, needs fig05"
+    assert causes["fig09"] == "a file is missing" and found.outcome.status == 1
+    # Nothing at all was made.
+    (pair.new / "paper.md").unlink()
+    found = compare_folders(pair.record, pair.new, ["fig05"], files)
+    assert to_terminal(found).startswith("fig05: not made, fig05: no orbit\n")
+    assert "not made, fig05: no orbit" in to_html(found)
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,7 @@
 """Why an artifact differs from the record, as far as the two files themselves say it.
 
 Every dataset has the parameters among its attributes, and every dataset and picture its provenance:
-a digest of the code that made it, the versions of the libraries, and the files it was made from.
+the digests of the code that made it, the versions of the libraries, and the files it was made from.
 The causes are named in this order: other parameters, other code, other versions of the libraries
 that compute and draw, and other inputs. If there is none of these, the numbers have moved.
 """
@@ -15,9 +15,10 @@ from typing import Any, NamedTuple
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.artifacts import DATASET
 from bouncing_ball.pipeline.provenance import PREFIX, parameters_of, read_attributes
+from bouncing_ball.pipeline.sources import changed_files
 
 _LIBRARIES = ("numpy", "scipy", "matplotlib")
-# More names of artifacts than these are counted.
+# More names of artifacts or files than these are counted.
 _NAMED = 4
 
 
@@ -95,7 +96,7 @@ class Origin:
     parameters : mapping
         The parameters of a dataset by name; a picture has none.
     code : str
-        Digest of the modules that made it.
+        Digests of the files of code that made it, see :func:`~.sources.digests`.
     versions : mapping
         Versions of the libraries by name.
     inputs : tuple of str
@@ -130,10 +131,10 @@ def own_causes(record: Origin, new: Origin) -> list[str]:
 
     Examples
     --------
-    >>> record = Origin({"restitution": 0.85}, "1f0e", {"numpy": "2.2.0"}, ())
-    >>> new = Origin({"restitution": 0.7}, "2a2a", {"numpy": "2.3.1"}, ())
+    >>> record = Origin({"restitution": 0.85}, "1f0e a.py", {"numpy": "2.2.0"}, ())
+    >>> new = Origin({"restitution": 0.7}, "2a2a a.py", {"numpy": "2.3.1"}, ())
     >>> own_causes(record, new)
-    ['parameter changed, restitution 0.85 → 0.7', 'other code', 'other numpy, 2.2.0 → 2.3.1']
+    ['parameter changed, restitution 0.85 → 0.7', 'other code, a.py', 'other numpy, 2.2.0 → 2.3.1']
     """
     causes = []
     if changes := parameter_changes(record.parameters, new.parameters):
@@ -141,7 +142,8 @@ def own_causes(record: Origin, new: Origin) -> list[str]:
         values = [f"{change.name} {change.record} → {change.new}" for change in changes]
         causes.append(f"{subject} changed, {', '.join(values)}")
     if record.code and new.code and record.code != new.code:
-        causes.append("other code")
+        files = changed_files(record.code, new.code)
+        causes.append(f"other code, {_some(files)}" if files else "other code")
     for name in _LIBRARIES:
         old_version = record.versions.get(name)
         new_version = new.versions.get(name)
@@ -158,6 +160,11 @@ def made_from(names: Sequence[str]) -> str:
     >>> made_from(["fig14"]), made_from(["fig05", "fig06", "fig08", "fig09", "fig10"])
     ('made from fig14', 'made from fig05, fig06, fig08, fig09 and 1 more')
     """
+    return f"made from {_some(names)}"
+
+
+def _some(names: Sequence[str]) -> str:
+    """The first names, and how many there are more."""
     more = len(names) - _NAMED
     rest = f" and {more} more" if more > 0 else ""
-    return f"made from {', '.join(names[:_NAMED])}{rest}"
+    return f"{', '.join(names[:_NAMED])}{rest}"

@@ -272,10 +272,37 @@ def _place(variable: xr.DataArray, index: tuple[int, ...]) -> str:
     >>> _place(xr.DataArray([[1.0, 2.0]], {"t": [0.0, 0.5]}, ("case", "t")), (0, 1))
     'case = 0, t = 0.5'
     """
+    return ", ".join(f"{name} = {text}" for name, text in _labels(variable, index).items())
+
+
+def _labels(variable: xr.DataArray, index: tuple[int, ...]) -> dict[str, str]:
+    """The coordinates of an entry as texts, by their names."""
     places = zip(variable.dims, index, strict=True)
-    labels = {name: variable[name].values[k] for name, k in places}
-    texts = {name: f"{x:.6g}" if isinstance(x, float) else x for name, x in labels.items()}
-    return ", ".join(f"{name} = {text}" for name, text in texts.items())
+    labels = {str(name): variable[name].values[k] for name, k in places}
+    return {name: f"{x:.6g}" if isinstance(x, float) else str(x) for name, x in labels.items()}
+
+
+def relative_change(record: float, new: float, scale: float) -> float:
+    """(new - record) / |record|, or over the scale for a record below a thousandth of the scale.
+
+    Examples
+    --------
+    >>> relative_change(2.0, 1.5, 10.0), relative_change(0.0, 0.5, 10.0)
+    (-0.25, 0.05)
+    """
+    size = abs(record)
+    return float((new - record) / (size if size > 1e-3 * scale else scale))
+
+
+def _word_changes(old: xr.DataArray, now: xr.DataArray, unmoved: np.ndarray) -> tuple[str, ...]:
+    """Each entry of a variable of words that changed: its place, and both contents."""
+    found = []
+    for place in zip(*np.nonzero(~unmoved), strict=True):
+        index = tuple(int(k) for k in place)
+        where = ", ".join(_labels(old, index).values())
+        contents = [str(side.values[index]) or "nothing" for side in (old, now)]
+        found.append(f"{where} {' → '.join(contents)}")
+    return tuple(found)
 
 
 def _variable_row(artifact: str, name: str, record: xr.Dataset, new: xr.Dataset) -> Row:
@@ -290,6 +317,12 @@ def _variable_row(artifact: str, name: str, record: xr.Dataset, new: xr.Dataset)
     order = np.where((share > 0) | ~unmoved, share, -1.0)
     place = tuple(int(k) for k in np.unravel_index(np.argmax(order), order.shape))
     beyond = int(np.count_nonzero(share > 1))
+    change = 0.0
+    changes: tuple[str, ...] = ()
+    if old.dtype.kind in "fiu":
+        change = relative_change(float(old.values[place]), float(now.values[place]), span(old))
+    elif old.dtype.kind in "OSUT" and old.ndim:
+        changes = _word_changes(old, now, unmoved)
     return Row(
         name,
         Outcome.DRIFTED if beyond else Outcome.WITHIN,
@@ -300,6 +333,9 @@ def _variable_row(artifact: str, name: str, record: xr.Dataset, new: xr.Dataset)
         moved=int(np.count_nonzero(~unmoved)),
         beyond=beyond,
         entries=old.size,
+        title=str(old.attrs.get("long_name", name)),
+        change=change,
+        changes=changes,
     )
 
 

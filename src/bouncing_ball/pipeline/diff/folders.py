@@ -12,7 +12,7 @@ record.
 
 import re
 import warnings
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -28,7 +28,7 @@ from bouncing_ball.pipeline.artifacts import (
     ArtifactFiles,
     artifacts_among,
     artifacts_in,
-    digest_of_code,
+    digests_of_code,
 )
 from bouncing_ball.pipeline.diff import budgets
 from bouncing_ball.pipeline.diff.cause import (
@@ -128,13 +128,30 @@ def _is_stale(file: str, results: Path) -> bool:
     # An SVG file is made together with its PNG file.
     if not file.endswith((DATASET, ".png")) or not (results / file).exists():
         return False
-    digest = digest_of_code(results, file)
-    if digest is None:
+    digests = digests_of_code(results, file)
+    if digests is None:
         return False
-    return origin_of(results / file).code not in ("", digest)
+    return origin_of(results / file).code not in ("", digests)
 
 
-def judge(file: str, folders: tuple[Path, Path], data: Outcome | None) -> Whole:
+@dataclass(frozen=True)
+class Compared:
+    """What is compared: the folder of the record, the new folder, and files that were not made.
+
+    Each of these files has a reason. An older version of it may still be in the new folder.
+    """
+
+    record: Path
+    new: Path
+    not_made: Mapping[str, str]
+
+    @property
+    def folders(self) -> tuple[Path, Path]:
+        """Both folders."""
+        return self.record, self.new
+
+
+def judge(file: str, compared: Compared, data: Outcome | None) -> Whole:
     """The comparison of a file that is in the record, in the new folder, or in both.
 
     This function raises no error; an error of the comparison becomes the outcome.
@@ -143,20 +160,22 @@ def judge(file: str, folders: tuple[Path, Path], data: Outcome | None) -> Whole:
     ----------
     file : str
         Path of the file relative to either folder.
-    folders : tuple
-        The folder of the record and the new folder.
+    compared : Compared
     data : Outcome, optional
         The worst outcome of the datasets from which a picture or a text is made.
     """
-    old, now = (folder / file for folder in folders)
+    old, now = (folder / file for folder in compared.folders)
+    shown = old.suffix == ".png"
+    if file in compared.not_made:
+        before = _content(old) if shown else None
+        return Whole(file, (Row("", Outcome.NOT_MADE),), (before, None))
     # Warnings of the libraries about a damaged file become one line.
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         try:
             rows = _rows(old, now, data)
-            if _is_stale(file, folders[1]):
+            if _is_stale(file, compared.new):
                 rows.append(Row("", Outcome.STALE, note="made by older code"))
-            shown = old.suffix == ".png"
             pictures = (_content(old), _content(now)) if shown else (None, None)
             return Whole(file, tuple(rows), pictures)
         # On a damaged file the libraries raise errors of many types.
@@ -180,13 +199,13 @@ class _Judged:
         return self.data.outcome if self.data else Outcome.IDENTICAL
 
 
-def _judged(artifact: ArtifactFiles, folders: tuple[Path, Path]) -> _Judged:
-    data = judge(artifact.dataset, folders, None) if artifact.dataset else None
+def _judged(artifact: ArtifactFiles, compared: Compared) -> _Judged:
+    data = judge(artifact.dataset, compared, None) if artifact.dataset else None
     # A schematic has no dataset, and a text says nothing about its making.
     carriers = [file for file in artifact.files if file.endswith((DATASET, ".png"))]
     if not carriers:
         return _Judged(artifact, data, UNKNOWN_ORIGIN, UNKNOWN_ORIGIN)
-    record, new = (origin_of(folder / carriers[0]) for folder in folders)
+    record, new = (origin_of(folder / carriers[0]) for folder in compared.folders)
     return _Judged(artifact, data, record, new)
 
 
@@ -198,7 +217,7 @@ def _inputs(judged: _Judged, artifacts: dict[str, ArtifactFiles]) -> list[str]:
 
 
 def _with_inputs(
-    wanted: Collection[str], artifacts: dict[str, ArtifactFiles], folders: tuple[Path, Path]
+    wanted: Collection[str], artifacts: dict[str, ArtifactFiles], compared: Compared
 ) -> dict[str, _Judged]:
     """The named artifacts, and all that they are made from, with their datasets compared."""
     found: dict[str, _Judged] = {}
@@ -206,7 +225,7 @@ def _with_inputs(
     while pending:
         name = pending.pop()
         if name not in found:
-            found[name] = _judged(artifacts[name], folders)
+            found[name] = _judged(artifacts[name], compared)
             pending += _inputs(found[name], artifacts)
     return found
 
@@ -228,9 +247,18 @@ def _ordered(names: Collection[str], judged: dict[str, _Judged]) -> list[str]:
     return sorted(names, key=lambda name: (judged[name].outcome is not Outcome.PARAMETERS, name))
 
 
-def _cause(whole: Whole, judged: _Judged, roots: Sequence[str]) -> str:
+def _cause(whole: Whole, judged: _Judged, roots: Sequence[str], compared: Compared) -> str:
     """Why an artifact differs from the record."""
-    causes = own_causes(judged.record, judged.new)
+    for file in whole.parts:
+        if file.name in compared.not_made:
+            return f"not made, {compared.not_made[file.name]}"
+    record = judged.record
+    new = judged.new
+    pictures = [file.name for file in whole.moved if file.name.endswith(".png")]
+    if judged.outcome is Outcome.IDENTICAL and pictures:
+        # Drawn by other code from the same data.
+        record, new = (origin_of(folder / pictures[0]) for folder in compared.folders)
+    causes = own_causes(record, new)
     if roots:
         causes.append(made_from(roots))
     match whole.outcome:
@@ -253,31 +281,38 @@ def _cause(whole: Whole, judged: _Judged, roots: Sequence[str]) -> str:
     return "the text changed"
 
 
-def compare_folders(record: Path, new: Path, only: Collection[str] = ()) -> Whole:
+def compare_folders(
+    record: Path,
+    new: Path,
+    only: Collection[str] = (),
+    not_made: Mapping[str, str] | None = None,
+) -> Whole:
     """The comparison of all artifacts of two folders, or of the named artifacts, worst first.
+
+    ``not_made`` are files that a run did not make, each with its reason.
 
     Raises
     ------
     ModelError
         If one of the folders holds no artifact, or neither folder has a named artifact.
     """
-    folders = (record, new)
-    artifacts = artifacts_in(*folders)
+    compared = Compared(record, new, not_made or {})
+    artifacts = artifacts_in(record, new, not_made=compared.not_made)
     if unknown := [name for name in only if name not in artifacts]:
         raise ModelError(f"unknown artifact {unknown[0]}; known: {', '.join(artifacts)}")
     wanted = list(only or artifacts)
-    judged = _with_inputs(wanted, artifacts, folders)
+    judged = _with_inputs(wanted, artifacts, compared)
     found = []
     for name in wanted:
         artifact = artifacts[name]
         data = judged[name].data
         made_of = _inputs(judged[name], artifacts) if artifact.is_text else [name]
         outcome = worst(judged[source].outcome for source in made_of)
-        others = [judge(file, folders, outcome) for file in artifact.others]
+        others = [judge(file, compared, outcome) for file in artifact.others]
         whole = Whole(name, tuple([data, *others] if data else others))
         if whole.outcome is not Outcome.IDENTICAL:
             roots = _ordered(_roots(name, judged, artifacts), judged)
-            whole = replace(whole, cause=_cause(whole, judged[name], roots))
+            whole = replace(whole, cause=_cause(whole, judged[name], roots, compared))
         found.append(whole)
     found.sort(key=lambda whole: (-whole.outcome.rank, -whole.share, whole.name))
     return Whole("", tuple(found))

@@ -20,6 +20,7 @@ class Outcome(StrEnum):
     STALE = "stale"
     MISSING = "missing"
     EXTRA = "extra"
+    NOT_MADE = "not made"
     UNREADABLE = "could not be compared"
 
     @property
@@ -75,6 +76,12 @@ class Row:
     moved, beyond, entries : int
         For a variable, the number of its entries that moved, of those beyond the budget, and of
         all entries.
+    title : str
+        The description of a variable.
+    change : float
+        Relative change of the entry of a variable that moved most, with its sign.
+    changes : tuple of str
+        For a variable of words, each entry that changed with both contents.
     """
 
     name: str
@@ -87,6 +94,9 @@ class Row:
     moved: int = 0
     beyond: int = 0
     entries: int = 0
+    title: str = ""
+    change: float = 0.0
+    changes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from urllib.parse import quote
 
 from bouncing_ball.pipeline.artifacts import DATASET
 from bouncing_ball.pipeline.diff.outcome import Outcome, Row, Whole
+from bouncing_ball.pipeline.diff.words import headline, numbers, percent
 
 _SENTENCES = (
     "The new artifacts agree with the record.",
@@ -44,16 +45,14 @@ def sentence(comparison: Whole) -> str:
 
 
 def share_text(share: float) -> str:
-    """A share of a budget in per cent, or as a multiple if it is large; empty for 0 and for ∞.
+    """A share of a budget in per cent; empty for 0, and beyond the budget, where changes say more.
 
     Examples
     --------
-    >>> [share_text(share) for share in (0.0, 0.00123, 1.46, 3e5, float("inf"))]
-    ['', '0.123 %', '146 %', '3e+05 ×', '']
+    >>> [share_text(share) for share in (0.0, 0.00123, 0.5, 3e5)]
+    ['', '0.123 %', '50 %', '']
     """
-    if share in (0.0, float("inf")):
-        return ""
-    return f"{100 * share:.3g} %" if share < 10 else f"{share:.3g} ×"
+    return f"{100 * share:.3g} %" if 0 < share <= 1 else ""
 
 
 def entries_text(row: Row) -> str:
@@ -111,9 +110,27 @@ def note(file: Whole) -> str:
         return differ + (f", {len(structure)} parts of the structure" if structure else "")
     first, *others = rows
     place = f" at {first.at}" if first.at else ""
-    what = ": ".join(filter(None, [first.name + place, _change(first) or first.note]))
+    if first.entries:
+        change = f" ({found})" if (found := percent(first.change)) else ""
+        both = numbers(first) + change
+    else:
+        both = _change(first) or first.note
+    what = ": ".join(filter(None, [first.name + place, both]))
     entries = f"; entries moved: {entries_text(first)}" if first.entries else ""
     return what + entries + (f"; and {len(others)} more" if others else "")
+
+
+def told_files(artifact: Whole) -> list[Whole]:
+    """The files of an artifact whose differences are told.
+
+    A file that was not made has its reason beside the name of the artifact. Tables and labels say
+    the same as their dataset, so that they are left out if it differs.
+    """
+    moved = [file for file in artifact.moved if file.outcome is not Outcome.NOT_MADE]
+    data = [file for file in moved if file.name.endswith(DATASET) and not file.outcome.agrees]
+    if not data:
+        return moved
+    return [file for file in moved if file in data or file.name.endswith(".png")]
 
 
 def to_terminal(comparison: Whole) -> str:
@@ -128,14 +145,15 @@ def to_terminal(comparison: Whole) -> str:
       paper.md  drifted  line 1: r = 0.25 → r = 0.26
     1 drifted, 1 identical. The new artifacts differ from the record.
     """
-    files = [file for artifact in comparison.moved for file in artifact.moved]
+    shown = {artifact.name: told_files(artifact) for artifact in comparison.moved}
+    files = [file for of_artifact in shown.values() for file in of_artifact]
     name_width = max((len(file.name) for file in files), default=0)
     outcomes = {file.name: _outcome_text(file) for file in files}
     outcome_width = max(map(len, outcomes.values()), default=0)
     lines = []
     for artifact in comparison.moved:
         lines.append(f"{artifact.name}: {artifact.cause}")
-        for file in artifact.moved:
+        for file in shown[artifact.name]:
             name = f"{file.name:<{name_width}}"
             outcome = f"{outcomes[file.name]:<{outcome_width}}"
             lines.append(f"  {name}  {outcome}  {note(file)}".rstrip())
@@ -182,8 +200,8 @@ def _base64(content: bytes) -> str:
 def to_html(comparison: Whole) -> str:
     """The page: artifacts worst first, with the record's and the new version of each picture.
 
-    All pictures are embedded; a picture that is identical on both sides is embedded once. The
-    buttons work by style sheets, without a script.
+    The pictures of artifacts that do not agree with the record are embedded; a picture that is
+    identical on both sides is embedded once. The buttons work by style sheets, without a script.
 
     Examples
     --------
@@ -204,6 +222,10 @@ def to_html(comparison: Whole) -> str:
     return environment.get_template("page.html.j2").render(
         comparison=comparison,
         sentence=sentence(comparison),
+        headline=headline(comparison),
+        told_files=told_files,
+        numbers=numbers,
+        percent=percent,
         marked=marked,
         note=note,
         anchor=quote,

@@ -11,9 +11,17 @@ from bouncing_ball.pipeline.artifacts import TEXTS
 
 
 def requested_names(workflow: Any) -> list[str]:
-    """The names of the rules that are targets of the run beside ``diff``, sorted."""
-    names = sorted({*workflow.dag_settings.targets} - {"diff"})
+    """The names of the rules that are targets of the run beside ``diff``, sorted.
+
+    There are none in a whole run.
+    """
+    names = sorted({*workflow.dag_settings.targets} - {"all", "diff"})
     return [name for name in names if workflow.is_rule(name)]
+
+
+def name_of_reports(workflow: Any) -> str:
+    """The name of the reports on the requested artifacts, empty in a whole run."""
+    return "-".join(requested_names(workflow))
 
 
 def requested_files(workflow: Any) -> list[str]:
@@ -27,3 +35,21 @@ def requested_files(workflow: Any) -> list[str]:
 def requested_artifacts(workflow: Any) -> list[str]:
     """The names of the requested artifacts; an empty list means all."""
     return sorted({Path(file).stem for file in requested_files(workflow)})
+
+
+def report_paths(name: str) -> tuple[Path, Path]:
+    """The files of the two reports, see :func:`name_of_reports`: lines of text, and the page.
+
+    Examples
+    --------
+    >>> print(*report_paths(""), *report_paths("fig14"))
+    results/diff/diff.txt results/diff/index.html results/diff/fig14.txt results/diff/fig14.html
+    """
+    folder = Path("results/diff")
+    return folder / f"{name or 'diff'}.txt", folder / f"{name or 'index'}.html"
+
+
+def remove_reports(workflow: Any) -> None:
+    """Remove the reports of an earlier run with these targets, whose results may change now."""
+    for path in report_paths(name_of_reports(workflow)):
+        path.unlink(missing_ok=True)

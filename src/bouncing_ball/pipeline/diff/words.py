@@ -1,0 +1,129 @@
+"""What moved, in words: a line for each artifact, that of the largest change first."""
+
+import math
+
+from bouncing_ball.pipeline.artifacts import DATASET
+from bouncing_ball.pipeline.diff.outcome import Outcome, Row, Whole
+
+# More changes of words than these are counted.
+_NAMED = 6
+# Of a value that is within an absolute budget, a relative change above this is named nevertheless,
+# unless the change itself is below the second number: it is rounding.
+_LARGE = 1.0
+_ROUNDING = 1e-9
+# A number in double precision has no more digits.
+_ALL_DIGITS = 17
+# A percentage above this is read more easily as a factor.
+_FACTOR = 10.0
+
+
+def percent(change: float) -> str:
+    """A relative change with two digits, as a factor if it is large; empty if there is none.
+
+    Examples
+    --------
+    >>> [percent(change) for change in (0.000941, -0.25, 8.0, 41.0, 0.0)]
+    ['+0.094 %', '-25 %', '+800 %', '× 42', '']
+    """
+    if not math.isfinite(change) or change == 0:
+        return ""
+    if change > _FACTOR:
+        return f"× {1 + change:.2g}"
+    two = f"{100 * change:+.2g}"
+    return f"{float(two):+.0f} %" if "e+" in two else f"{two} %"
+
+
+def numbers(row: Row) -> str:
+    """Both contents of a row; of numbers the digits that differ, and one more.
+
+    Examples
+    --------
+    >>> numbers(Row("phase", Outcome.DRIFTED, "0.8403156852330397", "0.8395002457896041"))
+    '0.84032 → 0.83950'
+    >>> numbers(Row("orbits", Outcome.DRIFTED, "1204", "1187"))
+    '1204 → 1187'
+    """
+    record = str(row.record)
+    new = str(row.new)
+    if row.record is None or row.new is None or record.lstrip("-").isdigit():
+        return f"{row.record or 'nothing'} → {row.new or 'nothing'}"
+    try:
+        far = abs(float(new) - float(record)) / max(abs(float(new)), abs(float(record)))
+        digits = max(3, 2 - math.ceil(math.log10(far)))
+    # Words, NaN, or an infinity.
+    except (ValueError, ZeroDivisionError, OverflowError):
+        return f"{record} → {new}"
+    if digits > _ALL_DIGITS:
+        return f"{record} → {new}"
+    return " → ".join(f"{float(text):#.{digits}g}".removesuffix(".") for text in (record, new))
+
+
+def _told(row: Row) -> str:
+    """One variable in words."""
+    if row.changes:
+        named = "; ".join(row.changes[:_NAMED])
+        more = len(row.changes) - _NAMED
+        rest = f"; and {more} more" if more > 0 else ""
+        return f"{len(row.changes)} changed in {row.name}: {named}{rest}"
+    place = f" at {row.at}" if row.at else ""
+    change = percent(row.change)
+    return f"{f'{change} in ' if change else ''}{row.title or row.name}{place}: {numbers(row)}"
+
+
+def _telling(rows: list[Row]) -> Row:
+    """The variable that says most: words before single numbers, and these before curves."""
+    order = [
+        (not row.changes, row.entries > 1, not math.isnan(row.change), -abs(row.change))
+        for row in rows
+    ]
+    return rows[order.index(min(order))]
+
+
+def telling_row(artifact: Whole) -> Row | None:
+    """The variable of an artifact's dataset that says most about its drift."""
+    for file in artifact.parts:
+        if file.name.endswith(DATASET):
+            rows = [row for row in file.parts if row.outcome is Outcome.DRIFTED and row.entries]
+            return _telling(rows) if rows else None
+    return None
+
+
+def _large(artifact: Whole) -> list[Row]:
+    """The variables with a large relative change that an absolute budget allows."""
+    rows = [row for file in artifact.parts if file.name.endswith(DATASET) for row in file.parts]
+    return [
+        row
+        for row in rows
+        if row.outcome is Outcome.WITHIN
+        and abs(row.change) > _LARGE
+        and abs(float(row.new or 0) - float(row.record or 0)) > _ROUNDING
+    ]
+
+
+def headline(comparison: Whole) -> list[str]:
+    """A line for each artifact that does not agree with the record: what moved, and by how much.
+
+    Examples
+    --------
+    >>> row = Row("level", Outcome.DRIFTED, "82.2", "83.0", entries=1, title="threshold",
+    ...     change=0.00973)
+    >>> fig14 = Whole("fig14", (Whole("figures/fig14.nc", (row,)),), cause="numbers moved")
+    >>> headline(Whole("", (fig14,)))
+    ['fig14: +0.97 % in threshold: 82.20 → 83.00']
+    """
+    found: list[tuple[int, int, float, str]] = []
+    for artifact in comparison.parts:
+        if artifact.outcome.agrees:
+            hidden = [
+                f"{artifact.name}: within its budget, {_told(row)}" for row in _large(artifact)
+            ]
+            found += [(1, 0, 0.0, line) for line in hidden]
+            continue
+        row = telling_row(artifact) if artifact.outcome is Outcome.DRIFTED else None
+        told = _told(row) if row else artifact.cause
+        change = row.change if row else 0.0
+        size = 0.0 if math.isnan(change) else abs(change)
+        # Words first, then what became NaN, then the largest change.
+        kind = 0 if row is None or row.changes else 2 - math.isnan(change)
+        found.append((-artifact.outcome.rank, kind, -size, f"{artifact.name}: {told}"))
+    return [line for *_, line in sorted(found, key=lambda each: each[:3])]

@@ -1,0 +1,66 @@
+"""What a run of Snakemake did not make, because a job failed or waited for one that failed.
+
+A run goes on with the jobs that do not need a failed one. ``workflow`` is the object that Snakemake
+provides for its handlers.
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+
+def failed_behind(job: Any, workflow: Any) -> set[Any]:
+    """The jobs that failed among those that a job needs, directly or through others."""
+    found: set[Any] = set()
+    for needed in workflow.dag.dependencies[job]:
+        if needed in workflow.scheduler.failed:
+            found.add(needed)
+        elif not workflow.dag.finished(needed):
+            found |= failed_behind(needed, workflow)
+    return found
+
+
+def reason_of(job: Any) -> str:
+    """The last line of the log of a failed job, in which the job itself gives its reason."""
+    log = Path(str(job.log[0])) if job.log else Path()
+    lines = log.read_text(encoding="utf-8").splitlines() if log.is_file() else []
+    return lines[-1] if lines else f"{job.rule.name} ended without a message, see .snakemake/log"
+
+
+def not_made(workflow: Any) -> dict[str, str]:
+    """The files that a run with failed jobs did not make, each with the reason in one line.
+
+    There are none if no job failed, for example if the run was interrupted.
+    """
+    found: dict[str, str] = {}
+    if not workflow.scheduler.failed:
+        return found
+    for job in workflow.scheduler.failed:
+        found |= {str(file): reason_of(job) for file in job.output}
+    for job in workflow.dag.needrun_jobs():
+        failed = {_name(each) for each in failed_behind(job, workflow)}
+        for file in map(str, job.output):
+            found.setdefault(file, f"needs {', '.join(sorted(failed))}")
+    return found
+
+
+def _name(job: Any) -> str:
+    return Path(str(job.output[0])).stem
+
+
+def listed(files: Mapping[str, str]) -> list[str]:
+    """One line for each reason, with the names of what was not made for it; each name once.
+
+    Examples
+    --------
+    >>> needs = dict.fromkeys(["results/figures/claims.nc", "results/paper.md"], "needs fig05")
+    >>> listed({"results/figures/fig05.nc": "fig05: no orbit", **needs})
+    ['not made: fig05 (fig05: no orbit)', 'not made: claims, paper (needs fig05)']
+    """
+    reasons: dict[str, str] = {}
+    for file, reason in files.items():
+        reasons.setdefault(Path(file).stem, reason)
+    by_reason: dict[str, list[str]] = {}
+    for name, reason in reasons.items():
+        by_reason.setdefault(reason, []).append(name)
+    return [f"not made: {', '.join(names)} ({reason})" for reason, names in by_reason.items()]

@@ -65,7 +65,7 @@ if TYPE_CHECKING:
     from bouncing_ball.contacts.recipe import write_contact
     from bouncing_ball.errors import ModelError, NoOrbitError
     from bouncing_ball.long_run.motion_of import basins, lyapunov_exponent, motion_of, orbit_diagram
-    from bouncing_ball.models.balls import corrected, rigid, spring_damper
+    from bouncing_ball.models.makers import corrected, rigid, spring_damper
     from bouncing_ball.models.over_time import drop, history, simulate
     from bouncing_ball.models.rigid import RestitutionModel
     from bouncing_ball.models.spring_damper import SpringDamper
@@ -121,7 +121,7 @@ def __getattr__(name: str) -> Any:
     module: Any
     match name:
         case "corrected" | "rigid" | "spring_damper":
-            from bouncing_ball.models import balls as module
+            from bouncing_ball.models import makers as module
         case "curve" | "follow" | "orbit_of_motion" | "switch":
             from bouncing_ball.calls import followed as module
         case "contact_law":

@@ -20,9 +20,9 @@ from bouncing_ball.datasets.arguments import (
 )
 from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.models.ball import Ball
-from bouncing_ball.models.balls import LOSSES, corrected, rigid, spring_damper, the_loss
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.registry import law_named
+from bouncing_ball.models.makers import LOSSES, corrected, rigid, spring_damper, the_loss
 from bouncing_ball.periodic.law_balls import contact_law
 
 MODELS = ("restitution", "spring-damper", "corrected")

@@ -17,10 +17,10 @@ from bouncing_ball.cli.options import (
 )
 from bouncing_ball.datasets.arguments import AMPLITUDE_OF_ORBIT, FAMILY, FREQUENCY_RATIO
 from bouncing_ball.errors import NoOrbitError, ParameterError, count, extra
-from bouncing_ball.models.balls import spring_damper
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.signature import Signature, free_impact
+from bouncing_ball.models.makers import spring_damper
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.orbit import OBSERVABLES, Orbit

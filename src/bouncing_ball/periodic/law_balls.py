@@ -29,12 +29,12 @@ from bouncing_ball.datasets.arguments import (
 )
 from bouncing_ball.errors import ParameterError, Range
 from bouncing_ball.models.ball import Ball
-from bouncing_ball.models.balls import corrected, flattened
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.law_of_impact import law_of_impact, reference
 from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.laws.registry import law_named
+from bouncing_ball.models.makers import corrected, flattened
 from bouncing_ball.periodic.law_at_orbit import law_at_orbit
 from bouncing_ball.periodic.restitution_branch import rigid_speed
 from bouncing_ball.periodic.stability import Side

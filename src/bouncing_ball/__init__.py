@@ -38,14 +38,19 @@ Everything else is dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g
 are in radians. NaN stands for a number that does not exist, such as the phase of an orbit below its
 saddle-node.
 
-The package consists of floors, each of which imports only from those below it in this list:
+The package is a library, from ``models`` to ``contacts``, and two sets of studies on it. Each floor
+imports only from those below it in this list:
 
 ``cli``         the command line, ``bouncing-ball``
 ``explorer``    the page with sliders
-``calls``       the balls and the functions that are imported from here
 ``pipeline``    the configuration, jobs, the record and its comparison; knows no balls
-``beyond``      what is built on the paper: laws, corrected model, long run, engines, calculator
-``paper``       the paper, whole: contact, motion, orbits, comparison, exhibits, claims
+``beyond``      the studies that go past the paper: exhibits, atlas, proofs
+``paper``       the replication: the formulas as printed, exhibits, claims
+``contacts``    an engineer's contact with units, and those of physics engines
+``accuracy``    errors of one model against another, their thresholds
+``long_run``    the motions on which balls end
+``periodic``    periodic orbits of any model, followed along any parameter
+``models``      every law of the impact, flight, sticking, permanent contact
 ``drawing``     what all pictures share: style, canvas, labels, tables
 ``datasets``    variables with units and budgets, labelled results, netCDF files
 ``numerics``    independent of the ball: continuation, certified first zeros, rows of an array

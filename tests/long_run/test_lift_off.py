@@ -5,7 +5,7 @@ import pytest
 
 from bouncing_ball.beyond.exhibits.motion_samples import three_models
 from bouncing_ball.long_run.destination import final_motions
-from bouncing_ball.long_run.lift_off import returns
+from bouncing_ball.long_run.lift_off import laps
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.rigid import RestitutionModel
 
@@ -15,7 +15,7 @@ LYING = -np.pi / 2, 0.0
 def test_a_return_is_the_mappers_locked_orbit():
     r = np.linspace(0.2, 0.6, 9)
     lam = np.linspace(2.0, 4.6, 9)
-    found = returns(r, lam, 300)
+    found = laps(r, lam, 300)
     mapped = final_motions(RestitutionModel(r), lam, *LYING, impacts=600)
     locked = (mapped.kind == "locked") & ~mapped.is_unresolved()
     assert locked.sum() > 5 and mapped.is_unresolved().any()
@@ -24,13 +24,13 @@ def test_a_return_is_the_mappers_locked_orbit():
     assert np.all(found.sensitivity[unresolved] * np.finfo(float).eps > 1e-8)
     assert np.array_equal(found.periods[locked], mapped.periods[locked])
     assert np.array_equal(found.impacts[locked], mapped.impacts[locked])
-    assert returns(0.5, 1.3, 5).periods == 0  # no sticking within so few impacts
+    assert laps(0.5, 1.3, 5).periods == 0  # no sticking within so few impacts
 
 
 def test_the_sensitivity_is_the_corrected_models_to_first_order():
     """The phase at which chattering ends, from one of its bounces, in both models."""
     r, lam = 0.5, 2.5
-    found = returns(r, lam, 100)
+    found = laps(r, lam, 100)
     late = []
     for ratio in (1e4, 2e4):
         ends = []
@@ -47,7 +47,7 @@ def test_the_sensitivity_is_the_corrected_models_to_first_order():
 
 def test_a_contact_has_the_orbit_where_it_is_stiff_enough():
     """The case of which no stiffness up to 5120 was enough, far on both sides of S/w."""
-    found = returns(0.6, 3.0, 100)
+    found = laps(0.6, 3.0, 100)
     wanted = float(found.sensitivity / found.wait)
     contact = three_models(np.array(0.6), wanted * np.array([0.01, 10.0]), Release.DISPLACEMENT)[-1]
     mapped = final_motions(contact, 3.0, *LYING, impacts=400)
@@ -57,12 +57,12 @@ def test_a_contact_has_the_orbit_where_it_is_stiff_enough():
 def test_at_a_discontinuity_the_wait_vanishes():
     """The chattering ends at the lift-off there; beyond, the ball misses it."""
     r, low, high = 0.3, 3.9, 4.1
-    period = returns(r, low, 50).periods
-    assert returns(r, high, 50).periods != period
+    period = laps(r, low, 50).periods
+    assert laps(r, high, 50).periods != period
     for _ in range(4):
         grid = np.linspace(low, high, 1025)
-        last = np.argmin(returns(r, grid, 50).periods == period)
+        last = np.argmin(laps(r, grid, 50).periods == period)
         low = grid[last - 1]
         high = grid[last]
-    waits = [returns(r, x, 50).wait for x in (low, high)]
-    assert np.nanmin(waits) < 1e-4 < returns(r, low - 0.01, 50).wait
+    waits = [laps(r, x, 50).wait for x in (low, high)]
+    assert np.nanmin(waits) < 1e-4 < laps(r, low - 0.01, 50).wait

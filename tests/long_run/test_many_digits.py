@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from bouncing_ball.long_run.destination import final_motions
-from bouncing_ball.long_run.lift_off import returns
-from bouncing_ball.long_run.many_digits import Table
+from bouncing_ball.long_run.lift_off import laps
+from bouncing_ball.long_run.many_digits import ManyDigits
 from bouncing_ball.models.rigid import RestitutionModel
 
 
@@ -63,18 +63,18 @@ def lap(r, lam, digits, most=400):
 
 @pytest.mark.parametrize(("r", "lam", "digits"), [(0.6, 3.0, 60), (0.4, 2.1, 250)])
 def test_the_lap_is_that_of_mpmath(r, lam, digits):
-    stop = Table(r, lam).after_lift_off(400)
+    stop = ManyDigits(r, lam).after_lift_off(400)
     assert (stop.impacts, round(stop.time / (2 * math.pi))) == lap(r, lam, digits)
 
 
 def test_the_lap_has_the_periods_of_doubles_where_these_suffice():
     rng = np.random.default_rng(4)
     r, lam = rng.uniform([[0.2], [1.5]], [[0.6], [4.5]], (2, 30))
-    found = returns(r, lam, 60)
+    found = laps(r, lam, 60)
     kept = (found.periods > 0) & (found.sensitivity < 1e6 * found.wait)
     assert kept.sum() > 10
     for k in np.flatnonzero(kept):
-        stop = Table(float(r[k]), float(lam[k])).after_lift_off(100)
+        stop = ManyDigits(float(r[k]), float(lam[k])).after_lift_off(100)
         assert stop.impacts == found.impacts[k]
         assert round(stop.time / (2 * math.pi)) == found.periods[k]
         assert stop.digits < 15
@@ -82,7 +82,7 @@ def test_the_lap_has_the_periods_of_doubles_where_these_suffice():
 
 def test_a_ball_that_lands_on_the_table_sticks_where_doubles_see_it():
     start = 2.0, -1.5
-    table = Table(0.4, 2.1)
+    table = ManyDigits(0.4, 2.1)
     stop = table.after_impact(*start, 100)
     # The motion is known to be locked at the second sticking; the end is that of the first one.
     found = final_motions(RestitutionModel(0.4), 2.1, *start)

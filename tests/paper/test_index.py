@@ -1,7 +1,8 @@
-"""The indexes of equations and of figures lead to modules that exist."""
+"""The indexes of equations and of figures lead to places that exist."""
 
 import re
 from importlib.util import find_spec
+from pkgutil import resolve_name
 
 import pytest
 from declared_artifacts import ARTIFACTS
@@ -9,11 +10,27 @@ from declared_artifacts import ARTIFACTS
 import bouncing_ball.paper
 import bouncing_ball.paper.exhibits
 
+# The equations of each row of the index, none in a row that belongs to the one before, and the
+# place in the package.
+ROWS = re.findall(r"^([\d, -]+|\.\.)  .*``([\w.]+)``$", bouncing_ball.paper.__doc__, flags=re.M)
 
-@pytest.mark.parametrize("package", [bouncing_ball.paper, bouncing_ball.paper.exhibits])
-def test_each_module_of_an_index_exists(package):
-    named = re.findall(r":mod:`(\.[\w.]+)`", package.__doc__)
-    missing = [name for name in named if find_spec(name, package.__name__) is None]
+
+def test_the_index_of_equations_has_each_equation_once():
+    parts = [
+        part.partition("-") for text, _ in ROWS for part in text.strip(". ").split(",") if part
+    ]
+    numbers = [k for low, _, high in parts for k in range(int(low), int(high or low) + 1)]
+    assert sorted(numbers) == list(range(1, 39))
+
+
+@pytest.mark.parametrize("place", [place for _, place in ROWS])
+def test_each_place_of_the_index_of_equations_exists(place):
+    assert resolve_name(f"bouncing_ball.{place}").__doc__
+
+
+def test_each_module_of_the_index_of_figures_exists():
+    named = re.findall(r":mod:`(\.[\w.]+)`", bouncing_ball.paper.exhibits.__doc__)
+    missing = [name for name in named if not find_spec(name, "bouncing_ball.paper.exhibits")]
     assert len(named) > 8 and not missing
 
 
@@ -34,6 +51,6 @@ def test_the_index_of_figures_leads_to_the_stage_that_makes_each_figure():
             assert expected == f"paper.exhibits.{module}"
 
 
-def test_no_artifact_of_the_paper_reads_a_dataset_of_the_second_wing():
+def test_no_artifact_of_the_paper_reads_a_dataset_from_beyond_it():
     read = {name for each in ARTIFACTS.values() if each.wing == "paper" for name in each.reads}
     assert read and {ARTIFACTS[name].wing for name in read} == {"paper"}

@@ -1,4 +1,4 @@
-"""Extensions of the paper: other contact laws, the corrected restitution model, the error law,
-long motions, physics engines, a calculator and an atlas. Nothing in :mod:`bouncing_ball.paper`
-imports it.
+"""The studies that go past the paper: exhibits, the atlas, and proofs of the paper's numbers.
+
+Nothing in the library and nothing in :mod:`bouncing_ball.paper` imports it.
 """

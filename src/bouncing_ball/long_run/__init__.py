@@ -1,8 +1,10 @@
 """The motions on which balls end: repeating, locked or chaotic; their means, exponents, cascades.
 
-``destination`` follows balls until their motions are known, ``motions`` has the results, and
-``lyapunov`` the growth of deviations; ``grids`` lays the motions out as labelled datasets, and
-``means`` averages over them. ``lift_off`` gives the locked orbits of the restitution model,
-``period_doublings`` the cascades of the n-T orbits, and ``cascade_of_flights`` the orbits between
-permanent contact and chattering.
+All of them step balls by the legs of :meth:`.Dynamics.legs`. ``destination`` follows balls until
+their motions are known: ``followed`` has what is known of each ball so far, ``recurrence`` examines
+its returns, ``lyapunov`` the growth of deviations, and ``motions`` has the results. ``grids`` lays
+the motions out as labelled datasets. ``means`` averages over motions that repeat, ``sampled_means``
+over samples of the others, and ``many_digits`` follows a ball whose digits doubles do not hold.
+``lift_off`` gives the locked orbits of the restitution model, ``period_doublings`` the cascades of
+the n-T orbits, and ``cascade_of_flights`` the orbits between permanent contact and chattering.
 """

@@ -39,7 +39,7 @@ from bouncing_ball.long_run.followed import (
     MARGINAL,
     REASONS,
     ROUNDING,
-    Balls,
+    Tracked,
     joined,
     record,
     store,
@@ -48,8 +48,7 @@ from bouncing_ball.long_run.followed import (
 from bouncing_ball.long_run.lyapunov import DIGITS, FORGOTTEN, NEAR
 from bouncing_ball.long_run.motions import Kind, Motions, Reason
 from bouncing_ball.long_run.recurrence import periods_in, returns_to_marks
-from bouncing_ball.models.deviations import Jacobian
-from bouncing_ball.models.dynamics import Departure, Dynamics, HasDynamics, Impact
+from bouncing_ball.models.dynamics import Dynamics, HasDynamics, Impact, Leg
 from bouncing_ball.models.sequence import Status
 
 IMPACTS = 2000
@@ -142,60 +141,51 @@ def _follow(
     started = 0
     alive = 0
     while alive or started < start.size:
-        free = _BLOCK - alive
-        if started < start.size and 4 * free >= _BLOCK:
-            lanes = np.arange(started, min(started + free, start.size))
-            started += lanes.size
-            first, new = _new_balls(dynamics.take(lanes), lanes, start[lanes], relative[lanes])
-            impact = joined(impact, first) if alive else first
-            balls = joined(balls, new) if alive else new
-            now = dynamics.take(balls.lane)
-        if path is not None:
-            record(path.reshape(3, impacts, -1), balls, impact)
-
-        departure = now.depart(impact, differentiate=True)
-        done = _departing(now, departure, balls, found)
-        if done.any():
-            (going,) = (~done).nonzero()
-            store_ends(found, balls, impact, going)
-            now, impact, departure, balls = now.kept(going, impact, departure, balls)
-
-        alive = balls.lane.size
-        if alive:
-            after, passed = now.fly(departure)
-            change = now.jacobian(impact, departure, after, passed)
-            _advance(balls, impact, change, passed, departure.sticks)
-            phase, velocity = now.section(after)
-            done = _ending(balls, phase, velocity, impacts, found)
-            impact = after
-            if done.any():
-                (going,) = (~done).nonzero()
-                store_ends(found, balls, impact, going)
-                now, impact, balls = now.kept(going, impact, balls)
-                alive = going.size
+        lanes = np.arange(started, min(started + _BLOCK - alive, start.size))
+        started += lanes.size
+        entering = dynamics.take(lanes)
+        first = entering.start(start[lanes], relative[lanes])
+        new = Tracked.new(lanes, entering.amplitude, first)
+        impact = joined(impact, first) if alive else first
+        balls = joined(balls, new) if alive else new
+        for leg in dynamics.take(balls.lane).legs(impact, differentiate=True):
+            if path is not None:
+                record(path.reshape(3, impacts, -1), balls, leg.impact)
+            done = _departing(leg, balls, found)
+            balls = _without(done, leg, leg.impact, balls, found)
+            if balls.lane.size:
+                _advance(balls, leg)
+                done = _ending(balls, *leg.dynamics.section(leg.after), impacts, found)
+                balls = _without(done, leg, leg.after, balls, found)
+            impact = leg.after
+            alive = balls.lane.size
+            free = _BLOCK - alive
+            if started < start.size and 4 * free >= _BLOCK:
+                break
     return found
 
 
-def _new_balls(
-    dynamics: Dynamics, lanes: np.ndarray, phase: np.ndarray, relative: np.ndarray
-) -> tuple[Impact, Balls]:
-    """The first impacts of balls, and the balls."""
-    first = dynamics.start(phase, relative)
-    return first, Balls.new(lanes, dynamics.amplitude, first)
+def _without(done: np.ndarray, leg: Leg, impact: Impact, balls: Tracked, found: Motions) -> Tracked:
+    """Store the last impacts of the balls that are done, and leave them out."""
+    if not done.any():
+        return balls
+    (going,) = (~done).nonzero()
+    store_ends(found, balls, impact, going)
+    (balls,) = leg.keep(going, balls)
+    return balls
 
 
-def _departing(
-    dynamics: Dynamics, departure: Departure, balls: Balls, found: Motions
-) -> np.ndarray:
+def _departing(leg: Leg, balls: Tracked, found: Motions) -> np.ndarray:
     """Store which balls stay on the table, are not released, or lock because they stick again;
     return which do.
     """
+    departure = leg.departure
     done = departure.status != _BOUNCING
     if done.any():
         stays = departure.status == Status.PERMANENT_CONTACT
         store(found, balls, stays, kind=Kind.PERMANENT_CONTACT, periods=1, exponent_error=0.0)
         store(found, balls, done & ~stays, kind=Kind.UNDECIDED, reason=Reason.NO_RELEASE)
-    if dynamics.forgets:
+    if leg.dynamics.forgets:
         sticks = ~done & departure.sticks
         if sticks.any():
             done |= _sticking_again(balls, sticks, balls.time + departure.duration, found)
@@ -203,7 +193,7 @@ def _departing(
 
 
 def _sticking_again(
-    balls: Balls, sticks: np.ndarray, time: np.ndarray, found: Motions
+    balls: Tracked, sticks: np.ndarray, time: np.ndarray, found: Motions
 ) -> np.ndarray:
     """Store which balls lock because they stick for the second time, and return which do.
 
@@ -229,7 +219,7 @@ def _sticking_again(
 
 
 def _store_unresolved(
-    found: Motions, balls: Balls, which: np.ndarray, exponent: ArrayLike, error: ArrayLike
+    found: Motions, balls: Tracked, which: np.ndarray, exponent: ArrayLike, error: ArrayLike
 ) -> None:
     """Store motions that lock after a period that is not known."""
     store(
@@ -245,13 +235,10 @@ def _store_unresolved(
     )
 
 
-def _advance(
-    balls: Balls, impact: Impact, change: Jacobian, passed: np.ndarray, sticks: np.ndarray
-) -> None:
-    """Advance the counts, times, derivatives and deviations of all balls to the next impact.
-
-    ``impact`` is the last one, and ``sticks`` whether the ball stuck after it.
-    """
+def _advance(balls: Tracked, leg: Leg) -> None:
+    """Advance the counts, times, derivatives and deviations of all balls to the next impact."""
+    change = leg.jacobian()
+    sticks = leg.departure.sticks
     stretch = balls.stretch
     sticking = balls.sticking
     balls.mark.advance(change)
@@ -262,16 +249,16 @@ def _advance(
     if forgot.size:
         again = forgot[sticking.impact[forgot] >= 0]
         balls.doubt[again[stretch.lost()[again]]] = ROUNDING
-        first = sticking.store(forgot, impact, balls.seen)
+        first = sticking.store(forgot, leg.impact, balls.seen)
     balls.seen[:] += 1
-    balls.time[:] += passed
+    balls.time[:] += leg.passed
     stretch.add(grown, forgot, balls.time, balls.seen)
     if forgot.size:
         stretch.restart(first, balls.time)
 
 
 def _ending(
-    balls: Balls, phase: np.ndarray, velocity: np.ndarray, impacts: int, found: Motions
+    balls: Tracked, phase: np.ndarray, velocity: np.ndarray, impacts: int, found: Motions
 ) -> np.ndarray:
     """Compare balls with their marks, and store which balls repeat or reach the last impact; return
     which do.
@@ -297,7 +284,7 @@ def _ending(
 
 
 def _returning(
-    balls: Balls, near: np.ndarray, shifts: tuple[np.ndarray, np.ndarray], found: Motions
+    balls: Tracked, near: np.ndarray, shifts: tuple[np.ndarray, np.ndarray], found: Motions
 ) -> tuple[np.ndarray, np.ndarray]:
     """The indices of the balls that return to their marks for the first time, and for the second
     time; the motions of the latter are stored.
@@ -326,7 +313,7 @@ def _returning(
 
 def _store_repeating(
     found: Motions,
-    balls: Balls,
+    balls: Tracked,
     which: np.ndarray,
     periods: np.ndarray,
     impacts: np.ndarray,
@@ -347,7 +334,7 @@ def _store_repeating(
     )
 
 
-def _give_up(balls: Balls, which: np.ndarray, found: Motions) -> None:
+def _give_up(balls: Tracked, which: np.ndarray, found: Motions) -> None:
     """Store which of the balls that have not repeated are locked after an unknown period, which are
     chaotic, and which are undecided.
     """

@@ -53,7 +53,7 @@ class Sticking(NamedTuple):
         return first
 
 
-class Balls(NamedTuple):
+class Tracked(NamedTuple):
     """The balls that are followed, arrays with an entry per ball."""
 
     # The place of the ball in the results.
@@ -91,7 +91,7 @@ def joined(one: Any, other: Any) -> Any:
     return np.concatenate([one, other]) if isinstance(one, np.ndarray) and one.ndim else one
 
 
-def store(found: Motions, balls: Balls, which: np.ndarray, **values: ArrayLike) -> None:
+def store(found: Motions, balls: Tracked, which: np.ndarray, **values: ArrayLike) -> None:
     """Store results of some balls, with the impacts followed and the digits lost until now."""
     found.fill(
         balls.lane[which],
@@ -101,7 +101,7 @@ def store(found: Motions, balls: Balls, which: np.ndarray, **values: ArrayLike) 
     )
 
 
-def store_ends(found: Motions, balls: Balls, impact: Impact, going: np.ndarray) -> None:
+def store_ends(found: Motions, balls: Tracked, impact: Impact, going: np.ndarray) -> None:
     """Store the last impacts of all balls except those that continue."""
     last = np.delete(np.arange(balls.lane.size), going)
     lane = balls.lane[last]
@@ -116,7 +116,7 @@ def store_ends(found: Motions, balls: Balls, impact: Impact, going: np.ndarray) 
     found.fill(lane, end_phase=phase, end_velocity=velocity)
 
 
-def record(path: np.ndarray, balls: Balls, impact: Impact) -> None:
+def record(path: np.ndarray, balls: Tracked, impact: Impact) -> None:
     """Store time, φ and z′ of the impacts in the path, shape (3, impacts, balls)."""
     velocity = absolute_velocity(impact.phase, impact.velocity, balls.amplitude)
     path[:, balls.seen, balls.lane] = balls.time, impact.phase, velocity

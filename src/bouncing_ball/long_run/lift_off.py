@@ -25,18 +25,19 @@ scale of the ϖ from which on the locked orbit is the same is therefore max(S/w,
 threshold: the constant before P is of order one and differs from orbit to orbit.
 """
 
-from typing import NamedTuple, Self
+from itertools import islice
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.long_run.recurrence import periods_in
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import Release
-from bouncing_ball.models.dynamics import Departure, Dynamics, Impact
+from bouncing_ball.models.dynamics import Departure, Dynamics, Impact, Leg
 from bouncing_ball.models.flight import table
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.elementary import reduce_angle
 
 # The ϖ of the corrected model from whose map the first order is computed. The relative error from
@@ -47,14 +48,15 @@ _STIFF = 1e6
 _CHATTER = 1e-2
 
 
-class Return(NamedTuple):
-    """Returns from the lift-off, arrays of one shape; 0 or NaN for a ball that does not stick.
+class Lap(NamedTuple):
+    """Ways from the lift-off to the next sticking; 0 or NaN for a ball that does not stick again.
 
-    ``periods`` and ``impacts`` are the numbers of periods of the table and of impacts until the
-    ball sticks. ``sensitivity`` is S, that of the phase at which the chattering ends, ``peak`` is
-    P, the largest one of a phase of impact on the way, and ``wait`` is the time w from the end of
-    the chattering to the next lift-off. An S or P that is too large for a number is infinite. Where
-    S exceeds w by more than the digits of a double, rounding errors decide on the period.
+    All arrays have one shape. ``periods`` and ``impacts`` are the numbers of periods of the table
+    and of impacts until the ball sticks. ``sensitivity`` is S, that of the phase at which the
+    chattering ends, ``peak`` is P, the largest one of a phase of impact on the way, and ``wait`` is
+    the time w from the end of the chattering to the next lift-off. An S or P that is too large for
+    a number is infinite. Where S exceeds w by more than the digits of a double, rounding errors
+    decide on the period.
     """
 
     periods: np.ndarray
@@ -68,85 +70,72 @@ class Return(NamedTuple):
         return np.maximum(self.sensitivity / self.wait, self.peak)
 
 
-class _Balls(NamedTuple):
-    """Balls on their way from the lift-off to the next sticking, and the deviations e times ϖ."""
+class _OnLap(NamedTuple):
+    """Balls on their way from the lift-off to the next sticking."""
 
     lane: np.ndarray
     # The time since the lift-off.
     time: np.ndarray
-    # Shape (2, balls): the deviation of φ and that of δ′.
-    deviation: np.ndarray
+    # The deviation e times ϖ: that of φ, and that of δ′.
+    phase_shift: np.ndarray
+    velocity_shift: np.ndarray
     # The largest deviation of φ so far.
     peak: np.ndarray
-    impact: Impact
-    # The same states in the corrected model.
+    # The states of the present impacts in the corrected model.
     corrected_impact: Impact
-
-    def take(self, which: np.ndarray) -> Self:
-        """The balls with these indices."""
-        return self._replace(
-            lane=self.lane[which],
-            time=self.time[which],
-            deviation=self.deviation[:, which],
-            peak=self.peak[which],
-            impact=pick(self.impact, which),
-            corrected_impact=pick(self.corrected_impact, which),
-        )
 
 
 def _store(
-    found: Return, balls: _Balls, departure: Departure, sticks: np.ndarray, impacts: int
+    found: Lap, balls: _OnLap, departure: Departure, sticks: np.ndarray, impacts: int
 ) -> None:
-    """Store the returns of the balls that stick after this number of impacts."""
+    """Store the laps of the balls that stick after this number of impacts."""
     lane = balls.lane[sticks]
     time = (balls.time + departure.duration)[sticks]
-    late = np.abs(balls.deviation[0, sticks])
-    found.periods[lane] = np.rint(time / (2 * np.pi))
+    late = np.abs(balls.phase_shift[sticks])
+    found.periods[lane] = periods_in(time)
     found.impacts[lane] = impacts
     found.sensitivity[lane] = np.nan_to_num(late, nan=np.inf, posinf=np.inf)
     found.peak[lane] = balls.peak[sticks]
     found.wait[lane] = (departure.duration - departure.settling)[sticks]
 
 
-def _next_impacts(
-    dynamics: Dynamics, corrected: Dynamics, balls: _Balls, departure: Departure, *, lifts_off: bool
-) -> _Balls:
+def _at_next_impacts(leg: Leg, corrected: Dynamics, balls: _OnLap, *, lifts_off: bool) -> _OnLap:
     """The balls at their next impacts, with e ← M e + K/ϖ.
 
     The lift-off is the same in both models, so that the time and e begin there.
     """
-    impact = balls.impact
-    after, passed = dynamics.fly(departure)
-    corrected_after, _ = corrected.fly(corrected.depart(balls.corrected_impact))
+    departure = leg.departure
+    after, passed = leg.fly()
+    corrected_after, _ = next(corrected.legs(balls.corrected_impact)).fly()
     phase, velocity = corrected.section(corrected_after)
     shift = np.array([reduce_angle(phase - after.phase), velocity - after.velocity])
-    deviation = balls.deviation
+    deviation = np.array([balls.phase_shift, balls.velocity_shift])
     if lifts_off:
         passed = passed - departure.duration
     else:
-        gravity = 1 - table(impact.phase, dynamics.amplitude)[1]
-        chattering_time = 2 * departure.flight.velocity / (1 - dynamics.law)
+        gravity = 1 - table(leg.impact.phase, leg.dynamics.amplitude)[1]
+        chattering_time = 2 * departure.flight.velocity / (1 - leg.dynamics.law)
         shift[:, (0 < gravity) & (chattering_time < _CHATTER * gravity**2)] = 0
         with np.errstate(over="ignore", invalid="ignore"):
-            change = dynamics.jacobian(impact, departure, after, passed)
-            deviation = np.array(change.apply(*deviation))
-    deviation = deviation + _STIFF * shift
-    size = np.nan_to_num(np.abs(deviation[0]), nan=np.inf, posinf=np.inf)
-    return balls._replace(
+            deviation = np.array(leg.jacobian().apply(*deviation))
+    phase_shift, velocity_shift = deviation + _STIFF * shift
+    size = np.nan_to_num(np.abs(phase_shift), nan=np.inf, posinf=np.inf)
+    return _OnLap(
+        lane=balls.lane,
         time=balls.time + passed,
-        deviation=deviation,
+        phase_shift=phase_shift,
+        velocity_shift=velocity_shift,
         peak=np.maximum(balls.peak, size),
-        impact=after,
         corrected_impact=corrected.at_section(after.phase, after.velocity),
     )
 
 
-def returns(restitution: ArrayLike, amplitude: ArrayLike, impacts: int) -> Return:
-    """The returns of balls that lift off from a table with Λ > 1, within a number of impacts.
+def laps(restitution: ArrayLike, amplitude: ArrayLike, impacts: int) -> Lap:
+    """The laps of balls that lift off from a table with Λ > 1, within a number of impacts.
 
     Examples
     --------
-    >>> returns([0.5, 0.6], [2.5, 3.0], 100).periods.tolist()
+    >>> laps([0.5, 0.6], [2.5, 3.0], 100).periods.tolist()
     [6, 13]
     """
     r, lam = np.broadcast_arrays(
@@ -160,32 +149,30 @@ def returns(restitution: ArrayLike, amplitude: ArrayLike, impacts: int) -> Retur
     corrected_model = CorrectedModel.of_contact(contact)
     corrected, _, _ = corrected_model.dynamics(lam.ravel()).in_a_row(*state)
 
-    found = Return(
+    found = Lap(
         periods=np.zeros(r.size, dtype=int),
         impacts=np.zeros(r.size, dtype=int),
         sensitivity=np.full(r.size, np.nan),
         peak=np.full(r.size, np.nan),
         wait=np.full(r.size, np.nan),
     )
-    balls = _Balls(
+    balls = _OnLap(
         lane=np.arange(r.size),
         time=np.zeros(r.size),
-        deviation=np.zeros((2, r.size)),
+        phase_shift=np.zeros(r.size),
+        velocity_shift=np.zeros(r.size),
         peak=np.zeros(r.size),
-        impact=dynamics.start(*state),
         corrected_impact=corrected.start(*state),
     )
-    for count in range(impacts):
-        departure = dynamics.depart(balls.impact, differentiate=True)
-        if count:
-            sticks = departure.sticks
-            if sticks.any():
-                _store(found, balls, departure, sticks, count)
-                left = np.flatnonzero(~sticks)
-                dynamics, departure = dynamics.kept(left, departure)
-                corrected = corrected.take(left)
-                balls = balls.take(left)
-        if not balls.lane.size:
-            break
-        balls = _next_impacts(dynamics, corrected, balls, departure, lifts_off=count == 0)
-    return Return(*(x.reshape(shape) for x in found))
+    legs = dynamics.legs(dynamics.start(*state), differentiate=True)
+    for count, leg in enumerate(islice(legs, impacts)):
+        sticks = leg.departure.sticks
+        if count and sticks.any():
+            _store(found, balls, leg.departure, sticks, count)
+            left = np.flatnonzero(~sticks)
+            corrected = corrected.take(left)
+            (balls,) = leg.keep(left, balls)
+            if not left.size:
+                break
+        balls = _at_next_impacts(leg, corrected, balls, lifts_off=count == 0)
+    return Lap(*(x.reshape(shape) for x in found))

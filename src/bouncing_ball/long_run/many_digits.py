@@ -70,8 +70,8 @@ class _Ball(NamedTuple):
     rate: arb
 
 
-class Table(NamedTuple):
-    """A table of amplitude Λ and the r of the ball, as doubles that are taken to be exact."""
+class ManyDigits(NamedTuple):
+    """The motions of a ball with r on a table of amplitude Λ, both taken to be exact."""
 
     restitution: float
     amplitude: float
@@ -97,10 +97,10 @@ class Table(NamedTuple):
         --------
         A locked orbit that doubles find as well, and one on which 195 digits are lost:
 
-        >>> stop = Table(0.6, 3.0).after_lift_off(100)
+        >>> stop = ManyDigits(0.6, 3.0).after_lift_off(100)
         >>> stop.impacts, round(stop.time / (2 * math.pi))
         (33, 13)
-        >>> stop = Table(0.4, 2.1).after_lift_off(400)
+        >>> stop = ManyDigits(0.4, 2.1).after_lift_off(400)
         >>> stop.impacts, round(stop.time / (2 * math.pi))
         (311, 259)
         """

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.long_run.motions import Motions
-from bouncing_ball.models.dynamics import Departure, Dynamics, HasDynamics, Impact
+from bouncing_ball.models.dynamics import Departure, Dynamics, HasDynamics, Impact, Leg
 from bouncing_ball.models.flight import table
 from bouncing_ball.models.laws.collocation import integrals
 from bouncing_ball.models.laws.linear import LinearLaw
@@ -170,30 +170,25 @@ def _add_up(dynamics: Dynamics, impact: Impact, impacts: np.ndarray, total: np.n
     ball = np.arange(impacts.size)
     along = np.ones(impacts.size)
     across = np.zeros(impacts.size)
-    done = 0
     total[:, impacts > 0] = 0.0
-    while True:
-        departure = dynamics.depart(impact, differentiate=True)
-        bounces = departure.status == Status.BOUNCING
+    for done, leg in enumerate(dynamics.legs(impact, differentiate=True)):
+        bounces = leg.departure.status == Status.BOUNCING
         total[:, ball[~bounces]] = np.nan
         going = np.flatnonzero((impacts[ball] > done) & bounces)
         if going.size < ball.size:
-            rows = impact, departure, ball, along, across
-            dynamics, impact, departure, ball, along, across = dynamics.kept(going, *rows)
+            ball, along, across = leg.keep(going, ball, along, across)
         if not ball.size:
             return
-        after, passed = dynamics.fly(departure)
-        change = dynamics.jacobian(impact, departure, after, passed)
-        along, across, growth = _grown(*change.apply(along, across))
-        flights = np.where(departure.settling > 0, np.inf, 1.0)
-        height, work = over_step(dynamics, impact, departure, after, passed)
+        along, across, growth = _grown(*leg.jacobian().apply(along, across))
+        flights = np.where(leg.departure.settling > 0, np.inf, 1.0)
+        height, work = over_leg(leg)
+        passed = leg.passed
         total[:, ball] += np.stack([passed, flights + 0 * passed, height, work, growth])
-        impact = after
-        done += 1
 
 
 def _grown(along: np.ndarray, across: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Deviations normalised to length 1, and the logarithms of their lengths."""
+    # A long contact may leave 1e-170 of a deviation, of which the square would be zero.
     length = np.hypot(along, across)
     # After a ball of a simple model has stuck, the deviation is zero.
     along = np.where(length > 0, along, 1.0)
@@ -201,18 +196,19 @@ def _grown(along: np.ndarray, across: np.ndarray) -> tuple[np.ndarray, np.ndarra
     return along / length, across / length, np.log(length)
 
 
-def over_step(
-    dynamics: Dynamics, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def over_leg(leg: Leg) -> tuple[np.ndarray, np.ndarray]:
     """∫ z dτ and the work from one impact to the next, or from one instant to the next in the
     corrected model.
     """
-    lam = dynamics.amplitude
+    after, passed = leg.fly()
+    lam = leg.dynamics.amplitude
+    impact = leg.impact
+    departure = leg.departure
     if impact.known is not None:
-        return _step_of_instants(lam, impact.known, departure, after.known, passed)
+        return _over_instants(lam, impact.known, departure, after.known, passed)
     flight = departure.flight
     return over_steps(
-        dynamics.contact,
+        leg.dynamics.contact,
         lam,
         departure.duration,
         phase=np.array([impact.phase, departure.phase]),
@@ -222,7 +218,7 @@ def over_step(
     )
 
 
-def _step_of_instants(
+def _over_instants(
     lam: np.ndarray, hit: Any, departure: Departure, next_hit: Any, passed: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """∫ z dτ and the work from one instant of the corrected model to the next.

@@ -30,12 +30,13 @@ together contain the mean with the probability 1 - α (K. K. G. Lan and D. L. De
 
 import math
 from collections.abc import Iterator, Sequence
+from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
 from scipy.special import stdtrit
 
-from bouncing_ball.long_run.means import over_step
+from bouncing_ball.long_run.means import over_leg
 from bouncing_ball.models.dynamics import Dynamics, HasDynamics, Impact
 from bouncing_ball.models.flight import table
 from bouncing_ball.numerics.arrays import BLOCK
@@ -172,14 +173,15 @@ def follow(
     ([1.333333333333], [0.0])
     """
     sums = np.zeros((3, impact.phase.size))
-    for _ in range(impacts):
-        departure = dynamics.depart(impact, differentiate=True)
+    for leg in islice(dynamics.legs(impact, differentiate=True), impacts):
+        departure = leg.departure
         if np.any(departure.status):
-            return impact, np.full_like(sums, np.nan)
-        after, passed = dynamics.fly(departure)
-        height, work = over_step(dynamics, impact, departure, after, passed)
+            return leg.impact, np.full_like(sums, np.nan)
+        after, passed = leg.fly()
+        height, work = over_leg(leg)
         sums += np.array([passed, height, work])
         impact = after._replace(velocity=after.velocity * (1 + apart * departure.sticks))
+        leg.after = impact
     return impact, sums
 
 

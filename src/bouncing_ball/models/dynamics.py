@@ -4,8 +4,9 @@ A subclass of :class:`Dynamics` computes the ends of contacts; everything else f
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from itertools import islice
 from typing import Any, ClassVar, NamedTuple, Protocol, Self
 
 import numpy as np
@@ -244,6 +245,30 @@ class Dynamics(Batch, ABC):
         shape = np.broadcast_shapes(self.shape, *(x.shape for x in arrays))
         return self.flat(shape), [np.broadcast_to(x, shape).reshape(-1) for x in arrays], shape
 
+    def legs(self, impact: Impact, *, differentiate: bool = False) -> "Iterator[Leg]":
+        """The legs of a row of balls that begin with these impacts, one after the other.
+
+        There is no end to them unless no balls are left: :meth:`Leg.keep` leaves out balls, also
+        those that stay on the table, which have no flight. With ``differentiate`` the legs can be
+        differentiated. A flight is computed when it is asked for, or for the next leg; an impact
+        :attr:`Leg.after` that is changed is the start of the next leg.
+
+        Examples
+        --------
+        >>> from itertools import islice
+        >>> from bouncing_ball.models.restitution import RestitutionDynamics
+        >>> elastic = RestitutionDynamics.of(1.0, 0.0)
+        >>> first = elastic.start(np.zeros(2), np.array([-1.0, -2.0]))
+        >>> [leg.fly()[1].tolist() for leg in islice(elastic.legs(first), 2)]
+        [[2.0, 4.0], [2.0, 4.0]]
+        """
+        dynamics = self
+        while impact.phase.size:
+            leg = Leg(dynamics, impact, dynamics.depart(impact, differentiate=differentiate))
+            yield leg
+            impact, _ = leg.fly()
+            dynamics = leg.dynamics
+
     def kept(self, which: np.ndarray, *rows: Any) -> tuple:
         """The dynamics and the rows of the balls with these indices."""
         return self.take(which), *(pick(x, which) for x in rows)
@@ -300,7 +325,7 @@ class Dynamics(Batch, ABC):
             of_block = {name: values[:, part] for name, values in rows.items()}
             dynamics = flat.take(part)
             first = dynamics.start(start[part], relative[part])
-            dynamics._follow(first, of_block, status[part])
+            dynamics._record(first, of_block, status[part])
         return ImpactSequence(
             amplitude=np.broadcast_to(self.amplitude, shape),
             contact=self.contact,
@@ -308,28 +333,25 @@ class Dynamics(Batch, ABC):
             **{name: values.reshape(impacts, *shape) for name, values in rows.items()},
         )
 
-    def _follow(self, impact: Impact, rows: dict[str, np.ndarray], status: np.ndarray) -> None:
+    def _record(self, first: Impact, rows: dict[str, np.ndarray], status: np.ndarray) -> None:
         """Fill the rows, shape (impacts, balls), and the status of one block of balls.
 
-        Balls that do not bounce any more are left out of the arrays, and their rows remain NaN.
+        The rows of balls that do not bounce any more remain NaN.
         """
-        dynamics = self
-        time = np.zeros_like(impact.phase)
+        time = np.zeros_like(first.phase)
         bouncing: Any = slice(None)
         impacts = len(rows["time"])
-        for row in range(impacts):
-            departure = dynamics.depart(impact)
-            for name, values in _recorded(time, impact, departure).items():
+        for row, leg in enumerate(islice(self.legs(first), impacts)):
+            for name, values in _recorded(time, leg).items():
                 rows[name][row, bouncing] = values
-            if np.any(departure.status):
-                status[bouncing] = departure.status
-                going = np.flatnonzero(departure.status == Status.BOUNCING)
+            if np.any(leg.departure.status):
+                status[bouncing] = leg.departure.status
+                going = leg.bouncing()
                 bouncing = np.arange(len(status))[bouncing][going]
-                dynamics, departure, time = dynamics.kept(going, departure, time)
-            if row == impacts - 1 or not len(time):
-                break
-            impact, passed = dynamics.fly(departure)
-            time = time + passed
+                (time,) = leg.keep(going, time)
+            if row + 1 < impacts:
+                _, passed = leg.fly()
+                time = time + passed
 
     def next_impact(self, phase: ArrayLike, relative_velocity: ArrayLike) -> Cycle:
         """The Poincaré map from one impact (φ, δ′) to the next, for arguments that broadcast.
@@ -348,9 +370,10 @@ class Dynamics(Batch, ABC):
         )
         for part in blocks(start.size, self.block):
             dynamics = flat.take(part)
-            departure = dynamics.depart(dynamics.start(start[part], velocity[part]))
-            going = np.flatnonzero(departure.status == Status.BOUNCING)
-            landed, passed = dynamics.take(going).fly(pick(departure, going))
+            leg = next(dynamics.legs(dynamics.start(start[part], velocity[part])))
+            going = leg.bouncing()
+            leg.keep(going)
+            landed, passed = leg.fly()
             balls = part.start + going
             cycle.phase[balls] = landed.phase
             cycle.relative_velocity[balls] = landed.velocity
@@ -359,8 +382,60 @@ class Dynamics(Batch, ABC):
         return Cycle(*(values.reshape(shape) for values in cycle))
 
 
-def _recorded(time: np.ndarray, impact: Impact, departure: Departure) -> dict[str, Any]:
+@dataclass(eq=False)
+class Leg:
+    """The contacts of a row of balls, and the flights after them up to the next impacts.
+
+    A contact begins with ``impact`` and ends with ``departure``. The flight ends with the impact
+    ``after``, and ``passed`` is the time between the two impacts; both are None before :meth:`fly`.
+    """
+
+    dynamics: Dynamics
+    impact: Impact
+    departure: Departure
+    after: Any = None
+    passed: Any = None
+
+    def bouncing(self) -> np.ndarray:
+        """The indices of the balls whose contacts end, so that they fly."""
+        return np.flatnonzero(self.departure.status == Status.BOUNCING)
+
+    def keep(self, which: np.ndarray, *rows: Any) -> tuple:
+        """Leave out all balls but those with these indices, from here on.
+
+        After the flight only the next impacts are restricted to these balls, because the leg is
+        over. The result are the entries of these balls in further ``rows``.
+        """
+        self.dynamics = self.dynamics.take(which)
+        if self.after is None:
+            self.impact = pick(self.impact, which)
+            self.departure = pick(self.departure, which)
+        else:
+            self.after = pick(self.after, which)
+        return tuple(pick(x, which) for x in rows)
+
+    def fly(self) -> tuple[Impact, np.ndarray]:
+        """The next impacts, and the times from the last ones to them.
+
+        Raises
+        ------
+        ModelError
+            If a flight is too long for floating-point numbers.
+        """
+        if self.after is None:
+            self.after, self.passed = self.dynamics.fly(self.departure)
+        return self.after, self.passed
+
+    def jacobian(self) -> Jacobian:
+        """The derivative of the map over this leg, if its departures are differentiated."""
+        after, passed = self.fly()
+        return self.dynamics.jacobian(self.impact, self.departure, after, passed)
+
+
+def _recorded(time: np.ndarray, leg: Leg) -> dict[str, Any]:
     """The values of :data:`.RECORDED` for impacts at these times since the first ones."""
+    impact = leg.impact
+    departure = leg.departure
     return {
         "time": time,
         "phase": impact.phase,

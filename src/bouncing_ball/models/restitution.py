@@ -155,17 +155,14 @@ class RestitutionDynamics(Dynamics):
         """
         settled = np.zeros(impact.phase.shape, dtype=bool)
         balls = np.arange(settled.size)
-        dynamics = self
         left = np.mod(lift_off_phase(self.amplitude) - impact.phase, 2 * np.pi)
-        while balls.size:
-            departure = dynamics.depart(impact, differentiate=True)
-            settled[balls[departure.sticks]] = True
-            going = np.flatnonzero(~departure.sticks)
-            dynamics, departure, left, balls = dynamics.kept(going, departure, left, balls)
-            impact, passed = dynamics.fly(departure)
+        for leg in self.legs(impact, differentiate=True):
+            sticks = leg.departure.sticks
+            settled[balls[sticks]] = True
+            left, balls = leg.keep(np.flatnonzero(~sticks), left, balls)
+            _, passed = leg.fly()
             left = left - passed
-            going = np.flatnonzero(left > 0)
-            dynamics, impact, left, balls = dynamics.kept(going, impact, left, balls)
+            left, balls = leg.keep(np.flatnonzero(left > 0), left, balls)
         return settled
 
     def _left(

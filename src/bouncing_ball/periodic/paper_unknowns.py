@@ -106,14 +106,20 @@ class PaperUnknowns:
     def event(self, event: Event) -> Event:
         """An event of the equations as a function of these unknowns."""
         known = event.condition
-        condition: Condition | None = None
-        if known is not None:
+        return replace(
+            event,
+            function=lambda y: event.function(self.inner(y)),
+            condition=None if known is None else self.condition(known),
+        )
 
-            def condition(y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-                value, gradient = known(self.inner(y))
-                return value, (gradient[..., np.newaxis, :] @ self._slopes(y))[..., 0, :]
+    def condition(self, known: Condition) -> Condition:
+        """A condition of the equations as a function of these unknowns."""
 
-        return replace(event, function=lambda y: event.function(self.inner(y)), condition=condition)
+        def condition(y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            value, gradient = known(self.inner(y))
+            return value, (gradient[..., np.newaxis, :] @ self._slopes(y))[..., 0, :]
+
+        return condition
 
     def grazing(self, y: np.ndarray) -> np.ndarray:
         """The last admissible points along a branch, one for each change of admissibility.

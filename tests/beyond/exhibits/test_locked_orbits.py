@@ -11,7 +11,7 @@ from bouncing_ball.beyond.exhibits.locked_orbits import (
     locked_orbits,
 )
 from bouncing_ball.beyond.exhibits.motion_samples import uncertainty_exponent
-from bouncing_ball.long_run.lift_off import returns
+from bouncing_ball.long_run.lift_off import laps
 from bouncing_ball.pipeline.configuration import typed
 
 
@@ -29,7 +29,7 @@ def test_the_limits_of_estimates_contain_the_known_values():
 
 
 def test_a_delay_may_grow_beyond_all_numbers():
-    found = returns(0.6261181887487134, 4.957593975635355, 500)
+    found = laps(0.6261181887487134, 4.957593975635355, 500)
     assert found.periods > 0 and np.isinf(found.sensitivity) and found.wait > 0
 
 

@@ -1,11 +1,12 @@
 """The certified numbers of the paper, and the verdicts on printed numbers that they decide."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import xarray as xr
 
 from bouncing_ball.beyond.exhibits.certified_verdicts import (
-    PARAMETERS,
     certified_interval,
     certified_verdicts,
 )
@@ -14,8 +15,10 @@ from bouncing_ball.beyond.exhibits.proofs import Proofs, proofs
 from bouncing_ball.datasets.files import parameter_attributes
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.claims.claims import CLAIMS
+from bouncing_ball.pipeline.configuration import read_yaml
 
-GIVEN = {**PARAMETERS["ext_proofs"], "digits": 30}
+CONFIG = Path(__file__).resolve().parents[3] / "config" / "config.yaml"
+GIVEN = read_yaml(CONFIG)["beyond"]["ext_proofs"]
 PRINTED = [claim for claim in CLAIMS if claim.printed]
 
 

@@ -5,22 +5,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-import yaml
 from declared_artifacts import ARTIFACTS
 
+from bouncing_ball.beyond.exhibits.certified_verdicts import PARAMETERS as CERTIFIED
+from bouncing_ball.beyond.exhibits.statements import PARAMETERS as STATED
 from bouncing_ball.datasets.files import parameter_attributes
 from bouncing_ball.paper.claims.claims import CLAIMS, claims, tally
-from bouncing_ball.paper.claims.parameters import PARAMETERS
+from bouncing_ball.paper.claims.parameters import PAPER, digest, of_dataset
+from bouncing_ball.pipeline.configuration import read_yaml
 from bouncing_ball.pipeline.diff.datasets import compare_datasets
 
 ROOT = Path(__file__).resolve().parents[3]
-CONFIG = yaml.safe_load((ROOT / "config" / "config.yaml").read_text(encoding="utf-8"))
 
 
 @pytest.fixture(scope="module")
 def data(recorded):
     of_paper = ARTIFACTS["claims"].reads
-    assert {*of_paper} == {*PARAMETERS}
+    assert {*of_paper} == {*PAPER, "formulas", "forensics", "witness"}
     return {name: recorded[name] for name in of_paper}
 
 
@@ -82,13 +83,15 @@ def test_an_explanation_fails_with_its_checks(data):
     assert "without explanation" in tally(result)
 
 
-@pytest.mark.parametrize("name", [name for name, needed in PARAMETERS.items() if needed])
-def test_the_committed_parameters_are_the_papers(name):
-    needed = parameter_attributes(PARAMETERS[name])
-    given = parameter_attributes(CONFIG["paper"][name])
-    assert {key: np.ravel(given[key]).tolist() for key in needed} == {
-        key: np.ravel(value).tolist() for key, value in needed.items()
-    }
+@pytest.mark.parametrize(
+    ("digests", "section"),
+    [(PAPER, "paper"), (CERTIFIED, "beyond"), (STATED, "beyond")],
+)
+def test_claims_are_decided_for_the_parameters_of_the_configuration(digests, section):
+    config = read_yaml(ROOT / "config" / "config.yaml")
+    for name, (expected, *names) in digests.items():
+        given = parameter_attributes(config[section][name] | {"release": config["release"]})
+        assert digest(of_dataset(given, tuple(names))) == expected, name
 
 
 def test_the_accepted_datasets_give_the_accepted_verdicts(verdicts, recorded):

@@ -9,7 +9,6 @@ and contradicted only if nothing in it does. A difference between both ledgers s
 from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -17,30 +16,13 @@ import xarray as xr
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.claims.claim import Claim, Data
 from bouncing_ball.paper.claims.claims import CLAIMS, assess
-from bouncing_ball.paper.claims.parameters import PARAMETERS as PAPER
+from bouncing_ball.paper.claims.parameters import Digests
 from bouncing_ball.paper.claims.verdict import Verdict
 
-
-def _paper_parameters() -> dict[str, Any]:
-    """The parameters with which the certified numbers are those that the paper prints."""
-    table = PAPER["table1"]
-    height = PAPER["fig14"]
-    compliant = PAPER["fig06"]
-    return {
-        **{name: table[name] for name in ("n", "restitution", "frequency_ratio")},
-        "thresholds": {
-            name: height[name] for name in ("n", "restitution", "amplitude", "tolerance")
-        },
-        "apparent": {
-            "n": compliant["n"],
-            **compliant["cases"][-1],
-            "frequency_ratio": compliant["frequency_ratio"]["min"],
-        },
-    }
-
-
-PARAMETERS = {"ext_proofs": _paper_parameters()}
-"""With other parameters than these the certificates decide no claim."""
+PARAMETERS: Digests = {
+    "ext_proofs": ("6c52359c", "n", "restitution", "frequency_ratio", "thresholds", "apparent"),
+}
+"""The digest of the parameters with which the certified numbers are those that the paper prints."""
 
 
 def certified_interval(data: Data, claim: str) -> np.ndarray:

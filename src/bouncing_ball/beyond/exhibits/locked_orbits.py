@@ -24,7 +24,7 @@ from bouncing_ball.datasets.parameters import (
 from bouncing_ball.datasets.shards import Arrays, Found, Part
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.long_run.destination import final_motions
-from bouncing_ball.long_run.lift_off import Return, returns
+from bouncing_ball.long_run.lift_off import Lap, laps
 from bouncing_ball.long_run.motions import Kind
 from bouncing_ball.models.damping import Release
 
@@ -201,14 +201,14 @@ def returns_at_places(
     Returns
     -------
     dict of array
-        The fields of :class:`~bouncing_ball.long_run.lift_off.Return`, shape (change,
+        The fields of :class:`~bouncing_ball.long_run.lift_off.Lap`, shape (change,
         place), first without a change of Λ and then with each change; and ``same``, shape (ϖ,
         place), whether the contact has a locked orbit of the same period.
     """
     r, lam = part(parameters.places())
     ratios = np.array(parameters.frequency_ratio)[:, np.newaxis]
     changes = np.array([0.0, *parameters.shifts])[:, np.newaxis]
-    found = returns(r, lam + changes, parameters.impacts)
+    found = laps(r, lam + changes, parameters.impacts)
     contact = three_models(r, ratios, release).contact
     motion = final_motions(contact, lam, -np.pi / 2, 0.0, impacts=parameters.impacts)
     same = (motion.kind == Kind.LOCKED) & (motion.periods == found.periods[0])
@@ -222,7 +222,7 @@ def locked_orbits(
 
     The places are uniformly distributed in Λ and r. Over ``node`` the dataset has ``restitution``
     and ``amplitude``, and ``periods``, ``sensitivity`` S, ``peak`` P and ``wait`` w of
-    :func:`bouncing_ball.long_run.lift_off.returns`, which are 0 or NaN where the ball is not
+    :func:`bouncing_ball.long_run.lift_off.laps`, which are 0 or NaN where the ball is not
     found to stick again; such places are left out of all shares. ``needed_ratio`` is the smallest
     of the given ϖ above which the contact locks with the same period after a rest on the table; it
     is infinite if the contact does not do so at the largest ϖ.
@@ -247,8 +247,8 @@ def locked_orbits(
     shifts = np.array(parameters.shifts)
     r, lam = parameters.places()
     period, *periods_beside = found["periods"]
-    unshifted = {name: found[name][0] for name in Return._fields}
-    back = Return(**unshifted)
+    unshifted = {name: found[name][0] for name in Lap._fields}
+    back = Lap(**unshifted)
     sticks = period > 0
     same = found["same"]
     changed = np.array(periods_beside) != period

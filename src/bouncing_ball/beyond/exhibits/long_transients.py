@@ -23,7 +23,7 @@ from bouncing_ball.datasets.shards import Arrays, Found, Part
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.grids import VARIABLES as OF_GRIDS
-from bouncing_ball.long_run.many_digits import Table
+from bouncing_ball.long_run.many_digits import ManyDigits
 from bouncing_ball.long_run.motions import Kind, Motions
 from bouncing_ball.models.rigid import RestitutionModel
 
@@ -118,12 +118,12 @@ def _resolved(
     """Impacts until a ball locks, the periods of its lap and the digits lost in it; all are 0 if it
     does not lock.
     """
-    table = Table(float(restitution), float(amplitude))
+    ball = ManyDigits(float(restitution), float(amplitude))
     most = parameters.resolved_impacts
-    first = table.after_impact(parameters.phase, float(velocity), most)
+    first = ball.after_impact(parameters.phase, float(velocity), most)
     if first is None:
         return 0.0, 0.0, 0.0
-    lap = table.after_lift_off(most - first.impacts)
+    lap = ball.after_lift_off(most - first.impacts)
     if lap is None:
         return 0.0, 0.0, 0.0
     return first.impacts + lap.impacts, np.rint(lap.time / (2 * np.pi)), lap.digits

@@ -7,31 +7,53 @@ confirmed statement is a summary with an interval, and no prediction that was te
 
 import sys
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from bouncing_ball.beyond.exhibits.motion_samples import share_with_limits
 from bouncing_ball.long_run.period_doublings import FEIGENBAUM
 from bouncing_ball.paper.claims.claim import claim, defined_in
 from bouncing_ball.paper.claims.claims import assess
-from bouncing_ball.paper.claims.verdict import decided
+from bouncing_ball.paper.claims.parameters import Digests
+from bouncing_ball.paper.claims.verdict import Finding, Verdict
 
-PARAMETERS: dict[str, dict[str, Any]] = {
-    "ext_locking": {"frequency_ratio": [100.0, 1000.0, 10000.0]},
-    "ext_chaos": {"followed": [500, 1000, 3000, 10000], "bands": [0.3, 0.5, 0.6, 0.7, 0.8]},
-    "ext_locked": {},
-    "ext_lives": {"frequency_ratio": [100.0, 1000.0, 10000.0]},
-    "ext_cascades": {
-        "n": 1,
-        "restitution": [0.3, 0.5, 0.65, 0.85],
-        "frequency_ratio": {"min": 2.0, "max": 2000.0},
-    },
-    "ext_means": {"frequency_ratio": [10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0, 10000.0]},
-    "ext_basins": {},
+PARAMETERS: Digests = {
+    "ext_locking": ("5663cdb1", "frequency_ratio"),
+    "ext_chaos": ("aad7e794", "followed", "bands"),
+    "ext_lives": ("5663cdb1", "frequency_ratio"),
+    "ext_cascades": (
+        "2a3e477b",
+        "n",
+        "restitution",
+        "frequency_ratio__min",
+        "frequency_ratio__max",
+    ),
+    "ext_means": ("47b23b1c", "frequency_ratio"),
 }
-"""The parameters that the statements name, for each dataset that decides one."""
+"""The digests of the parameters that the statements name; other datasets may have any."""
+
+
+def decided(estimate: ArrayLike, *, above: float = -np.inf, below: float = np.inf) -> Finding:
+    """The finding that the interval of an estimate lies above a bound, or below one.
+
+    ``estimate`` is a number, or a number with its lower and its upper limit. The statement is
+    contradicted if the whole interval lies beyond the bound, and not decided if a part of it does,
+    or if a limit is NaN.
+
+    Examples
+    --------
+    >>> [str(decided([x, x - 1, x + 1], above=3).verdict) for x in (5, 3, 1)]
+    ['confirmed', 'not decided', 'contradicted']
+    """
+    value, low, high = map(float, np.broadcast_to(estimate, 3))
+    # A mean life may be infinite.
+    holds = low > above and (high < below or np.isinf(below))
+    fails = high <= above or low >= below
+    verdict = Verdict.CONTRADICTED if fails else Verdict.NOT_DECIDED
+    required = f"> {above:g}" if np.isinf(below) else f"< {below:g}"
+    return Finding(value, Verdict.CONFIRMED if holds else verdict, required, low=low, high=high)
 
 
 def limits(data, name, **place):

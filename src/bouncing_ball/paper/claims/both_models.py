@@ -2,7 +2,7 @@
 
 from bouncing_ball.paper.claims import evidence
 from bouncing_ball.paper.claims.claim import claim, of_formula
-from bouncing_ball.paper.claims.parameters import TOLERANCE
+from bouncing_ball.paper.claims.evidence import PERMANENT_CONTACT, TOLERANCE
 from bouncing_ball.paper.claims.verdict import above, at_least, at_most
 
 
@@ -70,7 +70,7 @@ def threshold_by_equation_34(data):
     }
 
 
-@claim("Eq. 38, Fig. 16", printed="6", explanation=threshold_by_equation_34)
+@claim("Eq. 38, Fig. 16", printed=f"{PERMANENT_CONTACT:g}", explanation=threshold_by_equation_34)
 def permanent_contact_threshold(data):
     """frequency ratio at which the thresholds of permanent contact differ by 1 %
 

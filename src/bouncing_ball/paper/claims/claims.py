@@ -3,7 +3,6 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -13,11 +12,10 @@ from bouncing_ball.paper.claims import (
     both_models,
     evidence,
     impact_models,
-    parameters,
     periodic_orbits,
 )
 from bouncing_ball.paper.claims.claim import Claim, checked, defined_in, name_of, paragraphs
-from bouncing_ball.paper.claims.parameters import PaperData
+from bouncing_ball.paper.claims.parameters import Digests, PaperData
 from bouncing_ball.paper.claims.verdict import CLOSE_UNITS, Verdict
 
 VARIABLES = {
@@ -80,10 +78,10 @@ def _row(
     claim: Claim,
     data: Mapping[str, xr.Dataset],
     holding: set[str],
-    parameters: Mapping[str, Mapping[str, Any]] | None,
+    required: Digests | None,
 ) -> dict[str, object]:
     """The entries of the dataset for one claim; ``holding`` names the explanations that hold."""
-    asked = PaperData(data, parameters)
+    asked = PaperData(data, required)
     finding, reason = claim.verdict(asked)
     explained_by = name_of(claim.explanation) if claim.explanation else ""
     needs_none = finding.verdict not in (Verdict.CLOSE, Verdict.CONTRADICTED)
@@ -108,10 +106,11 @@ def _row(
 def assess(
     claims: Sequence[Claim],
     data: Mapping[str, xr.Dataset],
-    parameters: Mapping[str, Mapping[str, Any]] | None = None,
+    required: Digests | None = None,
 ) -> xr.Dataset:
     """The verdict on each claim, over ``claim``, and the explanations whose checks hold, over
-    ``explanation``.
+    ``explanation``. A claim is not asked if a dataset that it reads has other parameters than
+    ``required``, by default the paper's.
 
     Raises
     ------
@@ -121,7 +120,7 @@ def assess(
     why = {name_of(one.explanation): one.explanation for one in claims if one.explanation}
     checks = {name: checked(explanation, data) for name, explanation in why.items()}
     holding = {name for name, (holds, _) in checks.items() if holds}
-    rows = [_row(claim, data, holding, parameters) for claim in claims]
+    rows = [_row(claim, data, holding, required) for claim in claims]
     return described(
         {
             **{key: ("claim", np.array([row[key] for row in rows])) for key in rows[0]},
@@ -140,8 +139,7 @@ def claims(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
     Parameters
     ----------
     data : mapping of str to xarray.Dataset
-        The datasets that decide the claims, by name: those of
-        :data:`~bouncing_ball.paper.claims.parameters.PARAMETERS`.
+        The datasets that decide the claims, by name.
 
     Returns
     -------
@@ -167,9 +165,9 @@ def claims(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
     numbers = {one.__name__: xr.DataArray(one(data)).reset_coords(drop=True) for one in printed}
     return xr.merge([assess(CLAIMS, data), described(numbers, variables=VARIABLES)]).assign_attrs(
         close_units=CLOSE_UNITS,
-        tolerance=parameters.TOLERANCE,
-        stiff_frequency_ratio=parameters.STIFF,
-        permanent_contact_frequency_ratio=parameters.PERMANENT_CONTACT,
+        tolerance=evidence.TOLERANCE,
+        stiff_frequency_ratio=evidence.STIFF,
+        permanent_contact_frequency_ratio=evidence.PERMANENT_CONTACT,
     )
 
 

@@ -6,8 +6,7 @@ The restitution model has Eqs. 1-9 and Fig. 3, the spring-damper model Eqs. 10-1
 from bouncing_ball.datasets import PERIOD_DOUBLING, SADDLE_NODE
 from bouncing_ball.paper.claims import evidence
 from bouncing_ball.paper.claims.claim import Claim, claim, formula, of_formula
-from bouncing_ball.paper.claims.evidence import GRID
-from bouncing_ball.paper.claims.parameters import TOLERANCE
+from bouncing_ball.paper.claims.evidence import GRID, TOLERANCE
 from bouncing_ball.paper.claims.verdict import above, at_least, at_most, below
 
 # The abstract and the introduction.

@@ -1,130 +1,101 @@
-"""The paper's parameters of each dataset; with other parameters a dataset decides no claim."""
+"""Whether a dataset was computed with the paper's parameters; with others it decides no claim.
 
+The parameters stand in ``config/config.yaml`` only, and a dataset carries those with which it was
+computed. Whether they are the paper's is told by their digest. A test compares the digests below
+with the configuration, and prints the new one when a parameter of the paper was read wrongly.
+"""
+
+import hashlib
+import json
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.datasets.files import parameter_attributes
+Digests = Mapping[str, tuple[str, ...]]
+"""For each dataset the digest of its parameters, and the names of those that matter."""
 
-PARAMETERS: dict[str, dict[str, Any]] = {
-    "fig03": {"n": [1, 2, 3, 4, 5], "restitution": 0.85},
-    "fig05": {
-        "n": 1,
-        "cases": [
-            {"restitution": 1.0, "amplitude": 0.8},
-            {"restitution": 0.85, "amplitude": 1.0},
-            {"restitution": 0.65, "amplitude": 1.0},
-            {"restitution": 0.1, "amplitude": 2.6},
-        ],
-        "frequency_ratio": {"min": 1.0, "max": 1000.0, "samples": 301},
-    },
-    "fig06": {
-        "n": 1,
-        "cases": [
-            {"restitution": 0.65, "amplitude": 0.7},
-            {"restitution": 0.65, "amplitude": 1.0},
-            {"restitution": 0.65, "amplitude": 1.2},
-        ],
-        "frequency_ratio": {"min": 1.0, "max": 1000.0, "samples": 301},
-    },
-    "fig08": {"n": 1, "restitution": 0.85, "frequency_ratio": [10000.0, 10.0, 2.0]},
-    "fig09": {"n": 2, "restitution": 0.85, "frequency_ratio": [10000.0, 10.0, 2.0]},
-    "fig10": {
-        "n": 2,
-        "restitution": 0.85,
-        "amplitude": [1.1, 1.0, 0.6],
-        "frequency_ratio": {"min": 1.0, "max": 1000.0, "samples": 301},
-    },
-    "fig11": {"restitution": 0.65},
-    "fig13": {
-        "n": 1,
-        "restitution": 0.65,
-        "amplitude": 1.0,
-        "frequency_ratio": {"min": 1.0, "max": 1000.0, "samples": 301},
-    },
-    "fig14": {
-        "n": 1,
-        "restitution": 0.65,
-        "amplitude": 1.0,
-        "frequency_ratio": {"min": 1.0, "max": 1000.0, "samples": 301},
-        "tolerance": 0.01,
-    },
-    "fig15": {"n": 2, "restitution": 0.65, "frequency_ratio": 10.0, "amplitude_max": 2.2},
-    "fig16": {
-        "restitution": 0.65,
-        "tolerance": 0.01,
-        "frequency_ratio": {"min": 0.5, "max": 100.0, "samples": 401},
-    },
-    "table1": {"n": [1, 2, 3], "restitution": 0.85, "frequency_ratio": [10000.0, 10.0, 2.0]},
-    "thresholds": {
-        "n": 1,
-        "restitution": 0.65,
-        "amplitude": 1.0,
-        "quantities": [
-            "max_height",
-            "bounce_velocity",
-            "phase",
-            "apparent_restitution",
-            "saddle_node",
-            "period_doubling",
-            "permanent_contact",
-        ],
-        "frequency_ratio": {"min": 1.0, "max": 10000.0, "samples": 101},
-    },
-    "lowest_doubling": {
-        "n": [1, 2, 3],
-        "restitution": 0.85,
-        "frequency_ratio": {"min": 2.0, "max": 1000.0, "samples": 61},
-    },
-    "formulas": {},
-    "forensics": {},
-    "witness": {},
-    "three_balls": {"restitution": 0.5, "amplitude": [1.2, 1.6, 1.75]},
+PAPER: Digests = {
+    "fig03": ("490a2404", "n", "restitution"),
+    "fig05": ("edeaf406", "n", "cases", "frequency_ratio"),
+    "fig06": ("12d97b1d", "n", "cases", "frequency_ratio"),
+    "fig08": ("739bda6f", "n", "restitution", "frequency_ratio"),
+    "fig09": ("482912af", "n", "restitution", "frequency_ratio"),
+    "fig10": ("93b5b20c", "n", "restitution", "amplitude", "frequency_ratio"),
+    "fig11": ("ec8ac312", "restitution"),
+    "fig13": ("0886c529", "n", "restitution", "amplitude", "frequency_ratio"),
+    "fig14": ("d5d8c016", "n", "restitution", "amplitude", "frequency_ratio", "tolerance"),
+    "fig15": ("a308365c", "n", "restitution", "frequency_ratio", "amplitude_max"),
+    "fig16": ("c4b1c6cd", "restitution", "tolerance", "frequency_ratio"),
+    "table1": ("8f9d41fb", "n", "restitution", "frequency_ratio"),
+    "thresholds": ("fba856d6", "n", "restitution", "amplitude", "quantities", "frequency_ratio"),
+    "lowest_doubling": ("d0dc3420", "n", "restitution", "frequency_ratio"),
+    "three_balls": ("c60ddcf3", "restitution", "amplitude"),
 }
-"""The paper's parameters of every dataset that decides claims, and the ranges that the conditions
-also need. The release is always the displacement release."""
-
-TOLERANCE: float = PARAMETERS["fig14"]["tolerance"]
-"""The paper's limit for the error of the restitution model, 1 % (Eqs. 37 and 38)."""
-
-STIFF = 100.0
-"""ϖ above which the paper treats both models as equal."""
-
-PERMANENT_CONTACT = 6.0
-"""ϖ at which, according to the paper, the thresholds of permanent contact differ by its limit."""
+"""The paper's parameters, and the ranges that the conditions also need. Formulas, forensics and
+witness are checks of ours, with any parameters."""
 
 
 class NotAsked(Exception):
     """A dataset was computed with other parameters than the paper's."""
 
 
-class PaperData(dict[str, xr.Dataset]):
-    """Datasets by name; only a dataset with these parameters, by default the paper's, can be read.
+def of_dataset(attributes: Mapping[Any, Any], names: tuple[str, ...]) -> dict[str, list]:
+    """The release and the named parameters among the attributes of a dataset, as lists.
 
-    Reading any other dataset raises :class:`NotAsked`. ``used`` has the names of the datasets read,
-    in order.
+    A nested parameter has its path as its name, such as ``frequency_ratio__min``. NetCDF keeps a
+    list of one number as this number, so that every value is a list here.
+
+    Examples
+    --------
+    >>> of_dataset({"title": "Figure", "n": np.int64(1), "span__min": 0.5}, ("n", "span"))
+    {'release': ['displacement'], 'n': [1], 'span__min': [0.5]}
+    """
+    given = {"release": "displacement", **attributes}
+    matter = ("release", *names)
+    return {
+        str(name): np.ravel(value).tolist()
+        for name, value in given.items()
+        if name in matter or str(name).partition("__")[0] in matter
+    }
+
+
+def digest(parameters: Mapping[str, list]) -> str:
+    """Eight digits of the SHA-256 sum of parameters in any order; 1 is the same as 1.0.
+
+    Examples
+    --------
+    >>> digest({"n": [1], "span__min": [0.5]}) == digest({"span__min": [0.5], "n": [1.0]})
+    True
+    """
+    plain = {
+        name: [x if isinstance(x, str) else float(x) for x in values]
+        for name, values in parameters.items()
+    }
+    return hashlib.sha256(json.dumps(plain, sort_keys=True).encode()).hexdigest()[:8]
+
+
+class PaperData(dict[str, xr.Dataset]):
+    """Datasets by name, which raise :class:`NotAsked` when they are read unless their parameters
+    are the required ones, by default the paper's.
+
+    ``used`` has the names of the datasets read, in order.
     """
 
-    def __init__(
-        self,
-        data: Mapping[str, xr.Dataset],
-        parameters: Mapping[str, Mapping[str, Any]] | None = None,
-    ) -> None:
+    def __init__(self, data: Mapping[str, xr.Dataset], required: Digests | None = None) -> None:
         super().__init__(data)
-        self.parameters = PARAMETERS if parameters is None else parameters
+        self.required = PAPER if required is None else required
         self.used: dict[str, None] = {}
 
     def __getitem__(self, name: str) -> xr.Dataset:
         data = super().__getitem__(name)
-        release = {"release": "displacement"}
-        given: dict[str, Any] = release | data.attrs
-        for key, paper in (release | parameter_attributes(self.parameters[name])).items():
-            # netCDF stores an attribute that is a list of one number as this number.
-            if not np.array_equal(np.ravel(given.get(key, "none")), np.ravel(paper)):
-                raise NotAsked(
-                    f"{name} was computed with {key} = {given.get(key)}; the claim requires {paper}"
-                )
+        if name in self.required:
+            expected, *names = self.required[name]
+            found = of_dataset(data.attrs, tuple(names))
+            if digest(found) != expected:
+                given = (x if len(x) > 1 else x[0] for x in found.values())
+                said = ", ".join(f"{key} = {x}" for key, x in zip(found, given, strict=True))
+                raise NotAsked(f"{name} has other parameters than the claim requires: {said}")
         self.used[name] = None
         return data

@@ -8,8 +8,7 @@ from typing import Any
 
 from bouncing_ball.paper.claims import evidence, impact_models
 from bouncing_ball.paper.claims.claim import Claim, claim, formula, of_formula
-from bouncing_ball.paper.claims.evidence import GRID
-from bouncing_ball.paper.claims.parameters import STIFF, TOLERANCE
+from bouncing_ball.paper.claims.evidence import GRID, STIFF, TOLERANCE
 from bouncing_ball.paper.claims.verdict import above, at_least, at_most, below
 from bouncing_ball.paper.exhibits.printed_table1 import AXES, printed_text
 from bouncing_ball.periodic.stability import Bifurcation

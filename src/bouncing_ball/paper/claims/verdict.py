@@ -237,24 +237,3 @@ def _agreement(nearest: float | Fraction, farthest: float | Fraction) -> Verdict
     if nearest > CLOSE_UNITS:
         return Verdict.CONTRADICTED
     return Verdict.NOT_DECIDED
-
-
-def decided(estimate: ArrayLike, *, above: float = -np.inf, below: float = np.inf) -> Finding:
-    """The finding that the interval of an estimate lies above a bound, or below one.
-
-    ``estimate`` is a number, or a number with its lower and its upper limit. The statement is
-    contradicted if the whole interval lies beyond the bound, and not decided if a part of it does,
-    or if a limit is NaN.
-
-    Examples
-    --------
-    >>> [str(decided([x, x - 1, x + 1], above=3).verdict) for x in (5, 3, 1)]
-    ['confirmed', 'not decided', 'contradicted']
-    """
-    value, low, high = map(float, np.broadcast_to(estimate, 3))
-    # A mean life may be infinite.
-    holds = low > above and (high < below or np.isinf(below))
-    fails = high <= above or low >= below
-    verdict = Verdict.CONTRADICTED if fails else Verdict.NOT_DECIDED
-    required = f"> {above:g}" if np.isinf(below) else f"< {below:g}"
-    return Finding(value, Verdict.CONFIRMED if holds else verdict, required, low=low, high=high)

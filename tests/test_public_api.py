@@ -169,7 +169,7 @@ LINEAR |= {"release": "displacement"}
 LABELS = [
     {"restitution": 0.85},
     LINEAR,
-    {"law": "linear", **LINEAR, "model": "corrected"},
+    {**LINEAR, "model": "corrected"},
     {"law": "tsuji", "stiffness": 900.0, "damping": 0.1},
 ]
 
@@ -367,7 +367,9 @@ def test_a_misspelt_parameter_is_named_with_its_function():
             "duration needs speed",
         ),
         (
-            lambda: corrected(contact_law("tsuji", stiffness=[9.0, 8.0], damping=1.0)),
+            lambda: corrected(
+                contact_law("elasto-backlash", frequency_ratio=[9.0, 8.0], damping_ratio=0.1)
+            ),
             "is tabulated for one law",
         ),
         (

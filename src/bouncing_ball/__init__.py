@@ -67,6 +67,7 @@ if TYPE_CHECKING:
     from bouncing_ball.contacts.choose import choose_contact
     from bouncing_ball.contacts.design import design
     from bouncing_ball.contacts.given import Contact, Question, Simulation, Table
+    from bouncing_ball.contacts.law_balls import contact_law
     from bouncing_ball.contacts.recipe import write_contact
     from bouncing_ball.errors import ModelError, NoOrbitError
     from bouncing_ball.long_run.motion_of import basins, lyapunov_exponent, motion_of, orbit_diagram
@@ -75,7 +76,6 @@ if TYPE_CHECKING:
     from bouncing_ball.models.rigid import RestitutionModel
     from bouncing_ball.models.spring_damper import SpringDamper
     from bouncing_ball.models.spring_damper_model import SpringDamperModel
-    from bouncing_ball.periodic.law_balls import contact_law
 
 __version__ = "0.1.0"
 
@@ -130,7 +130,7 @@ def __getattr__(name: str) -> Any:
         case "curve" | "follow" | "orbit_of_motion" | "switch":
             from bouncing_ball.calls import followed as module
         case "contact_law":
-            from bouncing_ball.periodic import law_balls as module
+            from bouncing_ball.contacts import law_balls as module
         case "branch" | "limits" | "orbit" | "orbits" | "permanent_contact":
             from bouncing_ball.calls import periodic as module
         case "drop" | "history" | "simulate":

@@ -16,7 +16,7 @@ import pytest
 import bouncing_ball
 from bouncing_ball.cli.commands import COMMANDS
 from bouncing_ball.cli.options import meanings
-from bouncing_ball.models.laws.registry import LAWS
+from bouncing_ball.contacts.named_laws import LAWS
 from bouncing_ball.models.makers import spring_damper
 
 ROOT = Path(__file__).resolve().parents[2]

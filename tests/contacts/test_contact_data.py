@@ -12,7 +12,6 @@ from bouncing_ball.contacts.contact_data import case_of, hertz
 from bouncing_ball.contacts.given import Contact
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.damping import Release
-from bouncing_ball.models.laws.signature import free_impact
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 
@@ -78,7 +77,7 @@ def test_the_hertz_contact_is_that_of_the_energy():
     # x = deepest (1 - s²) takes the root out of the integrand.
     integral, _ = quad(lambda s: 2 * s / math.sqrt(1 - (1 - s * s) ** 2.5), 0, 1)
     law = hertz(m, modulus, radius, 1.0, TABLE)
-    time = float(free_impact(law, v * TABLE.time / TABLE.length).duration) * TABLE.time
+    time = float(law.signature(v * TABLE.time / TABLE.length).duration) * TABLE.time
     assert time == pytest.approx(2 * deepest / v * integral, rel=1e-9)
 
 

@@ -11,11 +11,10 @@ from bouncing_ball.accuracy import error_law
 from bouncing_ball.accuracy.corrected_errors import errors
 from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.contacts.drop_test import rebound
+from bouncing_ball.contacts.named_laws import LAWS
 from bouncing_ball.contacts.verdict import assessed, notes
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.models.damping import Release
-from bouncing_ball.models.laws.linear import LinearLaw
-from bouncing_ball.models.laws.registry import LAWS
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
@@ -52,7 +51,7 @@ def test_the_groups_are_those_of_the_model(steel):
     assert steel.contact_time == pytest.approx(time, rel=1e-14)
     assert steel.static_deflection == pytest.approx(0.02 * 9.80665 / 1e7, rel=1e-15)
     assert steel.time_step.largest == steel.contact_time / 50 and "MFiX" in steel.time_step.rule
-    instant = Signature(LinearLaw.of(SpringDamper(steel.frequency_ratio, steel.damping_ratio)))()
+    instant = Signature(SpringDamper(steel.frequency_ratio, steel.damping_ratio))()
     three = float(instant.delay) / omega, 0.85, float(instant.load) / omega
     assert dataclasses.astuple(steel.corrected) == pytest.approx(three, rel=1e-13)
 
@@ -313,7 +312,7 @@ def test_a_contact_slower_than_the_table_is_noted(ratio, noted):
 def test_the_error_law_holds_up_to_its_small_parameter():
     contact = SpringDamper.from_restitution(0.85, 1.0)
     # Its parts are proportional to 1/ϖ.
-    small = float(error_law.small_parameter(1, Signature(LinearLaw.of(contact))(), 0.8))
+    small = float(error_law.small_parameter(1, Signature(contact)(), 0.8))
     for factor, holds in ((0.99, False), (1.01, True)):
         stiffness = (factor * small / error_law.VALID_BELOW) ** 2
         found = design(**UNIT, acceleration=0.8, stiffness=stiffness)

@@ -10,7 +10,6 @@ from bouncing_ball.errors import ModelError
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.means import means as means_of
 from bouncing_ball.long_run.sampled_means import Starts, follow, start
-from bouncing_ball.models.laws.linear import LinearLaw
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
@@ -18,7 +17,9 @@ from bouncing_ball.models.spring_damper_model import SpringDamperModel
 UNIT = {"mass": 1.0, "angular_frequency": 1.0, "gravity": 1.0, "restitution": 0.85, "n": 1}
 
 
-@pytest.mark.parametrize("law", [RestitutionModel(1.0), LinearLaw(4.0, 0.0), LinearLaw(40.0, 0.0)])
+@pytest.mark.parametrize(
+    "law", [RestitutionModel(1.0), SpringDamper(4.0, 0.0), SpringDamper(40.0, 0.0)]
+)
 def test_an_elastic_ball_has_the_energy_that_the_table_gives_it(law):
     dynamics, first = start(law, 1.7, Starts(np.array([0.4]), np.array([-4.0])))
     first, _ = follow(dynamics, first, 3)

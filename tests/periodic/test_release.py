@@ -7,10 +7,10 @@ import pytest
 from orbits_found import family, known_orbit
 
 from bouncing_ball.models.damping import damping_ratio
-from bouncing_ball.models.laws.linear import LinearLaw
 from bouncing_ball.models.laws.motion import ContactDynamics
 from bouncing_ball.models.linear_contact import LinearContactDynamics
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic.release import release_condition, release_margin
 from bouncing_ball.periodic.switching import of_motion
 
@@ -73,7 +73,7 @@ def test_differences_are_accurate_in_the_units_of_a_stiff_contact():
 @pytest.mark.parametrize("release", ["displacement", "force"])
 def test_the_release_function_is_the_displacement_and_the_lag_times_the_velocity(kind, release):
     """At many times within two contacts, against the flow of the linear contact."""
-    law = LinearLaw(np.array([7.3, 25.0]), 0.12, release)
+    law = SpringDamper(np.array([7.3, 25.0]), 0.12, release)
     dynamics = kind.of(law, 1.3)
     start = np.array([1.9, 2.3]), np.array([-0.3, -0.05])
     impact = dynamics.start(*start)

@@ -62,12 +62,12 @@ def orbit_of_motion(
       periods               2
       law                   0.5
       amplitude             1.6
-      phase                 [0.541338 1.10023]
+      phase                 [0.403915 1.19435]
       contact_duration      [0 0]
-      impact_velocity       [-2.44155 -3.27003]
-      bounce_velocity       [2.45404 3.82863]
+      impact_velocity       [-2.90279 -3.41535]
+      bounce_velocity       [3.65826 2.58997]
       apparent_restitution  [0.5 0.5]
-      max_height            8.34459
+      max_height            7.32028
     """
     lam = checked_number("amplitude", amplitude, AMPLITUDE_OF_ORBIT)
     phi = checked_number("phase", phase, STATE)

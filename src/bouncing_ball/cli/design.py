@@ -228,7 +228,7 @@ def _law_lines(found: Design) -> list[str]:
     return [
         _line(
             f"{name}, {words.get(key, key.replace('_', ' '))}",
-            shown(x, units[key].name if key in units else ""),
+            shown(x, units[key].name),
         )
         for key, x in values.items()
     ]

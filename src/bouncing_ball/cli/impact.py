@@ -11,6 +11,8 @@ from bouncing_ball.cli.options import (
     meanings,
     option,
 )
+from bouncing_ball.contacts.law_balls import contact_law
+from bouncing_ball.contacts.named_laws import law_named
 from bouncing_ball.datasets.arguments import (
     DAMPING_RATIO,
     FREQUENCY_RATIO,
@@ -21,9 +23,7 @@ from bouncing_ball.datasets.arguments import (
 from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.models.ball import Ball
 from bouncing_ball.models.damping import Release
-from bouncing_ball.models.laws.registry import law_named
 from bouncing_ball.models.makers import LOSSES, corrected, rigid, spring_damper, the_loss
-from bouncing_ball.periodic.law_balls import contact_law
 
 MODELS = ("restitution", "spring-damper", "corrected")
 

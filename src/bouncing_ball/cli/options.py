@@ -316,7 +316,7 @@ def _add_option(parser: argparse.ArgumentParser, parameter: inspect.Parameter, t
 def laws() -> str:
     """A sentence with the names of the contact laws."""
     # Imported here, because the import needs numpy, which the general help does not need.
-    from bouncing_ball.models.laws.registry import LAWS
+    from bouncing_ball.contacts.named_laws import LAWS
 
     return f" Laws: {', '.join(LAWS)}."
 

@@ -19,7 +19,7 @@ from bouncing_ball.datasets.arguments import AMPLITUDE_OF_ORBIT, FAMILY, FREQUEN
 from bouncing_ball.errors import NoOrbitError, ParameterError, count, extra
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
-from bouncing_ball.models.laws.signature import Signature, free_impact
+from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.makers import spring_damper
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
@@ -50,7 +50,7 @@ def described(law: Any, speed: float = math.nan) -> Answer:
                 "damping_ratio": float(law.damping_ratio),
             }
         case ContactLaw():
-            impact = free_impact(law, np.float64(speed))
+            impact = law.signature(np.float64(speed))
             return {
                 "law": law.name,
                 "parameters": {name: float(x) for name, x in law.parameters().items()},

@@ -13,7 +13,6 @@ from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.hertzian import Tsuji
-from bouncing_ball.models.laws.linear import LinearLaw
 from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.laws.permanent_contact import known_threshold
 from bouncing_ball.models.laws.scales import rest
@@ -152,7 +151,7 @@ class PhysicalCase:
     @property
     def exact_law(self) -> ContactLaw:
         """The contact law of the exact model."""
-        return LinearLaw.of(self.contact) if self.law is None else self.law
+        return self.contact if self.law is None else self.law
 
     @cached_property
     def permanent_contact(self) -> float:

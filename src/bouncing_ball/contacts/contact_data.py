@@ -25,14 +25,13 @@ import numpy as np
 from bouncing_ball.contacts.case import PhysicalCase, TableMotion
 from bouncing_ball.contacts.drop_test import fitted_damping_ratio
 from bouncing_ball.contacts.given import STANDARD_GRAVITY, Contact, given, single
+from bouncing_ball.contacts.named_laws import law_named
 from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.hertzian import Tsuji, tsuji_damping
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
-from bouncing_ball.models.laws.linear import LinearLaw
-from bouncing_ball.models.laws.registry import law_named
-from bouncing_ball.models.laws.signature import Signature, free_impact
+from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic import n_t
@@ -58,7 +57,7 @@ def require_own_release(contact: Contact) -> None:
     ModelError
         If a release and a law other than the linear one are given.
     """
-    if contact.release is not None and contact.law not in (None, LinearLaw.name):
+    if contact.release is not None and contact.law not in (None, SpringDamper.name):
         raise ParameterError(
             f"{{release}} is not allowed with {{law}} {contact.law}, which has its own"
         )
@@ -86,7 +85,7 @@ def law_type(contact: Contact) -> type[ContactLaw] | None:
             "{radius} and {reduced_modulus} in place of {law}"
         )
     kind = law_named(name)
-    if kind is LinearLaw:
+    if kind is SpringDamper:
         return None
     for other in _NOT_OF_A_LAW:
         if getattr(contact, other) is not None:
@@ -246,7 +245,7 @@ def with_law(case: PhysicalCase, law: ContactLaw, asked: Sequence[int]) -> Physi
     for _ in range(np.finfo(float).nmant):
         r = signature(rigid_speed(asked, r)).restitution
     n = meant(asked, r, case.table.amplitude)
-    impact = free_impact(law, float(rigid_speed(n, r[asked.index(n)])))
+    impact = law.signature(float(rigid_speed(n, r[asked.index(n)])))
     unit = SpringDamper.from_restitution(
         float(impact.restitution), 1.0, case.contact.release, measured=True
     )
@@ -300,7 +299,7 @@ def case_of(contact: Contact, table: TableMotion, families: Sequence[int]) -> Ph
     law: ContactLaw | None = None
     if modulus is not None:
         law = hertz(data["mass"], modulus, data["radius"], r, table)
-        duration = float(free_impact(law, speed).duration)
+        duration = float(law.signature(speed).duration)
     else:
         duration = data["contact_time"] / table.time
         if kind is not None:

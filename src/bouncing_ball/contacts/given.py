@@ -16,7 +16,7 @@ from bouncing_ball.contacts.engines.choice import engine_named
 from bouncing_ball.contacts.engines.engine import ERROR
 from bouncing_ball.contacts.units import SIParameter, number
 from bouncing_ball.errors import FAMILY, ModelError, ParameterError, Range, count, one_of
-from bouncing_ball.models.laws.linear import LinearLaw
+from bouncing_ball.models.spring_damper import SpringDamper
 
 STANDARD_GRAVITY = 9.80665
 """Standard acceleration of gravity, in m/s²."""
@@ -182,7 +182,7 @@ class Contact:
         rule = str(engine.release(self.release))
         if self.reduced_modulus is not None or self.youngs_modulus is not None:
             raise ParameterError(f"a Hertz contact is not written for {name}: give {{stiffness}}")
-        if law not in (None, LinearLaw.name, *engine.laws, *engine.laws.values()):
+        if law not in (None, SpringDamper.name, *engine.laws, *engine.laws.values()):
             raise ParameterError(f"{{law}} {law} is not written for {name}: leave {{law}} out")
         law = engine.laws.get(str(law), law)
         return replace(self.with_measured_restitution(), release=rule, law=law)

@@ -9,6 +9,7 @@ import numpy as np
 from bouncing_ball.accuracy.errors import QUANTITIES, Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.contacts.case import PhysicalCase
+from bouncing_ball.contacts.engines.impedance import Impedance
 from bouncing_ball.contacts.families import NO_ORBIT, prediction_error
 from bouncing_ball.contacts.given import MOST_BALLS
 from bouncing_ball.contacts.results import Family, FinalMotion, Mean, Needed
@@ -17,7 +18,6 @@ from bouncing_ball.long_run.motions import Kind
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.hertzian import Tsuji
-from bouncing_ball.models.laws.impedance import Impedance
 from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic import n_t

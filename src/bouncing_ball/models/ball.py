@@ -2,7 +2,7 @@
 
 Every model is a ball (:class:`~bouncing_ball.models.model.Model`), also an array of models.
 A contact law that is given by the r and D of a free impact has a model only at a speed
-(:class:`~bouncing_ball.periodic.law_balls.FreeImpactBall`).
+(:class:`~bouncing_ball.contacts.law_balls.FreeImpactBall`).
 """
 
 from __future__ import annotations
@@ -91,13 +91,11 @@ class Ball:
 
 
 def _fields_of(law: Any) -> dict[str, Any]:
-    """The fields of a law, or of the law inside of it, by name, and the name of a contact law."""
+    """The fields of a law, or of the law inside of it, by name."""
     found: dict[str, Any] = {}
     for field in fields(law):
         value = getattr(law, field.name)
         if is_dataclass(value):
-            name = getattr(value, "name", None)
-            found |= {} if name is None else {"law": name}
             found |= _fields_of(value)
         elif isinstance(value, str):
             found[field.name] = str(value)

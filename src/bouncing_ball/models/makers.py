@@ -2,7 +2,7 @@
 
 :func:`rigid` makes a ball of the restitution model, :func:`spring_damper` one on a spring-damper
 contact, and :func:`corrected` one of the corrected restitution model of a contact. Balls on
-contacts of other laws are made in :mod:`~bouncing_ball.periodic.law_balls`. Parameters that are
+contacts of other laws are made in :mod:`~bouncing_ball.contacts.law_balls`. Parameters that are
 arrays make several balls.
 """
 
@@ -29,7 +29,6 @@ from bouncing_ball.models.ball import Ball, a_ball
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
-from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
@@ -152,8 +151,8 @@ def corrected(ball: Ball) -> Ball:
     Raises
     ------
     ModelError
-        If the impacts of the ball have no contact, or the contacts of a law that is not linear
-        have arrays of parameters.
+        If the impacts of the ball have no contact, or the parameters of a law that is neither
+        linear nor Hertzian are arrays.
 
     Examples
     --------
@@ -164,12 +163,9 @@ def corrected(ball: Ball) -> Ball:
     if not known.is_known:
         return known.corrected()
     law = known.impact_law
-    if isinstance(law, SpringDamper):
-        model = CorrectedModel.of_contact(law)
-    elif isinstance(law, ContactLaw):
-        model = CorrectedModel(Signature(law))
-    else:
+    if not isinstance(law, ContactLaw):
         raise ModelError(f"{known.name} impacts have no contact that could be corrected")
+    model = CorrectedModel.of_contact(law)
     return model.labelled({**known.parameters, "model": model.name})
 
 

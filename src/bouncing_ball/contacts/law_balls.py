@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
+from bouncing_ball.contacts.named_laws import law_named
 from bouncing_ball.datasets.arguments import (
     FINITE,
     FREQUENCY_RATIO,
@@ -33,7 +34,6 @@ from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.law_of_impact import law_of_impact, reference
 from bouncing_ball.models.laws.model import LawModel
-from bouncing_ball.models.laws.registry import law_named
 from bouncing_ball.models.makers import corrected, flattened
 from bouncing_ball.periodic.law_at_orbit import law_at_orbit
 from bouncing_ball.periodic.restitution_branch import rigid_speed
@@ -144,6 +144,8 @@ def contact_law(
     --------
     >>> contact_law("hunt-crossley", stiffness=1000.0, damping=0.08)
     LawModel(law=HuntCrossley(stiffness=1000, damping=0.08))
+    >>> contact_law("linear", frequency_ratio=10.0, damping_ratio=1.5).law
+    SpringDamper(frequency_ratio=10, damping_ratio=1.5, release='displacement')
     >>> ball = contact_law("hunt-crossley", restitution=0.8, duration=0.2)
     >>> ball.at_speed(3.0)
     LawModel(law=HuntCrossley(stiffness=641.257, damping=0.124382))

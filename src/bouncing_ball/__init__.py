@@ -65,10 +65,12 @@ if TYPE_CHECKING:
     from bouncing_ball.calls.periodic import branch, limits, orbit, orbits, permanent_contact
     from bouncing_ball.contacts.assess import assess_contact
     from bouncing_ball.contacts.choose import choose_contact
-    from bouncing_ball.contacts.design import design
-    from bouncing_ball.contacts.given import Contact, Question, Simulation, Table
+    from bouncing_ball.contacts.contact import Contact
+    from bouncing_ball.contacts.describe import describe_contact
     from bouncing_ball.contacts.law_balls import contact_law
-    from bouncing_ball.contacts.recipe import write_contact
+    from bouncing_ball.contacts.question import EngineSetup, Question
+    from bouncing_ball.contacts.table import Table
+    from bouncing_ball.contacts.write import write_contact
     from bouncing_ball.errors import ModelError, NoOrbitError
     from bouncing_ball.long_run.motion_of import basins, lyapunov_exponent, motion_of, orbit_diagram
     from bouncing_ball.models.makers import corrected, rigid, spring_damper
@@ -81,11 +83,11 @@ __version__ = "0.1.0"
 
 __all__ = [
     "Contact",
+    "EngineSetup",
     "ModelError",
     "NoOrbitError",
     "Question",
     "RestitutionModel",
-    "Simulation",
     "SpringDamper",
     "SpringDamperModel",
     "Table",
@@ -96,7 +98,7 @@ __all__ = [
     "contact_law",
     "corrected",
     "curve",
-    "design",
+    "describe_contact",
     "drop",
     "error_thresholds",
     "follow",
@@ -139,16 +141,20 @@ def __getattr__(name: str) -> Any:
             from bouncing_ball.long_run import motion_of as module
         case "error_thresholds":
             from bouncing_ball.accuracy import error_thresholds as module
-        case "design":
-            from bouncing_ball.contacts import design as module
+        case "describe_contact":
+            from bouncing_ball.contacts import describe as module
         case "assess_contact":
             from bouncing_ball.contacts import assess as module
         case "choose_contact":
             from bouncing_ball.contacts import choose as module
         case "write_contact":
-            from bouncing_ball.contacts import recipe as module
-        case "Contact" | "Question" | "Simulation" | "Table":
-            from bouncing_ball.contacts import given as module
+            from bouncing_ball.contacts import write as module
+        case "Contact":
+            from bouncing_ball.contacts import contact as module
+        case "EngineSetup" | "Question":
+            from bouncing_ball.contacts import question as module
+        case "Table":
+            from bouncing_ball.contacts import table as module
         case "SpringDamper":
             from bouncing_ball.models import spring_damper as module
         case "SpringDamperModel":

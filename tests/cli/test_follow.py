@@ -1,5 +1,7 @@
 """``follow`` and ``curve``, from the command line and from Python."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -84,20 +86,56 @@ def test_results_are_labelled_and_drawn_and_iterated(tmp_path, described):
 def test_mistakes_in_python_are_one_line(refusal):
     one = bouncing_ball.orbit(RIGID, amplitude=1.4)
     found = bouncing_ball.follow(one, to=1.5)
-    with refusal(ModelError, "switch needs an orbit of a branch"):
+    with refusal(ModelError, "switch needs a period doubling of a branch, not an ordinary orbit"):
         bouncing_ball.switch(one)
+    with refusal(ModelError, "follow needs an orbit of bouncing_ball, not float"):
+        bouncing_ball.follow(1.4)
     with refusal(ModelError, "kind = 'fold' is not one of saddle-node"):
         found.first("fold")
     with refusal(NoOrbitError, "the branch has no saddle-node; it ends because amplitude = 1.5"):
         found.first("saddle-node")
-    with refusal(ModelError, "across must be another parameter"):
-        bouncing_ball.curve(next(found.states()), kind="saddle-node", across="amplitude")
     start = next(found.states())
-    outside = "across_range = 0.6 to 0.9 does not contain restitution = 0.5"
+    with refusal(ModelError, "along = ('amplitude', 'amplitude') is not one parameter or two dif"):
+        bouncing_ball.curve(start, kind="saddle-node", across="amplitude")
+    outside = "the range 0.6 to 0.9 does not contain restitution = 0.5, at which the curve starts"
     with refusal(ModelError, outside):
         bouncing_ball.curve(
             start, kind="saddle-node", across="restitution", across_range=(0.6, 0.9)
         )
+    with refusal(NoOrbitError, "an ordinary orbit has no curve in two parameters"):
+        bouncing_ball.follow(start, along=("amplitude", "restitution"))
+    with refusal(ModelError, "to is the end of a branch: a curve in two parameters has ranges"):
+        bouncing_ball.follow(start, along=("amplitude", "restitution"), to=1.5)
+    with refusal(ModelError, "ranges are those of a curve in two parameters: a branch has to"):
+        bouncing_ball.follow(start, to=1.5, ranges={"amplitude": (1.0, 2.0)})
+
+
+def test_a_special_orbit_is_followed_as_its_kind_says():
+    one = bouncing_ball.orbit(RIGID, amplitude=1.4)
+    doubling = bouncing_ball.follow(one, to=1.8).first("period doubling")
+    doubled = bouncing_ball.follow(doubling, to=1.8)
+    assert (doubled.attrs["impacts"], doubled.attrs["periods"]) == (2, 2)
+    first = bouncing_ball.switch(doubling)
+    by_switch = bouncing_ball.follow(first, to=1.8)
+    np.testing.assert_array_equal(doubled.phase, by_switch.phase)
+    ranges = {"restitution": (0.4, 0.6)}
+    curve = bouncing_ball.follow(doubling, along=("amplitude", "restitution"), ranges=ranges)
+    assert curve.attrs["curve_kind"] == "period doubling"
+    short = bouncing_ball.curve(doubling, kind="period doubling", across="restitution",
+                                across_range=(0.4, 0.6))  # fmt: skip
+    np.testing.assert_array_equal(curve.amplitude, short.amplitude)
+    # From a saddle-node the branch on which it lies is followed, along the parameter it came from.
+    fold = bouncing_ball.follow(one, to=0.5).first("saddle-node")
+    again = bouncing_ball.follow(fold)
+    assert again.attrs["impacts"] == 1 and float(again.amplitude[-1]) > fold.amplitude
+
+
+def test_a_branch_that_ends_at_a_special_orbit_is_not_followed_from_there(refusal):
+    """At the grazing of an impact there is one impact less beyond it."""
+    one = bouncing_ball.orbit(RIGID, amplitude=1.4)
+    last = replace(one, kind="grazing of an impact")
+    with refusal(NoOrbitError, "the branch ends at the grazing of an impact"):
+        bouncing_ball.follow(last, to=1.8)
 
 
 def test_lines_change_from_solid_to_dashed_at_the_period_doubling():

@@ -129,8 +129,9 @@ def _diagram() -> Program:
 
 def _design() -> Program:
     from bouncing_ball.cli import design
+    from bouncing_ball.cli.design_text import lines
 
-    return Program(design.add_options, design.design, design.lines, design.document)
+    return Program(design.add_options, design.design, lines, design.document)
 
 
 def _explain() -> Program:

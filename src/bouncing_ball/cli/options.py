@@ -293,6 +293,17 @@ def add_parameters(parser: argparse.ArgumentParser, call: Callable) -> None:
             _add_option(parser, parameter, texts.get(name, ""))
 
 
+def add_optional(parser: argparse.ArgumentParser, call: Callable, names: Iterable[str]) -> None:
+    """Add options for some parameters of a call, of which none is required."""
+    texts = meanings(call)
+    parameters = inspect.signature(call).parameters
+    for name in names:
+        parameter = parameters[name]
+        if parameter.default is parameter.empty:
+            parameter = parameter.replace(default=None)
+        _add_option(parser, parameter, texts.get(name, ""))
+
+
 def _add_argument(parser: argparse.ArgumentParser, parameter: inspect.Parameter, text: str) -> None:
     """Add an argument by position."""
     reading = _reading(parameter.annotation)

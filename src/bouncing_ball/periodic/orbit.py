@@ -66,6 +66,13 @@ def check_index(n: ArrayLike) -> None:
     require(whole, np.asarray(n), name, allowed)
 
 
+def _comparable(value: Any) -> Any:
+    """A value as one that can be compared with ``==``: an array as its shape and its entries."""
+    if isinstance(value, np.ndarray):
+        return value.shape, tuple(value.ravel().tolist())
+    return value
+
+
 @dataclass(frozen=True, repr=False)
 class Orbit(Batch):
     """Orbits with k impacts in m periods of one model.
@@ -152,6 +159,22 @@ class Orbit(Batch):
         names = (*kind, *counts, "law", *OBSERVABLES)
         values = (f"  {name:<22}{in_words(getattr(self, name))}" for name in names)
         return "\n".join([type(self).__name__, *values])
+
+    # Orbits with the same fields are equal, have the same hash, and are the same when pickled.
+
+    @property
+    def _values(self) -> tuple[Any, ...]:
+        return tuple(_comparable(getattr(self, field.name)) for field in fields(self))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Orbit) and self._values == other._values
+
+    def __hash__(self) -> int:
+        return hash(self._values)
+
+    def __getstate__(self) -> dict[str, Any]:
+        # Computed quantities are left out: the equations of an orbit hold functions.
+        return {field.name: getattr(self, field.name) for field in fields(self)}
 
     # The shape of the orbits is that of the model, of Λ and of the impacts without their last axis.
 
@@ -377,7 +400,7 @@ class Orbit(Batch):
         ``tail`` is the length of its last axis, 0 if it has the shape of the orbits.
         """
         exists = np.broadcast_to(self.exists & np.isfinite(self.amplitude), self.shape)
-        if np.all(exists) and self.size <= _LEGS:
+        if np.all(exists) and 0 < self.size <= _LEGS:
             return quantity(self)
         ends = (tail,) if tail else ()
         found = np.full((self.size, *ends), np.nan)

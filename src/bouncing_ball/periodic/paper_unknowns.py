@@ -100,7 +100,9 @@ class PaperUnknowns:
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """The Jacobian of the residual, shape (..., N, N + 1)."""
-        matrix = self.orbits.jacobian(self.inner(y)) @ self._slopes(y)
+        # The duration of a contact that touches its release has infinite derivatives.
+        with np.errstate(invalid="ignore"):
+            matrix = self.orbits.jacobian(self.inner(y)) @ self._slopes(y)
         return self._weights()[..., np.newaxis] * matrix
 
     def event(self, event: Event) -> Event:

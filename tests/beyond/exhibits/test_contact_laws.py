@@ -183,7 +183,7 @@ def test_the_threshold_of_a_further_orbit_is_that_of_its_own_search(errors):
 def test_contacts_of_one_centroid_take_different_times(errors):
     for name in NAMES:
         models = CalibratedContacts(name, LawOrbit(**ONE)).models(np.array([100.0]))
-        speed = -models.orbit(1, 1.0).relative_impact_velocity
+        speed = -n_t.orbit(models, 1, 1.0).relative_impact_velocity
         impact = models.signature(speed)
         assert impact.delay == pytest.approx(0.65 / 1.65 * np.pi / 100, rel=1e-8)
         # A contact that ends by its force is released below the table's level.

@@ -16,10 +16,11 @@ from time import process_time
 import numpy as np
 import pytest
 import xarray as xr
+from asked_contacts import answered
 from engine_runs import RUN, Trial, drake, installed, mujoco, only_if_installed
 from pandas import DataFrame
 
-from bouncing_ball import corrected, design, limits, rigid, spring_damper
+from bouncing_ball import corrected, limits, rigid, spring_damper
 from bouncing_ball.accuracy.corrected_errors import SIMPLE
 from bouncing_ball.accuracy.errors import relative
 from bouncing_ball.beyond.exhibits.engine_steps import (
@@ -202,8 +203,8 @@ def test_drakes_hunt_and_crossley_has_the_restitution_at_the_orbits_speed(restit
     only_if_installed("drake")
     table = {"mass": 0.5, "frequency": 20.0, "acceleration": "0.8 g", "n": 1}
     contact = {"contact_time": 2e-3, "restitution": restitution, "law": "hunt-crossley"}
-    made = design(**table, **contact, engine="drake", restitution_error=0.01)
-    found = made.engine
+    options = table | contact | {"engine": "drake", "restitution_error": 0.01}
+    made, _, found, *_ = answered(**options)
     speed = float(rigid_speed(1, restitution)) * made.case.table.length / made.case.table.time
     for fraction in (0.02, 0.5, 0.98):
         start = fraction * found.time_step * speed

@@ -8,6 +8,7 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.exhibits.continuation_of_orbits import (
     Branches,
     both_domains,
@@ -17,6 +18,7 @@ from bouncing_ball.paper.exhibits.continuation_of_orbits import (
     stability_ranges,
 )
 from bouncing_ball.paper.exhibits.continuation_of_orbits_figures import domains
+from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.spring_damper_bifurcations import period_doubling, saddle_node
 from bouncing_ball.periodic.spring_damper_branch import branch_point
 from bouncing_ball.pipeline.configuration import typed
@@ -59,9 +61,9 @@ def test_points_are_orbits(figure_8):
     assert float(figure_8.residual.max()) < 1e-12
     for omega in FIGURE_8["frequency_ratio"]:
         row = figure_8.sel(frequency_ratio=omega)
-        orbit = Orbit(
+        orbit = Orbit.of(
+            SpringDamperModel(SpringDamper(omega, zeta)),
             1,
-            SpringDamper(omega, zeta),
             row.amplitude.values,
             row.phase.values,
             row.contact_duration.values,
@@ -192,13 +194,13 @@ def test_fig_15_has_the_branches_of_both_models(continuation_settings, described
 
 
 def test_a_very_stiff_contact_is_stable_between_its_bifurcations(follow):
-    _, branch = follow(1, 0.85, 1e5, 1.2)
+    branch = follow(1, 0.85, 1e5, 1.2).branch
     assert first_limits(branch)[:, -1] == pytest.approx(bifurcations(1, 0.85, 1e5), abs=1e-12)
 
 
 def test_both_ends_in_contact_with_each_other(follow):
     # ϖ = 0.6, n = 2: the branch lies between permanent contact at both ends.
-    _, branch = follow(2, 0.3, 0.6, 10.0)
+    branch = follow(2, 0.3, 0.6, 10.0).branch
     reasons = (str(branch.start), str(branch.end))
     assert all(reason.startswith(("flight lost", "contact lost")) for reason in reasons)
 
@@ -233,8 +235,9 @@ def test_the_figure_has_the_reason_for_a_branch_that_is_missing(continuation_set
 @pytest.mark.slow
 @pytest.mark.parametrize(("n", "r", "top"), [(1, 0.3, 10.0), (2, 0.85, 1.5)])
 def test_the_branch_of_a_contact_slower_than_the_table_is_followed(follow, n, r, top):
-    system, branch = follow(n, r, 0.6, top)
-    assert np.max(np.abs(system.residual(branch.points))) < 1e-10
+    found = follow(n, r, 0.6, top)
+    branch = found.branch
+    assert np.max(np.abs(found.problem.residual(branch.points))) < 1e-10
     assert branch.points[:, -1].min() >= 0 and branch.points[:, -1].max() <= top * (1 + 1e-12)
 
 
@@ -247,6 +250,6 @@ def test_a_window_without_a_period_doubling_has_no_range_and_says_why(continuati
 
 
 def test_a_branch_without_a_saddle_node_is_refused(follow, refusal):
-    _, branch = follow(1, 0.85, 1.0, 1.5)
+    branch = follow(1, 0.85, 1.0, 1.5).branch
     with refusal(NoOrbitError, "no saddle-node"):
         first_limits(branch)

@@ -34,7 +34,8 @@ class RestitutionHistory(OrbitParameters):
 
 def _grazing(orbits: Orbit) -> np.ndarray:
     """φ and Λ at which the unstable orbits of one family graze the table; NaN if they do not."""
-    problem = PaperUnknowns.of(orbits)
+    # The equations of one orbit are those of its family.
+    problem = PaperUnknowns.of(orbits[0])
     found = problem.grazing(problem.point(orbits))
     if not len(found):
         return np.full(2, np.nan)

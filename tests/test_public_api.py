@@ -45,7 +45,7 @@ TSUJI = contact_law("tsuji", stiffness=900.0, damping=0.1)
         ("docs/python.md", 14),
         ("docs/error-law.md", 8),
         ("docs/periodic-orbits.md", 14),
-        ("docs/how-an-orbit-is-found.md", 5),
+        ("docs/how-an-orbit-is-found.md", 4),
         ("docs/proofs.md", 7),
     ],
 )

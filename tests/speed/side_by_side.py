@@ -218,7 +218,7 @@ def batch_row() -> Row:
     ball = bouncing_ball.rigid(restitution=R)
     start = bouncing_ball.orbit_of_motion(ball, amplitude=1.6, phase=1.0, velocity=-3.0)
     r = np.linspace(R - 0.01, R + 0.01, BRANCHES)
-    family = family_of(ball.model, 1.6).at({"restitution": r})
+    family = family_of(ball, 1.6).at({"restitution": r})
     orbits = replace(start.orbits, family=family)
     first = np.tile(start.y, (BRANCHES, 1))
 

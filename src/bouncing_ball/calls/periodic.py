@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from bouncing_ball.calls.arguments import (
+from bouncing_ball.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
     FAMILY,
     POINTS,
@@ -18,14 +18,14 @@ from bouncing_ball.calls.arguments import (
     chosen,
     is_array,
 )
-from bouncing_ball.calls.balls import Ball, a_ball, a_known_ball, a_single_ball
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.ball import Ball, a_ball, a_known_ball, a_single_ball
 from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.stability import Side
 
 if TYPE_CHECKING:
-    from bouncing_ball.calls.periodic_on_grid import Branches, Limits, Orbits, PermanentContact
+    from bouncing_ball.drawing.result import Result
 
 
 class TwoLimits(NamedTuple):
@@ -42,7 +42,7 @@ class TwoLimits(NamedTuple):
 
 def orbit(
     ball: Ball, n: Family = 1, *, amplitude: AmplitudeOfOrbit, side: SideName = "stable"
-) -> Orbit | Orbits:
+) -> Orbit | Result:
     """The n-T orbit at the excitation amplitude Λ.
 
     Parameters
@@ -57,7 +57,7 @@ def orbit(
 
     Returns
     -------
-    Orbit or Orbits
+    Orbit or Result
         One orbit, with Python floats. If a parameter is an array, a dataset of the observables
         of all orbits with an axis named after each array; NaN where there is no orbit.
 
@@ -93,7 +93,7 @@ release='displacement')
         from bouncing_ball.calls.periodic_on_grid import orbits_on_grid
 
         return orbits_on_grid(ball, family, lam, branch_side)
-    model = ball.at_orbit(family, lam, branch_side).model
+    model = ball.at_orbit(family, lam, branch_side)
     return n_t.require_orbit(model, family, lam, branch_side)
 
 
@@ -127,14 +127,14 @@ def orbits(ball: Ball, n: int = 1, *, amplitude: float) -> list[Orbit]:
     """
     family = checked_number("n", n, FAMILY)
     lam = checked_number("amplitude", amplitude, AMPLITUDE_OF_ORBIT)
-    model = a_single_ball(a_ball(ball).at_orbit(family, lam)).model
+    model = a_single_ball(a_ball(ball).at_orbit(family, lam))
     found = n_t.orbits(model, family, lam)
     if not found.size:
         raise NoOrbitError(f"no {family}-T orbit at Λ = {lam:g} for {model.label}")
     return [found[k] for k in range(found.size)]
 
 
-def limits(ball: Ball, n: Family = 1) -> TwoLimits | Limits:
+def limits(ball: Ball, n: Family = 1) -> TwoLimits | Result:
     """Saddle-node and period doubling of the n-T orbits; NaN where there is none.
 
     Parameters
@@ -145,7 +145,7 @@ def limits(ball: Ball, n: Family = 1) -> TwoLimits | Limits:
 
     Returns
     -------
-    TwoLimits or Limits
+    TwoLimits or Result
         Two orbits. If a parameter is an array, a dataset of both amplitudes and phases with an
         axis named after each array.
 
@@ -166,7 +166,7 @@ def limits(ball: Ball, n: Family = 1) -> TwoLimits | Limits:
         from bouncing_ball.calls.periodic_on_grid import limits_on_grid
 
         return limits_on_grid(ball, family)
-    model = ball.at_limits(family).model
+    model = ball.at_limits(family)
     return TwoLimits(
         saddle_node=n_t.saddle_node(model, family),
         period_doubling=n_t.period_doubling(model, family),
@@ -175,7 +175,7 @@ def limits(ball: Ball, n: Family = 1) -> TwoLimits | Limits:
 
 def branch(
     ball: Ball, n: Family = 1, *, amplitude_max: float | None = None, points: Points = 300
-) -> Branches:
+) -> Result:
     """The branch of n-T orbits over the amplitude Λ, on both sides of its saddle-node.
 
     Parameters
@@ -190,7 +190,7 @@ def branch(
 
     Returns
     -------
-    Branches
+    Result
         ``amplitude``, ``phase`` and the other observables of each ``point``, and whether the
         orbit is ``stable`` and ``admissible``; ``special_amplitude`` and others of the
         saddle-nodes, period doublings and grazing orbits. Where one of several branches does not
@@ -224,7 +224,7 @@ def branch(
     return branches_on_grid(ball, family, top, count)
 
 
-def permanent_contact(ball: Ball) -> float | PermanentContact:
+def permanent_contact(ball: Ball) -> float | Result:
     """The Λ up to which a ball at rest stays on the table.
 
     Parameters
@@ -235,7 +235,7 @@ def permanent_contact(ball: Ball) -> float | PermanentContact:
 
     Returns
     -------
-    float or PermanentContact
+    float or Result
         If a parameter of the ball is an array, a dataset with an axis named after each array.
 
     Raises
@@ -254,7 +254,7 @@ def permanent_contact(ball: Ball) -> float | PermanentContact:
         from bouncing_ball.calls.periodic_on_grid import permanent_contact_on_grid
 
         return permanent_contact_on_grid(known)
-    return float(known.model.permanent_contact_threshold())
+    return float(known.permanent_contact_threshold())
 
 
 def _is_grid(ball: Ball, *arguments: Any) -> bool:

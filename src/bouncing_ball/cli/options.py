@@ -111,7 +111,7 @@ def meanings(call: Callable) -> dict[str, str]:
 
     Examples
     --------
-    >>> from bouncing_ball.calls.balls import rigid
+    >>> from bouncing_ball.models.makers import rigid
     >>> meanings(rigid)
     {'restitution': 'Restitution coefficient r in (0, 1].'}
     """

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 from bouncing_ball.accuracy.errors import OF_ORBITS, QUANTITIES, Quantity
-from bouncing_ball.accuracy.thresholds import ThresholdStatus
+from bouncing_ball.accuracy.thresholds import RATIOS, ThresholdStatus
 from bouncing_ball.contacts.contact import Contact
-from bouncing_ball.contacts.families import RATIOS, Needed, needed
+from bouncing_ball.contacts.families import Needed, needed
 from bouncing_ball.contacts.hertz import reduced_modulus
 from bouncing_ball.contacts.loss import of_loss
 from bouncing_ball.contacts.notes import remarks

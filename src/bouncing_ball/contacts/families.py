@@ -16,6 +16,7 @@ from bouncing_ball.accuracy import error_law
 from bouncing_ball.accuracy.corrected_errors import search
 from bouncing_ball.accuracy.error_law import law_thresholds
 from bouncing_ball.accuracy.errors import OF_IMPACTS, OF_ORBITS, Quantity, relative
+from bouncing_ball.accuracy.thresholds import RATIOS
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.rows import Listed
 from bouncing_ball.contacts.table import TableMotion
@@ -341,9 +342,6 @@ def _units(table: TableMotion) -> np.ndarray:
     return units
 
 
-# From contacts that last a considerable part of the table's period to contacts stiffer than those
-# of any simulation. The grid is fine, so that two crossings hardly fall between neighbours.
-RATIOS = np.geomspace(1.0, 1e6, 97)
 NO_ORBIT = "no orbit"
 """A status in addition to :class:`~bouncing_ball.accuracy.thresholds.ThresholdStatus`."""
 

@@ -69,9 +69,7 @@ def exact_orbit(release, restitution, n, frequency_ratio):
     zeta = float(damping_ratio(restitution, release))
     ball = spring_damper(frequency_ratio=frequency_ratio, damping_ratio=zeta, release=str(release))
     ends = limits(ball, n)
-    return n_t.orbit(
-        ball.model, n, (ends.saddle_node.amplitude + ends.period_doubling.amplitude) / 2
-    )
+    return n_t.orbit(ball, n, (ends.saddle_node.amplitude + ends.period_doubling.amplitude) / 2)
 
 
 @cache
@@ -90,7 +88,7 @@ def seconds_per_bounce(model, *case):
     # The second time everything is imported, and the third the processor has warmed up.
     for _ in range(3):
         began = process_time()
-        balls[model].model.simulate(
+        balls[model].simulate(
             float(orbit.amplitude),
             phase=float(orbit.phase),
             velocity=float(orbit.impact_velocity),

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from functools import cached_property
+from typing import Any, ClassVar
 
 from numpy.typing import ArrayLike
 
@@ -34,6 +36,11 @@ class CorrectedModel(Model):
     law: Signature
 
     name: ClassVar[str] = "corrected"
+
+    @cached_property
+    def parameters(self) -> Mapping[str, Any]:
+        """The parameters of the contact by name, and the name of this model of it."""
+        return {**super().parameters, "model": self.name}
 
     @classmethod
     def of_contact(cls, contact: ContactLaw) -> CorrectedModel:

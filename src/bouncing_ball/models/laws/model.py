@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from functools import cached_property
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -35,6 +37,11 @@ class LawModel(Model):
     law: ContactLaw
 
     name: ClassVar[str] = "contact-law"
+
+    @cached_property
+    def parameters(self) -> Mapping[str, Any]:
+        """The parameters of the law by name, and the name of the law."""
+        return {"law": self.law.name, **super().parameters}
 
     def dynamics(self, amplitude: ArrayLike) -> Dynamics:
         """The contacts and flights of these balls on a table of amplitude Λ."""

@@ -1,21 +1,17 @@
-"""Balls, which all calls take: a model of the impact with its parameters.
+"""Balls by their parameters: models of the impact, whose parameters are checked and are labels.
 
 :func:`rigid` makes a ball of the restitution model, :func:`spring_damper` one on a spring-damper
 contact, and :func:`corrected` one of the corrected restitution model of a contact. Balls on
-contacts of other laws are made in :mod:`~bouncing_ball.calls.law_balls`. Parameters that are arrays
-make several balls.
+contacts of other laws are made in :mod:`~bouncing_ball.contacts.law_balls`. Parameters that are
+arrays make several balls.
 """
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from numpy.typing import ArrayLike
-
-from bouncing_ball.calls.arguments import (
+from bouncing_ball.datasets.arguments import (
     DAMPING_RATIO,
     FREQUENCY_RATIO,
     RESTITUTION,
@@ -29,115 +25,19 @@ from bouncing_ball.calls.arguments import (
     is_array,
 )
 from bouncing_ball.errors import ModelError, ParameterError
+from bouncing_ball.models.ball import Ball, a_ball
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
-from bouncing_ball.models.model import Model
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-
-if TYPE_CHECKING:
-    from bouncing_ball.datasets.labelled import Grid
 
 LOSSES = ("restitution", "damping_ratio", "measured_restitution")
 """The parameters that determine the loss of an impact; exactly one of them is needed."""
 
 
-class Ball(ABC):
-    """One ball, or several if parameters are arrays, whose impacts obey one model."""
-
-    is_known: bool
-    """Whether the model is known without a speed."""
-
-    parameters: Mapping[str, Any]
-    """The parameters by name. They become axes and attributes of results."""
-
-    @abstractmethod
-    def at_speed(self, speed: ArrayLike) -> ModelBall:
-        """The ball with its model, where a law that is given by the r and D of a free impact has
-        them at this impact speed.
-        """
-
-    @abstractmethod
-    def at_orbit(self, n: int, amplitude: float, side: str = "stable") -> ModelBall:
-        """The ball with its model, where a law that is given by the r and D of a free impact has
-        them at the impact speed of this n-T orbit.
-
-        Raises
-        ------
-        NoOrbitError
-            If the law depends on the orbit and there is none.
-        """
-
-    @abstractmethod
-    def at_limits(self, n: ArrayLike) -> ModelBall:
-        """The ball with its model, where a law that is given by the r and D of a free impact has
-        them at the impact speed of the restitution model's n-T orbits, 2πn/(1 + r).
-        """
-
-    @abstractmethod
-    def corrected(self) -> Ball:
-        """The ball of the corrected restitution model of this contact."""
-
-    @abstractmethod
-    def row(self, grid: Grid) -> Ball:
-        """The balls at the places of a grid of which the parameters are arguments, one after
-        another.
-        """
-
-    @abstractmethod
-    def take(self, number: int) -> Ball:
-        """One ball of a row; a single ball is unchanged."""
-
-
-@dataclass(frozen=True, eq=False)
-class ModelBall(Ball):
-    """A ball whose model is known.
-
-    Parameters
-    ----------
-    model : Model
-        One model, or a row of models, one for each place of the grid of the parameters.
-    parameters : mapping
-        The parameters by name; empty for a model that was made without this module.
-
-    Examples
-    --------
-    >>> ModelBall(RestitutionModel(0.5)).at_speed(3.0).model
-    RestitutionModel(restitution=0.5)
-    """
-
-    model: Model
-    parameters: Mapping[str, Any] = field(default_factory=dict)
-
-    is_known = True
-
-    def at_speed(self, speed: ArrayLike) -> ModelBall:
-        return self
-
-    def at_orbit(self, n: int, amplitude: float, side: str = "stable") -> ModelBall:
-        return self
-
-    def at_limits(self, n: ArrayLike) -> ModelBall:
-        return self
-
-    def corrected(self) -> ModelBall:
-        law = self.model.impact_law
-        if not isinstance(law, ContactLaw):
-            raise ModelError(f"{self.model.name} impacts have no contact that could be corrected")
-        model = CorrectedModel.of_contact(law)
-        return ModelBall(model, {**self.parameters, "model": "corrected"})
-
-    def row(self, grid: Grid) -> ModelBall:
-        number = grid.numbers_of(self.parameters)
-        return replace(self, model=self.model.take(number))
-
-    def take(self, number: int) -> ModelBall:
-        return replace(self, model=self.model.take(number))
-
-
-def rigid(*, restitution: Restitution) -> ModelBall:
+def rigid(*, restitution: Restitution) -> RestitutionModel:
     """A ball of the restitution model, whose impacts are instants (Eqs. 1-9).
 
     Parameters
@@ -152,12 +52,12 @@ def rigid(*, restitution: Restitution) -> ModelBall:
 
     Examples
     --------
-    >>> rigid(restitution=0.85).model
+    >>> rigid(restitution=0.85)
     RestitutionModel(restitution=0.85)
     """
     r = checked("restitution", restitution, RESTITUTION)
     flat = flattened({"restitution": r})
-    return ModelBall(RestitutionModel(flat["restitution"]), {"restitution": r})
+    return RestitutionModel(flat["restitution"]).labelled({"restitution": r})
 
 
 def spring_damper(
@@ -167,7 +67,7 @@ def spring_damper(
     damping_ratio: DampingRatio | None = None,
     measured_restitution: Restitution | None = None,
     release: Rule = "displacement",
-) -> ModelBall:
+) -> SpringDamperModel:
     """A ball on a contact with a spring and a damper (Eqs. 10-27).
 
     Exactly one of the parameters restitution, damping_ratio and measured_restitution is needed.
@@ -195,7 +95,7 @@ def spring_damper(
 
     Examples
     --------
-    >>> spring_damper(frequency_ratio=10.0, damping_ratio=0.1).model.contact
+    >>> spring_damper(frequency_ratio=10.0, damping_ratio=0.1).contact
     SpringDamper(frequency_ratio=10, damping_ratio=0.1, release='displacement')
     """
     chosen("release", release, [str(each) for each in Release])
@@ -217,7 +117,7 @@ def spring_damper(
     else:
         measured = loss == "measured_restitution"
         contact = SpringDamper.from_restitution(flat[loss], ratio, release, measured=measured)
-    return ModelBall(SpringDamperModel(contact), {**parameters, "release": str(release)})
+    return SpringDamperModel(contact).labelled({**parameters, "release": str(release)})
 
 
 def the_loss(
@@ -256,58 +156,17 @@ def corrected(ball: Ball) -> Ball:
 
     Examples
     --------
-    >>> corrected(spring_damper(frequency_ratio=10.0, restitution=0.65)).model.label
+    >>> corrected(spring_damper(frequency_ratio=10.0, restitution=0.65)).label
     'linear with frequency ratio 10, damping ratio 0.135851'
     """
-    return a_ball(ball).corrected()
-
-
-def a_ball(ball: Any) -> Ball:
-    """The first argument of a call, after a check of its type.
-
-    Raises
-    ------
-    ParameterError
-        If it is no ball.
-
-    Examples
-    --------
-    >>> a_ball(0.85)
-    Traceback (most recent call last):
-    bouncing_ball.errors.ParameterError: the ball = 0.85 is not made by rigid, spring_damper, \
-contact_law or corrected
-    """
-    if not isinstance(ball, Ball):
-        how = "rigid, spring_damper, contact_law or corrected"
-        raise ParameterError(f"the ball = {{}} is not made by {how}", repr(ball))
-    return ball
-
-
-def a_known_ball(ball: Any) -> ModelBall:
-    """The first argument of a call that needs a model but has no speed.
-
-    Raises
-    ------
-    ParameterError
-        If it is no ball, or its model is not known without a speed.
-    """
-    if not a_ball(ball).is_known:
-        raise ParameterError("{duration} needs {speed}")
-    return ball
-
-
-def a_single_ball(ball: Any) -> ModelBall:
-    """The first argument of a call that takes one ball, whose model must be known.
-
-    Raises
-    ------
-    ParameterError
-        If it is no ball, a parameter is an array, or the model is not known without a speed.
-    """
-    for name, value in a_ball(ball).parameters.items():
-        if is_array(value):
-            raise ParameterError(f"{{{name}}} must be a single number here")
-    return a_known_ball(ball)
+    known: Any = a_ball(ball)
+    if not known.is_known:
+        return known.corrected()
+    law = known.impact_law
+    if not isinstance(law, ContactLaw):
+        raise ModelError(f"{known.name} impacts have no contact that could be corrected")
+    model = CorrectedModel.of_contact(law)
+    return model.labelled({**known.parameters, "model": model.name})
 
 
 def flattened(parameters: Mapping[str, Any]) -> Mapping[str, Any]:

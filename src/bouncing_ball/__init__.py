@@ -61,8 +61,6 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from bouncing_ball.accuracy.error_thresholds import error_thresholds
-    from bouncing_ball.calls.followed import curve, follow, orbit_of_motion, switch
-    from bouncing_ball.calls.periodic import branch, limits, orbit, orbits, permanent_contact
     from bouncing_ball.contacts.assess import assess_contact
     from bouncing_ball.contacts.choose import choose_contact
     from bouncing_ball.contacts.contact import Contact
@@ -73,11 +71,15 @@ if TYPE_CHECKING:
     from bouncing_ball.contacts.write import write_contact
     from bouncing_ball.errors import ModelError, NoOrbitError
     from bouncing_ball.long_run.motion_of import basins, lyapunov_exponent, motion_of, orbit_diagram
+    from bouncing_ball.long_run.orbit_of_motion import orbit_of_motion
     from bouncing_ball.models.makers import corrected, rigid, spring_damper
     from bouncing_ball.models.over_time import drop, history, simulate
     from bouncing_ball.models.rigid import RestitutionModel
     from bouncing_ball.models.spring_damper import SpringDamper
     from bouncing_ball.models.spring_damper_model import SpringDamperModel
+    from bouncing_ball.periodic.branches_of_ball import branch
+    from bouncing_ball.periodic.follow import curve, follow, switch
+    from bouncing_ball.periodic.orbits_of_ball import limits, orbit, orbits, permanent_contact
 
 __version__ = "0.1.0"
 
@@ -129,12 +131,16 @@ def __getattr__(name: str) -> Any:
     match name:
         case "corrected" | "rigid" | "spring_damper":
             from bouncing_ball.models import makers as module
-        case "curve" | "follow" | "orbit_of_motion" | "switch":
-            from bouncing_ball.calls import followed as module
+        case "curve" | "follow" | "switch":
+            from bouncing_ball.periodic import follow as module
+        case "orbit_of_motion":
+            from bouncing_ball.long_run import orbit_of_motion as module
         case "contact_law":
             from bouncing_ball.contacts import law_balls as module
-        case "branch" | "limits" | "orbit" | "orbits" | "permanent_contact":
-            from bouncing_ball.calls import periodic as module
+        case "branch":
+            from bouncing_ball.periodic import branches_of_ball as module
+        case "limits" | "orbit" | "orbits" | "permanent_contact":
+            from bouncing_ball.periodic import orbits_of_ball as module
         case "drop" | "history" | "simulate":
             from bouncing_ball.models import over_time as module
         case "basins" | "lyapunov_exponent" | "motion_of" | "orbit_diagram":

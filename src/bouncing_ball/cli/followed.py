@@ -4,9 +4,6 @@ import math
 from pathlib import Path
 from typing import Any, get_args
 
-from bouncing_ball.calls import followed as calls
-from bouncing_ball.calls import periodic
-from bouncing_ball.calls.labelled_branches import FollowedBranch
 from bouncing_ball.cli.impact import add_ball, ball_of
 from bouncing_ball.cli.options import (
     Parser,
@@ -27,7 +24,11 @@ from bouncing_ball.datasets.arguments import (
 )
 from bouncing_ball.datasets.files import PICTURES, require_writable
 from bouncing_ball.errors import ParameterError, Range
+from bouncing_ball.long_run.orbit_of_motion import orbit_of_motion
+from bouncing_ball.periodic import follow as calls
+from bouncing_ball.periodic import orbits_of_ball as periodic
 from bouncing_ball.periodic.curves import Degenerate
+from bouncing_ball.periodic.labelled import FollowedBranch
 from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.special import MEANINGS, Special
 
@@ -125,9 +126,7 @@ def _start(
         return periodic.orbit(ball, n, amplitude=amplitude, side=side)
     first_phase = 0.0 if phase is None else phase
     first_velocity = -math.pi if velocity is None else velocity
-    return calls.orbit_of_motion(
-        ball, amplitude=amplitude, phase=first_phase, velocity=first_velocity
-    )
+    return orbit_of_motion(ball, amplitude=amplitude, phase=first_phase, velocity=first_velocity)
 
 
 def _branch(start: Any, along: str, to: float, doublings: int) -> FollowedBranch:

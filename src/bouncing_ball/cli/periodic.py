@@ -6,7 +6,6 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from bouncing_ball.accuracy import error_law as error_laws
-from bouncing_ball.calls import periodic as calls
 from bouncing_ball.cli.impact import add_ball, add_contact, ball_of
 from bouncing_ball.cli.options import (
     Parser,
@@ -23,6 +22,7 @@ from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.makers import spring_damper
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic import orbits_of_ball as calls
 from bouncing_ball.periodic.orbit import OBSERVABLES, Orbit
 from bouncing_ball.periodic.stability import Bifurcation
 from bouncing_ball.periodic.start import restitution_speed

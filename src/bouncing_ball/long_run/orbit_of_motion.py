@@ -1,15 +1,68 @@
 """The periodic orbit on which a simulated ball ends."""
 
+import math
+
 import numpy as np
 
+from bouncing_ball.datasets.arguments import (
+    AMPLITUDE_OF_ORBIT,
+    FOLLOWED,
+    STATE,
+    Impacts,
+    checked_number,
+)
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.long_run.destination import final_motions
+from bouncing_ball.models.ball import Ball, a_single_ball
 from bouncing_ball.models.flight import table
 from bouncing_ball.models.model import Model
 from bouncing_ball.periodic.balls import LAMBDA, Balls
 from bouncing_ball.periodic.following import corrected
 from bouncing_ball.periodic.orbit import Orbit, orbit_at
 from bouncing_ball.periodic.simulation import simulated
+
+
+def orbit_of_motion(
+    ball: Ball,
+    *,
+    amplitude: float,
+    phase: float = 0.0,
+    velocity: float = -math.pi,
+    impacts: Impacts = 4000,
+) -> Orbit:
+    """The periodic orbit on which a ball ends, as a start for :func:`follow`.
+
+    The parameters are those of :func:`bouncing_ball.motion_of`, for a single ball.
+
+    Raises
+    ------
+    NoOrbitError
+        If the motion does not repeat, or the ball stays on the table; the message gives the reason.
+    ModelError
+        If a parameter is missing, of a wrong type or shape, or out of range.
+
+    Examples
+    --------
+    >>> from bouncing_ball import rigid
+    >>> orbit_of_motion(rigid(restitution=0.5), amplitude=1.6)
+    Orbit
+      impacts               2
+      periods               2
+      law                   0.5
+      amplitude             1.6
+      phase                 [0.403915 1.19435]
+      contact_duration      [0 0]
+      impact_velocity       [-2.90279 -3.41535]
+      bounce_velocity       [3.65826 2.58997]
+      apparent_restitution  [0.5 0.5]
+      max_height            7.32028
+    """
+    lam = checked_number("amplitude", amplitude, AMPLITUDE_OF_ORBIT)
+    phi = checked_number("phase", phase, STATE)
+    before = checked_number("velocity", velocity, STATE)
+    most = checked_number("impacts", impacts, FOLLOWED)
+    model = a_single_ball(ball)
+    return of_motion(model, lam, phi, before, most)
 
 
 def of_motion(

@@ -1,17 +1,16 @@
-"""Calls about the n-T orbits of a ball: an orbit, the limits of a family, its branch over Λ."""
+"""The n-T orbits of a ball: an orbit, all orbits at an amplitude, and the limits of a family."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
 from bouncing_ball.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
     FAMILY,
-    POINTS,
-    POSITIVE,
     AmplitudeOfOrbit,
     Family,
-    Points,
     SideName,
     checked,
     checked_number,
@@ -20,8 +19,10 @@ from bouncing_ball.datasets.arguments import (
 )
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.ball import Ball, a_ball, a_known_ball, a_single_ball
+from bouncing_ball.models.model import Model
+from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.orbit import Orbit
+from bouncing_ball.periodic.orbit import OBSERVABLES, Orbit
 from bouncing_ball.periodic.stability import Side
 
 if TYPE_CHECKING:
@@ -90,9 +91,14 @@ release='displacement')
     if _is_grid(a_ball(ball), family, lam):
         # Imported here, because a single orbit needs no labels, and importing xarray takes longer
         # than computing the orbit.
-        from bouncing_ball.calls.periodic_on_grid import orbits_on_grid
+        from bouncing_ball.periodic.places import labelled
 
-        return orbits_on_grid(ball, family, lam, branch_side)
+        def found(one: Ball, n: Any, amplitude: Any) -> dict[str, Any]:
+            model = one.at_orbit(n, amplitude, branch_side)
+            return _observables(n_t.orbit(model, n, amplitude, branch_side))
+
+        none = _observables(Orbit.of(RestitutionModel(1.0), 1, 1.0, np.nan))
+        return labelled("orbit", ball, {"n": family, "amplitude": lam}, found, none)
     model = ball.at_orbit(family, lam, branch_side)
     return n_t.require_orbit(model, family, lam, branch_side)
 
@@ -163,65 +169,14 @@ def limits(ball: Ball, n: Family = 1) -> TwoLimits | Result:
     """
     family = checked("n", n, FAMILY)
     if _is_grid(a_ball(ball), family):
-        from bouncing_ball.calls.periodic_on_grid import limits_on_grid
+        from bouncing_ball.periodic.places import labelled
 
-        return limits_on_grid(ball, family)
+        return labelled("limits", ball, {"n": family}, _both_limits)
     model = ball.at_limits(family)
     return TwoLimits(
         saddle_node=n_t.saddle_node(model, family),
         period_doubling=n_t.period_doubling(model, family),
     )
-
-
-def branch(
-    ball: Ball, n: Family = 1, *, amplitude_max: float | None = None, points: Points = 300
-) -> Result:
-    """The branch of n-T orbits over the amplitude Λ, on both sides of its saddle-node.
-
-    Parameters
-    ----------
-    ball : Ball
-    n : int or array of int
-        Index n of the family.
-    amplitude_max : float, optional
-        Largest Λ of the branch; by default 1.4 times that of the period doubling.
-    points : int
-        Number of points along the branch, at equal steps of arclength.
-
-    Returns
-    -------
-    Result
-        ``amplitude``, ``phase`` and the other observables of each ``point``, and whether the
-        orbit is ``stable`` and ``admissible``; ``special_amplitude`` and others of the
-        saddle-nodes, period doublings and grazing orbits. Where one of several branches does not
-        exist it is NaN, and ``end_reason`` says why.
-
-    Raises
-    ------
-    NoOrbitError
-        If there is no branch up to this Λ, or if it cannot be followed.
-    ModelError
-        If a parameter is of a wrong type or shape, or out of range.
-
-    Examples
-    --------
-    >>> import math
-    >>> from bouncing_ball import rigid
-    >>> found = branch(rigid(restitution=0.85), points=50)
-    >>> found.special_kind.values.tolist()
-    ['saddle-node', 'period doubling']
-    >>> round(float(found.special_amplitude[0]) / math.pi * 1.85 / 0.15, 12)
-    1.0
-    """
-    family = checked("n", n, FAMILY)
-    count = checked_number("points", points, POINTS)
-    top = None
-    if amplitude_max is not None:
-        top = checked_number("amplitude_max", amplitude_max, POSITIVE)
-    a_ball(ball)
-    from bouncing_ball.calls.periodic_on_grid import branches_on_grid
-
-    return branches_on_grid(ball, family, top, count)
 
 
 def permanent_contact(ball: Ball) -> float | Result:
@@ -251,12 +206,36 @@ def permanent_contact(ball: Ball) -> float | Result:
     """
     known = a_known_ball(ball)
     if _is_grid(known):
-        from bouncing_ball.calls.periodic_on_grid import permanent_contact_on_grid
+        from bouncing_ball.periodic.places import labelled
 
-        return permanent_contact_on_grid(known)
+        return labelled("permanent-contact", known, {}, _threshold)
     return float(known.permanent_contact_threshold())
 
 
 def _is_grid(ball: Ball, *arguments: Any) -> bool:
     """Whether an argument or a parameter of the ball is an array."""
     return any(is_array(value) for value in (*arguments, *ball.parameters.values()))
+
+
+def _observables(orbit: Orbit) -> dict[str, Any]:
+    """The observables of orbits except Λ, and whether they are stable and admissible."""
+    values = {name: getattr(orbit, name) for name in OBSERVABLES if name != "amplitude"}
+    return values | {"stable": orbit.is_stable(), "admissible": orbit.is_admissible()}
+
+
+def _both_limits(ball: Ball, n: Any) -> dict[str, Any]:
+    """Amplitude and phase of the saddle-node and of the period doubling."""
+    model = ball.at_limits(n)
+    ends = {
+        "saddle_node": n_t.saddle_node(model, n),
+        "period_doubling": n_t.period_doubling(model, n),
+    }
+    return {
+        f"{name}_{quantity}": getattr(end, quantity)
+        for name, end in ends.items()
+        for quantity in ("amplitude", "phase")
+    }
+
+
+def _threshold(model: Model) -> dict[str, Any]:
+    return {"threshold_amplitude": model.permanent_contact_threshold()}

@@ -2,29 +2,23 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, overload
 
-from bouncing_ball.calls.labelled_branches import FollowedBranch, SpecialCurve
 from bouncing_ball.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
     FINITE,
-    FOLLOWED,
     POINTS,
-    STATE,
-    Impacts,
     Points,
     checked_number,
     chosen,
 )
 from bouncing_ball.errors import NoOrbitError, ParameterError
-from bouncing_ball.long_run import orbit_of_motion as motions
-from bouncing_ball.models.ball import Ball, a_single_ball
 from bouncing_ball.periodic import curves, following, switching
 from bouncing_ball.periodic.balls import LAMBDA, Balls
 from bouncing_ball.periodic.curves import Window
+from bouncing_ball.periodic.labelled import FollowedBranch, SpecialCurve
 from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.special import MEANINGS, Special
 
@@ -32,49 +26,6 @@ BRANCH, CURVE = 500, 500
 """Default of the largest number of points of a branch, and of a curve in each direction."""
 # A branch ends at these orbits, because an impact or a rest disappears there.
 _ENDS = (Special.GRAZING_IMPACT, Special.STICKING)
-
-
-def orbit_of_motion(
-    ball: Ball,
-    *,
-    amplitude: float,
-    phase: float = 0.0,
-    velocity: float = -math.pi,
-    impacts: Impacts = 4000,
-) -> Orbit:
-    """The periodic orbit on which a ball ends, as a start for :func:`follow`.
-
-    The parameters are those of :func:`bouncing_ball.motion_of`, for a single ball.
-
-    Raises
-    ------
-    NoOrbitError
-        If the motion does not repeat, or the ball stays on the table; the message gives the reason.
-    ModelError
-        If a parameter is missing, of a wrong type or shape, or out of range.
-
-    Examples
-    --------
-    >>> from bouncing_ball import rigid
-    >>> orbit_of_motion(rigid(restitution=0.5), amplitude=1.6)
-    Orbit
-      impacts               2
-      periods               2
-      law                   0.5
-      amplitude             1.6
-      phase                 [0.403915 1.19435]
-      contact_duration      [0 0]
-      impact_velocity       [-2.90279 -3.41535]
-      bounce_velocity       [3.65826 2.58997]
-      apparent_restitution  [0.5 0.5]
-      max_height            7.32028
-    """
-    lam = checked_number("amplitude", amplitude, AMPLITUDE_OF_ORBIT)
-    phi = checked_number("phase", phase, STATE)
-    before = checked_number("velocity", velocity, STATE)
-    most = checked_number("impacts", impacts, FOLLOWED)
-    model = a_single_ball(ball)
-    return motions.of_motion(model, lam, phi, before, most)
 
 
 @overload
@@ -295,6 +246,7 @@ def curve(
     --------
     The saddle-nodes of the restitution model are at Λ = π (1 - r)/(1 + r):
 
+    >>> import math
     >>> import bouncing_ball
     >>> one = bouncing_ball.orbit(bouncing_ball.rigid(restitution=0.5), amplitude=1.4)
     >>> fold = follow(one, to=0.5).first("saddle-node")

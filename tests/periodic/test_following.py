@@ -13,8 +13,8 @@ from bouncing_ball.models.flight import Flight, table
 from bouncing_ball.numerics.corrector import newton, plane
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.branch import whole_branch
 from bouncing_ball.periodic.balls import Balls
+from bouncing_ball.periodic.branch import whole_branch
 from bouncing_ball.periodic.following import follow
 from bouncing_ball.periodic.observables import GRAZING, branch_columns
 from bouncing_ball.periodic.orbit import orbit_at

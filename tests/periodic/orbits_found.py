@@ -1,12 +1,12 @@
-"""Balls by the name of their model, and orbits with several impacts on which simulated balls end."""
+"""Balls by the name of their model, and orbits with several impacts on which balls end."""
 
+from bouncing_ball.long_run.orbit_of_motion import of_impact
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.laws.hertzian import Tsuji
 from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.long_run.orbit_of_motion import of_impact
 from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.balls import Balls
 from bouncing_ball.periodic.simulation import simulated

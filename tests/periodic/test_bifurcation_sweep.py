@@ -46,7 +46,10 @@ def test_every_bifurcation_found_has_a_multiplier_of_plus_or_minus_one(release, 
     size = 1 + np.abs(matrix).max(axis=(-2, -1))
     lost = np.maximum(size, orbit.amplitude) * orbit.n * np.maximum(1, orbit.law.frequency_ratio)
     value = np.abs(KINDS[kind](trace, orbit.determinant()))
-    assert np.max(value / lost) < 200 * EPS
+    # Balls that rise at the impact, or fall at the release, follow no orbit, and land with another
+    # rounding.
+    bounces = (orbit.relative_impact_velocity < 0) & (orbit.relative_bounce_velocity > 0)
+    assert np.mean(bounces) > 0.9 and np.max((value / lost)[bounces]) < 200 * EPS
     # Where nothing changes sign but a pole or a grazing orbit it is of order one.
     assert np.max(value) < 1e-6
 

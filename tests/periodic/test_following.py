@@ -13,8 +13,8 @@ from bouncing_ball.models.flight import Flight, table
 from bouncing_ball.numerics.corrector import newton, plane
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.branch import whole_branch
 from bouncing_ball.periodic.balls import Balls
+from bouncing_ball.periodic.branch import whole_branch
 from bouncing_ball.periodic.following import follow
 from bouncing_ball.periodic.observables import GRAZING, branch_columns
 from bouncing_ball.periodic.orbit import orbit_at
@@ -236,7 +236,11 @@ def test_two_hundred_random_orbits_are_followed_without_a_jump(name):
         last = orbit_at(there.problem, there.branch.points[-2])
         rises = there.branch.tangents[-2, -1] > 0
         back = follow(last, increasing=not rises, most=120)
-        start = orbit.point(back.problem)
+        # The phases of the last orbit are between -π and π; those of the branch may have left it.
+        start = orbit.point(there.problem)
+        phases, _ = there.problem.states(there.branch.points[-2])
+        turned = np.round((last.phases - phases) / (2 * np.pi))
+        start[: 2 * orbit.impacts : 2] += 2 * np.pi * turned
         assert passes_through(back, start), (count, lam, r, ratio, phase, speed)
     assert special > 10
 

@@ -21,7 +21,8 @@ def test_the_locked_orbits_on_which_balls_end_are_orbits_of_the_equations(ratio)
     random = np.random.default_rng(61)
     r = random.uniform(0.1, 0.7, 40)
     lam = random.uniform(1.2, 5.0, 40)
-    motion = final_motions(balls("spring-damper", lam, r, ratio).model, lam, -np.pi / 2, 0.0, impacts=200)
+    model = balls("spring-damper", lam, r, ratio).model
+    motion = final_motions(model, lam, -np.pi / 2, 0.0, impacts=200)
     locked = np.flatnonzero((motion.kind == Kind.LOCKED) & (motion.periods > 0))
     found = []
     for k in locked:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from scipy.optimize import brentq
 
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
@@ -13,7 +14,7 @@ from bouncing_ball.numerics.continuation import StepControl, continue_branch
 from bouncing_ball.numerics.events import parameter_bound
 from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.paper_unknowns import PaperUnknowns
-from bouncing_ball.periodic.special import bifurcations, ends_of_contact
+from bouncing_ball.periodic.special import bifurcations, ends_of_contact, with_ends
 from bouncing_ball.periodic.spring_damper_bifurcations import orbit_at
 from bouncing_ball.periodic.spring_damper_branch import branch_point, orbits_of
 
@@ -27,36 +28,35 @@ releases = st.sampled_from(list(Release))
     lam=st.floats(0.1, 3.0),
     release=releases,
     phase=st.floats(-3, 3),
-    angle=st.floats(0.5, 4.0),
+    impact=st.floats(-12, -0.5),
     longer=st.floats(-1e-3, 1e-3),
 )
 def test_the_residual_is_that_of_the_papers_solution(
-    reference, n, zeta, omega, lam, release, phase, angle, longer
+    reference, n, zeta, omega, lam, release, phase, impact, longer
 ):
     if abs(omega - 1) < 0.05:  # the paper's form is singular at the resonance
         omega = 1.1
-    duration = angle / omega
+
+    def released(s, u):
+        d, v = reference.paper_contact(u, phase, lam, omega, zeta)(s)
+        return omega * d + (2 * zeta * v if release is Release.FORCE else 0.0)
+
+    # The first release of the contact in samples, each a small part of it.
+    time = np.linspace(0, 8 * np.pi, 2001)[1:] / omega
+    u = impact - lam * np.cos(phase)
+    signal = np.array([released(s, u) for s in time])
+    (up,) = np.nonzero((signal[:-1] < 0) & (signal[1:] >= 0))
+    assume(up.size)
+    k = up[0]
+    duration = brentq(released, time[k], time[k + 1], args=(u,), xtol=1e-15, rtol=1e-15)
+    rate = (released(time[k + 1], u) - released(time[k], u)) / (time[k + 1] - time[k])
+    assume(rate > 0.1 * omega)
     flight = 2 * np.pi * n - duration
-
-    def release_at(u):
-        d, v = reference.paper_contact(u, phase, lam, omega, zeta)(duration)
-        return omega * d + (2 * zeta * v if release is Release.FORCE else 0.0), d, v
-
-    # The release function is linear in δ′ at the impact: it vanishes after D for one of them.
-    (still, *_), (moving, *_) = release_at(0.0), release_at(-1.0)
-    assume(abs(still - moving) > 0.1)
-    u = still / (moving - still)
-    assume(-20 < u < -0.5)
-    _, d, v = release_at(u)
-    # The force or the displacement rises through zero.
-    rate = -1 - omega**2 * d - 2 * zeta * omega * v + lam * np.sin(phase + duration)
-    assume(omega * v + (2 * zeta * rate if release is Release.FORCE else 0.0) > 0.5)
+    d, v = reference.paper_contact(u, phase, lam, omega, zeta)(duration)
     bounce = v + lam * np.cos(phase + duration)
     height = d + lam * (np.sin(phase + duration) - np.sin(phase))
     height += bounce * flight - flight**2 / 2
-    closing = bounce - flight - lam * np.cos(phase)
-    assume(closing < -0.5)
-    expected = [-height, closing - u, omega * longer]
+    expected = [-height, bounce - flight - lam * np.cos(phase) - u, longer]
     system = PaperUnknowns.of(
         Orbit.of(
             SpringDamperModel(SpringDamper(omega, zeta, release)),
@@ -64,12 +64,12 @@ def test_the_residual_is_that_of_the_papers_solution(
             lam,
             phase,
             duration,
-            u + lam * np.cos(phase),
+            impact,
         )
     )
     # The paper's constants lose 1/√γ at ϖ ≈ 1: some hundred roundings of
     # velocities of order 20 and heights of order 400.
-    y = np.array([phase, u + lam * np.cos(phase), angle + longer, lam])
+    y = np.array([phase, impact, omega * duration + longer, lam])
     assert system.residual(y) == pytest.approx(np.array(expected), abs=3e-11)
 
 
@@ -128,10 +128,11 @@ def test_a_branch_may_end_where_the_contact_fills_the_cycle():
     orbit = orbits_of(point, contact, n)
     system = PaperUnknowns.of(orbit)
     start = system.point(orbit)
-    reasons = {
-        str(continue_branch(system, start, increasing=up, events=events_of(system)).end)
-        for up in (True, False)
-    }
+    events = events_of(system)
+    branches = [
+        continue_branch(system, start, increasing=up, events=events) for up in (True, False)
+    ]
+    reasons = {str(with_ends(branch, events[-3:]).end) for branch in branches}
     assert FLIGHT_LOST in reasons
 
 

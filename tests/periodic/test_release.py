@@ -45,7 +45,10 @@ def test_without_a_contact_that_lasts_there_is_no_highest_point():
 
 
 def test_differences_are_accurate_in_the_units_of_a_stiff_contact():
-    """At E = 4 the speed of the impact is 50 ϖ⁻³, at ϖ = 400 less than a step of 6e-6."""
+    """At E = 4 the speed of the impact is 50 ϖ⁻³, at ϖ = 400 less than a step of 6e-6.
+
+    They are also accurate without units, because the steps are short where an impact is slow.
+    """
     ratio = 400.0
     power = np.array([1.0, 3.0, 1.0, 2.0])
     orbit = long_contact(20.0, 4.0)
@@ -66,7 +69,7 @@ def test_differences_are_accurate_in_the_units_of_a_stiff_contact():
             off = (equations.jacobian(y) - slopes) * unit
         return np.abs(off / np.abs(slopes * unit).max(axis=1, keepdims=True)).max()
 
-    assert error(scaled) < 1e-4 and error(stiff) > 1e-3
+    assert error(scaled) < 1e-4 and error(stiff) < 1e-4
 
 
 @pytest.mark.parametrize("kind", [LinearContactDynamics, ContactDynamics])

@@ -28,7 +28,8 @@ def scaled_residual(orbit, point, contact):
     # Velocities, and lengths over one flight; the phase ϖD is rounded too.
     speed = 1 + abs(float(point.u)) + float(point.amplitude) + 2 * np.pi * orbit.n
     size = np.array([speed, speed, speed * 2 * np.pi * orbit.n])
-    return PaperUnknowns.of(orbit).residual(y) / (size * (1 + omega * float(point.contact_duration)))
+    size = size * (1 + omega * float(point.contact_duration))
+    return PaperUnknowns.of(orbit).residual(y) / size
 
 
 @given(log_ratios, dampings, families, releases, st.floats(-0.9, 1.0))

@@ -121,7 +121,8 @@ def test_a_simulated_ball_rests_in_its_first_turn_before_the_end_and_not_beyond_
         known = {"amplitude": amplitude, "restitution": restitution}
         known[along] = orbit.parameters[along] + ahead * aside
         lam, r = known.values()
-        run = balls("restitution", lam, r).model.simulate(lam, np.arcsin(1 / lam), np.sqrt(lam**2 - 1), 300)
+        model = balls("restitution", lam, r).model
+        run = model.simulate(lam, np.arcsin(1 / lam), np.sqrt(lam**2 - 1), 300)
         rests = run.time[1:][run.settling[1:] > 0]
         assert bool(rests.size and rests[0] < 2 * np.pi * orbit.periods) is expected
 

@@ -266,7 +266,9 @@ class LinearContactDynamics(ResumingDynamics):
     def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
         """The end of each contact, or permanent contact if it is proved never to end."""
         motion = self._motion(impact)
-        return self._ended(impact, motion, first_zero(motion, motion.earliest_release()))
+        end = first_zero(motion, motion.earliest_release())
+        # If the ball just reaches the table's level, rounding may give it a downward velocity.
+        return self._ended(impact, motion, end._replace(rate=np.maximum(end.rate, _ZERO)))
 
     def depart_after(self, impact: Impact, duration: np.ndarray) -> Departure:
         """The ends of the contacts nearest to given durations, also beyond an earlier end."""
@@ -302,8 +304,7 @@ class LinearContactDynamics(ResumingDynamics):
         duration = end.time
         phase = impact.phase + end.time
         x, y = table(phase, self.amplitude)
-        # If the ball just reaches the table's level, rounding may give it a downward velocity.
-        displacement, velocity = motion.release(np.maximum(end.rate, _ZERO), y)
+        displacement, velocity = motion.release(end.rate, y)
         forever = end.ended | end.undecided
         if forever.any():
             # Where the search ended without a release, the contact is permanent.

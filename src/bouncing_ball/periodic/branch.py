@@ -22,7 +22,7 @@ from bouncing_ball.numerics.events import Event, parameter_bound
 from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.paper_unknowns import PaperUnknowns
-from bouncing_ball.periodic.special import bifurcations, ends_of_contact
+from bouncing_ball.periodic.special import bifurcations, ends_of_contact, with_ends
 from bouncing_ball.periodic.stability import Bifurcation
 
 # By default a branch ends at this multiple of the Λ of its period doubling.
@@ -103,7 +103,8 @@ def whole_branch(
     for end in (found.start, found.end):
         if not end.finished:
             raise ContinuationError(f"the branch is not followed to its end: {end}")
-    return WholeBranch(problem, found)
+    of_contact = [problem.event(event) for event in ends_of_contact(problem.orbits)]
+    return WholeBranch(problem, with_ends(found, of_contact))
 
 
 def _default_top(low: float, doubling: float) -> float:

@@ -223,7 +223,7 @@ def _followed(
             orbits,
             start,
             increasing=increasing,
-            events=[*events(orbits), halves, *limits],
+            events=[*events(orbits), loss_of_release(orbits), halves, *limits],
             control=replace(control, initial=initial),
             max_points=most,
         )

@@ -14,8 +14,9 @@ from bouncing_ball.periodic.legs import lag_of, time_to_section, without_force
 from bouncing_ball.periodic.problem import PeriodicOrbits
 from bouncing_ball.periodic.special import sticking
 
-# Relative to its length, a leg of the simulation differs from that of the orbit by less than this
-# if both are the same; another landing or release differs by far more.
+# Relative to its length, and to the speeds of its impacts, a leg of the simulation differs from
+# that of the orbit by less than this if both are the same; another landing or release differs by
+# far more.
 _SAME = 1e-6
 
 
@@ -106,9 +107,13 @@ def is_admissible(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
     after, passed = leg.fly()
     part = leg.dynamics
     interval = orbits.intervals(y).ravel()[possible]
+    before = velocity.ravel()[possible]
+    next_velocity = np.roll(velocity, -1, axis=-1).ravel()[possible]
+    faster = part.section(after)[1] - next_velocity
     late = passed + time_to_section(part, after) - time_to_section(part, leg.impact) - interval
     longer = leg.departure.duration - expected if orbits.selects else np.zeros_like(late)
     resumes = np.broadcast_to(np.roll(orbits.resuming, -1), shape).ravel()[possible]
     alike = (after.displacement < 0) == resumes
     same[possible] = alike & (np.maximum(np.abs(late), np.abs(longer)) < _SAME * interval)
+    same[possible] &= np.abs(faster) < _SAME * np.maximum(np.abs(before), np.abs(next_velocity))
     return np.all(same.reshape(shape), axis=-1) & (sticking(orbits, y) > 0)

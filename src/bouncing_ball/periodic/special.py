@@ -24,8 +24,9 @@ import numpy as np
 from bouncing_ball import datasets
 from bouncing_ball.models.flight import Flight
 from bouncing_ball.numerics.arrays import pick
+from bouncing_ball.numerics.continuation import Branch, End
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.numerics.events import Event
+from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.periodic.problem import PeriodicOrbits
 from bouncing_ball.periodic.release import release_condition, release_margin
 from bouncing_ball.periodic.stability import Bifurcation
@@ -36,6 +37,9 @@ _BISECTIONS = 26
 # Rounding errors of 1e-16 are divided by the impact speed and by the flight time where both vanish:
 # the margin limits each of them to about 1e-12.
 _MARGIN = 1e-4
+# If the steps of a branch became too short, its orbits end where a function is this small. Close to
+# the end the functions are of the order of the square root of the distance.
+_CLOSE = 1e-2
 # The value of a function where there is no minimum or maximum, and thus no event near.
 _FAR = 1.0
 
@@ -148,8 +152,8 @@ def loss_of_release(orbits: PeriodicOrbits) -> Event:
     smallest of an orbit.
 
     Where it vanishes, a flight disappears. The release then is a double zero and its time is not a
-    smooth function of the state, so that the place is the end of a branch, but is not located. An
-    impact that grazes also has a slow release, but their ratio tends to 1.
+    smooth function of the state, so that the place is the end of a branch, which often cannot be
+    located. An impact that grazes also has a slow release, but their ratio tends to 1.
     """
 
     def share(y: np.ndarray) -> np.ndarray:
@@ -160,10 +164,14 @@ def loss_of_release(orbits: PeriodicOrbits) -> Event:
         velocity = legs.departure.flight.velocity.reshape(closing.shape)
         # The bounces before a rest on the table become arbitrarily slow.
         rests = np.any(legs.departure.sticks) if legs.dynamics.forgets else False
-        lowest = (velocity / np.abs(closing)).min(axis=-1)
+        approach = np.where(orbits.resuming, closing, -closing)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            lowest = (velocity / approach).min(axis=-1)
         return np.full(lowest.shape, _FAR) if rests else lowest
 
-    return Event("release without speed", share)
+    name = "release without speed"
+    reason = f"the orbit is next to a {name}, where its equations are not smooth"
+    return Event(name, share, terminal=True, reason=reason)
 
 
 def turns_apart(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
@@ -243,3 +251,33 @@ def ends_of_contact(orbits: PeriodicOrbits) -> list[Event]:
         end("release lost", "the ball no longer leaves the table as the contact ends", released),
         end("flight lost", "the contact fills the whole cycle", lambda y: aloft(y) - _MARGIN),
     ]
+
+
+def with_ends(branch: Branch, ends: Sequence[Event]) -> Branch:
+    """A branch with its ends of contact where the steps became too short.
+
+    Where the ball no longer leaves the table, the time of the release is not a smooth function of
+    the state, so that Newton's method approaches this end up to the shortest step. The last point
+    becomes the special point.
+    """
+    special = list(branch.special)
+    start = branch.start
+    end = branch.end
+    first = _end_near(start, branch.points[0], ends)
+    last = _end_near(end, branch.points[-1], ends)
+    if first is not None:
+        special.insert(0, SpecialPoint(first.name, branch.points[0]))
+        start = End(first.reason)
+    if last is not None:
+        special.append(SpecialPoint(last.name, branch.points[-1]))
+        end = End(last.reason)
+    return replace(branch, special=tuple(special), start=start, end=end)
+
+
+def _end_near(end: End, point: np.ndarray, ends: Sequence[Event]) -> Event | None:
+    """The end of contact next to a point at which the steps became too short."""
+    if not end.sentence.startswith("step too small"):
+        return None
+    near = [abs(float(event.function(point))) for event in ends]
+    nearest = int(np.argmin(near))
+    return ends[nearest] if near[nearest] < _CLOSE else None

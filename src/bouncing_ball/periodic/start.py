@@ -23,7 +23,7 @@ from bouncing_ball.periodic.balls import LAMBDA
 from bouncing_ball.periodic.orbit import Orbit, check_index, in_order
 from bouncing_ball.periodic.orbit import orbit_at as orbit_of_point
 from bouncing_ball.periodic.problem import PeriodicOrbits
-from bouncing_ball.periodic.special import bifurcations, ends_of_contact
+from bouncing_ball.periodic.special import bifurcations, ends_of_contact, with_ends
 from bouncing_ball.periodic.stability import Bifurcation, Side
 
 # The largest number of Newton steps for the impact speed. They end after a step below a
@@ -288,9 +288,10 @@ def continued(
         return ()
     most = max(farther * amplitude, farther, _ABOVE * float(above[0]))
     here = float(np.arcsinh(amplitude))
+    ends = ends_of_contact(problem)
     events = (
         *bifurcations(problem),
-        *ends_of_contact(problem),
+        *ends,
         Event(_HERE, lambda y: y[..., -1] - here),
         parameter_bound(float(np.arcsinh(most)), upper=True, reason=f"Λ = {most:g}"),
         parameter_bound(float(np.arcsinh(_LOWEST)), upper=False, reason=f"Λ = {_LOWEST:g}"),
@@ -301,6 +302,7 @@ def continued(
         )
     except ContinuationError:
         return ()
+    branch = with_ends(branch, ends)
     # If the continuation failed, there may be further events beyond, and the list would be
     # incomplete.
     return branch.special if branch.end.finished or len(branch.points) == _POINTS else ()

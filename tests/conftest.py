@@ -22,7 +22,7 @@ from scipy.linalg import expm
 from scipy.optimize import brentq
 
 import bouncing_ball
-from bouncing_ball import patience
+from bouncing_ball.cli import patience
 from bouncing_ball.cli.main import main
 from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.datasets.variables import SHARED
@@ -36,7 +36,7 @@ pytest_plugins = ["taylor_ball", "article_texts"]
 # each start takes twice as long.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
-# The lines of calls that take long depend on the load of the machine, and tests compare what is
+# The lines of commands that take long depend on the load of the machine, and tests compare what is
 # printed. Tests of these lines set another time.
 patience._FIRST = 3600.0
 

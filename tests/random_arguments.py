@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 import bouncing_ball as bb
-from bouncing_ball.models.laws.registry import LAWS
+from bouncing_ball.contacts.named_laws import LAWS
 
 # Values that users give by mistake, or at the ends of what is allowed.
 ODD = (

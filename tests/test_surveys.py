@@ -1,14 +1,14 @@
 """Calls that return labelled datasets: balls over time, drops, branches."""
 
+import pickle
+
 import numpy as np
 import pytest
 import xarray as xr
 from scipy.optimize import brentq
 
 import bouncing_ball as bb
-from bouncing_ball.calls.over_time_on_grid import History, Simulation
-from bouncing_ball.calls.periodic_on_grid import Branches, Limits, Orbits, PermanentContact
-from bouncing_ball.calls.thresholds import Thresholds
+from bouncing_ball.drawing.result import Result
 from bouncing_ball.periodic import n_t
 
 CONTACT = bb.spring_damper(restitution=0.85, frequency_ratio=10.0)
@@ -74,7 +74,7 @@ def test_a_branch_holds_the_orbits_and_limits_of_the_model(ball):
     np.testing.assert_allclose(found.special_amplitude, known, rtol=1e-9)
     assert float(found.residual.max()) < 1e-12
     upper = found.isel(point=slice(int(found.amplitude.values.argmin()) + 2, None))
-    exact = n_t.orbit(ball.model, 2, upper.amplitude.values)
+    exact = n_t.orbit(ball, 2, upper.amplitude.values)
     # At equal Λ the phase is so much less certain as the branch is steep there.
     np.testing.assert_allclose(upper.phase, exact.phase, atol=1e-9)
     assert upper.stable.values.tolist() == exact.is_stable().tolist()
@@ -166,22 +166,39 @@ def test_the_plot_of_error_thresholds_has_a_mark_for_each_quantity(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("kind", "call"),
+    "call",
     [
-        (History, lambda: bb.history(CONTACT, amplitude=[0.5, 1.0], periods=1.0)),
-        (History, lambda: bb.drop(CONTACT, height=[5.0, 8.0], periods=1.0)),
-        (Simulation, lambda: bb.simulate(CONTACT, amplitude=[0.5, 1.0], impacts=3)),
-        (Orbits, lambda: bb.orbit(CONTACT, [1, 2], amplitude=1.0)),
-        (Limits, lambda: bb.limits(CONTACT, [1, 2])),
-        (Branches, lambda: bb.branch(CONTACT, [1, 2], points=20)),
-        (PermanentContact, lambda: bb.permanent_contact(bb.rigid(restitution=[0.5, 0.6]))),
-        (Thresholds, lambda: bb.error_thresholds(RIGID, [1, 2], amplitude=1.0)),
+        lambda: bb.history(CONTACT, amplitude=[0.5, 1.0], periods=1.0),
+        lambda: bb.drop(CONTACT, height=[5.0, 8.0], periods=1.0),
+        lambda: bb.simulate(CONTACT, amplitude=[0.5, 1.0], impacts=3),
+        lambda: bb.orbit(CONTACT, [1, 2], amplitude=[0.9, 1.0]),
+        lambda: bb.limits(bb.rigid(restitution=[0.5, 0.6]), [1, 2]),
+        lambda: bb.branch(CONTACT, [1, 2], points=20),
+        lambda: bb.permanent_contact(
+            bb.spring_damper(restitution=[0.5, 0.6], frequency_ratio=[5.0, 10.0])
+        ),
+        lambda: bb.error_thresholds(RIGID, [1, 2], amplitude=1.0),
+        lambda: bb.motion_of(RIGID, amplitude=[0.9, 1.0], phase=[1.0, 1.1]),
+        lambda: bb.lyapunov_exponent(RIGID, amplitude=[0.9, 1.0], phase=[1.0, 1.1]),
     ],
 )
-def test_a_part_of_a_result_is_a_result_of_its_class(kind, call):
+def test_a_part_of_a_result_draws_the_figure_of_the_whole(call):
     found = call()
     first = next(iter(found.dims))
-    assert type(found) is type(found.isel({first: 0})) is kind
+    whole = found.plot()
+    parts = [found.isel({first: [k]}) for k in range(found.sizes[first])]
+    for part in (found.isel({first: 0}), pickle.loads(pickle.dumps(found)), *parts):
+        assert type(part) is Result
+        assert len(part.plot().axes) == len(whole.axes)
+    joined = xr.concat(parts, first).transpose(*found.dims)
+    assert joined.identical(found) and joined.plot().axes[0].get_title() == (
+        whole.axes[0].get_title()
+    )
+
+
+def test_a_dataset_without_its_attributes_says_so(refusal):
+    with refusal(ValueError, "has lost the attributes of the result of a call"):
+        bb.limits(RIGID, [1, 2]).drop_attrs().plot()
 
 
 MANY = {"periods": 10_000, "samples": 10_000}

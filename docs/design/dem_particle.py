@@ -2,16 +2,16 @@
 
 from math import pi
 
-import bouncing_ball
+from bouncing_ball import Contact, Question, Table, assess_contact
 
 # A tutorial of MercuryDPM (github.com/gladk/MercuryDPM, Drivers/Tutorials/Tutorial4.cpp) drops
 # a ball of 5 mm and 2500 kg/m³ on a wall, with a spring and a damper computed for 5 ms and r =
 # 0.88. Two such balls have half the mass.
 mass = 2500 * 4 / 3 * pi * 5e-3**3
-contact = {"stiffness": 259.0159, "damping": 0.0334}
-table = {"frequency": "10 Hz", "acceleration": "0.8 g", "n": 1}
+table = Table(frequency="10 Hz", acceleration="0.8 g")
 for name, moving in (("two balls", mass / 2), ("ball and wall", mass)):
-    met = bouncing_ball.design(mass=moving, **contact, **table)
+    contact = Contact(mass=moving, stiffness=259.0159, damping=0.0334)
+    met = assess_contact(table, contact, Question(n=1))
     r = met.restitution["displacement"]
     print(f"{name}: {met.contact_time:.2g} s, r = {r:.2f}, step {met.time_step.largest:.2g} s")
 one = met.judged
@@ -22,13 +22,9 @@ print(f"height: restitution model {errors[0]:+.1%}, corrected model {errors[1]:+
 # quotes them: k = 2·10⁵ and γ = 50 in units of mass, diameter and gravity; two grains have half
 # the mass and half the damper. MercuryDPM's unit test (HelperFunctionsUnitTest.cpp) has
 # 0.004971179385062563 and 0.883132984295725 for them.
-grain = bouncing_ball.design(
-    mass=0.5,
-    gravity=1.0,
-    angular_frequency=1.0,
-    acceleration=1.0,
-    stiffness=2e5,
-    damping=25.0,
-    n=1,
+grain = assess_contact(
+    Table(angular_frequency=1.0, acceleration=1.0, gravity=1.0),
+    Contact(mass=0.5, stiffness=2e5, damping=25.0),
+    Question(n=1),
 )
 print(f"grains: {grain.contact_time:.15f}, {grain.restitution['displacement']:.14f}")

@@ -1,17 +1,14 @@
 """A rubber ball of r = 0.9 that stays in contact for 8.4 ms, whatever the height of its fall."""
 
-import bouncing_ball
+from bouncing_ball import Contact, Question, Table, assess_contact
 
 # Measured, within 1 ms: journals.azbuki.bg, "Measuring the collision time of a ball with high
 # coefficient of restitution". A time that does not depend on the speed is that of a linear
 # contact.
-ball = bouncing_ball.design(
-    mass="47 g",
-    frequency="10 Hz",
-    acceleration="0.6 g",
-    contact_time="8.4 ms",
-    measured_restitution=0.9,
-    n=1,
+ball = assess_contact(
+    Table(frequency="10 Hz", acceleration="0.6 g"),
+    Contact(mass="47 g", contact_time="8.4 ms", measured_restitution=0.9),
+    Question(n=1),
 )
 one = ball.judged
 errors = one.errors["max_height"], one.corrected_errors["max_height"]

@@ -2,7 +2,7 @@
 
 from math import pi, sqrt
 
-import bouncing_ball
+from bouncing_ball import Contact, Table, assess_contact
 
 # Steel of the rotor library ROSS (github.com/petrobras/ross, ross/materials.py).
 density, young, shear = 7810.0, 211e9, 81.2e9
@@ -18,10 +18,8 @@ restitution = (falls - 1) / (falls + 1)
 
 # Steel beads have been shaken with 25 to 100 Hz (Dorbolo, Ludewig and Vandewalle,
 # arXiv:0808.2936, abstract).
-ball = bouncing_ball.design(
+steel = Contact(
     mass=mass,
-    frequency="60 Hz",
-    acceleration="0.5 g",
     radius=radius,
     youngs_modulus=young,
     poissons_ratio=poisson,
@@ -29,6 +27,7 @@ ball = bouncing_ball.design(
     table_poissons_ratio=poisson,
     measured_restitution=restitution,
 )
+ball = assess_contact(Table(frequency="60 Hz", acceleration="0.5 g"), steel)
 print(
     f"r = {restitution:.2f}, contact time {ball.contact_time:.1g} s, ϖ = {ball.frequency_ratio:.0f}"
 )

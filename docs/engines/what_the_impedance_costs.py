@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from bouncing_ball.contacts.engines.impedance import Impedance
 from bouncing_ball.models.damping import Release, damping_ratio
-from bouncing_ball.models.laws.impedance import Impedance
 from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel

@@ -6,8 +6,9 @@ import matplotlib.pyplot as plt
 
 import bouncing_ball
 
-found = bouncing_ball.design(
-    mass="20 g", frequency="50 Hz", acceleration="0.8 g", stiffness="1e7 N/m", restitution=0.85
+found = bouncing_ball.assess_contact(
+    bouncing_ball.Table(frequency="50 Hz", acceleration="0.8 g"),
+    bouncing_ball.Contact(mass="20 g", stiffness="1e7 N/m", restitution=0.85),
 )
 figure, axes = plt.subplots(figsize=(7, 4), layout="constrained")
 for errors, marker in ((found.judged.errors, "o"), (found.judged.corrected_errors, "D")):

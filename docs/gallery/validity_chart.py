@@ -5,8 +5,9 @@ import numpy as np
 
 import bouncing_ball
 
-ours = bouncing_ball.design(
-    mass="20 g", frequency="50 Hz", acceleration="0.8 g", stiffness="1e7 N/m", restitution=0.85
+ours = bouncing_ball.assess_contact(
+    bouncing_ball.Table(frequency="50 Hz", acceleration="0.8 g"),
+    bouncing_ball.Contact(mass="20 g", stiffness="1e7 N/m", restitution=0.85),
 )
 r = np.linspace(0.6, 1.0, 81)
 ratio = np.geomspace(5, 1000, 80)

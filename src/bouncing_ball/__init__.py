@@ -55,25 +55,26 @@ imports only from those below it in this list:
 ``datasets``    variables with units and budgets, labelled results, netCDF files
 ``numerics``    independent of the ball: continuation, certified first zeros, rows of an array
 ``errors``      what a user reads, ranges of numbers
-``patience``    what a user reads when an answer takes long
 """
 
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from bouncing_ball.calls.balls import corrected, rigid, spring_damper
+    from bouncing_ball.accuracy.error_thresholds import error_thresholds
     from bouncing_ball.calls.followed import curve, follow, orbit_of_motion, switch
-    from bouncing_ball.calls.law_balls import contact_law
-    from bouncing_ball.calls.long_run import basins, lyapunov_exponent, motion_of, orbit_diagram
-    from bouncing_ball.calls.over_time import drop, history, simulate
     from bouncing_ball.calls.periodic import branch, limits, orbit, orbits, permanent_contact
-    from bouncing_ball.calls.thresholds import error_thresholds
     from bouncing_ball.contacts.assess import assess_contact
     from bouncing_ball.contacts.choose import choose_contact
-    from bouncing_ball.contacts.design import design
-    from bouncing_ball.contacts.given import Contact, Question, Simulation, Table
-    from bouncing_ball.contacts.recipe import write_contact
+    from bouncing_ball.contacts.contact import Contact
+    from bouncing_ball.contacts.describe import describe_contact
+    from bouncing_ball.contacts.law_balls import contact_law
+    from bouncing_ball.contacts.question import EngineSetup, Question
+    from bouncing_ball.contacts.table import Table
+    from bouncing_ball.contacts.write import write_contact
     from bouncing_ball.errors import ModelError, NoOrbitError
+    from bouncing_ball.long_run.motion_of import basins, lyapunov_exponent, motion_of, orbit_diagram
+    from bouncing_ball.models.makers import corrected, rigid, spring_damper
+    from bouncing_ball.models.over_time import drop, history, simulate
     from bouncing_ball.models.rigid import RestitutionModel
     from bouncing_ball.models.spring_damper import SpringDamper
     from bouncing_ball.models.spring_damper_model import SpringDamperModel
@@ -82,11 +83,11 @@ __version__ = "0.1.0"
 
 __all__ = [
     "Contact",
+    "EngineSetup",
     "ModelError",
     "NoOrbitError",
     "Question",
     "RestitutionModel",
-    "Simulation",
     "SpringDamper",
     "SpringDamperModel",
     "Table",
@@ -97,7 +98,7 @@ __all__ = [
     "contact_law",
     "corrected",
     "curve",
-    "design",
+    "describe_contact",
     "drop",
     "error_thresholds",
     "follow",
@@ -127,29 +128,33 @@ def __getattr__(name: str) -> Any:
     module: Any
     match name:
         case "corrected" | "rigid" | "spring_damper":
-            from bouncing_ball.calls import balls as module
+            from bouncing_ball.models import makers as module
         case "curve" | "follow" | "orbit_of_motion" | "switch":
             from bouncing_ball.calls import followed as module
         case "contact_law":
-            from bouncing_ball.calls import law_balls as module
+            from bouncing_ball.contacts import law_balls as module
         case "branch" | "limits" | "orbit" | "orbits" | "permanent_contact":
             from bouncing_ball.calls import periodic as module
         case "drop" | "history" | "simulate":
-            from bouncing_ball.calls import over_time as module
+            from bouncing_ball.models import over_time as module
         case "basins" | "lyapunov_exponent" | "motion_of" | "orbit_diagram":
-            from bouncing_ball.calls import long_run as module
+            from bouncing_ball.long_run import motion_of as module
         case "error_thresholds":
-            from bouncing_ball.calls import thresholds as module
-        case "design":
-            from bouncing_ball.contacts import design as module
+            from bouncing_ball.accuracy import error_thresholds as module
+        case "describe_contact":
+            from bouncing_ball.contacts import describe as module
         case "assess_contact":
             from bouncing_ball.contacts import assess as module
         case "choose_contact":
             from bouncing_ball.contacts import choose as module
         case "write_contact":
-            from bouncing_ball.contacts import recipe as module
-        case "Contact" | "Question" | "Simulation" | "Table":
-            from bouncing_ball.contacts import given as module
+            from bouncing_ball.contacts import write as module
+        case "Contact":
+            from bouncing_ball.contacts import contact as module
+        case "EngineSetup" | "Question":
+            from bouncing_ball.contacts import question as module
+        case "Table":
+            from bouncing_ball.contacts import table as module
         case "SpringDamper":
             from bouncing_ball.models import spring_damper as module
         case "SpringDamperModel":

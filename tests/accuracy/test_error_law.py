@@ -17,7 +17,6 @@ from bouncing_ball.beyond.exhibits.random_orbits import random_orbits
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.damping import Release, damping_ratio, restitution_coefficient
 from bouncing_ball.models.instant import Instant
-from bouncing_ball.models.laws.linear import LinearLaw
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.spring_damper import SpringDamper
@@ -77,7 +76,7 @@ def factors(seed, size, release):
     """|error - K|/(S δ) of random orbits with ϖ from 1 to 10⁴, and the arguments of the law."""
     n, zeta, lam, rng = random_orbits(size, seed, release)
     contact = SpringDamper(10 ** rng.uniform(0, 4, size), zeta, release)
-    arguments = n, Signature(LinearLaw.of(contact))(), lam
+    arguments = n, Signature(contact)(), lam
     return remainder(*arguments, errors(contact, n, lam)[0]), arguments
 
 

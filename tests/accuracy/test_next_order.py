@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from bouncing_ball.models.damping import Release
-from bouncing_ball.models.laws.linear import LinearLaw
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
@@ -17,7 +16,7 @@ def constants(contact):
     omega = contact.frequency_ratio
     zeta = contact.damping_ratio
     lag = contact.lag
-    instant = Signature(LinearLaw.of(contact))()
+    instant = Signature(contact)()
     r = instant.restitution
     delay = instant.delay
     duration = instant.duration
@@ -60,7 +59,7 @@ def test_the_next_order_is_right_to_third_order(n, zeta, release):
     for omega in (80.0, 160.0, 320.0):
         contact = SpringDamper(omega, zeta, release)
         exact = SpringDamperModel(contact)
-        instant = Signature(LinearLaw.of(contact))()
+        instant = Signature(contact)()
         tau, squared, jerk, later = constants(contact)
         low = corrected_branch.saddle_node(n, instant)
         high, _ = corrected_branch.period_doubling(n, instant)

@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 
 import bouncing_ball
 from bouncing_ball import corrected, rigid, spring_damper
+from bouncing_ball.contacts.named_laws import LAWS
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.hertzian import HuntCrossley, tsuji_damping
 from bouncing_ball.models.laws.model import LawModel
-from bouncing_ball.models.laws.registry import LAWS
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic import n_t

@@ -14,10 +14,10 @@ from pathlib import Path
 import pytest
 
 import bouncing_ball
-from bouncing_ball.calls.balls import spring_damper
 from bouncing_ball.cli.commands import COMMANDS
 from bouncing_ball.cli.options import meanings
-from bouncing_ball.models.laws.registry import LAWS
+from bouncing_ball.contacts.named_laws import LAWS
+from bouncing_ball.models.makers import spring_damper
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = Path(sys.executable).with_name("bouncing-ball")
@@ -128,8 +128,8 @@ def test_every_command_is_explained_and_its_symbols_are(said):
 @pytest.mark.parametrize(
     ("call", "computes"),
     [
-        ("diagram --restitution 0.5 --amplitude 1 2 --plot", "calls.long_run.orbit_diagram"),
-        ("design --plot", "contacts.design.design"),
+        ("diagram --restitution 0.5 --amplitude 1 2 --plot", "long_run.motion_of.orbit_diagram"),
+        ("design --plot", "cli.design.answer"),
         ("diff figures results --html", "cli.diff.compare_folders"),
     ],
 )

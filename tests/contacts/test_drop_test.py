@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 import pytest
+from asked_contacts import answered, assessed, described
 from scipy.integrate import solve_ivp
 
-from bouncing_ball import design
 from bouncing_ball.contacts.drop_test import rebound
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.damping import Release
@@ -52,7 +52,7 @@ def one_contact(m, k, c, release, table, start, speed):
 
 def rise(found, mass, drop):
     """The height to which the ball of a design rises after a drop onto a table at rest."""
-    release = getattr(found, "release", None) or str(found.case.contact.release)
+    release = str(found.case.contact.release)
     speed = -math.sqrt(2 * G * drop)
     numbers = (mass, found.stiffness, found.damping)
     _, height, velocity = one_contact(*numbers, release, (0.0, 1.0), 0.0, speed)
@@ -82,7 +82,7 @@ SHAKEN = {"frequency": "20 Hz", "acceleration": "1.5 g"}
     ],
 )  # fmt: skip
 def test_a_ball_that_is_dropped_with_gravity_rises_as_measured(given, drop, height, short_runs):
-    found = design(**given)
+    found = answered(**given).found
     assert rise(found, 0.02, drop) == pytest.approx(height, rel=1e-7)
     if "contact_time" in given:
         assert found.contact_time == pytest.approx(0.05, rel=1e-9)
@@ -92,16 +92,16 @@ def test_a_ball_that_is_dropped_with_gravity_rises_as_measured(given, drop, heig
 
 @pytest.mark.parametrize("release", Release)
 def test_gravity_lowers_the_restitution_by_one_percent_at_the_speed_that_is_given(release):
-    found = design(mass=0.02, stiffness=2000.0, measured_restitution=0.7, release=release)
+    found = described(mass=0.02, stiffness=2000.0, measured_restitution=0.7, release=release)
     drop = found.slowed_speed**2 / (2 * G)
     assert math.sqrt(rise(found, 0.02, drop) / drop) == pytest.approx(0.99 * 0.7, rel=1e-7)
-    assert design(mass=0.02, stiffness=2000.0, restitution=1.0).slowed_speed is None
+    assert described(mass=0.02, stiffness=2000.0, restitution=1.0).slowed_speed is None
 
 
 def test_a_drop_that_no_contact_has_is_refused_in_one_line():
     low = DROP | {"stiffness": 1e6, "release": "force", "rebound_height": "1 mm"}
     with pytest.raises(ModelError, match=r"no contact rebounds from drop_height 0\.2 m to reb"):
-        design(**low)
+        described(**low)
     # It is the rebound of the strongest damping: e⁻⁴ of the height, for a very stiff contact.
     least = rebound(math.sqrt(1e10 / 0.02), 1 - 1e-9, 0.2, G, Release.FORCE)
     assert least == pytest.approx(0.2 * math.exp(-4), rel=0.01)
@@ -118,7 +118,7 @@ def test_a_drop_that_no_contact_has_is_refused_in_one_line():
 def test_the_orbit_of_a_design_is_that_of_an_integration(
     stiffness, restitution, acceleration, release, short_runs
 ):
-    found = design(
+    found = assessed(
         mass=0.02, frequency="20 Hz", acceleration=acceleration, n=1, stiffness=stiffness,
         restitution=restitution, release=release,
     )  # fmt: skip

@@ -3,8 +3,8 @@
 import math
 
 import pytest
+from asked_contacts import answered, assessed, described
 
-from bouncing_ball import design
 from bouncing_ball.contacts.engines.choice import ENGINES
 from bouncing_ball.contacts.engines.physical import Physical
 from bouncing_ball.errors import ModelError, NoOrbitError
@@ -21,12 +21,11 @@ STIFF = TABLE | {"stiffness": 1e6}
     [("mujoco", None, "force"), ("lammps", None, "displacement"), ("lammps", "force", "force")],
 )
 def test_a_restitution_that_is_asked_for_is_met_under_the_engines_release(name, release, has):
-    asked = design(**STIFF, restitution=0.75, engine=name, release=release)
-    settings = asked.engine
+    asked, _, settings, *_ = answered(**STIFF, restitution=0.75, engine=name, release=release)
     assert (settings.name, settings.release) == (name, has)
     assert settings.restitution == pytest.approx(0.75, rel=1e-12)
     # The orbit is that of this contact.
-    same = design(**STIFF, measured_restitution=0.75, release=has)
+    same = assessed(**STIFF, measured_restitution=0.75, release=has)
     assert asked.orbits == same.orbits and asked.measured_restitution == same.measured_restitution
     one = same.judged
     expected = (one.max_height, one.contact_duration, one.greatest_compression)
@@ -36,8 +35,7 @@ def test_a_restitution_that_is_asked_for_is_met_under_the_engines_release(name, 
 
 def test_a_drop_test_and_a_contact_time_are_met():
     drop = {"contact_time": "2 ms", "drop_height": 1.0, "rebound_height": 0.49}
-    found = design(**TABLE, **drop, engine="drake")
-    settings = found.engine
+    found, _, settings, *_ = answered(**TABLE, **drop, engine="drake")
     # The package's own simulation, on a table at rest.
     length = found.case.table.length
     run = SpringDamperModel(found.case.contact).simulate(0.0, 0.0, -((2 / length) ** 0.5), 1)
@@ -50,8 +48,7 @@ def test_a_drop_test_and_a_contact_time_are_met():
 
 def test_hunt_and_crossleys_contact_is_written_for_drake():
     asked = {"contact_time": "2 ms", "restitution": 0.8, "law": "hunt-crossley"}
-    found = design(**TABLE, **asked, engine="drake")
-    settings = found.engine
+    found, _, settings, *_ = answered(**TABLE, **asked, engine="drake")
     law = found.law
     assert law["name"] == "hunt-crossley-linear" and settings.restitution == pytest.approx(0.8)
     both = {"point_contact_stiffness": 2 * law["stiffness"]}
@@ -61,18 +58,18 @@ def test_hunt_and_crossleys_contact_is_written_for_drake():
     assert found.time_step.largest == settings.time_step
     # What is written is read as the same law, and its orbit is the same one.
     read = {"from_engine": "drake", "parameters": settings.parameters}
-    again = design(**TABLE, **read)
+    again = assessed(**TABLE, **read)
     assert again.law.pop("name") == law.pop("name")
     assert again.law == pytest.approx(law, rel=1e-11)
     got = again.measured_restitution, again.contact_time, again.judged.max_height
     assert got == pytest.approx((0.8, 2e-3, found.judged.max_height), rel=1e-10)
     # For another engine the linear contact of this speed is written.
-    linear = design(**TABLE, **read, engine="lammps").engine
+    linear = answered(**TABLE, **read, engine="lammps").engine
     assert linear.restitution == pytest.approx(0.8, rel=1e-10)
     with pytest.raises(ModelError, match="from_engine drake needs a table"):
-        design(mass=0.5, **read, engine="lammps")
+        answered(mass=0.5, **read, engine="lammps")
     with pytest.raises(ModelError, match="tsuji is not written for drake"):
-        design(**TABLE, **asked | {"law": "tsuji"}, engine="drake")
+        answered(**TABLE, **asked | {"law": "tsuji"}, engine="drake")
 
 
 @pytest.mark.long
@@ -80,32 +77,31 @@ def test_a_strongly_damped_contact_of_drake_has_the_saddle_node_of_its_restituti
     # r = 1/(dv) with v = 2πg/((1 + r)Ω), and Λ_SN = π(1 - r)/(1 + r).
     strong = {"point_contact_stiffness": 2e5, "hunt_crossley_dissipation": 50.0}
     with pytest.raises(NoOrbitError, match=r"the 1-T orbit needs 2\.885"):
-        design(**TABLE, from_engine="drake", parameters=strong)
+        answered(**TABLE, from_engine="drake", parameters=strong)
 
 
 def test_a_damper_is_kept_and_its_restitution_is_the_engines():
-    settings = design(**STIFF, damping=100.0, engine="mujoco").engine
+    settings = answered(**STIFF, damping=100.0, engine="mujoco").engine
     assert settings.parameters["solref"] == [-2e6, -200.0]
-    own = design(**STIFF, damping=100.0)
+    own = assessed(**STIFF, damping=100.0)
     assert settings.restitution == pytest.approx(own.restitution["force"], rel=1e-10)
     assert own.measured_restitution == own.restitution["displacement"] < settings.restitution
 
 
 def test_a_contact_that_is_chosen_has_settings_too():
-    chosen = design(**TABLE, restitution=0.75, tolerance="5 %", engine="lammps")
+    chosen = answered(**TABLE, restitution=0.75, tolerance="5 %", engine="lammps")
     settings = chosen.engine
-    assert settings.parameters["kn"] == pytest.approx(chosen.stiffness, rel=1e-11)
+    assert settings.parameters["kn"] == pytest.approx(chosen.found.stiffness, rel=1e-11)
 
 
 def test_a_contact_without_a_table_is_that_of_one_with_it():
     asked = {"restitution": 0.75, "engine": "mujoco", "restitution_error": "1 %"}
-    found = design(mass=0.5, stiffness=1e6, **asked)
-    alone = found.engine
-    with_table = design(**STIFF, **asked).engine
+    found, _, alone, *_ = answered(mass=0.5, stiffness=1e6, **asked)
+    with_table = answered(**STIFF, **asked).engine
     assert alone.parameters["solref"] == pytest.approx(with_table.parameters["solref"])
     assert alone.steps == with_table.steps
     assert alone.error == 0.01 and alone.max_height is None
-    finer = design(mass=0.5, stiffness=1e6, **asked | {"restitution_error": 0.001})
+    finer = answered(mass=0.5, stiffness=1e6, **asked | {"restitution_error": 0.001})
     assert finer.engine.steps > 9 * alone.steps
     assert found.measured_restitution == pytest.approx(0.75)
 
@@ -113,16 +109,15 @@ def test_a_contact_without_a_table_is_that_of_one_with_it():
 @pytest.mark.parametrize("table", [{}, TABLE])
 def test_from_one_engine_to_another_of_another_release(table):
     given = {"mass": 0.5, "from_engine": "lammps", "parameters": {"kn": 1e5, "gamma_n": 20}}
-    found = design(**table | given)
-    release = found.case.contact.release if table else found.release
-    assert release == "displacement"
-    written = design(**table | given, engine="mujoco")
-    assert written.engine.parameters["solref"] == pytest.approx([-2e5, -20])
-    before = design(**table | given).measured_restitution
+    found = answered(**table | given).found
+    assert found.case.contact.release == "displacement"
+    written, _, settings, *_ = answered(**table | given, engine="mujoco")
+    assert settings.parameters["solref"] == pytest.approx([-2e5, -20])
+    before = found.measured_restitution
     why = "because contacts end by displacement in lammps, and by force in mujoco"
     changed = f"r changes from {before:.4f} to {written.measured_restitution:.4f}, {why}"
     assert changed in written.notes
-    assert design(**table | given, engine="liggghts").notes == found.notes
+    assert answered(**table | given, engine="liggghts").found.notes == found.notes
 
 
 @pytest.mark.parametrize(
@@ -134,8 +129,8 @@ def test_from_one_engine_to_another_of_another_release(table):
 )
 def test_a_solref_that_no_simulation_has_is_refused_with_what_was_meant(solref, says, refusal):
     with refusal(ModelError, says):
-        design(mass=1.0, from_engine="mujoco", solref=solref)
-    assert design(mass=1.0, from_engine="mujoco", solref="-284244 -68.8").stiffness == 284244
+        answered(mass=1.0, from_engine="mujoco", solref=solref)
+    assert described(mass=1.0, from_engine="mujoco", solref="-284244 -68.8").stiffness == 284244
 
 
 @pytest.mark.parametrize(
@@ -162,27 +157,27 @@ def test_a_solref_that_no_simulation_has_is_refused_with_what_was_meant(solref, 
 )
 def test_a_mistake_is_one_line_that_says_what_is_allowed(given, says, refusal):
     with refusal(ModelError, says):
-        design(**{"engine": "mujoco", "mass": 1.0, "stiffness": 1e5, "restitution": 0.8} | given)
+        answered(**{"engine": "mujoco", "mass": 1.0, "stiffness": 1e5, "restitution": 0.8} | given)
 
 
 def test_an_engine_takes_each_restitution_as_measured_and_refuses_both(refusal):
     """The release of MuJoCo is that of the force, whose r is larger for the same damping."""
     bare = {"mass": 0.5, "stiffness": 1e5}
-    given = design(**bare, restitution=0.75, engine="mujoco")
-    measured = design(**bare, measured_restitution=0.75, engine="mujoco")
+    given = answered(**bare, restitution=0.75, engine="mujoco")
+    measured = answered(**bare, measured_restitution=0.75, engine="mujoco")
     assert given.engine == measured.engine
-    assert given.measured_restitution == pytest.approx(0.75, rel=1e-12)
+    assert given.found.measured_restitution == pytest.approx(0.75, rel=1e-12)
     # Without an engine it is that of Eq. 16, for the displacement release.
-    plain = design(**bare, restitution=0.75, release="force")
+    plain = described(**bare, restitution=0.75, release="force")
     assert plain.measured_restitution > 0.76
     with refusal(ModelError, "restitution and measured_restitution contradict each other"):
-        design(**bare, restitution=0.75, measured_restitution=0.75, engine="mujoco")
+        answered(**bare, restitution=0.75, measured_restitution=0.75, engine="mujoco")
     # Neither of them: the damping ratio is kept.
     for loss in ({"damping_ratio": 0.1}, {"damping": 2 * 0.1 * (0.5 * 1e5) ** 0.5}):
-        kept = design(**bare, **loss, engine="mujoco")
+        kept = described(**bare, **loss, engine="mujoco")
         assert kept.damping_ratio == pytest.approx(0.1, rel=1e-12)
     with refusal(ModelError, "the loss of the contact is missing"):
-        design(**bare, engine="mujoco")
+        answered(**bare, engine="mujoco")
 
 
 @pytest.mark.parametrize("name", ENGINES)

@@ -7,12 +7,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bouncing_ball.contacts.design import design
-from bouncing_ball.contacts.given import quantities
-from bouncing_ball.contacts.units import number, shown
+from bouncing_ball.contacts.contact import Contact
+from bouncing_ball.contacts.describe import drop
+from bouncing_ball.contacts.quantities import quantities
+from bouncing_ball.contacts.question import EngineSetup, Question
+from bouncing_ball.contacts.table import Table
+from bouncing_ball.contacts.texts import shown
+from bouncing_ball.contacts.units import number
 from bouncing_ball.errors import ModelError
 
-KINDS = quantities(design)
+KINDS = {}
+for each in (Contact, Table, Question, EngineSetup, drop):
+    KINDS |= quantities(each)
 
 
 def read(name, value):

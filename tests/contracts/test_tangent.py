@@ -6,7 +6,6 @@ import pytest
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.deviations import Jacobian
 from bouncing_ball.models.laws.hertzian import Tsuji, tsuji_damping
-from bouncing_ball.models.laws.linear import LinearLaw
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
@@ -19,7 +18,7 @@ LAWS = [
     SpringDamperModel(SpringDamper.from_restitution(0.7, 30.0, "force")),
     # Here one contact in ten resumes below the table's level.
     SpringDamperModel(SpringDamper(2.0, 0.9, "force")),
-    CorrectedModel(Signature(LinearLaw.of(SpringDamper.from_restitution(0.7, 30.0)))),
+    CorrectedModel(Signature(SpringDamper.from_restitution(0.7, 30.0))),
     Tsuji(2000.0, tsuji_damping(0.7)),
     CorrectedModel(Signature(Tsuji(2000.0, tsuji_damping(0.7)))),
 ]

@@ -29,7 +29,7 @@ def test_the_end_of_a_motion_is_on_it(ball):
         rows = int(each.impacts)
         start = (float(each.end_phase), float(each.end_velocity))
         if each.kind in ("orbit", "subharmonic"):
-            sequence = ball.model.simulate(float(each.amplitude), *start, rows + 1)
+            sequence = ball.simulate(float(each.amplitude), *start, rows + 1)
             time = sequence.time[rows] / (2 * np.pi)
             assert time == pytest.approx(int(each.periods), abs=1e-5)
 
@@ -39,7 +39,7 @@ def test_the_diagram_has_the_orbits_and_their_period_doubling(ball):
     ends = [limit.amplitude for limit in bb.limits(ball)]
     lam = np.linspace(ends[0] + 0.02, ends[1] + 0.05, 8)
     found = bb.orbit_diagram(ball, amplitudes=lam, starts=2)
-    orbit = n_t.orbit(ball.model, 1, lam)
+    orbit = n_t.orbit(ball, 1, lam)
     for k, exact in enumerate(orbit.phase):
         at = found.isel(amplitude=k)
         of = at.where((at.kind == "orbit") & (at.periods == 1) & (at.impacts == 1), drop=True)

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from bouncing_ball.beyond.exhibits.motion_samples import three_models
-from bouncing_ball.long_run import means as work
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.means import means
 from bouncing_ball.long_run.sampled_means import Starts, follow, start
@@ -31,7 +30,7 @@ def test_height_and_power_are_those_of_quadrature(r, amplitude, ratio, release, 
     """A chaotic motion and a locked one: closed forms against sums over collocation panels."""
     for model in three_models(np.array(r), ratio, release)[::2]:
         found, of = found_and_means(model, amplitude)
-        monkeypatch.setattr(work, "has_closed_form", lambda law: False)
+        monkeypatch.setattr("bouncing_ball.models.spring_damper.has_closed_form", lambda law: False)
         last = Starts(np.array([found.end_phase]), np.array([found.end_velocity]))
         _, (time, *sums) = follow(*start(model, amplitude, last), int(found.impacts) or 100)
         wanted = np.ravel(sums / time)

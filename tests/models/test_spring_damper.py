@@ -6,7 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball.models.spring_damper import ARGUMENTS, SpringDamper
+from bouncing_ball.models.linear_flow import ARGUMENTS
+from bouncing_ball.models.spring_damper import SpringDamper
 
 EPS = np.finfo(float).eps
 

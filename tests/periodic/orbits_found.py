@@ -1,53 +1,43 @@
-"""Families of balls by name, and orbits with two to five impacts on which simulated balls end."""
+"""Balls by the name of their model, and orbits with several impacts on which simulated balls end."""
 
-from bouncing_ball.periodic.family import Family
-
-from bouncing_ball.errors import FREQUENCY_RATIO, RESTITUTION, Range
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.laws.hertzian import Tsuji
 from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.long_run.orbit_of_motion import of_impact
 from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.balls import Balls
 from bouncing_ball.periodic.simulation import simulated
 
-RANGES = {"amplitude": Range(0, 1e8), "restitution": RESTITUTION, "stiffness": Range(0, 1e9)}
-RANGES |= {"frequency_ratio": FREQUENCY_RATIO}
 
-
-def contact_of(given, release="displacement"):
-    return SpringDamper.from_restitution(given["restitution"], given["frequency_ratio"], release)
-
-
-MAKERS = {
-    "restitution": lambda given: RestitutionModel(given["restitution"]),
-    "spring-damper": lambda given: SpringDamperModel(contact_of(given)),
-    "force release": lambda given: SpringDamperModel(contact_of(given, "force")),
-    "corrected": lambda given: CorrectedModel.of_contact(contact_of(given)),
-    "tsuji": lambda given: LawModel(Tsuji(given["stiffness"], 0.3)),
-}
-
-
-def family(name, amplitude, restitution=0.5, frequency_ratio=10.0, stiffness=500.0):
-    values = {"amplitude": amplitude}
+def balls(name, amplitude, restitution=0.5, frequency_ratio=10.0, stiffness=500.0):
     if name == "tsuji":
-        values["stiffness"] = stiffness
-    else:
-        values["restitution"] = restitution
-        if name != "restitution":
-            values["frequency_ratio"] = frequency_ratio
-    return Family(MAKERS[name], values, {each: RANGES[each] for each in values})
+        return Balls(LawModel(Tsuji(stiffness, 0.3)), amplitude)
+    if name == "restitution":
+        return Balls(RestitutionModel(restitution), amplitude)
+    release = "force" if name == "force release" else "displacement"
+    contact = SpringDamper.from_restitution(restitution, frequency_ratio, release)
+    if name == "corrected":
+        return Balls(CorrectedModel.of_contact(contact), amplitude)
+    return Balls(SpringDamperModel(contact), amplitude)
 
 
-def known_orbit(name, amplitude, along, n=1, side="stable"):
-    """The n-T orbit of a model in closed form as a point of the problem with one impact."""
-    balls = family(name, amplitude)
-    orbit = n_t.orbit(balls.make(balls.values), n, amplitude, side)
-    dynamics = balls.dynamics({})
-    row, start, _ = dynamics.in_a_row([float(orbit.phase)], [float(orbit.relative_impact_velocity)])
+def known_orbit(name, amplitude, along=("amplitude",), n=1, side="stable"):
+    """The n-T orbit of a model, and its simulated impact as a point of the equations."""
+    ball = balls(name, amplitude)
+    orbit = n_t.orbit(ball.model, n, amplitude, side)
+    dynamics = ball.dynamics()
+    row, start, _ = dynamics.in_a_row([orbit.phase], [orbit.relative_impact_velocity])
     phase, velocity = row.section(row.start(*start))
-    return orbit, *simulated(balls, float(phase[0]), float(velocity[0]), 1, along)
+    return orbit, *simulated(ball, float(phase[0]), float(velocity[0]), 1, along)
+
+
+def legs_of(orbit):
+    """The contacts and flights of an orbit."""
+    problem = orbit.problem()
+    return problem.legs(orbit.point(problem))
 
 
 # Model, impacts, periods, r, ϖ, Λ, φ and z′ of an impact: found by a random search.
@@ -76,6 +66,13 @@ FOUND = [
 ]  # fmt: skip
 
 
-def found_family(case):
+def found_balls(case):
     name, _, _, r, ratio, amplitude, *_ = case
-    return family(name, amplitude, r, ratio)
+    return balls(name, amplitude, r, ratio)
+
+
+def found_orbit(case):
+    _, impacts, periods, *_, phase, velocity = case
+    orbit = of_impact(found_balls(case), phase, velocity, impacts)
+    assert orbit.periods == periods
+    return orbit

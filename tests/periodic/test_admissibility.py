@@ -7,9 +7,9 @@ from scipy.optimize import minimize_scalar
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.orbit import Orbit
+from bouncing_ball.periodic.paper_unknowns import PaperUnknowns
 from bouncing_ball.periodic.spring_damper_bifurcations import orbit_at
 from bouncing_ball.periodic.spring_damper_branch import branch_point, orbits_of, orbits_on_branch
 from bouncing_ball.periodic.stability import Side
@@ -67,8 +67,8 @@ def test_admissible_orbits_are_those_without_an_earlier_event_in_dense_samples(r
 def test_the_last_admissible_orbit_grazes_the_table(release):
     # On the unstable side the table rises into the flight from Λ ≈ 2.1 on.
     contact = SpringDamper(10.0, 0.05, release)
-    system = SpringDamperModel(contact).system(1)
     orbit = orbit_at(contact, 1, np.linspace(1.9, 2.4, 6), Side.UNSTABLE)
+    system = PaperUnknowns.of(orbit[0])
     found = system.grazing(system.point(orbit))
     assert len(found) == 1
     at = system.orbit(found[0])

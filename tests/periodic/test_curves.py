@@ -4,24 +4,29 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from orbits_found import FOUND, family, found_family, known_orbit
+from orbits_found import FOUND, balls, found_orbit
 
 import bouncing_ball
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.long_run.cascade_of_flights import openings
+from bouncing_ball.long_run.orbit_of_motion import of_motion
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic import restitution_branch as formulas
 from bouncing_ball.periodic.curves import Degenerate, Window, curve
-from bouncing_ball.periodic.following import STEPS, State, follow
+from bouncing_ball.periodic.following import STEPS, follow
 from bouncing_ball.periodic.special import Special, flight_margin
-from bouncing_ball.periodic.switching import of_impact, of_motion
 
 
 def special(name, kind, to, amplitude=1.3):
-    _, problem, y = known_orbit(name, amplitude, ("amplitude",))
-    return follow(State(problem, y), to).first(kind)
+    orbit = n_t.orbit(balls(name, amplitude).model, 1, amplitude)
+    return follow(orbit, to=to).first(kind)
+
+
+def curve_of(start, across, **settings):
+    """The curve along Λ and a second parameter."""
+    return curve(start, Special(start.kind), "amplitude", across, **settings)
 
 
 @pytest.mark.parametrize(("kind", "to", "formula"), [
@@ -30,8 +35,8 @@ def special(name, kind, to, amplitude=1.3):
 ])  # fmt: skip
 def test_the_curves_of_the_restitution_model_are_the_closed_forms(kind, to, formula):
     window = Window(0.2, 0.95)
-    found = curve(special("restitution", kind, to), kind, "restitution", across_window=window)
-    values = found.orbits.values(found.branch.points)
+    found = curve_of(special("restitution", kind, to), "restitution", across_window=window)
+    values = found.problem.values(found.branch.points)
     assert values["restitution"].min() == pytest.approx(0.2)
     assert values["restitution"].max() == pytest.approx(0.95)
     assert np.abs(formula(1, values["restitution"]) - values["amplitude"]).max() < 1e-12
@@ -39,62 +44,58 @@ def test_the_curves_of_the_restitution_model_are_the_closed_forms(kind, to, form
 
 def test_along_the_stiffness_the_curve_is_that_of_the_closed_form():
     start = special("spring-damper", Special.PERIOD_DOUBLING, 2.0)
-    found = curve(start, Special.PERIOD_DOUBLING, "frequency_ratio",
-                  across_window=Window(3.0, 50.0))  # fmt: skip
-    for state in list(found)[::10]:
-        balls = state.orbits.family.at(state.parameters)
-        expected = n_t.period_doubling(balls.make(balls.values), 1).amplitude
-        assert state.parameters["amplitude"] == pytest.approx(float(expected), abs=1e-12)
+    found = curve_of(start, "frequency_ratio", across_window=Window(3.0, 50.0))
+    for each in list(found)[::10]:
+        expected = n_t.period_doubling(each.model, 1).amplitude
+        assert each.amplitude == pytest.approx(expected, abs=1e-12)
 
 
 def test_the_curve_of_doublings_ends_at_a_1_to_2_resonance_without_dissipation():
     start = special("restitution", Special.PERIOD_DOUBLING, 2.0)
-    found = curve(start, Special.PERIOD_DOUBLING, "restitution", across_window=Window(0.3, 1.0))
-    (kind, state), = found.special  # fmt: skip
-    assert kind is Degenerate.ONE_TO_TWO
-    assert state.parameters["amplitude"] == pytest.approx(1.0, abs=1e-8)
+    found = curve_of(start, "restitution", across_window=Window(0.3, 1.0))
+    (resonance,) = found.special
+    assert resonance.kind == Degenerate.ONE_TO_TWO
+    assert resonance.amplitude == pytest.approx(1.0, abs=1e-8)
     assert "restitution = 1 is reached" in (str(found.branch.start), str(found.branch.end))
 
 
 def test_without_dissipation_a_curve_of_saddle_nodes_ends_at_a_1_to_1_resonance():
     """With det M = r^{2k}, a saddle-node has the multipliers 1 and r^{2k}, both 1 at r = 1 only."""
     case = next(x for x in FOUND if x[:2] == ("restitution", 3))
-    start = of_impact(found_family(case), *case[-2:], case[1], "amplitude")
-    fold = follow(start, 0.5).first(Special.SADDLE_NODE)
-    kind = Special.SADDLE_NODE
-    found = curve(fold, kind, "restitution", across_window=Window(0.2, 1.0))
-    trace, determinant = found.orbits.trace_and_determinant(found.branch.points)
-    r = found.orbits.values(found.branch.points)["restitution"]
+    fold = follow(found_orbit(case), to=0.5).first(Special.SADDLE_NODE)
+    found = curve_of(fold, "restitution", across_window=Window(0.2, 1.0))
+    trace, determinant = found.problem.trace_and_determinant(found.branch.points)
+    r = found.problem.values(found.branch.points)["restitution"]
     size = np.abs(trace) + 1
     assert np.abs(determinant - r**6).max() < 1e-11 * size.max()
     assert np.abs(trace - 1 - r**6).max() < 1e-11 * size.max()
-    (named, state), = found.special  # fmt: skip
-    assert named is Degenerate.ONE_TO_ONE
-    assert state.parameters["restitution"] == pytest.approx(1, abs=1e-9)
+    (resonance,) = found.special
+    assert resonance.kind == Degenerate.ONE_TO_ONE
+    assert resonance.parameters["restitution"] == pytest.approx(1, abs=1e-9)
     # A double multiplier moves by the square root of rounding.
-    assert np.abs(state.multipliers() - 1).max() < 1e-6
+    assert np.abs(resonance.multipliers() - 1).max() < 1e-6
 
 
 def test_two_folds_of_a_compliant_contact_meet_at_a_cusp():
     """It is found from both folds, and between them there are two orbits more."""
     ball = bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=2.0)
     branch = bouncing_ball.follow(bouncing_ball.orbit(ball, amplitude=0.9), to=0.05)
-    folds = [state for kind, state in branch.special_states() if kind == "saddle-node"]
+    folds = [each for kind, each in branch.special_states() if kind == "saddle-node"]
     assert len(folds) >= 2
     cusps = []
     for fold in folds[:2]:
-        found = curve(fold, Special.SADDLE_NODE, "frequency_ratio",
-                      along_window=Window(0.01, 2.0), across_window=Window(0.9, 3.0))  # fmt: skip
-        cusps += [state for kind, state in found.special if kind is Degenerate.CUSP]
+        windows = {"along_window": Window(0.01, 2.0), "across_window": Window(0.9, 3.0)}
+        found = curve_of(fold, "frequency_ratio", **windows)
+        cusps += [each for each in found.special if each.kind == Degenerate.CUSP]
     values = np.array([list(cusp.parameters.values()) for cusp in cusps])
     assert len(values) == 2 and np.ptp(values, axis=0).max() < 1e-9
 
 
 def test_grazing_orbits_are_a_curve():
     start = special("restitution", Special.GRAZING_FLIGHT, 0.9, amplitude=2.0)
-    found = curve(start, Special.GRAZING_FLIGHT, "restitution", across_window=Window(0.45, 0.55))
+    found = curve_of(start, "restitution", across_window=Window(0.45, 0.55))
     assert len(found) > 5
-    margins = flight_margin(found.orbits, found.branch.points)
+    margins = flight_margin(found.problem, found.branch.points)
     # At grazing the minimum may be negative by rounding.
     assert np.abs(margins).max() < 1e-12
 
@@ -102,15 +103,15 @@ def test_grazing_orbits_are_a_curve():
 def test_a_period_doubling_starts_no_curve_of_saddle_nodes(refusal):
     start = special("restitution", Special.PERIOD_DOUBLING, 2.0)
     with refusal(NoOrbitError, "the start is no saddle-node; Newton's method leads to another"):
-        curve(start, Special.SADDLE_NODE, "restitution")
+        curve(start, Special.SADDLE_NODE, "amplitude", "restitution")
 
 
 def test_a_curve_of_an_unknown_kind_or_parameter_is_refused(refusal):
     start = special("restitution", Special.PERIOD_DOUBLING, 2.0)
-    with refusal(ModelError, "these orbits have no 'stiffness': one of amplitude"):
-        curve(start, Special.PERIOD_DOUBLING, "stiffness")
+    with refusal(ModelError, "these orbits have no 'stiffness': one of restitution, amplitude"):
+        curve(start, Special.PERIOD_DOUBLING, "amplitude", "stiffness")
     with refusal(ModelError, "'period halving' is not one of"):
-        curve(start, Special.PERIOD_HALVING, "restitution")
+        curve(start, Special.PERIOD_HALVING, "amplitude", "restitution")
 
 
 def test_the_cascade_of_flights_is_the_curve_on_which_a_long_contact_opens():
@@ -123,18 +124,18 @@ def test_the_cascade_of_flights_is_the_curve_on_which_a_long_contact_opens():
         lam = held + excess / ratio**2
         phase = np.pi / 2 + 3 / ratio
         velocity = lam * np.cos(phase) - 0.1 / ratio**2
-        balls = family("spring-damper", lam, 0.85, ratio)
-        state = of_motion(balls, phase, velocity, "amplitude")
-        assert state.impacts == k + 1
+        orbit = of_motion(balls("spring-damper", lam, 0.85, ratio).model, lam, phase, velocity)
+        assert orbit.impacts == k + 1
         steps = replace(STEPS, initial=1e-3)
-        opening = follow(state, held + 80 / ratio**2, control=steps).first(Special.GRAZING_RELEASE)
-        assert opening.parameters["amplitude"] == pytest.approx(known.amplitude[0, k, 0], abs=1e-12)
+        found = follow(orbit, to=held + 80 / ratio**2, control=steps)
+        opening = found.first(Special.GRAZING_RELEASE)
+        assert opening.amplitude == pytest.approx(known.amplitude[0, k, 0], abs=1e-12)
         largest = abs(opening.multipliers()[0])
         assert largest == pytest.approx(known.multiplier[0, k, 0], abs=1e-9)
         if k == 0:
             window = Window(15.0, 25.0)
-            found = curve(opening, Special.GRAZING_RELEASE, "frequency_ratio", across_window=window)
-            values = found.orbits.values(found.branch.points)
+            found = curve_of(opening, "frequency_ratio", across_window=window)
+            values = found.problem.values(found.branch.points)
             order = values["frequency_ratio"].argsort()
             there = openings([zeta], values["frequency_ratio"][order], 1).amplitude[0, 0]
             assert np.abs(there - values["amplitude"][order]).max() < 1e-10

@@ -2,43 +2,40 @@
 
 import numpy as np
 import pytest
-from orbits_found import FOUND, family, found_family, known_orbit
+from orbits_found import FOUND, balls, found_orbit, legs_of
 
 import bouncing_ball
 from bouncing_ball.errors import NoOrbitError, ParameterError
 from bouncing_ball.long_run.destination import final_motions
+from bouncing_ball.long_run.orbit_of_motion import of_impact, of_motion
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.flight import Flight, table
 from bouncing_ball.numerics.corrector import newton, plane
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.branch import whole_branch
-from bouncing_ball.periodic.following import State, follow
+from bouncing_ball.periodic.balls import Balls
+from bouncing_ball.periodic.following import follow
 from bouncing_ball.periodic.observables import GRAZING, branch_columns
+from bouncing_ball.periodic.orbit import orbit_at
 from bouncing_ball.periodic.simulation import is_admissible
 from bouncing_ball.periodic.special import Special
-from bouncing_ball.periodic.switching import of_impact, of_motion, switch
+from bouncing_ball.periodic.switching import switch
 
 CLOSED = ["restitution", "spring-damper", "force release", "corrected"]
 
 
-def start(name, along="amplitude", amplitude=1.3):
-    _, problem, y = known_orbit(name, amplitude, (along,))
-    return State(problem, y)
+def start(name, amplitude=1.3):
+    return n_t.orbit(balls(name, amplitude).model, 1, amplitude)
 
 
 @pytest.mark.parametrize("name", CLOSED)
 def test_the_bifurcations_of_one_impact_are_those_of_the_closed_form(name):
-    model = start(name).orbits.family
-    closed = model.make(model.values)
-    down = follow(start(name), 0.1).first(Special.SADDLE_NODE)
-    up = follow(start(name), 2.0).first(Special.PERIOD_DOUBLING)
-    assert down.parameters["amplitude"] == pytest.approx(
-        float(n_t.saddle_node(closed, 1).amplitude), abs=1e-12
-    )
-    assert up.parameters["amplitude"] == pytest.approx(
-        float(n_t.period_doubling(closed, 1).amplitude), abs=1e-12
-    )
+    model = start(name).model
+    down = follow(start(name), to=0.1).first(Special.SADDLE_NODE)
+    up = follow(start(name), to=2.0).first(Special.PERIOD_DOUBLING)
+    assert down.amplitude == pytest.approx(n_t.saddle_node(model, 1).amplitude, abs=1e-12)
+    assert up.amplitude == pytest.approx(n_t.period_doubling(model, 1).amplitude, abs=1e-12)
 
 
 @pytest.mark.parametrize(("name", "along", "to"), [
@@ -46,22 +43,20 @@ def test_the_bifurcations_of_one_impact_are_those_of_the_closed_form(name):
     ("force release", "restitution", 0.7), ("corrected", "frequency_ratio", 100.0),
 ])  # fmt: skip
 def test_a_branch_along_any_parameter_is_the_closed_form_at_each_point(name, along, to):
-    found = follow(start(name, along), to)
+    found = follow(start(name), along, to)
     assert str(found.branch.end) == f"{along.replace('_', ' ')} = {to:g} is reached"
-    for state in list(found)[::4]:
-        balls = state.orbits.family.at(state.parameters)
-        orbit = n_t.orbit(balls.make(balls.values), 1, 1.3)
-        offset = np.abs(orbit.trace_and_determinant()[0] - state.orbits.trace_and_determinant(
-            state.y)[0])  # fmt: skip
-        assert offset < 1e-11
+    for each in list(found)[::4]:
+        orbit = n_t.orbit(each.model, 1, 1.3)
+        offset = orbit.trace_and_determinant()[0] - each.trace_and_determinant()[0]
+        assert abs(offset) < 1e-11
 
 
 def test_a_grazing_flight_is_where_the_lowest_point_of_the_flight_is_on_the_table():
-    found = follow(start("restitution", amplitude=2.0), 0.9)
+    found = follow(start("restitution", amplitude=2.0), to=0.9)
     grazing = found.first(Special.GRAZING_FLIGHT)
-    lam = grazing.parameters["amplitude"]
-    x, y = table(np.array(grazing.phase[0]), lam)
-    flight = Flight(0.0, -0.5 * grazing.velocity[0], x, y, lam)
+    lam = grazing.amplitude
+    x, y = table(np.array(grazing.phase), lam)
+    flight = Flight(0.0, -0.5 * grazing.relative_impact_velocity, x, y, lam)
     time = np.linspace(1.0, 6.2, 400_001)
     gap = flight.gap(time)[0]
     inside = (time > 1.0) & (time < 6.2)
@@ -70,71 +65,60 @@ def test_a_grazing_flight_is_where_the_lowest_point_of_the_flight_is_on_the_tabl
 
 @pytest.mark.parametrize("name", ["restitution", "spring-damper"])
 def test_grazing_orbits_are_those_that_bisection_finds(name):
-    balls = family(name, 1.3)
-    model = balls.make(balls.values)
-    branch = whole_branch(model, 1, 6.0, 0.1)
-    columns = branch_columns(model.system(1), branch, 100)
+    columns = branch_columns(whole_branch(start(name).model, 1, 6.0, 0.1), 100)
     expected = columns.special_amplitude.values[columns.special_kind.values == GRAZING]
     ours = []
     for to in (5.9, 0.05):
-        found = follow(start(name), to)
-        ours += [s.parameters["amplitude"] for kind, s in found.special
-                 if kind is Special.GRAZING_FLIGHT]  # fmt: skip
+        found = follow(start(name), to=to)
+        ours += [each.amplitude for each in found.special if each.kind == Special.GRAZING_FLIGHT]
     assert expected.size and all(np.abs(np.array(ours) - x).min() < 1e-12 for x in expected
                                  if 0.1 < x < 2.5)  # fmt: skip
 
 
 @pytest.mark.parametrize("name", ["restitution", "spring-damper"])
 def test_generations_of_doubled_orbits_attract_balls_and_end_where_they_began(name):
-    state = start(name)
+    orbit = start(name)
     before = 0.0
     for generation in range(4):
-        doubling = follow(state, 2.2).first(Special.PERIOD_DOUBLING)
-        lam = doubling.parameters["amplitude"]
+        doubling = follow(orbit, to=2.2).first(Special.PERIOD_DOUBLING)
+        lam = doubling.amplitude
         assert doubling.impacts == 2**generation and lam > before
         assert doubling.multipliers()[0] == pytest.approx(-1, abs=1e-9)
-        state = switch(doubling, 0.02 / 2.2**generation)
-        back = follow(state, 0.5)
+        orbit = switch(doubling, aside=0.02 / 2.2**generation)
+        back = follow(orbit, to=0.5)
         halving = back.first(Special.PERIOD_HALVING)
-        assert halving.parameters["amplitude"] == pytest.approx(lam, abs=1e-12)
+        assert halving.amplitude == pytest.approx(lam, abs=1e-12)
         before = lam
-        balls = state.orbits.family.at(state.parameters)
-        model = balls.make(balls.values)
-        here = state.parameters["amplitude"]
-        velocity = state.velocity[0] + here * np.cos(state.phase[0])
-        motion = final_motions(model, here, state.phase[0], velocity, impacts=4000)
-        assert int(motion.impacts) == state.impacts
+        impact = orbit.phase[0], orbit.impact_velocity[0]
+        motion = final_motions(orbit.model, orbit.amplitude, *impact, impacts=4000)
+        assert int(motion.impacts) == orbit.impacts
 
 
 def test_a_motion_starts_the_continuation_of_the_orbit_on_which_it_ends():
-    state = of_motion(family("restitution", 1.6), 1.0, -3.0, "amplitude")
-    assert (state.impacts, state.periods) == (2, 2)
-    doubling = follow(state, 1.8).first(Special.PERIOD_DOUBLING)
-    assert doubling.parameters["amplitude"] == pytest.approx(1.667130660770, abs=1e-11)
+    orbit = of_motion(balls("restitution", 1.6).model, 1.6, 1.0, -3.0)
+    assert (orbit.impacts, orbit.periods) == (2, 2)
+    doubling = follow(orbit, to=1.8).first(Special.PERIOD_DOUBLING)
+    assert doubling.amplitude == pytest.approx(1.667130660770, abs=1e-11)
 
 
 def test_a_chaotic_motion_is_on_no_orbit(refusal):
     with refusal(NoOrbitError, "ends on no orbit that could be followed: it is chaotic"):
-        of_motion(family("restitution", 2.0, restitution=0.85), 1.0, -3.0, "amplitude")
+        of_motion(balls("restitution", 2.0, restitution=0.85).model, 2.0, 1.0, -3.0)
 
 
 def test_a_contact_law_is_followed_along_its_stiffness():
-    _, problem, y = known_orbit("tsuji", 1.0, ("stiffness",))
-    found = follow(State(problem, y), 800.0)
+    found = follow(start("tsuji", amplitude=1.0), "stiffness", 800.0)
     assert str(found.branch.end) == "stiffness = 800 is reached"
     last = list(found)[-1]
-    balls = last.orbits.family.at(last.parameters)
-    orbit = n_t.orbit(balls.make(balls.values), 1, 1.0)
-    assert float(orbit.phase) == pytest.approx(last.phase[0], abs=1e-11)
+    assert n_t.orbit(last.model, 1, 1.0).phase == pytest.approx(last.phase, abs=1e-11)
 
 
 def test_a_locked_orbit_is_followed_until_it_no_longer_sticks_or_an_impact_grazes():
-    state = of_motion(family("restitution", 2.5), 1.0, -3.0, "amplitude")
-    legs = state.orbits.legs(state.y)
-    assert legs.departure.sticks.sum() == 1
-    found = follow(state, 2.50002)
-    assert len(found) > 3 and np.all(is_admissible(found.orbits, found.branch.points))
-    m = found.orbits.monodromy(found.branch.points[-1])
+    orbit = of_motion(balls("restitution", 2.5).model, 2.5, 1.0, -3.0)
+    assert legs_of(orbit).departure.sticks.sum() == 1
+    found = follow(orbit, to=2.50002)
+    assert len(found) > 3 and np.all(is_admissible(found.problem, found.branch.points))
+    m = found.problem.monodromy(found.branch.points[-1])
     assert max(map(abs, m)) == 0.0
 
 
@@ -144,21 +128,20 @@ def test_a_locked_orbit_of_a_stiff_contact_is_followed_along_the_stiffness(
 ):
     """The ball rests in a long contact once per orbit; a simulation ends on the same impacts."""
     ball = bouncing_ball.spring_damper(restitution=0.5, frequency_ratio=100.0)
-    start = bouncing_ball.orbit_of_motion(ball, amplitude=amplitude, phase=1.0, velocity=-3.0)
-    state = start.along("frequency_ratio")
-    assert (state.impacts, state.periods) == (impacts, periods)
-    assert state.orbits.legs(state.y).departure.sticks.sum() == 1
-    found = follow(state, 110.0, most=20)
-    states = [each for each in found if each.is_admissible()]
-    assert len(states) > 5
-    ratios = [each.parameters["frequency_ratio"] for each in states]
+    orbit = bouncing_ball.orbit_of_motion(ball, amplitude=amplitude, phase=1.0, velocity=-3.0)
+    assert (orbit.impacts, orbit.periods) == (impacts, periods)
+    assert legs_of(orbit).departure.sticks.sum() == 1
+    found = follow(orbit, "frequency_ratio", 110.0, most=20)
+    orbits = [each for each in found if each.is_admissible()]
+    assert len(orbits) > 5
+    ratios = [each.parameters["frequency_ratio"] for each in orbits]
     assert min(ratios) == ratios[0] and ratios[-1] > ratios[0] + 1e-4
-    for each in states[:: len(states) - 1]:
-        balls = each.orbits.family.at(each.parameters)
-        motion = final_motions(balls.make(balls.values), amplitude, 1.0, -3.0)
+    for each in orbits[:: len(orbits) - 1]:
+        motion = final_motions(each.model, amplitude, 1.0, -3.0)
         assert int(motion.impacts) == impacts and int(motion.periods) == periods
         relative = motion.end_velocity - table(motion.end_phase, amplitude)[0]
-        away = np.hypot(reduce_angle(each.phase - motion.end_phase), each.velocity - relative)
+        faster = each.relative_impact_velocity - relative
+        away = np.hypot(reduce_angle(each.phase - motion.end_phase), faster)
         assert away.min() < 1e-10
 
 
@@ -174,24 +157,21 @@ def test_a_branch_ends_where_the_map_of_the_corrected_model_jumps():
 
 def test_a_contact_that_resumes_is_followed_until_the_ball_no_longer_rises():
     case = FOUND[-2]
-    state = of_impact(found_family(case), *case[-2:], case[1], "frequency_ratio")
-    assert state.orbits.resuming.tolist() == [False, True]
-    family = state.orbits.family
-    simulated = family.make(family.values).simulate(family.values["amplitude"], *case[-2:], 4)
-    assert (
-        abs(state.orbits.legs(state.y).impact.displacement[1] - simulated.displacement[3]) < 1e-12
-    )
-    found = follow(state, 20.0)
+    orbit = found_orbit(case)
+    assert orbit.resumes.tolist() == [False, True]
+    simulated = orbit.model.simulate(orbit.amplitude, *case[-2:], 4)
+    assert abs(legs_of(orbit).impact.displacement[1] - simulated.displacement[3]) < 1e-12
+    found = follow(orbit, "frequency_ratio", 20.0)
     end = found.first(Special.GRAZING_IMPACT)
-    assert abs(end.velocity[1]) < 1e-12 and end.defect() < 1e-12
-    states = list(found)[:-1]
-    assert all(each.velocity[1] > 0 and each.is_admissible() for each in states)
+    assert abs(end.relative_impact_velocity[1]) < 1e-12 and end.defect() < 1e-12
+    before = list(found)[:-1]
+    assert all(each.relative_impact_velocity[1] > 0 for each in before)
+    assert all(each.is_admissible() for each in before)
     # A start on such a contact gives the same orbit.
-    phase = state.phase[1]
-    lam = state.orbits.family.values["amplitude"]
-    risen = state.velocity[1] + lam * np.cos(phase)
-    other = of_impact(state.orbits.family, phase, risen, 2, "frequency_ratio")
-    assert np.abs(other.velocity[::-1] - state.velocity).max() < 1e-12
+    second = Balls(orbit.model, orbit.amplitude), orbit.phase[1], orbit.impact_velocity[1]
+    other = of_impact(*second, 2)
+    faster = other.relative_impact_velocity[::-1] - orbit.relative_impact_velocity
+    assert np.abs(faster).max() < 1e-12
 
 
 def test_restitution_and_damping_ratio_are_one_parameter(refusal):
@@ -210,23 +190,23 @@ def test_restitution_and_damping_ratio_are_one_parameter(refusal):
         bouncing_ball.curve(last, kind="saddle-node", across="damping_ratio")
 
 
-def passes_through(found, state):
-    """Whether a branch has a solution that is the state to rounding.
+def passes_through(found, y):
+    """Whether a branch has a solution that is y to rounding.
 
     The branch is corrected onto the plane through the state across its direction, from each step
     that crosses this plane.
     """
-    orbits = found.orbits
+    problem = found.problem
     points = found.branch.points
-    direction = np.linalg.svd(orbits.jacobian(state.y))[2][-1]
-    normal = plane(direction, state.y)
-    side = (points - state.y) @ direction
+    direction = np.linalg.svd(problem.jacobian(y))[2][-1]
+    normal = plane(direction, y)
+    side = (points - y) @ direction
     crossing = np.flatnonzero((side[1:] >= 0) != (side[:-1] >= 0))
     chord = points[crossing + 1] - points[crossing]
     share = side[crossing] / (side[crossing] - side[crossing + 1])
     with np.errstate(all="ignore"):
-        there = newton(orbits, points[crossing] + share[:, np.newaxis] * chord, normal)
-    gap = np.linalg.norm(there.point - state.y, axis=-1)
+        there = newton(problem, points[crossing] + share[:, np.newaxis] * chord, normal)
+    gap = np.linalg.norm(there.point - y, axis=-1)
     # Near a fold or where an impact is slow, rounding is enlarged.
     return bool(np.any(there.converged & (gap < 1e-9)))
 
@@ -240,34 +220,34 @@ def test_two_hundred_random_orbits_are_followed_without_a_jump(name):
     special = 0
     while count < 67:
         lam, r, ratio = random.uniform([1.0, 0.3, 3.0], [3.0, 0.9, 60.0])
-        balls = family(name, lam, r, ratio)
+        model = balls(name, lam, r, ratio).model
         phase, speed = random.uniform([-3.0, 1.0], [3.0, 6.0])
         try:
-            state = of_motion(balls, phase, lam * np.cos(phase) - speed, "amplitude", 1500)
+            orbit = of_motion(model, lam, phase, lam * np.cos(phase) - speed, 1500)
         except NoOrbitError:
             continue
-        if state.impacts > 12 or np.any(state.orbits.legs(state.y).departure.sticks & (
-                name == "restitution")):  # fmt: skip
+        sticks = legs_of(orbit).departure.sticks
+        if orbit.impacts > 12 or np.any(sticks & (name == "restitution")):
             continue
         count += 1
-        there = follow(state, most=20)
+        there = follow(orbit, most=20)
         special += bool(there.special)
         # The last point may be a special orbit that ends the branch.
-        last = State(there.orbits, there.branch.points[-2])
+        last = orbit_at(there.problem, there.branch.points[-2])
         rises = there.branch.tangents[-2, -1] > 0
         back = follow(last, increasing=not rises, most=120)
-        assert passes_through(back, state), (count, lam, r, ratio, phase, speed)
+        start = orbit.point(back.problem)
+        assert passes_through(back, start), (count, lam, r, ratio, phase, speed)
     assert special > 10
 
 
 @pytest.mark.parametrize("case", FOUND[:2])
-def test_states_of_a_branch_are_orbits_one_by_one(case):
-    name, impacts, _, *_, phase, velocity = case
-    state = of_impact(found_family(case), phase, velocity, impacts, "amplitude")
-    found = follow(state, 1.36)
-    states = list(found)
-    assert len(states) == len(found) and all(each.defect() < 1e-11 for each in states)
-    assert states[0].impacts == impacts and f"with {impacts} impacts" in repr(states[0]) and name
+def test_a_branch_gives_its_orbits_one_by_one(case):
+    impacts = case[1]
+    found = follow(found_orbit(case), to=1.36)
+    orbits = list(found)
+    assert len(orbits) == len(found) and all(each.defect() < 1e-11 for each in orbits)
+    assert orbits[0].impacts == impacts and f"impacts               {impacts}" in repr(orbits[0])
 
 
 @pytest.mark.parametrize("name", ["rigid", "spring-damper", "corrected", "law"])

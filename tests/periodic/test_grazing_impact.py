@@ -4,13 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from orbits_found import family, known_orbit
+from orbits_found import balls, legs_of
 from scipy.optimize import brentq
 
 from bouncing_ball.models.flight import table
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
 from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.following import STEPS, State, follow
+from bouncing_ball.periodic.following import STEPS, follow
+from bouncing_ball.periodic.orbit import orbit_at
 from bouncing_ball.periodic.special import Special
 
 # The first orbit with the additional impact has this closing speed, and is looked for nearby.
@@ -39,10 +40,11 @@ def touching(orbit, amplitude, duration, leaving):
     return lowest, rise + amplitude * (np.sin(start) - np.sin(start + lowest))
 
 
-def with_a_slow_impact(problem, orbit, amplitude, duration, leaving):
+def with_a_slow_impact(orbit, amplitude, duration, leaving):
     """The orbit with two impacts beside the 1-T orbit whose flight grazes."""
+    problem = orbit.problem("amplitude")
     aloft, _ = touching(orbit, amplitude, duration, leaving)
-    phase = float(orbit.phase)
+    phase = orbit.phase
     second = phase + duration + aloft
     pull = table(second, amplitude)[1] - 1
     whole = replace(problem, impacts=2, turns=np.array([0, 1]))
@@ -54,50 +56,48 @@ def with_a_slow_impact(problem, orbit, amplitude, duration, leaving):
     )
     found = newton(whole, guess, plane(np.eye(guess.size)[3], guess), NEARBY)
     assert found.converged
-    return State(whole, found.point)
+    return orbit_at(whole, found.point)
 
 
 @pytest.mark.parametrize("restitution", [0.3, 0.5, 0.7])
 def test_an_impact_grazes_where_bisection_finds_the_grazing_flight(restitution):
-    model = family("restitution", 1.3, restitution)
-    closed = model.make(model.values)
+    model = balls("restitution", 1.3, restitution).model
 
     def height(amplitude):
-        orbit = n_t.orbit(closed, 1, amplitude, "unstable")
+        orbit = n_t.orbit(model, 1, amplitude, "unstable")
         leaving = -restitution * float(orbit.relative_impact_velocity)
         return touching(orbit, amplitude, 0.0, leaving)[1]
 
     # The first flight is above the table, and the second below it.
     amplitude = brentq(height, 2.4, 3.0, xtol=1e-15)
-    orbit = n_t.orbit(closed, 1, amplitude, "unstable")
+    orbit = n_t.orbit(model, 1, amplitude, "unstable")
     leaving = -restitution * float(orbit.relative_impact_velocity)
-    problem = replace(known_orbit("restitution", 1.3, ("amplitude",))[1], family=model)
-    state = with_a_slow_impact(problem, orbit, amplitude, 0.0, leaving)
-    assert state.is_admissible()
+    slow = with_a_slow_impact(orbit, amplitude, 0.0, leaving)
+    assert slow.is_admissible()
     # The orbit with two impacts exists above or below, which depends on r.
-    increasing = state.parameters["amplitude"] < amplitude
-    found = follow(state, increasing=increasing, control=replace(STEPS, initial=1e-4))
+    increasing = slow.amplitude < amplitude
+    found = follow(slow, increasing=increasing, control=replace(STEPS, initial=1e-4))
     grazing = found.first(Special.GRAZING_IMPACT)
-    assert grazing.parameters["amplitude"] == pytest.approx(amplitude, abs=1e-12)
-    assert abs(grazing.velocity.max()) < 1e-12
+    assert grazing.amplitude == pytest.approx(amplitude, abs=1e-12)
+    assert abs(grazing.relative_impact_velocity.max()) < 1e-12
     assert str(found.branch.end).startswith("grazing of an impact")
 
 
 def test_an_impact_of_a_compliant_contact_disappears_with_its_contact():
     """It is approached up to a small step, because no contact begins with the speed 0."""
-    _, problem, y = known_orbit("spring-damper", 2.0, ("amplitude",))
-    grazing = follow(State(problem, y), 0.9).first(Special.GRAZING_FLIGHT)
-    amplitude = grazing.parameters["amplitude"]
-    orbit = n_t.orbit(problem.family.make(problem.family.values), 1, amplitude, "unstable")
-    legs = grazing.orbits.legs(grazing.y)
+    model = balls("spring-damper", 2.0).model
+    grazing = follow(n_t.orbit(model, 1, 2.0), to=0.9).first(Special.GRAZING_FLIGHT)
+    amplitude = grazing.amplitude
+    orbit = n_t.orbit(model, 1, amplitude, "unstable")
+    legs = legs_of(grazing)
     duration = float(legs.duration[0])
     leaving = float(legs.departure.flight.velocity[0])
     assert abs(touching(orbit, amplitude, duration, leaving)[1]) < 1e-12
-    state = with_a_slow_impact(problem, orbit, amplitude, duration, leaving)
-    found = follow(state, increasing=False, control=replace(STEPS, initial=1e-4))
+    slow = with_a_slow_impact(orbit, amplitude, duration, leaving)
+    found = follow(slow, increasing=False, control=replace(STEPS, initial=1e-4))
     assert "next to a grazing of an impact" in str(found.branch.end)
     last = list(found)[-1]
-    closing = -last.velocity.max()
+    closing = -last.relative_impact_velocity.max()
     assert 0 < closing < 1e-4
     # What is left of the impact changes Λ by its speed's square, apart from a factor of order 1.
-    assert abs(last.parameters["amplitude"] - amplitude) < 10 * closing**2
+    assert abs(last.amplitude - amplitude) < 10 * closing**2

@@ -2,13 +2,12 @@
 
 import numpy as np
 import pytest
-from orbits_found import MAKERS, family
+from orbits_found import balls, legs_of
 
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.motions import Kind
-from bouncing_ball.periodic.following import corrected
-from bouncing_ball.periodic.switching import of_impact
+from bouncing_ball.long_run.orbit_of_motion import of_impact
 
 # Digits that a ball may lose from rest to rest so that Newton's method settles: half of those of a
 # double, because the steps must fall below 1e-12 times the phases, and the residual has an error of
@@ -22,19 +21,18 @@ def test_the_locked_orbits_on_which_balls_end_are_orbits_of_the_equations(ratio)
     random = np.random.default_rng(61)
     r = random.uniform(0.1, 0.7, 40)
     lam = random.uniform(1.2, 5.0, 40)
-    model = MAKERS["spring-damper"]({"restitution": r, "frequency_ratio": ratio})
-    motion = final_motions(model, lam, -np.pi / 2, 0.0, impacts=200)
+    motion = final_motions(balls("spring-damper", lam, r, ratio).model, lam, -np.pi / 2, 0.0, impacts=200)
     locked = np.flatnonzero((motion.kind == Kind.LOCKED) & (motion.periods > 0))
     found = []
     for k in locked:
-        balls = family("spring-damper", lam[k], r[k], ratio)
+        ball = balls("spring-damper", lam[k], r[k], ratio)
         start = float(motion.end_phase[k]), float(motion.end_velocity[k]), int(motion.impacts[k])
         try:
-            state = corrected(of_impact(balls, *start, "frequency_ratio"))
+            orbit = of_impact(ball, *start)
         except NoOrbitError:
             assert motion.digits_lost[k] > _DIGITS
             continue
-        assert state.periods == motion.periods[k] and state.is_admissible()
-        assert state.defect() < 1e-12 and state.orbits.legs(state.y).departure.sticks.any()
+        assert orbit.periods == motion.periods[k] and orbit.is_admissible()
+        assert orbit.defect() < 1e-12 and legs_of(orbit).departure.sticks.any()
         found.append(k)
     assert len(found) > 10

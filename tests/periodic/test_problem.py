@@ -3,13 +3,12 @@
 import numpy as np
 import pytest
 import shooting
-from orbits_found import FOUND, family, found_family, known_orbit
+from orbits_found import FOUND, balls, found_orbit, known_orbit
 
 from bouncing_ball.periodic.following import corrected
 from bouncing_ball.periodic.problem import twice
 from bouncing_ball.periodic.simulation import is_admissible
 from bouncing_ball.periodic.stability import Bifurcation
-from bouncing_ball.periodic.switching import of_impact
 
 CLOSED = ["restitution", "spring-damper", "force release", "corrected"]
 ALL = [*CLOSED, "tsuji"]
@@ -19,13 +18,6 @@ ALONG = [
     for along in ("amplitude", "restitution", "frequency_ratio")
     if along != "frequency_ratio" or name != "restitution"
 ]
-
-
-def found_orbit(case, along="amplitude"):
-    _, impacts, periods, *_, phase, velocity = case
-    state = of_impact(found_family(case), phase, velocity, impacts, along)
-    assert state.periods == periods
-    return state
 
 
 @pytest.fixture(params=FOUND, ids=lambda case: f"{case[0]}-{case[1]}-{case[2]}")
@@ -44,18 +36,15 @@ def test_an_orbit_with_one_impact_is_that_of_the_closed_form(name, along):
 
 @pytest.mark.parametrize("name", CLOSED)
 def test_newtons_method_comes_back_to_the_closed_form(name):
-    from bouncing_ball.periodic.following import State
-
-    _, problem, y = known_orbit(name, 1.3, ("amplitude",))
+    _, problem, y = known_orbit(name, 1.3)
     moved = y.copy()
     moved[:2] += [1e-3, -2e-3]
-    found = corrected(State(problem, moved))
-    assert np.abs(found.y - y).max() < 1e-12
+    assert np.abs(corrected(problem, moved) - y).max() < 1e-12
 
 
 @pytest.mark.parametrize("name", ALL)
 def test_the_jacobian_is_that_of_differences(name):
-    _, problem, y = known_orbit(name, 1.3, ("amplitude",))
+    _, problem, y = known_orbit(name, 1.3)
     whole, y = twice(problem, y)
     step = 1e-6
     moved = [whole.residual(y + sign * step * np.eye(y.size)) for sign in (1, -1)]
@@ -77,27 +66,27 @@ def test_the_gradient_of_a_bifurcation_is_that_of_differences(name, kind):
 
 def test_an_orbit_with_several_impacts_is_that_of_shooting_with_another_integrator(case):
     name, impacts, periods, r, ratio, amplitude, phase, velocity = case
-    state = found_orbit(case)
+    orbit = found_orbit(case)
     ball = (name, r, ratio, amplitude)
     expected = shooting.orbit(phase, velocity, impacts, periods, *ball)
     relative = expected[1] - amplitude * np.cos(expected[0])
-    assert state.phase[0] == pytest.approx(expected[0], abs=1e-8)
-    assert state.velocity[0] == pytest.approx(relative, abs=1e-8)
-    assert state.defect() < 1e-12 and state.is_admissible() and state.is_stable()
+    assert orbit.phase[0] == pytest.approx(expected[0], abs=1e-8)
+    assert orbit.relative_impact_velocity[0] == pytest.approx(relative, abs=1e-8)
+    assert orbit.defect() < 1e-12 and orbit.is_admissible() and orbit.is_stable()
 
 
 def test_the_determinant_of_the_return_map_is_that_of_the_closed_form(case):
     name, impacts, _, r, ratio, *_ = case
-    state = found_orbit(case)
-    _, determinant = state.orbits.trace_and_determinant(state.y)
+    orbit = found_orbit(case)
+    determinant = orbit.determinant()
     if name == "restitution":
         expected = r ** (2 * impacts)
     else:
         zeta = -np.log(r) / np.hypot(np.pi, np.log(r))
-        expected = np.exp(-2 * zeta * ratio * state.contact_duration.sum())
+        expected = np.exp(-2 * zeta * ratio * orbit.contact_duration.sum())
     # The determinant is a difference of products of the entries of the monodromy.
-    m = state.orbits.monodromy(state.y)
-    assert abs(determinant - expected) < 1e-13 * (abs(m.a * m.d) + abs(m.b * m.c) + 1)
+    (a, b), (c, d) = orbit.monodromy()
+    assert abs(determinant - expected) < 1e-13 * (abs(a * d) + abs(b * c) + 1)
 
 
 def test_parameters_outside_their_ranges_have_no_residual():
@@ -111,4 +100,4 @@ def test_parameters_outside_their_ranges_have_no_residual():
 
 def test_an_unknown_parameter_is_refused(refusal):
     with refusal(ValueError, "these orbits have no 'stiffness': one of"):
-        family("restitution", 1.0).__class__(dict, {}, {"amplitude": None}).bounds("stiffness")
+        balls("restitution", 1.0).range_of("stiffness")

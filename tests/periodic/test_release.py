@@ -4,43 +4,42 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from orbits_found import family, known_orbit
+from orbits_found import balls, known_orbit
 
+from bouncing_ball.long_run.orbit_of_motion import of_motion
 from bouncing_ball.models.damping import damping_ratio
-from bouncing_ball.models.laws.linear import LinearLaw
 from bouncing_ball.models.laws.motion import ContactDynamics
 from bouncing_ball.models.linear_contact import LinearContactDynamics
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic.release import release_condition, release_margin
-from bouncing_ball.periodic.switching import of_motion
 
 
-def long_contact(ratio, excess, along):
+def long_contact(ratio, excess):
     """The orbit with one long contact at E = ``excess`` above permanent contact."""
     lam = float(permanent_contact_threshold(ratio, damping_ratio(0.85))) + excess / ratio**2
     phase = np.pi / 2 + 3 / ratio
     velocity = lam * np.cos(phase) - 0.1 / ratio**2
-    return of_motion(family("spring-damper", lam, 0.85, ratio), phase, velocity, *along)
+    return of_motion(balls("spring-damper", lam, 0.85, ratio).model, lam, phase, velocity)
 
 
-@pytest.mark.parametrize("along", [("amplitude",), ("frequency_ratio",)])
+@pytest.mark.parametrize("along", ["amplitude", "frequency_ratio"])
 @pytest.mark.parametrize("excess", [4.0, 15.0])
 def test_the_gradient_of_the_highest_point_is_that_of_differences(excess, along):
     """With one and with two impacts; the highest point is that of the last contact."""
-    state = long_contact(20.0, excess, along)
-    value, gradient = release_condition(state.orbits, state.y)
-    assert value == release_margin(state.orbits, state.y) and 0 < value < 1e-2
+    orbit = long_contact(20.0, excess)
+    problem = orbit.problem(along)
+    y = orbit.point(problem)
+    value, gradient = release_condition(problem, y)
+    assert value == release_margin(problem, y) and 0 < value < 1e-2
     step = 1e-6
-    moved = [
-        release_margin(state.orbits, state.y + sign * step * np.eye(state.y.size))
-        for sign in (1, -1)
-    ]
+    moved = [release_margin(problem, y + sign * step * np.eye(y.size)) for sign in (1, -1)]
     slopes = (moved[0] - moved[1]) / (2 * step)
     assert np.abs(gradient - slopes).max() < 1e-6 * np.abs(slopes).max()
 
 
 def test_without_a_contact_that_lasts_there_is_no_highest_point():
-    _, problem, y = known_orbit("restitution", 1.3, ("amplitude",))
+    _, problem, y = known_orbit("restitution", 1.3)
     value, gradient = release_condition(problem, y)
     assert value == 1 and np.isnan(gradient).any()
 
@@ -49,21 +48,22 @@ def test_differences_are_accurate_in_the_units_of_a_stiff_contact():
     """At E = 4 the speed of the impact is 50 ϖ⁻³, at ϖ = 400 less than a step of 6e-6."""
     ratio = 400.0
     power = np.array([1.0, 3.0, 1.0, 2.0])
-    state = long_contact(20.0, 4.0, ("amplitude",))
+    orbit = long_contact(20.0, 4.0)
+    problem = orbit.problem("amplitude")
     held = permanent_contact_threshold(np.array([20.0, ratio]), damping_ratio(0.85))
     limit, origin = (np.array([np.pi / 2, 0, 2 * np.pi, np.arcsinh(lam)]) for lam in held)
     unit = ratio**-power
-    y = origin + unit * 20.0**power * (state.y - limit)
-    stiff = replace(state.orbits, family=state.orbits.family.at({"frequency_ratio": ratio}))
+    y = origin + unit * 20.0**power * (orbit.point(problem) - limit)
+    stiff = replace(problem, balls=problem.balls.at({"frequency_ratio": ratio}))
     scaled = replace(stiff, unit=unit)
     step = 1e-5 * unit
     moved = [scaled.residual(y + sign * np.diag(step)) for sign in (1, -1)]
     slopes = (moved[0] - moved[1]).T / (2 * step)
 
-    def error(orbits):
+    def error(equations):
         """Relative to the largest term of each equation."""
         with np.errstate(all="ignore"):
-            off = (orbits.jacobian(y) - slopes) * unit
+            off = (equations.jacobian(y) - slopes) * unit
         return np.abs(off / np.abs(slopes * unit).max(axis=1, keepdims=True)).max()
 
     assert error(scaled) < 1e-4 and error(stiff) > 1e-3
@@ -73,7 +73,7 @@ def test_differences_are_accurate_in_the_units_of_a_stiff_contact():
 @pytest.mark.parametrize("release", ["displacement", "force"])
 def test_the_release_function_is_the_displacement_and_the_lag_times_the_velocity(kind, release):
     """At many times within two contacts, against the flow of the linear contact."""
-    law = LinearLaw(np.array([7.3, 25.0]), 0.12, release)
+    law = SpringDamper(np.array([7.3, 25.0]), 0.12, release)
     dynamics = kind.of(law, 1.3)
     start = np.array([1.9, 2.3]), np.array([-0.3, -0.05])
     impact = dynamics.start(*start)

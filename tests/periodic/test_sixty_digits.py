@@ -33,7 +33,7 @@ def test_the_branch_agrees_with_sixty_digits():
             excess = float(random.uniform(-1, 1)) / float(contact.frequency_ratio)
             point = branch_point(excess, contact, n)
             exact = Exact(contact, n)
-            _, u, x, y = n_t.orbit(exact, excess)
+            _, u, x, y = exact.orbit(excess)
             amplitude = mp.hypot(x, y)
             numbers = zip((point.u, point.x, point.y), (u, x, y), strict=True)
             size = max(amplitude, abs(u))
@@ -54,7 +54,7 @@ def check_bifurcation(contact: SpringDamper, n: int, kind: str, closed: float = 
     def test(x):
         return 1 - sign * exact.trace(x) + exact.determinant(x)
 
-    _, u, x, y = n_t.orbit(exact, excess)
+    _, u, x, y = exact.orbit(excess)
     # A grazing orbit would have u = 0, a pole an infinite Λ.
     assert abs(u) > 1e-6 and mp.hypot(x, y) < 1e8
     # Closed in double precision, where the trace has lost three digits at most.
@@ -77,7 +77,7 @@ def test_bifurcations_near_poles_and_grazing_orbits_are_those_of_sixty_digits(
     contact = SpringDamper.from_restitution(restitution, omega)
     with mpmath.workdps(60):
         assert check_bifurcation(contact, n, kind)
-    orbit = getattr(SpringDamperModel(contact), kind)(n)
+    orbit = getattr(n_t, kind)(SpringDamperModel(contact), n)
     assert orbit.relative_impact_velocity > 0
     assert not orbit.is_admissible()
 

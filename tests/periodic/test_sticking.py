@@ -15,14 +15,13 @@ from functools import partial
 import numpy as np
 import pytest
 from mpmath import findroot, mp, mpf, workdps
-from orbits_found import family
+from orbits_found import balls
 
 from bouncing_ball.errors import ParameterError
-from bouncing_ball.models.rigid import RestitutionModel
+from bouncing_ball.long_run.orbit_of_motion import of_motion
 from bouncing_ball.periodic.curves import curve
 from bouncing_ball.periodic.following import follow
 from bouncing_ball.periodic.special import Special
-from bouncing_ball.periodic.switching import of_motion
 
 # The zeros of w - w* after j and j + 3 bounces are then equal to rounding.
 SETTLED = 1e-17
@@ -74,8 +73,8 @@ def late(lam, r, flights, more):
 
 
 def ended(along, amplitude, restitution, to):
-    state = of_motion(family("restitution", amplitude, restitution), 1.0, -5.0, along)
-    found = follow(state, to)
+    orbit = of_motion(balls("restitution", amplitude, restitution).model, amplitude, 1.0, -5.0)
+    found = follow(orbit, along, to)
     assert str(found.branch.end).startswith("end of sticking")
     return found.first(Special.STICKING)
 
@@ -90,11 +89,11 @@ CASES = [
 
 @pytest.mark.parametrize(("along", "amplitude", "restitution", "to"), CASES)
 def test_sticking_ends_where_the_bounces_become_self_similar(along, amplitude, restitution, to):
-    state = ended(along, amplitude, restitution, to)
-    rest = state.orbits.durations(state.y)
+    orbit = ended(along, amplitude, restitution, to)
+    rest = orbit.contact_duration
     (sticks,) = np.flatnonzero(rest > 0)
-    flights = np.roll(state.orbits.intervals(state.y) - rest, -sticks)
-    place = state.parameters[along]
+    flights = np.roll(orbit.flight_time, -sticks)
+    place = orbit.parameters[along]
 
     def excess(p, more):
         lam, r = (p, mpf(restitution)) if along == "amplitude" else (mpf(amplitude), p)
@@ -116,18 +115,18 @@ def test_sticking_ends_where_the_bounces_become_self_similar(along, amplitude, r
 def test_a_simulated_ball_rests_in_its_first_turn_before_the_end_and_not_beyond_it(case):
     """On both sides of the end, from the lift-off on."""
     along, amplitude, restitution, to = case
-    state = ended(*case)
+    orbit = ended(*case)
     ahead = np.sign(to - {"amplitude": amplitude, "restitution": restitution}[along])
     for aside, expected in ((-1e-9, True), (1e-9, False)):
         known = {"amplitude": amplitude, "restitution": restitution}
-        known[along] = state.parameters[along] + ahead * aside
+        known[along] = orbit.parameters[along] + ahead * aside
         lam, r = known.values()
-        run = RestitutionModel(r).simulate(lam, np.arcsin(1 / lam), np.sqrt(lam**2 - 1), 300)
+        run = balls("restitution", lam, r).model.simulate(lam, np.arcsin(1 / lam), np.sqrt(lam**2 - 1), 300)
         rests = run.time[1:][run.settling[1:] > 0]
-        assert bool(rests.size and rests[0] < 2 * np.pi * state.periods) is expected
+        assert bool(rests.size and rests[0] < 2 * np.pi * orbit.periods) is expected
 
 
 def test_there_is_no_smooth_function_whose_zero_is_a_curve(refusal):
-    state = ended(*CASES[0])
+    orbit = ended(*CASES[0])
     with refusal(ParameterError, "'end of sticking' is not one of"):
-        curve(state, Special.STICKING, "restitution")
+        curve(orbit, Special.STICKING, "amplitude", "restitution")

@@ -219,7 +219,7 @@ def batch_row() -> Row:
     start = bouncing_ball.orbit_of_motion(ball, amplitude=1.6, phase=1.0, velocity=-3.0)
     r = np.linspace(R - 0.01, R + 0.01, BRANCHES)
     problem = start.problem(LAMBDA)
-    balls = Balls(ball.model, np.full(BRANCHES, 1.6)).at({"restitution": r})
+    balls = Balls(ball, np.full(BRANCHES, 1.6)).at({"restitution": r})
     orbits = replace(problem, balls=balls)
     first = np.tile(start.point(problem), (BRANCHES, 1))
 

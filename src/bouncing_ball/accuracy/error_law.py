@@ -53,7 +53,6 @@ from numpy.typing import ArrayLike
 from bouncing_ball.accuracy.errors import OF_IMPACTS, Quantity
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.instant import Instant
-from bouncing_ball.models.laws.linear import LinearLaw
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic import restitution_branch as restitution_orbit
@@ -267,7 +266,7 @@ def coefficients(
     -1.0
     """
     contact = SpringDamper(1.0, np.asarray(damping_ratio, dtype=float), release)
-    return first_order(n, Signature(LinearLaw.of(contact))(), amplitude)
+    return first_order(n, Signature(contact)(), amplitude)
 
 
 def law_thresholds(

@@ -34,6 +34,11 @@ Numbered = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 Errors = Callable[[np.ndarray, np.ndarray, Sequence[str]], np.ndarray]
 """Signed relative errors of quantities, shape (quantity, m), at ratios ϖ of rows, shape (m,)."""
+RATIOS = np.geomspace(1.0, 1e6, 97)
+"""ϖ at which errors are scanned, from contacts that last a considerable part of the table's period
+to contacts stiffer than those of any simulation. The steps are fine, so that two crossings hardly
+fall between neighbours.
+"""
 # Errors are bounded for the root finder, because they may be zero or infinite.
 _SMALLEST, _LARGEST = 1e-300, 1e3
 # Tolerance of ln ϖ: rounding an error of 0.1 % moves its threshold by about this much.

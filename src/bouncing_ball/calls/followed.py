@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, overload
 
-from bouncing_ball.calls.arguments import (
+from bouncing_ball.calls.labelled_branches import FollowedBranch, SpecialCurve
+from bouncing_ball.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
     FINITE,
     FOLLOWED,
@@ -18,11 +19,9 @@ from bouncing_ball.calls.arguments import (
     checked_number,
     chosen,
 )
-from bouncing_ball.calls.balls import Ball, a_ball, a_single_ball
-from bouncing_ball.calls.labelled_branches import FollowedBranch, SpecialCurve
 from bouncing_ball.errors import NoOrbitError, ParameterError
 from bouncing_ball.long_run import orbit_of_motion as motions
-from bouncing_ball.patience import patience
+from bouncing_ball.models.ball import Ball, a_single_ball
 from bouncing_ball.periodic import curves, following, switching
 from bouncing_ball.periodic.balls import LAMBDA, Balls
 from bouncing_ball.periodic.curves import Window
@@ -74,9 +73,8 @@ def orbit_of_motion(
     phi = checked_number("phase", phase, STATE)
     before = checked_number("velocity", velocity, STATE)
     most = checked_number("impacts", impacts, FOLLOWED)
-    model = a_single_ball(a_ball(ball)).model
-    with patience("fewer impacts"):
-        return motions.of_motion(model, lam, phi, before, most)
+    model = a_single_ball(ball)
+    return motions.of_motion(model, lam, phi, before, most)
 
 
 @overload
@@ -171,8 +169,7 @@ def follow(
             raise ParameterError(
                 "{to} is the end of a branch: a curve in two parameters has ranges"
             )
-        with patience("narrower ranges or fewer points"):
-            return _curve(orbit, names, ranges or {}, most)
+        return _curve(orbit, names, ranges or {}, most)
     if ranges is not None:
         raise ParameterError("{ranges} are those of a curve in two parameters: a branch has {to}")
     (name,) = names
@@ -182,11 +179,10 @@ def follow(
     if orbit.kind in _ENDS:
         kind = Special(orbit.kind)
         raise NoOrbitError(f"the branch ends at the {kind}: {MEANINGS[kind]}")
-    with patience("a nearer value of to or fewer points"):
-        start = orbit
-        if orbit.kind == Special.PERIOD_DOUBLING:
-            start = switching.switch(orbit, name)
-        return FollowedBranch.of(following.follow(start, name, value, most=most))
+    start = orbit
+    if orbit.kind == Special.PERIOD_DOUBLING:
+        start = switching.switch(orbit, name)
+    return FollowedBranch.of_orbits(following.follow(start, name, value, most=most))
 
 
 def _check_orbit(call: str, orbit: Any) -> None:
@@ -233,7 +229,7 @@ def _curve(
         across_window=windows[1],
         most=most,
     )
-    return SpecialCurve.of(found, curve_kind=str(orbit.kind))
+    return SpecialCurve.of_orbits(found, curve_kind=str(orbit.kind))
 
 
 def switch(orbit: Orbit) -> Orbit:

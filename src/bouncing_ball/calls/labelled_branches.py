@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.calls.arguments import chosen
-from bouncing_ball.calls.drawn import Drawn
+from bouncing_ball.datasets.arguments import chosen
 from bouncing_ball.datasets.variables import SHARED, Variable, described
+from bouncing_ball.drawing.result import Result
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic import observables, stability
 from bouncing_ball.periodic.curves import Curve
@@ -20,9 +20,6 @@ from bouncing_ball.periodic.problem import PeriodicOrbits
 from bouncing_ball.periodic.simulation import is_admissible
 from bouncing_ball.periodic.special import Special
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 VARIABLES = {
     "special_point": Variable("number of the last point of the branch before the special orbit"),
 }
@@ -30,16 +27,18 @@ _IMPACT = {"impact": Variable("number of the impact within the orbit")}
 _ALL = observables.VARIABLES | VARIABLES | _IMPACT
 
 
-class _Orbits(Drawn):
+class _Orbits(Result):
     """Orbits one after another; a part of them, such as ``found.isel(point=0)``, has no states."""
 
     __slots__ = ("_found",)
 
+    maker: ClassVar[str]
+
     @classmethod
-    def of(cls, found: Followed | Curve, **attributes: str) -> Self:
+    def of_orbits(cls, found: Followed | Curve, **attributes: str) -> Self:
         """The labelled result of a branch or a curve."""
-        data = _columns(found)
-        result = cls(data.data_vars, data.coords, _attributes(found.problem) | attributes)
+        data = _columns(found).assign_attrs(_attributes(found.problem) | attributes)
+        result = cls.of(data, cls.maker)
         result._found = found
         return result
 
@@ -73,11 +72,6 @@ class FollowedBranch(_Orbits):
         name = chosen("kind", kind, [str(each) for each in Special])
         return self._found.first(Special(name))
 
-    def _figure(self) -> Figure:
-        from bouncing_ball.calls import figures
-
-        return figures.followed(self)
-
 
 class SpecialCurve(_Orbits):
     """A curve of special orbits in two parameters; see :class:`FollowedBranch`.
@@ -88,11 +82,6 @@ class SpecialCurve(_Orbits):
     __slots__ = ()
 
     maker = "curve"
-
-    def _figure(self) -> Figure:
-        from bouncing_ball.calls import figures
-
-        return figures.special_curve(self)
 
 
 def _before(points: np.ndarray, special: np.ndarray) -> int:

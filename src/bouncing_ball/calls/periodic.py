@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from bouncing_ball.calls.arguments import (
+from bouncing_ball.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
     FAMILY,
     POINTS,
@@ -18,18 +18,14 @@ from bouncing_ball.calls.arguments import (
     chosen,
     is_array,
 )
-from bouncing_ball.calls.balls import Ball, a_ball, a_known_ball, a_single_ball
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.patience import patience
+from bouncing_ball.models.ball import Ball, a_ball, a_known_ball, a_single_ball
 from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.stability import Side
 
 if TYPE_CHECKING:
-    from bouncing_ball.calls.periodic_on_grid import Branches, Limits, Orbits, PermanentContact
-
-# What makes orbits cheaper.
-_SIMPLER = "a spring and a damper in place of a law, or fewer balls"
+    from bouncing_ball.drawing.result import Result
 
 
 class TwoLimits(NamedTuple):
@@ -46,7 +42,7 @@ class TwoLimits(NamedTuple):
 
 def orbit(
     ball: Ball, n: Family = 1, *, amplitude: AmplitudeOfOrbit, side: SideName = "stable"
-) -> Orbit | Orbits:
+) -> Orbit | Result:
     """The n-T orbit at the excitation amplitude Λ.
 
     Parameters
@@ -61,7 +57,7 @@ def orbit(
 
     Returns
     -------
-    Orbit or Orbits
+    Orbit or Result
         One orbit, with Python floats. If a parameter is an array, a dataset of the observables
         of all orbits with an axis named after each array; NaN where there is no orbit.
 
@@ -96,11 +92,9 @@ release='displacement')
         # than computing the orbit.
         from bouncing_ball.calls.periodic_on_grid import orbits_on_grid
 
-        with patience(_SIMPLER):
-            return orbits_on_grid(ball, family, lam, branch_side)
-    with patience(_SIMPLER):
-        model = ball.at_orbit(family, lam, branch_side).model
-        return n_t.require_orbit(model, family, lam, branch_side)
+        return orbits_on_grid(ball, family, lam, branch_side)
+    model = ball.at_orbit(family, lam, branch_side)
+    return n_t.require_orbit(model, family, lam, branch_side)
 
 
 def orbits(ball: Ball, n: int = 1, *, amplitude: float) -> list[Orbit]:
@@ -133,15 +127,14 @@ def orbits(ball: Ball, n: int = 1, *, amplitude: float) -> list[Orbit]:
     """
     family = checked_number("n", n, FAMILY)
     lam = checked_number("amplitude", amplitude, AMPLITUDE_OF_ORBIT)
-    with patience(_SIMPLER):
-        model = a_single_ball(a_ball(ball).at_orbit(family, lam)).model
-        found = n_t.orbits(model, family, lam)
+    model = a_single_ball(a_ball(ball).at_orbit(family, lam))
+    found = n_t.orbits(model, family, lam)
     if not found.size:
         raise NoOrbitError(f"no {family}-T orbit at Λ = {lam:g} for {model.label}")
     return [found[k] for k in range(found.size)]
 
 
-def limits(ball: Ball, n: Family = 1) -> TwoLimits | Limits:
+def limits(ball: Ball, n: Family = 1) -> TwoLimits | Result:
     """Saddle-node and period doubling of the n-T orbits; NaN where there is none.
 
     Parameters
@@ -152,7 +145,7 @@ def limits(ball: Ball, n: Family = 1) -> TwoLimits | Limits:
 
     Returns
     -------
-    TwoLimits or Limits
+    TwoLimits or Result
         Two orbits. If a parameter is an array, a dataset of both amplitudes and phases with an
         axis named after each array.
 
@@ -172,19 +165,17 @@ def limits(ball: Ball, n: Family = 1) -> TwoLimits | Limits:
     if _is_grid(a_ball(ball), family):
         from bouncing_ball.calls.periodic_on_grid import limits_on_grid
 
-        with patience(_SIMPLER):
-            return limits_on_grid(ball, family)
-    with patience(_SIMPLER):
-        model = ball.at_limits(family).model
-        return TwoLimits(
-            saddle_node=n_t.saddle_node(model, family),
-            period_doubling=n_t.period_doubling(model, family),
-        )
+        return limits_on_grid(ball, family)
+    model = ball.at_limits(family)
+    return TwoLimits(
+        saddle_node=n_t.saddle_node(model, family),
+        period_doubling=n_t.period_doubling(model, family),
+    )
 
 
 def branch(
     ball: Ball, n: Family = 1, *, amplitude_max: float | None = None, points: Points = 300
-) -> Branches:
+) -> Result:
     """The branch of n-T orbits over the amplitude Λ, on both sides of its saddle-node.
 
     Parameters
@@ -199,7 +190,7 @@ def branch(
 
     Returns
     -------
-    Branches
+    Result
         ``amplitude``, ``phase`` and the other observables of each ``point``, and whether the
         orbit is ``stable`` and ``admissible``; ``special_amplitude`` and others of the
         saddle-nodes, period doublings and grazing orbits. Where one of several branches does not
@@ -230,11 +221,10 @@ def branch(
     a_ball(ball)
     from bouncing_ball.calls.periodic_on_grid import branches_on_grid
 
-    with patience(f"a smaller amplitude_max, {_SIMPLER}"):
-        return branches_on_grid(ball, family, top, count)
+    return branches_on_grid(ball, family, top, count)
 
 
-def permanent_contact(ball: Ball) -> float | PermanentContact:
+def permanent_contact(ball: Ball) -> float | Result:
     """The Λ up to which a ball at rest stays on the table.
 
     Parameters
@@ -245,7 +235,7 @@ def permanent_contact(ball: Ball) -> float | PermanentContact:
 
     Returns
     -------
-    float or PermanentContact
+    float or Result
         If a parameter of the ball is an array, a dataset with an axis named after each array.
 
     Raises
@@ -263,10 +253,8 @@ def permanent_contact(ball: Ball) -> float | PermanentContact:
     if _is_grid(known):
         from bouncing_ball.calls.periodic_on_grid import permanent_contact_on_grid
 
-        with patience(_SIMPLER):
-            return permanent_contact_on_grid(known)
-    with patience(_SIMPLER):
-        return float(known.model.permanent_contact_threshold())
+        return permanent_contact_on_grid(known)
+    return float(known.permanent_contact_threshold())
 
 
 def _is_grid(ball: Ball, *arguments: Any) -> bool:

@@ -6,17 +6,17 @@ first in every result.
 
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.calls.balls import Ball, ModelBall
-from bouncing_ball.calls.drawn import Drawn
 from bouncing_ball.datasets import CASE
 from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.datasets.variables import describe
+from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.ball import Ball
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.numerics.continuation import ContinuationError
@@ -26,91 +26,23 @@ from bouncing_ball.periodic.observables import branch_columns, columns, joined, 
 from bouncing_ball.periodic.orbit import OBSERVABLES
 from bouncing_ball.periodic.stability import Side
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 # The longest step along a branch, and as a fraction of the largest Λ, if that is large: a branch
 # has some thousand points at most.
 _LARGEST_STEP = 0.1
 _STRIDE = 2e-3
 
 
-class Orbits(Drawn):
-    """Orbits over the axes of the arguments: the observables, ``stable`` and ``admissible``.
-
-    The figure shows the phase of impact and the greatest height over the last axis.
-    """
-
-    __slots__ = ()
-
-    maker = "orbit"
-
-    def _figure(self) -> "Figure":
-        from bouncing_ball.calls import figures
-
-        return figures.orbits(self)
-
-
-class Limits(Drawn):
-    """Amplitude and phase of saddle-nodes and period doublings over the axes of the arguments.
-
-    The figure shows both limits over the last axis.
-    """
-
-    __slots__ = ()
-
-    maker = "limits"
-
-    def _figure(self) -> "Figure":
-        from bouncing_ball.calls import figures
-
-        return figures.limits(self)
-
-
-class PermanentContact(Drawn):
-    """The Λ up to which a ball stays on the table, over the axes of the arguments.
-
-    The figure shows this threshold over the last axis.
-    """
-
-    __slots__ = ()
-
-    maker = "permanent-contact"
-
-    def _figure(self) -> "Figure":
-        from bouncing_ball.calls import figures
-
-        return figures.permanent_contact(self)
-
-
-class Branches(Drawn):
-    """Branches of orbits over Λ; the variables are those of
-    :func:`~bouncing_ball.periodic.observables.orbits_in_columns`.
-
-    The figure shows the phases of the branches over Λ.
-    """
-
-    __slots__ = ()
-
-    maker = "branch"
-
-    def _figure(self) -> "Figure":
-        from bouncing_ball.paper.exhibits.continuation_of_orbits_figures import over_amplitude
-
-        return over_amplitude(self)
-
-
-def orbits_on_grid(ball: Ball, n: Any, amplitude: Any, side: Side) -> Orbits:
+def orbits_on_grid(ball: Ball, n: Any, amplitude: Any, side: Side) -> Result:
     """The orbit on one side of the saddle-node at each point of a grid; NaN where there is none."""
 
     def found(one: Ball, n: Any, amplitude: Any) -> dict[str, np.ndarray]:
-        model = one.at_orbit(n, amplitude, side).model
+        model = one.at_orbit(n, amplitude, side)
         return _observables(model, n, amplitude, side)
 
     grid = Grid(n=n, amplitude=amplitude, **ball.parameters)
     missing = _observables(RestitutionModel(1.0), 1, np.nan, Side.STABLE)
     rows = _each_place(grid, ball, ("n", "amplitude"), found, missing)
-    return grid.unfold(describe(rows, observables.VARIABLES), Orbits)
+    return Result.of(grid.unfold(describe(rows, observables.VARIABLES)), "orbit")
 
 
 def _observables(model: Model, n: Any, amplitude: Any, side: Side) -> dict[str, np.ndarray]:
@@ -118,14 +50,14 @@ def _observables(model: Model, n: Any, amplitude: Any, side: Side) -> dict[str, 
     return columns(n_t.orbit(model, n, amplitude, side), *names)
 
 
-def limits_on_grid(ball: Ball, n: Any) -> Limits:
+def limits_on_grid(ball: Ball, n: Any) -> Result:
     """Amplitude and phase of the saddle-node and the period doubling at each point of a grid.
 
     The values are NaN where a family has no such bifurcation.
     """
 
     def found(one: Ball, n: Any) -> dict[str, np.ndarray]:
-        model = one.at_limits(n).model
+        model = one.at_limits(n)
         saddle_node = n_t.saddle_node(model, n)
         period_doubling = n_t.period_doubling(model, n)
         return {
@@ -137,15 +69,15 @@ def limits_on_grid(ball: Ball, n: Any) -> Limits:
 
     grid = Grid(n=n, **ball.parameters)
     rows = _each_place(grid, ball, ("n",), found, {})
-    return grid.unfold(describe(rows, observables.VARIABLES), Limits)
+    return Result.of(grid.unfold(describe(rows, observables.VARIABLES)), "limits")
 
 
-def permanent_contact_on_grid(ball: ModelBall) -> PermanentContact:
+def permanent_contact_on_grid(ball: Model) -> Result:
     """The Λ up to which a ball stays on the table, at each point of the grid of its parameters."""
     grid = Grid(**ball.parameters)
-    threshold = ball.row(grid).model.permanent_contact_threshold()
+    threshold = ball.row(grid).permanent_contact_threshold()
     rows = xr.Dataset({"threshold_amplitude": (CASE, threshold)})
-    return grid.unfold(describe(rows), PermanentContact)
+    return Result.of(grid.unfold(describe(rows)), "permanent-contact")
 
 
 def _each_place(
@@ -194,7 +126,7 @@ def _by_place(
     return joined(rows, CASE)
 
 
-def branches_on_grid(ball: Ball, n: Any, amplitude_max: float | None, points: int) -> Branches:
+def branches_on_grid(ball: Ball, n: Any, amplitude_max: float | None, points: int) -> Result:
     """The branch at each point of a grid; NaN, with the reason, where there is no branch.
 
     The axes of the grid come first.
@@ -206,11 +138,11 @@ def branches_on_grid(ball: Ball, n: Any, amplitude_max: float | None, points: in
     """
 
     def found(one: Ball, n: int) -> xr.Dataset:
-        return branch_of(one.at_limits(n).model, n, amplitude_max, points)
+        return branch_of(one.at_limits(n), n, amplitude_max, points)
 
     grid = Grid(n=n, **ball.parameters)
     whole = _by_place(grid, ball, ("n",), found, partial(no_branch, points), joined)
-    branches = grid.unfold(describe(whole, observables.VARIABLES), Branches)
+    branches = Result.of(grid.unfold(describe(whole, observables.VARIABLES)), "branch")
     return branches if amplitude_max is None else branches.assign_attrs(amplitude_max=amplitude_max)
 
 

@@ -17,6 +17,9 @@ _SYMBOLS = {
     "ζ": "damping ratio of the contact: r = exp(-πζ/√(1 - ζ²)) for the displacement release",
 }
 
+# What makes a single orbit cheaper.
+_SIMPLER = "a spring and a damper in place of a law"
+
 
 def _as_it_is(answer: Any) -> Any:
     return answer
@@ -40,8 +43,8 @@ class Command:
     """A subcommand.
 
     ``examples`` are without the name of the program. ``program`` imports what the subcommand
-    needs, because the list of subcommands needs no numpy. ``cheaper`` is what makes an answer
-    cheaper that no public function computes.
+    needs, because the list of subcommands needs no numpy. ``cheaper`` is what makes its answer
+    cheaper.
     """
 
     purpose: str
@@ -126,8 +129,9 @@ def _diagram() -> Program:
 
 def _design() -> Program:
     from bouncing_ball.cli import design
+    from bouncing_ball.cli.design_text import lines
 
-    return Program(design.add_options, design.design, design.lines, design.document)
+    return Program(design.add_options, design.design, lines, design.document)
 
 
 def _explain() -> Program:
@@ -166,6 +170,7 @@ COMMANDS = {
             "orbit --amplitude 1 --law tsuji --restitution 0.85 --duration 0.1",
         ),
         program=_orbit,
+        cheaper=_SIMPLER,
     ),
     "limits": Command(
         purpose="saddle-node and period doubling of the n-T orbits",
@@ -179,6 +184,7 @@ COMMANDS = {
             "limits --restitution 0.85 --frequency-ratio 10 --certify",
         ),
         program=_limits,
+        cheaper=_SIMPLER,
     ),
     "error-law": Command(
         purpose="the error K/ϖ of the restitution model to first order",
@@ -216,6 +222,7 @@ COMMANDS = {
             "follow --amplitude 1.6 --restitution 0.5 --phase 1 --velocity -3 --to 1.8",
         ),
         program=_follow,
+        cheaper="a nearer value of to or fewer doublings",
     ),
     "curve": Command(
         purpose="a curve of saddle-nodes, period doublings or grazing orbits in two parameters",
@@ -230,6 +237,7 @@ COMMANDS = {
             ),
         ),
         program=_curve,
+        cheaper="narrower ranges or fewer points",
     ),
     "simulate": Command(
         purpose="a sequence of impacts from any initial impact",
@@ -260,6 +268,7 @@ COMMANDS = {
             "motion --amplitude 3 --restitution 0.5 --phase 1 --velocity -4",
         ),
         program=_motion,
+        cheaper="fewer impacts",
     ),
     "diagram": Command(
         purpose="the motions on which balls end, over the amplitude",
@@ -270,6 +279,7 @@ COMMANDS = {
         ),
         examples=("diagram --amplitude 0.9 1.1 --points 5 --restitution 0.85",),
         program=_diagram,
+        cheaper="fewer amplitudes, fewer starts or fewer impacts",
     ),
     "design": Command(
         purpose="whether a restitution coefficient is enough, or which contact is needed",
@@ -296,6 +306,7 @@ COMMANDS = {
         ),
         program=_design,
         has_symbols=False,
+        cheaper="a single family n, fewer balls, or a spring and a damper in place of a law",
     ),
     "explain": Command(
         purpose="where an artifact comes from, and how to make it again",

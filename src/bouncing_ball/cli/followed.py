@@ -6,14 +6,6 @@ from typing import Any, get_args
 
 from bouncing_ball.calls import followed as calls
 from bouncing_ball.calls import periodic
-from bouncing_ball.calls.arguments import (
-    AMPLITUDE_OF_ORBIT,
-    FAMILY,
-    FINITE,
-    POINTS,
-    STATE,
-    SideName,
-)
 from bouncing_ball.calls.labelled_branches import FollowedBranch
 from bouncing_ball.cli.impact import add_ball, ball_of
 from bouncing_ball.cli.options import (
@@ -25,6 +17,14 @@ from bouncing_ball.cli.options import (
     option,
 )
 from bouncing_ball.cli.periodic import Answer
+from bouncing_ball.datasets.arguments import (
+    AMPLITUDE_OF_ORBIT,
+    FAMILY,
+    FINITE,
+    POINTS,
+    STATE,
+    SideName,
+)
 from bouncing_ball.datasets.files import PICTURES, require_writable
 from bouncing_ball.errors import ParameterError, Range
 from bouncing_ball.periodic.curves import Degenerate

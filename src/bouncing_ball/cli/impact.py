@@ -2,15 +2,6 @@
 
 from typing import Any
 
-from bouncing_ball.calls.arguments import (
-    DAMPING_RATIO,
-    FREQUENCY_RATIO,
-    POSITIVE,
-    RESTITUTION,
-    Rule,
-)
-from bouncing_ball.calls.balls import LOSSES, Ball, corrected, rigid, spring_damper, the_loss
-from bouncing_ball.calls.law_balls import contact_law
 from bouncing_ball.cli.options import (
     Parser,
     add_assignments,
@@ -20,9 +11,19 @@ from bouncing_ball.cli.options import (
     meanings,
     option,
 )
+from bouncing_ball.contacts.law_balls import contact_law
+from bouncing_ball.contacts.named_laws import law_named
+from bouncing_ball.datasets.arguments import (
+    DAMPING_RATIO,
+    FREQUENCY_RATIO,
+    POSITIVE,
+    RESTITUTION,
+    Rule,
+)
 from bouncing_ball.errors import ModelError, ParameterError
+from bouncing_ball.models.ball import Ball
 from bouncing_ball.models.damping import Release
-from bouncing_ball.models.laws.registry import law_named
+from bouncing_ball.models.makers import LOSSES, corrected, rigid, spring_damper, the_loss
 
 MODELS = ("restitution", "spring-damper", "corrected")
 

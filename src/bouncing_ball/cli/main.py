@@ -7,8 +7,8 @@ from bouncing_ball import __version__
 from bouncing_ball.cli.commands import COMMANDS, Program
 from bouncing_ball.cli.options import Parser, option
 from bouncing_ball.cli.output import fail, say
+from bouncing_ball.cli.patience import patience
 from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError, extra
-from bouncing_ball.patience import patience
 
 INTERRUPTED = 130
 """The exit status after Ctrl-C: 128 and the number of the signal."""

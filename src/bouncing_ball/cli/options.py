@@ -111,7 +111,7 @@ def meanings(call: Callable) -> dict[str, str]:
 
     Examples
     --------
-    >>> from bouncing_ball.calls.balls import rigid
+    >>> from bouncing_ball.models.makers import rigid
     >>> meanings(rigid)
     {'restitution': 'Restitution coefficient r in (0, 1].'}
     """
@@ -293,6 +293,17 @@ def add_parameters(parser: argparse.ArgumentParser, call: Callable) -> None:
             _add_option(parser, parameter, texts.get(name, ""))
 
 
+def add_optional(parser: argparse.ArgumentParser, call: Callable, names: Iterable[str]) -> None:
+    """Add options for some parameters of a call, of which none is required."""
+    texts = meanings(call)
+    parameters = inspect.signature(call).parameters
+    for name in names:
+        parameter = parameters[name]
+        if parameter.default is parameter.empty:
+            parameter = parameter.replace(default=None)
+        _add_option(parser, parameter, texts.get(name, ""))
+
+
 def _add_argument(parser: argparse.ArgumentParser, parameter: inspect.Parameter, text: str) -> None:
     """Add an argument by position."""
     reading = _reading(parameter.annotation)
@@ -316,7 +327,7 @@ def _add_option(parser: argparse.ArgumentParser, parameter: inspect.Parameter, t
 def laws() -> str:
     """A sentence with the names of the contact laws."""
     # Imported here, because the import needs numpy, which the general help does not need.
-    from bouncing_ball.models.laws.registry import LAWS
+    from bouncing_ball.contacts.named_laws import LAWS
 
     return f" Laws: {', '.join(LAWS)}."
 

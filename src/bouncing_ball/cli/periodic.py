@@ -7,8 +7,6 @@ import numpy as np
 
 from bouncing_ball.accuracy import error_law as error_laws
 from bouncing_ball.calls import periodic as calls
-from bouncing_ball.calls.arguments import AMPLITUDE_OF_ORBIT, FAMILY, FREQUENCY_RATIO
-from bouncing_ball.calls.balls import ModelBall, spring_damper
 from bouncing_ball.cli.impact import add_ball, add_contact, ball_of
 from bouncing_ball.cli.options import (
     Parser,
@@ -17,11 +15,14 @@ from bouncing_ball.cli.options import (
     add_optional_number,
     meanings,
 )
+from bouncing_ball.datasets.arguments import AMPLITUDE_OF_ORBIT, FAMILY, FREQUENCY_RATIO
 from bouncing_ball.errors import NoOrbitError, ParameterError, count, extra
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
-from bouncing_ball.models.laws.signature import Signature, free_impact
+from bouncing_ball.models.laws.signature import Signature
+from bouncing_ball.models.makers import spring_damper
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.orbit import OBSERVABLES, Orbit
 from bouncing_ball.periodic.stability import Bifurcation
 from bouncing_ball.periodic.start import restitution_speed
@@ -49,7 +50,7 @@ def described(law: Any, speed: float = math.nan) -> Answer:
                 "damping_ratio": float(law.damping_ratio),
             }
         case ContactLaw():
-            impact = free_impact(law, np.float64(speed))
+            impact = law.signature(np.float64(speed))
             return {
                 "law": law.name,
                 "parameters": {name: float(x) for name, x in law.parameters().items()},
@@ -215,7 +216,7 @@ def error_law(*, n: int, amplitude: float, **contact: Any) -> Answer:
         If Λ lies below the saddle-node of the restitution model.
     """
     # The coefficients do not depend on ϖ; the contact with ϖ = 1 stands for all.
-    law = _ball(frequency_ratio=1.0, **contact).model.impact_law
+    law = _ball(frequency_ratio=1.0, **contact).impact_law
     found = error_laws.coefficients(n, law.damping_ratio, amplitude, law.release)
     signed = {str(name): float(k) if math.isfinite(k) else None for name, k in found.items()}
     second = error_laws.permanent_contact_coefficient(law.damping_ratio, law.release)
@@ -237,11 +238,11 @@ def permanent_contact_options(parser: Parser) -> None:
 def permanent_contact(**contact: Any) -> Answer:
     """The Λ up to which the ball stays on the table."""
     ball = _ball(**contact)
-    threshold = ball.model.permanent_contact_threshold()
-    return {"threshold_amplitude": float(threshold), **described(ball.model.impact_law)}
+    threshold = ball.permanent_contact_threshold()
+    return {"threshold_amplitude": float(threshold), **described(ball.impact_law)}
 
 
-def _ball(*, release: str | None, **contact: Any) -> ModelBall:
+def _ball(*, release: str | None, **contact: Any) -> SpringDamperModel:
     """The ball on the contact that the options of :func:`.add_contact` describe."""
     rule = Release.DISPLACEMENT if release is None else Release(release)
     return spring_damper(release=rule.value, **contact)

@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.calls import over_time
-from bouncing_ball.calls.arguments import AMPLITUDE, IMPACTS, STATE, Range
 from bouncing_ball.cli.impact import add_ball, ball_of
 from bouncing_ball.cli.options import Parser, add_number, meanings
 from bouncing_ball.cli.periodic import Answer, described
+from bouncing_ball.datasets.arguments import AMPLITUDE, IMPACTS, STATE, Range
+from bouncing_ball.models import over_time
 from bouncing_ball.models.sequence import Status
 
 _SHOWN = ("time", "phase", "impact_velocity", "contact_duration", "bounce_velocity")
@@ -34,7 +34,7 @@ def simulate(
 ) -> Answer:
     """The sequence of impacts of one ball as lists, with null for an event that does not happen."""
     speed = float(amplitude * np.cos(phase) - velocity)
-    model = ball_of(**impact).at_speed(speed).model
+    model = ball_of(**impact).at_speed(speed)
     found = model.simulate(amplitude, phase, velocity, impacts)
     columns = np.array([getattr(found, name) for name in _SHOWN])
     there = columns[:, np.isfinite(found.time)]

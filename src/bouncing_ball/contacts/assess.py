@@ -1,43 +1,158 @@
 """The first question: is a restitution coefficient good enough for a contact on a table?"""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Annotated, Any, ClassVar
 
 from bouncing_ball.accuracy.errors import OF_ORBITS
-from bouncing_ball.contacts.case import PhysicalCase, TableMotion
-from bouncing_ball.contacts.contact_data import case_of
-from bouncing_ball.contacts.engine_data import Ready, ready
-from bouncing_ball.contacts.families import families, finite, needed
-from bouncing_ball.contacts.given import CHEAPER, Contact, Question, Table
-from bouncing_ball.contacts.lone_contact import drop_remarks, require_short, slowed
-from bouncing_ball.contacts.motion import of_family
-from bouncing_ball.contacts.results import (
-    Assessment,
-    Choice,
-    Corrected,
-    Family,
-    TimeStep,
-)
+from bouncing_ball.contacts.choose import Choice
+from bouncing_ball.contacts.contact import Contact
+from bouncing_ball.contacts.describe import require_short
+from bouncing_ball.contacts.families import ComparedOrbit, Needed, families, finite, needed
+from bouncing_ball.contacts.motion import FinalMotion, of_family
+from bouncing_ball.contacts.notes import notes, remarks
+from bouncing_ball.contacts.question import Question
+from bouncing_ball.contacts.resolve import resolve
+from bouncing_ball.contacts.resolved import ResolvedContact
+from bouncing_ball.contacts.rows import Listed
+from bouncing_ball.contacts.table import Table
 from bouncing_ball.contacts.verdict import (
     Verdict,
     aside,
     assessed,
+    chosen,
     headline,
     judged_by_motion,
-    notes,
 )
 from bouncing_ball.errors import ModelError, NoOrbitError, require
 from bouncing_ball.models.damping import Release
-from bouncing_ball.patience import patience
 
 STEPS = 50
 """Time steps in one contact, for the rule of the largest time step."""
 
 STEP_RULE = f"a contact takes {STEPS} steps, the default of MFiX-Exa (mfix.tcoll_ratio)"
-# Beyond this limit the squares of ϖ and Λ leave no digits. The other calls have the same limit.
+# Beyond this limit the square of ϖ leaves no digits. The other calls have the same limit.
 _LARGEST = 1e8
 # A contact law is integrated in time. At this Λ its motion takes up to eight seconds, and beyond it
 # more, because a contact is then a small part of a flight.
 _LARGEST_OF_LAW = 1e5
+
+
+@dataclass(frozen=True)
+class TimeStep:
+    """The largest time step that resolves the contact, in s, and the rule that it follows from."""
+
+    largest: Annotated[float, Listed("largest time step", "s")]
+    rule: str
+
+
+@dataclass(frozen=True)
+class Corrected:
+    """The three numbers of the corrected restitution model, in SI units.
+
+    The impact is instantaneous and happens t_c = ``delay`` after the ball touches the table. Its
+    restitution coefficient is ``r + σ a/v``, where σ = ``load`` is a time, a the acceleration that
+    presses the ball to the table and v the impact speed.
+    """
+
+    delay: Annotated[float, Listed("corrected model, delay t_c", "s")]
+    restitution: Annotated[float, Listed("corrected model, restitution r")]
+    load: Annotated[float, Listed("corrected model, load σ", "s")]
+
+
+@dataclass(frozen=True)
+class Assessment:
+    """The assessment of a contact on a table; times are in s, lengths in m, forces in N.
+
+    ``frequency_ratio``, ``damping_ratio`` and ``amplitude`` are ϖ, ζ and Λ. ``restitution`` has the
+    r of a free impact for each release rule, and ``measured_restitution`` is that for the rule of
+    this contact; it holds at impacts faster than ``slowed_speed``, at which, on a table at rest,
+    gravity lowers √(h′/h) by 1 %, None without damping or for another law. ``n`` is the family of
+    the verdict. Up to Λ = ``permanent_contact`` a ball may stay on the table; None if no such
+    threshold was found. ``law`` has the ``name`` of a contact law and its parameters, whose units
+    are powers of kg, m and s. ``chosen`` is the family for which the contact was chosen, None for a
+    contact that was given. ``no_orbit`` says that no model has an orbit; it is empty if one has.
+    """
+
+    KEYS: ClassVar[tuple[str, ...]] = (
+        "frequency_ratio", "damping_ratio", "amplitude", "stiffness", "damping", "contact_time",
+        "time_step", "static_deflection", "restitution", "measured_restitution", "slowed_speed",
+        "permanent_contact", "law", "corrected", "orbits", "needed", "motion", "headline",
+        "is_good_enough", "verdict", "reason", "notes", "case", "n",
+    )  # fmt: skip
+
+    frequency_ratio: Annotated[float, Listed("frequency ratio ϖ")]
+    damping_ratio: Annotated[float, Listed("damping ratio ζ")]
+    amplitude: Annotated[float, Listed("excitation amplitude Λ")]
+    stiffness: Annotated[float, Listed("stiffness", "N/m")]
+    damping: Annotated[float, Listed("damping", "N s/m")]
+    contact_time: Annotated[float, Listed("contact time", "s")]
+    time_step: TimeStep
+    static_deflection: Annotated[float, Listed("static deflection", "m")]
+    restitution: Annotated[
+        dict[str, float],
+        Listed("restitution, released at δ = 0"),
+        Listed("restitution, released without force"),
+    ]
+    measured_restitution: float
+    slowed_speed: Annotated[float | None, Listed("gravity lowers r by 1 % at", "m/s")]
+    permanent_contact: Annotated[float | None, Listed("permanent contact up to Λ")]
+    law: dict[str, Any] | None
+    corrected: Corrected
+    orbits: tuple[ComparedOrbit, ...]
+    needed: Needed
+    motion: FinalMotion
+    case: ResolvedContact
+    n: int
+    chosen: int | None = None
+    no_orbit: str = ""
+
+    @property
+    def judged(self) -> ComparedOrbit:
+        """The result for the family of the verdict."""
+        return next(one for one in self.orbits if one.n == self.n)
+
+    @cached_property
+    def judgement(self) -> Verdict:
+        """Whether the restitution model is good enough, in words, and the reason."""
+        if self.chosen is None:
+            found = assessed(self.judged, self.needed, self.frequency_ratio)
+        else:
+            found = chosen(self.case, self.needed, self.chosen)
+        # A threshold, such as that of permanent contact, is not a property of one orbit.
+        if self.needed.quantity not in OF_ORBITS:
+            return found
+        if self.motion.restitution_kind is None:
+            said = f"{found.verdict[:-1]}{aside(self.motion, self.amplitude)}."
+            return found._replace(verdict=said)
+        before = "" if self.chosen is None else f"{found.verdict} "
+        end = judged_by_motion(self.motion, self.needed.tolerance, self.n)
+        return end._replace(verdict=before + end.verdict, reason=self.no_orbit or end.reason)
+
+    @property
+    def is_good_enough(self) -> bool:
+        """Whether the restitution model is good enough; for a chosen contact on its motion."""
+        return self.judgement.is_good_enough
+
+    @property
+    def verdict(self) -> str:
+        """The verdict on the restitution model, or the contact that was chosen, in a sentence."""
+        return self.judgement.verdict
+
+    @property
+    def reason(self) -> str:
+        """The reason of the verdict."""
+        return self.judgement.reason
+
+    @property
+    def headline(self) -> str:
+        """The motion of the ball, in one sentence."""
+        return headline(self.motion, self.judged)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Sentences that a user should read in addition to the verdict."""
+        return remarks(self.case) + notes(self.case, self.judged, self.motion)
 
 
 def assess_contact(table: Table, contact: Contact, question: Question | None = None) -> Assessment:
@@ -69,43 +184,30 @@ def assess_contact(table: Table, contact: Contact, question: Question | None = N
     (1, True, 0.0122)
     """
     asked = question or Question()
-    with patience(CHEAPER):
-        return of_contact(table.motion, ready(contact), asked)
+    return assess(resolve(contact, table.motion, asked.families), asked)
 
 
-def of_contact(table: TableMotion, given: Ready, question: Question) -> Assessment:
-    """The assessment of a contact that is given."""
-    require_range(table)
-    case = given.case(case_of(given.contact, table, question.families), question.families)
-    return of_case(case, question, given.remarks + drop_remarks(case, given.contact))
+def assess(case: ResolvedContact, question: Question, choice: Choice | None = None) -> Assessment:
+    """The assessment of a contact on a table that moves, or with ``choice`` of the one chosen.
 
-
-def require_range(table: TableMotion) -> None:
-    """Refuse a table whose Λ leaves no digits.
+    If no model has an orbit and no n is asked for, it is about a ball laid on the table.
 
     Raises
     ------
     ModelError
-        The message gives the range.
-    """
-    require(table.amplitude < _LARGEST, table.amplitude, "Λ", f"below {_LARGEST:g}")
-
-
-def of_case(
-    case: PhysicalCase, question: Question, remarks: tuple[str, ...], choice: Choice | None = None
-) -> Assessment:
-    """The assessment of a case, or with ``choice`` of the contact that was chosen.
-
-    If no model has an orbit and no n is asked for, it is about a ball laid on the table.
+        If ζ ≥ 1, or a number is beyond what is computed.
+    NoOrbitError
+        If no model has the orbit of the ``n`` that is asked for.
     """
     contact = case.contact
+    amplitude = case.table.amplitude
     ratio = float(contact.frequency_ratio)
     only = "below 1: on a vibrating table only underdamped contacts are computed"
     require(contact.damping_ratio < 1, contact.damping_ratio, "damping ratio ζ", only)
-    require_short(case.in_si()["contact_time"])
-    if case.law is not None and case.table.amplitude > _LARGEST_OF_LAW:
+    require_short(case.contact_time)
+    if case.law is not None and amplitude > _LARGEST_OF_LAW:
         raise ModelError(
-            f"Λ = {case.table.amplitude:g} is above {_LARGEST_OF_LAW:g}, up to which a contact law "
+            f"Λ = {amplitude:g} is above {_LARGEST_OF_LAW:g}, up to which a contact law "
             "is followed: give a lower acceleration, or a spring and a damper, which are faster"
         )
     no_orbit = ""
@@ -120,39 +222,24 @@ def of_case(
     require(1 / _LARGEST < ratio < _LARGEST, ratio, "ϖ", f"between {1 / _LARGEST:g} and 1e8")
     one = _judged(found, choice)
     if choice is None:
-        amplitude = case.table.amplitude
         need = needed(question.quantity, question.tolerance, contact, one.n, amplitude)
-        verdict = assessed(one, need, ratio)
-        before = ""
     else:
         need = choice.needed
-        verdict = Verdict(True, choice.verdict, choice.reason)
-        before = f"{choice.verdict} "
-    motion = of_family(case, one, need.tolerance, question.balls)
-    # A threshold, such as that of permanent contact, is not a property of one orbit.
-    if need.quantity in OF_ORBITS:
-        if motion.restitution_kind is None:
-            said = f"{verdict.verdict[:-1]}{aside(motion, case.table.amplitude)}."
-            verdict = verdict._replace(verdict=said)
-        else:
-            end = judged_by_motion(motion, need.tolerance, one.n)
-            verdict = end._replace(verdict=before + end.verdict, reason=no_orbit or end.reason)
-    si = case.in_si()
     signature = case.instant(one.n)
     return Assessment(
         frequency_ratio=ratio,
         damping_ratio=float(contact.damping_ratio),
-        amplitude=case.table.amplitude,
-        stiffness=si["stiffness"],
-        damping=si["damping"],
-        contact_time=si["contact_time"],
-        time_step=TimeStep(si["contact_time"] / STEPS, STEP_RULE),
-        static_deflection=si["static_deflection"],
+        amplitude=amplitude,
+        stiffness=case.stiffness,
+        damping=case.damping,
+        contact_time=case.contact_time,
+        time_step=TimeStep(case.contact_time / STEPS, STEP_RULE),
+        static_deflection=case.static_deflection,
         restitution={
             str(rule): float(replace(contact, release=rule).restitution) for rule in Release
         },
         measured_restitution=float(contact.restitution),
-        slowed_speed=slowed(case),
+        slowed_speed=case.slowed_speed,
         permanent_contact=finite(case.permanent_contact),
         law=case.law_in_si,
         corrected=Corrected(
@@ -162,18 +249,15 @@ def of_case(
         ),
         orbits=found,
         needed=need,
-        motion=motion,
-        headline=headline(motion, one),
-        is_good_enough=verdict.is_good_enough,
-        verdict=verdict.verdict,
-        reason=verdict.reason,
-        notes=remarks + notes(case, one, motion),
+        motion=of_family(case, one, need.tolerance, question.balls),
         case=case,
         n=one.n,
+        chosen=None if choice is None else choice.n,
+        no_orbit=no_orbit,
     )
 
 
-def _judged(found: tuple[Family, ...], choice: Choice | None) -> Family:
+def _judged(found: tuple[ComparedOrbit, ...], choice: Choice | None) -> ComparedOrbit:
     """The family of the verdict: that of the choice, or the first whose orbit is stable and
     admissible, or else exists.
     """

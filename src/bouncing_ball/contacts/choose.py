@@ -1,36 +1,59 @@
 """The second question: how stiff must a contact be for a restitution coefficient to be enough?"""
 
-import math
-from dataclasses import replace
+from dataclasses import dataclass
 
 from bouncing_ball.accuracy.errors import OF_ORBITS, QUANTITIES, Quantity
-from bouncing_ball.accuracy.thresholds import ThresholdStatus
-from bouncing_ball.contacts.assess import require_range
-from bouncing_ball.contacts.case import PhysicalCase, TableMotion
-from bouncing_ball.contacts.contact_data import (
-    law_type,
-    loss,
-    meant,
-    reduced_modulus,
-    require_pairs,
-    rule_of,
-    same_omega,
-)
-from bouncing_ball.contacts.engine_data import Ready, ready
-from bouncing_ball.contacts.families import RATIOS, needed
-from bouncing_ball.contacts.given import CHEAPER, Contact, Question, Table, given
-from bouncing_ball.contacts.lone_contact import drop_remarks
-from bouncing_ball.contacts.results import Choice, Needed
-from bouncing_ball.contacts.units import percent
+from bouncing_ball.accuracy.thresholds import RATIOS, ThresholdStatus
+from bouncing_ball.contacts.contact import Contact
+from bouncing_ball.contacts.families import Needed, needed
+from bouncing_ball.contacts.hertz import reduced_modulus
+from bouncing_ball.contacts.loss import of_loss
+from bouncing_ball.contacts.notes import remarks
+from bouncing_ball.contacts.question import Question
+from bouncing_ball.contacts.resolve import law_type, meant
+from bouncing_ball.contacts.resolved import ResolvedContact
+from bouncing_ball.contacts.table import Table, TableMotion
+from bouncing_ball.contacts.texts import percent
 from bouncing_ball.contacts.verdict import chosen
 from bouncing_ball.errors import NoOrbitError, ParameterError
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.patience import patience
 from bouncing_ball.periodic import n_t
 
-# Largest number of times that the damping of a drop test is fitted to the stiffness chosen.
-_REFITS = 12
+
+@dataclass(frozen=True)
+class Choice:
+    """The most compliant contact whose restitution model is within a tolerance, in SI units.
+
+    ``n`` is the family of the orbit, and ``needed`` the ϖ that the tolerance needs.
+    """
+
+    mass: float
+    stiffness: float
+    damping: float
+    frequency_ratio: float
+    damping_ratio: float
+    contact_time: float
+    release: str
+    measured_restitution: float
+    n: int
+    needed: Needed
+    case: ResolvedContact
+
+    @property
+    def verdict(self) -> str:
+        """What a simulation needs, in one sentence."""
+        return chosen(self.case, self.needed, self.n).verdict
+
+    @property
+    def reason(self) -> str:
+        """Why no more compliant contact is enough."""
+        return chosen(self.case, self.needed, self.n).reason
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Sentences on how the contact was read."""
+        return remarks(self.case)
 
 
 def choose_contact(table: Table, contact: Contact, question: Question | None = None) -> Choice:
@@ -59,70 +82,68 @@ def choose_contact(table: Table, contact: Contact, question: Question | None = N
     >>> f"{found.stiffness:.4g} N/m, {found.contact_time:.3g} s", round(found.frequency_ratio, 2)
     ('1.36e+07 N/m, 0.000122 s', 83.0)
     """
-    with patience(CHEAPER):
-        return of_loss(table.motion, ready(contact), question or Question())
+    return choose(contact, table.motion, question or Question())
 
 
-def of_loss(table: TableMotion, ready: Ready, question: Question) -> Choice:
-    """The contact with the loss of a contact that has no stiffness."""
-    contact = ready.contact
-    if contact.is_stiff:
+def choose(
+    contact: Contact, table: TableMotion, question: Question, written: str | None = None
+) -> Choice:
+    """The most compliant contact on a table, which may be written for the engine with this name.
+
+    Raises
+    ------
+    ModelError, NoOrbitError
+        See :func:`choose_contact`.
+    """
+    plain = contact.by_stiffness_and_loss(written)
+    if plain.is_stiff:
         raise ParameterError("a contact with a stiffness is not chosen: leave its stiffness out")
     # A law is fitted to a free impact, so that it is never chosen.
-    law_type(contact)
-    data = given(contact)
-    require_pairs(data)
+    law_type(plain)
     # A radius alone is a Hertz contact whose modulus is missing.
-    reduced_modulus(data)
-    require_range(table)
-    # A contact with the ζ of the given loss, whose ϖ is still to be found.
-    rule = rule_of(contact)
-    unit = SpringDamper(1.0, loss(data, rule), rule)
-    case, need = _with_ratio(unit, contact.mass, table, question)
-    if contact.rebound_height is not None:
-        # By gravity the ζ of a drop test depends on the stiffness, though hardly for a stiff one.
-        for _ in range(_REFITS):
-            before = float(case.contact.frequency_ratio)
-            zeta = loss(data, rule, same_omega(before * table.angular_frequency), table.gravity)
-            unit = SpringDamper(1.0, zeta, rule)
-            case, need = _with_ratio(unit, contact.mass, table, question)
-            if math.isclose(case.contact.frequency_ratio, before, rel_tol=1e-12):
-                break
-    n = meant(question.families, float(case.contact.restitution), table.amplitude)
-    numbers = case.in_si()
-    verdict = chosen(numbers, need, n)
+    reduced_modulus(plain)
+
+    def stiffness(zeta: float) -> tuple[float, tuple[SpringDamper, Needed]]:
+        unit = SpringDamper(1.0, zeta, plain.rule)
+        need = _needed(unit, table.amplitude, question)
+        ratio = need.frequency_ratio or float(RATIOS[0])
+        return ratio * table.angular_frequency, (SpringDamper(ratio, zeta, plain.rule), need)
+
+    spring, need = of_loss(plain, table.gravity, stiffness)
+    case = ResolvedContact(plain.mass, table, spring, given=contact, written=written)
+    r = float(spring.restitution)
     return Choice(
         mass=case.mass,
-        stiffness=numbers["stiffness"],
-        damping=numbers["damping"],
-        frequency_ratio=float(case.contact.frequency_ratio),
-        damping_ratio=float(case.contact.damping_ratio),
-        contact_time=numbers["contact_time"],
-        release=str(rule),
-        measured_restitution=float(case.contact.restitution),
-        n=n,
+        stiffness=case.stiffness,
+        damping=case.damping,
+        frequency_ratio=float(spring.frequency_ratio),
+        damping_ratio=float(spring.damping_ratio),
+        contact_time=case.contact_time,
+        release=str(spring.release),
+        measured_restitution=r,
+        n=meant(question.families, r, table.amplitude),
         needed=need,
-        verdict=verdict.verdict,
-        reason=verdict.reason,
-        notes=drop_remarks(case, contact),
         case=case,
     )
 
 
-def _with_ratio(
-    unit: SpringDamper, mass: float, table: TableMotion, question: Question
-) -> tuple[PhysicalCase, Needed]:
-    """The case with the smallest ϖ within the tolerance for the ζ of a contact, and this ϖ."""
+def _needed(unit: SpringDamper, amplitude: float, question: Question) -> Needed:
+    """The ϖ that the tolerance needs for the ζ of a contact at Λ.
+
+    Raises
+    ------
+    NoOrbitError
+        If the restitution model has no such orbit, or no contact is within the tolerance.
+    """
     quantity = question.quantity
     r = float(unit.restitution)
-    n = meant(question.families, r, table.amplitude)
+    n = meant(question.families, r, amplitude)
     if quantity in OF_ORBITS:
-        n_t.require_orbit(RestitutionModel(r), n, table.amplitude)
-    need = needed(quantity, question.tolerance, unit, n, table.amplitude)
-    if need.status == ThresholdStatus.NEVER_WITHIN:
+        n_t.require_orbit(RestitutionModel(r), n, amplitude)
+    found = needed(quantity, question.tolerance, unit, n, amplitude)
+    if found.status == ThresholdStatus.NEVER_WITHIN:
         raise NoOrbitError(
             f"no contact up to ϖ = {RATIOS[-1]:g} has its {QUANTITIES[Quantity(quantity)]} "
-            f"predicted within {percent(need.tolerance)} by the restitution model with r = {r:.4g}"
+            f"predicted within {percent(found.tolerance)} by the restitution model with r = {r:.4g}"
         )
-    stiff = replace(unit, frequency_ratio=need.frequency_ratio or float(RATIOS[0]))
-    return PhysicalCase(mass, table, stiff), need
+    return found

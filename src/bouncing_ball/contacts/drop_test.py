@@ -117,14 +117,14 @@ def fitted_damping_ratio(
     omega_of : callable
         ω = √(k/m) in rad/s as a function of ζ: a constant for a given stiffness.
     drop, wanted : float
-        Heights of the drop and of the rebound in m.
+        Heights of the drop and of the rebound in m, of which the drop is not the lower one.
     gravity : float
     release : Release
 
     Raises
     ------
     ModelError
-        If the rebound is higher than the drop, or lower than that of every contact with ζ < 1.
+        If the rebound is lower than that of every contact with ζ < 1.
 
     Examples
     --------
@@ -132,8 +132,6 @@ def fitted_damping_ratio(
     >>> round(rebound(65.0, zeta, 0.2, 9.81, Release.FORCE), 12)
     0.04
     """
-    if wanted > drop:
-        raise ParameterError(f"{{rebound_height}} {wanted:g} m is above {{drop_height}} {drop:g} m")
     if wanted == drop:
         return 0.0
 

@@ -6,7 +6,8 @@ over ϖ.
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from dataclasses import dataclass
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,8 +16,10 @@ from bouncing_ball.accuracy import error_law
 from bouncing_ball.accuracy.corrected_errors import search
 from bouncing_ball.accuracy.error_law import law_thresholds
 from bouncing_ball.accuracy.errors import OF_IMPACTS, OF_ORBITS, Quantity, relative
-from bouncing_ball.contacts.case import PhysicalCase, TableMotion
-from bouncing_ball.contacts.results import Errors, Family, Needed, Standing
+from bouncing_ball.accuracy.thresholds import RATIOS
+from bouncing_ball.contacts.resolved import ResolvedContact
+from bouncing_ball.contacts.rows import Listed
+from bouncing_ball.contacts.table import TableMotion
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.model import Model
@@ -24,6 +27,81 @@ from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.orbit import Orbit
+from bouncing_ball.periodic.stability import Bifurcation
+
+Errors = dict[str, float | None]
+"""Relative errors by quantity, (q - q_SD)/q_SD with the value q_SD of the contact; None where one
+of the values does not exist, or that of the contact is zero."""
+
+
+@dataclass(frozen=True)
+class Standing:
+    """The place of a case in its family, in one model.
+
+    ``saddle_node`` and ``period_doubling`` are the Λ of the bifurcations. The margins are relative
+    changes of Λ: ``1 - Λ_SN/Λ`` is the fall down to the saddle-node, and ``Λ_PD/Λ - 1`` the rise
+    up to the period doubling. They are None if there is no such bifurcation.
+    """
+
+    exists: Annotated[bool, Listed("exists")]
+    is_stable: Annotated[bool, Listed("stable")]
+    is_admissible: bool
+    saddle_node: Annotated[float | None, Listed(f"{Bifurcation.SADDLE_NODE} at Λ")]
+    saddle_node_margin: Annotated[float | None, Listed("  Λ may fall by", "%")]
+    period_doubling: Annotated[float | None, Listed(f"{Bifurcation.PERIOD_DOUBLING} at Λ")]
+    period_doubling_margin: Annotated[float | None, Listed("  Λ may rise by", "%")]
+
+
+@dataclass(frozen=True)
+class ComparedOrbit:
+    """The n-T orbit of a case, in SI units, and the errors of the simple models.
+
+    ``exists``, ``is_stable`` and ``is_admissible`` refer to the orbit of the exact model, which
+    comes first in ``standing``. ``values`` has each quantity in every model, the exact one first,
+    in m, in m/s or without a unit. All errors are relative to the exact value and have a sign,
+    positive where the model predicts too much: ``errors`` are those of the restitution model,
+    ``corrected_errors`` those of the corrected model, and ``law_errors`` those that the error law
+    gives for the restitution model; ``law_holds`` tells whether the law holds.
+    """
+
+    n: int
+    exists: bool
+    is_stable: bool
+    is_admissible: bool
+    standing: dict[str, Standing]
+    max_height: Annotated[float | None, Listed("greatest height", "m")]
+    impact_speed: Annotated[float | None, Listed("impact speed", "m/s")]
+    contact_duration: Annotated[float | None, Listed("duration of contact", "s")]
+    greatest_compression: Annotated[float | None, Listed("greatest compression", "m")]
+    peak_force: Annotated[float | None, Listed("peak force", "N")]
+    peak_force_over_weight: Annotated[float | None, Listed("peak force over weight")]
+    values: dict[str, dict[str, float | None]]
+    errors: Errors
+    corrected_errors: Errors
+    law_errors: Errors
+    law_holds: bool
+
+
+@dataclass(frozen=True)
+class Needed:
+    """The frequency ratio above which the error of a quantity stays within a tolerance ε.
+
+    The error is relative to the value on the contact.
+
+    ``frequency_ratio`` is the largest ϖ at which the error of the restitution model crosses the
+    tolerance, and ``corrected`` that of the corrected model. ``by_law`` is the ϖ that the error
+    law gives, |K|/ε, or √(|K₂|/ε) for the permanent contact. A value that does not exist is None,
+    and ``status`` or ``corrected_status``, otherwise "found", gives the reason.
+    """
+
+    quantity: str
+    tolerance: float
+    frequency_ratio: float | None
+    by_law: float | None
+    corrected: float | None
+    status: str
+    corrected_status: str
+
 
 # Samples of a contact, and further samples for each radian of the table's motion, because a long
 # contact has several maxima. The two steps around the greatest sample are sampled again. A step is
@@ -91,7 +169,7 @@ def _loads(law: ContactLaw, orbit: Any) -> tuple[float, float]:
     return float(np.max(depth)), float(np.max(force))
 
 
-def by_error_law(case: PhysicalCase, n: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def by_error_law(case: ResolvedContact, n: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The restitution model's errors that the error law predicts, shape (quantity, n), and whether
     it holds, shape (n,).
 
@@ -100,9 +178,7 @@ def by_error_law(case: PhysicalCase, n: np.ndarray) -> tuple[np.ndarray, np.ndar
 
     Examples
     --------
-    >>> from bouncing_ball.contacts.case import TableMotion
-    >>> from bouncing_ball.models.spring_damper import SpringDamper
-    >>> case = PhysicalCase(1.0, TableMotion(1.0, 1.0, 1.0), SpringDamper(10.0, 0.0))
+    >>> case = ResolvedContact(1.0, TableMotion(1.0, 1.0, 1.0), SpringDamper(10.0, 0.0))
     >>> by_error_law(case, np.array([1]))[0][-1].tolist()
     [0.01]
     """
@@ -138,8 +214,8 @@ def _standing(orbit: Orbit, values: np.ndarray, amplitude: float) -> Standing:
 
 
 def families(
-    case: PhysicalCase, asked: Sequence[int], or_first: bool = False
-) -> tuple[Family, ...]:
+    case: ResolvedContact, asked: Sequence[int], or_first: bool = False
+) -> tuple[ComparedOrbit, ...]:
     """The families ``asked`` in which at least one model has an orbit.
 
     If there is no such family, the result is the first of ``asked`` with ``or_first``, and
@@ -152,9 +228,7 @@ def families(
 
     Examples
     --------
-    >>> from bouncing_ball.contacts.case import TableMotion
-    >>> from bouncing_ball.models.spring_damper import SpringDamper
-    >>> case = PhysicalCase(1.0, TableMotion(1.0, 0.5, 1.0), SpringDamper(10.0, 0.1))
+    >>> case = ResolvedContact(1.0, TableMotion(1.0, 0.5, 1.0), SpringDamper(10.0, 0.1))
     >>> [family.n for family in families(case, [1, 2, 3])]
     [1]
     """
@@ -202,7 +276,9 @@ def _in_model(
     return orbit, [*of_orbits, node, doubling, np.full(n.shape, permanent_contact)]
 
 
-def _no_orbit(case: PhysicalCase, asked: Sequence[int], saddle_nodes: np.ndarray) -> NoOrbitError:
+def _no_orbit(
+    case: ResolvedContact, asked: Sequence[int], saddle_nodes: np.ndarray
+) -> NoOrbitError:
     """The error that no model has an orbit, from the saddle-nodes of the first family asked."""
     amplitude = case.table.amplitude
     # The restitution model's where that of a strongly damped law was not found.
@@ -217,14 +293,14 @@ def _no_orbit(case: PhysicalCase, asked: Sequence[int], saddle_nodes: np.ndarray
 
 
 def _family(
-    case: PhysicalCase,
+    case: ResolvedContact,
     n: int,
     *,
     orbits: Sequence[Any],
     values: np.ndarray,
     by_law: np.ndarray,
     holds: bool,
-) -> Family:
+) -> ComparedOrbit:
     """A family from its orbits in all models, the ``values`` of the quantities, shape
     (model, quantity), and the result of the error law.
     """
@@ -234,7 +310,7 @@ def _family(
     depth, force = _loads(case.exact_law, orbit)
     restitution, corrected = map(_by_quantity, prediction_error(values[1:], values[0]))
     in_si = values * _units(case.table)
-    return Family(
+    return ComparedOrbit(
         n=n,
         exists=standing[0].exists,
         is_stable=standing[0].is_stable,
@@ -266,9 +342,6 @@ def _units(table: TableMotion) -> np.ndarray:
     return units
 
 
-# From contacts that last a considerable part of the table's period to contacts stiffer than those
-# of any simulation. The grid is fine, so that two crossings hardly fall between neighbours.
-RATIOS = np.geomspace(1.0, 1e6, 97)
 NO_ORBIT = "no orbit"
 """A status in addition to :class:`~bouncing_ball.accuracy.thresholds.ThresholdStatus`."""
 

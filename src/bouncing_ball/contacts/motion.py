@@ -17,14 +17,14 @@ computed, and its error that of a sample of as many impacts.
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from itertools import repeat
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.contacts.case import PhysicalCase
-from bouncing_ball.contacts.families import prediction_error
-from bouncing_ball.contacts.results import Family, FinalMotion, Mean
+from bouncing_ball.contacts.families import ComparedOrbit, prediction_error
+from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.motions import Kind
 from bouncing_ball.long_run.sampled_means import (
@@ -47,6 +47,42 @@ _BESIDE = 1e-3
 # time, which takes several milliseconds for an impact, so that it is followed for fewer.
 _IMPACTS = 600
 _IMPACTS_OF_LAW = 250
+
+
+@dataclass(frozen=True)
+class Mean:
+    """A mean, and half the width of its confidence interval of 95 %, in SI units."""
+
+    value: float
+    half_width: float
+
+
+@dataclass(frozen=True)
+class FinalMotion:
+    """The motion on which a ball ends that starts on the orbit of the verdict, or beside it.
+
+    ``kind`` is the kind of this motion in the exact model: "orbit", "subharmonic", "locked",
+    "permanent contact", "chaotic" or "undecided". The periods of the table and the impacts after
+    which the motion repeats follow; they are 0 if it does not repeat. ``laid`` is the kind for a
+    ball laid on the table, None if it is the same. If the orbit is not stable, there are the same
+    three values for the restitution model. For motions that repeat in the same way in both models
+    there is then the ``greatest`` height in each model; for other motions there are means over
+    time of the height and of the power that the table transfers, over a number of ``balls``, with
+    the signed relative errors of the restitution model.
+    """
+
+    kind: str
+    periods: int
+    impacts: int
+    laid: str | None = None
+    restitution_kind: str | None = None
+    restitution_periods: int | None = None
+    restitution_impacts: int | None = None
+    greatest: dict[str, float] | None = None
+    mean_height: dict[str, Mean | None] | None = None
+    mean_power: dict[str, Mean | None] | None = None
+    mean_error: dict[str, Mean] | None = None
+    balls: int | None = None
 
 
 class Sampling(NamedTuple):
@@ -104,7 +140,7 @@ class _End(NamedTuple):
 
 
 def of_family(
-    case: PhysicalCase, family: Family, tolerance: float, balls: int | None = None
+    case: ResolvedContact, family: ComparedOrbit, tolerance: float, balls: int | None = None
 ) -> FinalMotion:
     """The motion of a ball that starts on the orbit of a family, or beside an unstable orbit.
 
@@ -141,12 +177,12 @@ def of_family(
     )
 
 
-def _followed(case: PhysicalCase) -> int:
+def _followed(case: ResolvedContact) -> int:
     """Number of impacts of a ball in the search for its final motion."""
     return _IMPACTS if case.law is None else _IMPACTS_OF_LAW
 
 
-def _first_orbit(case: PhysicalCase, n: int) -> Any | None:
+def _first_orbit(case: ResolvedContact, n: int) -> Any | None:
     """The n-T orbit of the first model that has one: exact, restitution or corrected."""
     for model in case.models.values():
         orbit = n_t.orbit(model, n, case.table.amplitude)
@@ -155,7 +191,7 @@ def _first_orbit(case: PhysicalCase, n: int) -> Any | None:
     return None
 
 
-def _is_elliptic(case: PhysicalCase, family: Family, orbit: Any) -> bool:
+def _is_elliptic(case: ResolvedContact, family: ComparedOrbit, orbit: Any) -> bool:
     """Whether a ball stays near the orbit without being attracted, as the contact has no loss."""
     lossless = float(case.contact.restitution) == 1
     if not (lossless and family.exists and family.is_admissible):
@@ -164,7 +200,7 @@ def _is_elliptic(case: PhysicalCase, family: Family, orbit: Any) -> bool:
     return abs(float(trace)) < 2
 
 
-def _start(case: PhysicalCase, orbit: Any | None) -> _Start:
+def _start(case: ResolvedContact, orbit: Any | None) -> _Start:
     """An impact beside the orbit, or without one that of a ball laid on the table at the phase
     where the table moves down fastest.
     """
@@ -173,7 +209,7 @@ def _start(case: PhysicalCase, orbit: Any | None) -> _Start:
     return _Start(float(orbit.phase), float(orbit.impact_velocity) * (1 + _BESIDE))
 
 
-def _laid(case: PhysicalCase, family: Family) -> str | None:
+def _laid(case: ResolvedContact, family: ComparedOrbit) -> str | None:
     """Kind of the motion of a ball that is laid on the table; None if it ends on the orbit."""
     lam = case.table.amplitude
     if lam <= case.permanent_contact:
@@ -191,7 +227,7 @@ def _tops(sequence: ImpactSequence) -> np.ndarray:
     return sequence.release_displacement + lift + rise * rise / 2
 
 
-def _end(case: PhysicalCase, name: str, first: _Start) -> _End:
+def _end(case: ResolvedContact, name: str, first: _Start) -> _End:
     """The motion on which a ball of a model ends."""
     lam = case.table.amplitude
     path = np.empty((3, _followed(case)))
@@ -210,14 +246,14 @@ def _end(case: PhysicalCase, name: str, first: _Start) -> _End:
     return _End(kind, Starts.of_path(of_motion, lam), unresolved)
 
 
-def _on_orbit(case: PhysicalCase, n: int) -> _End:
+def _on_orbit(case: ResolvedContact, n: int) -> _End:
     """The n-T orbit of the restitution model."""
     orbit = n_t.orbit(case.models["restitution"], n, case.table.amplitude)
     impact = Starts(np.atleast_1d(orbit.phase), np.atleast_1d(orbit.impact_velocity))
     return _End(_Kind(str(Kind.ORBIT), n, 1), impact)
 
 
-def _greatest(case: PhysicalCase, name: str, end: _End) -> float:
+def _greatest(case: ResolvedContact, name: str, end: _End) -> float:
     """Greatest height of a motion that repeats, in m."""
     once = end.impacts.last()
     found = case.models[name].simulate(
@@ -228,7 +264,7 @@ def _greatest(case: PhysicalCase, name: str, end: _End) -> float:
 
 
 def _compared(
-    case: PhysicalCase, ends: Mapping[str, _End], tolerance: float, most: int | None
+    case: ResolvedContact, ends: Mapping[str, _End], tolerance: float, most: int | None
 ) -> dict[str, Any]:
     """Means of both models, in m and W, and the relative errors of the second model."""
     sampling = _SAMPLES if case.law is None else _SAMPLES_OF_LAW
@@ -278,7 +314,7 @@ def _looks(sampling: Sampling, balls: int, ends: Iterable[_End]) -> list[Look]:
     return looks(balls, sampling.usual, sampling.impacts)
 
 
-def _sums(case: PhysicalCase, name: str, end: _End, samples: list[Look]) -> Iterator[np.ndarray]:
+def _sums(case: ResolvedContact, name: str, end: _End, samples: list[Look]) -> Iterator[np.ndarray]:
     """The sums over the motion of a model at each look: of the balls of a sample, of sections of a
     lap, or of one repetition.
     """
@@ -295,7 +331,7 @@ def _sums(case: PhysicalCase, name: str, end: _End, samples: list[Look]) -> Iter
     return repeat(once)
 
 
-def _before(case: PhysicalCase, least: int) -> int:
+def _before(case: ResolvedContact, least: int) -> int:
     """Number of first impacts that are left out."""
     loss = 1 - float(case.contact.restitution)
     forgotten = _MOST_BEFORE if loss * _MOST_BEFORE < _FORGOTTEN else math.ceil(_FORGOTTEN / loss)

@@ -4,9 +4,9 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.accuracy.corrected_errors import SIMPLE, search
-from bouncing_ball.accuracy.thresholds import ThresholdStatus
-from bouncing_ball.contacts.families import RATIOS, against_contact
-from bouncing_ball.contacts.results import Assessment
+from bouncing_ball.accuracy.thresholds import RATIOS, ThresholdStatus
+from bouncing_ball.contacts.assess import Assessment
+from bouncing_ball.contacts.families import against_contact
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.periodic import n_t
 

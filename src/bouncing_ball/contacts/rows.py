@@ -1,24 +1,24 @@
 """One table of rows for each result: its text, the page and JSON are made from them.
 
 A result is a frozen dataclass. A field that a reader is shown is annotated with a :class:`Listed`;
-JSON has all fields under their names.
+JSON has all fields under their names, or what the class lists in ``KEYS``, properties included.
 """
 
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from typing import Any, NamedTuple, get_type_hints
 
-from bouncing_ball.contacts.units import shown
+from bouncing_ball.contacts.texts import shown
 
 
 class Listed(NamedTuple):
-    """How a result is listed: its description, and its unit for :func:`~.units.shown`."""
+    """How a result is listed: its description, and its unit for :func:`~.texts.shown`."""
 
     words: str
     unit: str = ""
 
 
-class Row(NamedTuple):
+class Entry(NamedTuple):
     """A number or a text of a result.
 
     ``key`` is the path of its name in JSON. Rows without ``words`` are in JSON only. The value is
@@ -40,33 +40,32 @@ class Row(NamedTuple):
         return shown(self.value, self.unit)
 
 
-def rows(result: Any) -> list[Row]:
+def rows(result: Any) -> list[Entry]:
     """The rows of a result in the order of its fields, including those of nested results.
 
     A field that holds a dict has one description for each of its values.
 
     Examples
     --------
-    >>> from bouncing_ball.contacts.results import TimeStep
+    >>> from bouncing_ball.contacts.assess import TimeStep
     >>> [tuple(row) for row in rows(TimeStep(2e-6, "a rule"))]
     [(('largest',), 'largest time step', 's', 2e-06), (('rule',), '', '', 'a rule')]
     """
-    found: list[Row] = []
+    found: list[Entry] = []
     hints = get_type_hints(type(result), include_extras=True)
-    for field in fields(result):
-        name = field.name
+    for name in getattr(result, "KEYS", None) or [field.name for field in fields(result)]:
         value = getattr(result, name)
-        listed = getattr(hints[name], "__metadata__", ())
+        listed = getattr(hints.get(name), "__metadata__", ())
         if isinstance(value, Mapping) and listed:
             of_values = zip(value.items(), listed, strict=True)
             found += [
-                Row((name, key), each.words, each.unit, one) for (key, one), each in of_values
+                Entry((name, key), each.words, each.unit, one) for (key, one), each in of_values
             ]
         elif is_dataclass(value):
             found += [row._replace(key=(name, *row.key)) for row in rows(value)]
         else:
             words, unit = listed[0] if listed else ("", "")
-            found.append(Row((name,), words, unit, value))
+            found.append(Entry((name,), words, unit, value))
     return found
 
 
@@ -75,7 +74,7 @@ def texts(result: Any) -> list[tuple[str, str]]:
 
     Examples
     --------
-    >>> from bouncing_ball.contacts.results import TimeStep
+    >>> from bouncing_ball.contacts.assess import TimeStep
     >>> texts(TimeStep(2e-6, "a rule"))
     [('largest time step', '2 µs')]
     """
@@ -87,7 +86,7 @@ def document(result: Any) -> dict[str, Any]:
 
     Examples
     --------
-    >>> from bouncing_ball.contacts.results import TimeStep
+    >>> from bouncing_ball.contacts.assess import TimeStep
     >>> document(TimeStep(2e-6, "a rule"))
     {'largest': 2e-06, 'rule': 'a rule'}
     """

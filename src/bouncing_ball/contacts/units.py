@@ -1,4 +1,4 @@
-"""Quantities with units, converted at the interface: SI numbers inside.
+"""Quantities with units, read at the interface: SI numbers inside.
 
 A text is a number followed by its unit: ``50 Hz``, ``0.5 mm``, ``2e6 N/m``.
 A plain number is in SI units. Pint receives the unit alone and never an expression, so that texts
@@ -35,6 +35,10 @@ _SPELLINGS = {
 # A frequency in 1/s, which pint takes for no angle at all.
 _PER_TIME = "does not say whether it counts turns or radians"
 _BETWEEN = re.compile(r"[\s·*.^]")
+# The smallest modulus in Pa that is taken for one if it is given without a unit.
+_SOFTEST = 1e4
+# The smallest restitution that may be one in percent.
+_PERCENT = 5
 # Units that mean something else than what a user of SI units means.
 _FALSE_FRIENDS = {"gr": "g", "gm": "g"}
 # A number with one decimal comma and its unit, and one whose thousands are grouped by commas.
@@ -73,6 +77,30 @@ def _registry() -> Any:
     registry.define("radian = [angle] = rad")
     registry.define("hertz = turn / second = Hz")
     return registry
+
+
+def in_si(name: str, value: Any, kind: SIParameter) -> float:
+    """The value of a parameter in SI units, after a check of its range.
+
+    Raises
+    ------
+    ModelError
+        If the value is no number with a unit of the right dimension, or out of range; the message
+        gives what was probably meant.
+
+    Examples
+    --------
+    >>> in_si("tolerance", "5 %", SIParameter("", "1 %", Range(0, 1)))
+    0.05
+    """
+    found = number(name, value, kind)
+    if found not in kind.allowed:
+        raise _out_of_range(name, value, found, kind)
+    if kind.name == "Pa" and found < _SOFTEST and _is_bare(value):
+        raise ParameterError(
+            f"{{{name}}} = {found:g} is in Pa, and no solid is so soft: did you mean {found:g} GPa?"
+        )
+    return found
 
 
 def number(name: str, value: Any, kind: SIParameter) -> float:
@@ -222,90 +250,19 @@ def _in_another_unit(unit: str, kind: SIParameter) -> str:
     return f"is in {unit}, not in {kind.name.replace('*', ' ')}"
 
 
-_PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n"}
+def _is_bare(value: Any) -> bool:
+    """Whether a number has no unit."""
+    try:
+        float(value)
+    except (TypeError, ValueError):
+        return False
+    return True
 
 
-def percent(share: float) -> str:
-    """A share as a percentage with at most six digits.
-
-    Examples
-    --------
-    >>> percent(0.01), percent(1e-6), percent(0.125)
-    ('1 %', '0.0001 %', '12.5 %')
-    """
-    return f"{100 * share:.6g} %"
-
-
-def shown(value: float | None, unit: str = "", least: float = 1e-5, digits: int = 4) -> str:
-    """A value as text: four digits with a prefix of its unit, or a share in "%" with two digits.
-
-    A share below ``least``, or below 1e-5 if this is smaller, is given as "less than" that bound.
-
-    Examples
-    --------
-    >>> shown(1.25e-5, "s"), shown(2e7, "N/m"), shown(None, "m"), shown(1.25e-5)
-    ('12.5 µs', '20 MN/m', 'none', '1.25e-05')
-    >>> [shown(share, "%") for share in (0.0123, 2.5e-5, 1e-9, 0.995)]
-    ['1.2 %', '0.0025 %', 'less than 0.001 %', '100 %']
-    >>> shown(2.5e-6, "%", 1e-6), shown(1e-9, "%", 1e-6)
-    ('0.00025 %', 'less than 0.0001 %')
-    """
-    if value is None:
-        return "none"
-    if unit == "%":
-        bound = min(least, 1e-5)
-        if 0 < value < bound:
-            return f"less than {percent(bound)}"
-        return f"{100 * value:.2g} %" if value < 0.995 else f"{100 * value:.0f} %"
-    if value == 0 or not unit:
-        return f"{value:.{digits}g} {unit}".rstrip()
-    power = _power(value)
-    return f"{value / 10**power:.{digits}g} {_PREFIXES[power]}{unit}"
-
-
-def _power(value: float) -> int:
-    """The power of ten of the prefix with which a value is shown, by its four digits."""
-    rounded = abs(float(f"{value:.4g}"))
-    if rounded == 0:
-        return 0
-    return min(9, max(-9, 3 * math.floor(math.log10(rounded) / 3)))
-
-
-def signed(error: float | None, least: float = 1e-5) -> str:
-    """An error in percent with its sign, in the digits of :func:`shown`.
-
-    Examples
-    --------
-    >>> signed(1.1453), signed(-0.0123), signed(0.0), signed(-1e-9), signed(None)
-    ('+115 %', '-1.2 %', '0 %', 'less than 0.001 %', 'none')
-    """
-    if error is None or error == 0:
-        return shown(error, "%")
-    size = shown(abs(error), "%", least)
-    if size.startswith("less"):
-        return size
-    return f"{'+' if error > 0 else '-'}{size}"
-
-
-# Digits of two values that are compared: at least four, and two of their difference.
-_FEWEST, _MOST = 4, 12
-
-
-def in_place_of(predicted: float | None, true: float | None, unit: str = "") -> str:
-    """Two values that are compared, with one prefix and in as many digits as show that they differ.
-
-    Examples
-    --------
-    >>> in_place_of(2.061e-3, 0.961e-3, "m"), in_place_of(5.41098, 5.41067)
-    ('2.061 mm in place of 0.961 mm', '5.41098 in place of 5.41067')
-    """
-    error = abs(predicted / true - 1) if predicted is not None and true else 1.0
-    needed = 2 - math.floor(math.log10(error)) if error else _FEWEST
-    digits = min(_MOST, max(_FEWEST, needed))
-    if not unit or predicted is None or true is None:
-        texts = [shown(value, unit, digits=digits) for value in (predicted, true)]
-    else:
-        power = _power(max(abs(predicted), abs(true)))
-        name = f"{_PREFIXES[power]}{unit}"
-        texts = [f"{value / 10**power:.{digits}g} {name}" for value in (predicted, true)]
-    return " in place of ".join(texts)
+def _out_of_range(name: str, text: Any, value: float, kind: SIParameter) -> ParameterError:
+    said = f"{{{name}}} = {value:g} {kind.name}".rstrip()
+    # A share above 1 was probably meant in percent. A restitution of a few percent is rare.
+    least = _PERCENT if 1 in kind.allowed else 1
+    is_share = kind.allowed.high == 1 and least <= value < 100 and "%" not in str(text)
+    meant = f": did you mean {value:g} %?" if is_share else ""
+    return ParameterError(f"{said} is not {kind.allowed}{meant}")

@@ -1,26 +1,18 @@
-"""The sentences of a design: the motion, the verdict with its reason, and further notes."""
+"""The sentences on a contact: the motion, and the verdict with its reason."""
 
 import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
-import numpy as np
-
 from bouncing_ball.accuracy.errors import QUANTITIES, Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
-from bouncing_ball.contacts.case import PhysicalCase
-from bouncing_ball.contacts.families import NO_ORBIT, prediction_error
-from bouncing_ball.contacts.given import MOST_BALLS
-from bouncing_ball.contacts.results import Family, FinalMotion, Mean, Needed
-from bouncing_ball.contacts.units import in_place_of, percent, shown, signed
+from bouncing_ball.contacts.families import NO_ORBIT, ComparedOrbit, Needed, prediction_error
+from bouncing_ball.contacts.motion import FinalMotion, Mean
+from bouncing_ball.contacts.question import MOST_BALLS
+from bouncing_ball.contacts.resolved import ResolvedContact
+from bouncing_ball.contacts.texts import in_place_of, percent, shown, signed
 from bouncing_ball.long_run.motions import Kind
-from bouncing_ball.models.damping import Release
-from bouncing_ball.models.laws.contact_law import ContactLaw
-from bouncing_ball.models.laws.hertzian import Tsuji
-from bouncing_ball.models.laws.impedance import Impedance
 from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic import n_t
 
 _UNITS = {Quantity.MAX_HEIGHT: "m", Quantity.BOUNCE_VELOCITY: "m/s"}
 # Units of the means over time.
@@ -59,7 +51,7 @@ def _subject(quantity: str, n: int) -> str:
     return f"the {QUANTITIES[Quantity(quantity)]}{of_family}"
 
 
-def _disagreement(family: Family) -> str | None:
+def _disagreement(family: ComparedOrbit) -> str | None:
     """The first qualitative disagreement between the restitution model's orbit and the exact one:
     in existence, admissibility or stability. None if they agree.
     """
@@ -82,7 +74,7 @@ def _opposite(orbit: str, word: str, of_model: bool) -> str:
     return f"its {orbit} is not {word}, and the contact's is"
 
 
-def assessed(family: Family, needed: Needed, frequency_ratio: float) -> Verdict:
+def assessed(family: ComparedOrbit, needed: Needed, frequency_ratio: float) -> Verdict:
     """The verdict on a given contact.
 
     The model is good enough if its orbit agrees with the exact one in existence, admissibility and
@@ -106,7 +98,7 @@ def assessed(family: Family, needed: Needed, frequency_ratio: float) -> Verdict:
     return Verdict(False, f"The restitution model is not good enough: {why}{instead}.", reason)
 
 
-def _prediction(family: Family, needed: Needed) -> str:
+def _prediction(family: ComparedOrbit, needed: Needed) -> str:
     """A clause with the values of a quantity in the restitution model and on the contact, and the
     error of the model.
     """
@@ -227,7 +219,7 @@ def _within(
     return Verdict(False, sentence, f"{why}; {undecided}")
 
 
-def _instead(family: Family, needed: Needed) -> str:
+def _instead(family: ComparedOrbit, needed: Needed) -> str:
     """A clause on whether the corrected model is good enough instead."""
     error = family.corrected_errors[needed.quantity]
     corrected = family.standing["corrected"]
@@ -252,79 +244,19 @@ def _reason(needed: Needed, frequency_ratio: float, good: bool, tolerance: str) 
     return text
 
 
-def chosen(si: Mapping[str, float], needed: Needed, n: int) -> Verdict:
+def chosen(case: ResolvedContact, needed: Needed, n: int) -> Verdict:
     """The verdict on the most compliant contact within the tolerance."""
     tolerance = percent(needed.tolerance)
     sentence = (
-        f"A simulation needs a contact of at least {shown(si['stiffness'], 'N/m')}, with a contact "
-        f"time of {shown(si['contact_time'], 's')} or less and a damping of "
-        f"{shown(si['damping'], 'N s/m')} at that stiffness: the restitution model then predicts "
+        f"A simulation needs a contact of at least {shown(case.stiffness, 'N/m')}, with a contact "
+        f"time of {shown(case.contact_time, 's')} or less and a damping of "
+        f"{shown(case.damping, 'N s/m')} at that stiffness: the restitution model then predicts "
         f"{_subject(needed.quantity, n)} within {tolerance}."
     )
     if needed.frequency_ratio is None:
         return Verdict(True, sentence, _NO_CROSSING[needed.status])
     where = f"at the frequency ratio ϖ = {needed.frequency_ratio:.4g}"
     return Verdict(True, sentence, f"the error crosses {tolerance} for the last time {where}")
-
-
-def _cost_of(law: Impedance, case: PhysicalCase, family: Family) -> str:
-    """A sentence on the change of the greatest height that an impedance causes."""
-    about = "stiffness, damping, ϖ and ζ are those of the spring and damper of this solref"
-    spring = n_t.orbit(SpringDamperModel(case.contact), family.n, case.table.amplitude)
-    if family.greatest_compression is None or family.max_height is None or not spring.exists:
-        return about
-    depth = np.array(family.greatest_compression / case.table.length)
-    off = float(prediction_error(family.max_height, spring.max_height * case.table.length))
-    return (
-        f"{about}: at the orbit's depth of {shown(family.greatest_compression, 'm')}, where the "
-        f"impedance is {float(law.impedance(depth)):.3g}, the ball bounces {shown(abs(off), '%')} "
-        f"{'higher' if off > 0 else 'lower'} than with them"
-    )
-
-
-def _notes_on_law(law: ContactLaw, case: PhysicalCase, family: Family) -> list[str]:
-    """Sentences on how the numbers of a linear contact are those of a case with another law."""
-    # The contact of a solref has the ϖ of its impedance, unlike one that was found for an impact.
-    if isinstance(law, Impedance) and math.isclose(
-        law.frequency_ratio, case.contact.frequency_ratio
-    ):
-        return [_cost_of(law, case, family)]
-    hertz = isinstance(law, Tsuji)
-    name = "Hertz contact with Tsuji's damping" if hertz else f"{law.name} contact"
-    found = [
-        "stiffness, damping, ϖ and ζ, and the ϖ that is needed, are those of a linear contact: "
-        f"it has the r of the {name}, and its duration at the impact"
-    ]
-    if not np.all(case.has_its_restitution([family.n, family.n + 1])):
-        found.append(
-            "the restitution of this law depends on the speed: it is r at the speed of the "
-            "restitution model's lowest stable orbit"
-        )
-    return found
-
-
-def notes(case: PhysicalCase, family: Family, motion: FinalMotion) -> tuple[str, ...]:
-    """Sentences that a user should read in addition to the verdict."""
-    contact = case.contact
-    orbit = f"{family.n}-T orbit"
-    found = [] if case.law is None else _notes_on_law(case.law, case, family)
-    if math.isnan(case.permanent_contact):
-        found.append(
-            "no threshold of permanent contact was found, because the contact is weakly damped"
-        )
-    if not family.exists:
-        found.append(f"at this Λ the contact has no {orbit}")
-    elif motion.restitution_kind is not None:
-        what = "unstable" if family.is_admissible else "inadmissible (an earlier impact occurs)"
-        found.append(f"the {orbit} is {what}, so that no ball stays on it")
-    if contact.frequency_ratio < 1:
-        found.append("the contact is slower than the table: the ball oscillates on a spring")
-    if case.law is None and contact.release is Release.DISPLACEMENT and contact.damping_ratio > 0:
-        found.append(
-            "before its release at δ = 0 the contact pulls the ball; a contact that cannot pull "
-            "has the r of a release without force"
-        )
-    return tuple(found)
 
 
 def aside(motion: FinalMotion, amplitude: float) -> str:
@@ -335,7 +267,7 @@ def aside(motion: FinalMotion, amplitude: float) -> str:
     return f"; a ball laid on the table {_LAID[motion.laid]}, and is not judged"
 
 
-def headline(motion: FinalMotion, family: Family) -> str:
+def headline(motion: FinalMotion, family: ComparedOrbit) -> str:
     """The motion of the ball, in one sentence."""
     orbit = f"{family.n}-T orbit"
     if motion.kind == Kind.ORBIT and motion.restitution_kind is None:

@@ -7,7 +7,7 @@ are taken in pairs.
 
 import math
 from collections.abc import Collection, Mapping
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -15,23 +15,6 @@ import xarray as xr
 from bouncing_ball.datasets import CASE
 from bouncing_ball.datasets.variables import SHARED
 from bouncing_ball.errors import ParameterError
-
-
-class Labelled(xr.Dataset):
-    """The labelled result of a call; each kind of result is a subclass, which has ``plot()``.
-
-    A part of a result, such as ``found.isel(n=0)``, is a result of the same class.
-
-    Examples
-    --------
-    >>> type(Labelled({"phase": ("n", [0.5])}).isel(n=0)).__name__
-    'Labelled'
-    """
-
-    __slots__ = ()
-
-
-Result = TypeVar("Result", bound=Labelled)
 
 
 class Grid:
@@ -92,7 +75,7 @@ class Grid:
         outer = xr.DataArray(np.zeros(self.shape), dims=self.dims)
         return (inner + outer).transpose(*self.dims).values.astype(int).ravel()
 
-    def unfold(self, rows: xr.Dataset, kind: type[Result]) -> Result:
+    def unfold(self, rows: xr.Dataset) -> xr.Dataset:
         """Results along one axis, with one entry for each place, given the axes of the grid.
 
         Arguments that are single values become attributes.
@@ -106,7 +89,7 @@ class Grid:
         data.pop(CASE, None)
         coords = {name: data.pop(name) for name in rows.coords if name in data}
         values = {n: x for n, x in self.single.items() if isinstance(x, str | int | float)}
-        return kind(data, coords | self.coords, rows.attrs | values)
+        return xr.Dataset(data, coords | self.coords, rows.attrs | values)
 
 
 def _broadcast(coords: Mapping[str, xr.DataArray]) -> dict[str, xr.DataArray]:

@@ -4,15 +4,23 @@ Lines are solid for stable, dashed for unstable and dotted for inadmissible orbi
 15).
 """
 
-from itertools import pairwise
+from collections.abc import Callable
+from itertools import cycle, pairwise
+from textwrap import fill
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
-from bouncing_ball.datasets import GRAZING
-from bouncing_ball.drawing.style import LINES, MARKS
+from bouncing_ball.datasets import CASE, GRAZING
+from bouncing_ball.drawing.canvas import WIDE, canvas, coloured, legend_below
+from bouncing_ball.drawing.labels import in_a_row, title
+from bouncing_ball.drawing.style import COLOURS, LINES, MARKS
+
+# Width in characters of a reason inside of a panel.
+_LINE = 80
 
 
 class SpecialPoints(NamedTuple):
@@ -110,3 +118,68 @@ def label_branch_axes(
     """Labels of the axes, a title, and the range of Λ from ``left`` to the end of the branches."""
     axes.set(xlabel=r"amplitude $\Lambda$", ylabel=ylabel, title=title)
     axes.set_xlim(left, data.attrs["amplitude_max"])
+
+
+def over_amplitude(
+    data: xr.Dataset, shown: Callable[[xr.Dataset], xr.Dataset] = lambda curve: curve
+) -> Figure:
+    """Branches of a labelled dataset as in Figs. 8 and 9, named by the arguments that differ.
+
+    ``shown`` is the part of each branch that is drawn; by default it is the whole branch.
+    """
+    figure, axes = canvas(WIDE, 4.2)
+    rows, names = in_a_row(data, "point", "special", "multiplier", "end")
+    name_curves(axes, [name for name in names if name])
+    # Both phases of a curve have its colour.
+    for curve, colour in coloured(rows, CASE):
+        draw_both_phases(axes, shown(placed(curve)), colour, colour)
+    touching = bool((rows.contact_duration > 0).any())
+    above = r", and above it $\varphi+\tau_b$" if touching else ""
+    axes.set(xlabel=r"amplitude $\Lambda$", title=title(data), xlim=(0.0, data.amplitude.max()))
+    axes.set(ylabel=rf"phase of the table over $\pi$: $\varphi${above}")
+    say_what_is_missing(axes, rows)
+    legend_below(figure, ncols=7)
+    return figure
+
+
+def say_what_is_missing(axes: Axes, rows: xr.Dataset) -> None:
+    """The reasons for the branches that cannot be followed, in the panel, a line for each."""
+    missing = rows.amplitude.isnull().all("point").values
+    reasons = rows.end_reason.isel(end=0).values[missing]
+    if reasons.size:
+        text = "\n".join(fill(reason, _LINE) for reason in reasons)
+        axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", fontsize=7)
+
+
+def name_curves(axes: Axes, names: list[str]) -> None:
+    """Entries of the legend, in the order of the colours."""
+    for name, colour in zip(names, cycle(COLOURS), strict=False):
+        axes.plot([], [], color=colour, label=name)
+
+
+def placed(curve: xr.Dataset) -> xr.Dataset:
+    """The branch with the place of each point, as a share of its arclength: the steps are equal."""
+    return curve.assign(arclength=("point", np.linspace(0.0, 1.0, curve.sizes["point"])))
+
+
+def draw_both_phases(axes: Axes, curve: xr.Dataset, start: str, end: str) -> None:
+    """The phases at the start and at the end of contact, with the special points."""
+    _draw_phase(axes, curve, curve.phase, curve.special_phase, start)
+    special_release = curve.special_phase + curve.special_contact_duration
+    _draw_phase(axes, curve, curve.release_phase, special_release, end)
+
+
+def _draw_phase(
+    axes: Axes, curve: xr.Dataset, phase: xr.DataArray, special: xr.DataArray, colour: str
+) -> None:
+    """One phase along a branch, and the same phase of its special points."""
+    points = SpecialPoints(
+        kind=curve.special_kind.values,
+        along=curve.special_arclength.values,
+        amplitude=curve.special_amplitude.values,
+        phase=special.values,
+    )
+    draw_branch(axes, curve, curve.arclength.values, phase, points, colour)
+    for kind in MARKS:
+        there = special.where(curve.special_kind == kind)
+        mark_orbits(axes, kind, curve.special_amplitude, there, colour)

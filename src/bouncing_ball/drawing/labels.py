@@ -65,7 +65,11 @@ def symbol(name: str) -> str:
 
 
 def title(data: xr.Dataset) -> str:
-    """A title of a labelled dataset: the parameters among its attributes, its model and its law."""
+    """A title of a labelled dataset: its model and its law, and the parameters among its attributes
+    and its coordinates without an axis, such as those of a part of a result.
+    """
+    fixed = {name: each.item() for name, each in data.coords.items() if not each.dims}
+    data = data.assign_attrs(fixed)
     known = [name for name in _SYMBOLS if name in data.attrs]
     words = [str(data.attrs[name]) for name in ("model", "law") if name in data.attrs]
     return ", ".join(x for x in (*words, parameters(data, *known)) if x)
@@ -83,7 +87,8 @@ def in_a_row(data: xr.Dataset, *kept: str) -> tuple[xr.Dataset, list[str]]:
     ['$n=1$', '$n=2$']
     """
     axes = [dim for dim in data.dims if dim not in kept]
-    labels = [name for name in data.coords if name in _SYMBOLS and set(data[name].dims) <= {*axes}]
+    varied = [name for name in data.coords if name in _SYMBOLS and data[name].dims]
+    labels = [name for name in varied if set(data[name].dims) <= {*axes}]
     rows = data.stack({CASE: axes}, create_index=False) if axes else data.expand_dims(CASE)
     told = [{name: rows[name].values[k] for name in labels} for k in range(rows.sizes[CASE])]
     names = [", ".join(f"${_SYMBOLS[x]}={number(v)}$" for x, v in one.items()) for one in told]

@@ -5,16 +5,10 @@ w = Λ sin τ on a ball is, per unit of mass, ::
 
     ∫ (z″ + 1) w′ dτ = [z′ w′ + w] + ∫ z′ w dτ
 
-because w″ = -w. In a linear contact ϖ² δ = w - 1 - δ″ - l δ′ with l = 2ζϖ. Integration by parts
-gives ::
-
-    ϖ² ∫ δ dτ = -[w′ + δ′ + l δ] - D
-    (ϖ² - 1) I + l J = [w²/2 - w - δ′ w′ - δ w - l δ w′],                 I = ∫ δ w′ dτ
-    (ϖ² - 1) J - l I = Λ² D/2 + [w′ - w w′/2 - δ′ w + δ w′ - l δ w],      J = ∫ δ w dτ
-
-The table does no work in a flight. At an instantaneous impact its work is the impulse times w′, and
-while a ball rests on the table it is the integral of (1 - w) w′. Over a long time the mean work
-equals the mean dissipation of the contacts.
+because w″ = -w. The law of the contact gives the integrals over contacts. The table does no work in
+a flight. At an instantaneous impact its work is the impulse times w′, and while a ball rests on the
+table it is the integral of (1 - w) w′. Over a long time the mean work equals the mean dissipation
+of the contacts.
 """
 
 from typing import Any
@@ -25,55 +19,12 @@ from numpy.typing import ArrayLike
 from bouncing_ball.long_run.motions import Motions
 from bouncing_ball.models.dynamics import Departure, Dynamics, HasDynamics, Impact, Leg
 from bouncing_ball.models.flight import table
-from bouncing_ball.models.laws.collocation import integrals
-from bouncing_ball.models.laws.linear import LinearLaw
-from bouncing_ball.models.linear_contact import has_closed_form
 from bouncing_ball.models.sequence import Status
-from bouncing_ball.models.spring_damper import SpringDamper
 
 
 def _change(values: np.ndarray) -> np.ndarray:
     """The value at the end of a contact minus the value at its start."""
     return values[1] - values[0]
-
-
-def over_contact(
-    law: SpringDamper, amplitude: ArrayLike, duration: Any, level: Any, gap: Any, rate: Any
-) -> tuple[np.ndarray, np.ndarray]:
-    """The integrals ∫ z dτ and ∫ z′ w dτ over contacts.
-
-    Parameters
-    ----------
-    law : SpringDamper
-    amplitude, duration : array_like
-        Λ and the duration D of the contacts.
-    level : tuple of array
-        w′ and w, each at the start and at the end of the contacts, shape (2, ...).
-    gap, rate : array, shape (2, ...)
-        δ and δ′ at the start and at the end.
-
-    Examples
-    --------
-    On a table at rest z = δ, and the table does no work:
-
-    >>> law, still = SpringDamper(2.0, 0.0), np.zeros((2, 1))
-    >>> gap, rate = np.array([[0.0], [0.0]]), np.array([[-1.0], [1.0]])
-    >>> [float(x[0]) for x in over_contact(law, 0.0, 2.0, (still, still), gap, rate)]
-    [-1.0, 0.0]
-    """
-    w_rate, w = level
-    stiffness = law.frequency_ratio**2
-    loss = 2 * law.damping_ratio * law.frequency_ratio
-    # The right-hand sides of the equations for I and J, which are then solved for I.
-    of_rate = _change(w * w / 2 - w - rate * w_rate - gap * w - loss * gap * w_rate)
-    of_level = _change(w_rate - w * w_rate / 2 - rate * w + gap * w_rate - loss * gap * w)
-    of_level = of_level + np.square(amplitude) * duration / 2
-    s = stiffness - 1
-    integral_of_rate = (s * of_rate - loss * of_level) / (s * s + loss * loss)
-    integral_of_gap = -(_change(w_rate + rate + loss * gap) + duration) / stiffness
-    height = integral_of_gap - _change(w_rate)
-    work = _change(gap * w + w * w / 2) - integral_of_rate
-    return height, work
 
 
 def over_steps(
@@ -107,16 +58,11 @@ def over_steps(
     [18.0, 0.0]
     """
     w_rate, w = table(phase, amplitude)
-    if isinstance(law, SpringDamper) and has_closed_form(law):
-        held, moved = over_contact(law, amplitude, duration, (w_rate, w), gap, rate)
-    else:
+    if law is None:
         held = -_change(w_rate)
         moved = _change(w * w) / 2
-        if law is not None:
-            of = LinearLaw.of(law) if isinstance(law, SpringDamper) else law
-            sunk, sunk_moved = integrals(of, duration, -gap[0], -rate[0], phase[0], amplitude)
-            held = held - sunk
-            moved = moved - sunk_moved
+    else:
+        held, moved = law.over_contact(amplitude, duration, phase, gap, rate)
     release_height = gap[1] + w[1]
     velocity = rate + w_rate
     height = held + (release_height + (velocity[1] / 2 - flown / 6) * flown) * flown

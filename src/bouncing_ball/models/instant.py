@@ -1,9 +1,7 @@
 """A contact seen from outside: an impact at an instant, with a delay, a restitution and a load.
 
-:mod:`bouncing_ball.models.laws.signature` derives the numbers. For the linear contact they
-are in closed form, with κ as in :mod:`bouncing_ball.models.damping`::
-
-    t_c = r (D + κ)/(1 + r),    σ = (1 - r)(D + κ) - 2ζ (1 + r)/ϖ
+:mod:`bouncing_ball.models.laws.signature` derives the numbers. Every law and every model has them
+as its method ``signature``.
 """
 
 from __future__ import annotations
@@ -12,8 +10,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-
-from bouncing_ball.models.spring_damper import SpringDamper
 
 
 class Instant(NamedTuple):
@@ -55,35 +51,6 @@ class Instant(NamedTuple):
         slope = self.restitution + (self.d_restitution * v + self.d_load * np.asarray(load))
         depth = self.delay + self.d_delay * v
         return Instant(depth, slope, self.load, self.duration), (slope - self.restitution) * v
-
-
-def linear_instant(contact: SpringDamper) -> Instant:
-    """The signature of a linear contact in closed form, which is the same at every speed.
-
-    Raises
-    ------
-    ModelError
-        If ζ ≥ 1: the formulas hold for underdamped contacts only.
-
-    Examples
-    --------
-    The force of an elastic contact is symmetric in time, so that its centroid is in the middle:
-
-    >>> instant = linear_instant(SpringDamper(2.0, 0.0))
-    >>> float(instant.delay) == np.pi / 4, float(instant.restitution), float(instant.load)
-    (True, 1.0, 0.0)
-    """
-    duration = contact.free_duration
-    r = contact.restitution
-    # The time at which the flight after the contact rises through δ = 0.
-    through = duration + contact.lag
-    loss = 2 * np.asarray(contact.damping_ratio) / contact.frequency_ratio
-    return Instant(
-        delay=r * through / (1 + r),
-        restitution=r + 0 * duration,
-        load=(1 - r) * through - loss * (1 + r),
-        duration=duration,
-    )
 
 
 def rigid_instant(restitution: ArrayLike, slope: ArrayLike, speed: ArrayLike) -> Instant:

@@ -29,10 +29,11 @@ import numpy as np
 from bouncing_ball.models.deviations import Deviation, Jacobian, Released
 from bouncing_ball.models.dynamics import Departure, Impact
 from bouncing_ball.models.flight import Flight, table
+from bouncing_ball.models.laws.contact_law import OscillatorLaw
+from bouncing_ball.models.linear_flow import flow as linear_flow
 from bouncing_ball.models.oscillator import responses
 from bouncing_ball.models.resumption import ResumingDynamics
 from bouncing_ball.models.sequence import Status
-from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.numerics.elementary import (
     arctangent,
     exponential,
@@ -60,17 +61,18 @@ _LARGEST_GROWTH = np.array(690.0)
 _TINY = np.array(1e-300)
 
 
-def _resistance(contact: SpringDamper):
+def _resistance(contact: OscillatorLaw):
     """ϖ² - 1 and 2ζϖ, the sum of whose squares is γ."""
     omega = np.asarray(contact.frequency_ratio, dtype=float)
     return (omega - 1) * (omega + 1), 2 * np.asarray(contact.damping_ratio) * omega
 
 
-def has_closed_form(contact: SpringDamper) -> bool:
+def has_closed_form(contact: OscillatorLaw) -> bool:
     """Whether all contacts are underdamped and away from the undamped resonance ζ = 0, ϖ = 1.
 
     Examples
     --------
+    >>> from bouncing_ball.models.spring_damper import SpringDamper
     >>> has_closed_form(SpringDamper(2.0, 0.1)), has_closed_form(SpringDamper(1.0, 0.0))
     (True, False)
     """
@@ -93,7 +95,7 @@ class ContactMotion(Motion):
         Λ cos φ and Λ sin φ at the start.
     """
 
-    def __init__(self, contact: SpringDamper, amplitude, displacement, velocity, x, y):
+    def __init__(self, contact: OscillatorLaw, amplitude, displacement, velocity, x, y):
         self.omega = contact.frequency_ratio
         self.zeta = contact.damping_ratio
         self.lag = contact.lag
@@ -142,7 +144,7 @@ class ContactMotion(Motion):
 class ClosedFormMotion(ContactMotion):
     """The motion y away from the resonance, as the sum of the transient and the steady part."""
 
-    def __init__(self, contact: SpringDamper, amplitude, displacement, velocity, x, y):
+    def __init__(self, contact: OscillatorLaw, amplitude, displacement, velocity, x, y):
         super().__init__(contact, amplitude, displacement, velocity, x, y)
         detuning, loss = _resistance(contact)
         gamma = detuning * detuning + loss * loss
@@ -212,15 +214,14 @@ class ResonantMotion(ContactMotion):
     no step is longer.
     """
 
-    def __init__(self, contact: SpringDamper, amplitude, displacement, velocity, x, y):
+    def __init__(self, contact: OscillatorLaw, amplitude, displacement, velocity, x, y):
         super().__init__(contact, amplitude, displacement, velocity, x, y)
         # The phase of the forcing Λ sin τ + κ Λ cos τ at the start.
         self.phase = np.arctan2(self.push, x - self.lag * y)
 
     def __call__(self, time: np.ndarray) -> State:
-        flow = SpringDamper(self.omega, self.zeta).flow(
-            time, self.start, self.start_rate, self.phase, self.forcing
-        )
+        state = time, self.start, self.start_rate, self.phase, self.forcing
+        flow = linear_flow(self.omega, self.zeta, *state)
         value = flow.displacement
         rate = flow.velocity
         second = flow.acceleration

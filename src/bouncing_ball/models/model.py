@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import FREQUENCY_RATIO, RESTITUTION, Range
+from bouncing_ball.models.ball import Ball
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
@@ -38,7 +39,7 @@ RANGES: Mapping[str, Range] = {
 """The ranges of the parameters of models that have one; other parameters are finite numbers."""
 
 
-class Model(Batch, ABC):
+class Model(Batch, Ball, ABC):
     """A law of the impact, for one ball or for a row of balls.
 
     A subclass is a frozen dataclass with one field, which holds the law. ``name`` is the name of

@@ -1,20 +1,11 @@
-r"""Spring-damper contact: the exact flow in relative coordinates (Eqs. 10-13).
+"""The paper's contact: a linear spring and a damper (Eqs. 10-16).
 
-With δ = z - w, the ball in contact obeys ::
+Its force, its release and its motion have closed forms. For ζ ≥ 1, where that of the motion does
+not hold, its contacts are computed by collocation, as those of any other law. The impact seen from
+outside (:mod:`bouncing_ball.models.instant`) is the same at every speed, with κ as in
+:mod:`bouncing_ball.models.damping`::
 
-    δ″ + 2ζϖ δ′ + ϖ² δ = -1 + Λ sin(s + φ)
-
-where s is the time since the contact started and φ the phase of the table at
-that moment. The paper writes the solution with constants A and B, which are determined
-by the start of contact. Here they are eliminated: the flow is affine in
-(δ₀, δ′₀, Λ cos φ, Λ sin φ), and regular at the resonance ζ = 0, ϖ = 1::
-
-    δ(s) = δ₀ (g′ + 2ζϖ g) + δ′₀ g - G + Λ cos φ · P + Λ sin φ · Q
-
-with g the impulse response, G the response to a constant force and Q + iP
-that to e^{is}, all from :mod:`bouncing_ball.models.oscillator`.
-
-All quantities are dimensionless: time Ωt, length Ω²y/g.
+    t_c = r (D + κ)/(1 + r),    σ = (1 - r)(D + κ) - 2ζ (1 + r)/ϖ
 """
 
 from __future__ import annotations
@@ -22,42 +13,30 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import require
+from bouncing_ball.models import linear_flow
 from bouncing_ball.models.contact import Span
 from bouncing_ball.models.damping import (
     Release,
-    check_damping,
     check_positive,
     damping_ratio,
     restitution_coefficient,
 )
-from bouncing_ball.models.oscillator import responses
-from bouncing_ball.numerics.arrays import Batch
-
-ARGUMENTS = ("time", "displacement", "velocity", "phase", "amplitude")
-"""Order of the last axis of :attr:`ContactFlow.jacobian`."""
-
-
-class ContactFlow(NamedTuple):
-    """δ, δ′ and δ″ after a time in contact, arrays of one shape, and the exact Jacobian.
-
-    ``jacobian`` has shape (..., 2, 5): its rows are the derivatives of δ and δ′, its columns are
-    in the order of :data:`ARGUMENTS`.
-    """
-
-    displacement: np.ndarray
-    velocity: np.ndarray
-    acceleration: np.ndarray
-    jacobian: np.ndarray
+from bouncing_ball.models.dynamics import Dynamics
+from bouncing_ball.models.flight import table
+from bouncing_ball.models.instant import Instant
+from bouncing_ball.models.laws.contact_law import OscillatorLaw
+from bouncing_ball.models.linear_contact import LinearContactDynamics, has_closed_form
+from bouncing_ball.models.linear_flow import ContactFlow
+from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 
 
 @dataclass(frozen=True, repr=False)
-class SpringDamper(Batch):
+class SpringDamper(OscillatorLaw):
     """The paper's contact: ϖ, ζ and the rule that ends it, with f = ϖ² p + 2ζϖ p′ (Eq. 11).
 
     Its motion has a closed form, see :meth:`flow`.
@@ -80,20 +59,16 @@ class SpringDamper(Batch):
     >>> contact = SpringDamper.from_restitution(1.0, [5.0, 10.0], "force")
     >>> contact[1].release, float(contact[1].frequency_ratio)
     (<Release.FORCE: 'force'>, 10.0)
+    >>> contact[1].label
+    'linear with frequency ratio 10, damping ratio 0'
     """
 
-    frequency_ratio: float | np.ndarray
-    damping_ratio: float | np.ndarray
     release: Release = Release.DISPLACEMENT
 
+    name: ClassVar[str] = "linear"
+
     def __post_init__(self):
-        check_positive(self.frequency_ratio, "frequency ratio ϖ")
-        check_damping(self.damping_ratio, "damping ratio ζ")
-        self.check_shape()
-        # Contacts are keys of caches, so that a single number must not be an array.
-        for name in ("frequency_ratio", "damping_ratio"):
-            value = np.asarray(getattr(self, name))
-            object.__setattr__(self, name, value if value.ndim else value.item())
+        super().__post_init__()
         object.__setattr__(self, "release", Release.of(self.release))
 
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
@@ -182,20 +157,8 @@ class SpringDamper(Batch):
         ModelError
             If ζ ≥ 1: an overdamped contact does not oscillate.
         """
-        self._require_underdamped()
+        self.require_underdamped()
         return self.release.free_angle(self.damping_ratio)
-
-    @cached_property
-    def damped_frequency(self) -> np.ndarray:
-        """ϖ_d = ϖ√(1 - ζ²).
-
-        Raises
-        ------
-        ModelError
-            If ζ ≥ 1.
-        """
-        self._require_underdamped()
-        return self.frequency_ratio * np.sqrt((1 - self.damping_ratio) * (1 + self.damping_ratio))
 
     @property
     def free_duration(self) -> np.ndarray:
@@ -207,10 +170,6 @@ class SpringDamper(Batch):
             If ζ ≥ 1.
         """
         return self.free_angle / self.damped_frequency
-
-    def _require_underdamped(self) -> None:
-        zeta = np.asarray(self.damping_ratio, dtype=float)
-        require(zeta < 1, zeta, "damping ratio ζ", "below 1: the contact does not oscillate")
 
     def flow(
         self,
@@ -240,33 +199,79 @@ class SpringDamper(Batch):
         >>> round(float(flow.displacement), 14), abs(round(float(flow.velocity), 14))
         (-0.25, 0.0)
         """
-        state = time, displacement, velocity, phase, amplitude
-        columns = (*state, self.frequency_ratio, self.damping_ratio)
-        rows = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in columns))
-        s, d0, v0, phi, lam, omega, zeta = rows
-        loss = 2 * zeta * omega
-        stiffness = omega * omega
-        g, G, h = responses(s, omega, zeta)
-        turn = np.exp(1j * phi)
-        drive = lam * turn
-        # The free response to a unit displacement.
-        free = g.rate + loss * g.value
-        d = d0 * free + v0 * g.value - G.value + np.imag(drive * h.value)
-        v = v0 * g.rate - d0 * stiffness * g.value - G.rate + np.imag(drive * h.rate)
-        acc = lam * np.sin(s + phi) - 1 - loss * v - stiffness * d
-        of_displacement = (v, free, g.value, np.real(drive * h.value), np.imag(turn * h.value))
-        of_velocity = (
-            acc,
-            -stiffness * g.value,
-            g.rate,
-            np.real(drive * h.rate),
-            np.imag(turn * h.rate),
-        )
-        jacobian = np.moveaxis(np.array([of_displacement, of_velocity]), (0, 1), (-2, -1))
-        return ContactFlow(d, v, acc, jacobian)
+        numbers = self.frequency_ratio, self.damping_ratio
+        return linear_flow.flow(*numbers, time, displacement, velocity, phase, amplitude)
 
     def during(self, span: Span, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """δ and δ′ at times 0 ≤ s ≤ D after the starts of contacts, one time for each contact."""
         start = span.displacement, span.velocity, span.phase
         flow = self.flow(time, *start, span.amplitude)
         return flow.displacement, flow.velocity
+
+    def over_contact(
+        self,
+        amplitude: np.ndarray | float,
+        duration: np.ndarray | float,
+        phase: np.ndarray,
+        gap: np.ndarray,
+        rate: np.ndarray,
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """∫ z dτ and ∫ z′ w dτ over contacts, in closed form where the motion has one.
+
+        The arguments are those of :meth:`.ContactLaw.over_contact`.
+        """
+        if not has_closed_form(self):
+            return super().over_contact(amplitude, duration, phase, gap, rate)
+        numbers = self.frequency_ratio, self.damping_ratio, amplitude
+        return linear_flow.integrals(*numbers, duration, table(phase, amplitude), gap, rate)
+
+    def dynamics(self, amplitude: ArrayLike) -> Dynamics:
+        """Contacts in closed form if all of them are underdamped, otherwise by collocation."""
+        if np.all(np.asarray(self.damping_ratio) < 1):
+            return LinearContactDynamics.of(self, amplitude)
+        return super().dynamics(amplitude)
+
+    @property
+    def constant_signature(self) -> Instant:
+        """The signature in closed form.
+
+        Raises
+        ------
+        ModelError
+            If ζ ≥ 1: the formulas hold for underdamped contacts only.
+
+        Examples
+        --------
+        The force of an elastic contact is symmetric in time, so that its centroid is in the middle:
+
+        >>> instant = SpringDamper(2.0, 0.0).constant_signature
+        >>> float(instant.delay) == np.pi / 4, float(instant.restitution), float(instant.load)
+        (True, 1.0, 0.0)
+        """
+        duration = self.free_duration
+        r = self.restitution
+        # The time at which the flight after the contact rises through δ = 0.
+        through = duration + self.lag
+        loss = 2 * np.asarray(self.damping_ratio) / self.frequency_ratio
+        return Instant(
+            delay=r * through / (1 + r),
+            restitution=r + 0 * duration,
+            load=(1 - r) * through - loss * (1 + r),
+            duration=duration,
+        )
+
+    @property
+    def permanent_contact(self) -> np.ndarray:
+        """Λ_SD or Λ_F, depending on the release (Eq. 33)."""
+        return permanent_contact_threshold(self.frequency_ratio, self.damping_ratio, self.release)
+
+    @classmethod
+    def group_of(cls, restitution: float) -> float:
+        """ζ that gives r with the displacement release (Eq. 16).
+
+        Raises
+        ------
+        ModelError
+            If r is not in (0, 1].
+        """
+        return float(damping_ratio(restitution))

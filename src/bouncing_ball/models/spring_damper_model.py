@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.models.instant import Instant, linear_instant
+from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.linear_contact import LinearContactDynamics
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
@@ -48,7 +48,7 @@ class SpringDamperModel(Model):
 
     def signature(self, speed: ArrayLike) -> Instant:
         """The signature in closed form, which is the same at every speed."""
-        return linear_instant(self.contact).at(speed)
+        return self.contact.signature(speed)
 
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ up to which the ball stays on the table, of the model's shape.

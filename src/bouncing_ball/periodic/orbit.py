@@ -481,12 +481,16 @@ class Orbit(Batch):
         """
         s = np.asarray(time, dtype=float)
         shape = np.broadcast_shapes(s.shape, self.shape)
-        legs = self._legs
-        number = np.broadcast_to(np.arange(self.size).reshape(self.shape), shape).ravel()
-        which = number * self.impacts + impact
-        dynamics, start, departure = legs.dynamics.kept(which, legs.impact, legs.departure)
-        found = dynamics.within(start, departure, np.broadcast_to(s, shape).ravel())
-        displacement, velocity = (x.reshape(shape) for x in found)
+        each = np.broadcast_to(s, shape).reshape(-1, self.size)
+        found = np.full((2, *each.shape), np.nan)
+        which = np.flatnonzero(np.broadcast_to(self.exists, self.shape))
+        if which.size:
+            row = self if which.size == self.size else self.flat(self.shape).take(which)
+            legs = row._legs
+            number = np.arange(row.size) * self.impacts + impact
+            dynamics, start, departure = legs.dynamics.kept(number, legs.impact, legs.departure)
+            found[..., which] = dynamics.within(start, departure, each[:, which])
+        displacement, velocity = found.reshape(2, *shape)
         return displacement, velocity
 
     def contact_path(self, time: ArrayLike, impact: int = 0) -> tuple[np.ndarray, np.ndarray]:

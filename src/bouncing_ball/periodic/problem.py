@@ -56,8 +56,8 @@ from bouncing_ball.periodic.stability import Bifurcation
 
 # Step of the central differences, near the optimum ε^(1/3).
 _DIFFERENCE = 6e-6
-# The step in a parameter is shorter by the ratio of the slowest impact to this speed, and by this
-# factor at most.
+# The step in a parameter is shorter by the ratio of the slowest impact to this speed, in its unit,
+# and by this factor at most.
 _SLOW = 0.1
 _LEAST = 1e-3
 # Where the second difference of a side of Eq. 2 is larger than this and than half of the first one,
@@ -277,9 +277,10 @@ class PeriodicOrbits:
 
     def _step(self, y: np.ndarray) -> np.ndarray:
         """The steps of the central differences, of the shape of y."""
-        step = np.array(np.broadcast_to(_DIFFERENCE * np.asarray(self.unit), y.shape))
-        _, velocity = self.states(y)
-        share = np.clip(np.abs(velocity).min(axis=-1) / _SLOW, _LEAST, 1.0)
+        unit = np.broadcast_to(np.asarray(self.unit), y.shape)
+        step = _DIFFERENCE * unit
+        _, speed = self.states(np.abs(y / unit))
+        share = np.clip(speed.min(axis=-1) / _SLOW, _LEAST, 1.0)
         step[..., self.equations :] *= np.where(np.isnan(share), 1.0, share)[..., np.newaxis]
         return step
 

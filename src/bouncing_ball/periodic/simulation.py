@@ -1,12 +1,12 @@
 """From a simulated ball to an orbit, and whether a simulated ball follows an orbit."""
 
 from collections.abc import Sequence
+from itertools import islice
 
 import numpy as np
 
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.dynamics import Dynamics
-from bouncing_ball.models.sequence import Status
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic.balls import Balls
@@ -45,17 +45,15 @@ def simulated(
     velocities = []
     durations = []
     resumes = []
-    for _ in range(impacts):
-        departure = dynamics.depart(impact)
-        after, passed = dynamics.fly(departure)
-        velocities.append(float(dynamics.section(impact)[1][0]))
-        durations.append(float(departure.duration[0]))
-        resumes.append(bool(impact.displacement[0] < 0))
-        later = passed + time_to_section(dynamics, after) - time_to_section(dynamics, impact)
+    for leg in islice(dynamics.legs(impact), impacts):
+        after, passed = leg.fly()
+        velocities.append(float(dynamics.section(leg.impact)[1][0]))
+        durations.append(float(leg.departure.duration[0]))
+        resumes.append(bool(leg.impact.displacement[0] < 0))
+        later = passed + time_to_section(dynamics, after) - time_to_section(dynamics, leg.impact)
         last = phases[-1] + float(later[0])
         phases.append(float(reduce_angle(np.array(last))))
         turns.append(round((last - phases[-1]) / (2 * np.pi)))
-        impact = after
     # The last phase is replaced by the first one.
     turns[-1] += round((phases[-1] - phases[0]) / (2 * np.pi))
     if any(resumes):
@@ -97,22 +95,19 @@ def is_admissible(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
     possible = np.flatnonzero(inside & (closing < 0) & np.isfinite(closing))
     if not possible.size:
         return np.all(same.reshape(shape), axis=-1)
-    part = dynamics.take(possible)
-    impact = pick(orbits.impact(dynamics, y), possible)
     expected = orbits.durations(y).ravel()[possible]
-    departure = part.depart(impact, differentiate=True)
-    if orbits.selects and part.forgets:
+    start = pick(orbits.impact(dynamics, y), possible)
+    leg = next(dynamics.take(possible).legs(start, differentiate=True))
+    if orbits.selects and dynamics.forgets:
         # The bounces before a rest belong to the leg in which the ball comes to rest.
-        early = departure.sticks & (expected == 0)
-        departure = part.depart_after(impact, np.where(early, np.nan, expected))
-    going = np.flatnonzero(departure.status == Status.BOUNCING)
-    possible = possible[going]
-    expected = expected[going]
-    part, impact, departure = part.kept(going, impact, departure)
-    after, passed = part.fly(departure)
+        early = leg.departure.sticks & (expected == 0)
+        leg.departure = leg.dynamics.depart_after(start, np.where(early, np.nan, expected))
+    possible, expected = leg.keep(leg.bouncing(), possible, expected)
+    after, passed = leg.fly()
+    part = leg.dynamics
     interval = orbits.intervals(y).ravel()[possible]
-    late = passed + time_to_section(part, after) - time_to_section(part, impact) - interval
-    longer = departure.duration - expected if orbits.selects else np.zeros_like(late)
+    late = passed + time_to_section(part, after) - time_to_section(part, leg.impact) - interval
+    longer = leg.departure.duration - expected if orbits.selects else np.zeros_like(late)
     resumes = np.broadcast_to(np.roll(orbits.resuming, -1), shape).ravel()[possible]
     alike = (after.displacement < 0) == resumes
     same[possible] = alike & (np.maximum(np.abs(late), np.abs(longer)) < _SAME * interval)

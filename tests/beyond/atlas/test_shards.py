@@ -10,7 +10,6 @@ from bouncing_ball.beyond.atlas import answers, shards
 from bouncing_ball.beyond.atlas.answers import last_crossings
 from bouncing_ball.beyond.atlas.walk import walk
 from bouncing_ball.errors import ModelError
-from bouncing_ball.models.laws.linear import LinearLaw
 from bouncing_ball.models.laws.signature import Signature
 
 
@@ -83,7 +82,7 @@ def test_the_answers_are_those_of_all_errors_at_once(small, every_node, monkeypa
             assert np.array_equal(at.holding[..., m], np.moveaxis(right.sum(-1), -1, 0))
         assert np.array_equal(at.unstable, (~stable[k]).reshape(3, -1).sum(-1))
         # |error - K/ϖ| > M S δ where δ < 0.3.
-        own = nodes.n, Signature(LinearLaw.of(nodes.contact(ratio)))(), nodes.amplitude
+        own = nodes.n, Signature(nodes.contact(ratio))(), nodes.amplitude
         small_number = error_law.small_parameter(*own)
         whole = error_law.scale(*own)
         stated = np.isfinite(found[0, :, k]) & (small_number < 0.3)

@@ -15,7 +15,6 @@ from bouncing_ball.beyond.exhibits.contact_laws import (
 )
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.laws.collocation import contacts
-from bouncing_ball.models.laws.linear import LinearLaw
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
@@ -53,7 +52,9 @@ def test_the_linear_law_is_that_of_the_paper():
     contacts = CalibratedContacts("linear", LawOrbit(**ONE))
     asked = zeta, Release.DISPLACEMENT, 1, 1.0, ratios, 0.01, ["max_height"]
     expected = search(*asked).threshold[0, 0, 0]
-    assert contacts.threshold(ratios, 0.01) / root == pytest.approx(expected, rel=1e-9)
+    assert contacts.threshold(ratios, contacts.height_error(ratios), 0.01) / root == pytest.approx(
+        expected, rel=1e-9
+    )
     model = SpringDamperModel(SpringDamper(ratios / root, zeta))
     rigid = n_t.orbit(RestitutionModel(0.65), 1, 1.0)
     expected = abs(n_t.orbit(model, 1, 1.0).max_height / rigid.max_height - 1)
@@ -83,14 +84,14 @@ def test_a_contact_has_its_restitution_and_its_centroid_at_the_speed_of_its_cali
 def test_a_threshold_that_the_grid_does_not_have_is_nan():
     contacts = CalibratedContacts("linear", LawOrbit(**ONE))
     for ratios in (np.array([10.0, 60.0]), np.array([100.0, 200.0])):
-        threshold = contacts.threshold(ratios, 0.01)
+        threshold = contacts.threshold(ratios, contacts.height_error(ratios), 0.01)
         assert np.isnan(threshold) and not contacts.is_stable(threshold)
 
 
 def law_at_rigid_speed(name, duration):
     """The trial gave r and D at the restitution model's impact speed, 2π/(1 + r)."""
     model = exact_model(name, 0.65, duration, rigid_speed(1, 0.65))
-    return model, LinearLaw.of(model.contact) if name in LINEAR else model.law
+    return model, model.contact if name in LINEAR else model.law
 
 
 def height_by_one_impact(law):
@@ -214,6 +215,6 @@ def test_there_is_a_threshold_only_where_the_error_crosses_the_tolerance(toleran
     contacts = CalibratedContacts("linear", LawOrbit(**ONE))
     ratios = np.array([20.0, 200.0])
     first, last = contacts.height_error(ratios)
-    threshold = contacts.threshold(ratios, tolerance)
+    threshold = contacts.threshold(ratios, contacts.height_error(ratios), tolerance)
     assert (first > tolerance > last) == found
     assert np.isfinite(threshold) == found and (not found or 20 < threshold < 200)

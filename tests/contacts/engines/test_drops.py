@@ -4,9 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from asked_contacts import answered
 from engine_runs import RUN, Trial, only_if_installed
 
-from bouncing_ball import Contact, Simulation, Table, design, write_contact
+from bouncing_ball import Contact, EngineSetup, Table, write_contact
 
 G = 9.80665
 
@@ -52,7 +53,7 @@ DROPS = [
 @pytest.mark.parametrize(("name", "given"), DROPS)
 def test_a_dropped_ball_rebounds_to_the_height_that_was_measured(name, given):
     only_if_installed(name)
-    found = design(mass=0.5, engine=name, **given)
+    found = answered(mass=0.5, engine=name, **given)
     drop, height = (float(given[x].split()[0]) for x in ("drop_height", "rebound_height"))
     units = {"cm": 0.01, "mm": 0.001, "m": 1.0}
     drop *= units[given["drop_height"].split()[1]]
@@ -67,7 +68,7 @@ def test_a_dropped_ball_rebounds_to_the_height_that_was_measured(name, given):
 @pytest.mark.parametrize("speed", [4.0, 0.4])
 def test_a_recipe_says_how_r_falls_for_slower_impacts(name, speed):
     only_if_installed(name)
-    found = design(mass=0.5, stiffness=2e4, restitution=0.75, engine=name, speed=speed)
+    found = answered(mass=0.5, stiffness=2e4, restitution=0.75, engine=name, speed=speed)
     fast = rebound(name, found.engine, 0.5, found.dropped.drop_height)
     allowed = tolerance(found.engine, found.dropped.drop_height)
     assert fast == pytest.approx(found.dropped.rebound_height, abs=allowed)
@@ -80,8 +81,8 @@ def test_a_recipe_says_how_r_falls_for_slower_impacts(name, speed):
 def test_a_recipe_of_three_dataclasses_is_that_of_a_design():
     contact = Contact(mass=0.5, stiffness=1e5, restitution=0.75)
     table = Table(frequency="20 Hz", acceleration="0.8 g")
-    found = write_contact(contact, Simulation(engine="lammps"), table)
-    whole = design(
+    found = write_contact(contact, EngineSetup(engine="lammps"), table)
+    whole = answered(
         mass=0.5, stiffness=1e5, restitution=0.75, engine="lammps", frequency=20,
         acceleration="0.8 g",
     )  # fmt: skip

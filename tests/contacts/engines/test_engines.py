@@ -5,10 +5,11 @@ import re
 import hypothesis
 import numpy as np
 import pytest
+from asked_contacts import answered
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bouncing_ball import design
+from bouncing_ball import Contact, describe_contact
 from bouncing_ball.contacts.engines.choice import ENGINES, engine_named
 from bouncing_ball.contacts.engines.engine import ERROR, Physical
 from bouncing_ball.contacts.engines.scheme import Scheme, error_in_steps
@@ -31,14 +32,14 @@ def per_mass(restitution, release=Release.DISPLACEMENT):
 def test_the_parameters_of_a_contact_are_read_back_as_this_contact(name, mass, stiffness, r):
     engine = ENGINES[name]
     assert engine.name == name and repr(engine) == f"{type(engine).__name__}()"
-    made = design(mass=mass, stiffness=stiffness, restitution=r, engine=name)
-    settings = made.engine
+    made, _, settings, *_ = answered(mass=mass, stiffness=stiffness, restitution=r, engine=name)
     parameters = dict(settings.parameters)
     if engine.scheme is Scheme.COMPENSATED:
-        (note,) = design(mass=mass, from_engine=name, parameters=parameters).notes
+        read = Contact(mass=mass, from_engine=name, parameters=parameters)
+        (note,) = describe_contact(read).notes
         assert note.startswith("k, c and r are those in the limit of small time steps")
         parameters["time_step"] = settings.time_step
-    again = design(mass=mass, from_engine=name, parameters=parameters)
+    again = describe_contact(Contact(mass=mass, from_engine=name, parameters=parameters))
     # A step that alone damps as much as the contact is within the error that is allowed.
     rough = engine.scheme is Scheme.COMPENSATED and parameters[engine.names[1]] == 0
     # Twelve digits are written; of r near 1 the distance to 1 is that of c.
@@ -133,7 +134,7 @@ def test_parameters_that_cannot_be_read_are_refused_in_one_line(
 def test_drakes_hunt_crossley_contact_loses_what_its_work_is():
     # ∫ u du/(1 + Cu) over the impact is 0: (1 - rs) exp(s(1 + r)) = 1 + s with s = Cv.
     given = {"point_contact_stiffness": 2e5, "hunt_crossley_dissipation": 0.5}
-    found = design(mass=0.5, from_engine="drake", parameters=given)
+    found = describe_contact(Contact(mass=0.5, from_engine="drake", parameters=given))
     assert found.stiffness == 1e5 and found.damping is found.measured_restitution is None
     pairs = re.findall(r"([\d.]+) at ([\d.]+) m/s", found.notes[0])
     assert len(pairs) == 3

@@ -4,9 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from asked_contacts import answered
 from engine_runs import RUN, Trial, only_if_installed
 
-from bouncing_ball import Contact, ModelError, Simulation, design, write_contact
+from bouncing_ball import Contact, EngineSetup, ModelError, write_contact
 from bouncing_ball.contacts.engines.choice import ENGINES
 from bouncing_ball.contacts.engines.given_step import at_step
 from bouncing_ball.contacts.engines.physical import Physical
@@ -97,13 +98,13 @@ def test_the_answer_about_an_unstable_solref_says_so(said, ask):
 @pytest.mark.parametrize("name", ENGINES)
 def test_without_a_stiffness_the_contact_is_the_stiffest_that_the_step_resolves(name):
     contact = Contact(mass=0.5, restitution=0.75)
-    simulation = Simulation(engine=name, time_step="0.1 ms", restitution_error=0.01)
-    found = write_contact(contact, simulation)
+    setup = EngineSetup(engine=name, time_step="0.1 ms", restitution_error=0.01)
+    found = write_contact(contact, setup)
     assert found.at_step.is_within and found.time_step == 1e-4
     stiff = found.at_step.stiffest
-    again = write_contact(replace(contact, stiffness=stiff), simulation)
+    again = write_contact(replace(contact, stiffness=stiff), setup)
     assert again.parameters == found.parameters
-    too_stiff = write_contact(replace(contact, stiffness=4 * stiff), simulation)
+    too_stiff = write_contact(replace(contact, stiffness=4 * stiff), setup)
     assert not too_stiff.at_step.is_within
     assert too_stiff.parameters.keys() == found.parameters.keys()
     for one, other in zip(too_stiff.parameters.values(), found.parameters.values(), strict=True):
@@ -112,12 +113,12 @@ def test_without_a_stiffness_the_contact_is_the_stiffest_that_the_step_resolves(
 
 def test_the_stiffest_contact_of_a_drop_test_rebounds_as_measured():
     contact = Contact(mass=0.02, drop_height="20 cm", rebound_height="10 cm")
-    simulation = Simulation(engine="mujoco", time_step="0.1 ms", restitution_error="1 %")
-    found = design(
+    setup = EngineSetup(engine="mujoco", time_step="0.1 ms", restitution_error="1 %")
+    found = answered(
         mass=0.02, drop_height="20 cm", rebound_height="10 cm", engine="mujoco",
         time_step="0.1 ms", restitution_error="1 %", speed=(2 * 9.80665 * 0.2) ** 0.5,
     )  # fmt: skip
-    assert found.engine == write_contact(contact, simulation)
+    assert found.engine == write_contact(contact, setup)
     assert found.dropped.rebound_height == pytest.approx(0.1, rel=1e-9)
     assert found.at_step.is_within
 
@@ -125,30 +126,30 @@ def test_the_stiffest_contact_of_a_drop_test_rebounds_as_measured():
 def test_a_step_that_does_not_resolve_a_contact_has_no_orbit_of_it():
     table = {"frequency": "20 Hz", "acceleration": "0.8 g", "n": 1}
     given = {"mass": 0.5, "stiffness": "1e6 N/m", "restitution": 0.8, "engine": "lammps"}
-    fine = design(**table, **given, time_step="1 us")
-    assert fine.engine.max_height == fine.judged.max_height and fine.at_step.is_within
-    assert fine.time_step.largest == 1e-6
-    coarse = design(**table, **given, time_step="1 ms")
+    fine = answered(**table, **given, time_step="1 us")
+    assert fine.engine.max_height == fine.found.judged.max_height and fine.at_step.is_within
+    assert fine.found.time_step.largest == 1e-6
+    coarse = answered(**table, **given, time_step="1 ms")
     assert coarse.engine.max_height is None and not coarse.at_step.is_within
     assert coarse.engine.parameters["kn"] < 1e6
 
 
 def test_a_time_step_needs_an_engine(refusal):
     with refusal(ModelError, "time_step needs engine or from_engine, such as generic"):
-        design(mass=1, stiffness=1e5, restitution=0.8, time_step="1 ms")
+        answered(mass=1, stiffness=1e5, restitution=0.8, time_step="1 ms")
 
 
 def test_a_time_step_is_for_a_contact_whose_r_has_no_speed(refusal):
     crossley = {"point_contact_stiffness": 2e5, "hunt_crossley_dissipation": 0.5}
     with refusal(ModelError, "time_step is given for a spring and a damper"):
-        design(mass=0.5, from_engine="drake", parameters=crossley, time_step="1 ms")
+        answered(mass=0.5, from_engine="drake", parameters=crossley, time_step="1 ms")
     table = {"mass": 0.5, "frequency": "20 Hz", "acceleration": "0.8 g", "n": 1}
     law = {"law": "hunt-crossley", "contact_time": "2 ms", "restitution": 0.8}
     with refusal(ModelError, "time_step is given for a spring and a damper"):
-        design(**table, **law, engine="drake", time_step="1 ms")
+        answered(**table, **law, engine="drake", time_step="1 ms")
     with refusal(ModelError, "time_step and parameters time_step give the same"):
         given = {"contactStiffness": 1e5, "contactDamping": 1.0, "time_step": 1e-3}
-        design(mass=0.5, from_engine="pybullet", parameters=given, time_step="1 ms")
+        answered(mass=0.5, from_engine="pybullet", parameters=given, time_step="1 ms")
 
 
 def in_engine(name, text, time_step, mass, contact_time):
@@ -235,7 +236,7 @@ SOLREFS = [
 @pytest.mark.parametrize(("solref", "time_step"), SOLREFS)
 def test_mujoco_does_with_a_solref_what_the_answer_says(solref, time_step):
     only_if_installed("mujoco")
-    found = design(
+    found = answered(
         mass=1.0, from_engine="mujoco", solref=solref, solimp="1e-4 1e-4", time_step=time_step
     ).at_step
     # MuJoCo raises a time constant to two steps.
@@ -271,8 +272,8 @@ PASTED = [
 def test_an_engine_does_with_a_contact_at_a_step_what_the_answer_says(name, stiffness, time_step):
     only_if_installed(name)
     contact = Contact(mass=0.5, stiffness=stiffness, restitution=0.75)
-    simulation = Simulation(engine=name, time_step=time_step, restitution_error=0.01)
-    found = write_contact(contact, simulation)
+    setup = EngineSetup(engine=name, time_step=time_step, restitution_error=0.01)
+    found = write_contact(contact, setup)
     at = found.at_step
     zeta = at.stiffest_damping / (2 * np.sqrt(at.stiffest * 0.5))
     physical = Physical(0.5, stiffness, float(2 * zeta * np.sqrt(stiffness * 0.5)))

@@ -16,10 +16,11 @@ from time import process_time
 import numpy as np
 import pytest
 import xarray as xr
+from asked_contacts import answered
 from engine_runs import RUN, Trial, drake, installed, mujoco, only_if_installed
 from pandas import DataFrame
 
-from bouncing_ball import corrected, design, limits, rigid, spring_damper
+from bouncing_ball import corrected, limits, rigid, spring_damper
 from bouncing_ball.accuracy.corrected_errors import SIMPLE
 from bouncing_ball.accuracy.errors import relative
 from bouncing_ball.beyond.exhibits.engine_steps import (
@@ -31,12 +32,12 @@ from bouncing_ball.beyond.exhibits.engine_steps import (
 )
 from bouncing_ball.contacts.engines.choice import ENGINES
 from bouncing_ball.contacts.engines.engine import ERROR, Physical
+from bouncing_ball.contacts.engines.impedance import Impedance
 from bouncing_ball.contacts.engines.scheme import Scheme, steps_for
 from bouncing_ball.datasets.files import read_dataset, write_dataset
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.models.damping import Release, damping_ratio, restitution_coefficient
 from bouncing_ball.models.laws.collocation import contacts
-from bouncing_ball.models.laws.impedance import Impedance
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic import n_t
@@ -68,9 +69,7 @@ def exact_orbit(release, restitution, n, frequency_ratio):
     zeta = float(damping_ratio(restitution, release))
     ball = spring_damper(frequency_ratio=frequency_ratio, damping_ratio=zeta, release=str(release))
     ends = limits(ball, n)
-    return n_t.orbit(
-        ball.model, n, (ends.saddle_node.amplitude + ends.period_doubling.amplitude) / 2
-    )
+    return n_t.orbit(ball, n, (ends.saddle_node.amplitude + ends.period_doubling.amplitude) / 2)
 
 
 @cache
@@ -89,7 +88,7 @@ def seconds_per_bounce(model, *case):
     # The second time everything is imported, and the third the processor has warmed up.
     for _ in range(3):
         began = process_time()
-        balls[model].model.simulate(
+        balls[model].simulate(
             float(orbit.amplitude),
             phase=float(orbit.phase),
             velocity=float(orbit.impact_velocity),
@@ -204,8 +203,8 @@ def test_drakes_hunt_and_crossley_has_the_restitution_at_the_orbits_speed(restit
     only_if_installed("drake")
     table = {"mass": 0.5, "frequency": 20.0, "acceleration": "0.8 g", "n": 1}
     contact = {"contact_time": 2e-3, "restitution": restitution, "law": "hunt-crossley"}
-    made = design(**table, **contact, engine="drake", restitution_error=0.01)
-    found = made.engine
+    options = table | contact | {"engine": "drake", "restitution_error": 0.01}
+    made, _, found, *_ = answered(**options)
     speed = float(rigid_speed(1, restitution)) * made.case.table.length / made.case.table.time
     for fraction in (0.02, 0.5, 0.98):
         start = fraction * found.time_step * speed

@@ -7,10 +7,10 @@ import pytest
 
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import Release
-from bouncing_ball.models.laws.linear import LinearLaw
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.sequence import Status
+from bouncing_ball.models.spring_damper import SpringDamper
 
 RELEASES = list(Release)
 BALLS = 400
@@ -44,7 +44,7 @@ def states(seed):
 def errors(release, omega, change=lambda law: law):
     """Of the next impact's time and velocity, one of each ball."""
     lam, phase, velocity, zeta = states(5)
-    contact = LinearLaw(np.full(BALLS, omega), zeta, release)
+    contact = SpringDamper(np.full(BALLS, omega), zeta, release)
     exact = contact.dynamics(lam).next_impact(phase, velocity)
     got = CorrectedModel(change(Signature(contact))).cycle(lam, phase, velocity)
     return np.hypot(got.time - exact.time, got.relative_velocity - exact.relative_velocity)
@@ -82,7 +82,7 @@ def test_without_any_one_of_its_numbers_the_model_is_not_of_second_order(release
 
 def test_without_delay_and_load_the_corrected_model_is_the_restitution_model():
     lam, phase, velocity, _ = states(7)
-    law = Changed(Signature(LinearLaw(5.0, 0.2)), delay=0.0, load=0.0, duration=0.0)
+    law = Changed(Signature(SpringDamper(5.0, 0.2)), delay=0.0, load=0.0, duration=0.0)
     r = float(law(1.0).restitution)
     got = CorrectedModel(law).cycle(lam, phase, velocity)
     known = RestitutionModel(r).cycle(lam, phase, velocity)
@@ -95,7 +95,7 @@ def test_at_every_impact_the_ball_falls_and_time_has_passed():
     lam = rng.uniform(0.3, 4, 300)
     phase = rng.uniform(-3, 3, 300)
     velocity = lam * np.cos(phase) - rng.uniform(0.1, 6, 300)
-    run = CorrectedModel(Signature(LinearLaw(20.0, 0.1))).simulate(lam, phase, velocity, 300)
+    run = CorrectedModel(Signature(SpringDamper(20.0, 0.1))).simulate(lam, phase, velocity, 300)
     there = np.isfinite(run.time)
     assert np.all(run.relative_velocity[there] <= 0)
     assert np.all(np.diff(run.time, axis=0)[there[1:]] > 0)
@@ -106,7 +106,7 @@ def test_at_every_impact_the_ball_falls_and_time_has_passed():
 
 def test_after_a_weak_impact_the_ball_stays_until_the_table_falls_away():
     """A ball set down gently stays until the table recedes with more than gravity."""
-    model = CorrectedModel(Signature(LinearLaw(20.0, 0.3)))
+    model = CorrectedModel(Signature(SpringDamper(20.0, 0.3)))
     resting = model.simulate(0.9, 0.0, 0.9 - 1e-3, 5)
     assert resting.status == Status.PERMANENT_CONTACT and resting.impacts == 1
     lifted = model.simulate(1.5, 0.0, 1.5 - 1e-3, 2)
@@ -115,5 +115,5 @@ def test_after_a_weak_impact_the_ball_stays_until_the_table_falls_away():
     assert lifted.relative_bounce_velocity[0] == 0
     # In the exact contact the same ball leaves at the same moment, but for the
     # spring, which lets go where its force has gone: a delay of order 1/ϖ.
-    exact = LinearLaw(20.0, 0.3).dynamics(1.5).simulate(0.0, 1.5 - 1e-3, 1)
+    exact = SpringDamper(20.0, 0.3).dynamics(1.5).simulate(0.0, 1.5 - 1e-3, 1)
     assert float(exact.contact_duration[0]) == pytest.approx(phase, abs=4 / 20)

@@ -6,8 +6,8 @@ import pytest
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.hertzian import Tsuji
-from bouncing_ball.models.laws.linear import LinearLaw
 from bouncing_ball.models.laws.signature import Signature
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.orbit import OBSERVABLES
@@ -18,7 +18,7 @@ COMPARED = (*OBSERVABLES[1:], "bounce_height")
 
 
 def models(omega, zeta, release):
-    contact = LinearLaw(omega, zeta, release)
+    contact = SpringDamper(omega, zeta, release)
     return CorrectedModel.of_contact(contact), SpringDamperModel(contact)
 
 

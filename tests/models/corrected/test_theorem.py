@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
+from bouncing_ball.contacts.named_laws import LAWS
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.laws.collocation import contacts
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
-from bouncing_ball.models.laws.linear import LinearLaw
 from bouncing_ball.models.laws.model import LawModel
-from bouncing_ball.models.laws.registry import LAWS
 from bouncing_ball.models.laws.signature import Signature
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic import n_t
 
@@ -23,8 +23,8 @@ def law(name, duration):
     """The contact with r and D at the speed 4."""
     if name not in ("displacement", "force"):
         return law_of_impact(LAWS[name], R, duration, 4.0)
-    unit = LinearLaw(1.0, damping_ratio(R, name), name)
-    return LinearLaw(unit.free_duration / duration, unit.damping_ratio, name)
+    unit = SpringDamper(1.0, damping_ratio(R, name), name)
+    return SpringDamper(unit.free_duration / duration, unit.damping_ratio, name)
 
 
 def images(model, amplitude, phase, speed):
@@ -82,7 +82,7 @@ def test_the_load_sensitivity_is_a_derivative_at_a_fixed_speed_at_the_instant(na
 
 
 def test_the_two_derivatives_of_the_linear_contact_by_the_load_are_far_apart():
-    contact = LinearLaw(1.0, damping_ratio(0.65, "displacement"), "displacement")
+    contact = SpringDamper(1.0, damping_ratio(0.65, "displacement"), "displacement")
     assert load_derivative(contact, 3.0, True).round(4) == 0.6615
     assert load_derivative(contact, 3.0, False).round(4) == 2.7227
 

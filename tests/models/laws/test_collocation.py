@@ -6,18 +6,17 @@ import numpy as np
 import pytest
 from scipy.special import beta
 
+from bouncing_ball.contacts.engines.impedance import Impedance
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.laws.collocation import contacts, path
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball.models.laws.hertzian import HuntCrossley, KuwabaraKono, Tsuji, tsuji_damping
-from bouncing_ball.models.laws.impedance import Impedance
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
-from bouncing_ball.models.laws.linear import LinearLaw
 from bouncing_ball.models.laws.march import march
 from bouncing_ball.models.laws.panel import Balls, Start
-from bouncing_ball.models.laws.signature import free_impact
 from bouncing_ball.models.laws.sweeps import Sweeps
+from bouncing_ball.models.spring_damper import SpringDamper
 
 
 @pytest.mark.parametrize("law", [HuntCrossley(50.0, 0.0), Tsuji(50.0, 0.0), KuwabaraKono(50.0, 0)])
@@ -65,7 +64,7 @@ def test_a_load_holds_an_undamped_impedance_up_to_the_level():
 
 
 def test_a_release_at_the_surface_has_the_penetration_zero_exactly():
-    end = contacts(LinearLaw(10.0, 0.1), np.linspace(1, 5, 999), 0.3, 1.2)
+    end = contacts(SpringDamper(10.0, 0.1), np.linspace(1, 5, 999), 0.3, 1.2)
     assert np.isfinite(end.duration).all() and not end.penetration.any()
 
 
@@ -123,7 +122,7 @@ def test_a_long_contact_ends_although_its_neighbours_do_not():
     # Panels that end a contact take twice as many sweeps as the others, which are 99 in 100 here.
     zero = np.zeros(300)
     one = np.ones(300)
-    law = LinearLaw(20.0, 1.3)
+    law = SpringDamper(20.0, 1.3)
     start = Start(zero, one, zero, np.where(np.arange(300) < 3, 1.36, 0.3), one)
     together = march(law, start, 60).duration
     alone = march(law, Start(*(x[:3] for x in start)), 60).duration
@@ -173,7 +172,7 @@ def test_an_impedance_without_oscillation_releases_the_ball(zeta, angle):
     omega = 50.0
     d = 0.95
     r = np.exp(-zeta * angle)
-    impact = free_impact(Impedance(omega, zeta, d), 1.0)
+    impact = Impedance(omega, zeta, d).signature(1.0)
     lag = 2 * zeta / omega
     load = (1 - r) * angle / omega - (2 - d) * lag * r
     expected = [r * (angle / omega + lag) / (1 + r), r, load, angle / omega]
@@ -182,7 +181,7 @@ def test_an_impedance_without_oscillation_releases_the_ball(zeta, angle):
 
 def test_a_law_that_sinks_pulls_or_has_no_scales_is_refused():
     with pytest.raises(ModelError, match="sinking: a free impact of speed 2 does not end"):
-        free_impact(_Sinking(), 2.0)
+        _Sinking().signature(2.0)
     with pytest.raises(ModelError, match="pulling does not stop the ball"):
         contacts(_Pulling(), 1.0)
     for r in (0.95, 1.0):

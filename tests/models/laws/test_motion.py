@@ -5,15 +5,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from bouncing_ball.contacts.engines.impedance import Impedance
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.flight import Flight, land, table
 from bouncing_ball.models.history import history
-from bouncing_ball.models.laws.impedance import Impedance
-from bouncing_ball.models.laws.linear import LinearLaw
 from bouncing_ball.models.laws.motion import sampled_resumption
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.resumption import resumption
 from bouncing_ball.models.sequence import Status
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic.spring_damper_bifurcations import orbit_at
 from bouncing_ball.periodic.stability import Side
 
@@ -31,7 +31,7 @@ RELEASES = list(Release)
 
 def build(case, release, side=Side.STABLE):
     n, r, omega, lam = case
-    contact = LinearLaw(omega, float(damping_ratio(r)), release)
+    contact = SpringDamper(omega, float(damping_ratio(r)), release)
     return contact, lam, orbit_at(contact, n, lam, side)
 
 
@@ -64,7 +64,7 @@ def test_contacts_that_resume_below_the_level_agree_with_a_taylor_integrator(
 ):
     """Force release, little above the threshold of permanent contact: the table loses the
     ball and gets it back before it has come up to its level."""
-    contact = LinearLaw(omega, zeta, Release.FORCE)
+    contact = SpringDamper(omega, zeta, Release.FORCE)
     lam = factor * float(permanent_contact_threshold(omega, zeta, Release.FORCE))
     got = contact.dynamics(lam).simulate(0.3, -0.2 + lam * np.cos(0.3), 20)
     resumed = got.displacement < 0
@@ -75,7 +75,7 @@ def test_contacts_that_resume_below_the_level_agree_with_a_taylor_integrator(
         np.testing.assert_allclose(b, a, rtol=0, atol=1e-11)
 
 
-class _Unknown(LinearLaw):
+class _Unknown(SpringDamper):
     """A spring-damper of which the release is known by its force alone."""
 
     lag = None
@@ -91,7 +91,7 @@ def test_after_a_release_below_the_level_the_first_of_landing_and_resumption_is_
     omega = 10 ** rng.uniform(-0.5, 1, size)
     zeta, lam = rng.uniform(0.05, [[0.95], [4]], (2, size))
     x, y = table(rng.uniform(-np.pi, np.pi, size), lam)
-    contact = LinearLaw(omega, zeta, Release.FORCE)
+    contact = SpringDamper(omega, zeta, Release.FORCE)
     rate = 10 ** rng.uniform(-3, 0.7, size)
     let_go = rate + contact.lag * (y - 1) > 0
     contact = contact[let_go]
@@ -126,7 +126,7 @@ def test_a_contact_that_ends_at_the_level_does_not_resume_within_a_rounding_erro
 def test_an_elastic_ball_on_a_table_at_rest_keeps_its_energy():
     """The only exact answer with many impacts: equal velocities and equal times."""
     omega, speed = 7.0, 1.5
-    sequence = LinearLaw(omega, 0.0).dynamics(0.0).simulate(0.0, -speed, 1000)
+    sequence = SpringDamper(omega, 0.0).dynamics(0.0).simulate(0.0, -speed, 1000)
     assert sequence.status == Status.BOUNCING
     # 1000 impacts with an error of a unit in the last place each.
     np.testing.assert_allclose(sequence.impact_velocity, -speed, rtol=1e-13)
@@ -140,7 +140,7 @@ def test_an_elastic_ball_on_a_table_at_rest_keeps_its_energy():
 @pytest.mark.parametrize("release", RELEASES)
 @pytest.mark.parametrize(("omega", "zeta"), [(0.7, 0.3), (2.0, 0.1), (10.0, 0.05), (30.0, 0.2)])
 def test_permanent_contact_begins_and_ends_at_its_threshold(omega, zeta, release):
-    contact = LinearLaw(omega, zeta, release)
+    contact = SpringDamper(omega, zeta, release)
     threshold = float(permanent_contact_threshold(omega, zeta, release))
     # Of the threshold some roundings are unknown.
     lam = threshold * np.array([1 - 1e-12, 1 + 1e-12])
@@ -153,11 +153,11 @@ def test_permanent_contact_begins_and_ends_at_its_threshold(omega, zeta, release
 
 
 def test_after_a_permanent_contact_there_is_no_next_impact():
-    cycle = LinearLaw(10.0, 0.1).dynamics(0.2).next_impact([0.0, 1.0], [0.0, -50.0])
+    cycle = SpringDamper(10.0, 0.1).dynamics(0.2).next_impact([0.0, 1.0], [0.0, -50.0])
     assert np.isnan(cycle.phase[0]) and cycle.time[0] == np.inf
     assert np.isfinite(cycle.phase[1])
     # Of no ball there is no impact.
-    assert LinearLaw(10.0, 0.1).dynamics(0.2).next_impact([], []).phase.shape == (0,)
+    assert SpringDamper(10.0, 0.1).dynamics(0.2).next_impact([], []).phase.shape == (0,)
 
 
 @pytest.mark.parametrize("release", RELEASES)
@@ -169,9 +169,9 @@ def test_a_ball_among_many_moves_exactly_as_alone(release):
     zeta = rng.uniform(0.0, 0.4, size)
     phase = rng.uniform(-3.0, 3.0, size)
     velocity = lam * np.cos(phase) - rng.uniform(0.0, 5.0, size)
-    many = LinearLaw(omega, zeta, release).dynamics(lam).simulate(phase, velocity, 30)
+    many = SpringDamper(omega, zeta, release).dynamics(lam).simulate(phase, velocity, 30)
     for k in range(size):
-        contact = LinearLaw(float(omega[k]), float(zeta[k]), release)
+        contact = SpringDamper(float(omega[k]), float(zeta[k]), release)
         one = contact.dynamics(float(lam[k])).simulate(float(phase[k]), float(velocity[k]), 30)
         assert one.status == many.status[k]
         for name in ("time", "phase", "relative_velocity", "contact_duration", "displacement"):
@@ -182,7 +182,7 @@ def test_the_size_of_blocks_changes_nothing():
     """More balls than a block holds, in a shape of two dimensions."""
     rng = np.random.default_rng(4)
     phase = rng.uniform(-3.0, 3.0, (2, 9000))
-    contact = LinearLaw(10.0, 0.05)
+    contact = SpringDamper(10.0, 0.05)
     many = contact.dynamics(1.5).simulate(phase, -4.0, 5)
     assert many.phase.shape == (5, 2, 9000)
     few = contact.dynamics(1.5).simulate(phase[1, -3:], -4.0, 5)
@@ -205,7 +205,7 @@ def test_a_ball_is_unloaded_in_flight_and_loaded_in_contact(
 ):
     """In flight above the table or, after a release by force, unloaded; in contact below
     it or, by force, loaded."""
-    contact = LinearLaw(omega, zeta, release)
+    contact = SpringDamper(omega, zeta, release)
     velocity = lam * np.cos(phase) - speed
     sequence = contact.dynamics(lam).simulate(phase, velocity, 15)
     last = np.max(sequence.time[np.isfinite(sequence.time)])
@@ -225,7 +225,7 @@ def test_a_ball_that_rides_the_table_for_thousands_of_oscillations_leaves_it():
     """A ball that hardly moves rides the table for thousands of oscillations of the contact,
     in which nothing decays, before it leaves; no zero is passed over on the way."""
     omega, lam, phase = 3000.0, 0.999, 2.0
-    ride = LinearLaw(omega, 0.0).dynamics(lam).simulate(phase, lam * np.cos(phase), 1)
+    ride = SpringDamper(omega, 0.0).dynamics(lam).simulate(phase, lam * np.cos(phase), 1)
     assert ride.status == Status.BOUNCING and 1.0 < ride.contact_duration[0] < 10.0
     s = np.linspace(0.0, float(ride.contact_duration[0]), 400_001)[1:-1]
     steady = -1 / omega**2 + lam * np.sin(s + phase) / (omega**2 - 1)
@@ -239,7 +239,7 @@ def test_a_ball_that_rides_the_table_for_thousands_of_oscillations_leaves_it():
 @pytest.mark.parametrize("detuning", [0.0, 1e-9, 1e-6, 1e-3])
 def test_next_to_the_undamped_resonance_a_contact_ends_where_its_flow_does(detuning):
     """There the steady part is infinite, and near it all digits are lost against the transient."""
-    contact = LinearLaw(1 + detuning, 0.0)
+    contact = SpringDamper(1 + detuning, 0.0)
     impact = contact.dynamics(1.2).simulate(0.4, 1.2 * np.cos(0.4) - 3, 1)
     # The flow keeps its digits at the resonance too.
     end = contact.flow(impact.contact_duration[0], 0.0, -3.0, 0.4, 1.2)
@@ -250,7 +250,7 @@ def test_next_to_the_undamped_resonance_a_contact_ends_where_its_flow_does(detun
 def test_the_cycle_has_a_smooth_limit_at_critical_damping():
     """ζ → 1: the bound by half a free period is of no use, and not needed."""
     zeta = np.array([0.99, 0.99999, 1 - 1e-9])
-    cycle = LinearLaw(3.0, zeta).dynamics(2.0).next_impact(-0.5, -3.0)
+    cycle = SpringDamper(3.0, zeta).dynamics(2.0).next_impact(-0.5, -3.0)
     # A smooth limit: the cycle changes by as little as ζ, times 100.
     assert np.all(np.isfinite(cycle.time))
     assert abs(cycle.time[1] - cycle.time[2]) < 1e-3

@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from bouncing_ball.contacts.engines.impedance import Impedance
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball.models.laws.hertzian import HuntCrossley, KuwabaraKono, Tsuji
-from bouncing_ball.models.laws.impedance import Impedance
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
-from bouncing_ball.models.laws.linear import LinearLaw
 from bouncing_ball.models.laws.permanent_contact import (
     _holds,
     _Steady,
@@ -20,6 +19,7 @@ from bouncing_ball.models.laws.permanent_contact import (
     permanent_contact,
 )
 from bouncing_ball.models.laws.scales import rest
+from bouncing_ball.models.spring_damper import SpringDamper
 
 
 @pytest.mark.parametrize("kind", [HuntCrossley, Tsuji, KuwabaraKono])
@@ -119,7 +119,7 @@ def test_an_impedance_by_depth_touches_the_surface_at_its_threshold():
     assert low[0] > 1e-3 and abs(low[1]) < 1e-5
 
 
-@pytest.mark.parametrize("law", [Tsuji(1e3, 0.3), LinearLaw(2e3, 0.05, "force")])
+@pytest.mark.parametrize("law", [Tsuji(1e3, 0.3), SpringDamper(2e3, 0.05, "force")])
 def test_the_rounding_that_is_allowed_is_a_share_of_the_grip_at_rest(law):
     """A ball that is pulled by a thousandth of the grip at rest is not held."""
     steady = _Steady(law, rest(law))

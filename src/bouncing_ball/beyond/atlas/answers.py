@@ -22,7 +22,6 @@ from bouncing_ball.accuracy.error_law import remainder
 from bouncing_ball.accuracy.errors import OF_ORBITS
 from bouncing_ball.beyond.atlas.plan import Plan
 from bouncing_ball.beyond.atlas.walk import walk
-from bouncing_ball.models.laws.linear import LinearLaw
 from bouncing_ball.models.laws.signature import Signature
 
 # The error is bounded for the interpolation, because it is infinite where a model has no orbit.
@@ -174,7 +173,7 @@ def _of_nodes(plan: Plan, row: int, index: np.ndarray) -> xr.Dataset:
     # The walk goes down in ϖ, whereas the examined ϖ increase.
     at = np.flatnonzero(np.isin(down, plan.examined))[::-1]
     examined = np.moveaxis(error[at], 0, 2)
-    signature = Signature(LinearLaw.of(nodes.contact(down[at, np.newaxis])))
+    signature = Signature(nodes.contact(down[at, np.newaxis]))
     # One quantity after another, because the errors of all quantities do not fit into the cache.
     each = error.reshape(len(down), -1, len(index))
     tolerances = np.array(plan.tolerances)

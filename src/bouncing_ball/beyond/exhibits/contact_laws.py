@@ -30,6 +30,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.accuracy.corrected_errors import SIMPLE
 from bouncing_ball.accuracy.errors import Quantity, relative, values
+from bouncing_ball.contacts.named_laws import LAWS
 from bouncing_ball.datasets.parameters import LawRestitution, Many, Tolerance
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.errors import ModelError, NoOrbitError
@@ -37,8 +38,6 @@ from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
 from bouncing_ball.models.laws.model import LawModel
-from bouncing_ball.models.laws.registry import LAWS
-from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
@@ -195,12 +194,12 @@ class CalibratedContacts:
         exact = self.along(ratios, lambda x: n_t.orbit(x, one.n, one.amplitude).max_height)
         return np.abs(relative(exact, simple))
 
-    def threshold(self, ratios: np.ndarray, tolerance: float) -> float:
+    def threshold(self, ratios: np.ndarray, error: np.ndarray, tolerance: float) -> float:
         """The π/(D + κ) at which the error of the greatest height is the tolerance.
 
-        It is searched for along ``ratios``, which increase, and NaN if it is not among them.
+        It is searched for along ``ratios``, which increase and have these errors, and NaN if it is
+        not among them.
         """
-        error = self.height_error(ratios)
         outside = np.flatnonzero(error > tolerance)
         if not outside.size or outside[-1] == ratios.size - 1:
             return np.nan
@@ -223,10 +222,7 @@ class CalibratedContacts:
 
 def corrected_values(exact: Any, *asked: Any) -> np.ndarray:
     """Quantities in the corrected restitution models of contacts, shape (quantity, ϖ)."""
-    if isinstance(exact, SpringDamperModel):
-        return values(CorrectedModel.of_contact(exact.contact), *asked)
-    each = (CorrectedModel(Signature(exact.law.take(k))) for k in range(exact.law.size))
-    return np.stack([values(model, *asked) for model in each], axis=-1)
+    return values(CorrectedModel.of_contact(exact.impact_law), *asked)
 
 
 def _errors(name: str, parameters: LawErrors) -> np.ndarray:
@@ -262,6 +258,7 @@ def law_errors(parameters: LawErrors) -> xr.Dataset:
     """
     ratios = parameters.frequency_ratio.grid()
     cases: list[OrbitParameters] = [parameters, *parameters.further]
+    errors = {name: _errors(name, parameters) for name in NAMES}
     shape = len(cases), len(Calibration), len(NAMES)
     threshold = np.empty(shape)
     stable = np.empty(shape, dtype=bool)
@@ -269,7 +266,10 @@ def law_errors(parameters: LawErrors) -> xr.Dataset:
         np.ndindex(shape), product(cases, Calibration, NAMES), strict=True
     ):
         contacts = CalibratedContacts(name, case, calibration)
-        found = contacts.threshold(ratios, parameters.tolerance)
+        # Those of the first orbit are known: the first model and the first quantity.
+        known = case is parameters and calibration is Calibration.CONTACT
+        error = errors[name][0, 0] if known else contacts.height_error(ratios)
+        found = contacts.threshold(ratios, error, parameters.tolerance)
         threshold[place] = found
         stable[place] = contacts.is_stable(found)
     by_case = ("case", "calibration", "law")
@@ -277,7 +277,7 @@ def law_errors(parameters: LawErrors) -> xr.Dataset:
         {
             "relative_error": (
                 ("law", "model", "quantity", "centroid_ratio"),
-                np.array([_errors(name, parameters) for name in NAMES]),
+                np.array(list(errors.values())),
             ),
             "error_calibration": str(Calibration.CONTACT),
             "error_threshold": (by_case, threshold),

@@ -21,7 +21,6 @@ from bouncing_ball.beyond.exhibits.random_orbits import random_orbits
 from bouncing_ball.datasets.parameters import LossyRestitution, Samples, Seed
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.models.damping import Release, damping_ratio
-from bouncing_ball.models.laws.linear import LinearLaw
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
@@ -104,7 +103,7 @@ def meeting_flights(parameters: ContactHistory, release: Release) -> xr.Dataset:
             "contact_duration": ((), end),
             "meeting_time": ((), meeting),
             "meeting_height": ((), float(start + (velocity - meeting / 2) * meeting)),
-            "delay": ((), float(Signature(LinearLaw.of(contact))().delay)),
+            "delay": ((), float(Signature(contact)().delay)),
         },
         coords={"time": time},
         variables=VARIABLES,
@@ -147,7 +146,7 @@ def _of_random_orbits(sample: Orders, release: Release) -> dict[str, tuple]:
     omega = np.exp(rng.uniform(np.log(span.min), np.log(span.max), sample.law_samples))
     contact = SpringDamper(omega, zeta, release)
     of_restitution_model, _ = errors(contact, n, lam)
-    instant = Signature(LinearLaw.of(contact))()
+    instant = Signature(contact)()
     remainder = error_law.remainder(n, instant, lam, of_restitution_model)
     return {
         "order": (("model", "quantity", "sample"), np.log2(once / twice)),

@@ -17,7 +17,6 @@ from bouncing_ball.contacts.engines.scheme import Scheme, compensated, represent
 from bouncing_ball.errors import ModelError, require
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
-from bouncing_ball.models.laws.signature import free_impact as law_impact
 
 ERROR = 0.001
 """The default of the largest error of a free impact's r that the time step may cause."""
@@ -75,7 +74,7 @@ def filled(text: str, numbers: Mapping[str, str]) -> str:
 
 def at_speeds(law: ContactLaw, speeds: np.ndarray) -> str:
     """The restitution of a law's free impacts at these speeds in m/s, in words."""
-    found = zip(law_impact(law, speeds).restitution, speeds, strict=True)
+    found = zip(law.signature(speeds).restitution, speeds, strict=True)
     return "r = " + ", ".join(f"{r:.4f} at {v:.3g} m/s" for r, v in found)
 
 

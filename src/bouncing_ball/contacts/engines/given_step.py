@@ -87,7 +87,7 @@ def stiffest_contact(
     ('4550.6 N/m', 0.0)
     """
     fewest = fewest_steps(scheme, zeta, release, error)
-    omega = free_impact(zeta, release)[0] / (fewest * time_step)
+    omega = free_impact(zeta, release).duration / (fewest * time_step)
     return Physical(mass, mass * omega**2, 2 * zeta * mass * omega), fewest
 
 

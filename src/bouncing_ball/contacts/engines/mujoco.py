@@ -12,7 +12,7 @@ time constant T and the damping ratio ζ, MuJoCo takes ``κ = d/(dmax² T² ζ²
 per unit of mass. The impedance then affects the load only: in contact only the share 1 - d of
 gravity and of the table's acceleration acts on the ball. A spring and damper corresponds to d = 0,
 and the smallest d that MuJoCo allows is 10⁻⁴. Contacts with any impedance are the law
-:mod:`bouncing_ball.models.laws.impedance`.
+:mod:`bouncing_ball.contacts.engines.impedance`.
 """
 
 import re
@@ -24,11 +24,10 @@ import numpy as np
 
 from bouncing_ball.contacts.engines.engine import ERROR, Engine, Physical, at_speeds
 from bouncing_ball.contacts.engines.given_step import AtStep, at_step
+from bouncing_ball.contacts.engines.impedance import Impedance
 from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.damping import Release
-from bouncing_ball.models.laws.impedance import Impedance
-from bouncing_ball.models.laws.signature import free_impact
 
 # What is written between numbers and around them elsewhere.
 _BETWEEN = re.compile(r"[\s,;()\[\]]+")
@@ -205,8 +204,8 @@ class MuJoCo(Engine):
         if law is None:
             return ()
         # The impedance is constant at depths greater than the width; d = 0 is a spring and damper.
-        deep = free_impact(Impedance(law.frequency_ratio, law.damping_ratio, law.share), 1.0)
-        spring = free_impact(Impedance(law.frequency_ratio, law.damping_ratio, 0.0), 1.0)
+        deep = Impedance(law.frequency_ratio, law.damping_ratio, law.share).signature(1.0)
+        spring = Impedance(law.frequency_ratio, law.damping_ratio, 0.0).signature(1.0)
         found = (
             f"with the impedance {law.share:g} a contact feels {1 - law.share:.2g} of the load "
             '(gravity, table), and a spring and a damper all of it: solimp = "1e-4 1e-4 0.001"',

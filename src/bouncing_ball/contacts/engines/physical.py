@@ -39,7 +39,7 @@ class Physical(NamedTuple):
         ModelError
             If ζ ≥ 1 with the displacement release, under which the ball does not come back.
         """
-        return free_impact(self.damping_ratio, release)[1]
+        return free_impact(self.damping_ratio, release).restitution
 
     def contact_time(self, release: Release) -> float:
         """Duration of a free impact under a release rule, in s.
@@ -49,4 +49,4 @@ class Physical(NamedTuple):
         ModelError
             If ζ ≥ 1 with the displacement release.
         """
-        return free_impact(self.damping_ratio, release)[0] / self.angular_frequency
+        return free_impact(self.damping_ratio, release).duration / self.angular_frequency

@@ -34,6 +34,7 @@ mean error of second order in h. The force release, where v is greatest, adds a 
 
 from collections.abc import Callable
 from enum import StrEnum
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -101,8 +102,15 @@ class Scheme(StrEnum):
     COMPENSATED = "compensated implicit Euler"
 
 
-def free_impact(damping_ratio: float, release: Release) -> tuple[float, float]:
-    """Duration in units of 1/ω and restitution of the exact free impact, ``(T, exp(-ζT))``.
+class FreeImpact(NamedTuple):
+    """Duration T in units of 1/ω and restitution of a free impact."""
+
+    duration: float
+    restitution: float
+
+
+def free_impact(damping_ratio: float, release: Release) -> FreeImpact:
+    """The exact free impact, whose restitution is exp(-ζT).
 
     For ζ < 1, T = (π - 2α)/√(1 - ζ²) (:mod:`bouncing_ball.models.damping`). With the force
     release the ball rebounds for ζ ≥ 1 as well, after T = 2 arcosh ζ/√(ζ² - 1), which is 2 at
@@ -122,10 +130,11 @@ def free_impact(damping_ratio: float, release: Release) -> tuple[float, float]:
     zeta = float(damping_ratio)
     if zeta < 1 or release is Release.DISPLACEMENT:
         r = float(restitution_coefficient(zeta, release))
-        return float(release.free_angle(zeta) / np.sqrt((1 - zeta) * (1 + zeta))), r
+        duration = release.free_angle(zeta) / np.sqrt((1 - zeta) * (1 + zeta))
+        return FreeImpact(float(duration), r)
     root = np.sqrt((zeta - 1) * (zeta + 1))
     duration = 2 * np.arcsinh(root) / root if root > 0 else 2.0
-    return float(duration), float(np.exp(-zeta * duration))
+    return FreeImpact(float(duration), float(np.exp(-zeta * duration)))
 
 
 def _step(scheme: Scheme, loss: float, h: float) -> tuple[np.ndarray, float]:
@@ -184,7 +193,9 @@ def restitution_in_steps(
     if steps < FEWEST:
         raise ModelError(f"{steps} steps in a contact are too few: use at least {FEWEST}")
     zeta = float(damping_ratio)
-    return impacts_in_steps(scheme, zeta, release, free_impact(zeta, release)[0] / steps, fraction)
+    return impacts_in_steps(
+        scheme, zeta, release, free_impact(zeta, release).duration / steps, fraction
+    )
 
 
 def impacts_in_steps(
@@ -201,7 +212,7 @@ def impacts_in_steps(
 
     Examples
     --------
-    >>> h = free_impact(0.1, Release.FORCE)[0] / 50
+    >>> h = free_impact(0.1, Release.FORCE).duration / 50
     >>> many = impacts_in_steps(Scheme.SEMI_IMPLICIT, 0.1, Release.FORCE, h)
     >>> bool(np.all(many == restitution_in_steps(Scheme.SEMI_IMPLICIT, 0.1, Release.FORCE, 50)))
     True
@@ -216,7 +227,7 @@ def impacts_in_steps(
     start = np.asarray(fraction, dtype=float).ravel()
     grip = np.array([1.0, lag if release is Release.FORCE else 0.0])
     state = np.stack([-step * start, -np.ones_like(start)])
-    steps = free_impact(zeta, release)[0] / step
+    steps = free_impact(zeta, release).duration / step
     if steps < FEWEST:
         found = _step_by_step(matrix, grip, state, step)
     else:
@@ -282,7 +293,7 @@ def error_in_steps(scheme: Scheme, damping_ratio: float, release: Release, steps
     0.0025
     """
     computed = restitution_in_steps(scheme, damping_ratio, release, steps)
-    return float(np.max(np.abs(computed - free_impact(damping_ratio, release)[1])))
+    return float(np.max(np.abs(computed - free_impact(damping_ratio, release).restitution)))
 
 
 def steps_for(scheme: Scheme, damping_ratio: float, release: Release, error: float) -> int:
@@ -331,8 +342,7 @@ def fewest_steps(scheme: Scheme, damping_ratio: float, release: Release, error: 
     good = float(steps_for(scheme, damping_ratio, release, error))
     if good in (FEWEST, _ASYMPTOTIC) or good > _ASYMPTOTIC:
         return good
-    duration = free_impact(damping_ratio, release)[0]
-    exact = free_impact(damping_ratio, release)[1]
+    duration, exact = free_impact(damping_ratio, release)
     bad = good - 1
     while good - bad > _FINE:
         middle = (good + bad) / 2

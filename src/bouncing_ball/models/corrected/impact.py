@@ -58,8 +58,8 @@ def impact(signature: Signature, amplitude: ArrayLike, phase: ArrayLike, arrival
     An elastic ball on a table at rest, with a contact of duration 1:
 
     >>> from bouncing_ball.models.laws.signature import Signature
-    >>> from bouncing_ball.models.laws.linear import LinearLaw
-    >>> hit = impact(Signature(LinearLaw(np.pi, 0.0)), 0.0, 0.0, -2.0)
+    >>> from bouncing_ball.models.spring_damper import SpringDamper
+    >>> hit = impact(Signature(SpringDamper(np.pi, 0.0)), 0.0, 0.0, -2.0)
     >>> float(hit.velocity), float(hit.depth)
     (2.0, 1.0)
     """
@@ -90,8 +90,8 @@ def meeting(
     Examples
     --------
     >>> from bouncing_ball.models.laws.signature import Signature
-    >>> from bouncing_ball.models.laws.linear import LinearLaw
-    >>> psi, p = meeting(Signature(LinearLaw(np.pi, 0.0)), 0.0, 0.25, -1.5)
+    >>> from bouncing_ball.models.spring_damper import SpringDamper
+    >>> psi, p = meeting(Signature(SpringDamper(np.pi, 0.0)), 0.0, 0.25, -1.5)
     >>> float(psi), float(p)
     (0.75, -2.0)
     """
@@ -113,8 +113,8 @@ def start_of(amplitude: ArrayLike, hit: Hit) -> tuple[np.ndarray, np.ndarray]:
     Examples
     --------
     >>> from bouncing_ball.models.laws.signature import Signature
-    >>> from bouncing_ball.models.laws.linear import LinearLaw
-    >>> hit = impact(Signature(LinearLaw(np.pi, 0.0)), 0.0, 0.75, -2.0)
+    >>> from bouncing_ball.models.spring_damper import SpringDamper
+    >>> hit = impact(Signature(SpringDamper(np.pi, 0.0)), 0.0, 0.75, -2.0)
     >>> [float(x) for x in start_of(0.0, hit)]
     [0.25, -1.5]
     """

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from functools import cached_property
+from typing import Any, ClassVar
 
 from numpy.typing import ArrayLike
 
 from bouncing_ball.models.corrected.motion import CorrectedDynamics
 from bouncing_ball.models.instant import Instant
-from bouncing_ball.models.laws.linear import LinearLaw
+from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.model import Model
-from bouncing_ball.models.spring_damper import SpringDamper
 
 
 @dataclass(frozen=True, repr=False)
@@ -26,6 +27,7 @@ class CorrectedModel(Model):
 
     Examples
     --------
+    >>> from bouncing_ball.models.spring_damper import SpringDamper
     >>> model = CorrectedModel.of_contact(SpringDamper.from_restitution(0.65, 10.0))
     >>> round(float(model.signature(3.0).restitution), 12)
     0.65
@@ -35,16 +37,22 @@ class CorrectedModel(Model):
 
     name: ClassVar[str] = "corrected"
 
+    @cached_property
+    def parameters(self) -> Mapping[str, Any]:
+        """The parameters of the contact by name, and the name of this model of it."""
+        return {**super().parameters, "model": self.name}
+
     @classmethod
-    def of_contact(cls, contact: SpringDamper) -> CorrectedModel:
-        """The corrected model of a spring-damper contact.
+    def of_contact(cls, contact: ContactLaw) -> CorrectedModel:
+        """The corrected model of a contact.
 
         Raises
         ------
         ModelError
-            If ζ ≥ 1.
+            If the contact has no signature, as a linear one for ζ ≥ 1, or is a row of laws that
+            have no table in common.
         """
-        return cls(Signature(LinearLaw.of(contact)))
+        return cls(Signature(contact))
 
     def dynamics(self, amplitude: ArrayLike) -> CorrectedDynamics:
         """The impacts and flights of these balls on a table of amplitude Λ."""

@@ -102,8 +102,8 @@ def integrals(
     --------
     A fast ball hardly feels gravity, so that p = 1000 sin πt, whose integral is 2000/π:
 
-    >>> from bouncing_ball.models.laws.linear import LinearLaw
-    >>> law = LinearLaw(np.pi, 0.0)
+    >>> from bouncing_ball.models.spring_damper import SpringDamper
+    >>> law = SpringDamper(np.pi, 0.0)
     >>> sunk, moved = integrals(law, 1.0, 0.0, 1000.0 * np.pi, 0.0, 0.0)
     >>> round(float(sunk) / 1000, 3), float(moved)
     (0.637, 0.0)
@@ -143,8 +143,8 @@ def path(
 
     Examples
     --------
-    >>> from bouncing_ball.models.laws.linear import LinearLaw
-    >>> law = LinearLaw(np.pi, 0.0)
+    >>> from bouncing_ball.models.spring_damper import SpringDamper
+    >>> law = SpringDamper(np.pi, 0.0)
     >>> depth, rate = path(law, contacts(law, np.pi, weight=0.0), 0.5, np.pi, weight=0.0)
     >>> round(float(depth), 12), abs(round(float(rate), 12))
     (1.0, 0.0)

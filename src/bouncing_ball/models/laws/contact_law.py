@@ -1,23 +1,27 @@
 """Contact laws: a force, and the motion of balls that follows from it.
 
 A user's law is a subclass of :class:`ContactLaw`. The paper's contact is
-:class:`~bouncing_ball.models.spring_damper.SpringDamper`; as a contact law among others it
-is :class:`~bouncing_ball.models.laws.linear.LinearLaw`.
+:class:`~bouncing_ball.models.spring_damper.SpringDamper`, a law among others.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.errors import require
 from bouncing_ball.models.contact import Span
 from bouncing_ball.models.damping import check_damping, check_positive
 from bouncing_ball.models.dynamics import Dynamics
-from bouncing_ball.models.laws.collocation import states
-from bouncing_ball.models.laws.force_law import ForceLaw, Unit
+from bouncing_ball.models.flight import table
+from bouncing_ball.models.instant import Instant
+from bouncing_ball.models.laws.collocation import integrals, states
+from bouncing_ball.models.laws.force_law import NUMBER, ForceLaw, Unit
 from bouncing_ball.models.laws.motion import ContactDynamics
 from bouncing_ball.models.laws.panel import Start
+from bouncing_ball.models.laws.signature import computed
 
 
 @dataclass(frozen=True, repr=False)
@@ -52,6 +56,50 @@ class ContactLaw(ForceLaw):
         depth, rate = states(self, start, ends, time)
         return -depth, -rate
 
+    def over_contact(
+        self,
+        amplitude: np.ndarray | float,
+        duration: np.ndarray | float,
+        phase: np.ndarray,
+        gap: np.ndarray,
+        rate: np.ndarray,
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """The integrals ∫ z dτ and ∫ z′ w dτ over contacts, with the table w = Λ sin τ.
+
+        ``duration`` is D; ``phase``, ``gap`` and ``rate`` are φ, δ and δ′ at the start and at the
+        end of the contacts, shape (2, ...).
+        """
+        w_rate, w = table(phase, amplitude)
+        sunk, moved = integrals(self, duration, -gap[0], -rate[0], phase[0], amplitude)
+        return w_rate[0] - w_rate[1] - sunk, (w[1] * w[1] - w[0] * w[0]) / 2 - moved
+
+    def signature(self, speed: ArrayLike) -> Instant:
+        """The impacts as instants, at impact speeds v > 0 of any shape.
+
+        A signature that does not depend on the speed has a closed form; otherwise there is one
+        collocation for each speed, and of the derivatives with respect to v only that of r is
+        computed; the others are left at zero.
+
+        Raises
+        ------
+        ModelError
+            If the law does not release the ball.
+
+        Examples
+        --------
+        The force of an elastic contact is symmetric in time, so that its centroid is in the middle
+        and the effects of the load cancel:
+
+        >>> from bouncing_ball.models.laws.hertzian import HuntCrossley
+        >>> impact = HuntCrossley(100.0, 0.0).signature(2.0)
+        >>> bool(abs(impact.delay / impact.duration - 0.5) < 1e-12)
+        True
+        >>> round(float(impact.restitution), 12), abs(round(float(impact.load), 12))
+        (1.0, 0.0)
+        """
+        known = self.constant_signature
+        return computed(self, speed) if known is None else known.at(speed)
+
 
 @dataclass(frozen=True, repr=False)
 class OscillatorLaw(ContactLaw):
@@ -67,12 +115,32 @@ class OscillatorLaw(ContactLaw):
     damping_ratio: float | np.ndarray
 
     root: ClassVar[int] = 1
-    units: ClassVar[dict[str, Unit]] = {"frequency_ratio": Unit("rad/s", 0, 0, -1)}
+    units: ClassVar[dict[str, Unit]] = {
+        "frequency_ratio": Unit("rad/s", 0, 0, -1),
+        "damping_ratio": NUMBER,
+    }
 
     def __post_init__(self):
-        super().__post_init__()
         check_positive(self.frequency_ratio, "frequency ratio ϖ")
         check_damping(self.damping_ratio, "damping ratio ζ")
+        super().__post_init__()
+
+    @cached_property
+    def damped_frequency(self) -> np.ndarray:
+        """ϖ_d = ϖ√(1 - ζ²).
+
+        Raises
+        ------
+        ModelError
+            If ζ ≥ 1.
+        """
+        self.require_underdamped()
+        return self.frequency_ratio * np.sqrt((1 - self.damping_ratio) * (1 + self.damping_ratio))
+
+    def require_underdamped(self) -> None:
+        """Raise :class:`~bouncing_ball.errors.ModelError` unless all ζ < 1."""
+        zeta = np.asarray(self.damping_ratio, dtype=float)
+        require(zeta < 1, zeta, "damping ratio ζ", "below 1: the contact does not oscillate")
 
     @classmethod
     def of_scales(cls, group: ArrayLike, length: ArrayLike, speed: ArrayLike) -> Self:

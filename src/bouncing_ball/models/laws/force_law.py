@@ -36,6 +36,23 @@ class Unit(NamedTuple):
     time: float = 0.0
 
 
+NUMBER = Unit("")
+"""The unit of a pure number."""
+
+
+class Scaled(NamedTuple):
+    """Impacts of laws in units of their scales P and P/v.
+
+    ``group`` is the dissipation, on which alone such an impact depends, and ``time`` is P/v. Both
+    are proportional to powers of the impact speed, whose exponents are the other fields.
+    """
+
+    group: np.ndarray
+    time: np.ndarray
+    group_exponent: float
+    time_exponent: float
+
+
 @dataclass(frozen=True, repr=False)
 class ForceLaw(Batch, ABC):
     """The law of a contact force: a frozen dataclass of its dimensionless parameters.
@@ -48,7 +65,9 @@ class ForceLaw(Batch, ABC):
 
     name: ClassVar[str]
     units: ClassVar[dict[str, Unit]] = {}
-    """The units of the parameters; a parameter that is not listed is a pure number."""
+    """The units of all parameters, :data:`NUMBER` for a pure number. A law that has a name on the
+    command line, or whose parameters are given in SI units, must declare them.
+    """
     root: ClassVar[int] = 2
     release = Release.DISPLACEMENT
 
@@ -86,7 +105,7 @@ class ForceLaw(Batch, ABC):
     """Whether the contact force depends on the load through :meth:`loaded_force`.
 
     If it does, the ball is released where :meth:`loaded_grip` vanishes or where p = 0, whichever
-    comes first.
+    comes first, and m is 1.
     """
 
     def loaded_force(self, penetration: np.ndarray, rate: np.ndarray, load: Any) -> np.ndarray:
@@ -126,7 +145,7 @@ class ForceLaw(Batch, ABC):
         return self.grip(penetration, rate)
 
     @property
-    def signature(self) -> Instant | None:
+    def constant_signature(self) -> Instant | None:
         """The signature of free impacts if it has a closed form and is the same at every speed,
         otherwise None.
         """
@@ -151,6 +170,12 @@ class ForceLaw(Batch, ABC):
         """
         raise ModelError(f"{cls.name} is given by its parameters, not by restitution and duration")
 
+    def scaled(self, speed: np.ndarray) -> Scaled | None:
+        """The impacts at speeds v > 0 in units of their scales, the inverse of :meth:`of_scales`;
+        None if the law does not define it.
+        """
+        return None
+
     @classmethod
     def group_of(cls, restitution: float) -> float | None:
         """The dissipation ``group`` that gives a restitution coefficient r if it has a closed
@@ -167,14 +192,27 @@ class ForceLaw(Batch, ABC):
         """Names and values of the law's numerical parameters, as they were given."""
         return {name: getattr(self, name) for name in self.parameter_names()}
 
+    @classmethod
+    def require_units(cls) -> None:
+        """Raise :class:`~bouncing_ball.errors.ModelError` if a parameter has no declared unit."""
+        for name in cls.parameter_names():
+            if name not in cls.units:
+                raise ModelError(f"{cls.name} declares no unit of its parameter {name}")
+
     def in_si(self, mass: float, length: float, time: float) -> dict[str, float]:
         """The parameters of a single law in SI units.
 
         The arguments are the units of mass, length and time of the dimensionless model, in SI.
+
+        Raises
+        ------
+        ModelError
+            If the law does not declare the unit of a parameter.
         """
+        self.require_units()
         found = {}
         for name, value in self.parameters().items():
-            unit = self.units.get(name, Unit(""))
+            unit = self.units[name]
             found[name] = value * mass**unit.mass * length**unit.length * time**unit.time
         return found
 

@@ -54,7 +54,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.errors import require
 from bouncing_ball.models.damping import Release, check_damping, check_positive
 from bouncing_ball.models.laws.contact_law import ContactLaw
-from bouncing_ball.models.laws.force_law import Unit
+from bouncing_ball.models.laws.force_law import NUMBER, Scaled, Unit
 
 
 @dataclass(frozen=True, repr=False)
@@ -73,10 +73,15 @@ class Hertz(ContactLaw):
     """
 
     power: ClassVar[float] = 1.5
+    group_exponent: ClassVar[float] = 0.0
+    """The exponent of the impact speed in the dissipation ``group``."""
     stiffness: float | np.ndarray
     damping: float | np.ndarray
 
-    units: ClassVar[dict[str, Unit]] = {"stiffness": Unit("N/m^1.5", 1, -0.5, -2)}
+    units: ClassVar[dict[str, Unit]] = {
+        "stiffness": Unit("N/m^1.5", 1, -0.5, -2),
+        "damping": NUMBER,
+    }
 
     def __post_init__(self):
         super().__post_init__()
@@ -98,6 +103,18 @@ class Hertz(ContactLaw):
         v = np.asarray(speed, dtype=float)
         stiffness = v * v / scale ** (1 + cls.power)
         return cls(stiffness, group * cls.damping_unit(scale, v) + 0 * stiffness)
+
+    def scaled(self, speed: np.ndarray) -> Scaled:
+        """With P = (v²/K)^{1/(1+ν)} and C in its unit."""
+        of_length = 1 / (1 + self.power)
+        length = (speed * speed / self.stiffness) ** of_length
+        unit = self.damping_unit(length, speed)
+        return Scaled(
+            group=self.damping / unit + 0 * length,
+            time=length / speed,
+            group_exponent=self.group_exponent,
+            time_exponent=2 * of_length - 1,
+        )
 
     @staticmethod
     def damping_unit(length: np.ndarray, speed: np.ndarray) -> Any:
@@ -121,6 +138,7 @@ class HuntCrossley(Hertz):
     """
 
     name: ClassVar[str] = "hunt-crossley"
+    group_exponent: ClassVar[float] = 1.0
 
     units: ClassVar[dict[str, Unit]] = Hertz.units | {"damping": Unit("s/m", 0, -1, 1)}
 
@@ -178,6 +196,7 @@ class KuwabaraKono(Hertz):
     """
 
     name: ClassVar[str] = "kuwabara-kono"
+    group_exponent: ClassVar[float] = 0.2
     release = Release.FORCE
 
     units: ClassVar[dict[str, Unit]] = Hertz.units | {"damping": Unit("s", 0, 0, 1)}

@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike
 from bouncing_ball.errors import ModelError, require
 from bouncing_ball.models.damping import check_positive
 from bouncing_ball.models.laws.contact_law import ContactLaw
-from bouncing_ball.models.laws.signature import free_impact
 
 Law = TypeVar("Law", bound=ContactLaw)
 # Groups tried in turn until r is below the required one, and the absolute error of the result.
@@ -24,7 +23,7 @@ _SETTLED = 1e-15
 
 def _free(kind: type[ContactLaw], group: float):
     """r and D of the free impact with this group, in units of the scales."""
-    impact = free_impact(kind.of_scales(group, 1.0, 1.0), 1.0)
+    impact = kind.of_scales(group, 1.0, 1.0).signature(1.0)
     return float(impact.restitution), float(impact.duration)
 
 
@@ -96,7 +95,7 @@ def law_of_impact(
     --------
     >>> from bouncing_ball.models.laws.hertzian import HuntCrossley
     >>> law = law_of_impact(HuntCrossley, 0.65, 0.1, 3.8)
-    >>> impact = free_impact(law, 3.8)
+    >>> impact = law.signature(3.8)
     >>> round(float(impact.restitution), 12), round(float(impact.duration), 12)
     (0.65, 0.1)
     """

@@ -57,28 +57,32 @@ def at_end(
     felt = lever * (1 - carried.T)
     by_time = column(-felt * start.amplitude[:, np.newaxis] * np.cos(angle))
     step = panel.step[:, np.newaxis, np.newaxis]
-    whole = step * rule.integral
-    once = whole[:, :-1]
-    to_end = whole[:, -1:]
+    to_nodes = rule.integral[:-1]
+    to_end = rule.integral[-1:]
+    once = step * to_nodes
+    twice = step * step * rule.twice
     # δp′ = δp′₀ + once δF, δq = δq₀ + once δp′, δt = δt₀ + bent δq
-    twice = step * (once @ rule.integral[:-1])
-    bent = once * bend[:, np.newaxis]
     root0, rate0, time0 = (by[:, np.newaxis, k] for k in range(3))
     free_root = root0 + step * rule.node * rate0
-    known = by_root * free_root + by_rate * rate0 + by_time * (time0 + bent @ free_root)
+    known = by_root * free_root + by_rate * rate0 + by_time * time0
+    matrix = np.eye(count) - by_root * twice - by_rate * once
+    # Without a table's motion the load does not depend on the time.
+    if m > 1 and start.amplitude.any():
+        bent = once * bend[:, np.newaxis]
+        known += by_time * (bent @ free_root)
+        matrix -= by_time * (bent @ twice)
     known[:, :, 0] += by_time[:, :, 0]
     known[:, :, 2] -= felt * np.sin(angle)
     known[:, :, 3] += felt
-    matrix = np.eye(count) - by_root * twice - by_rate * once - by_time * (bent @ twice)
     pushed = np.linalg.solve(matrix, known)
-    of_root = free_root + twice @ pushed
-    of_rate = rate0 + once @ pushed
+    of_root = free_root + step * step * (rule.twice @ pushed)
+    of_rate = rate0 + step * (to_nodes @ pushed)
     ends = [
-        root0 + to_end @ of_rate,
-        rate0 + to_end @ pushed,
-        time0 + to_end @ (column(bend) * of_root),
+        root0 + step * (to_end @ of_rate),
+        rate0 + step * (to_end @ pushed),
+        time0 + step * (to_end @ (column(bend) * of_root)),
     ]
-    return np.concatenate(ends, axis=1), (to_end @ by_rate)[:, 0, 0]
+    return np.concatenate(ends, axis=1), (step * (to_end @ by_rate))[:, 0, 0]
 
 
 def at_release(

@@ -7,6 +7,8 @@ derivatives move with it (:mod:`bouncing_ball.models.laws.linearised`).
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -71,19 +73,13 @@ class ContactEnds(NamedTuple):
     integrals: np.ndarray
 
 
-def _in_time(law: ForceLaw, start: Start, now: Balls, until: np.ndarray | None) -> Panel:
-    """The next panel in plain time, which costs half as much and suffices if q hardly changes."""
-    return _in_plain_time(law, start, now, until, linearised=False)
-
-
-def _lying(law: ForceLaw, start: Start, now: Balls, until: np.ndarray | None) -> Panel:
-    """The next panel of balls that lie on their contacts: in plain time, with Newton's sweeps."""
-    return _in_plain_time(law, start, now, until, linearised=True)
-
-
 def _in_plain_time(
     law: ForceLaw, start: Start, now: Balls, until: np.ndarray | None, *, linearised: bool
 ) -> Panel:
+    """The next panel in plain time, which costs half as much and suffices if q hardly changes.
+
+    For balls that lie on their contacts its sweeps are Newton's, ``linearised``.
+    """
     m = law.root
     lever = lever_of(m, now.root)
     step = now.step * lever
@@ -112,8 +108,13 @@ def _next(law: ForceLaw, start: Start, now: Balls, until: np.ndarray | None) -> 
     if until is not None:
         lies &= (until - now.time) * now.speed > settling
     sides = [np.flatnonzero(far & ~lies), np.flatnonzero(lies), np.flatnonzero(~far)]
+    follows: tuple[Callable[..., Panel], ...] = (
+        partial(_in_plain_time, linearised=False),
+        partial(_in_plain_time, linearised=True),
+        _in_root,
+    )
     panels = []
-    for which, follow in zip(sides, (_in_time, _lying, _in_root), strict=True):
+    for which, follow in zip(sides, follows, strict=True):
         if which.size:
             limit = None if until is None else until[which]
             laws, starts, balls = part_of(which, law, start, now)
@@ -324,10 +325,10 @@ def march(
     --------
     After a quarter of an oscillation the ball is at the depth v/ϖ:
 
-    >>> from bouncing_ball.models.laws.linear import LinearLaw
+    >>> from bouncing_ball.models.spring_damper import SpringDamper
     >>> zero = np.zeros(1)
     >>> start = Start(zero, np.full(1, np.pi), zero, zero, zero)
-    >>> march(LinearLaw(np.pi, 0.0), start, until=np.full(1, 0.5)).penetration.round(12).tolist()
+    >>> march(SpringDamper(np.pi, 0.0), start, until=np.full(1, 0.5)).penetration.round(12).tolist()
     [1.0]
     """
     contacts = _March(law, start, until, differentiate, integrate)
@@ -358,11 +359,11 @@ def march_through(
 
     Examples
     --------
-    >>> from bouncing_ball.models.laws.linear import LinearLaw
+    >>> from bouncing_ball.models.spring_damper import SpringDamper
     >>> zero = np.zeros(1)
     >>> start = Start(zero, np.full(1, np.pi), zero, zero, zero)
     >>> which = np.zeros(2, dtype=int)
-    >>> found = march_through(LinearLaw(np.pi, 0.0), start, which, np.array([0.25, 0.5]), 99)
+    >>> found = march_through(SpringDamper(np.pi, 0.0), start, which, np.array([0.25, 0.5]), 99)
     >>> (found.penetration**2).round(12).tolist()
     [0.5, 1.0]
     """

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from functools import cached_property
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,7 +14,7 @@ from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.permanent_contact import permanent_contact
-from bouncing_ball.models.laws.signature import free_impact
+from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.model import Model
 
 
@@ -36,6 +38,11 @@ class LawModel(Model):
 
     name: ClassVar[str] = "contact-law"
 
+    @cached_property
+    def parameters(self) -> Mapping[str, Any]:
+        """The parameters of the law by name, and the name of the law."""
+        return {"law": self.law.name, **super().parameters}
+
     def dynamics(self, amplitude: ArrayLike) -> Dynamics:
         """The contacts and flights of these balls on a table of amplitude Λ."""
         return self.law.dynamics(amplitude)
@@ -48,7 +55,10 @@ class LawModel(Model):
         ModelError
             If the law does not release the ball.
         """
-        return free_impact(self.law, speed)
+        law = self.law
+        # One table serves all laws of such a kind; otherwise a few speeds cost less than a table.
+        at = law.signature if law.scaled(np.ones(1)) is None else Signature(law)
+        return at(speed)
 
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ up to which a steady contact never releases the ball, of the shape of the laws."""

@@ -30,7 +30,7 @@ from bouncing_ball.models.laws.march import MOST_PANELS, ContactEnds, march
 from bouncing_ball.models.laws.panel import Start, slopes_of
 from bouncing_ball.models.laws.permanent_contact import holds
 from bouncing_ball.models.laws.scales import rest
-from bouncing_ball.models.laws.signature import Signature, free_impact
+from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.resumption import (
     ResumingDynamics,
     leaves_fast,
@@ -140,7 +140,7 @@ class ContactDynamics(ResumingDynamics):
         """
         speed = np.maximum(-impact.velocity, np.finfo(float).tiny)
         # A signature is tabulated for a single law only.
-        impact_of = free_impact(self.law, speed) if self.law.shape else Signature(self.law)(speed)
+        impact_of = self.law.signature(speed) if self.law.shape else Signature(self.law)(speed)
         of_free_impact = impact_of.duration
         return departure._replace(sticks=departure.duration > 2 * of_free_impact)
 

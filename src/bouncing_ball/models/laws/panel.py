@@ -113,12 +113,14 @@ class Panel(NamedTuple):
 class Rule(NamedTuple):
     """Gauss nodes in (0, 1), and matrices that act on the values at the nodes.
 
-    ``integral`` gives the integrals from 0 to each node and to 1, ``tail`` the last Legendre
-    coefficients, and ``end`` the value at 1.
+    ``integral`` gives the integrals from 0 to each node and to 1, ``twice`` the integrals of these
+    integrals from 0 to each node, ``tail`` the last Legendre coefficients, and ``end`` the value
+    at 1.
     """
 
     node: np.ndarray
     integral: np.ndarray
+    twice: np.ndarray
     tail: np.ndarray
     end: np.ndarray
 
@@ -131,9 +133,11 @@ def gauss_rule(count: int) -> Rule:
     x, weight = legendre.leggauss(count)
     spectrum = (degree + 0.5)[:, np.newaxis] * legendre.legvander(x, count - 1).T * weight
     sums = legendre.legval(np.append(x, 1.0), legendre.legint(np.eye(count), lbnd=-1)).T
+    integral = sums / 2 @ spectrum
     return Rule(
         node=(1 + x[:, np.newaxis]) / 2,
-        integral=sums / 2 @ spectrum,
+        integral=integral,
+        twice=integral[:-1] @ integral[:-1],
         tail=spectrum[-_TAIL:],
         end=spectrum.sum(0),
     )

@@ -163,8 +163,8 @@ def permanent_contact(law: ForceLaw) -> float:
     --------
     Λ_SD = √13/4 for ϖ = 2 and ζ = 1/2:
 
-    >>> from bouncing_ball.models.laws.linear import LinearLaw
-    >>> round(permanent_contact(LinearLaw(2.0, 0.5)) / 13**0.5, 15)
+    >>> from bouncing_ball.models.spring_damper import SpringDamper
+    >>> round(permanent_contact(SpringDamper(2.0, 0.5)) / 13**0.5, 15)
     0.25
     """
     if law.permanent_contact is not None:

@@ -63,13 +63,13 @@ def rest(law: ForceLaw) -> float:
 
     Examples
     --------
-    >>> from bouncing_ball.models.laws.linear import LinearLaw
-    >>> round(rest(LinearLaw(2.0, 0.1)), 6)
+    >>> from bouncing_ball.models.spring_damper import SpringDamper
+    >>> round(rest(SpringDamper(2.0, 0.1)), 6)
     0.25
 
     With a constant impedance d only the share 1 - d of the weight acts, so that p = (1 - d)/ϖ²:
 
-    >>> from bouncing_ball.models.laws.impedance import Impedance
+    >>> from bouncing_ball.contacts.engines.impedance import Impedance
     >>> round(rest(Impedance(0.5, 0.1, 0.75)), 12)
     1.0
     """
@@ -99,8 +99,8 @@ def scales(law: ForceLaw, speed: np.ndarray, load: np.ndarray) -> Scales:
 
     Examples
     --------
-    >>> from bouncing_ball.models.laws.linear import LinearLaw
-    >>> length, speed = scales(LinearLaw(10.0, 0.0), np.array([2.0]), np.array([0.0]))
+    >>> from bouncing_ball.models.spring_damper import SpringDamper
+    >>> length, speed = scales(SpringDamper(10.0, 0.0), np.array([2.0]), np.array([0.0]))
     >>> round(float(length[0]), 3), float(speed[0])
     (0.2, 2.0)
     """

@@ -43,7 +43,9 @@ the instant ::
 
 One collocation at each speed gives all four numbers. Between these speeds the four functions are
 interpolated by Chebyshev polynomials in ln v, in which they are smooth. A panel covers a factor
-of eight in speed, and is computed when it is first needed. At a speed at which the deepest point of
+of eight in speed, and is computed when it is first needed. In units of its scales P and P/v the
+impact of a Hertzian law depends on its dissipation group alone, a power of v, so that one table
+over the logarithm of the group serves all laws of a kind. At a speed at which the deepest point of
 the impact just reaches a kink of the force, the functions have only a few derivatives. The panels
 of such laws are therefore shorter, and the errors there are about 10⁻⁶ of t_c, σ and D, and 10⁻⁸
 of r.
@@ -63,7 +65,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.collocation import contacts
-from bouncing_ball.models.laws.force_law import ForceLaw
+from bouncing_ball.models.laws.force_law import ForceLaw, Scaled
 from bouncing_ball.numerics.arrays import Batch
 
 # Width of a panel in ln v, and its number of nodes: with a pole of r(v) at ln v = x ± iπ, like
@@ -76,33 +78,9 @@ _PARTS = 16
 _SLOWEST, _FASTEST = 1e-30, 1e30
 
 
-def free_impact(law: ForceLaw, speed: ArrayLike) -> Instant:
-    """The signature at impact speeds v > 0, by one collocation for each speed.
-
-    A signature in closed form is used instead if the law has one. Of the derivatives with respect
-    to v only that of r is computed; the others are left at zero.
-
-    Raises
-    ------
-    ModelError
-        If the law does not release the ball.
-
-    Examples
-    --------
-    The force of an elastic contact is symmetric in time, so that its centroid is in the middle and
-    the effects of the load cancel:
-
-    >>> from bouncing_ball.models.laws.hertzian import HuntCrossley
-    >>> impact = free_impact(HuntCrossley(100.0, 0.0), 2.0)
-    >>> bool(abs(impact.delay / impact.duration - 0.5) < 1e-12)
-    True
-    >>> round(float(impact.restitution), 12), abs(round(float(impact.load), 12))
-    (1.0, 0.0)
-    """
+def computed(law: ForceLaw, speed: ArrayLike) -> Instant:
+    """The signature of :meth:`.ContactLaw.signature`, by one collocation for each speed."""
     v = np.asarray(speed, dtype=float)
-    known = law.signature
-    if known is not None:
-        return known.at(v)
     end = contacts(law, v, weight=0.0)
     if not np.all(np.isfinite(end.duration)):
         lost = np.broadcast_to(v, end.duration.shape)[np.isnan(end.duration)][0]
@@ -130,11 +108,67 @@ def _width(law: ForceLaw) -> float:
 
 
 @lru_cache(maxsize=4096)
-def _panel(law: ForceLaw, number: int) -> np.ndarray:
-    """Chebyshev coefficients of t_c, r, σ and D over a panel, shape (nodes, 4)."""
+def _of_groups(kind: type[ForceLaw], groups: tuple[float, ...]) -> np.ndarray:
+    """t_c, r, σ and D of the impacts with m groups, in units of their scales, shape (4, m)."""
+    return np.array(computed(kind.of_scales(np.array(groups), 1.0, 1.0), 1.0)[:4])
+
+
+@lru_cache(maxsize=4096)
+def _panel(law: ForceLaw | type[ForceLaw], number: int, width: float) -> np.ndarray:
+    """Chebyshev coefficients of t_c, r, σ and D over a panel, shape (nodes, 4).
+
+    Of a law, panels divide ln v; of a kind of laws, they divide the logarithm of the group, and the
+    numbers are in units of the scales.
+    """
     x = chebyshev.chebpts1(_NODES)
-    instant = free_impact(law, np.exp((number + (x + 1) / 2) * _width(law)))
+    at = np.exp((number + (x + 1) / 2) * width)
+    if isinstance(law, type):
+        instant = computed(law.of_scales(at, 1.0, 1.0), 1.0)
+    else:
+        instant = computed(law, at)
     return chebyshev.chebfit(x, np.stack(instant[:4], axis=1), _NODES - 1)
+
+
+def _interpolated(
+    law: ForceLaw | type[ForceLaw], at: np.ndarray, width: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """t_c, r, σ and D, and their derivatives with respect to the logarithm of ``at``, shape (4, m);
+    ``at`` are speeds, or groups of a kind of laws, shape (m,).
+    """
+    log = np.log(at) / width
+    number = np.floor(log).astype(int)
+    values = np.empty((4, at.size))
+    slopes = np.empty((4, at.size))
+    for panel in np.unique(number):
+        coefficients = _panel(law, int(panel), width)
+        here = number == panel
+        x = 2 * (log[here] - panel) - 1
+        values[:, here] = chebyshev.chebval(x, coefficients)
+        slopes[:, here] = chebyshev.chebval(x, chebyshev.chebder(coefficients)) * (2 / width)
+    return values, slopes
+
+
+def _of_kind(kind: type[ForceLaw], scaled: Scaled) -> tuple[np.ndarray, np.ndarray]:
+    """t_c, r, σ and D of impacts of laws of one kind, and their derivatives with respect to ln v,
+    shape (4, m).
+    """
+    group = scaled.group
+    values = np.empty((4, group.size))
+    slopes = np.zeros((4, group.size))
+    # Without dissipation, or if r is the same at every speed, the group is.
+    same = (group == 0) | (scaled.group_exponent == 0)
+    if same.any():
+        groups, which = np.unique(group[same], return_inverse=True)
+        values[:, same] = _of_groups(kind, tuple(groups.tolist()))[:, which]
+    if not same.all():
+        width = scaled.group_exponent * _WIDTH
+        values[:, ~same], slopes[:, ~same] = _interpolated(kind, group[~same], width)
+    slopes *= scaled.group_exponent
+    times = [0, 2, 3]
+    slopes[times] += scaled.time_exponent * values[times]
+    values[times] *= scaled.time
+    slopes[times] *= scaled.time
+    return values, slopes
 
 
 @dataclass(frozen=True, repr=False)
@@ -146,20 +180,21 @@ class Signature(Batch):
     Parameters
     ----------
     law : ForceLaw
-        A single law, unless its signature has a closed form.
+        A single law, unless its signature has a closed form or is that of all laws of its kind.
 
     Raises
     ------
     ModelError
-        If the law does not release the ball, or has arrays of parameters but no closed form.
+        If the law does not release the ball, or has arrays of parameters, no closed form, and no
+        :meth:`~.ForceLaw.scaled`.
 
     Examples
     --------
     The force of an elastic contact is symmetric in time, so that its centroid is in the middle and
     the effects of the load cancel:
 
-    >>> from bouncing_ball.models.laws.linear import LinearLaw
-    >>> instant = Signature(LinearLaw(2.0, 0.0))()
+    >>> from bouncing_ball.models.spring_damper import SpringDamper
+    >>> instant = Signature(SpringDamper(2.0, 0.0))()
     >>> float(instant.delay) == np.pi / 4, float(instant.restitution), float(instant.load)
     (True, 1.0, 0.0)
 
@@ -172,13 +207,13 @@ class Signature(Batch):
     law: ForceLaw
 
     def __post_init__(self):
-        if not self.is_constant and self.law.shape:
+        if not self.is_constant and self.law.shape and self.law.scaled(np.ones(1)) is None:
             raise ModelError("the signature of a contact law is tabulated for one law, not many")
 
     @cached_property
     def _known(self) -> Instant | None:
         # Cached, because a simulation needs it at every impact.
-        return self.law.signature
+        return self.law.constant_signature
 
     @property
     def is_constant(self) -> bool:
@@ -198,18 +233,18 @@ class Signature(Batch):
         v = np.asarray(speed, dtype=float)
         if self._known is not None:
             return self._known.at(v)
-        v = np.clip(v, _SLOWEST, _FASTEST)
-        width = _width(self.law)
-        log = np.log(v) / width
-        number = np.floor(np.where(np.isnan(log), 0.0, log)).astype(int)
-        values = np.full((2, 4, *v.shape), np.nan)
-        for panel in np.unique(number):
-            coefficients = _panel(self.law, int(panel))
-            slopes = chebyshev.chebder(coefficients) * (2 / width)
-            here = number == panel
-            x = 2 * (log[here] - panel) - 1
-            values[0, :, here] = chebyshev.chebval(x, coefficients).T
-            values[1, :, here] = (chebyshev.chebval(x, slopes) / v[here]).T
+        shape = np.broadcast_shapes(v.shape, self.law.shape)
+        row = np.clip(np.broadcast_to(v, shape).ravel(), _SLOWEST, _FASTEST)
+        values = np.full((2, 4, row.size), np.nan)
+        known = np.flatnonzero(~np.isnan(row))
+        law = self.law.flat(shape).take(known)
+        scaled = law.scaled(row[known])
+        if scaled is None:
+            values[:, :, known] = _interpolated(law, row[known], _width(law))
+        else:
+            values[:, :, known] = _of_kind(type(law), scaled)
+        values[1] /= row
+        values = values.reshape(2, 4, *shape)
         delay, restitution, load, duration = values[0]
         d_delay, d_restitution, d_load, _ = values[1]
         return Instant(

@@ -155,7 +155,6 @@ class Sweeps:
         self.now = now
         self.until = until
         self.rule = gauss_rule(count)
-        self.force = self.law.force if self.m == 1 else self.law.root_force
         size = now.step.size
         # These arrays are overwritten in each sweep, because allocating them again would take as
         # long as the computation.
@@ -219,13 +218,12 @@ class Sweeps:
             lever_of(self.m, inside, self.lever)
             self._integrate(self.now.time, self.lever, self.time)
             self.load = load_of(self.start, self.time[:-1])
-        if self.law.feels_load:
-            pushed = self.law.loaded_force(inside, rate, self.load)
-        else:
-            pushed = self.force(inside, rate)
-        np.subtract(self.load, pushed, out=self.push)
         if self.m > 1:
+            np.subtract(self.load, self.law.root_force(inside, rate), out=self.push)
             self.push *= self.lever
+        else:
+            pushed = self.law.loaded_force(inside, rate, self.load)
+            np.subtract(self.load, pushed, out=self.push)
         self._integrate(self.now.rate, self.push, self.rate)
         if self.is_newton:
             self.rate -= _excess(self.slopes, self.step, self.rate[:-1] - rate)
@@ -364,8 +362,7 @@ class Sweeps:
         """Whether the law holds the ball at all nodes, on one side of its kink."""
         law = self.law
         inside = self.root[:-1]
-        load = load_of(self.start, self.time[:-1]) if law.feels_load else None
-        grip = grip_of(law, self.m, inside, self.rate[:-1], load)
+        grip = grip_of(law, self.m, inside, self.rate[:-1], self.load)
         held = ((inside > 0) & (grip > 0)).all(axis=0)
         if law.has_kink:
             # A sign that changes twice within a panel is not seen at its end. A panel up to a given

@@ -16,7 +16,8 @@ from scipy.optimize.elementwise import find_minimum, find_root
 from bouncing_ball.datasets.rounding import levels
 from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball.models.damping import Release, damping_ratio
-from bouncing_ball.models.spring_damper import ContactFlow, SpringDamper
+from bouncing_ball.models.linear_flow import ContactFlow
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.claims import as_printed
 from bouncing_ball.paper.exhibits.printed_table1 import AXES, LAST_DIGIT, RESTITUTION, printed_table

@@ -42,9 +42,9 @@ import numpy as np
 
 from bouncing_ball.errors import require
 from bouncing_ball.models.damping import Release, check_positive, damping_ratio
-from bouncing_ball.models.instant import Instant, linear_instant
+from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.contact_law import OscillatorLaw
-from bouncing_ball.models.laws.force_law import Unit
+from bouncing_ball.models.laws.force_law import NUMBER, Unit
 from bouncing_ball.models.spring_damper import SpringDamper
 
 
@@ -98,7 +98,13 @@ class Impedance(OscillatorLaw):
     power: float | np.ndarray = 2.0
 
     name: ClassVar[str] = "impedance"
-    units: ClassVar[dict[str, Unit]] = OscillatorLaw.units | {"width": Unit("m", 0, 1, 0)}
+    units: ClassVar[dict[str, Unit]] = OscillatorLaw.units | {
+        "share": NUMBER,
+        "at_surface": NUMBER,
+        "width": Unit("m", 0, 1, 0),
+        "midpoint": NUMBER,
+        "power": NUMBER,
+    }
     release = Release.FORCE
     lag: ClassVar[None] = None
     feels_load: ClassVar[bool] = True
@@ -197,12 +203,12 @@ class Impedance(OscillatorLaw):
         return self.grip(penetration, rate) + held
 
     @property
-    def signature(self) -> Instant | None:
+    def constant_signature(self) -> Instant | None:
         """The signature of the spring-damper with σ_d in place of σ; None if d varies or ζ ≥ 1."""
         if self.has_kink or np.any(np.asarray(self.damping_ratio) >= 1):
             return None
         spring = SpringDamper(self.frequency_ratio, self.damping_ratio, Release.FORCE)
-        free = linear_instant(spring)
+        free = spring.constant_signature
         return free._replace(load=free.load + self.share * spring.lag * free.restitution)
 
     @property

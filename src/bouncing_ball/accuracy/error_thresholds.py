@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from bouncing_ball.accuracy.corrected_errors import SIMPLE, search
 from bouncing_ball.accuracy.errors import Quantity
-from bouncing_ball.calls.arguments import (
+from bouncing_ball.accuracy.thresholds import RATIOS
+from bouncing_ball.datasets import CASE
+from bouncing_ball.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
     FAMILY,
     TOLERANCE,
@@ -21,35 +23,13 @@ from bouncing_ball.calls.arguments import (
     checked,
     chosen,
 )
-from bouncing_ball.calls.balls import Ball, a_known_ball
-from bouncing_ball.calls.drawn import Drawn
-from bouncing_ball.contacts.families import RATIOS
-from bouncing_ball.datasets import CASE
 from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.datasets.variables import described
+from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import ParameterError
+from bouncing_ball.models.ball import Ball, a_known_ball
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.patience import patience
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-
-class Thresholds(Drawn):
-    """Thresholds ϖ of errors; the last axes are the ``simple`` model and the ``quantity``.
-
-    The figure shows the thresholds of each quantity.
-    """
-
-    __slots__ = ()
-
-    maker = "error_thresholds"
-
-    def _figure(self) -> Figure:
-        from bouncing_ball.calls import figures
-
-        return figures.error_thresholds(self)
 
 
 def error_thresholds(
@@ -60,7 +40,7 @@ def error_thresholds(
     tolerance: Tolerance = 0.01,
     quantities: Sequence[str] | None = None,
     release: Rule = "displacement",
-) -> Thresholds:
+) -> Result:
     """The ϖ above which the restitution model is accurate for a contact with a spring and a damper.
 
     The contact has the r of the ball as the restitution coefficient of a free impact. The error of
@@ -85,7 +65,7 @@ def error_thresholds(
 
     Returns
     -------
-    Thresholds
+    Result
         ``error_threshold``, ϖ between 1 and 10⁶, and ``threshold_status``: "found", "within" the
         tolerance at every ϖ, or "outside" at the largest ϖ; the threshold is then NaN. The last
         axes are ``simple``, the restitution model and the corrected one, and ``quantity``.
@@ -104,7 +84,7 @@ def error_thresholds(
     >>> found.error_threshold.values.round(3).tolist()
     [[82.177], [2.29]]
     """
-    if not isinstance(a_known_ball(ball).model, RestitutionModel):
+    if not isinstance(a_known_ball(ball), RestitutionModel):
         raise ParameterError("error_thresholds needs a ball made by rigid, because it finds ϖ")
     family = checked("n", n, FAMILY)
     lam = checked("amplitude", amplitude, AMPLITUDE_OF_ORBIT)
@@ -112,9 +92,8 @@ def error_thresholds(
     rule = Release.of(chosen("release", release, [str(each) for each in Release]))
     asked = _names(quantities)
     grid = Grid(n=family, amplitude=lam, tolerance=level, **ball.parameters)
-    with patience("fewer balls or fewer quantities"):
-        found = _on_grid(grid, asked, rule)
-    return grid.unfold(found, Thresholds)
+    found = _on_grid(grid, asked, rule)
+    return Result.of(grid.unfold(found), "error_thresholds")
 
 
 def _on_grid(grid: Grid, quantities: list[str], release: Release) -> xr.Dataset:

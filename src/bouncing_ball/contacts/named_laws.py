@@ -1,16 +1,28 @@
 """The contact laws by their names."""
 
+from bouncing_ball.contacts.engines.impedance import Impedance
 from bouncing_ball.errors import one_of
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball.models.laws.hertzian import HuntCrossley, KuwabaraKono, LinearHuntCrossley, Tsuji
-from bouncing_ball.models.laws.impedance import Impedance
-from bouncing_ball.models.laws.linear import LinearLaw
+from bouncing_ball.models.spring_damper import SpringDamper
+
+
+def by_name(*laws: type[ContactLaw]) -> dict[str, type[ContactLaw]]:
+    """Laws by their names.
+
+    Raises
+    ------
+    ModelError
+        If a law does not declare the units of all its parameters.
+    """
+    for law in laws:
+        law.require_units()
+    return {law.name: law for law in laws}
+
 
 _HERTZ = (HuntCrossley, LinearHuntCrossley, Tsuji, KuwabaraKono)
-LAWS: dict[str, type[ContactLaw]] = {
-    law.name: law for law in (*_HERTZ, LinearLaw, ElastoBacklash, Impedance)
-}
+LAWS = by_name(*_HERTZ, SpringDamper, ElastoBacklash, Impedance)
 """The laws by their names on the command line and in calls."""
 
 

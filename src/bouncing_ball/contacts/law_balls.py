@@ -2,19 +2,20 @@
 
 A contact law may be given by the r and D of a free impact. r and D may depend on the speed of the
 impact, so that such a ball has a model only at a speed: :meth:`.Ball.at_orbit` and
-:meth:`.Ball.at_speed` return the ball with its model, and a ball whose model is known returns
-itself.
+:meth:`.Ball.at_speed` return this model, and a model returns itself.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
-from bouncing_ball.calls.arguments import (
+from bouncing_ball.contacts.named_laws import law_named
+from bouncing_ball.datasets.arguments import (
     FINITE,
     FREQUENCY_RATIO,
     POSITIVE,
@@ -27,13 +28,13 @@ from bouncing_ball.calls.arguments import (
     chosen,
     is_array,
 )
-from bouncing_ball.calls.balls import Ball, ModelBall, flattened
 from bouncing_ball.errors import ParameterError, Range
+from bouncing_ball.models.ball import Ball
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.law_of_impact import law_of_impact, reference
 from bouncing_ball.models.laws.model import LawModel
-from bouncing_ball.models.laws.registry import law_named
+from bouncing_ball.models.makers import corrected, flattened
 from bouncing_ball.periodic.law_at_orbit import law_at_orbit
 from bouncing_ball.periodic.restitution_branch import rigid_speed
 from bouncing_ball.periodic.stability import Side
@@ -65,40 +66,40 @@ class FreeImpactBall(Ball):
     restitution: float
     duration: Any
     is_corrected: bool = False
-    parameters: Mapping[str, Any] = field(init=False)
 
     is_known = False
 
-    def __post_init__(self):
+    @cached_property
+    def parameters(self) -> Mapping[str, Any]:
         found = {"law": self.law.name, "restitution": self.restitution, "duration": self.duration}
-        corrected = {"model": "corrected"} if self.is_corrected else {}
-        object.__setattr__(self, "parameters", found | corrected)
+        return found | ({"model": "corrected"} if self.is_corrected else {})
 
-    def at_speed(self, speed: ArrayLike) -> ModelBall:
+    def at_speed(self, speed: ArrayLike) -> Any:
         return self._with(law_of_impact(self.law, self.restitution, self.duration, speed))
 
-    def at_orbit(self, n: int, amplitude: float, side: str = "stable") -> ModelBall:
+    def at_orbit(self, n: int, amplitude: float, side: str = "stable") -> Any:
         return self._with(
             law_at_orbit(self.law, self.restitution, self.duration, n, amplitude, Side(side))
         )
 
-    def at_limits(self, n: ArrayLike) -> ModelBall:
+    def at_limits(self, n: ArrayLike) -> Any:
         return self.at_speed(rigid_speed(n, self.restitution))
 
-    def _with(self, law: ContactLaw) -> ModelBall:
-        ball = ModelBall(LawModel(law), self.parameters)
-        return ball.corrected() if self.is_corrected else ball
+    def _with(self, law: ContactLaw) -> Ball:
+        model = LawModel(law).labelled(self.parameters)
+        return corrected(model) if self.is_corrected else model
 
     def corrected(self) -> FreeImpactBall:
+        """The ball of the corrected restitution model of this contact."""
         return replace(self, is_corrected=True)
 
     def row(self, grid: Grid) -> FreeImpactBall:
         return replace(self, duration=grid.flat["duration"])
 
-    def take(self, number: int) -> FreeImpactBall:
+    def take(self, which: int) -> FreeImpactBall:
         if not is_array(self.duration):
             return self
-        return replace(self, duration=float(self.duration[number]))
+        return replace(self, duration=float(self.duration[which]))
 
 
 def contact_law(
@@ -141,14 +142,16 @@ def contact_law(
 
     Examples
     --------
-    >>> contact_law("hunt-crossley", stiffness=1000.0, damping=0.08).model
+    >>> contact_law("hunt-crossley", stiffness=1000.0, damping=0.08)
     LawModel(law=HuntCrossley(stiffness=1000, damping=0.08))
+    >>> contact_law("linear", frequency_ratio=10.0, damping_ratio=1.5).law
+    SpringDamper(frequency_ratio=10, damping_ratio=1.5, release='displacement')
     >>> ball = contact_law("hunt-crossley", restitution=0.8, duration=0.2)
-    >>> ball.at_speed(3.0).model
+    >>> ball.at_speed(3.0)
     LawModel(law=HuntCrossley(stiffness=641.257, damping=0.124382))
     """
     if isinstance(law, ContactLaw):
-        return ModelBall(LawModel(law), {"law": law.name} if law.shape == () else {})
+        return LawModel(law)
     kind = law_named(str(law))
     if parameters:
         _refuse_free_impact(kind, parameters, restitution, duration, speed)
@@ -172,7 +175,7 @@ def contact_law(
         return ball
     at = checked_number("speed", speed, POSITIVE)
     known = replace(ball, duration=flattened({"duration": ball.duration})["duration"]).at_speed(at)
-    return replace(known, parameters={**ball.parameters, "speed": at})
+    return known.labelled({**ball.parameters, "speed": at})
 
 
 def _needs(kind: type[ContactLaw]) -> str:
@@ -198,7 +201,7 @@ def _refuse_free_impact(
 
 def _law_of_parameters(
     kind: type[ContactLaw], parameters: Mapping[str, Any], release: str | None
-) -> ModelBall:
+) -> LawModel:
     known = kind.parameter_names()
     for name in parameters:
         if name not in known:
@@ -210,11 +213,11 @@ def _law_of_parameters(
     values = {name: checked(name, x, _RANGES.get(name, FINITE)) for name, x in parameters.items()}
     flat = flattened(values)
     if release is None:
-        return ModelBall(LawModel(kind(**flat)), {"law": kind.name, **values})
+        return LawModel(kind(**flat)).labelled({"law": kind.name, **values})
     if "release" not in kind.__dataclass_fields__:
         raise ParameterError(
             f"{{release}} is not allowed: {kind.name} determines where a contact ends"
         )
     rule = chosen("release", release, [str(each) for each in Release])
     law = kind(**flat, **{"release": Release.of(rule)})
-    return ModelBall(LawModel(law), {"law": kind.name, **values, "release": rule})
+    return LawModel(law).labelled({"law": kind.name, **values, "release": rule})

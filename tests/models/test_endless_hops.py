@@ -5,7 +5,7 @@ import math
 import pytest
 
 import bouncing_ball as bb
-from bouncing_ball.calls import over_time_on_grid
+from bouncing_ball.models import over_time
 from bouncing_ball.models.model import Model
 
 BALLS = {
@@ -40,7 +40,7 @@ def test_too_many_hops_are_refused_after_the_first_impacts(ball, simulated, refu
 
 @pytest.mark.parametrize(("restitution", "amplitude"), [(1.0, 0.01), (0.9999, 0.0)])
 def test_other_balls_are_followed(restitution, amplitude, simulated, monkeypatch, refusal):
-    monkeypatch.setattr(over_time_on_grid, "_MOST", 64)
+    monkeypatch.setattr(over_time, "_MOST", 64)
     ball = bb.rigid(restitution=restitution)
     with refusal(bb.ModelError, "more than 64 impacts"):
         # On the moving table the orbit of one period is unstable: a ball may leave it later.
@@ -49,7 +49,7 @@ def test_other_balls_are_followed(restitution, amplitude, simulated, monkeypatch
 
 
 def test_as_many_hops_as_are_allowed_are_answered(simulated, monkeypatch, refusal):
-    monkeypatch.setattr(over_time_on_grid, "_MOST", 64)
+    monkeypatch.setattr(over_time, "_MOST", 64)
     ball = bb.rigid(restitution=1.0)
     # Hops of 2; impact 64 is at τ = 126, and two impacts more are above the limit by any count.
     for end, rounds in ((125.9, [4, 16, 64]), (130.1, [4])):

@@ -7,12 +7,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from bouncing_ball.contacts.case import PhysicalCase, TableMotion
-from bouncing_ball.contacts.contact_data import case_of, hertz
-from bouncing_ball.contacts.given import Contact
+from bouncing_ball.contacts.contact import Contact
+from bouncing_ball.contacts.hertz import hertz
+from bouncing_ball.contacts.resolve import resolve
+from bouncing_ball.contacts.resolved import ResolvedContact
+from bouncing_ball.contacts.table import TableMotion
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.damping import Release
-from bouncing_ball.models.laws.signature import free_impact
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 
@@ -27,8 +28,8 @@ TABLE = TableMotion(300.0, 1e-4, 9.81)
 
 
 def found(release=Release.DISPLACEMENT, **given):
-    case = case_of(Contact(**given, mass=MASS, release=release), TABLE, [1])
-    return case.in_si()["stiffness"], case.in_si()["damping"]
+    case = resolve(Contact(**given, mass=MASS, release=release), TABLE)
+    return case.stiffness, case.damping
 
 
 def rise(contact, drop):
@@ -43,9 +44,9 @@ def rise(contact, drop):
 def test_every_set_gives_the_contact_it_was_taken_from(release, k, zeta):
     c = 2 * zeta * math.sqrt(k * MASS)
     ratio = math.sqrt(k / MASS) / TABLE.angular_frequency
-    case = PhysicalCase(MASS, TABLE, SpringDamper(ratio, zeta, release))
+    case = ResolvedContact(MASS, TABLE, SpringDamper(ratio, zeta, release))
     own = float(case.contact.restitution)
-    time = case.in_si()["contact_time"]
+    time = case.contact_time
     printed = math.exp(-math.pi * zeta / math.sqrt(1 - zeta**2))
     for loss in (
         {"damping_ratio": zeta},
@@ -78,7 +79,7 @@ def test_the_hertz_contact_is_that_of_the_energy():
     # x = deepest (1 - s²) takes the root out of the integrand.
     integral, _ = quad(lambda s: 2 * s / math.sqrt(1 - (1 - s * s) ** 2.5), 0, 1)
     law = hertz(m, modulus, radius, 1.0, TABLE)
-    time = float(free_impact(law, v * TABLE.time / TABLE.length).duration) * TABLE.time
+    time = float(law.signature(v * TABLE.time / TABLE.length).duration) * TABLE.time
     assert time == pytest.approx(2 * deepest / v * integral, rel=1e-9)
 
 
@@ -122,9 +123,7 @@ def test_a_drop_test_that_returns_to_its_height_has_no_damping():
 
 def test_both_bodies_of_a_hertz_contact_yield_by_boussinesq():
     radius, depth = 5e-3, 1e-6
-    law = case_of(
-        Contact(**STEEL_ON_GLASS, radius=radius, restitution=0.9, mass=MASS), TABLE, [1]
-    ).law
+    law = resolve(Contact(**STEEL_ON_GLASS, radius=radius, restitution=0.9, mass=MASS), TABLE).law
     # The law is in units of g/Ω² and of the weight.
     force = MASS * TABLE.gravity * float(law.stiffness) * (depth / TABLE.length) ** 1.5
     edge = math.sqrt(radius * depth)

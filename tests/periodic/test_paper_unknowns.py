@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from bouncing_ball.models.damping import Release, damping_ratio
@@ -11,8 +11,11 @@ from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.continuation import StepControl, continue_branch
 from bouncing_ball.numerics.events import parameter_bound
+from bouncing_ball.periodic.orbit import Orbit
+from bouncing_ball.periodic.paper_unknowns import PaperUnknowns
+from bouncing_ball.periodic.special import bifurcations, ends_of_contact
 from bouncing_ball.periodic.spring_damper_bifurcations import orbit_at
-from bouncing_ball.periodic.spring_damper_branch import branch_point
+from bouncing_ball.periodic.spring_damper_branch import branch_point, orbits_of
 
 releases = st.sampled_from(list(Release))
 
@@ -24,39 +27,68 @@ releases = st.sampled_from(list(Release))
     lam=st.floats(0.1, 3.0),
     release=releases,
     phase=st.floats(-3, 3),
-    impact=st.floats(-12, -0.5),
     angle=st.floats(0.5, 4.0),
+    longer=st.floats(-1e-3, 1e-3),
 )
 def test_the_residual_is_that_of_the_papers_solution(
-    reference, n, zeta, omega, lam, release, phase, impact, angle
+    reference, n, zeta, omega, lam, release, phase, angle, longer
 ):
     if abs(omega - 1) < 0.05:  # the paper's form is singular at the resonance
         omega = 1.1
-    system = SpringDamperModel(SpringDamper(omega, zeta, release)).system(n)
     duration = angle / omega
-    state = reference.paper_contact(impact - lam * np.cos(phase), phase, lam, omega, zeta)
-    d, v = state(duration)
     flight = 2 * np.pi * n - duration
-    z = d + lam * np.sin(phase + duration)
-    bounce = impact + flight
-    expected = [
-        omega * d + (2 * zeta * v if release is Release.FORCE else 0.0),
-        v + lam * np.cos(phase + duration) - bounce,
-        z + bounce * flight - flight**2 / 2 - lam * np.sin(phase),
-    ]
+
+    def release_at(u):
+        d, v = reference.paper_contact(u, phase, lam, omega, zeta)(duration)
+        return omega * d + (2 * zeta * v if release is Release.FORCE else 0.0), d, v
+
+    # The release function is linear in δ′ at the impact: it vanishes after D for one of them.
+    (still, *_), (moving, *_) = release_at(0.0), release_at(-1.0)
+    assume(abs(still - moving) > 0.1)
+    u = still / (moving - still)
+    assume(-20 < u < -0.5)
+    _, d, v = release_at(u)
+    # The force or the displacement rises through zero.
+    rate = -1 - omega**2 * d - 2 * zeta * omega * v + lam * np.sin(phase + duration)
+    assume(omega * v + (2 * zeta * rate if release is Release.FORCE else 0.0) > 0.5)
+    bounce = v + lam * np.cos(phase + duration)
+    height = d + lam * (np.sin(phase + duration) - np.sin(phase))
+    height += bounce * flight - flight**2 / 2
+    closing = bounce - flight - lam * np.cos(phase)
+    assume(closing < -0.5)
+    expected = [-height, closing - u, omega * longer]
+    system = PaperUnknowns.of(
+        Orbit.of(
+            SpringDamperModel(SpringDamper(omega, zeta, release)),
+            n,
+            lam,
+            phase,
+            duration,
+            u + lam * np.cos(phase),
+        )
+    )
     # The paper's constants lose 1/√γ at ϖ ≈ 1: some hundred roundings of
     # velocities of order 20 and heights of order 400.
-    computed = system.residual(np.array([phase, impact, angle, lam]))
-    assert computed == pytest.approx(np.array(expected), abs=3e-11)
+    y = np.array([phase, u + lam * np.cos(phase), angle + longer, lam])
+    assert system.residual(y) == pytest.approx(np.array(expected), abs=3e-11)
+
+
+def events_of(system):
+    events = (*bifurcations(system.orbits), *ends_of_contact(system.orbits))
+    return tuple(system.event(event) for event in events)
 
 
 def follow_unstable_side(n, omega, r, lam, largest=0.2):
-    contact = SpringDamper(omega, float(damping_ratio(r)))
-    system = SpringDamperModel(contact).system(n)
-    start = system.point(orbit_at(contact, n, lam))
-    events = (*system.events(), parameter_bound(10.0, True, "window"))
-    control = StepControl(largest=largest)
-    return system, continue_branch(system, start, increasing=False, events=events, control=control)
+    orbit = orbit_at(SpringDamper(omega, float(damping_ratio(r))), n, lam)
+    system = PaperUnknowns.of(orbit)
+    events = (*events_of(system), parameter_bound(10.0, True, "window"))
+    return system, continue_branch(
+        system,
+        system.point(orbit),
+        increasing=False,
+        events=events,
+        control=StepControl(largest=largest),
+    )
 
 
 CONTACT_LOST = "contact lost: the ball no longer closes in on the table at impact"
@@ -79,7 +111,7 @@ def test_the_branch_ends_in_permanent_contact(omega, r, largest, reasons):
     # Λ is off by the square of the flight left: up to 4e-5 at ϖ = 10, where
     # the impact velocity meets its margin of 1e-4.
     end = system.orbit(branch.points[-1])
-    expected = float(permanent_contact_threshold(omega, system.law.damping_ratio))
+    expected = float(permanent_contact_threshold(omega, damping_ratio(r)))
     assert branch.points[-1, 3] == pytest.approx(expected, abs=float(end.flight_time) ** 2 + 1e-12)
     assert float(end.flight_time) < 1e-2
     if str(branch.end) == CONTACT_LOST:
@@ -91,12 +123,13 @@ def test_a_branch_may_end_where_the_contact_fills_the_cycle():
     zeta = float(damping_ratio(0.3))
     n, omega = 2, 0.6
     contact = SpringDamper(omega, zeta)
-    system = SpringDamperModel(contact).system(n)
     fill = (2 * np.pi * n - 0.1) * omega
     point = branch_point(fill * np.sqrt(1 - zeta**2) - np.pi, contact, n)
-    start = np.array([point.phase, point.u + point.x, fill, point.amplitude])
+    orbit = orbits_of(point, contact, n)
+    system = PaperUnknowns.of(orbit)
+    start = system.point(orbit)
     reasons = {
-        str(continue_branch(system, start, increasing=up, events=system.events()).end)
+        str(continue_branch(system, start, increasing=up, events=events_of(system)).end)
         for up in (True, False)
     }
     assert FLIGHT_LOST in reasons

@@ -1,4 +1,4 @@
-"""Observables of an orbit of the spring-damper model."""
+"""Observables of orbits, their distances and derivatives."""
 
 from types import SimpleNamespace
 
@@ -31,26 +31,30 @@ def test_the_distance_of_orbits_is_their_largest_difference():
     contact = SpringDamper(10.0, 0.05)
     point = branch_point(0.02, contact, 1)
     base = {
+        "model": SpringDamperModel(contact),
         "n": 1,
-        "law": contact,
         "amplitude": point.amplitude,
         "phase": point.phase + 2 * np.pi,  # the same table
         "contact_duration": point.contact_duration,
         "impact_velocity": point.u + point.x,
     }
     orbit = orbits_of(point, contact, 1)
-    assert float(Orbit(**base).distance(orbit)) < 1e-14
-    sizes = {"amplitude": 1, "phase": 1, "contact_duration": 10, "impact_velocity": 1}
+    assert float(Orbit.of(**base).distance(orbit)) < 1e-14
+    sizes = {"amplitude": 1, "phase": 1, "contact_duration": orbit.clock, "impact_velocity": 1}
     for name, size in sizes.items():
         moved = base | {name: base[name] + 1e-3}
-        found = Orbit(**moved).distance(orbit)
+        found = Orbit.of(**moved).distance(orbit)
         assert float(found) == pytest.approx(size * 1e-3, rel=1e-9)
 
 
 @pytest.mark.parametrize("top", [0.0, 0.01, 0.5, 0.99, 1.0])
 def test_the_highest_point_of_a_contact_is_found_next_to_its_ends(top):
     contact = SimpleNamespace(
-        shape=(), contact_duration=np.array(1.0), contact_path=lambda time: (-((time - top) ** 2),)
+        shape=(),
+        durations=np.array([1.0]),
+        phases=np.zeros(1),
+        _lam=np.zeros(1),
+        _in_contact=lambda time: (-((time - top) ** 2), None),
     )
     assert abs(Orbit._contact_top(contact)) < 1e-13
 
@@ -60,5 +64,5 @@ def test_a_contact_that_only_touches_its_release_has_no_derivatives():
     orbit = Orbit.of(
         SpringDamperModel(SpringDamper(10.0, 0.05)), 1, 1.0, 0.0, 0.0, impact_velocity=1.0
     )
-    assert np.all(np.isnan(orbit.contact_jacobian()[0]))
+    assert np.all(np.isnan(orbit.monodromy()))
     assert not orbit.is_stable() and not orbit.is_admissible()

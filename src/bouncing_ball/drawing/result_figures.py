@@ -1,8 +1,7 @@
-"""Figures of the results of calls; they compute nothing."""
+"""Figures of the results of calls, by the names of the calls; they compute nothing."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import cycle, pairwise
-from pathlib import Path
 
 import numpy as np
 import xarray as xr
@@ -13,10 +12,10 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from bouncing_ball.datasets import CASE, PERIOD_DOUBLING, SADDLE_NODE
+from bouncing_ball.drawing.branches import over_amplitude
 from bouncing_ball.drawing.canvas import WIDE, WIDTH, canvas, coloured, legend_below
-from bouncing_ball.drawing.files import write
 from bouncing_ball.drawing.labels import QUANTITIES, in_a_row, symbol, title
-from bouncing_ball.drawing.style import COLOURS, LINES, TABLE, Look, style
+from bouncing_ball.drawing.style import COLOURS, LINES, TABLE, Look
 
 KINDS = ("orbit", "subharmonic", "locked", "permanent contact", "chaotic", "undecided")
 """The kinds of motion in the order of their colours."""
@@ -24,23 +23,6 @@ KINDS = ("orbit", "subharmonic", "locked", "permanent contact", "chaotic", "unde
 _HUES = dict(zip(KINDS, (*COLOURS[:4], "#9a9a9a", "#d9b8d9"), strict=True))
 # Basins are areas, coloured in order of their shares with light and dark colours in turn.
 _AREAS = ("#3F96CC", "#000000", "#E8B04A", "#AA3A00", "#B7DDF2", "#5B5B5B", "#F4E3B5", "#D9D9D9")
-
-
-def shown(draw: Callable[[], Figure], path: str | Path | None, name: str) -> Figure:
-    """A figure in the common style, which is written to ``path`` if it is given.
-
-    ``name`` is that of the command or of the call, for the description of the file.
-
-    Raises
-    ------
-    ModelError
-        If the suffix of the path is not that of a picture, or the file cannot be written.
-    """
-    with style():
-        figure = draw()
-        if path is not None:
-            write(figure, Path(path), f"bouncing-ball {name}")
-    return figure
 
 
 def followed(data: xr.Dataset) -> Figure:
@@ -319,3 +301,21 @@ def over_time(data: xr.Dataset) -> Figure:
     axes.set(xlim=(0, float(periods[-1])))
     legend_below(figure, ncols=5)
     return figure
+
+
+FIGURES: Mapping[str, Callable[[xr.Dataset], Figure]] = {
+    "simulate": impacts,
+    "history": over_time,
+    "orbit": orbits,
+    "limits": limits,
+    "branch": over_amplitude,
+    "permanent-contact": permanent_contact,
+    "follow": followed,
+    "curve": special_curve,
+    "motion": motions,
+    "exponent": exponent,
+    "diagram": orbit_diagram,
+    "basins": basins,
+    "error_thresholds": error_thresholds,
+}
+"""The figure of the result of each command or call."""

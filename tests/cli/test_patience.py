@@ -3,17 +3,17 @@
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
 import pytest
 
 import bouncing_ball
-from bouncing_ball import patience as module
-from bouncing_ball.calls import over_time_on_grid
+from bouncing_ball.cli import patience as module
 from bouncing_ball.cli.main import main
+from bouncing_ball.cli.patience import patience
 from bouncing_ball.models.dynamics import Dynamics
-from bouncing_ball.patience import patience
 
 PROGRAM = Path(sys.executable).with_name("bouncing-ball")
 # A hundred thousand impacts on a contact take more than a minute.
@@ -26,35 +26,45 @@ def hasty(monkeypatch):
     monkeypatch.setattr(module, "_NEXT", 0.1)
 
 
-def test_a_call_that_takes_long_says_what_makes_it_cheaper(hasty, capfd, monkeypatch):
-    def slow(*_):
-        time.sleep(0.5)
-        return "answer"
+def test_a_command_that_takes_long_says_what_makes_it_cheaper(hasty, capfd, monkeypatch):
+    simulate = Dynamics.simulate
 
-    monkeypatch.setattr(over_time_on_grid, "impacts_on_grid", slow)
-    found = bouncing_ball.simulate(bouncing_ball.rigid(restitution=0.5), amplitude=1.0)
+    def slow(*given):
+        time.sleep(0.5)
+        return simulate(*given)
+
+    monkeypatch.setattr(Dynamics, "simulate", slow)
+    main(["simulate", "--amplitude", "1", "--restitution", "0.5"])
     out, err = capfd.readouterr()
-    assert found == "answer" and out == ""
+    assert out.startswith("status")
     assert 2 <= err.count("\n") <= 5
     for line in err.splitlines():
         assert line == (
-            "bouncing-ball: no answer after 0 s yet; fewer impacts or fewer balls make the answer "
-            "cheaper; Ctrl-C ends it"
+            "bouncing-ball: no answer after 0 s yet; fewer impacts make the answer cheaper; "
+            "Ctrl-C ends it"
         )
     time.sleep(0.3)
     assert capfd.readouterr().err == ""
 
 
-def test_a_call_within_another_prints_nothing_twice(hasty, capfd):
+def test_without_advice_a_line_gives_the_time_alone(hasty, capfd):
     with patience(""):
-        time.sleep(0.07)
-        with patience("fewer balls"):
-            time.sleep(0.1)
-    lines = capfd.readouterr().err.splitlines()
-    assert ["fewer balls" in line for line in lines] == [False, True]
+        time.sleep(0.1)
+    line = "bouncing-ball: no answer after 0 s yet; Ctrl-C ends it\n"
+    assert capfd.readouterr().err == line
 
 
-def test_a_call_that_fails_ends_its_lines(hasty, capfd):
+def test_a_call_of_the_library_starts_no_thread(monkeypatch):
+    def started(thread):
+        pytest.fail(f"{thread} starts")
+
+    monkeypatch.setattr(threading.Thread, "start", started)
+    ball = bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=10.0)
+    bouncing_ball.motion_of(ball, amplitude=[0.9, 1.0])
+    bouncing_ball.follow(bouncing_ball.orbit(ball, amplitude=1.0), to=1.1)
+
+
+def test_a_command_that_fails_ends_its_lines(hasty, capfd):
     with pytest.raises(KeyError), patience("fewer balls"):
         raise KeyError
     time.sleep(0.2)

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bouncing_ball.calls.arguments import (
+from bouncing_ball.datasets.arguments import (
     AMPLITUDE,
     FOLLOWED,
     POSITIVE,
@@ -20,80 +19,12 @@ from bouncing_ball.calls.arguments import (
     checked,
     checked_number,
 )
-from bouncing_ball.calls.balls import Ball, a_ball, a_single_ball
-from bouncing_ball.calls.drawn import Drawn
-from bouncing_ball.calls.over_time_on_grid import model_of_starts
 from bouncing_ball.datasets.labelled import Grid
+from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import ParameterError
 from bouncing_ball.long_run import grids
-from bouncing_ball.patience import patience
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-
-class LongRun(Drawn):
-    """The motions on which balls end, over the axes of the arguments.
-
-    The figure shows the periods of the motions over an argument.
-    """
-
-    __slots__ = ()
-
-    maker = "motion"
-
-    def _figure(self) -> Figure:
-        from bouncing_ball.calls import figures
-
-        return figures.motions(self)
-
-
-class Exponents(Drawn):
-    """Largest Lyapunov exponents over the axes of the arguments.
-
-    The figure shows them with their standard errors.
-    """
-
-    __slots__ = ()
-
-    maker = "exponent"
-
-    def _figure(self) -> Figure:
-        from bouncing_ball.calls import figures
-
-        return figures.exponent(self)
-
-
-class OrbitDiagram(Drawn):
-    """Attractors over Λ, with the impacts of each.
-
-    The figure shows the phase and the speed of the impacts over Λ.
-    """
-
-    __slots__ = ()
-
-    maker = "diagram"
-
-    def _figure(self) -> Figure:
-        from bouncing_ball.calls import figures
-
-        return figures.orbit_diagram(self)
-
-
-class Basins(Drawn):
-    """The motions on which a grid of first impacts ends, with their shares.
-
-    The figure shows the motion of each start in a colour.
-    """
-
-    __slots__ = ()
-
-    maker = "basins"
-
-    def _figure(self) -> Figure:
-        from bouncing_ball.calls import figures
-
-        return figures.basins(self)
+from bouncing_ball.models.ball import Ball, a_ball, a_single_ball
+from bouncing_ball.models.over_time import Starts
 
 
 def motion_of(
@@ -103,7 +34,7 @@ def motion_of(
     phase: State = 0.0,
     velocity: State = -math.pi,
     impacts: Followed = 1500,
-) -> LongRun:
+) -> Result:
     """The motion on which a ball ends, after a first impact as in
     :func:`bouncing_ball.simulate`.
 
@@ -122,14 +53,15 @@ def motion_of(
 
     Returns
     -------
-    LongRun
+    Result
         ``kind``, one of "orbit", "subharmonic", "locked", "permanent contact", "chaotic" and
         "undecided" (:class:`bouncing_ball.long_run.motions.Kind`), the ``periods`` of the
         table and the ``impacts`` until the motion repeats, its ``lyapunov_exponent`` per period of
         the table with ``lyapunov_error``, the ``reason`` if it is undecided or if it is locked with
         an unknown period, and one of its impacts. ``followed`` is the number of impacts for which
         it was followed, and ``digits_lost`` the number of decimal digits of the start that were
-        lost on the way: a double has 16.
+        lost on the way: a double has 16. The figure shows the periods of the motions over an
+        argument.
 
     Raises
     ------
@@ -150,10 +82,9 @@ def motion_of(
     before = checked("velocity", velocity, STATE)
     most = checked_number("impacts", impacts, FOLLOWED)
     grid = Grid(amplitude=lam, phase=phi, velocity=before, **a_ball(ball).parameters)
-    start = (grid.row("amplitude"), grid.row("phase"), grid.row("velocity"))
-    with patience("fewer impacts or fewer balls"):
-        found = grids.motions(model_of_starts(ball, grid), *start, most)
-    return grid.unfold(found, LongRun)
+    starts = Starts.on(grid)
+    found = grids.motions(starts.model(ball, grid), *starts, most)
+    return Result.of(grid.unfold(found), "motion")
 
 
 def lyapunov_exponent(
@@ -163,17 +94,18 @@ def lyapunov_exponent(
     phase: State = 0.0,
     velocity: State = -math.pi,
     impacts: Followed = 1500,
-) -> Exponents:
+) -> Result:
     """The largest Lyapunov exponent of the motion on which a ball ends, per period of the table.
 
     The parameters are those of :func:`motion_of`.
 
     Returns
     -------
-    Exponents
+    Result
         ``lyapunov_exponent`` with ``lyapunov_error``, its standard error, and the ``kind`` of the
         motion. For a periodic motion it follows from the larger multiplier, and is -∞ if the
-        later motion does not depend on earlier impacts.
+        later motion does not depend on earlier impacts. The figure shows the exponents with their
+        standard errors.
 
     Raises
     ------
@@ -190,8 +122,7 @@ def lyapunov_exponent(
     0.0
     """
     found = motion_of(ball, amplitude=amplitude, phase=phase, velocity=velocity, impacts=impacts)
-    part = found[["lyapunov_exponent", "lyapunov_error", "kind"]]
-    return Exponents(part.data_vars, part.coords, part.attrs)
+    return Result.of(found[["lyapunov_exponent", "lyapunov_error", "kind"]], "exponent")
 
 
 def orbit_diagram(
@@ -201,7 +132,7 @@ def orbit_diagram(
     starts: Samples = 6,
     samples: Samples = 64,
     impacts: Followed = 300,
-) -> OrbitDiagram:
+) -> Result:
     """The attractors over Λ, reached from several starts and by following balls in Λ.
 
     Parameters
@@ -220,9 +151,10 @@ def orbit_diagram(
 
     Returns
     -------
-    OrbitDiagram
+    Result
         As for :func:`motion_of`, for each ``start`` and for two balls that are followed upwards
-        and downwards in Λ; ``impact_phase`` and ``impact_speed`` of each ``impact`` recorded.
+        and downwards in Λ; ``impact_phase`` and ``impact_speed`` of each ``impact`` recorded,
+        which the figure shows over Λ.
 
     Raises
     ------
@@ -242,15 +174,14 @@ def orbit_diagram(
     lam = np.atleast_1d(np.asarray(checked("amplitudes", amplitudes, AMPLITUDE)))
     if lam.ndim > 1 or np.any(np.diff(lam) <= 0):
         raise ParameterError("{amplitudes} must be at least one Λ, in rising order")
-    with patience("fewer amplitudes, fewer starts or fewer impacts"):
-        found = grids.diagram(
-            a_single_ball(ball).model,
-            lam,
-            starts=checked_number("starts", starts, SAMPLES),
-            samples=checked_number("samples", samples, SAMPLES),
-            impacts=checked_number("impacts", impacts, FOLLOWED),
-        )
-    return _parameters_of(ball).unfold(found, OrbitDiagram)
+    found = grids.diagram(
+        a_single_ball(ball),
+        lam,
+        starts=checked_number("starts", starts, SAMPLES),
+        samples=checked_number("samples", samples, SAMPLES),
+        impacts=checked_number("impacts", impacts, FOLLOWED),
+    )
+    return Result.of(Grid(**ball.parameters).unfold(found), "diagram")
 
 
 def basins(
@@ -260,7 +191,7 @@ def basins(
     starts: Samples = 200,
     velocity_max: float | None = None,
     impacts: Followed = 2000,
-) -> Basins:
+) -> Result:
     """The motions on which balls end that start from a grid of first impacts, and their shares.
 
     Parameters
@@ -278,9 +209,10 @@ def basins(
 
     Returns
     -------
-    Basins
+    Result
         ``destination``, the number of a ``motion`` for each start; and the kind, the periods,
-        the impacts and the ``share`` of each motion, with the standard error of the share.
+        the impacts and the ``share`` of each motion, with the standard error of the share. The
+        figure shows the motion of each start in a colour.
 
     Raises
     ------
@@ -299,17 +231,12 @@ def basins(
     fastest = None
     if velocity_max is not None:
         fastest = checked_number("velocity_max", velocity_max, POSITIVE)
-    with patience("fewer starts or fewer impacts"):
-        found = grids.basins(
-            a_single_ball(ball).model,
-            lam,
-            starts=checked_number("starts", starts, SAMPLES),
-            fast=fastest,
-            impacts=checked_number("impacts", impacts, FOLLOWED),
-        )
-    return _parameters_of(ball).unfold(found.assign_attrs(amplitude=lam), Basins)
-
-
-def _parameters_of(ball: Ball) -> Grid:
-    """A grid of one place, which makes the parameters of a single ball attributes of results."""
-    return Grid(**ball.parameters)
+    found = grids.basins(
+        a_single_ball(ball),
+        lam,
+        starts=checked_number("starts", starts, SAMPLES),
+        fast=fastest,
+        impacts=checked_number("impacts", impacts, FOLLOWED),
+    )
+    whole = Grid(**ball.parameters).unfold(found.assign_attrs(amplitude=lam))
+    return Result.of(whole, "basins")

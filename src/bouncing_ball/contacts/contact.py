@@ -1,0 +1,252 @@
+"""An engineer's contact: a ball and its contact with a table, as a user gives them."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+from bouncing_ball.contacts.engines.choice import engine_named
+from bouncing_ball.contacts.engines.engine import Engine
+from bouncing_ball.contacts.quantities import (
+    ContactTime,
+    Damping,
+    DampingRatio,
+    DropHeight,
+    Loss,
+    Mass,
+    PoissonsRatio,
+    Radius,
+    ReboundHeight,
+    ReducedModulus,
+    Stiffness,
+    YoungsModulus,
+    convert,
+    given,
+)
+from bouncing_ball.errors import ParameterError
+from bouncing_ball.models.damping import Release
+from bouncing_ball.models.spring_damper import SpringDamper
+
+STIFF = ("stiffness", "contact_time", "reduced_modulus", "youngs_modulus")
+"""Parameters that determine the stiffness of a contact; a modulus needs the radius, too."""
+LOSSY = ("damping", "damping_ratio", "restitution", "measured_restitution", "rebound_height")
+"""Parameters that determine its loss; the height of a rebound needs that of the drop, too."""
+# Parameters of MuJoCo that are lists; each of them is a separate argument.
+_OF_MUJOCO = ("solref", "solimp")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Contact:
+    """A ball and its contact with a table, by any parameters that determine them.
+
+    One parameter gives the stiffness: ``stiffness``, ``contact_time``, or for Hertz ``radius`` with
+    ``reduced_modulus`` or the data of both materials. Without any of these the contact is still to
+    be chosen. Another one gives the loss: ``damping``, ``damping_ratio``, ``restitution``,
+    ``measured_restitution``, or ``drop_height`` with ``rebound_height``. In place of both, a
+    contact may have the parameters of a physics engine.
+
+    Parameters
+    ----------
+    mass
+        Mass m of the ball.
+    stiffness
+        Stiffness k of the contact. If no parameter gives a stiffness, a contact is chosen.
+    contact_time
+        Duration of a free impact, in place of the stiffness.
+    reduced_modulus
+        Reduced modulus E* of a Hertz contact with the damping of Tsuji; needs the radius.
+    youngs_modulus
+        Young's modulus E of the ball, in place of E*, where 1/E* is the sum of (1 - ν²)/E of the
+        ball and of the table.
+    poissons_ratio
+        Poisson's ratio ν of the ball.
+    table_youngs_modulus
+        Young's modulus of the table.
+    table_poissons_ratio
+        Poisson's ratio of the table.
+    radius
+        Radius of curvature R of a Hertz contact; for a ball on a plane, the radius of the ball.
+    damping
+        Damping c of the contact; needs the stiffness.
+    damping_ratio
+        Damping ratio ζ = c/(2√(km)) of the contact.
+    restitution
+        Restitution coefficient of a free impact that ends at the table's level,
+        r = exp(-πζ/√(1 - ζ²)), Eq. 16 of the paper. With an engine or a law, r under its release.
+    measured_restitution
+        Restitution coefficient of a free impact, without gravity, under the given release.
+    drop_height
+        Height of the drop in a drop test, with gravity, onto a table at rest; needs the height of
+        the rebound.
+    rebound_height
+        Height of the rebound in a drop test, above the table at rest.
+    release
+        Where a contact ends: "displacement" at the table's level, the default without an engine,
+        or "force" where the contact force vanishes.
+    law
+        Name of a contact law, such as hunt-crossley, in place of the linear one. It has the given
+        restitution coefficient and contact time at the impact speed of the orbit.
+    from_engine
+        Physics engine whose parameters are given, in place of stiffness and loss.
+    solref
+        For MuJoCo: "-K -B" per unit of mass, or "TIMECONST DAMPRATIO".
+    solimp
+        For MuJoCo: "DMIN DMAX WIDTH MIDPOINT POWER", or the first of these numbers.
+    parameters
+        For the other engines: a parameter by its name, such as kn=1e5; for PyBullet and Drake also
+        time_step, in s.
+
+    Raises
+    ------
+    ModelError
+        If a quantity is out of range or of another dimension, if one height of a drop test is
+        missing, or if the parameters of an engine are given without its name or beside others.
+
+    Examples
+    --------
+    >>> contact = Contact(mass="20 g", stiffness="1e4 kN/m", restitution="85 %")
+    >>> contact.mass, contact.stiffness, contact.restitution
+    (0.02, 10000000.0, 0.85)
+    """
+
+    mass: Mass = None
+    stiffness: Stiffness = None
+    contact_time: ContactTime = None
+    reduced_modulus: ReducedModulus = None
+    youngs_modulus: YoungsModulus = None
+    poissons_ratio: PoissonsRatio = None
+    table_youngs_modulus: YoungsModulus = None
+    table_poissons_ratio: PoissonsRatio = None
+    radius: Radius = None
+    damping: Damping = None
+    damping_ratio: DampingRatio = None
+    restitution: Loss = None
+    measured_restitution: Loss = None
+    drop_height: DropHeight = None
+    rebound_height: ReboundHeight = None
+    release: Literal["displacement", "force"] | str | None = None
+    law: str | None = None
+    from_engine: str | None = None
+    solref: str | Sequence[float] | None = None
+    solimp: str | Sequence[float] | None = None
+    parameters: Mapping[str, float] | None = None
+
+    def __post_init__(self) -> None:
+        convert(self)
+        if self.from_engine is None and self.engine_parameters:
+            first = next(iter(self.engine_parameters))
+            what = f"{{{first}}}" if first in _OF_MUJOCO else f"{{parameters}} {first}"
+            raise ParameterError(f"{what} needs {{from_engine}}, the name of the engine")
+        if self.from_engine is not None:
+            for other in (*STIFF, *LOSSY, "law"):
+                if getattr(self, other) is not None:
+                    raise ParameterError(f"{{{other}}} is not allowed with {{from_engine}}")
+        if (self.rebound_height is None) != (self.drop_height is None):
+            raise ParameterError("{rebound_height} and {drop_height} are needed together")
+
+    @property
+    def rule(self) -> Release:
+        """The release rule, by default that of the displacement.
+
+        Raises
+        ------
+        ModelError
+            If there is no such rule.
+        """
+        return Release.of(self.release or Release.DISPLACEMENT)
+
+    @property
+    def is_stiff(self) -> bool:
+        """Whether a parameter gives the stiffness; a contact without one is to be chosen."""
+        return self.from_engine is not None or not given(self).keys().isdisjoint(STIFF)
+
+    @property
+    def engine_parameters(self) -> dict[str, Any]:
+        """The parameters of an engine that are given, by name."""
+        values = {name: getattr(self, name) for name in _OF_MUJOCO}
+        values |= self.parameters or {}
+        return {name: value for name, value in values.items() if value is not None}
+
+    @property
+    def engine(self) -> Engine | None:
+        """The engine whose parameters are given, or the part of it to which they belong.
+
+        Raises
+        ------
+        ModelError
+            If there is no such engine.
+        """
+        if self.from_engine is None:
+            return None
+        return engine_named(self.from_engine).reader(self.engine_parameters)
+
+    def by_stiffness_and_loss(self, written: str | None = None) -> "Contact":
+        """The contact by other parameters than those of an engine, and with the release that it has
+        in the engine for which it is written, in its own engine, or by itself.
+
+        If r depends on the speed in its own engine, the damping is 0.
+
+        Raises
+        ------
+        ModelError
+            If a parameter is missing or not allowed, or an engine has no such contact.
+
+        Examples
+        --------
+        >>> solref = Contact(mass=0.5, from_engine="mujoco", solref="-200 -4", solimp="1e-4 1e-4")
+        >>> found = solref.by_stiffness_and_loss()
+        >>> found.stiffness, found.damping, found.release
+        (100.0, 2.0, 'force')
+        """
+        if self.release is not None and self.law not in (None, SpringDamper.name):
+            raise ParameterError(
+                f"{{release}} is not allowed with {{law}} {self.law}, which has its own"
+            )
+        own = self.engine
+        if own is None:
+            if self.mass is None:
+                raise ParameterError("the mass is missing: give {mass}, such as 20 g")
+            return self if written is None else self.in_engine(written)
+        mass, stiffness, damping = own.contact(self.engine_parameters, self.mass)
+        found = Contact(mass=mass, stiffness=stiffness, damping=damping, release=self.release)
+        if written is not None:
+            return found.in_engine(written)
+        if own.needs_speed:
+            return found
+        return replace(found, release=str(own.release(self.release)))
+
+    def with_measured_restitution(self) -> "Contact":
+        """The contact whose restitution is the measured one, under the release that it has.
+
+        A contact with both restitutions stays as it is, because they contradict each other.
+        """
+        return replace(self, **self._measured())
+
+    def _measured(self) -> dict[str, Any]:
+        """The restitution as the measured one, by the names of the fields that change."""
+        if self.restitution is None or self.measured_restitution is not None:
+            return {}
+        return {"restitution": None, "measured_restitution": self.restitution}
+
+    def in_engine(self, name: str) -> "Contact":
+        """The contact as it ends in the engine with this name, in which r is the measured one.
+
+        Raises
+        ------
+        ModelError
+            If there is no such engine, or if it has no such release or no such contact.
+
+        Examples
+        --------
+        >>> contact = Contact(mass=1.0, stiffness=1e5, restitution=0.8).in_engine("mujoco")
+        >>> contact.release, contact.measured_restitution
+        ('force', 0.8)
+        """
+        engine = engine_named(name)
+        law = self.law
+        rule = str(engine.release(self.release))
+        if self.reduced_modulus is not None or self.youngs_modulus is not None:
+            raise ParameterError(f"a Hertz contact is not written for {name}: give {{stiffness}}")
+        if law not in (None, SpringDamper.name, *engine.laws, *engine.laws.values()):
+            raise ParameterError(f"{{law}} {law} is not written for {name}: leave {{law}} out")
+        law = engine.laws.get(str(law), law)
+        return replace(self, release=rule, law=law, **self._measured())

@@ -1,0 +1,118 @@
+"""Sentences that a user should read in addition to the numbers of a contact and the verdict."""
+
+import math
+
+import numpy as np
+
+from bouncing_ball.contacts.engines.impedance import Impedance
+from bouncing_ball.contacts.families import ComparedOrbit, prediction_error
+from bouncing_ball.contacts.motion import FinalMotion
+from bouncing_ball.contacts.resolved import ResolvedContact
+from bouncing_ball.contacts.texts import shown
+from bouncing_ball.models.damping import Release
+from bouncing_ball.models.laws.contact_law import ContactLaw
+from bouncing_ball.models.laws.hertzian import Tsuji
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic import n_t
+
+
+def remarks(case: ResolvedContact) -> tuple[str, ...]:
+    """Sentences on how a contact was read: from the parameters of an engine, or a drop test."""
+    return (*_on_engine(case), *on_drop_test(case))
+
+
+def _on_engine(case: ResolvedContact) -> tuple[str, ...]:
+    """How the contact of an engine's parameters differs from a spring and a damper, and how r
+    changes if it is written for another engine.
+    """
+    engine = case.given.engine
+    if engine is None:
+        return ()
+    found = engine.remarks(case.given.engine_parameters)
+    contact = engine.contact(case.given.engine_parameters, case.given.mass)
+    own = engine.release()
+    release = case.contact.release
+    same = case.written is None or own is release
+    if same or not 0 < contact.damping_ratio < 1:
+        return found
+    before = f"{contact.restitution(own):.4f}"
+    after = f"{contact.restitution(release):.4f}"
+    why = f"contacts end by {own} in {engine.name}, and by {release} in {case.written}"
+    return (*found, f"r changes from {before} to {after}, because {why}")
+
+
+def on_drop_test(case: ResolvedContact) -> tuple[str, ...]:
+    """A sentence on the drop test that was given, if one was, and on its restitution."""
+    drop = case.given.drop_height
+    height = case.given.rebound_height
+    if drop is None or height is None:
+        return ()
+    r = math.sqrt(height / drop)
+    if case.law is not None:
+        return (f"the drop test is read without gravity, as r = √(h′/h) = {r:.4g}, for this law",)
+    arrives = shown(math.sqrt(2 * case.table.gravity * drop), "m/s")
+    free = float(case.contact.restitution)
+    return (
+        f"dropped from {shown(drop, 'm')} onto a table at rest, at {arrives}, the ball rises to "
+        f"{shown(height, 'm')}: √(h′/h) = {r:.4g}, and r = {free:.4g} without gravity",
+    )
+
+
+def _cost_of(law: Impedance, case: ResolvedContact, family: ComparedOrbit) -> str:
+    """A sentence on the change of the greatest height that an impedance causes."""
+    about = "stiffness, damping, ϖ and ζ are those of the spring and damper of this solref"
+    spring = n_t.orbit(SpringDamperModel(case.contact), family.n, case.table.amplitude)
+    if family.greatest_compression is None or family.max_height is None or not spring.exists:
+        return about
+    depth = np.array(family.greatest_compression / case.table.length)
+    off = float(prediction_error(family.max_height, spring.max_height * case.table.length))
+    return (
+        f"{about}: at the orbit's depth of {shown(family.greatest_compression, 'm')}, where the "
+        f"impedance is {float(law.impedance(depth)):.3g}, the ball bounces {shown(abs(off), '%')} "
+        f"{'higher' if off > 0 else 'lower'} than with them"
+    )
+
+
+def _notes_on_law(law: ContactLaw, case: ResolvedContact, family: ComparedOrbit) -> list[str]:
+    """Sentences on how the numbers of a linear contact are those of a case with another law."""
+    # The contact of a solref has the ϖ of its impedance, unlike one that was found for an impact.
+    if isinstance(law, Impedance) and math.isclose(
+        law.frequency_ratio, case.contact.frequency_ratio
+    ):
+        return [_cost_of(law, case, family)]
+    hertz = isinstance(law, Tsuji)
+    name = "Hertz contact with Tsuji's damping" if hertz else f"{law.name} contact"
+    found = [
+        "stiffness, damping, ϖ and ζ, and the ϖ that is needed, are those of a linear contact: "
+        f"it has the r of the {name}, and its duration at the impact"
+    ]
+    if not np.all(case.has_its_restitution([family.n, family.n + 1])):
+        found.append(
+            "the restitution of this law depends on the speed: it is r at the speed of the "
+            "restitution model's lowest stable orbit"
+        )
+    return found
+
+
+def notes(case: ResolvedContact, family: ComparedOrbit, motion: FinalMotion) -> tuple[str, ...]:
+    """Sentences that a user should read in addition to the verdict."""
+    contact = case.contact
+    orbit = f"{family.n}-T orbit"
+    found = [] if case.law is None else _notes_on_law(case.law, case, family)
+    if math.isnan(case.permanent_contact):
+        found.append(
+            "no threshold of permanent contact was found, because the contact is weakly damped"
+        )
+    if not family.exists:
+        found.append(f"at this Λ the contact has no {orbit}")
+    elif motion.restitution_kind is not None:
+        what = "unstable" if family.is_admissible else "inadmissible (an earlier impact occurs)"
+        found.append(f"the {orbit} is {what}, so that no ball stays on it")
+    if contact.frequency_ratio < 1:
+        found.append("the contact is slower than the table: the ball oscillates on a spring")
+    if case.law is None and contact.release is Release.DISPLACEMENT and contact.damping_ratio > 0:
+        found.append(
+            "before its release at δ = 0 the contact pulls the ball; a contact that cannot pull "
+            "has the r of a release without force"
+        )
+    return tuple(found)

@@ -1,0 +1,97 @@
+"""What is asked of a contact: how accurate the restitution model must be, and in which engine."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Annotated
+
+from bouncing_ball.accuracy.errors import QUANTITIES, Quantity
+from bouncing_ball.contacts.engines.choice import engine_named
+from bouncing_ball.contacts.engines.engine import ERROR
+from bouncing_ball.contacts.quantities import RestitutionError, TimeStep, Tolerance, convert
+from bouncing_ball.errors import FAMILY, ModelError, ParameterError, count, one_of
+
+# The families of which one is judged by default: those that the paper shows, and some more.
+_FAMILIES = range(1, 9)
+MOST_BALLS = count(100_000)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Question:
+    """What is asked of a contact on a table.
+
+    Parameters
+    ----------
+    n
+        Index n of the family. By default n = 1 to 8, with a verdict on the first stable orbit.
+    quantity
+        Name of the quantity that must be accurate.
+    tolerance
+        Largest relative error of the restitution model's quantity against the contact's, such as
+        "5 %" or 0.05.
+    balls
+        Largest number of balls whose means over time are compared if the motion does not repeat.
+        By default it takes about a second.
+
+    Raises
+    ------
+    ModelError
+        If there is no such quantity, or a number is out of range.
+
+    Examples
+    --------
+    >>> Question(tolerance="5 %").tolerance, list(Question(n=2).families)
+    (0.05, [2])
+    """
+
+    n: Annotated[int, FAMILY] | None = None
+    quantity: Annotated[str, Quantity] = "max_height"
+    tolerance: Tolerance = 0.01
+    balls: Annotated[int, MOST_BALLS] | None = None
+
+    def __post_init__(self) -> None:
+        convert(self)
+        one_of("quantity", self.quantity, {str(each): each for each in QUANTITIES})
+        if self.n is not None and self.n not in FAMILY:
+            raise ModelError(f"index of the family n = {self.n} is not {FAMILY}")
+        if self.balls is not None and self.balls not in MOST_BALLS:
+            raise ParameterError(f"{{balls}} = {self.balls} is not {MOST_BALLS}")
+
+    @property
+    def families(self) -> Sequence[int]:
+        """The families n among which the orbit of the answer is."""
+        return _FAMILIES if self.n is None else [int(self.n)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class EngineSetup:
+    """A physics engine for which a contact is written, and how exactly it must step.
+
+    Parameters
+    ----------
+    engine
+        Physics engine for which the contact is written: generic, mujoco, lammps, liggghts,
+        pybullet, drake or mercurydpm. The contact then ends as in this engine.
+    restitution_error
+        Largest error of the restitution coefficient that the engine's time step may cause.
+    time_step
+        The engine's time step, if it is given. The answer then says what the contact does at this
+        step, and which is the stiffest contact with the same r within the error.
+
+    Raises
+    ------
+    ModelError
+        If there is no such engine, or a number is out of range.
+
+    Examples
+    --------
+    >>> EngineSetup(engine="mujoco", time_step="2 ms").time_step
+    0.002
+    """
+
+    engine: str
+    restitution_error: RestitutionError = ERROR
+    time_step: TimeStep = None
+
+    def __post_init__(self) -> None:
+        convert(self)
+        engine_named(self.engine)

@@ -1,0 +1,187 @@
+"""A contact with numbers: the dimensionless model of a contact, and its SI scales."""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.accuracy.corrected_errors import exact_and_simple_models
+from bouncing_ball.contacts.contact import Contact
+from bouncing_ball.contacts.drop_test import slowed_speed
+from bouncing_ball.contacts.engines.physical import Physical
+from bouncing_ball.contacts.table import TableMotion
+from bouncing_ball.models.corrected.model import CorrectedModel
+from bouncing_ball.models.instant import Instant
+from bouncing_ball.models.laws.contact_law import ContactLaw
+from bouncing_ball.models.laws.hertzian import Tsuji
+from bouncing_ball.models.laws.model import LawModel
+from bouncing_ball.models.laws.permanent_contact import known_threshold
+from bouncing_ball.models.laws.scales import rest
+from bouncing_ball.models.laws.signature import Signature
+from bouncing_ball.models.model import Model
+from bouncing_ball.models.rigid import RestitutionModel
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.periodic.restitution_branch import rigid_speed
+
+# Restitution coefficients that differ by less are taken for equal, because a contact law is fitted
+# to a free impact, and its signature interpolated, to 1e-12.
+_SAME = 1e-9
+# The loss 1 - r below which a contact law is hardly damped.
+_HARDLY = 1e-6
+_NOTHING = Contact()
+
+
+@dataclass(frozen=True)
+class ResolvedContact:
+    """A ball on a table with a contact between them: what a :class:`~.contact.Contact` resolves to.
+
+    In units of 1/Ω, g/Ω² and m the model has the Λ of the table and the ϖ, ζ and release rule of
+    the contact. The models are built on first use.
+
+    Parameters
+    ----------
+    mass : float
+        m in kg.
+    table : TableMotion
+        The table, which may be at rest.
+    contact : SpringDamper
+        ϖ, ζ and the release rule.
+    law : ContactLaw, optional
+        A nonlinear contact law. ``contact`` is then the linear contact with the same restitution
+        coefficient and duration as this law has at the impact speed of the orbit.
+    given_stiffness, given_damping : float, optional
+        k and c if they were given, because mω² and 2ζmω differ from them by rounding.
+    given : Contact
+        The contact as it was given, for the sentences on how it was read.
+    written : str, optional
+        Name of the engine for which it is written.
+
+    Examples
+    --------
+    >>> case = ResolvedContact(1.0, TableMotion(1.0, 1.0, 1.0), SpringDamper(10.0, 0.1))
+    >>> case.stiffness, case.damping
+    (100.0, 2.0)
+    """
+
+    KEYS: ClassVar[tuple[str, ...]] = ("mass", "table", "contact", "law")
+
+    mass: float
+    table: TableMotion
+    contact: SpringDamper
+    law: ContactLaw | None = None
+    given_stiffness: float | None = None
+    given_damping: float | None = None
+    given: Contact = _NOTHING
+    written: str | None = None
+
+    @property
+    def omega(self) -> float:
+        """ω = ϖΩ in rad/s."""
+        return float(self.contact.frequency_ratio) * self.table.angular_frequency
+
+    @property
+    def stiffness(self) -> float:
+        """k = mω² in N/m."""
+        if self.given_stiffness is not None:
+            return self.given_stiffness
+        return self.mass * self.omega**2
+
+    @property
+    def damping(self) -> float:
+        """c = 2ζmω in N s/m."""
+        if self.given_damping is not None:
+            return self.given_damping
+        return 2 * float(self.contact.damping_ratio) * self.mass * self.omega
+
+    @property
+    def physical(self) -> Physical:
+        """m, k and c."""
+        return Physical(self.mass, self.stiffness, self.damping)
+
+    @property
+    def contact_time(self) -> float:
+        """Duration of a free impact in s.
+
+        Raises
+        ------
+        ModelError
+            If ζ ≥ 1.
+        """
+        return float(self.contact.free_duration) * self.table.time
+
+    @property
+    def static_deflection(self) -> float:
+        """mg/k in m; for a contact law the deflection at which its force at rest is the weight."""
+        if self.law is not None:
+            return rest(self.law) * self.table.length
+        return self.table.gravity / self.omega**2
+
+    @property
+    def slowed_speed(self) -> float | None:
+        """The impact speed in m/s at which gravity lowers r by 1 %; None for a contact law, without
+        damping, and for ζ ≥ 1.
+        """
+        zeta = float(self.contact.damping_ratio)
+        if self.law is not None or zeta >= 1:
+            return None
+        r = float(self.contact.restitution)
+        return slowed_speed(self.omega, zeta, r, self.table.gravity, self.contact.release)
+
+    @property
+    def needs_speed(self) -> bool:
+        """Whether the contact was given by an engine's parameters whose r depends on the speed."""
+        return self.given.engine is not None and self.given.engine.needs_speed
+
+    @property
+    def law_in_si(self) -> dict[str, Any] | None:
+        """The name of a contact law and its parameters in SI units; None for a linear contact."""
+        if self.law is None:
+            return None
+        numbers = self.law.in_si(self.mass, self.table.length, self.table.time)
+        return {"name": self.law.name, **numbers}
+
+    @property
+    def exact_law(self) -> ContactLaw:
+        """The contact law of the exact model."""
+        return self.contact if self.law is None else self.law
+
+    @cached_property
+    def models(self) -> dict[str, Model]:
+        """The models by name: first the exact model, then the two simple models, in which r is
+        that of a free impact.
+        """
+        if self.law is None:
+            return {model.name: model for model in exact_and_simple_models(self.contact)}
+        return {
+            "hertz" if isinstance(self.law, Tsuji) else self.law.name: LawModel(self.law),
+            "restitution": RestitutionModel(self.contact.restitution),
+            "corrected": CorrectedModel(Signature(self.law)),
+        }
+
+    def instant(self, n: ArrayLike) -> Instant:
+        """Signature of the contact at the impact speeds of the restitution model's n-T orbits."""
+        # The r of a contact law is interpolated, and may exceed 1 by rounding.
+        return self._interpolated_instant(n)._replace(restitution=self.contact.restitution)
+
+    def _interpolated_instant(self, n: ArrayLike) -> Instant:
+        corrected: Any = self.models["corrected"]
+        return corrected.signature(rigid_speed(n, self.contact.restitution))
+
+    def has_its_restitution(self, n: ArrayLike) -> np.ndarray:
+        """Whether the contact law has the r of ``contact`` at the impact speed of n-T orbits."""
+        r = float(self.contact.restitution)
+        return np.abs(self._interpolated_instant(n).restitution - r) < _SAME
+
+    @cached_property
+    def permanent_contact(self) -> float:
+        """Λ up to which the ball stays on the table; NaN if no such threshold was found.
+
+        It is not searched for under a law that is hardly damped, because its oscillation on the
+        table would have to be integrated over millions of periods.
+        """
+        if self.law is not None and 1 - float(self.contact.restitution) < _HARDLY:
+            return math.nan
+        return known_threshold(self.exact_law)

@@ -1,0 +1,165 @@
+"""The third question: what does one write into an engine for a contact?
+
+The time step follows from the contact, or is given. A given step is too long for stiff contacts;
+the settings are then those of the stiffest contact with the same r that it resolves.
+"""
+
+from dataclasses import replace
+
+from bouncing_ball.contacts.assess import Assessment, assess
+from bouncing_ball.contacts.contact import Contact
+from bouncing_ball.contacts.describe import LONGEST, describe
+from bouncing_ball.contacts.engines.choice import engine_named
+from bouncing_ball.contacts.engines.engine import EngineSettings
+from bouncing_ball.contacts.engines.given_step import AtStep, stiffest_contact
+from bouncing_ball.contacts.loss import of_loss
+from bouncing_ball.contacts.question import EngineSetup, Question
+from bouncing_ball.contacts.resolve import resolve
+from bouncing_ball.contacts.resolved import ResolvedContact
+from bouncing_ball.contacts.table import Table, TableMotion
+from bouncing_ball.errors import ParameterError
+
+_OF_A_LAW = (
+    "{time_step} is given for a spring and a damper: the r of this contact depends on the speed"
+)
+
+
+def write_contact(
+    contact: Contact,
+    setup: EngineSetup,
+    table: Table | None = None,
+    question: Question | None = None,
+) -> EngineSettings:
+    """What to write into an engine for a contact, and what it does there.
+
+    Parameters
+    ----------
+    contact : Contact
+        Its restitution is the measured one, under the release of the engine. With a time step it
+        needs no stiffness: the answer is then the stiffest contact that this step resolves.
+    setup : EngineSetup
+        The engine and, if it is given, its time step.
+    table : Table, optional
+        With a vibrating table the answer also has the orbit that the engine will show.
+    question : Question, optional
+        The family of this orbit.
+
+    Raises
+    ------
+    ModelError
+        If a parameter is missing, out of range or contradicts another, or the engine has no such
+        contact.
+    NoOrbitError
+        If no model has the orbit.
+
+    Examples
+    --------
+    >>> contact = Contact(mass=0.5, stiffness="50 kN/m", restitution=0.75)
+    >>> found = write_contact(contact, EngineSetup(engine="mujoco"))
+    >>> found.parameters["solref"][0], round(found.restitution, 6), found.release
+    (-100000.0, 0.75, 'force')
+
+    A step of a millisecond is too long for it:
+
+    >>> found = write_contact(contact, EngineSetup(engine="mujoco", time_step="1 ms"))
+    >>> found.at_step.is_within, f"{found.at_step.stiffest:.3g} N/m"
+    (False, '74.1 N/m')
+    """
+    if table is None:
+        case = resolve_for(contact, setup, TableMotion.at_rest())
+        return settings(describe(case).case, setup)
+    asked = question or Question()
+    case = resolve(contact, table.motion, asked.families, setup.engine)
+    return settings_on_table(assess(case, asked), setup)
+
+
+def resolve_for(contact: Contact, setup: EngineSetup, at_rest: TableMotion) -> ResolvedContact:
+    """The contact as it ends in the engine, or without a stiffness the stiffest one that the time
+    step of the engine resolves.
+
+    Raises
+    ------
+    ModelError
+        If parameters do not suffice or contradict each other, or no contact has its r within the
+        error at this step.
+    """
+    step = setup.time_step
+    if contact.is_stiff or step is None:
+        return resolve(contact, at_rest, written=setup.engine)
+    plain = contact.by_stiffness_and_loss(setup.engine)
+    scheme = engine_named(setup.engine).scheme
+    allowed = setup.restitution_error
+
+    def stiffness(zeta: float) -> tuple[float, float]:
+        found, steps = stiffest_contact(scheme, plain.mass, zeta, plain.rule, step, allowed)
+        if steps * step > LONGEST:
+            raise ParameterError(
+                f"no contact shorter than {LONGEST:g} s has its r within {{restitution_error}} "
+                f"{allowed:g} at {{time_step}} {step:g} s: allow a larger error"
+            )
+        return found.angular_frequency, found.stiffness
+
+    stiff = replace(contact, stiffness=of_loss(plain, at_rest.gravity, stiffness))
+    return resolve(stiff, at_rest, written=setup.engine)
+
+
+def settings(case: ResolvedContact, setup: EngineSetup) -> EngineSettings:
+    """The settings for a contact.
+
+    Raises
+    ------
+    ModelError
+        If the engine has no such contact, or if a time step is given for a contact law.
+    """
+    engine = engine_named(setup.engine)
+    law = case.law_in_si
+    if law is not None:
+        if setup.time_step is not None:
+            raise ParameterError(_OF_A_LAW)
+        engine = engine.with_law(law)
+    release = str(case.contact.release)
+    error = setup.restitution_error
+    return engine.settings(case.physical, release, error, setup.time_step)
+
+
+def settings_on_table(found: Assessment, setup: EngineSetup) -> EngineSettings:
+    """The settings for a contact on a table, and the orbit that the engine will show.
+
+    Raises
+    ------
+    ModelError
+        See :func:`settings`.
+    """
+    written = settings(found.case, setup)
+    if written.at_step is not None and not written.at_step.is_within:
+        # The settings are those of another contact, with another orbit.
+        return written
+    return replace(
+        written,
+        max_height=found.judged.max_height,
+        contact_duration=found.judged.contact_duration,
+        penetration=found.judged.greatest_compression,
+    )
+
+
+def at_given_step(contact: Contact, time_step: float, error: float) -> AtStep:
+    """What the engine whose parameters are given does with them and a time step in s.
+
+    Raises
+    ------
+    ModelError
+        If no engine is named, or r depends on the speed.
+    """
+    engine = contact.engine
+    if engine is None:
+        raise ParameterError(
+            "{time_step} needs {engine} or {from_engine}, such as generic: "
+            "engines step in different ways"
+        )
+    if engine.needs_speed:
+        raise ParameterError(_OF_A_LAW)
+    parameters = contact.engine_parameters
+    if "time_step" in parameters:
+        raise ParameterError("{time_step} and {parameters} time_step give the same: give one")
+    plain = contact.by_stiffness_and_loss()
+    return engine.at_step_of(parameters, plain.mass, time_step, error, plain.release)

@@ -1,0 +1,27 @@
+"""What is asked of a contact by all parameters together, as the command ``design`` asks it."""
+
+from typing import Any
+
+from bouncing_ball.cli.design import answer
+from bouncing_ball.cli.design_text import Answer
+from bouncing_ball.contacts.assess import Assessment
+from bouncing_ball.contacts.describe import Description
+
+
+def answered(**given: Any) -> Answer:
+    """The whole answer: the contact, a drop, and what is written into an engine."""
+    return answer(given)
+
+
+def assessed(**given: Any) -> Assessment:
+    """The assessment of a contact on a table, given or chosen."""
+    found = answer(given).found
+    assert isinstance(found, Assessment)
+    return found
+
+
+def described(**given: Any) -> Description:
+    """The description of a contact without a table."""
+    found = answer(given).found
+    assert isinstance(found, Description)
+    return found

@@ -149,15 +149,40 @@ def orbit_of_motion(draw: Draw) -> Any:
     return draw.call("orbit_of_motion", draw.ball(), amplitude=draw.amplitude(), **arguments)
 
 
-def follow(draw: Draw) -> Any:
+KINDS = "saddle-node", "period doubling", "grazing of a flight", "grazing of a release"
+ACROSS = "frequency_ratio", "restitution", "damping_ratio", "stiffness", "damping"
+
+
+def branch_of_an_orbit(draw: Draw) -> Any:
     start = orbit_of_motion(draw) if draw.is_odd(0.3) else orbit(draw)
     names = ("amplitude", "amplitude", "frequency_ratio", "restitution", "damping_ratio")
     arguments = draw.some(
         along=lambda: draw.pick(*names, "stiffness", "damping"),
         points=lambda: draw.count(10, 10_000),
     )
-    to = {"to": draw.number(0.1, 10.0)} if draw.random.random() < 0.8 else {}
-    return draw.call("follow", start, **arguments, **to)
+    return draw.call("follow", start, **arguments, **end(draw))
+
+
+def end(draw: Draw) -> dict[str, Any]:
+    return {"to": draw.number(0.1, 10.0)} if draw.random.random() < 0.8 else {}
+
+
+def follow(draw: Draw) -> Any:
+    """The branch of an orbit, or a branch or a curve from a special orbit."""
+    way = draw.random.random()
+    if way < 0.6:
+        return branch_of_an_orbit(draw)
+    start = special(draw, draw.pick(*KINDS))
+    if way < 0.8:
+        return draw.call("follow", start, **end(draw))
+    ranges = {"amplitude": limits_of(draw)} if draw.random.random() < 0.5 else {}
+    across = draw.pick(*ACROSS)
+    return draw.call("follow", start, along=("amplitude", across), ranges=ranges)
+
+
+def limits_of(draw: Draw) -> tuple[Any, Any]:
+    """The range of a parameter on a curve."""
+    return draw.number(0.01, 1.0), draw.number(1.0, 100.0)
 
 
 def switch(draw: Draw) -> Any:
@@ -166,7 +191,7 @@ def switch(draw: Draw) -> Any:
 
 def special(draw: Draw, kind: Any) -> Any:
     """A special orbit of a branch, or a wrong start."""
-    found = follow(draw)
+    found = branch_of_an_orbit(draw)
     if draw.is_odd(0.05):
         return next(iter(found.states()))
     try:
@@ -176,14 +201,13 @@ def special(draw: Draw, kind: Any) -> Any:
 
 
 def curve(draw: Draw) -> Any:
-    kinds = "saddle-node", "period doubling", "grazing of a flight", "grazing of a release"
-    kind = draw.pick(*kinds)
+    kind = draw.pick(*KINDS)
     arguments = draw.some(
-        along_range=lambda: (draw.number(0.01, 1.0), draw.number(1.0, 100.0)),
-        across_range=lambda: (draw.number(0.01, 1.0), draw.number(1.0, 100.0)),
+        along_range=lambda: limits_of(draw),
+        across_range=lambda: limits_of(draw),
         points=lambda: draw.count(10, 10_000),
     )
-    across = draw.pick("frequency_ratio", "restitution", "damping_ratio", "stiffness", "damping")
+    across = draw.pick(*ACROSS)
     start = special(draw, kind)
     return draw.call("curve", start, kind=kind, across=across, **arguments)
 

@@ -5,17 +5,17 @@ import matplotlib.pyplot as plt
 import bouncing_ball
 
 ball = bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=10.0)
-window = {"across": "frequency_ratio", "across_range": (2.0, 100.0)}
+parameters = ("amplitude", "frequency_ratio")
+ranges = {"frequency_ratio": (2.0, 100.0)}
 figure, axes = plt.subplots(figsize=(7, 4.5), layout="constrained")
 for n, colour in ((1, "#0072B2"), (2, "#C77C00"), (3, "#AA3A00")):
     orbit = bouncing_ball.orbit(ball, n=n, amplitude=1.05 if n > 1 else 0.9)
     fold = bouncing_ball.follow(orbit, to=0.1).first("saddle-node")
     doubling = bouncing_ball.follow(orbit, to=1.6).first("period doubling")
-    twice = bouncing_ball.follow(bouncing_ball.switch(doubling), to=1.6).first("period doubling")
+    twice = bouncing_ball.follow(doubling, to=1.6).first("period doubling")
     ends = ((fold, "-", "saddle-node"), (doubling, "--", "doubling"), (twice, ":", "next doubling"))
     for start, line, name in ends:
-        kind = "saddle-node" if start is fold else "period doubling"
-        curve = bouncing_ball.curve(start, kind=kind, **window)
+        curve = bouncing_ball.follow(start, along=parameters, ranges=ranges)
         label = f"{n}-T orbit: {name}"
         axes.semilogx(curve.frequency_ratio, curve.amplitude, line, color=colour, label=label)
 axes.set(xlabel="frequency ratio ϖ of the contact", ylabel="amplitude Λ", title="r = 0.85")

@@ -19,7 +19,6 @@ from typing import NamedTuple
 import numpy as np
 
 import bouncing_ball
-from bouncing_ball.calls.followed import family_of
 from bouncing_ball.contacts.engines.engine import Physical
 from bouncing_ball.contacts.engines.mujoco import MuJoCo
 from bouncing_ball.models.damping import Release
@@ -28,8 +27,10 @@ from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.corrector import newton, plane
 from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.balls import LAMBDA, Balls
 from bouncing_ball.periodic.curves import CurveProblem, Window, condition_of, curve
 from bouncing_ball.periodic.following import follow
+from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.special import Special
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "speed.md"
@@ -152,11 +153,11 @@ def peer(module: str) -> bool:
     return True
 
 
-def orbit_state(state) -> list[float]:
-    """The phases, which increase from impact to impact, and the velocities of an orbit."""
-    phase, velocity = state.orbits.states(state.y)
-    before = np.concatenate([[0], np.cumsum(state.orbits.turns)[:-1]])
-    rising = phase + 2 * np.pi * before
+def orbit_state(orbit: Orbit) -> list[float]:
+    """The phases, which increase from impact to impact, and the velocities δ′ of an orbit."""
+    before = np.concatenate([[0], np.cumsum(orbit.turns)[:-1]])
+    rising = orbit.phases + 2 * np.pi * before
+    velocity = np.atleast_1d(orbit.relative_impact_velocity)
     return [float(x) for pair in zip(rising, velocity, strict=True) for x in pair]
 
 
@@ -164,8 +165,8 @@ def branch_row(impacts: int, amplitude: float, to: float) -> Row:
     """A branch of the restitution model along Λ, with its bifurcations."""
     ball = bouncing_ball.rigid(restitution=R)
     start = bouncing_ball.orbit_of_motion(ball, amplitude=amplitude, phase=1.0, velocity=-3.0)
-    ours, found = timed(lambda: follow(start, to))
-    error = np.abs(found.orbits.residual(found.branch.points)).max()
+    ours, found = timed(lambda: follow(start, to=to))
+    error = np.abs(found.problem.residual(found.branch.points)).max()
     task = (
         f"branch of orbits with {impacts} impact{'s' if impacts > 1 else ''}, {len(found)} points"
     )
@@ -184,14 +185,13 @@ def curve_row() -> Row:
     """The period doublings of the orbits with two impacts in (r, Λ)."""
     ball = bouncing_ball.rigid(restitution=R)
     start = bouncing_ball.orbit_of_motion(ball, amplitude=1.6, phase=1.0, velocity=-3.0)
-    special = follow(start, 1.8).first(Special.PERIOD_DOUBLING)
+    special = follow(start, to=1.8).first(Special.PERIOD_DOUBLING)
     window = Window(R, 0.8)
     kind = Special.PERIOD_DOUBLING
-    at = special.along("amplitude")
-    ours, found = timed(lambda: curve(at, kind, "restitution", across_window=window))
-    values = found.orbits.values(found.branch.points)
+    ours, found = timed(lambda: curve(special, kind, LAMBDA, "restitution", across_window=window))
+    values = found.problem.values(found.branch.points)
     last = found.branch.points[values["restitution"].argmax()]
-    error = np.abs(found.orbits.residual(last)).max()
+    error = np.abs(found.problem.residual(last)).max()
     task = f"curve of period doublings with two impacts in (r, Λ), {len(found)} points"
     if not peer("bifpy.auto"):
         return Row(task, ours, error, "AUTO-07p: absent")
@@ -199,7 +199,7 @@ def curve_row() -> Row:
     def equations(u, p):
         return [*flights(u[:4], u[4], p[0], 2), doubling(u[:4], u[4], p[0])]
 
-    state = [*orbit_state(special), special.parameters["amplitude"]]
+    state = [*orbit_state(special), special.amplitude]
     theirs, points = in_auto(state, R, equations, 0.0, 0.8, 0.01)
     worst = 0.0
     for u, r in points:
@@ -207,7 +207,7 @@ def curve_row() -> Row:
         y = found.branch.points[np.abs(values["restitution"] - r).argmin()].copy()
         y[-1] = np.arcsinh(r)
         axis = np.eye(y.size)[-1]
-        problem = CurveProblem(found.orbits, condition_of(found.orbits, kind))
+        problem = CurveProblem(found.problem, condition_of(found.problem, kind))
         ours_there = newton(problem, y, plane(axis, y)).point
         worst = max(worst, abs(float(np.sinh(ours_there[-2])) - u[4]))
     return Row(task, ours, error, f"AUTO-07p, {len(points)} points", theirs, worst)
@@ -218,9 +218,10 @@ def batch_row() -> Row:
     ball = bouncing_ball.rigid(restitution=R)
     start = bouncing_ball.orbit_of_motion(ball, amplitude=1.6, phase=1.0, velocity=-3.0)
     r = np.linspace(R - 0.01, R + 0.01, BRANCHES)
-    family = family_of(ball, 1.6).at({"restitution": r})
-    orbits = replace(start.orbits, family=family)
-    first = np.tile(start.y, (BRANCHES, 1))
+    problem = start.problem(LAMBDA)
+    balls = Balls(ball, np.full(BRANCHES, 1.6)).at({"restitution": r})
+    orbits = replace(problem, balls=balls)
+    first = np.tile(start.point(problem), (BRANCHES, 1))
 
     def points() -> np.ndarray:
         y = first.copy()

@@ -338,6 +338,9 @@ class LinearContactDynamics(ResumingDynamics):
         """The deviations at the release of unit deviations of φ and of δ′ at the impact.
 
         The responses Q and P to the table (:mod:`bouncing_ball.models.oscillator`) give that of φ.
+        Where a contact forgets its start, the rounding errors of these responses would remain.
+        There a deviation of φ is one along the motion, which changes only the time, less one of the
+        state at the start, which decays.
         """
         contact = self.law
         flight = departure.flight
@@ -358,10 +361,21 @@ class LinearContactDynamics(ResumingDynamics):
         last = (flight.y - _ONE) - loss * speed - stiffness * flight.displacement
         # A contact that resumes starts at δ + κ δ′ = 0: its displacement deviates by -κ dδ′.
         lag = contact.lag * (impact.displacement < _ZERO)
+        first = (y - _ONE) - loss * impact.velocity - stiffness * impact.displacement
+        # The last digits of this form are multiplied by ϖ and by the decay.
+        forgets = decay * omega < _ONE
         by_phase = Deviation(
-            phase=np.ones(duration.shape),
-            displacement=x * in_phase - y * quadrature,
-            velocity=x * (impulse - quadrature) - y * in_phase,
+            phase=np.where(forgets, _ZERO, _ONE),
+            displacement=np.where(
+                forgets,
+                -(level * impact.velocity + impulse * first),
+                x * in_phase - y * quadrature,
+            ),
+            velocity=np.where(
+                forgets,
+                stiffness * impulse * impact.velocity - impulse_rate * first,
+                x * (impulse - quadrature) - y * in_phase,
+            ),
         )
         by_velocity = Deviation(
             phase=np.zeros(duration.shape),

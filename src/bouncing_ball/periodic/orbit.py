@@ -331,12 +331,16 @@ class Orbit(Batch):
 
     # What needs the motion in contact.
 
+    @property
+    def _balls(self) -> Balls:
+        """The balls; where Λ is not known they stand on a table with Λ = 1."""
+        lam = np.asarray(self.amplitude, dtype=float)
+        return Balls(self.model, np.where(np.isfinite(lam), lam, 1.0))
+
     @cached_property
     def _start(self) -> tuple[Dynamics, Impact]:
         """The dynamics and the impacts in a row, which is k times as long as that of the orbits."""
-        lam = np.asarray(self.amplitude, dtype=float)
-        known = np.where(np.isfinite(lam), lam, 1.0)
-        dynamics = Balls(self.model, known).row(self.shape, self.impacts).dynamics()
+        dynamics = self._balls.row(self.shape, self.impacts).dynamics()
         whole = (*self.shape, self.impacts)
         phase = np.broadcast_to(self.phases, whole).ravel()
         velocity = np.broadcast_to(self._closing, whole).ravel()
@@ -386,7 +390,7 @@ class Orbit(Batch):
     @cached_property
     def _own(self) -> tuple[PeriodicOrbits, np.ndarray]:
         """The equations with no parameter that varies, and the unknowns."""
-        problem = self.problem()
+        problem = replace(self.problem(), balls=self._balls)
         return problem, self.point(problem)
 
     @cached_property

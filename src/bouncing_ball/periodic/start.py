@@ -355,9 +355,11 @@ def bifurcation(model: Model, n: ArrayLike, kind: Bifurcation) -> Orbit:
     problem, guess = search.guess(lam, psi)
     found = newton(problem, guess, lambda y: problem.bifurcation(kind, y), _EXTENDED)
     low = (lam < _LOWEST) & (kind is Bifurcation.SADDLE_NODE)
+    # Where Newton's method diverged Λ may overflow.
+    with np.errstate(over="ignore"):
+        reached = np.sinh(found.point[:, -1])
     # The phase is not defined at Λ = 0: rounding decides where near it the fold of an elastic
     # contact is found.
-    reached = np.sinh(found.point[:, -1])
     good = found.converged & (reached > _EXTENDED.tolerance) & (~low | (reached < 2 * lam))
     y = np.where(good[:, np.newaxis], found.point, np.nan)
     for k in np.flatnonzero(np.isnan(y[:, 0]) & ~low):

@@ -3,6 +3,7 @@ import pytest
 
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.rigid import RestitutionModel
+from bouncing_ball.periodic import n_t
 
 
 def test_every_node_is_in_its_tile_and_within_the_stable_range(small, every_node):
@@ -15,7 +16,7 @@ def test_every_node_is_in_its_tile_and_within_the_stable_range(small, every_node
         assert np.all((low < nodes.restitution) & (nodes.restitution < high))
         model = RestitutionModel(nodes.restitution)
         bottom, top = (
-            find(nodes.n).amplitude for find in (model.saddle_node, model.period_doubling)
+            find(model, nodes.n).amplitude for find in (n_t.saddle_node, n_t.period_doubling)
         )
         place = (nodes.amplitude - bottom) / (top - bottom)
         assert np.array_equal(np.floor(place * 3), np.arange(len(place)) // plan.nodes_per_tile)

@@ -10,9 +10,8 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
 from bouncing_ball.models.laws.model import LawModel
-from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
+from bouncing_ball.numerics.corrector import NewtonSettings, solve
 from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.balls import LAMBDA
 from bouncing_ball.periodic.orbit import Orbit, orbit_at
 from bouncing_ball.periodic.restitution_branch import rigid_speed
 from bouncing_ball.periodic.stability import Side
@@ -31,9 +30,8 @@ def _next_to(model: LawModel, orbit: Orbit) -> Orbit:
     method does not converge from these.
     """
     near = replace(orbit, model=model)
-    problem = near.problem(LAMBDA)
-    guess = near.point(problem)
-    found = newton(problem, guess, plane(np.eye(guess.shape[-1])[-1], guess), _CLOSE)
+    problem = near.problem()
+    found = solve(problem.equations_at, near.point(problem), _CLOSE)
     return orbit_at(problem, np.where(found.converged[..., np.newaxis], found.point, np.nan))
 
 

@@ -158,6 +158,17 @@ class PeriodicOrbits:
 
         return lru_cache(maxsize=_KEPT)(legs)
 
+    @cached_property
+    def _compared(self) -> Any:
+        # The points around y and the legs there.
+        def compared(
+            shape: tuple[int, ...], entries: bytes, everywhere: bool
+        ) -> tuple[np.ndarray, Legs]:
+            points = self._points_around(np.frombuffer(entries).reshape(shape), everywhere)
+            return points, self.legs(points)
+
+        return lru_cache(maxsize=_KEPT)(compared)
+
     def legs(self, y: np.ndarray) -> Legs:
         """The legs of the orbits at points y of shape (..., N + parameters)."""
         return self._cached(y.shape, y.tobytes())
@@ -179,6 +190,13 @@ class PeriodicOrbits:
     def at(self, y: np.ndarray) -> Balls:
         """The balls with the parameters of the orbits."""
         return self.balls.at(self.values(y)) if self.along else self.balls
+
+    def fixed(self, y: np.ndarray) -> tuple[Self, np.ndarray]:
+        """The problem with no parameter that varies, whose balls are those at y, and the unknowns.
+
+        It costs less to solve, because a derivative by a parameter needs two more legs.
+        """
+        return replace(self, balls=self.at(y), along=()), y[..., : self.equations]
 
     def take(self, which: Any) -> Self:
         """The problem of some orbits of a row."""
@@ -248,15 +266,15 @@ class PeriodicOrbits:
 
     def residual(self, y: np.ndarray) -> np.ndarray:
         """Both sides of Eq. 2, and the errors of the durations, shape (..., N)."""
-        legs = self._beside(y)
+        legs = self.beside(y)
         here = legs.residual[0].reshape(*y.shape[:-1], -1)
         if not self.selects:
             return here
         return np.concatenate([here, self.durations(y) - legs.duration[0]], axis=-1)
 
-    def _beside(self, y: np.ndarray) -> Legs:
-        """The legs at y and, if a parameter varies, beside it, where the Jacobian needs them."""
-        return self.legs(self.around(y) if self.along else y[np.newaxis])
+    def beside(self, y: np.ndarray, everywhere: bool = False) -> Legs:
+        """The legs at the points :meth:`around` y, along a first axis; the first of them is y."""
+        return self._compared(y.shape, y.tobytes(), everywhere)[1]
 
     def around(self, y: np.ndarray, everywhere: bool = False) -> np.ndarray:
         """The points at which legs are compared: y and the points beside it, along a first axis.
@@ -265,6 +283,10 @@ class PeriodicOrbits:
         ``everywhere`` is set, y with all θ or all v moved: a leg depends on the state at its start
         alone.
         """
+        return self._compared(y.shape, y.tobytes(), everywhere)[0]
+
+    def _points_around(self, y: np.ndarray, everywhere: bool) -> np.ndarray:
+        """The points of :meth:`around`."""
         columns: list[Any] = [self.equations + j for j in range(len(self.along))]
         if everywhere:
             columns += [slice(0, 2 * self.impacts, 2), slice(1, 2 * self.impacts, 2)]
@@ -297,7 +319,7 @@ class PeriodicOrbits:
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """Jacobian of the residual, shape (..., N, N + parameters)."""
-        legs = self.legs(self.around(y))
+        legs = self.beside(y)
         k = self.impacts
         matrix = np.zeros((*y.shape[:-1], self.equations, y.shape[-1]))
         first = np.arange(k)
@@ -324,6 +346,10 @@ class PeriodicOrbits:
             self._fill_durations(matrix, legs, y)
         return matrix
 
+    def equations_at(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The residual and its Jacobian, which is square if no parameter varies."""
+        return self.residual(y), self.jacobian(y)
+
     def _fill_durations(self, matrix: np.ndarray, legs: Legs, y: np.ndarray) -> None:
         """The rows of the Jacobian that belong to the durations."""
         contact = np.arange(self.impacts)
@@ -347,7 +373,7 @@ class PeriodicOrbits:
 
     def matrices(self, y: np.ndarray) -> np.ndarray:
         """DP of the legs, shape (..., k, 2, 2)."""
-        return matrices_of(self._beside(y).tangent)[0]
+        return matrices_of(self.beside(y).tangent)[0]
 
     def monodromy(self, y: np.ndarray) -> Jacobian:
         """The derivative of the map Pᵏ at the first impact; entries of the leading shape of y."""
@@ -360,7 +386,7 @@ class PeriodicOrbits:
         The determinant is the product of the contractions.
         """
         m = self.monodromy(y)
-        return m.a + m.d, self._beside(y).contraction[0].prod(axis=-1)
+        return m.a + m.d, self.beside(y).contraction[0].prod(axis=-1)
 
     def bifurcation(self, kind: Bifurcation, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The test function det(M - μ) of a bifurcation, μ = ±1, and its gradient.
@@ -368,7 +394,7 @@ class PeriodicOrbits:
         The derivatives of the matrices of the legs are central differences. The results have the
         shapes (...,) and (..., N + parameters).
         """
-        around = self.legs(self.around(y, everywhere=True))
+        around = self.beside(y, everywhere=True)
         matrices = matrices_of(around.tangent)
         multiplier = 1.0 if kind is Bifurcation.SADDLE_NODE else -1.0
         value, weights = shifted_determinant(matrices[0], multiplier)

@@ -27,6 +27,7 @@ from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.continuation import Branch, End
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import Event, SpecialPoint
+from bouncing_ball.periodic.legs import Legs
 from bouncing_ball.periodic.problem import PeriodicOrbits
 from bouncing_ball.periodic.release import release_condition, release_margin
 from bouncing_ball.periodic.stability import Bifurcation
@@ -147,6 +148,11 @@ def sticking(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
     return np.where(settles.reshape(legs.duration.shape).all(axis=-1), 1.0, -1.0)
 
 
+def _released(legs: Legs) -> np.ndarray:
+    """δ′ at the releases, of the legs at a point and beside it, for those at the point."""
+    return np.reshape(legs.departure.flight.velocity, legs.duration.shape)[0]
+
+
 def loss_of_release(orbits: PeriodicOrbits) -> Event:
     """The speed δ′ with which the ball leaves the table relative to that of its impact, the
     smallest of an orbit.
@@ -157,13 +163,14 @@ def loss_of_release(orbits: PeriodicOrbits) -> Event:
     """
 
     def share(y: np.ndarray) -> np.ndarray:
-        legs = orbits.legs(y)
+        legs = orbits.beside(y)
         if legs.departure is None:
             return np.full(y.shape[:-1], np.nan)
         _, closing = orbits.states(y)
-        velocity = legs.departure.flight.velocity.reshape(closing.shape)
+        velocity = _released(legs)
         # The bounces before a rest on the table become arbitrarily slow.
-        rests = np.any(legs.departure.sticks) if legs.dynamics.forgets else False
+        sticks = np.reshape(legs.departure.sticks, legs.duration.shape)[0]
+        rests = np.any(sticks) if legs.dynamics.forgets else False
         approach = np.where(orbits.resuming, closing, -closing)
         with np.errstate(divide="ignore", invalid="ignore"):
             lowest = (velocity / approach).min(axis=-1)
@@ -234,13 +241,13 @@ def ends_of_contact(orbits: PeriodicOrbits) -> list[Event]:
         return Event(name, left, terminal=True, reason=f"{name}: {why}")
 
     def released(y: np.ndarray) -> np.ndarray:
-        legs = orbits.legs(y)
+        legs = orbits.beside(y)
         if legs.departure is None:
             return np.full(y.shape[:-1], np.nan)
-        return legs.departure.flight.velocity.reshape(legs.duration.shape).min(axis=-1)
+        return _released(legs).min(axis=-1)
 
     def aloft(y: np.ndarray) -> np.ndarray:
-        return (orbits.intervals(y) - orbits.legs(y).duration).min(axis=-1)
+        return (orbits.intervals(y) - orbits.beside(y).duration[0]).min(axis=-1)
 
     return [
         end(

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.model import Model
 from bouncing_ball.numerics.continuation import ContinuationError, StepControl, continue_branch
-from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane, tangent
+from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane, solve, tangent
 from bouncing_ball.numerics.events import Event, SpecialPoint, parameter_bound
 from bouncing_ball.periodic import corrected_branch as corrected
 from bouncing_ball.periodic.balls import LAMBDA
@@ -126,35 +126,39 @@ class _Search(NamedTuple):
 
 def _solved(problem: PeriodicOrbits, guess: np.ndarray) -> np.ndarray:
     """Solutions at the Λ of each guess; NaN where Newton's method does not converge."""
-    point = guess.copy()
-    y = np.full_like(guess, np.nan)
+    y = guess.copy()
     todo = np.flatnonzero(np.all(np.isfinite(guess), axis=-1))
-    axis = np.eye(guess.shape[-1])[-1]
     for _ in range(_TRIES):
         if not todo.size:
             break
-        at = plane(axis, point[todo])
-        found = newton(problem.take(todo), point[todo], at, _SETTINGS)
-        point[todo] = found.point
-        y[todo[found.converged]] = found.point[found.converged]
-        todo = todo[~found.converged & np.isfinite(found.step)]
+        fixed, unknowns = problem.take(todo).fixed(y[todo])
+        found = solve(fixed.equations_at, unknowns, _SETTINGS)
+        y[todo, : fixed.equations] = found.point
+        todo = todo[~found.converged]
+    y[todo] = np.nan
     return y
 
 
-def _orbits(problem: PeriodicOrbits, y: np.ndarray, shape: tuple[int, ...]) -> Orbit:
-    """The orbits at a row of points, in the shape of the arguments; NaN where y is NaN."""
+def _orbits(
+    problem: PeriodicOrbits, y: np.ndarray, shape: tuple[int, ...]
+) -> tuple[Orbit, np.ndarray]:
+    """The orbits at a row of points, and the test function of their saddle-nodes, in the shape of
+    the arguments; NaN where y is NaN.
+    """
     known = np.flatnonzero(np.all(np.isfinite(y), axis=-1))
-    columns = np.full((4, len(y)), np.nan)
+    columns = np.full((5, len(y)), np.nan)
     if known.size:
-        found = orbit_of_point(problem.take(known), y[known])
+        fixed, unknowns = problem.take(known).fixed(y[known])
+        found = orbit_of_point(fixed, unknowns)
+        test = Bifurcation.SADDLE_NODE.test(*fixed.trace_and_determinant(unknowns))
         values = (found.amplitude, found.phase, found.contact_duration, found.impact_velocity)
-        columns[:, known] = values
-    lam, phase, duration, velocity = columns.reshape(4, *shape)
+        columns[:, known] = *values, test
+    lam, phase, duration, velocity, test = columns.reshape(5, *shape)
     model = problem.balls.model
     n = np.broadcast_to(np.ravel(problem.periods), len(y)).reshape(shape)
     if model.shape:
         model = model[np.arange(len(y)).reshape(shape)]
-    return Orbit.of(model, n, lam, phase, duration, velocity)
+    return Orbit.of(model, n, lam, phase, duration, velocity), test
 
 
 def orbit_at(model: Model, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Orbit:
@@ -196,8 +200,7 @@ def orbit_at(model: Model, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Or
     psi = np.where(np.isnan(psi), corrected.saddle_node_phase(search.instant), psi)
     problem, guess = search.guess(lam, psi)
     y = _solved(problem, guess)
-    found = _orbits(problem, y, shape)
-    test = Bifurcation.SADDLE_NODE.test(*found.trace_and_determinant())
+    found, test = _orbits(problem, y, shape)
     on_side = test > 0 if side is Side.STABLE else test < 0
     if np.all(on_side):
         return found
@@ -209,7 +212,7 @@ def orbit_at(model: Model, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Or
         if model.shape or index not in folds:
             folds[index] = bifurcation(one, index, Bifurcation.SADDLE_NODE)
         y[k] = _on_branch(one, folds[index], float(lam[k]), side)
-    return _orbits(problem, y, shape)
+    return _orbits(problem, y, shape)[0]
 
 
 def _on_branch(model: Model, fold: Orbit, amplitude: float, side: Side) -> np.ndarray | float:
@@ -368,4 +371,4 @@ def bifurcation(model: Model, n: ArrayLike, kind: Bifurcation) -> Orbit:
         points = [each.point for each in special if each.name == kind]
         if points:
             y[k] = points[0 if kind is Bifurcation.SADDLE_NODE else -1]
-    return _orbits(problem, y, shape)
+    return _orbits(problem, y, shape)[0]

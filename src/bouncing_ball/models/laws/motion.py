@@ -66,6 +66,18 @@ class ContactDynamics(ResumingDynamics):
         If the force depends on the load and the load pulls, a slow ball meets no force at p = 0.
         Its contact then has the duration 0, and the ball continues its flight below p = 0.
         """
+        departure = self._departed(impact, differentiate)
+        return self._with_sticking(impact, departure) if differentiate else departure
+
+    def depart_after(self, impact: Impact, duration: np.ndarray) -> Departure:
+        """The first ends, with their derivatives.
+
+        A periodic orbit does not need to know which balls stick, which costs a second contact.
+        """
+        return self._departed(impact, differentiate=True)
+
+    def _departed(self, impact: Impact, differentiate: bool) -> Departure:
+        """The ends of the contacts, without the marks of the balls that stick."""
         # Without the maximum a displacement of 0 gives the depth -0.
         depth = np.maximum(-impact.displacement, 0.0)
         free = self._meets_no_force(impact, depth)
@@ -80,14 +92,13 @@ class ContactDynamics(ResumingDynamics):
         no_end = np.isnan(duration)
         status = np.where(no_end, Status.UNDECIDED, Status.BOUNCING)
         status[held] = Status.PERMANENT_CONTACT
-        departure = Departure(
+        return Departure(
             phase=phase,
             duration=np.where(no_end, np.inf, duration),
             flight=Flight(displacement, velocity, x, y, self.amplitude),
             status=status,
             by=end,
         )
-        return self._with_sticking(impact, departure) if differentiate else departure
 
     def release_function(
         self, impact: Impact, departure: Departure

@@ -16,8 +16,8 @@ include: "workflow/rules/readable.smk"
 configfile: "config/config.yaml"
 
 
-# From parameters to datasets: what all stages have in common, and the stages of the two wings,
-# with the study, the drawing and the table of each artifact.
+# From parameters to datasets: what all stages have in common, and the stages of both sets of
+# studies, with the study, the drawing and the table of each artifact.
 include: "workflow/rules/stage.smk"
 include: "workflow/rules/paper.smk"
 include: "workflow/rules/beyond.smk"
@@ -50,7 +50,7 @@ rule replication:
     message:
         "The figures, tables and claims of the paper are up to date"
     input:
-        [file for each in TARGETS if each.wing == "paper" for file in each.files],
+        [file for each in TARGETS if each.part == "paper" for file in each.files],
 
 
 # The accepted record in git, and the comparison of the results with it.

@@ -283,7 +283,7 @@ def continuation_settings():
 
 @pytest.fixture
 def short_runs(monkeypatch):
-    """The calculator follows few impacts: long runs are those of calculator/test_motion.py."""
+    """An answer follows few impacts: long runs are those of contacts/test_motion.py."""
     from bouncing_ball.contacts import motion
 
     for impacts in ("_IMPACTS", "_IMPACTS_OF_LAW"):

@@ -32,12 +32,15 @@ from hypothesis import Phase, settings
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = Path("src/bouncing_ball")
-# The modules that compute: both wings with what they stand on, and the comparison with the record,
-# but no pictures.
-COMPUTING = ("numerics", "paper", "beyond", "pipeline/diff")
+# The modules that compute: both sets of studies with what they stand on, and the comparison with
+# the record, but no pictures.
+COMPUTING = (
+    "numerics", "models", "periodic", "long_run", "accuracy", "contacts", "paper", "beyond",
+    "pipeline/diff",
+)  # fmt: skip
 PICTURES = "*figures.py"
 # Folders whose folders are tried one by one, because they have many tests.
-WINGS = ("paper", "beyond")
+SETS = ("paper", "beyond")
 QUICK = "not long and not slow and not cluster and not engines and not docs"
 # What this does not run: pictures, and runs of the pipeline.
 ELSEWHERE = {"tests/drawing", "tests/speed", "tests/workflow"}
@@ -251,10 +254,10 @@ def passes(files: Iterable[str], plugin: Reach | Chosen) -> bool:
 
 
 def parts_of(tree: Path) -> list[str]:
-    """Folders and modules whose tests run in one process; each folder of a wing is one."""
+    """Folders and modules whose tests run in one process; each in a set of studies is one."""
     found = []
     for path in tree.iterdir():
-        if path.name in WINGS:
+        if path.name in SETS:
             found += parts_of(path)
         elif (path.is_dir() or path.suffix == ".py") and str(path) not in ELSEWHERE:
             found.append(str(path))

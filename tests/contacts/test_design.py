@@ -1,4 +1,4 @@
-"""The calculator against the models it stands on, and against the paper's numbers."""
+"""The answer of `design` against the models it stands on, and against the paper's numbers."""
 
 import dataclasses
 import math
@@ -62,7 +62,7 @@ def test_every_family_has_its_errors_margins_and_orbit(steel):
     contact = SpringDamper(steel.frequency_ratio, steel.damping_ratio)
     assert [one.n for one in steel.orbits] == [1, 2, 3]
     for one in steel.orbits:
-        # The paper divides by the value of the simple model, the calculator by the contact's.
+        # The paper divides by the value of the simple model, the answer by the contact's.
         of_paper = errors(contact, one.n, steel.amplitude, Quantity)
         expected = 1 / (1 + of_paper) - 1
         for found, each in zip((one.errors, one.corrected_errors), expected, strict=True):
@@ -102,7 +102,7 @@ def test_loads_of_a_damped_contact_by_a_fine_sample():
 
 def test_choosing_inverts_the_exact_error():
     # Published: ϖ ≈ 82 for 1 % of the greatest height; computed 82.177.
-    # The paper's error is then 1 % of the restitution model's height, the calculator's 1/99.
+    # The paper's error is then 1 % of the restitution model's height, that of the answer 1/99.
     paper = PAPER | {"tolerance": 1 / 99}
     chosen = assessed(**paper)
     assert chosen.frequency_ratio == pytest.approx(82.177, abs=5e-4)

@@ -95,7 +95,7 @@ def results(coarse, recorded):
         fewer = {key: number for (name, key), number in coarse.items() if name == artifact}
         fewer = {} if artifact == "ext_cascades" else fewer
         given = mapped(
-            arguments(study, ARTIFACTS[artifact].wing, artifact, RUN),
+            arguments(study, ARTIFACTS[artifact].part, artifact, RUN),
             lambda key, x, fewer=fewer: fewer.get(key, x),
         )
         made = partial(made, data=recorded) if artifact == "ext_locked" else made

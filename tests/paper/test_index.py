@@ -52,5 +52,5 @@ def test_the_index_of_figures_leads_to_the_stage_that_makes_each_figure():
 
 
 def test_no_artifact_of_the_paper_reads_a_dataset_from_beyond_it():
-    read = {name for each in ARTIFACTS.values() if each.wing == "paper" for name in each.reads}
-    assert read and {ARTIFACTS[name].wing for name in read} == {"paper"}
+    read = {name for each in ARTIFACTS.values() if each.part == "paper" for name in each.reads}
+    assert read and {ARTIFACTS[name].part for name in read} == {"paper"}

@@ -68,7 +68,7 @@ SPAN = (*FIG05, "frequency_ratio")
         (("paper",), {"fig2": 1}, "unknown key paper.fig2 = 1, did you mean fig"),
         (("paper",), 3, "paper = 3 must be a mapping"),
         (("beyond",), REMOVED, "missing section beyond"),
-        # An artifact of the other wing.
+        # An artifact of the other set of studies.
         (("beyond", "fig08"), {}, "unknown key beyond.fig08 = {}. Allowed here: "),
         (("paper", "fig11"), 3, "frequency_ratio (The threshold of permanent contact of one"),
         (FIG08, REMOVED, "missing key paper.fig08: "),

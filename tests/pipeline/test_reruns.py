@@ -22,7 +22,7 @@ CONFIG = read_yaml(ROOT / "config" / "config.yaml")
 
 
 def arguments_in(run):
-    return {x: arguments(study, ARTIFACTS[x].wing, x, run) for x, study in STUDIES.items()}
+    return {x: arguments(study, ARTIFACTS[x].part, x, run) for x, study in STUDIES.items()}
 
 
 @pytest.mark.parametrize(

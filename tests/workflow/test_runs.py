@@ -38,11 +38,11 @@ def test_the_replication_makes_the_artifacts_of_the_paper_and_nothing_else(fresh
     }
     # Messages such as "fig08", "Drawing fig08" and "Setting table1".
     made = {job.split()[-1] for job in jobs}
-    assert made == {name for name, each in ARTIFACTS.items() if each.wing == "paper"}
+    assert made == {name for name, each in ARTIFACTS.items() if each.part == "paper"}
 
 
 def stages():
-    """The artifacts of each stage of both wings; the atlas has rules of its own."""
+    """The artifacts of each stage of both sets of studies; the atlas has rules of its own."""
     found = {}
     for each in ARTIFACTS.values():
         if each.study or not each.accepted:

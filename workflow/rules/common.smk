@@ -45,7 +45,7 @@ logger.addFilter(
     lambda record: not str(record.msg).startswith(("Select jobs", "Execute ", "Finished jobid"))
 )
 
-# All artifacts by name, as the stages of both wings list them.
+# All artifacts by name, as the stages of both sets of studies list them.
 ARTIFACTS = {}
 
 
@@ -63,7 +63,7 @@ def stage(module, figures=None, **artifacts):
 # The values that a study takes from the configuration.
 def arguments_of(artifact):
     return arguments(
-        function(artifact.module, artifact.study), artifact.wing, artifact.name, config
+        function(artifact.module, artifact.study), artifact.part, artifact.name, config
     )
 
 
@@ -88,7 +88,9 @@ def code(job, script, *modules, files=()):
         return str(path)
     read = [Path(file).resolve() for file in (SCRIPTS / "adapter.py", SCRIPTS / script, *files)]
     try:
-        keep_digests(path, digests(sources([f"bouncing_ball.{module}" for module in modules], read)))
+        keep_digests(
+            path, digests(sources([f"bouncing_ball.{module}" for module in modules], read))
+        )
     except OSError as error:
         sys.exit(f"{path} cannot be written: {error.strerror}")
     return str(path)

@@ -26,7 +26,7 @@ for each in ARTIFACTS.values():
             png=report(
                 f"results/figures/{each.name}.png",
                 caption=f"../report/{each.name if each.name in CAPTIONS else 'figure'}.rst",
-                category="Figures" if each.wing == "paper" else "Beyond the paper",
+                category="Figures" if each.part == "paper" else "Beyond the paper",
                 labels={"figure": each.name},
             ),
             svg=f"results/figures/{each.name}.svg",

@@ -11,7 +11,7 @@ from bouncing_ball.pipeline.configuration import configuration_model
 
 
 def configuration_type(artifacts: Iterable[Artifact]) -> type[BaseModel]:
-    """The type of the configuration: a section for each wing, the atlas, and settings of the run.
+    """The type of the configuration: both sets of studies, the atlas, and settings of the run.
 
     Raises
     ------
@@ -21,5 +21,5 @@ def configuration_type(artifacts: Iterable[Artifact]) -> type[BaseModel]:
     studies: dict = {"paper": {}, "beyond": {}}
     for each in artifacts:
         if each.study:
-            studies[each.wing][each.name] = function(each.module, each.study)
+            studies[each.part][each.name] = function(each.module, each.study)
     return configuration_model(studies, {"atlas": Plan})

@@ -1,4 +1,4 @@
-// The closed forms of bouncing_ball.orbits and bouncing_ball.models.corrected, in plain
+// The closed forms of bouncing_ball.periodic and bouncing_ball.models.corrected, in plain
 // JavaScript: the same formulas in the same order, so that both round alike. Everything is dimensionless; see docs/closed-form.md for
 // the derivation. "NaN" stands for what does not exist, as there.
 "use strict";

@@ -6,7 +6,7 @@ const shown = (x, digits = 6) => Number.isFinite(x) ? String(Number(x.toPrecisio
 const percent = x => !Number.isFinite(x) ? "none"
   : x > 0 && x < 1e-5 ? "less than 0.001 %" : `${x < 0.995 ? Number((100 * x).toPrecision(2)) : (100 * x).toFixed(0)} %`;
 
-// An error with its sign, as in the calculator.
+// An error with its sign, as in `bouncing-ball design`.
 const signed = x => {
   const size = percent(Math.abs(x));
   return !Number.isFinite(x) || x === 0 || size.startsWith("less") ? size : (x > 0 ? "+" : "-") + size;

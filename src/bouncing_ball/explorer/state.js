@@ -132,7 +132,7 @@ function asked(state) {
   const {r, n, release, side} = state;
   if (state.tab === "orbit") return {r, n, release, side, omega: state.w, amplitude: state.a};
   const one = caseOf(state);
-  // The calculator asks for the orbit that is stable next to the saddle-node.
+  // `bouncing-ball design` asks for the orbit that is stable next to the saddle-node.
   return {n, side: "stable", amplitude: state.acc, contact: one.contact, physical: one};
 }
 

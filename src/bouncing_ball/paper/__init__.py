@@ -1,7 +1,9 @@
 """The replication: each figure and table (:mod:`.exhibits`), and each claim (:mod:`.claims`).
 
-:mod:`.claims.as_printed` has the formulas as the paper prints them, in its order. The library
-computes with its equations in these functions and classes of ``bouncing_ball``:
+:mod:`.claims.as_printed` has the formulas as the paper prints them, in its order, as far
+as they are checked. The library computes with its equations in these functions and classes of
+``bouncing_ball``. The motion in permanent contact (Eqs. 28-31) is only in its printed form, because
+the library needs no more of it than the threshold that follows:
 
 ======== =========================== ==========================================================
 Eqs.     what                        where
@@ -19,8 +21,10 @@ Eqs.     what                        where
 16       damping from restitution    ``models.damping.damping_ratio``
 17       apparent restitution        ``periodic.orbit.Orbit.apparent_restitution``
 18-20    period of the n-T orbit     ``periodic.orbit.Orbit.flight_time``
-21-26    its equations               ``periodic.problem.PeriodicOrbits``
-..       in the unknowns of paper    ``periodic.paper_unknowns.PaperUnknowns``
+21, 22   its equations: the start    ``models.spring_damper.SpringDamper.flow``
+23       the end of the contact      ``models.linear_contact.LinearContactDynamics.depart``
+24-26    the return to the start     ``periodic.problem.PeriodicOrbits``
+..       all, in unknowns of paper   ``periodic.paper_unknowns.PaperUnknowns``
 ..       solved at a given duration  ``periodic.spring_damper_branch.branch_point``
 ..       its saddle-node             ``periodic.spring_damper_bifurcations.saddle_node``
 ..       its period doubling         ``periodic.spring_damper_bifurcations.period_doubling``

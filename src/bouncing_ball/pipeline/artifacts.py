@@ -77,7 +77,7 @@ class Artifact:
     ... )
     >>> artifact.files
     ['results/figures/table1.nc', 'results/figures/table1.csv', 'results/figures/table1.md']
-    >>> artifact.wing, artifact.stage, artifact.dataset
+    >>> artifact.part, artifact.stage, artifact.dataset
     ('paper', 'orbits', 'results/figures/table1.nc')
     """
 
@@ -94,8 +94,8 @@ class Artifact:
     page: bool = False
 
     @property
-    def wing(self) -> str:
-        """The wing of the house, which is also the section of the configuration."""
+    def part(self) -> str:
+        """The part of the package: its set of studies, a section of the configuration."""
         return self.module.partition(".")[0]
 
     @property

@@ -30,7 +30,7 @@ def drifts(recorded, names):
             found.append(f"{artifact}: not accepted")
             continue
         study = STUDIES[artifact]
-        given = arguments(study, ARTIFACTS[artifact].wing, artifact, RUN)
+        given = arguments(study, ARTIFACTS[artifact].part, artifact, RUN)
         if "data" in inspect.signature(study).parameters:
             known = recorded | {"engines": read_dataset(CONFIG / "engines.nc")}
             given["data"] = {name: known[name] for name in ARTIFACTS[artifact].reads}

@@ -1,6 +1,8 @@
-"""The equations in the form that the paper prints, right or wrong, as far as they are legible.
+"""Equations in the form that the paper prints, right or wrong, as far as they are legible.
 
-They are used only for the check of :mod:`bouncing_ball.paper.claims.formulas`; no other result is
+These are Eqs. 2-8, 12-16, 27, 31 and 33-36. There are no functions of the others: Eqs. 17-26 of
+the n-T orbits, the errors of Eqs. 37 and 38, and Eqs. 1, 9-11, 28-30 and 32. The functions are used
+only for the check of :mod:`bouncing_ball.paper.claims.formulas`; no other result is
 computed from them. All quantities are dimensionless, and the functions broadcast.
 """
 

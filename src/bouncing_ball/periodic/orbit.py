@@ -326,8 +326,9 @@ class Orbit(Batch):
 
     @property
     def apparent_restitution(self) -> Any:
-        """r_a = -(z′_b - w′_b)/(z′_i - w′_i) (Eq. 17)."""
-        return self._shaped(-self._leaving / self._closing)
+        """r_a = -(z′_b - w′_b)/(z′_i - w′_i) (Eq. 17); NaN where the impact grazes."""
+        closing = np.where(self._closing == 0, np.nan, self._closing)
+        return self._shaped(-self._leaving / closing)
 
     # What needs the motion in contact.
 

@@ -148,9 +148,9 @@ def sticking(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
     return np.where(settles.reshape(legs.duration.shape).all(axis=-1), 1.0, -1.0)
 
 
-def _released(legs: Legs) -> np.ndarray:
-    """δ′ at the releases, of the legs at a point and beside it, for those at the point."""
-    return np.reshape(legs.departure.flight.velocity, legs.duration.shape)[0]
+def _at_point(legs: Legs, values: np.ndarray) -> np.ndarray:
+    """Flat values of the legs at y and beside it, for those at y, shape (..., k)."""
+    return np.reshape(values, legs.duration.shape)[0]
 
 
 def loss_of_release(orbits: PeriodicOrbits) -> Event:
@@ -167,10 +167,9 @@ def loss_of_release(orbits: PeriodicOrbits) -> Event:
         if legs.departure is None:
             return np.full(y.shape[:-1], np.nan)
         _, closing = orbits.states(y)
-        velocity = _released(legs)
+        velocity = _at_point(legs, legs.departure.flight.velocity)
         # The bounces before a rest on the table become arbitrarily slow.
-        sticks = np.reshape(legs.departure.sticks, legs.duration.shape)[0]
-        rests = np.any(sticks) if legs.dynamics.forgets else False
+        rests = legs.dynamics.forgets and np.any(_at_point(legs, legs.departure.sticks))
         approach = np.where(orbits.resuming, closing, -closing)
         with np.errstate(divide="ignore", invalid="ignore"):
             lowest = (velocity / approach).min(axis=-1)
@@ -244,7 +243,7 @@ def ends_of_contact(orbits: PeriodicOrbits) -> list[Event]:
         legs = orbits.beside(y)
         if legs.departure is None:
             return np.full(y.shape[:-1], np.nan)
-        return _released(legs).min(axis=-1)
+        return _at_point(legs, legs.departure.flight.velocity).min(axis=-1)
 
     def aloft(y: np.ndarray) -> np.ndarray:
         return (orbits.intervals(y) - orbits.beside(y).duration[0]).min(axis=-1)

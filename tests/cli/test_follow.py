@@ -7,6 +7,8 @@ import pytest
 
 import bouncing_ball
 from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic import observables
 
 RIGID = bouncing_ball.rigid(restitution=0.5)
@@ -86,7 +88,7 @@ def test_results_are_labelled_and_drawn_and_iterated(tmp_path, described):
 def test_mistakes_in_python_are_one_line(refusal):
     one = bouncing_ball.orbit(RIGID, amplitude=1.4)
     found = bouncing_ball.follow(one, to=1.5)
-    with refusal(ModelError, "switch needs a period doubling of a branch, not an ordinary orbit"):
+    with refusal(NoOrbitError, "switch needs a period doubling of a branch, not an ordinary orbit"):
         bouncing_ball.switch(one)
     with refusal(ModelError, "follow needs an orbit of bouncing_ball, not float"):
         bouncing_ball.follow(1.4)
@@ -108,6 +110,40 @@ def test_mistakes_in_python_are_one_line(refusal):
         bouncing_ball.follow(start, along=("amplitude", "restitution"), to=1.5)
     with refusal(ModelError, "ranges are those of a curve in two parameters: a branch has to"):
         bouncing_ball.follow(start, to=1.5, ranges={"amplitude": (1.0, 2.0)})
+
+
+@pytest.mark.parametrize(("options", "words"), [
+    ({"along": 3}, "along = 3 is not the name of a parameter or two"),
+    ({"along": (1, 2)}, "along = (1, 2) is not the name of a parameter or two"),
+    ({"ranges": (0.5, 0.9)}, 'ranges = (0.5, 0.9) is not a range by name, such as {"amplitude"'),
+    ({"ranges": {"restitution": 0.9}}, "the range of restitution = 0.9 is not two numbers"),
+])  # fmt: skip
+def test_arguments_of_a_wrong_type_are_named(refusal, options, words):
+    one = bouncing_ball.orbit(RIGID, amplitude=1.4)
+    doubling = bouncing_ball.follow(one, to=1.8).first("period doubling")
+    with refusal(ModelError, words):
+        bouncing_ball.follow(doubling, **{"along": ("amplitude", "restitution")} | options)
+
+
+def test_a_part_of_a_branch_is_plain_data(refusal):
+    found = bouncing_ball.follow(bouncing_ball.orbit(RIGID, amplitude=1.4), to=1.5)
+    part = found.isel(point=0)
+    with refusal(ModelError, "a part of the result of follow is plain data, without orbits"):
+        part.states()
+    with refusal(ModelError, "is plain data, without orbits"):
+        part.first("period doubling")
+    with refusal(ModelError, "without the dimension 'point' is plain data, without a figure"):
+        part.plot()
+    assert found.isel(point=slice(3)).plot().axes
+
+
+def test_a_contact_in_place_of_a_ball_is_told_its_model(refusal):
+    contact = SpringDamper(10.0, 0.1)
+    with refusal(ModelError, "contact_law or corrected: give SpringDamperModel(…) of this contact"):
+        bouncing_ball.orbit(contact, amplitude=1.0)
+    assert bouncing_ball.orbit(SpringDamperModel(contact), amplitude=1.0).impacts == 1
+    with refusal(ModelError, "contact = 10.0 is not a SpringDamper"):
+        SpringDamperModel(10.0)
 
 
 def test_a_special_orbit_is_followed_as_its_kind_says():

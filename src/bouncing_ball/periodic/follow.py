@@ -1,10 +1,12 @@
-"""Calls that follow any periodic orbit along any parameter, and its special orbits in two."""
+"""Any periodic orbit followed along any parameter, and its special orbits in two, for a user."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, overload
+
+import numpy as np
 
 from bouncing_ball.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
@@ -120,7 +122,7 @@ def follow(
             raise ParameterError(
                 "{to} is the end of a branch: a curve in two parameters has ranges"
             )
-        return _curve(orbit, names, ranges or {}, most)
+        return _curve(orbit, names, {} if ranges is None else ranges, most)
     if ranges is not None:
         raise ParameterError("{ranges} are those of a curve in two parameters: a branch has {to}")
     (name,) = names
@@ -148,7 +150,10 @@ def _names(orbit: Orbit, along: str | tuple[str, ...] | None) -> tuple[str, ...]
     """The one or two parameters along which an orbit is followed."""
     if along is None:
         return orbit.along[:1]
-    names = (along,) if isinstance(along, str) else tuple(along)
+    several = isinstance(along, list | tuple) and all(isinstance(name, str) for name in along)
+    names = tuple(along) if several else (along,)
+    if not several and not isinstance(along, str):
+        raise ParameterError("{along} = {} is not the name of a parameter or two", repr(along))
     if len(names) not in (1, 2) or len(set(names)) < len(names):
         raise ParameterError("{along} = {} is not one parameter or two different ones", repr(along))
     balls = Balls(orbit.model, orbit.amplitude)
@@ -166,6 +171,10 @@ def _curve(
             "an ordinary orbit has no curve in two parameters: give a special one, such as "
             'follow(orbit).first("saddle-node")'
         )
+    if not isinstance(ranges, Mapping):
+        first, second = names
+        given = f'such as {{"{first}": (low, high), "{second}": (low, high)}}'
+        raise ParameterError("{ranges} = {} is not a range by name, {}", repr(ranges), given)
     for name in ranges:
         chosen("ranges", name, names)
     first, second = names
@@ -196,7 +205,7 @@ def switch(orbit: Orbit) -> Orbit:
     Raises
     ------
     NoOrbitError
-        If no orbit of twice the period is found.
+        If the orbit is no period doubling, or if no orbit of twice the period is found.
 
     Examples
     --------
@@ -211,7 +220,7 @@ def switch(orbit: Orbit) -> Orbit:
     _check_orbit("switch", orbit)
     if orbit.kind != Special.PERIOD_DOUBLING:
         found = f"a {orbit.kind}" if orbit.kind else "an ordinary orbit"
-        raise ParameterError(f"switch needs a period doubling of a branch, not {found}")
+        raise NoOrbitError(f"switch needs a period doubling of a branch, not {found}")
     return switching.switch(orbit, orbit.along[0])
 
 
@@ -268,7 +277,8 @@ def _window(name: str, given: Sequence[float] | None, start: float) -> Window | 
     """The range of a parameter on a curve, which contains its value at the start."""
     if given is None:
         return None
-    numbers = [checked_number("ranges", value, FINITE) for value in given]
+    several = isinstance(given, list | tuple | np.ndarray)
+    numbers = [checked_number("ranges", x, FINITE) for x in given] if several else []
     if len(numbers) != 2 or not numbers[0] < numbers[1]:
         raise ParameterError(
             f"the range of {name} = {{}} is not two numbers of which the second is larger",

@@ -166,6 +166,44 @@ def test_a_special_orbit_is_followed_as_its_kind_says():
     assert again.attrs["impacts"] == 1 and float(again.amplitude[-1]) > fold.amplitude
 
 
+STIFF = bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=10.0)
+
+
+@pytest.mark.parametrize(("ball", "start", "along", "there", "beyond", "side"), [
+    (RIGID, 1.4, "amplitude", 1.3, 0.5, "above 1.0472"),
+    (RIGID, 1.4, "restitution", 0.6, 0.3, "above 0.5"),
+    (STIFF, 1.0, "amplitude", 0.5, 0.1, "above 0.239988"),
+    (STIFF, 1.0, "frequency_ratio", 5.0, 20.0, "below 10"),
+])  # fmt: skip
+def test_from_a_saddle_node_the_stable_side_is_followed(
+    refusal, ball, start, along, there, beyond, side
+):
+    one = bouncing_ball.orbit(ball, amplitude=start)
+    fold = bouncing_ball.follow(one, to=0.1).first("saddle-node")
+    found = bouncing_ball.follow(fold, along=along, to=there)
+    assert found[along].values[-1] == pytest.approx(there) and found.stable[1:10].all()
+    with refusal(NoOrbitError, f"to = {beyond:g} is beyond the", f"only for {along} {side}"):
+        bouncing_ball.follow(fold, along=along, to=beyond)
+    # The other side comes behind the saddle-node.
+    behind = bouncing_ball.follow(list(found.states())[3], along=along, to=beyond)
+    assert behind.special_kind[0] == "saddle-node"
+    assert not behind.stable[int(behind.special_point[0]) + 2]
+
+
+def test_from_a_period_halving_the_branch_of_half_the_period_is_followed():
+    one = bouncing_ball.orbit(RIGID, amplitude=1.4)
+    branch = bouncing_ball.follow(one, to=1.8)
+    for expected in ((1, 1), (2, 2)):
+        doubling = branch.first("period doubling")
+        doubled = bouncing_ball.follow(doubling, to=1.8)
+        back = bouncing_ball.follow(list(doubled.states())[3], to=1.3)
+        half = bouncing_ball.follow(back.first("period halving"), to=1.55)
+        assert (half.attrs["impacts"], half.attrs["periods"]) == expected
+        assert float(half.amplitude[0]) == pytest.approx(doubling.amplitude, abs=1e-12)
+        assert half.sizes["point"] > 2 and float(half.amplitude[-1]) == pytest.approx(1.55)
+        branch = doubled
+
+
 def test_a_branch_that_ends_at_a_special_orbit_is_not_followed_from_there(refusal):
     """At the grazing of an impact there is one impact less beyond it."""
     one = bouncing_ball.orbit(RIGID, amplitude=1.4)

@@ -57,10 +57,12 @@ def follow(
     """The branch of a periodic orbit along a parameter, or the curve of a special orbit in two.
 
     An ordinary orbit is followed up to a value of the parameter or to the end of its branch. From a
-    period doubling the branch of twice the period is followed, and from a saddle-node or the
-    grazing of a flight or of a release the branch on which it lies. At the grazing of an impact and
-    at the end of sticking a branch ends. With two parameters the curve of special orbits of this
-    kind is followed in both directions.
+    period doubling the branch of twice the period is followed, from a period halving that of half
+    the period, and from the grazing of a flight or of a release the branch on which it lies. A
+    saddle-node has orbits on one side of the parameter only, and two branches there: the stable one
+    is followed. The other one comes behind the saddle-node if an orbit of the stable one is
+    followed towards it. At the grazing of an impact and at the end of sticking a branch ends. With
+    two parameters the curve of special orbits of this kind is followed in both directions.
 
     Parameters
     ----------
@@ -133,9 +135,34 @@ def follow(
         kind = Special(orbit.kind)
         raise NoOrbitError(f"the branch ends at the {kind}: {MEANINGS[kind]}")
     start = orbit
+    increasing = None
     if orbit.kind == Special.PERIOD_DOUBLING:
         start = switching.switch(orbit, name)
-    return FollowedBranch.of_orbits(following.follow(start, name, value, most=most))
+    elif orbit.kind == Special.PERIOD_HALVING:
+        start = switching.halved(orbit)
+    elif orbit.kind == Special.SADDLE_NODE:
+        increasing = _to_stable_side(orbit, name, value)
+    found = following.follow(start, name, value, increasing=increasing, most=most)
+    return FollowedBranch.of_orbits(found)
+
+
+def _to_stable_side(fold: Orbit, name: str, to: float | None) -> bool:
+    """The direction in which the stable side of a saddle-node is followed.
+
+    Raises
+    ------
+    NoOrbitError
+        If the branch is to be followed to where it has no orbits.
+    """
+    sides = switching.sides(fold, name)
+    if sides.above is not None and to is not None and to != sides.at:
+        if (to > sides.at) != sides.above:
+            where = "above" if sides.above else "below"
+            raise NoOrbitError(
+                f"to = {to:g} is beyond the saddle-node: its orbits exist only for {name} {where} "
+                f"{sides.at:g}"
+            )
+    return sides.increasing
 
 
 def _check_orbit(call: str, orbit: Any) -> None:

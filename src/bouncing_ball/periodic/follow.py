@@ -173,13 +173,12 @@ def _check_orbit(call: str, orbit: Any) -> None:
         raise ParameterError(f"{call} needs a single orbit, not {{}}", str(orbit.size))
 
 
-def _names(orbit: Orbit, along: str | tuple[str, ...] | None) -> tuple[str, ...]:
+def _names(orbit: Orbit, along: Any) -> tuple[str, ...]:
     """The one or two parameters along which an orbit is followed."""
     if along is None:
         return orbit.along[:1]
-    several = isinstance(along, list | tuple) and all(isinstance(name, str) for name in along)
-    names = tuple(along) if several else (along,)
-    if not several and not isinstance(along, str):
+    names = tuple(along) if isinstance(along, list | tuple) else (along,)
+    if not all(isinstance(name, str) for name in names):
         raise ParameterError("{along} = {} is not the name of a parameter or two", repr(along))
     if len(names) not in (1, 2) or len(set(names)) < len(names):
         raise ParameterError("{along} = {} is not one parameter or two different ones", repr(along))
@@ -189,9 +188,7 @@ def _names(orbit: Orbit, along: str | tuple[str, ...] | None) -> tuple[str, ...]
     return names
 
 
-def _curve(
-    orbit: Orbit, names: tuple[str, ...], ranges: Mapping[str, Sequence[float]], most: int
-) -> SpecialCurve:
+def _curve(orbit: Orbit, names: tuple[str, ...], ranges: Any, most: int) -> SpecialCurve:
     """The curve of special orbits of the orbit's kind in two parameters."""
     if not orbit.kind:
         raise NoOrbitError(
@@ -300,7 +297,7 @@ def curve(
     return follow(special, along=(along, across), points=points, ranges=ranges)
 
 
-def _window(name: str, given: Sequence[float] | None, start: float) -> Window | None:
+def _window(name: str, given: Any, start: float) -> Window | None:
     """The range of a parameter on a curve, which contains its value at the start."""
     if given is None:
         return None

@@ -211,8 +211,9 @@ def count(high: int, low: int = 1) -> Range:
     return Range(low, high, "[]", whole=True)
 
 
-# The ranges of calls. Beyond these limits the squares of ϖ and Λ leave no digits, and a table that
-# moves by less than the smallest Λ is at rest within the rounding of a flight.
+# The ranges of the arguments of public functions. Beyond these limits the squares of ϖ and Λ leave
+# no digits, and a table that moves by less than the smallest Λ is at rest within the rounding of a
+# flight.
 FREQUENCY_RATIO = Range(1e-8, 1e8, "[]")
 AMPLITUDE = Range(1e-12, 1e8, "[]", or_zero=True)
 RESTITUTION = Range(0, 1, "(]")

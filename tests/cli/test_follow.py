@@ -7,6 +7,8 @@ import pytest
 
 import bouncing_ball
 from bouncing_ball.errors import ModelError, NoOrbitError
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic import observables
 
 RIGID = bouncing_ball.rigid(restitution=0.5)
@@ -86,7 +88,7 @@ def test_results_are_labelled_and_drawn_and_iterated(tmp_path, described):
 def test_mistakes_in_python_are_one_line(refusal):
     one = bouncing_ball.orbit(RIGID, amplitude=1.4)
     found = bouncing_ball.follow(one, to=1.5)
-    with refusal(ModelError, "switch needs a period doubling of a branch, not an ordinary orbit"):
+    with refusal(NoOrbitError, "switch needs a period doubling of a branch, not an ordinary orbit"):
         bouncing_ball.switch(one)
     with refusal(ModelError, "follow needs an orbit of bouncing_ball, not float"):
         bouncing_ball.follow(1.4)
@@ -110,6 +112,40 @@ def test_mistakes_in_python_are_one_line(refusal):
         bouncing_ball.follow(start, to=1.5, ranges={"amplitude": (1.0, 2.0)})
 
 
+@pytest.mark.parametrize(("options", "words"), [
+    ({"along": 3}, "along = 3 is not the name of a parameter or two"),
+    ({"along": (1, 2)}, "along = (1, 2) is not the name of a parameter or two"),
+    ({"ranges": (0.5, 0.9)}, 'ranges = (0.5, 0.9) is not a range by name, such as {"amplitude"'),
+    ({"ranges": {"restitution": 0.9}}, "the range of restitution = 0.9 is not two numbers"),
+])  # fmt: skip
+def test_arguments_of_a_wrong_type_are_named(refusal, options, words):
+    one = bouncing_ball.orbit(RIGID, amplitude=1.4)
+    doubling = bouncing_ball.follow(one, to=1.8).first("period doubling")
+    with refusal(ModelError, words):
+        bouncing_ball.follow(doubling, **{"along": ("amplitude", "restitution")} | options)
+
+
+def test_a_part_of_a_branch_is_plain_data(refusal):
+    found = bouncing_ball.follow(bouncing_ball.orbit(RIGID, amplitude=1.4), to=1.5)
+    part = found.isel(point=0)
+    with refusal(ModelError, "a part of the result of follow is plain data, without orbits"):
+        part.states()
+    with refusal(ModelError, "is plain data, without orbits"):
+        part.first("period doubling")
+    with refusal(ModelError, "without the dimension 'point' is plain data, without a figure"):
+        part.plot()
+    assert found.isel(point=slice(3)).plot().axes
+
+
+def test_a_contact_in_place_of_a_ball_is_told_its_model(refusal):
+    contact = SpringDamper(10.0, 0.1)
+    with refusal(ModelError, "contact_law or corrected: give SpringDamperModel(…) of this contact"):
+        bouncing_ball.orbit(contact, amplitude=1.0)
+    assert bouncing_ball.orbit(SpringDamperModel(contact), amplitude=1.0).impacts == 1
+    with refusal(ModelError, "contact = 10.0 is not a SpringDamper"):
+        SpringDamperModel(10.0)
+
+
 def test_a_special_orbit_is_followed_as_its_kind_says():
     one = bouncing_ball.orbit(RIGID, amplitude=1.4)
     doubling = bouncing_ball.follow(one, to=1.8).first("period doubling")
@@ -128,6 +164,44 @@ def test_a_special_orbit_is_followed_as_its_kind_says():
     fold = bouncing_ball.follow(one, to=0.5).first("saddle-node")
     again = bouncing_ball.follow(fold)
     assert again.attrs["impacts"] == 1 and float(again.amplitude[-1]) > fold.amplitude
+
+
+STIFF = bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=10.0)
+
+
+@pytest.mark.parametrize(("ball", "start", "along", "there", "beyond", "side"), [
+    (RIGID, 1.4, "amplitude", 1.3, 0.5, "above 1.0472"),
+    (RIGID, 1.4, "restitution", 0.6, 0.3, "above 0.5"),
+    (STIFF, 1.0, "amplitude", 0.5, 0.1, "above 0.239988"),
+    (STIFF, 1.0, "frequency_ratio", 5.0, 20.0, "below 10"),
+])  # fmt: skip
+def test_from_a_saddle_node_the_stable_side_is_followed(
+    refusal, ball, start, along, there, beyond, side
+):
+    one = bouncing_ball.orbit(ball, amplitude=start)
+    fold = bouncing_ball.follow(one, to=0.1).first("saddle-node")
+    found = bouncing_ball.follow(fold, along=along, to=there)
+    assert found[along].values[-1] == pytest.approx(there) and found.stable[1:10].all()
+    with refusal(NoOrbitError, f"to = {beyond:g} is beyond the", f"only for {along} {side}"):
+        bouncing_ball.follow(fold, along=along, to=beyond)
+    # The other side comes behind the saddle-node.
+    behind = bouncing_ball.follow(list(found.states())[3], along=along, to=beyond)
+    assert behind.special_kind[0] == "saddle-node"
+    assert not behind.stable[int(behind.special_point[0]) + 2]
+
+
+def test_from_a_period_halving_the_branch_of_half_the_period_is_followed():
+    one = bouncing_ball.orbit(RIGID, amplitude=1.4)
+    branch = bouncing_ball.follow(one, to=1.8)
+    for expected in ((1, 1), (2, 2)):
+        doubling = branch.first("period doubling")
+        doubled = bouncing_ball.follow(doubling, to=1.8)
+        back = bouncing_ball.follow(list(doubled.states())[3], to=1.3)
+        half = bouncing_ball.follow(back.first("period halving"), to=1.55)
+        assert (half.attrs["impacts"], half.attrs["periods"]) == expected
+        assert float(half.amplitude[0]) == pytest.approx(doubling.amplitude, abs=1e-12)
+        assert half.sizes["point"] > 2 and float(half.amplitude[-1]) == pytest.approx(1.55)
+        branch = doubled
 
 
 def test_a_branch_that_ends_at_a_special_orbit_is_not_followed_from_there(refusal):

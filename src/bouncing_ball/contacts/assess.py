@@ -11,6 +11,7 @@ from bouncing_ball.contacts.describe import require_short
 from bouncing_ball.contacts.families import ComparedOrbit, Needed, families, finite, needed
 from bouncing_ball.contacts.motion import FinalMotion, of_family
 from bouncing_ball.contacts.notes import notes, remarks
+from bouncing_ball.contacts.quantities import check_kind
 from bouncing_ball.contacts.question import Question
 from bouncing_ball.contacts.resolve import resolve
 from bouncing_ball.contacts.resolved import ResolvedContact
@@ -183,7 +184,10 @@ def assess_contact(table: Table, contact: Contact, question: Question | None = N
     >>> found.n, found.is_good_enough, round(found.judged.errors["max_height"], 4)
     (1, True, 0.0122)
     """
-    asked = question or Question()
+    asked = Question() if question is None else question
+    check_kind("table", table, Table)
+    check_kind("contact", contact, Contact)
+    check_kind("question", asked, Question)
     return assess(resolve(contact, table.motion, asked.families), asked)
 
 

@@ -9,6 +9,7 @@ from bouncing_ball.contacts.families import Needed, needed
 from bouncing_ball.contacts.hertz import reduced_modulus
 from bouncing_ball.contacts.loss import of_loss
 from bouncing_ball.contacts.notes import remarks
+from bouncing_ball.contacts.quantities import check_kind
 from bouncing_ball.contacts.question import Question
 from bouncing_ball.contacts.resolve import law_type, meant
 from bouncing_ball.contacts.resolved import ResolvedContact
@@ -82,7 +83,11 @@ def choose_contact(table: Table, contact: Contact, question: Question | None = N
     >>> f"{found.stiffness:.4g} N/m, {found.contact_time:.3g} s", round(found.frequency_ratio, 2)
     ('1.36e+07 N/m, 0.000122 s', 83.0)
     """
-    return choose(contact, table.motion, question or Question())
+    asked = Question() if question is None else question
+    check_kind("table", table, Table)
+    check_kind("contact", contact, Contact)
+    check_kind("question", asked, Question)
+    return choose(contact, table.motion, asked)
 
 
 def choose(

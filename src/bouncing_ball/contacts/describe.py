@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar
 from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.drop_test import rebound
 from bouncing_ball.contacts.notes import remarks
-from bouncing_ball.contacts.quantities import Gravity, Speed, quantities
+from bouncing_ball.contacts.quantities import Gravity, Speed, check_kind, quantities
 from bouncing_ball.contacts.resolve import needs_table, resolve
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.rows import Listed
@@ -91,6 +91,7 @@ def describe_contact(contact: Contact, gravity: Gravity = None) -> Description:
     >>> round(found.stiffness, 6), round(found.damping, 6), round(found.measured_restitution, 4)
     (13888.888889, 50.0, 0.451)
     """
+    check_kind("contact", contact, Contact)
     if gravity is not None:
         gravity = in_si("gravity", gravity, quantities(describe_contact)["gravity"])
     return describe(resolve(contact, TableMotion.at_rest(gravity)))

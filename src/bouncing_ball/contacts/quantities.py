@@ -72,6 +72,24 @@ def convert(data: Any) -> None:
             object.__setattr__(data, name, in_si(name, value, kind))
 
 
+def check_kind(name: str, value: Any, kind: type) -> None:
+    """Raise :class:`ParameterError` unless an argument is of its class.
+
+    Examples
+    --------
+    >>> from bouncing_ball.contacts.question import Question
+    >>> check_kind("question", 0.05, Question)
+    Traceback (most recent call last):
+    bouncing_ball.errors.ParameterError: question = 0.05 is not a Question
+    """
+    if not isinstance(value, kind):
+        # The text of a ball or of a dataset has several lines.
+        text = repr(value)
+        shown = type(value).__name__ if "\n" in text else text
+        article = "an" if kind.__name__[0] in "AEIOU" else "a"
+        raise ParameterError(f"{{{name}}} = {{}} is not {article} {kind.__name__}", shown)
+
+
 def given(data: Any) -> dict[str, Any]:
     """The fields of a dataclass that are given, by name.
 

@@ -13,6 +13,7 @@ from bouncing_ball.contacts.engines.choice import engine_named
 from bouncing_ball.contacts.engines.engine import EngineSettings
 from bouncing_ball.contacts.engines.given_step import AtStep, stiffest_contact
 from bouncing_ball.contacts.loss import of_loss
+from bouncing_ball.contacts.quantities import check_kind
 from bouncing_ball.contacts.question import EngineSetup, Question
 from bouncing_ball.contacts.resolve import resolve
 from bouncing_ball.contacts.resolved import ResolvedContact
@@ -65,10 +66,14 @@ def write_contact(
     >>> found.at_step.is_within, f"{found.at_step.stiffest:.3g} N/m"
     (False, '74.1 N/m')
     """
+    asked = Question() if question is None else question
+    check_kind("contact", contact, Contact)
+    check_kind("setup", setup, EngineSetup)
+    check_kind("question", asked, Question)
     if table is None:
         case = resolve_for(contact, setup, TableMotion.at_rest())
         return settings(describe(case).case, setup)
-    asked = question or Question()
+    check_kind("table", table, Table)
     case = resolve(contact, table.motion, asked.families, setup.engine)
     return settings_on_table(assess(case, asked), setup)
 

@@ -1,4 +1,4 @@
-"""The result of a call: a labelled dataset that draws itself."""
+"""The result of a public function: a labelled dataset that draws itself."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Self

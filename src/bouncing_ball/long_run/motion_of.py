@@ -1,4 +1,4 @@
-"""Calls about the motions on which balls end: one ball, a range of Λ, or a grid of starts."""
+"""The motions on which balls end: of one ball, over a range of Λ, or from a grid of starts."""
 
 from __future__ import annotations
 

@@ -1,3 +1,20 @@
-"""Flight, landing and impact of both models, and the simulation from impact to impact (Eqs. 1-5, 9,
-12-15).
+"""Models of the impact, and the simulation of balls from impact to impact (Eqs. 1-5, 9, 12-15).
+
+The modules in reading order:
+
+``flight``                    free flight and the landing that ends it
+``contact``, ``deviations``   the interface of a contact, and how small deviations of a ball grow
+``sequence``, ``dynamics``    simulated impacts, and the simulation by contacts and flights
+``restitution``, ``sticking``      impacts with a restitution coefficient, and rest on the table
+``damping``, ``oscillator``        the formulas of a linear contact
+``linear_flow``, ``linear_contact``, ``resumption``   the motion in it, to its release and after it
+``permanent_contact``         the Λ up to which a ball stays on the table
+``instant``                   a contact seen from outside, as an impact at an instant
+``ball``, ``model``           what all balls share, and the interface of every model
+``rigid``, ``restitution_by_speed``   models with instantaneous impacts
+``spring_damper``, ``spring_damper_model``   the paper's contact, and balls on it
+``makers``                    balls by their parameters, which a user calls
+``history``, ``over_time``    the motion of balls over time
+
+The packages ``laws`` and ``corrected`` have the other contact laws and the corrected model.
 """

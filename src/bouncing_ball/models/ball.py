@@ -19,6 +19,10 @@ from numpy.typing import ArrayLike
 from bouncing_ball.datasets.arguments import is_array
 from bouncing_ball.errors import ParameterError
 
+# The models of contacts that are not balls themselves. A model imports the balls, so that only its
+# name is known here.
+_OF_CONTACTS = {"SpringDamper": "SpringDamperModel"}
+
 
 class Ball:
     """One ball, or several if parameters are arrays, whose impacts obey one model."""
@@ -121,7 +125,9 @@ contact_law or corrected
     """
     if not isinstance(ball, Ball):
         how = "rigid, spring_damper, contact_law or corrected"
-        raise ParameterError(f"the ball = {{}} is not made by {how}", repr(ball))
+        maker = _OF_CONTACTS.get(type(ball).__name__)
+        remedy = f": give {maker}(…) of this contact" if maker else ""
+        raise ParameterError(f"the ball = {{}} is not made by {how}{remedy}", repr(ball))
     return ball
 
 

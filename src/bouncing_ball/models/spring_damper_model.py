@@ -8,6 +8,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.errors import ParameterError
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.linear_contact import LinearContactDynamics
 from bouncing_ball.models.model import Model
@@ -36,6 +37,10 @@ class SpringDamperModel(Model):
     contact: SpringDamper
 
     name: ClassVar[str] = "spring-damper"
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.contact, SpringDamper):
+            raise ParameterError("contact = {} is not a SpringDamper", repr(self.contact))
 
     @property
     def label(self) -> str:

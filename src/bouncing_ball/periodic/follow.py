@@ -1,10 +1,12 @@
-"""Calls that follow any periodic orbit along any parameter, and its special orbits in two."""
+"""Any periodic orbit followed along any parameter, and its special orbits in two, for a user."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, overload
+
+import numpy as np
 
 from bouncing_ball.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
@@ -55,10 +57,12 @@ def follow(
     """The branch of a periodic orbit along a parameter, or the curve of a special orbit in two.
 
     An ordinary orbit is followed up to a value of the parameter or to the end of its branch. From a
-    period doubling the branch of twice the period is followed, and from a saddle-node or the
-    grazing of a flight or of a release the branch on which it lies. At the grazing of an impact and
-    at the end of sticking a branch ends. With two parameters the curve of special orbits of this
-    kind is followed in both directions.
+    period doubling the branch of twice the period is followed, from a period halving that of half
+    the period, and from the grazing of a flight or of a release the branch on which it lies. A
+    saddle-node has orbits on one side of the parameter only, and two branches there: the stable one
+    is followed. The other one comes behind the saddle-node if an orbit of the stable one is
+    followed towards it. At the grazing of an impact and at the end of sticking a branch ends. With
+    two parameters the curve of special orbits of this kind is followed in both directions.
 
     Parameters
     ----------
@@ -120,7 +124,7 @@ def follow(
             raise ParameterError(
                 "{to} is the end of a branch: a curve in two parameters has ranges"
             )
-        return _curve(orbit, names, ranges or {}, most)
+        return _curve(orbit, names, {} if ranges is None else ranges, most)
     if ranges is not None:
         raise ParameterError("{ranges} are those of a curve in two parameters: a branch has {to}")
     (name,) = names
@@ -131,9 +135,34 @@ def follow(
         kind = Special(orbit.kind)
         raise NoOrbitError(f"the branch ends at the {kind}: {MEANINGS[kind]}")
     start = orbit
+    increasing = None
     if orbit.kind == Special.PERIOD_DOUBLING:
         start = switching.switch(orbit, name)
-    return FollowedBranch.of_orbits(following.follow(start, name, value, most=most))
+    elif orbit.kind == Special.PERIOD_HALVING:
+        start = switching.halved(orbit)
+    elif orbit.kind == Special.SADDLE_NODE:
+        increasing = _to_stable_side(orbit, name, value)
+    found = following.follow(start, name, value, increasing=increasing, most=most)
+    return FollowedBranch.of_orbits(found)
+
+
+def _to_stable_side(fold: Orbit, name: str, to: float | None) -> bool:
+    """The direction in which the stable side of a saddle-node is followed.
+
+    Raises
+    ------
+    NoOrbitError
+        If the branch is to be followed to where it has no orbits.
+    """
+    sides = switching.sides(fold, name)
+    if sides.above is not None and to is not None and to != sides.at:
+        if (to > sides.at) != sides.above:
+            where = "above" if sides.above else "below"
+            raise NoOrbitError(
+                f"to = {to:g} is beyond the saddle-node: its orbits exist only for {name} {where} "
+                f"{sides.at:g}"
+            )
+    return sides.increasing
 
 
 def _check_orbit(call: str, orbit: Any) -> None:
@@ -144,11 +173,13 @@ def _check_orbit(call: str, orbit: Any) -> None:
         raise ParameterError(f"{call} needs a single orbit, not {{}}", str(orbit.size))
 
 
-def _names(orbit: Orbit, along: str | tuple[str, ...] | None) -> tuple[str, ...]:
+def _names(orbit: Orbit, along: Any) -> tuple[str, ...]:
     """The one or two parameters along which an orbit is followed."""
     if along is None:
         return orbit.along[:1]
-    names = (along,) if isinstance(along, str) else tuple(along)
+    names = tuple(along) if isinstance(along, list | tuple) else (along,)
+    if not all(isinstance(name, str) for name in names):
+        raise ParameterError("{along} = {} is not the name of a parameter or two", repr(along))
     if len(names) not in (1, 2) or len(set(names)) < len(names):
         raise ParameterError("{along} = {} is not one parameter or two different ones", repr(along))
     balls = Balls(orbit.model, orbit.amplitude)
@@ -157,15 +188,17 @@ def _names(orbit: Orbit, along: str | tuple[str, ...] | None) -> tuple[str, ...]
     return names
 
 
-def _curve(
-    orbit: Orbit, names: tuple[str, ...], ranges: Mapping[str, Sequence[float]], most: int
-) -> SpecialCurve:
+def _curve(orbit: Orbit, names: tuple[str, ...], ranges: Any, most: int) -> SpecialCurve:
     """The curve of special orbits of the orbit's kind in two parameters."""
     if not orbit.kind:
         raise NoOrbitError(
             "an ordinary orbit has no curve in two parameters: give a special one, such as "
             'follow(orbit).first("saddle-node")'
         )
+    if not isinstance(ranges, Mapping):
+        first, second = names
+        given = f'such as {{"{first}": (low, high), "{second}": (low, high)}}'
+        raise ParameterError("{ranges} = {} is not a range by name, {}", repr(ranges), given)
     for name in ranges:
         chosen("ranges", name, names)
     first, second = names
@@ -196,7 +229,7 @@ def switch(orbit: Orbit) -> Orbit:
     Raises
     ------
     NoOrbitError
-        If no orbit of twice the period is found.
+        If the orbit is no period doubling, or if no orbit of twice the period is found.
 
     Examples
     --------
@@ -211,7 +244,7 @@ def switch(orbit: Orbit) -> Orbit:
     _check_orbit("switch", orbit)
     if orbit.kind != Special.PERIOD_DOUBLING:
         found = f"a {orbit.kind}" if orbit.kind else "an ordinary orbit"
-        raise ParameterError(f"switch needs a period doubling of a branch, not {found}")
+        raise NoOrbitError(f"switch needs a period doubling of a branch, not {found}")
     return switching.switch(orbit, orbit.along[0])
 
 
@@ -264,11 +297,12 @@ def curve(
     return follow(special, along=(along, across), points=points, ranges=ranges)
 
 
-def _window(name: str, given: Sequence[float] | None, start: float) -> Window | None:
+def _window(name: str, given: Any, start: float) -> Window | None:
     """The range of a parameter on a curve, which contains its value at the start."""
     if given is None:
         return None
-    numbers = [checked_number("ranges", value, FINITE) for value in given]
+    several = isinstance(given, list | tuple | np.ndarray)
+    numbers = [checked_number("ranges", x, FINITE) for x in given] if several else []
     if len(numbers) != 2 or not numbers[0] < numbers[1]:
         raise ParameterError(
             f"the range of {name} = {{}} is not two numbers of which the second is larger",

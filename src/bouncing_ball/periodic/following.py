@@ -152,7 +152,7 @@ def follow(
     along: str = LAMBDA,
     to: float | None = None,
     *,
-    increasing: bool = True,
+    increasing: bool | None = None,
     control: StepControl = STEPS,
     most: int = 2000,
 ) -> Followed:
@@ -167,8 +167,9 @@ def follow(
     to : float, optional
         The value at which the branch ends. The parameter first moves towards it. Behind a
         saddle-node it moves back, at most as far beyond the start as the value is before it.
-    increasing : bool
-        The direction if ``to`` is not given.
+    increasing : bool, optional
+        The direction at the start; by default towards ``to``, and otherwise up. At a saddle-node,
+        where the parameter stands still, it chooses the side.
     control : StepControl
     most : int
         Number of points after which the branch is left unfinished.
@@ -182,8 +183,8 @@ def follow(
     """
     orbits = start.problem(along)
     here = corrected(orbits, start.point(orbits))
-    if to is not None:
-        increasing = bool(to > orbits.values(here)[along])
+    if increasing is None:
+        increasing = to is None or bool(to > orbits.values(here)[along])
     limits = bounds(orbits, here, to)
     near = min(_NEAR, float(turns_apart(orbits, here)) / 2)
     with np.errstate(all="ignore"):

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, ClassVar, Self
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 import xarray as xr
 
 from bouncing_ball.datasets.arguments import chosen
 from bouncing_ball.datasets.variables import SHARED, Variable, described
-from bouncing_ball.drawing.result import Result
+from bouncing_ball.drawing.result import MADE_BY, Result
+from bouncing_ball.errors import ModelError
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic import observables, stability
 from bouncing_ball.periodic.curves import Curve
@@ -20,6 +22,9 @@ from bouncing_ball.periodic.problem import PeriodicOrbits
 from bouncing_ball.periodic.simulation import is_admissible
 from bouncing_ball.periodic.special import Special
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 VARIABLES = {
     "special_point": Variable("number of the last point of the branch before the special orbit"),
 }
@@ -28,7 +33,9 @@ _ALL = observables.VARIABLES | VARIABLES | _IMPACT
 
 
 class _Orbits(Result):
-    """Orbits one after another; a part of them, such as ``found.isel(point=0)``, has no states."""
+    """Orbits one after another; a part of them, such as ``found.isel(point=0)``, is plain data,
+    which has no orbits.
+    """
 
     __slots__ = ("_found",)
 
@@ -42,9 +49,42 @@ class _Orbits(Result):
         result._found = found
         return result
 
+    @property
+    def _whole(self) -> Any:
+        """The branch or curve of which these are the data.
+
+        Raises
+        ------
+        ModelError
+            If this is a part of a result.
+        """
+        found = getattr(self, "_found", None)
+        if found is None:
+            raise ModelError(
+                f"a part of the result of {self.maker} is plain data, without orbits: "
+                "call the method of the whole result"
+            )
+        return found
+
+    def plot(self, path: str | Path | None = None) -> Figure:  # type: ignore[override]
+        """As for every result; a part of the points, such as a slice, has the figure as well.
+
+        Raises
+        ------
+        ModelError
+            If a dimension has been selected away.
+        """
+        missing = [name for name in ("point", "special", "impact") if name not in self.dims]
+        if missing and MADE_BY in self.attrs:
+            raise ModelError(
+                f"a part of the result of {self.maker} without the dimension {missing[0]!r} is "
+                f"plain data, without a figure: select a list or a slice, or plot the whole result"
+            )
+        return super().plot(path)
+
     def states(self) -> Iterator[Orbit]:
         """The orbits, one after another."""
-        return iter(self._found)
+        return iter(self._whole)
 
 
 class FollowedBranch(_Orbits):
@@ -59,7 +99,7 @@ class FollowedBranch(_Orbits):
 
     def special_states(self) -> list[tuple[str, Orbit]]:
         """The special orbits with their kinds, in order."""
-        return [(orbit.kind, orbit) for orbit in self._found.special]
+        return [(orbit.kind, orbit) for orbit in self._whole.special]
 
     def first(self, kind: str) -> Orbit:
         """The first special orbit of a kind.
@@ -70,7 +110,7 @@ class FollowedBranch(_Orbits):
             If the branch has none.
         """
         name = chosen("kind", kind, [str(each) for each in Special])
-        return self._found.first(Special(name))
+        return self._whole.first(Special(name))
 
 
 class SpecialCurve(_Orbits):

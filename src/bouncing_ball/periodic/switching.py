@@ -1,23 +1,29 @@
-"""From one branch to another: to the doubled orbit.
+"""From one branch to another: to the doubled orbit and back, and to a side of a saddle-node.
 
 At a period doubling the orbit, taken twice, is also an orbit with 2k impacts, and there the
 equations of such orbits have two directions of solutions: along the old branch, and one in which
 the two turns move apart. The doubled branch leaves in the latter.
 """
 
+from dataclasses import replace
+from typing import NamedTuple
+
 import numpy as np
 
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.numerics.corrector import Correction, newton, plane
+from bouncing_ball.numerics.corrector import Correction, newton, plane, tangent
 from bouncing_ball.periodic.balls import LAMBDA
-from bouncing_ball.periodic.following import PATIENT
+from bouncing_ball.periodic.following import PATIENT, corrected
 from bouncing_ball.periodic.orbit import Orbit, orbit_at
 from bouncing_ball.periodic.problem import PeriodicOrbits, twice
+from bouncing_ball.periodic.stability import is_stable
 
 ASIDE = 0.02
 """The distance of the first doubled orbit from the old one, in y."""
 # The distance at which the rise of the parameter is measured.
 _MEASURED = 1e-4
+# The distance from a saddle-node at which its sides are told apart.
+_SIDE = 1e-3
 
 
 def apart(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
@@ -90,3 +96,60 @@ def switch(doubling: Orbit, along: str = LAMBDA, aside: float = ASIDE) -> Orbit:
             f"{float(found.residual):.1e} after {found.iterations} Newton iterations"
         )
     return orbit_at(whole, found.point)
+
+
+def halved(halving: Orbit) -> Orbit:
+    """The orbit of half the period with which a branch merges at a period halving."""
+    k = halving.impacts // 2
+    phases = halving.phases
+    turns = np.array(halving.turns[:k])
+    # The turn ends at the first impact of the first turn in place of the second.
+    turns[-1] += round(float(phases[k] - phases[0]) / (2 * np.pi))
+    return replace(
+        halving,
+        turns=turns,
+        phases=phases[:k],
+        velocities=halving.velocities[:k],
+        durations=halving.durations[:k],
+        resumes=np.broadcast_to(halving.resumes, halving.impacts)[:k],
+        kind="",
+    )
+
+
+class Sides(NamedTuple):
+    """The two sides of a saddle-node along a parameter, whose value there is ``at``.
+
+    ``above`` tells whether the orbits are at larger values of the parameter; None if they are on
+    both sides. ``increasing`` is the direction in which a branch leaves to the stable side. If not
+    exactly one side is stable it is the direction in which the parameter rises at first.
+    """
+
+    at: float
+    above: bool | None
+    increasing: bool
+
+
+def sides(fold: Orbit, along: str) -> Sides:
+    """The sides of a saddle-node.
+
+    Raises
+    ------
+    NoOrbitError
+        If there is no orbit near the saddle-node.
+    """
+    orbits = fold.problem(along)
+    here = corrected(orbits, fold.point(orbits))
+    axis = np.eye(here.size)[-1]
+    # The direction of a branch whose parameter increases at the start, and the opposite one.
+    leaves = tangent(orbits.jacobian(here), axis)
+    beside = here + _SIDE * np.array([1.0, -1.0])[:, np.newaxis] * leaves
+    with np.errstate(all="ignore"):
+        found = newton(orbits, beside, plane(np.stack([leaves, leaves]), beside), PATIENT)
+    rises = found.point[:, -1] > here[-1]
+    stable = is_stable(*orbits.trace_and_determinant(found.point)) & found.converged
+    is_fold = bool(found.converged.all() and rises[0] == rises[1])
+    return Sides(
+        at=float(orbits.values(here)[along]),
+        above=bool(rises[0]) if is_fold else None,
+        increasing=bool(stable[0] or not stable[1]),
+    )

@@ -9,6 +9,6 @@ restitution coefficient and duration. :mod:`.force_law` is what the numerical me
 derivatives, :mod:`.collocation` answers questions about them, :mod:`.motion` simulates balls on
 them, and :mod:`.permanent_contact` finds the largest Λ at which a ball stays on the table.
 :mod:`bouncing_ball.models.instant` holds the numbers by which a short contact is an instantaneous
-impact, and :mod:`.signature` derives them for a law. The n-T orbits on a law are in
-:mod:`bouncing_ball.periodic.n_t`.
+impact, and :mod:`.signature` derives them for a law. The n-T orbits on a law begin in
+:mod:`bouncing_ball.periodic.start`.
 """

@@ -11,7 +11,6 @@ from bouncing_ball.datasets.arguments import (
     FOLLOWED,
     POSITIVE,
     SAMPLES,
-    STATE,
     Amplitude,
     Followed,
     Samples,
@@ -23,8 +22,8 @@ from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import ParameterError
 from bouncing_ball.long_run import grids
-from bouncing_ball.models.ball import Ball, a_ball, a_single_ball
-from bouncing_ball.models.over_time import Starts
+from bouncing_ball.models.ball import Ball, a_single_ball
+from bouncing_ball.models.over_time import first_impacts
 
 
 def motion_of(
@@ -77,13 +76,9 @@ def motion_of(
     >>> found.kind.item(), found.periods.item()
     ('locked', 13)
     """
-    lam = checked("amplitude", amplitude, AMPLITUDE)
-    phi = checked("phase", phase, STATE)
-    before = checked("velocity", velocity, STATE)
+    grid, first = first_impacts(ball, amplitude, phase, velocity)
     most = checked_number("impacts", impacts, FOLLOWED)
-    grid = Grid(amplitude=lam, phase=phi, velocity=before, **a_ball(ball).parameters)
-    starts = Starts.on(grid)
-    found = grids.motions(starts.model(ball, grid), *starts, most)
+    found = grids.motions(first.model(ball, grid), *first, most)
     return Result.of(grid.unfold(found), "motion")
 
 

@@ -52,22 +52,37 @@ _LOSSLESS = 1e-10
 _STATES = 10_000_000
 
 
-class Starts(NamedTuple):
+class FirstImpacts(NamedTuple):
     """First impacts of a row of balls: Λ, the table's phase φ, and z′_i, each of shape (ball,)."""
 
     amplitude: np.ndarray
     phase: np.ndarray
     velocity: np.ndarray
 
-    @classmethod
-    def on(cls, grid: Grid) -> Starts:
-        """The first impacts that are given by the arguments of a call."""
-        return cls(grid.row("amplitude"), grid.row("phase"), grid.row("velocity"))
-
     def model(self, ball: Ball, grid: Grid) -> Any:
         """The model of each ball, whose law may depend on the speed of its first impact."""
         speed = self.amplitude * np.cos(self.phase) - self.velocity
         return ball.row(grid).at_speed(speed if grid.shape else float(speed[0]))
+
+
+def first_impacts(
+    ball: Ball, amplitude: Amplitude, phase: State, velocity: State
+) -> tuple[Grid, FirstImpacts]:
+    """The grid that Λ, the phases, the velocities and the ball span, and its first impacts.
+
+    Raises
+    ------
+    ModelError
+        If an argument is missing, of a wrong type or shape, or out of range.
+    """
+    grid = _grid(
+        ball,
+        amplitude=checked("amplitude", amplitude, AMPLITUDE),
+        phase=checked("phase", phase, STATE),
+        velocity=checked("velocity", velocity, STATE),
+    )
+    first = FirstImpacts(grid.row("amplitude"), grid.row("phase"), grid.row("velocity"))
+    return grid, first
 
 
 def simulate(
@@ -113,13 +128,9 @@ def simulate(
     >>> found.time.values.tolist(), found.status.item()
     ([0.0, 4.0, 6.0], 'bouncing')
     """
-    lam = checked("amplitude", amplitude, AMPLITUDE)
-    phi = checked("phase", phase, STATE)
-    before = checked("velocity", velocity, STATE)
+    grid, first = first_impacts(ball, amplitude, phase, velocity)
     count = checked_number("impacts", impacts, IMPACTS)
-    grid = _grid(ball, amplitude=lam, phase=phi, velocity=before)
-    starts = Starts.on(grid)
-    return _labelled_impacts(grid, starts.model(ball, grid).simulate(*starts, count))
+    return _labelled_impacts(grid, first.model(ball, grid).simulate(*first, count))
 
 
 def history(
@@ -168,16 +179,12 @@ def history(
     >>> found.ball.dims, found.ball_velocity.isel(time=1).values + math.pi / 2
     (('velocity', 'time'), array([1., 2.]))
     """
-    lam = checked("amplitude", amplitude, AMPLITUDE)
-    phi = checked("phase", phase, STATE)
-    before = checked("velocity", velocity, STATE)
+    grid, first = first_impacts(ball, amplitude, phase, velocity)
     length = checked_number("periods", periods, PERIODS)
     count = checked_number("samples", samples, SAMPLES)
-    grid = _grid(ball, amplitude=lam, phase=phi, velocity=before)
     time = instants(length, count, grid.size)
-    starts = Starts.on(grid)
     since = np.broadcast_to(time, (grid.size, time.size))
-    return _labelled_history(grid, time, _followed(starts.model(ball, grid), starts, since))
+    return _labelled_history(grid, time, _followed(first.model(ball, grid), first, since))
 
 
 def drop(
@@ -282,7 +289,7 @@ def _dropped(ball: Ball, grid: Grid, time: np.ndarray) -> dict[str, np.ndarray]:
     require(start >= level, start, "height", "at or above the table, Λ sin φ")
     flight = Flight(start - level, -rate, rate, level, lam)
     falling = land(flight, flight.earliest_landing()).time
-    first = Starts(lam, phi + falling, -falling)
+    first = FirstImpacts(lam, phi + falling, -falling)
     since = time - falling[:, np.newaxis]
     found = _followed(first.model(ball, grid), first, since)
     above = since < 0
@@ -293,7 +300,7 @@ def _dropped(ball: Ball, grid: Grid, time: np.ndarray) -> dict[str, np.ndarray]:
     return found
 
 
-def _followed(model: Any, starts: Starts, time: np.ndarray) -> dict[str, np.ndarray]:
+def _followed(model: Any, starts: FirstImpacts, time: np.ndarray) -> dict[str, np.ndarray]:
     """The variables of a history for balls at times (ball, sample) since their first
     impacts.
     """
@@ -313,7 +320,7 @@ def _followed(model: Any, starts: Starts, time: np.ndarray) -> dict[str, np.ndar
     }
 
 
-def _until(model: Any, starts: Starts, end: np.ndarray) -> ImpactSequence:
+def _until(model: Any, starts: FirstImpacts, end: np.ndarray) -> ImpactSequence:
     """The impacts of balls up to a time since their first impacts, shape (ball,).
 
     Raises

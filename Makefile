@@ -129,8 +129,8 @@ accept: $(SETUP)
 # take some minutes each.
 SAMPLES = $(or $(ONLY),ext_basins ext_chaos ext_diagram ext_lives ext_locking ext_means)
 samples: $(SETUP)
-	$(BIN)/snakemake --cores 2 $(SAMPLES:%=results/figures/%.nc) $(QUIETLY)
-	cp $(SAMPLES:%=results/figures/%.nc) config/
+	$(BIN)/snakemake --cores 2 $(SAMPLES:%=results/figures/beyond/%.nc) $(QUIETLY)
+	cp $(SAMPLES:%=results/figures/beyond/%.nc) config/
 
 report: all
 	$(BIN)/snakemake --report results/report.html

@@ -16,14 +16,14 @@ from docutils.utils.math.latex2mathml import tex2mathml
 import bouncing_ball
 
 ROOT = Path(__file__).parents[1]
-EXPLORER = "figures/explorer.html"
+EXPLORER = "figures/beyond/explorer.html"
 
 project = "Bouncing ball"
 author = "The bouncing-ball maintainers"
 version = release = bouncing_ball.__version__
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.apidoc"]
 root_doc = "README"
-include_patterns = ["*.md", "docs/**.md", "config/README.md", "figures/*.md", "results/api/*.rst"]
+include_patterns = ["*.md", "docs/**.md", "config/README.md", "figures/**.md", "results/api/*.rst"]
 exclude_patterns = [".*", "results/[!a]*", "src", "tests", "workflow"]
 apidoc_modules = [
     {
@@ -71,6 +71,7 @@ PARTS = {
         "paper",
         "supplement",
         "figures/*",
+        "figures/beyond/*",
         "config/README",
         "docs/record",
     ],

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from declared_artifacts import ARTIFACTS
 
 from bouncing_ball.beyond.atlas.figures import shares
 from bouncing_ball.beyond.exhibits import (
@@ -61,7 +62,7 @@ def all_texts(data, verdicts=None):
     texts["atlas"] = to_markdown(*shares(data["atlas"]))
     for name in ("article", "supplement"):
         made[name] = render_article(
-            TEMPLATES / f"{name}.md.j2", data, texts, rows.Claims(data["claims"])
+            TEMPLATES / f"{name}.md.j2", data, texts, rows.Claims(data["claims"]), ARTIFACTS
         )
     return made
 

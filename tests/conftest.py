@@ -144,7 +144,7 @@ def reference():
 @pytest.fixture(scope="session")
 def recorded():
     """The accepted datasets by name."""
-    paths = [*sorted((ROOT / "figures").glob("*.nc")), *(ROOT / "config").glob("ext_*.nc")]
+    paths = [*sorted((ROOT / "figures").rglob("*.nc")), *(ROOT / "config").glob("ext_*.nc")]
     return {path.stem: read_dataset(path) for path in paths}
 
 

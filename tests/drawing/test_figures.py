@@ -22,7 +22,7 @@ SCHEMATICS = ("fig01", "fig04")
 WITH_DATA = [
     name
     for name, each in ARTIFACTS.items()
-    if each.drawing and (ROOT / "figures" / f"{name}.nc").exists()
+    if each.drawing and (ROOT / f"{each.place}.nc").exists()
 ]
 
 

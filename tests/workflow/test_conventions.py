@@ -8,7 +8,8 @@ import pytest
 
 from bouncing_ball.datasets.files import CONVENTIONS
 
-RECORD = Path(__file__).resolve().parents[2] / "figures"
+ROOT = Path(__file__).resolve().parents[2]
+DATASETS = sorted(str(path.relative_to(ROOT)) for path in (ROOT / "figures").rglob("*.nc"))
 # CF, section 2.3: "should begin with a letter and be composed of letters, digits, and underscores".
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 # Reserved by netCDF itself.
@@ -17,9 +18,9 @@ OWN = {"_FillValue"}
 DESCRIPTION = ("title", "history", "references")
 
 
-@pytest.mark.parametrize("name", sorted(path.stem for path in RECORD.glob("*.nc")))
-def test_a_dataset_follows_the_cf_conventions(pristine, name):
-    with netCDF4.Dataset(pristine.path / "results" / "figures" / f"{name}.nc") as data:
+@pytest.mark.parametrize("dataset", DATASETS, ids=lambda dataset: Path(dataset).stem)
+def test_a_dataset_follows_the_cf_conventions(pristine, dataset):
+    with netCDF4.Dataset(pristine.path / "results" / dataset) as data:
         assert data.Conventions == CONVENTIONS
         assert all(data.getncattr(key) for key in DESCRIPTION)
         named = [*data.dimensions, *data.variables, *data.ncattrs()]

@@ -25,9 +25,8 @@ def test_the_sections_are_numbered_without_gaps(texts):
 def test_the_article_shows_every_figure_and_table(texts, pristine):
     text = "".join(texts).replace(r"$\Lambda_{SD}$", "Λ_SD")
     shown = re.findall(r"!\[[^]]*\]\((figures/[^)]*)\)", text)
-    figures = sorted(
-        f"figures/{path.name}" for path in (pristine.path / "results/figures").glob("*.png")
-    )
+    results = pristine.path / "results"
+    figures = sorted(str(path.relative_to(results)) for path in results.glob("figures/**/*.png"))
     assert sorted(shown) == figures
     for name in ("table1", "thresholds", "witness", "formulas", "claims"):
         page = (pristine.path / "results" / "figures" / f"{name}.md").read_text(encoding="utf-8")

@@ -10,7 +10,7 @@ from bouncing_ball.pipeline.provenance import LIBRARIES, explain, read_provenanc
 
 def test_every_artifact_carries_its_provenance(pristine):
     commit = pristine.git("rev-parse", "HEAD")
-    paths = (pristine.path / "results/figures").iterdir()
+    paths = (pristine.path / "results/figures").rglob("*")
     carriers = [path for path in paths if path.suffix in CARRIERS]
     assert len(carriers) > 60
     for path in carriers:

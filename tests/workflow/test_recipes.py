@@ -40,7 +40,7 @@ def heights(data: xr.Dataset) -> Figure:
 '''
 
 
-RULE = """use rule study as lowest_study with:
+RULE = """use rule beyond_study as lowest_study with:
     wildcard_constraints:
         artifact=stage(
             "beyond.exhibits.lowest",
@@ -82,7 +82,7 @@ def test_a_figure_and_a_stage_on_the_dataset_of_another_need_the_files_of_the_re
         module.write(DRAWING)
     assert changed(fresh) == {PAPER, CONFIG, FIGURES}
     (fresh.path / STAGE).write_text(STUDY, encoding="utf-8")
-    first = "use rule study as basins_study with:"
+    first = "use rule beyond_study as basins_study with:"
     fresh.rewrite(BEYOND, first, RULE + first)
     fresh.rewrite(CONFIG, "beyond:\n", "beyond:\n  ext_lowest: { n: 110 }\n")
     assert changed(fresh) == {PAPER, BEYOND, CONFIG, FIGURES, STAGE}
@@ -90,9 +90,10 @@ def test_a_figure_and_a_stage_on_the_dataset_of_another_need_the_files_of_the_re
     fresh.rewrite(CONFIG, "ext_lowest: { n: 110 }", "ext_lowest: { n: 11 }")
     # The stage has the name of its module, and the figure its own.
     fresh.run("--cores", "1", "heights", "lowest")
-    made = {path.name: path for path in (fresh.path / "results/figures").iterdir()}
+    made = {path.name: path for path in fresh.path.glob("results/figures/**/*.*")}
     figure = {f"heights.{kind}" for kind in ("nc", "png", "svg")}
     assert made.keys() == {*figure, "fig11.nc", "ext_lowest.nc"}
+    assert made["ext_lowest.nc"].parent.name == "beyond"
     assert read_dataset(made["ext_lowest.nc"]).lowest_amplitude.long_name == "lowest threshold"
     # The tree has changes that its commit has not.
     assert {read_provenance(path)["dirty"] for path in made.values()} == {"yes"}

@@ -23,12 +23,13 @@ def made_by_a_run():
 
 def test_a_run_makes_every_figure_and_table(pristine):
     made = set(pristine.contents("results"))
-    drawn = {path.stem for path in (ROOT / "figures").glob("*.svg")}
-    pictures = {f"figures/{name}.{kind}" for name in drawn for kind in ("png", "svg")}
-    data = {f"figures/{name}.nc" for name in made_by_a_run()}
-    recorded = {path.stem for path in (ROOT / "figures").glob("*.csv")}
-    texts = {f"figures/{name}.{kind}" for name in recorded for kind in ("csv", "md")}
-    pages = {"figures/explorer.html", "paper.md", "supplement.md", "tally.txt"}
+    figures = ROOT / "figures"
+    drawn = {str(path.with_suffix("").relative_to(ROOT)) for path in figures.rglob("*.svg")}
+    pictures = {f"{place}.{kind}" for place in drawn for kind in ("png", "svg")}
+    data = {f"{ARTIFACTS[name].place}.nc" for name in made_by_a_run()}
+    recorded = {str(path.with_suffix("").relative_to(ROOT)) for path in figures.rglob("*.csv")}
+    texts = {f"{place}.{kind}" for place in recorded for kind in ("csv", "md")}
+    pages = {"figures/beyond/explorer.html", "paper.md", "supplement.md", "tally.txt"}
     assert made == pictures | data | texts | pages
 
 
@@ -73,7 +74,7 @@ def test_every_stage_is_a_target(fresh):
 def test_a_run_gives_the_accepted_datasets(pristine, recorded, coarse):
     # Statements on whole motions are about the maps at their whole size.
     whole = made_by_a_run() - {name for name, _ in coarse} - {"statements"}
-    made = {name: read_dataset(pristine.path / f"results/figures/{name}.nc") for name in whole}
+    made = {name: read_dataset(pristine.path / ARTIFACTS[name].dataset) for name in whole}
     rows = {name: compare_datasets(name, recorded[name], data) for name, data in made.items()}
     assert [(name, row) for name in rows for row in rows[name] if not row.outcome.agrees] == []
 
@@ -128,8 +129,10 @@ def test_two_figures_that_are_interrupted_and_resumed_elsewhere_have_the_same_by
 def test_the_report_shows_every_figure_offline(complete):
     complete.run("--report", "results/report.html")
     page = (complete.path / "results" / "report.html").read_text(encoding="utf-8")
-    for name in [name for name, each in ARTIFACTS.items() if each.drawing]:
-        assert f"results/figures/{name}.png" in page
+    for name, each in ARTIFACTS.items():
+        if not each.drawing:
+            continue
+        assert f"results/{each.place}.png" in page
         assert not name.startswith("fig") or f"Figure {int(name[3:])}." in page
     loaded = re.findall(r"<(?:script|link|img)[^>]+(?:src|href)=[\"'](\w+:[^\"']*)", page)
     assert [url for url in loaded if not url.startswith("data:")] == []

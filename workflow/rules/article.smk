@@ -39,13 +39,14 @@ rule paper:
         ),
         atlas="config/atlas.nc",
         data=[each.dataset for each in ARTIFACTS.values() if each.study],
-        tables=expand("results/figures/{table}.md", table=TABLES),
+        tables=[f"results/{each.place}.md" for each in ARTIFACTS.values() if each.table],
     output:
         paper="results/paper.md",
         supplement="results/supplement.md",
         tally="results/tally.txt",
     params:
         templates=ARTICLE,
+        artifacts=ARTIFACTS,
     log:
         "results/logs/paper.log",
     script:
@@ -65,7 +66,7 @@ rule paper_pdf:
             files=[f"{ARTICLE}/article.typ"],
         ),
         texts=[rules.paper.output.paper, rules.paper.output.supplement],
-        figures=[f"results/figures/{each.name}.svg" for each in ARTIFACTS.values() if each.drawing],
+        figures=[f"results/{each.place}.svg" for each in ARTIFACTS.values() if each.drawing],
     output:
         "results/paper.pdf",
         "results/supplement.pdf",

@@ -20,7 +20,13 @@ stage(
 )
 
 
-use rule study as corrected_model_study with:
+use rule study as beyond_study with:
+    """What all stages beyond the paper have in common. It makes nothing itself."""
+    output:
+        data="results/figures/beyond/{artifact}.nc",
+
+
+use rule beyond_study as corrected_model_study with:
     """The corrected restitution model, and how fast its errors fall along the frequency ratio."""
     wildcard_constraints:
         artifact=stage(
@@ -39,7 +45,7 @@ use rule study as corrected_model_study with:
         ),
 
 
-use rule study as release_rules_study with:
+use rule beyond_study as release_rules_study with:
     """Contacts with another release rule."""
     wildcard_constraints:
         artifact=stage(
@@ -56,7 +62,7 @@ use rule study as release_rules_study with:
         ),
 
 
-use rule study as contact_laws_study with:
+use rule beyond_study as contact_laws_study with:
     """Contacts with other laws."""
     wildcard_constraints:
         artifact=stage(
@@ -70,7 +76,7 @@ use rule study as contact_laws_study with:
         ),
 
 
-use rule study as cascades_study with:
+use rule beyond_study as cascades_study with:
     """Flights in a period, and cascades of period doublings."""
     wildcard_constraints:
         artifact=stage(
@@ -88,7 +94,7 @@ use rule study as cascades_study with:
         ),
 
 
-use rule study as orbit_diagram_study with:
+use rule beyond_study as orbit_diagram_study with:
     """Orbit diagrams over the amplitude."""
     wildcard_constraints:
         artifact=stage(
@@ -103,7 +109,7 @@ use rule study as orbit_diagram_study with:
         ),
 
 
-use rule study as locking_study with:
+use rule beyond_study as locking_study with:
     """The motions on which balls lock, over restitution and amplitude."""
     wildcard_constraints:
         artifact=stage(
@@ -118,7 +124,7 @@ use rule study as locking_study with:
         ),
 
 
-use rule study as long_transients_study with:
+use rule beyond_study as long_transients_study with:
     """Whether balls that seem chaotic lock after long transients."""
     wildcard_constraints:
         artifact=stage(
@@ -132,7 +138,7 @@ use rule study as long_transients_study with:
         ),
 
 
-use rule study as lives_study with:
+use rule beyond_study as lives_study with:
     """How long balls take to lock."""
     wildcard_constraints:
         artifact=stage(
@@ -146,7 +152,7 @@ use rule study as lives_study with:
         ),
 
 
-use rule study as locked_orbits_study with:
+use rule beyond_study as locked_orbits_study with:
     """What predicts a locked orbit."""
     wildcard_constraints:
         artifact=stage(
@@ -161,7 +167,7 @@ use rule study as locked_orbits_study with:
         ),
 
 
-use rule study as basins_study with:
+use rule beyond_study as basins_study with:
     """Basins of motions that coexist."""
     wildcard_constraints:
         artifact=stage(
@@ -176,7 +182,7 @@ use rule study as basins_study with:
         ),
 
 
-use rule study as means_study with:
+use rule beyond_study as means_study with:
     """Means over whole motions, such as the power and the height."""
     wildcard_constraints:
         artifact=stage(
@@ -191,7 +197,7 @@ use rule study as means_study with:
         ),
 
 
-use rule study as engine_steps_study with:
+use rule beyond_study as engine_steps_study with:
     """Time steps of physics engines."""
     wildcard_constraints:
         artifact=stage(
@@ -206,7 +212,7 @@ use rule study as engine_steps_study with:
         ),
 
 
-use rule study as explorer_orbits_study with:
+use rule beyond_study as explorer_orbits_study with:
     """Orbits with which the page of the explorer compares its results."""
     wildcard_constraints:
         artifact=stage(
@@ -219,7 +225,7 @@ use rule study as explorer_orbits_study with:
         ),
 
 
-use rule study as proofs_study with:
+use rule beyond_study as proofs_study with:
     """Numbers of the paper with intervals that certainly contain them."""
     wildcard_constraints:
         artifact=stage(
@@ -232,7 +238,7 @@ use rule study as proofs_study with:
         ),
 
 
-use rule study as certified_verdicts_study with:
+use rule beyond_study as certified_verdicts_study with:
     """The verdicts on printed numbers, decided by certified intervals."""
     wildcard_constraints:
         artifact=stage(
@@ -246,7 +252,7 @@ use rule study as certified_verdicts_study with:
         ),
 
 
-use rule study as statements_study with:
+use rule beyond_study as statements_study with:
     """Verdicts on our statements about the whole motion."""
     wildcard_constraints:
         artifact=stage(

@@ -24,56 +24,56 @@ for each in ARTIFACTS.values():
             drawing=each.drawing,
         output:
             png=report(
-                f"results/figures/{each.name}.png",
+                f"results/{each.place}.png",
                 caption=f"../report/{each.name if each.name in CAPTIONS else 'figure'}.rst",
                 category="Figures" if each.part == "paper" else "Beyond the paper",
                 labels={"figure": each.name},
             ),
-            svg=f"results/figures/{each.name}.svg",
+            svg=f"results/{each.place}.svg",
         log:
             f"results/logs/figures/{each.name}.log",
         script:
             "../scripts/figure.py"
 
 
-TABLES = [each.name for each in ARTIFACTS.values() if each.table]
+# A table as CSV and in Markdown. The page of the claims is a text with a table.
+for each in ARTIFACTS.values():
+    if not each.table or each.name == "claims":
+        continue
 
-
-rule set_table:
-    """A table as CSV and in Markdown."""
-    message:
-        "Setting {wildcards.table}"
-    input:
-        code=lambda w: code(
-            f"set_{w.table}",
-            "table.py",
-            ARTIFACTS[w.table].figures,
-        ),
-        data="results/figures/{table}.nc",
-    output:
-        csv="results/figures/{table}.csv",
-        md="results/figures/{table}.md",
-    params:
-        figures=lambda w: ARTIFACTS[w.table].figures,
-        table=lambda w: ARTIFACTS[w.table].table,
-    wildcard_constraints:
-        # The page of the claims is a text with a table.
-        table="|".join(name for name in TABLES if name != "claims"),
-    log:
-        "results/logs/tables/{table}.log",
-    script:
-        "../scripts/table.py"
+    rule:
+        name:
+            f"set_{each.name}"
+        message:
+            f"Setting {each.name}"
+        input:
+            code=lambda wildcards, each=each: code(
+                f"set_{each.name}",
+                "table.py",
+                each.figures,
+            ),
+            data=each.dataset,
+        output:
+            csv=f"results/{each.place}.csv",
+            md=f"results/{each.place}.md",
+        params:
+            figures=each.figures,
+            table=each.table,
+        log:
+            f"results/logs/tables/{each.name}.log",
+        script:
+            "../scripts/table.py"
 
 
 # The page to explore the models, with reference orbits for the check of its results.
 rule draw_explorer:
     message:
-        "Writing results/figures/explorer.html"
+        "Writing results/figures/beyond/explorer.html"
     input:
         code=lambda wildcards: code("draw_explorer", "explorer.py"),
-        data="results/figures/explorer.nc",
+        data="results/figures/beyond/explorer.nc",
     output:
-        html="results/figures/explorer.html",
+        html="results/figures/beyond/explorer.html",
     log:
         "results/logs/explorer.log",
     script:

@@ -10,7 +10,7 @@ from bouncing_ball.pipeline.jobs import logged, read_input
 with logged(snakemake) as lines:
     data = read_input(snakemake.input.data)
     table = texts(*claims(data))
-    words = render_article(snakemake.params.words, {"claims": data}, {}, Claims(data))
+    words = render_article(snakemake.params.words, {"claims": data}, {}, Claims(data), {})
     write_text(snakemake.output.csv, table[".csv"])
     write_text(snakemake.output.md, f"{words}\n{table['.md']}")
     lines += [*snakemake.output, tally(data)]

@@ -24,9 +24,10 @@ with logged(snakemake) as lines:
     with using(snakemake.input.atlas):
         tables["atlas"] = to_markdown(*shares(data["atlas"]))
     claims = rows.Claims(data["claims"])
+    artifacts = snakemake.params.artifacts
     for template, path in (("article", "paper"), ("supplement", "supplement")):
         file = Path(snakemake.params.templates, f"{template}.md.j2")
-        write_text(snakemake.output[path], render_article(file, data, tables, claims))
+        write_text(snakemake.output[path], render_article(file, data, tables, claims, artifacts))
     last = tally(data["claims"])
     write_text(snakemake.output.tally, last + "\n")
     lines.append(last)

@@ -20,6 +20,7 @@ import xarray as xr
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from bouncing_ball.errors import ModelError
+from bouncing_ball.pipeline.artifacts import Artifact
 
 # Numbers.
 
@@ -260,12 +261,13 @@ def render_article(
     data: Mapping[str, xr.Dataset],
     tables: Mapping[str, str],
     claims: Any,
+    artifacts: Mapping[str, Artifact],
 ) -> str:
     """The text of a template with numbered sections, figures, tables and citations.
 
     Each sentence has a line. A template may include other templates of its folder. Templates can
-    use ``data`` and ``tables`` by name, ``claims``, and the functions in :data:`FORMATS`. Citations
-    have the syntax of pandoc, ``[@key]``.
+    use ``data``, ``tables`` and ``artifacts`` by name, ``claims``, and the functions in
+    :data:`FORMATS`. Citations have the syntax of pandoc, ``[@key]``.
 
     Raises
     ------
@@ -282,7 +284,8 @@ def render_article(
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    environment.globals.update(FORMATS, data=data, tables=tables, claims=claims)
+    known = {"data": data, "tables": tables, "claims": claims, "artifacts": artifacts}
+    environment.globals.update(FORMATS, **known)
     text = environment.get_template(Path(template).name).render()
     with_formulas = by_sentence(numbered(text)).replace("Λ_SD", r"$\Lambda_{SD}$")
     return with_citations(with_formulas, folder)

@@ -2,12 +2,12 @@
 
 The workflow declares the artifacts of its stages as :class:`Artifact`; :class:`ArtifactFiles` are
 the files of an artifact that a folder has. A run writes to a folder, ``results/``; the accepted
-record has the same layout at the top of the repository. ``figures/`` holds the files of most
-artifacts, and all files of an artifact have its name: ``fig14.nc`` is the dataset, ``fig14.png``
-and ``fig14.svg`` are the pictures drawn from it, ``table1.csv`` and ``table1.md`` are tables, and
-``explorer.html`` is a page. The article and its supplement are texts beside ``figures/``, made from
-all datasets. The measurements of physics engines, ``config/engines.nc``, are an artifact that no
-run makes.
+record has the same layout at the top of the repository. ``figures/`` holds the artifacts of the
+paper, ``figures/beyond/`` those that go past it, and all files of an artifact have its name:
+``fig14.nc`` is the dataset, ``fig14.png`` and ``fig14.svg`` are the pictures drawn from it,
+``table1.csv`` and ``table1.md`` are tables, and ``explorer.html`` is a page. The article and its
+supplement are texts beside ``figures/``, made from all datasets. The measurements of physics
+engines, ``config/engines.nc``, are an artifact that no run makes.
 """
 
 from collections.abc import Collection, Iterable
@@ -16,8 +16,10 @@ from pathlib import Path, PurePosixPath
 
 from bouncing_ball.errors import ModelError
 
-FOLDER = "results/figures"
-"""The folder of all artifacts of a run."""
+FOLDERS = ("figures", "figures/beyond")
+"""The folders of the artifacts: those of the paper, and all others."""
+
+_ABOUT = "README.md"  # The page that lists a folder's files; no artifact.
 
 DATASET = ".nc"
 PICTURES = (".png", ".svg")
@@ -77,8 +79,8 @@ class Artifact:
     ... )
     >>> artifact.files
     ['results/figures/table1.nc', 'results/figures/table1.csv', 'results/figures/table1.md']
-    >>> artifact.part, artifact.stage, artifact.dataset
-    ('paper', 'orbits', 'results/figures/table1.nc')
+    >>> artifact.part, artifact.stage, artifact.place, artifact.dataset
+    ('paper', 'orbits', 'figures/table1', 'results/figures/table1.nc')
     """
 
     name: str
@@ -104,9 +106,15 @@ class Artifact:
         return self.module.rpartition(".")[2]
 
     @property
+    def place(self) -> str:
+        """The path of its files in a run and in the record, without their suffixes."""
+        paper, beyond = FOLDERS
+        return f"{paper if self.part == 'paper' else beyond}/{self.name}"
+
+    @property
     def computed(self) -> str | None:
         """The dataset that the study computes, also where an accepted one is read in its place."""
-        return f"{FOLDER}/{self.name}{DATASET}" if self.study else None
+        return f"results/{self.place}{DATASET}" if self.study else None
 
     @property
     def dataset(self) -> str | None:
@@ -125,7 +133,7 @@ class Artifact:
             suffixes += TABLES
         if self.page:
             suffixes += [PAGE]
-        return [f"{FOLDER}/{self.name}{suffix}" for suffix in suffixes]
+        return [f"results/{self.place}{suffix}" for suffix in suffixes]
 
 
 @dataclass(frozen=True)
@@ -158,15 +166,18 @@ class ArtifactFiles:
         return self.files[0] in TEXTS
 
 
+def files_of_figures(folder: Path) -> list[Path]:
+    """The files in the folders of artifacts of a run or of the record.
+
+    Those whose names begin with a point were not written completely, and are left out.
+    """
+    return [path for each in FOLDERS for path in folder.glob(f"{each}/[!.]*") if path.is_file()]
+
+
 def _files_in(folder: Path) -> list[str]:
-    # Files whose names begin with a point were not written completely.
-    paths = [*folder.glob("figures/[!.]*"), *(folder / text for text in TEXTS)]
-    files = [
-        path.relative_to(folder).as_posix()
-        for path in paths
-        if path.suffix in _SUFFIXES and path.exists()
-    ]
-    return files
+    paths = [path for path in files_of_figures(folder) if path.name != _ABOUT]
+    paths += [folder / text for text in TEXTS if (folder / text).exists()]
+    return [path.relative_to(folder).as_posix() for path in paths if path.suffix in _SUFFIXES]
 
 
 def artifacts_in(*folders: Path, not_made: Collection[str] = ()) -> dict[str, ArtifactFiles]:

@@ -16,7 +16,7 @@ import subprocess
 from collections.abc import Iterable, Mapping
 from functools import cache
 from importlib.metadata import version
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -258,7 +258,8 @@ def explain(file: Path, /) -> dict[str, Any]:
     checked_out = None if unknown else made["commit"] == now.commit
     target = made["target"]
     if file.suffix not in CARRIERS:
-        target = f"results/{file.name}" if file.name in TEXTS else f"results/figures/{file.name}"
+        beside = PurePosixPath(target).with_name(file.name)
+        target = f"results/{file.name}" if file.name in TEXTS else str(beside)
     running = versions().items()
     return {
         "file": str(file),

@@ -37,7 +37,7 @@ def render(tmp_path):
     def run(template, ledger=None, **data):
         (tmp_path / "article.md.j2").write_text(template, encoding="utf-8")
         shown = Claims(claims() if ledger is None else ledger)
-        return render_article(tmp_path / "article.md.j2", data, {}, shown)
+        return render_article(tmp_path / "article.md.j2", data, {}, shown, {})
 
     return run
 

@@ -71,7 +71,7 @@ def _put(source: Path, target: Path) -> None:
 @pytest.fixture(scope="session")
 def _record(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("record")
-    (folder / "figures").mkdir()
+    (folder / "figures" / "beyond").mkdir(parents=True)
     for name in NAMES:
         for path in (ROOT / "figures").glob(f"{name}.*"):
             _put(path, folder / "figures" / path.name)

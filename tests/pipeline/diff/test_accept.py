@@ -4,6 +4,7 @@ import subprocess
 
 import pytest
 
+from bouncing_ball.datasets.files import write_dataset
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.diff import accept as module
 from bouncing_ball.pipeline.diff.accept import accept
@@ -17,10 +18,11 @@ def run(pair, monkeypatch):
     monkeypatch.setattr(module, "jobs_left", lambda *_: 0)
     (pair.record / "config").mkdir()
     (pair.record / "config" / "config.yaml").write_text("release: force\n", encoding="utf-8")
-    made = [str(path) for path in pair.new.glob("figures/*")]
+    made = [str(path) for path in pair.new.glob("figures/**/*")]
 
-    def accepted(*names, config=None):
-        return accept(pair.record, pair.new, made, config or {"release": "force"}, names)
+    def accepted(*names, config=None, more=()):
+        files = [*made, *map(str, more)]
+        return accept(pair.record, pair.new, files, config or {"release": "force"}, names)
 
     return accepted
 
@@ -50,6 +52,17 @@ def test_accept_copies_what_has_moved_and_nothing_else(pair, run):
     assert {path.name for path in after if after[path] != before[path]} == {"fig05.nc"}
     assert pair.compare().outcome.agrees
     assert run() == ["Nothing to accept: the results agree with the record."]
+
+
+def test_a_folder_has_its_artifacts_beyond_the_paper_beside_a_page_about_them(pair, run):
+    old, new = (side / "figures/beyond/ext_height.nc" for side in (pair.record, pair.new))
+    data = pair.dataset("fig05")
+    write_dataset(data, old)
+    write_dataset(data.assign(phase=data.phase + 1e-3), new)
+    page = old.with_name("README.md")
+    page.write_text("# Beyond the paper\n", encoding="utf-8")
+    assert run(more=[new])[:-1] == ["copied figures/beyond/ext_height.nc"]
+    assert page.exists()
 
 
 def test_accept_of_named_artifacts_copies_these_alone(pair, run, refusal):

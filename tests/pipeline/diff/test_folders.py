@@ -67,11 +67,13 @@ def test_another_word_or_number_in_a_text_has_drifted(pair, file, old, new):
 
 def test_a_page_is_compared_except_for_its_commit(pair):
     for file, folder in product(("explorer.nc", "explorer.html"), (pair.record, pair.new)):
-        shutil.copyfile(ROOT / "figures" / file, folder / "figures" / file)
-    pair.rewrite("figures/explorer.html", '{"commit": "', '{"commit": "c0ffee')
-    assert pair.part("figures/explorer.html").outcome is Outcome.IDENTICAL
-    pair.rewrite("figures/explorer.html", '"spring-damper", 0.5, 80', '"spring-damper", 0.5, 81')
-    assert pair.part("figures/explorer.html").outcome is Outcome.DRIFTED
+        shutil.copyfile(ROOT / "figures" / "beyond" / file, folder / "figures" / "beyond" / file)
+    pair.rewrite("figures/beyond/explorer.html", '{"commit": "', '{"commit": "c0ffee')
+    assert pair.part("figures/beyond/explorer.html").outcome is Outcome.IDENTICAL
+    pair.rewrite(
+        "figures/beyond/explorer.html", '"spring-damper", 0.5, 80', '"spring-damper", 0.5, 81'
+    )
+    assert pair.part("figures/beyond/explorer.html").outcome is Outcome.DRIFTED
 
 
 def test_a_last_digit_may_change_only_if_its_data_moved(pair):
@@ -293,7 +295,7 @@ def test_a_large_relative_change_does_not_hide_in_an_absolute_budget(pair):
     budget = {"budget": 0.1, "scale": "1"}
     for folder, share in ((pair.record, 0.005), (pair.new, 0.045)):
         data = xr.Dataset({"share": ("t", [share, 1.0, 1e-13 * share], budget)})
-        write_dataset(data, folder / "figures" / "ext_shares.nc")
+        write_dataset(data, folder / "figures" / "beyond" / "ext_shares.nc")
     comparison = pair.compare()
     (line,) = headline(comparison)
     assert line.startswith("ext_shares: within its budget, +800 % in share at t = 0: ")

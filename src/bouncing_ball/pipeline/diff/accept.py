@@ -14,7 +14,7 @@ from typing import Any
 from bouncing_ball.datasets.files import replacing
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline import provenance
-from bouncing_ball.pipeline.artifacts import CARRIERS
+from bouncing_ball.pipeline.artifacts import CARRIERS, files_of_figures
 from bouncing_ball.pipeline.configuration import read_yaml
 from bouncing_ball.pipeline.diff.folders import compare_folders
 from bouncing_ball.pipeline.diff.outcome import Whole
@@ -77,7 +77,7 @@ def _require_reproducible(
     if left := jobs_left(record, files):
         jobs = "1 job" if left == 1 else f"{left} jobs"
         raise ModelError(f"Snakemake would still run {jobs}: run make all diff first")
-    if foreign := sorted({*map(str, results.glob("figures/[!.]*"))} - {*files}):
+    if foreign := sorted({*map(str, files_of_figures(results))} - {*files}):
         raise ModelError(f"{foreign[0]} is not made by this workflow: remove it")
 
 

@@ -39,7 +39,7 @@ are in radians. NaN stands for a number that does not exist, such as the phase o
 saddle-node.
 
 The package is a library, from ``models`` to ``contacts``, and two sets of studies on it, ``paper``,
-the replication, and ``beyond``, which goes past it. The docstring of each room lists its modules;
+the replication, and ``beyond``, which goes past it. The docstring of each room says what is in it;
 ``CONTRIBUTING.md`` describes the rooms, and ``pyproject.toml`` states which imports from which.
 """
 

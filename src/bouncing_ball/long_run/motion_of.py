@@ -13,7 +13,7 @@ from bouncing_ball.datasets.arguments import (
     SAMPLES,
     AmplitudeAxis,
     FollowedImpacts,
-    Samples,
+    SampleCount,
     StartAxis,
     checked,
     checked_number,
@@ -124,8 +124,8 @@ def orbit_diagram(
     ball: Ball,
     *,
     amplitudes: AmplitudeAxis,
-    starts: Samples = 6,
-    samples: Samples = 64,
+    starts: SampleCount = 6,
+    samples: SampleCount = 64,
     impacts: FollowedImpacts = 300,
 ) -> Result:
     """The attractors over Λ, reached from several starts and by following balls in Λ.
@@ -183,7 +183,7 @@ def basins(
     ball: Ball,
     *,
     amplitude: float,
-    starts: Samples = 200,
+    starts: SampleCount = 200,
     velocity_max: float | None = None,
     impacts: FollowedImpacts = 2000,
 ) -> Result:

@@ -24,7 +24,7 @@ from bouncing_ball.datasets.arguments import (
     Impacts,
     Periods,
     PositiveAxis,
-    Samples,
+    SampleCount,
     StartAxis,
     checked,
     checked_number,
@@ -140,7 +140,7 @@ def history(
     phase: StartAxis = 0.0,
     velocity: StartAxis = -math.pi,
     periods: Periods = 10.0,
-    samples: Samples = 200,
+    samples: SampleCount = 200,
 ) -> Result:
     """A ball over time, from a first impact as in :func:`simulate`.
 
@@ -194,7 +194,7 @@ def drop(
     amplitude: AmplitudeAxis = 0.0,
     phase: StartAxis = 0.0,
     periods: Periods = 10.0,
-    samples: Samples = 200,
+    samples: SampleCount = 200,
 ) -> Result:
     """A ball that is dropped at rest above a table, which does not move unless Λ is given.
 

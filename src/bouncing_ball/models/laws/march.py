@@ -25,7 +25,7 @@ from bouncing_ball.models.laws.panel import (
     gauss_rule,
     lever_of,
     load_of,
-    part_of,
+    selected,
 )
 from bouncing_ball.models.laws.scales import scales
 from bouncing_ball.models.laws.sweeps import LONGER, Sweeps
@@ -117,7 +117,7 @@ def _next(law: ForceLaw, start: Start, now: BallsInContact, until: np.ndarray | 
     for which, follow in zip(sides, follows, strict=True):
         if which.size:
             limit = None if until is None else until[which]
-            laws, starts, balls = part_of(which, law, start, now)
+            laws, starts, balls = selected(which, law, start, now)
             panels.append(follow(laws, starts, balls, limit))
     order = np.argsort(np.concatenate(sides))
     return Panel(*(np.concatenate(x, axis=-1)[..., order] for x in zip(*panels, strict=True)))
@@ -202,7 +202,7 @@ class _March:
         """Set the balls to the starts of their contacts."""
         active = self._known()
         is_newton = self.law.root == 1 and not self.differentiate
-        law, start = part_of(active, self.law, self.start)
+        law, start = selected(active, self.law, self.start)
         begin = _begin(law, start, nodes=self.count * (1 + is_newton))
         for row, value in zip(self.balls, begin, strict=True):
             row[active] = value
@@ -235,7 +235,7 @@ class _March:
     def _advance(self, here: np.ndarray) -> None:
         """Try the next panel of the contacts with these indices."""
         until = None if self.until is None else self.until[here]
-        law, start = part_of(here, self.law, self.start)
+        law, start = selected(here, self.law, self.start)
         now = BallsInContact(*(row[here] for row in self.balls))
         if self.allows_time:
             panel = _next(law, start, now, until)
@@ -247,7 +247,7 @@ class _March:
             following = np.minimum(following, longest)
         self.balls.step[here] = following
         good = np.flatnonzero(panel.good)
-        law, start, panel = part_of(good, law, start, panel)
+        law, start, panel = selected(good, law, start, panel)
         self._accept(here[good], law, start, panel)
 
     def _accept(self, here: np.ndarray, law: ForceLaw, start: Start, panel: Panel) -> None:
@@ -266,7 +266,7 @@ class _March:
             self.strain[here] += more
             end = np.flatnonzero(panel.last)
             at = here[end]
-            law, start, panel = part_of(end, law, start, panel)
+            law, start, panel = selected(end, law, start, panel)
             self.jacobian[at], self.contraction[at] = at_release(
                 law, start, panel, self.by[at], self.strain[at]
             )

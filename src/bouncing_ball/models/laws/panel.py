@@ -172,7 +172,7 @@ def grip_of(law: ForceLaw, m: int, root: Any, rate: Any, load: Any) -> Any:
     return grip if law.lag is None else np.where(law.lag == 0, root, grip)
 
 
-def part_of(which: np.ndarray, law: ForceLaw, *rows: Any) -> Any:
+def selected(which: np.ndarray, law: ForceLaw, *rows: Any) -> Any:
     """The laws of some of the contacts, and tuples of arrays whose last axis is the contacts.
 
     The indices are in ascending order, so that all of them select the rows themselves.

@@ -3,12 +3,12 @@
 from typing import Any
 
 from bouncing_ball.cli.design import answer
-from bouncing_ball.cli.design_text import Answer
+from bouncing_ball.cli.design_text import DesignAnswer
 from bouncing_ball.contacts.assess import Assessment
 from bouncing_ball.contacts.describe import Description
 
 
-def answered(**given: Any) -> Answer:
+def answered(**given: Any) -> DesignAnswer:
     """The whole answer: the contact, a drop, and what is written into an engine."""
     return answer(given)
 

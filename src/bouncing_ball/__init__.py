@@ -38,87 +38,92 @@ Everything else is dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g
 are in radians. NaN stands for a number that does not exist, such as the phase of an orbit below its
 saddle-node.
 
-The package is a library, from ``models`` to ``contacts``, and two sets of studies on it. Each floor
-imports only from those below it in this list:
-
-``cli``         the command line, ``bouncing-ball``
-``explorer``    the page with sliders
-``pipeline``    the configuration, jobs, the record and its comparison; knows no balls
-``beyond``      the studies that go past the paper: exhibits, atlas, proofs
-``paper``       the replication: the formulas as printed, exhibits, claims
-``contacts``    an engineer's contact with units, and those of physics engines
-``accuracy``    errors of one model against another, their thresholds
-``long_run``    the motions on which balls end
-``periodic``    periodic orbits of any model, followed along any parameter
-``models``      every law of the impact, flight, sticking, permanent contact
-``drawing``     what all pictures share: style, canvas, labels, tables
-``datasets``    variables with units and budgets, labelled results, netCDF files
-``numerics``    independent of the ball: continuation, certified first zeros, rows of an array
-``errors``      what a user reads, ranges of numbers
+The package is a library, from ``models`` to ``contacts``, and two sets of studies on it, ``paper``,
+the replication, and ``beyond``, which goes past it. The docstring of each room says what is in it;
+``CONTRIBUTING.md`` describes the rooms, and ``pyproject.toml`` states which imports from which.
 """
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+# What type checkers, editors and the linter of imports see.
 if TYPE_CHECKING:
-    from bouncing_ball.accuracy.error_thresholds import error_thresholds
-    from bouncing_ball.contacts.assess import assess_contact
-    from bouncing_ball.contacts.choose import choose_contact
-    from bouncing_ball.contacts.contact import Contact
-    from bouncing_ball.contacts.describe import describe_contact
-    from bouncing_ball.contacts.law_balls import contact_law
-    from bouncing_ball.contacts.question import EngineSetup, Question
-    from bouncing_ball.contacts.table import Table
-    from bouncing_ball.contacts.write import write_contact
-    from bouncing_ball.errors import ModelError, NoOrbitError
-    from bouncing_ball.long_run.motion_of import basins, lyapunov_exponent, motion_of, orbit_diagram
-    from bouncing_ball.long_run.orbit_of_motion import orbit_of_motion
-    from bouncing_ball.models.makers import corrected, rigid, spring_damper
-    from bouncing_ball.models.over_time import drop, history, simulate
-    from bouncing_ball.models.rigid import RestitutionModel
-    from bouncing_ball.models.spring_damper import SpringDamper
-    from bouncing_ball.models.spring_damper_model import SpringDamperModel
-    from bouncing_ball.periodic.branches_of_ball import branch
-    from bouncing_ball.periodic.follow import curve, follow, switch
-    from bouncing_ball.periodic.orbits_of_ball import limits, orbit, orbits, permanent_contact
+    from bouncing_ball.accuracy.error_thresholds import error_thresholds as error_thresholds
+    from bouncing_ball.contacts.assess import assess_contact as assess_contact
+    from bouncing_ball.contacts.choose import choose_contact as choose_contact
+    from bouncing_ball.contacts.contact import Contact as Contact
+    from bouncing_ball.contacts.describe import describe_contact as describe_contact
+    from bouncing_ball.contacts.law_balls import contact_law as contact_law
+    from bouncing_ball.contacts.question import EngineSetup as EngineSetup
+    from bouncing_ball.contacts.question import Question as Question
+    from bouncing_ball.contacts.table import Table as Table
+    from bouncing_ball.contacts.write import write_contact as write_contact
+    from bouncing_ball.errors import ModelError as ModelError
+    from bouncing_ball.errors import NoOrbitError as NoOrbitError
+    from bouncing_ball.long_run.motion_of import basins as basins
+    from bouncing_ball.long_run.motion_of import lyapunov_exponent as lyapunov_exponent
+    from bouncing_ball.long_run.motion_of import motion_of as motion_of
+    from bouncing_ball.long_run.motion_of import orbit_diagram as orbit_diagram
+    from bouncing_ball.long_run.orbit_of_motion import orbit_of_motion as orbit_of_motion
+    from bouncing_ball.models.makers import corrected as corrected
+    from bouncing_ball.models.makers import rigid as rigid
+    from bouncing_ball.models.makers import spring_damper as spring_damper
+    from bouncing_ball.models.over_time import drop as drop
+    from bouncing_ball.models.over_time import history as history
+    from bouncing_ball.models.over_time import simulate as simulate
+    from bouncing_ball.models.rigid import RestitutionModel as RestitutionModel
+    from bouncing_ball.models.spring_damper import SpringDamper as SpringDamper
+    from bouncing_ball.models.spring_damper_model import SpringDamperModel as SpringDamperModel
+    from bouncing_ball.periodic.branches_of_ball import branch as branch
+    from bouncing_ball.periodic.follow import curve as curve
+    from bouncing_ball.periodic.follow import follow as follow
+    from bouncing_ball.periodic.follow import switch as switch
+    from bouncing_ball.periodic.orbits_of_ball import limits as limits
+    from bouncing_ball.periodic.orbits_of_ball import orbit as orbit
+    from bouncing_ball.periodic.orbits_of_ball import orbits as orbits
+    from bouncing_ball.periodic.orbits_of_ball import permanent_contact as permanent_contact
 
 __version__ = "0.1.0"
 
-__all__ = [
-    "Contact",
-    "EngineSetup",
-    "ModelError",
-    "NoOrbitError",
-    "Question",
-    "RestitutionModel",
-    "SpringDamper",
-    "SpringDamperModel",
-    "Table",
-    "assess_contact",
-    "basins",
-    "branch",
-    "choose_contact",
-    "contact_law",
-    "corrected",
-    "curve",
-    "describe_contact",
-    "drop",
-    "error_thresholds",
-    "follow",
-    "history",
-    "limits",
-    "lyapunov_exponent",
-    "motion_of",
-    "orbit",
-    "orbit_diagram",
-    "orbit_of_motion",
-    "orbits",
-    "permanent_contact",
-    "rigid",
-    "simulate",
-    "spring_damper",
-    "switch",
-    "write_contact",
-]
+# The public names and the modules in which they are defined.
+_MODULES = {
+    "Contact": "contacts.contact",
+    "EngineSetup": "contacts.question",
+    "ModelError": "errors",
+    "NoOrbitError": "errors",
+    "Question": "contacts.question",
+    "RestitutionModel": "models.rigid",
+    "SpringDamper": "models.spring_damper",
+    "SpringDamperModel": "models.spring_damper_model",
+    "Table": "contacts.table",
+    "assess_contact": "contacts.assess",
+    "basins": "long_run.motion_of",
+    "branch": "periodic.branches_of_ball",
+    "choose_contact": "contacts.choose",
+    "contact_law": "contacts.law_balls",
+    "corrected": "models.makers",
+    "curve": "periodic.follow",
+    "describe_contact": "contacts.describe",
+    "drop": "models.over_time",
+    "error_thresholds": "accuracy.error_thresholds",
+    "follow": "periodic.follow",
+    "history": "models.over_time",
+    "limits": "periodic.orbits_of_ball",
+    "lyapunov_exponent": "long_run.motion_of",
+    "motion_of": "long_run.motion_of",
+    "orbit": "periodic.orbits_of_ball",
+    "orbit_diagram": "long_run.motion_of",
+    "orbit_of_motion": "long_run.orbit_of_motion",
+    "orbits": "periodic.orbits_of_ball",
+    "permanent_contact": "periodic.orbits_of_ball",
+    "rigid": "models.makers",
+    "simulate": "models.over_time",
+    "spring_damper": "models.makers",
+    "switch": "periodic.follow",
+    "write_contact": "contacts.write",
+}
+
+__all__ = list(_MODULES)
 
 
 def __getattr__(name: str) -> Any:
@@ -127,51 +132,9 @@ def __getattr__(name: str) -> Any:
     ``--help`` of the command line needs no numpy, a single orbit no xarray, and no call the
     packages of another.
     """
-    module: Any
-    match name:
-        case "corrected" | "rigid" | "spring_damper":
-            from bouncing_ball.models import makers as module
-        case "curve" | "follow" | "switch":
-            from bouncing_ball.periodic import follow as module
-        case "orbit_of_motion":
-            from bouncing_ball.long_run import orbit_of_motion as module
-        case "contact_law":
-            from bouncing_ball.contacts import law_balls as module
-        case "branch":
-            from bouncing_ball.periodic import branches_of_ball as module
-        case "limits" | "orbit" | "orbits" | "permanent_contact":
-            from bouncing_ball.periodic import orbits_of_ball as module
-        case "drop" | "history" | "simulate":
-            from bouncing_ball.models import over_time as module
-        case "basins" | "lyapunov_exponent" | "motion_of" | "orbit_diagram":
-            from bouncing_ball.long_run import motion_of as module
-        case "error_thresholds":
-            from bouncing_ball.accuracy import error_thresholds as module
-        case "describe_contact":
-            from bouncing_ball.contacts import describe as module
-        case "assess_contact":
-            from bouncing_ball.contacts import assess as module
-        case "choose_contact":
-            from bouncing_ball.contacts import choose as module
-        case "write_contact":
-            from bouncing_ball.contacts import write as module
-        case "Contact":
-            from bouncing_ball.contacts import contact as module
-        case "EngineSetup" | "Question":
-            from bouncing_ball.contacts import question as module
-        case "Table":
-            from bouncing_ball.contacts import table as module
-        case "SpringDamper":
-            from bouncing_ball.models import spring_damper as module
-        case "SpringDamperModel":
-            from bouncing_ball.models import spring_damper_model as module
-        case "RestitutionModel":
-            from bouncing_ball.models import rigid as module
-        case "ModelError" | "NoOrbitError":
-            from bouncing_ball import errors as module
-        case _:
-            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(module, name)
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"bouncing_ball.{_MODULES[name]}"), name)
 
 
 def __dir__() -> list[str]:

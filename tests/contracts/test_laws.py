@@ -20,7 +20,7 @@ from bouncing_ball.contacts.named_laws import LAWS as NAMED
 from bouncing_ball.contacts.named_laws import by_name
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.damping import Release
-from bouncing_ball.models.history import history
+from bouncing_ball.models.history import motion_at
 from bouncing_ball.models.laws.collocation import contacts, path
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.elasto_backlash import ElastoBacklash
@@ -324,8 +324,8 @@ def test_a_spring_known_by_its_force_alone_agrees_with_the_closed_forms(release)
     # The ball chatters at first.
     one, other = (x.dynamics(1.2).simulate(0.4, -1.0, 6) for x in (exact, law))
     time = np.linspace(0, float(one.time[-1]), 4001)
-    expected = history(one, time)
-    found = history(other, time)
+    expected = motion_at(one, time)
+    found = motion_at(other, time)
     # Samples next to an event may fall on its other side.
     same = expected.touching == found.touching
     assert np.count_nonzero(~same) <= 2 * one.time.size
@@ -394,20 +394,20 @@ def test_a_history_is_continuous_and_obeys_the_law(law):
     sequence = law.dynamics(1.0).simulate(0.7, -3.0, 3)
     release = sequence.time[:2] + sequence.contact_duration[:2]
     for event in (*sequence.time[1:], *release):
-        around = history(sequence, event + np.array([-1e-9, 1e-9]))
+        around = motion_at(sequence, event + np.array([-1e-9, 1e-9]))
         # Twice 1e-9 of a speed of 4.
         assert abs(np.diff(around.gap)[0]) < 1e-8
     time = np.linspace(0.1, 0.9, 9) * float(sequence.contact_duration[0])
     h = 1e-5
-    now, ahead, behind = (history(sequence, time + shift) for shift in (0, h, -h))
+    now, ahead, behind = (motion_at(sequence, time + shift) for shift in (0, h, -h))
     assert now.touching.all() and np.all(now.gap < 0)
     force = law.force(-now.gap, -(now.velocity - np.cos(0.7 + time)))
     # Differences of second order: h²/6 times a third derivative of some 1e5.
     np.testing.assert_allclose((ahead.velocity - behind.velocity) / (2 * h), force - 1, atol=1e-4)
-    flying = history(sequence, 0.5 * (release[0] + sequence.time[1]))
+    flying = motion_at(sequence, 0.5 * (release[0] + sequence.time[1]))
     assert not flying.touching and flying.gap > 0
     # Before the first impact and after the last known release the ball is nowhere.
-    outside = history(sequence, [-1.0, sequence.time[-1] + 100.0])
+    outside = motion_at(sequence, [-1.0, sequence.time[-1] + 100.0])
     assert np.all(np.isnan(outside.height)) and np.all(np.isfinite(outside.table))
 
 

@@ -24,7 +24,7 @@ from bouncing_ball.explorer.document import BOUND, to_html
 from bouncing_ball.explorer.engine_cases import as_json
 from bouncing_ball.long_run.motions import Kind
 from bouncing_ball.models.damping import Release
-from bouncing_ball.models.history import history
+from bouncing_ball.models.history import motion_at
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
@@ -249,7 +249,7 @@ def test_balls_on_the_stage_are_where_the_package_has_them(seen):
             model = RestitutionModel(r) if name == "restitution" else SpringDamperModel(contact)
             run = model.simulate(given["a"], phase, velocity, impacts=300)
             for k, ball in enumerate(ball for ball in balls if ball["model"] == name):
-                expected = history(run[k], ball["since"]).height
+                expected = motion_at(run[k], ball["since"]).height
                 # Over 100 periods the time itself is known to 1e-13, and a ball is not much faster.
                 assert ball["heights"] == pytest.approx(expected, abs=1e-10), (scene["name"], k)
 

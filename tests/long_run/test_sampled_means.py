@@ -8,8 +8,8 @@ from bouncing_ball.long_run.sampled_means import (
     Estimate,
     Starts,
     follow,
-    looks,
     quantile,
+    sample_sizes,
     sections,
     start,
     sums_at,
@@ -47,7 +47,7 @@ def test_the_error_of_a_mean_is_the_scatter_of_means_about_that_of_a_long_run(mo
     be off by several errors.
     """
     starts = impacts_of(model).beside(4096, LAMBDA, 1e-3)
-    (sums,) = sums_at(looks(4096, 4096, (25,)), starts, model, LAMBDA, 50)
+    (sums,) = sums_at(sample_sizes(4096, 4096, (25,)), starts, model, LAMBDA, 50)
     samples = [Estimate.of(each) for each in np.split(sums, 32, axis=1)]
     means = np.array([each.mean for each in samples])
     errors = np.array([each.error for each in samples])
@@ -67,13 +67,13 @@ def test_the_error_of_a_mean_is_the_scatter_of_means_about_that_of_a_long_run(mo
 def test_a_sample_that_grows_is_the_sample_of_its_last_look():
     model = MODELS[0]
     starts = impacts_of(model).beside(60, LAMBDA, 1e-3)
-    *_, grown = sums_at(looks(60, 20, (5, 10)), starts, model, LAMBDA, 3)
-    (at_once,) = sums_at(looks(60, 60, (10,)), starts, model, LAMBDA, 3)
+    *_, grown = sums_at(sample_sizes(60, 20, (5, 10)), starts, model, LAMBDA, 3)
+    (at_once,) = sums_at(sample_sizes(60, 60, (10,)), starts, model, LAMBDA, 3)
     assert grown == pytest.approx(at_once, rel=1e-9)
 
 
 def test_the_means_are_examined_with_less_and_less_care():
-    found = looks(30_000, 1000, (50, 100))
+    found = sample_sizes(30_000, 1000, (50, 100))
     assert [each.balls for each in found[:5]] == [1000, 1000, 2000, 4000, 8000]
     # At most 8192 balls are added at once.
     assert [each.balls for each in found[5:]] == [16_000, 24_192, 30_000]
@@ -107,7 +107,7 @@ def test_sections_cover_all_impacts_of_a_ball():
 def test_balls_that_come_to_rest_have_no_means():
     model = RestitutionModel(0.3)
     starts = Starts(np.zeros(2), np.array([-0.5, -1.0]))
-    (sums,) = sums_at(looks(2, 2, (50,)), starts, model, 0.8, 5)
+    (sums,) = sums_at(sample_sizes(2, 2, (50,)), starts, model, 0.8, 5)
     assert np.all(np.isnan(sums))
 
 

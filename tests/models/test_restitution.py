@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball.models.history import history
+from bouncing_ball.models.history import motion_at
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.models.sticking import lift_off_phase
@@ -108,7 +108,7 @@ def test_many_balls_move_exactly_as_each_of_them_alone():
 def test_the_ball_stays_above_the_table(r, lam, phase, speed):
     sequence = RestitutionModel(r).simulate(lam, phase, lam * np.cos(phase) - speed, 25)
     last = np.max(sequence.time[np.isfinite(sequence.time)])
-    dense = history(sequence, np.linspace(0, last, 3000))
+    dense = motion_at(sequence, np.linspace(0, last, 3000))
     # The rounding of the clock times the velocity, as for the spring-damper.
     assert np.nanmin(dense.gap) >= -1e-12
     # Each impact obeys the law and happens on the table, for flights of some length.

@@ -16,10 +16,10 @@ from bouncing_ball.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
     FAMILY,
     TOLERANCE,
-    AmplitudeOfOrbit,
-    Family,
-    Rule,
-    Tolerance,
+    AmplitudeOfOrbitAxis,
+    FamilyAxis,
+    ReleaseName,
+    ToleranceAxis,
     checked,
     chosen,
 )
@@ -34,12 +34,12 @@ from bouncing_ball.models.rigid import RestitutionModel
 
 def error_thresholds(
     ball: Ball,
-    n: Family = 1,
+    n: FamilyAxis = 1,
     *,
-    amplitude: AmplitudeOfOrbit,
-    tolerance: Tolerance = 0.01,
+    amplitude: AmplitudeOfOrbitAxis,
+    tolerance: ToleranceAxis = 0.01,
     quantities: Sequence[str] | None = None,
-    release: Rule = "displacement",
+    release: ReleaseName = "displacement",
 ) -> Result:
     """The ϖ above which the restitution model is accurate for a contact with a spring and a damper.
 

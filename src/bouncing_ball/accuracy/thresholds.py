@@ -32,7 +32,7 @@ from bouncing_ball.models.spring_damper_model import SpringDamperModel
 Numbered = Callable[[np.ndarray, np.ndarray], np.ndarray]
 """Values, at ratios ϖ, of the functions with given numbers; all three arrays have one shape."""
 
-Errors = Callable[[np.ndarray, np.ndarray, Sequence[str]], np.ndarray]
+ErrorsAtRatios = Callable[[np.ndarray, np.ndarray, Sequence[str]], np.ndarray]
 """Signed relative errors of quantities, shape (quantity, m), at ratios ϖ of rows, shape (m,)."""
 RATIOS = np.geomspace(1.0, 1e6, 97)
 """ϖ at which errors are scanned, from contacts that last a considerable part of the table's period
@@ -155,7 +155,7 @@ def thresholds(
     return Thresholds(np.where(never, np.nan, found), status)
 
 
-def by_quantity(errors: Errors, quantities: Sequence[str], rows: int) -> Numbered:
+def by_quantity(errors: ErrorsAtRatios, quantities: Sequence[str], rows: int) -> Numbered:
     """Errors of several quantities as one set of numbered functions, ``rows`` for each quantity.
 
     The function of number q·rows + k is quantity q of row k. The quantities of an orbit are

@@ -9,13 +9,13 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
-from bouncing_ball.cli.design_text import KINDS, Answer, both, numbers, reason
+from bouncing_ball.cli.design_text import KINDS, DesignAnswer, both, numbers, reason
 from bouncing_ball.cli.options import Parser, add_file, add_optional, option
 from bouncing_ball.contacts import rows
-from bouncing_ball.contacts.assess import Assessment, TimeStep, assess
+from bouncing_ball.contacts.assess import Assessment, LargestTimeStep, assess
 from bouncing_ball.contacts.choose import choose
 from bouncing_ball.contacts.contact import Contact
-from bouncing_ball.contacts.describe import Description, describe, drop
+from bouncing_ball.contacts.describe import Description, describe, drop_at_rest
 from bouncing_ball.contacts.engines.engine import ERROR, EngineSettings
 from bouncing_ball.contacts.quantities import quantities
 from bouncing_ball.contacts.question import EngineSetup, Question
@@ -39,7 +39,7 @@ _OPTIONS = (
     (Contact, ("mass",)),
     (Table, (*_OF_TABLE, "gravity")),
     (Contact, _OF_STIFFNESS_AND_LOSS),
-    (drop, ("speed",)),
+    (drop_at_rest, ("speed",)),
     (Question, ("n",)),
     (Contact, ("release", "law")),
     (Question, ("quantity", "tolerance", "balls")),
@@ -62,7 +62,7 @@ def add_options(parser: Parser) -> None:
         add_optional(parser, kind, names)
 
 
-def design(*, plot: Path | None, all_families: bool, **given: Any) -> Answer:
+def design(*, plot: Path | None, all_families: bool, **given: Any) -> DesignAnswer:
     """The answer about a contact; with ``plot`` the page to print is written as well.
 
     Raises
@@ -80,7 +80,7 @@ def design(*, plot: Path | None, all_families: bool, **given: Any) -> Answer:
     return found._replace(whole=all_families or given.get("n") is not None)
 
 
-def answer(given: Mapping[str, Any]) -> Answer:
+def answer(given: Mapping[str, Any]) -> DesignAnswer:
     """The answer for options by name; an option that is missing or None is not given.
 
     Raises
@@ -109,12 +109,12 @@ def answer(given: Mapping[str, Any]) -> Answer:
     else:
         hint = ""
         found, engine = _at_rest(contact, TableMotion.at_rest(si.get("gravity")), setup)
-    dropped = drop(found.case, si["speed"]) if "speed" in si else None
+    dropped = drop_at_rest(found.case, si["speed"]) if "speed" in si else None
     at_step = None if engine is None else engine.at_step
     if "time_step" in si and engine is None:
         at_step = at_given_step(contact, si["time_step"], si.get("restitution_error", ERROR))
     read |= _quantities_of(contact) | _quantities_of(question)
-    return Answer(found, dropped, engine, at_step, read, hint)
+    return DesignAnswer(found, dropped, engine, at_step, read, hint)
 
 
 def _of(kind: Any, given: Mapping[str, Any]) -> dict[str, Any]:
@@ -150,7 +150,7 @@ def _on_table(
     engine = settings_on_table(found, setup)
     # The time step of the engine is the only one.
     rule = f"r of a free impact in {engine.name} is within {engine.error:g}"
-    return replace(found, time_step=TimeStep(engine.time_step, rule)), engine
+    return replace(found, time_step=LargestTimeStep(engine.time_step, rule)), engine
 
 
 def _at_rest(
@@ -169,7 +169,7 @@ def _meant_in_g(acceleration: Any, table: Table) -> str:
     return f"perhaps {table.acceleration:g} g was meant"
 
 
-def _draw(given: Answer, path: Path) -> None:
+def _draw(given: DesignAnswer, path: Path) -> None:
     found = given.found
     if isinstance(found, Description):
         raise ParameterError("{plot} needs a table, such as {frequency} and {acceleration}")
@@ -188,7 +188,7 @@ def _draw(given: Answer, path: Path) -> None:
         write(figure, path, "bouncing-ball design")
 
 
-def document(given: Answer) -> dict[str, Any]:
+def document(given: DesignAnswer) -> dict[str, Any]:
     """The answer as plain values for JSON, with the options."""
     found = rows.document(given.found)
     if isinstance(given.found, Assessment):

@@ -9,10 +9,10 @@ from bouncing_ball.cli.options import option
 from bouncing_ball.contacts import rows
 from bouncing_ball.contacts.assess import Assessment
 from bouncing_ball.contacts.contact import Contact
-from bouncing_ball.contacts.describe import Description, Dropped, drop
+from bouncing_ball.contacts.describe import Description, Dropped, drop_at_rest
 from bouncing_ball.contacts.engines.engine import EngineSettings
 from bouncing_ball.contacts.engines.given_step import AtStep
-from bouncing_ball.contacts.families import ComparedOrbit, Errors, Needed
+from bouncing_ball.contacts.families import ComparedOrbit, ErrorsByQuantity, Needed
 from bouncing_ball.contacts.quantities import quantities
 from bouncing_ball.contacts.question import EngineSetup, Question
 from bouncing_ball.contacts.table import Table
@@ -30,12 +30,12 @@ KINDS = (
     | quantities(Table)
     | quantities(Question)
     | quantities(EngineSetup)
-    | quantities(drop)
+    | quantities(drop_at_rest)
 )
 """The options with a unit."""
 
 
-class Answer(NamedTuple):
+class DesignAnswer(NamedTuple):
     """The contact with all that was asked about it, and the options with quantities in SI units.
 
     ``found`` is the assessment of a contact on a table, or the description of one without a table.
@@ -64,7 +64,7 @@ def reason(found: Assessment, hint: str) -> str:
     return found.reason if exists else both(found.reason, hint)
 
 
-def numbers(given: Answer) -> list[tuple[str, str]]:
+def numbers(given: DesignAnswer) -> list[tuple[str, str]]:
     """The numbers of the contact and of a drop, by name."""
     dropped = [] if given.dropped is None else rows.texts(given.dropped)
     return rows.texts(given.found) + dropped
@@ -102,7 +102,7 @@ def _without(one: ComparedOrbit, quantity: str, model: str) -> str:
     return "" if one.standing[model].exists else model
 
 
-def _off(one: ComparedOrbit, need: Needed, model: str, errors: Errors) -> str:
+def _off(one: ComparedOrbit, need: Needed, model: str, errors: ErrorsByQuantity) -> str:
     """The error of the judged quantity, or the reason why there is none."""
     error = errors[need.quantity]
     missing = _without(one, need.quantity, model)
@@ -122,7 +122,7 @@ def _family_lines(one: ComparedOrbit) -> list[str]:
     return lines + [_error(one, quantity) for quantity in OF_IMPACTS]
 
 
-def _engine_lines(given: Answer) -> list[str]:
+def _engine_lines(given: DesignAnswer) -> list[str]:
     """The settings of an engine, if one is named, and what it does at the time step given."""
     at = [] if given.at_step is None else _step_lines(given.at_step)
     engine = given.engine
@@ -242,14 +242,14 @@ def _ratio(value: float | None, status: str) -> str:
     return status if value is None else shown(value)
 
 
-def lines(given: Answer) -> list[str]:
+def lines(given: DesignAnswer) -> list[str]:
     """The answer as text, with the verdict first."""
     if isinstance(given.found, Description):
         return _description(given, given.found)
     return _assessment(given, given.found)
 
 
-def _description(given: Answer, found: Description) -> list[str]:
+def _description(given: DesignAnswer, found: Description) -> list[str]:
     """The contact without a table."""
     return [
         _echo(given.question),
@@ -260,7 +260,7 @@ def _description(given: Answer, found: Description) -> list[str]:
     ]
 
 
-def _assessment(given: Answer, found: Assessment) -> list[str]:
+def _assessment(given: DesignAnswer, found: Assessment) -> list[str]:
     """The contact on a table, with the verdict first."""
     need = found.needed
     always = ThresholdStatus.ALWAYS_WITHIN

@@ -19,13 +19,13 @@ from bouncing_ball.datasets.arguments import (
     FAMILY,
     FINITE,
     POINTS,
-    STATE,
+    START,
     SideName,
 )
 from bouncing_ball.datasets.files import PICTURES, require_writable
 from bouncing_ball.errors import ParameterError, Range
 from bouncing_ball.long_run.orbit_of_motion import orbit_of_motion
-from bouncing_ball.periodic import follow as calls
+from bouncing_ball.periodic import follow as library
 from bouncing_ball.periodic import orbits_of_ball as periodic
 from bouncing_ball.periodic.curves import Degenerate
 from bouncing_ball.periodic.labelled import FollowedBranch
@@ -49,8 +49,8 @@ def _add_orbit(parser: Parser) -> None:
     add_number(parser, "n", FAMILY, texts["n"], default=1)
     add_number(parser, "amplitude", AMPLITUDE_OF_ORBIT, texts["amplitude"], required=True)
     add_choice(parser, "side", get_args(SideName), texts["side"], default="stable")
-    add_number(parser, "phase", STATE, _MOTION)
-    add_number(parser, "velocity", STATE, "Its absolute velocity before this impact.")
+    add_number(parser, "phase", START, _MOTION)
+    add_number(parser, "velocity", START, "Its absolute velocity before this impact.")
     add_number(parser, "doublings", _DOUBLINGS, _TWICE, default=0)
     parser.add_argument(option("along"), metavar="NAME", default="amplitude", help=_NAME)
     to = "Value at which the branch ends."
@@ -132,9 +132,9 @@ def _start(
 def _branch(start: Any, along: str, to: float, doublings: int) -> FollowedBranch:
     """The branch of the orbit whose period has doubled so many times."""
     name = along.replace("-", "_")
-    found = calls.follow(start, along=name, to=to)
+    found = library.follow(start, along=name, to=to)
     for _ in range(doublings):
-        found = calls.follow(found.first("period doubling"), along=name, to=to)
+        found = library.follow(found.first("period doubling"), along=name, to=to)
     return found
 
 
@@ -161,7 +161,7 @@ def curve_options(parser: Parser) -> None:
     add_number(parser, "high", FINITE, "Largest value of the second parameter.")
     add_number(parser, "along_low", FINITE, "Smallest value of the first parameter on the curve.")
     add_number(parser, "along_high", FINITE, "Largest value of the first parameter on the curve.")
-    add_number(parser, "points", POINTS, meanings(calls.curve)["points"], default=calls.CURVE)
+    add_number(parser, "points", POINTS, meanings(library.curve)["points"], default=library.CURVE)
     add_ball(parser)
 
 
@@ -198,7 +198,7 @@ def curve(
     special = found.first(words)
     start = None if name in special.along else special.model.numbers().get(name)
     first = along.replace("-", "_")
-    traced = calls.curve(
+    traced = library.curve(
         special,
         kind=words,
         across=name,

@@ -18,7 +18,7 @@ from bouncing_ball.datasets.arguments import (
     FREQUENCY_RATIO,
     POSITIVE,
     RESTITUTION,
-    Rule,
+    ReleaseName,
 )
 from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.models.ball import Ball
@@ -57,7 +57,7 @@ def ball_of(
     *,
     restitution: float | None,
     frequency_ratio: float | None,
-    release: Rule | None,
+    release: ReleaseName | None,
     damping_ratio: float | None,
     measured_restitution: float | None,
     model: str | None,
@@ -103,7 +103,7 @@ def _ball_of_law(
     law: str,
     model: str | None,
     linear: dict[str, float | None],
-    release: Rule | None,
+    release: ReleaseName | None,
     of_law: dict[str, Any],
 ) -> Ball:
     if any(linear[name] is not None for name in LOSSES):

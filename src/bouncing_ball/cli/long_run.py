@@ -10,10 +10,10 @@ import numpy as np
 from bouncing_ball.cli.impact import add_ball, ball_of
 from bouncing_ball.cli.options import Parser, add_file, add_interval, add_number, meanings
 from bouncing_ball.cli.periodic import Answer
-from bouncing_ball.datasets.arguments import AMPLITUDE, FOLLOWED, SAMPLES, STATE
+from bouncing_ball.datasets.arguments import AMPLITUDE, FOLLOWED, SAMPLES, START
 from bouncing_ball.datasets.files import PICTURES, require_writable
 from bouncing_ball.errors import ParameterError, count
-from bouncing_ball.long_run import motion_of as calls
+from bouncing_ball.long_run import motion_of as library
 from bouncing_ball.models.ball import Ball
 
 _MOTION = ("kind", "periods", "impacts", "reason")
@@ -27,10 +27,10 @@ _FOLLOWED = 300
 
 def motion_options(parser: Parser) -> None:
     """Add the options of :func:`motion`."""
-    texts = meanings(calls.motion_of)
+    texts = meanings(library.motion_of)
     add_number(parser, "amplitude", AMPLITUDE, texts["amplitude"], required=True)
-    add_number(parser, "phase", STATE, f"{texts['phase']} By default 0.")
-    add_number(parser, "velocity", STATE, f"{texts['velocity']} By default -π.")
+    add_number(parser, "phase", START, f"{texts['phase']} By default 0.")
+    add_number(parser, "velocity", START, f"{texts['velocity']} By default -π.")
     add_number(parser, "impacts", FOLLOWED, texts["impacts"], default=1500)
     add_ball(parser)
 
@@ -51,7 +51,7 @@ def motion(
     ball = ball_of(**impact)
     given = {"phase": phase, "velocity": velocity}
     start = _START | {name: x for name, x in given.items() if x is not None}
-    found = calls.motion_of(ball, amplitude=amplitude, impacts=impacts, **start)
+    found = library.motion_of(ball, amplitude=amplitude, impacts=impacts, **start)
     answer: Answer = {name: x for name in _MOTION if (x := found[name].item()) != ""}
     exponents = {name: float(found[name]) for name in ("lyapunov_exponent", "lyapunov_error")}
     answer |= {name: x if math.isfinite(x) else None for name, x in exponents.items()}
@@ -66,9 +66,9 @@ def motion(
 
 def _ends_of_other_starts(ball: Ball, amplitude: float) -> Answer:
     """The motions on which balls from an even grid of starts end, with their shares."""
-    found = calls.basins(ball, amplitude=amplitude, starts=_OTHER_STARTS, impacts=_FOLLOWED).sortby(
-        "share", ascending=False
-    )
+    found = library.basins(
+        ball, amplitude=amplitude, starts=_OTHER_STARTS, impacts=_FOLLOWED
+    ).sortby("share", ascending=False)
     shares = {}
     for k in range(found.sizes["motion"]):
         one = found.isel(motion=k)
@@ -80,7 +80,7 @@ def _ends_of_other_starts(ball: Ball, amplitude: float) -> Answer:
 
 def diagram_options(parser: Parser) -> None:
     """Add the options of :func:`diagram`."""
-    texts = meanings(calls.orbit_diagram)
+    texts = meanings(library.orbit_diagram)
     add_interval(parser, "amplitudes", AMPLITUDE, "First and last excitation amplitude Λ.")
     steps = "Number of amplitudes, at equal steps."
     add_number(parser, "points", _AMPLITUDES, steps, default=300)
@@ -112,7 +112,7 @@ def diagram(
     low, high = amplitudes
     if not low < high:
         raise ParameterError(f"{{amplitudes}} {low:g} {high:g}: the second must be larger")
-    found = calls.orbit_diagram(
+    found = library.orbit_diagram(
         ball_of(**impact),
         amplitudes=np.linspace(low, high, points),
         starts=starts,

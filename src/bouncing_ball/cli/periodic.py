@@ -22,13 +22,13 @@ from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.makers import spring_damper
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic import orbits_of_ball as calls
+from bouncing_ball.periodic import orbits_of_ball as library
 from bouncing_ball.periodic.orbit import OBSERVABLES, Orbit
 from bouncing_ball.periodic.stability import Bifurcation
 from bouncing_ball.periodic.start import restitution_speed
 
 Answer = dict[str, Any]
-Side = Literal["stable", "unstable", "all"]
+SideOrAll = Literal["stable", "unstable", "all"]
 _SIDE = (
     'Side of the branch: "stable" or "unstable" next to the saddle-node, or "all" for every orbit '
     "at this amplitude, in order of contact duration."
@@ -41,7 +41,7 @@ _CERTIFY = (
 _INDEX = 'Number, from 1, of one orbit in the list of side "all".'
 
 
-def described(law: Any, speed: float = math.nan) -> Answer:
+def law_values(law: Any, speed: float = math.nan) -> Answer:
     """r and ζ of a linear contact; of another law the parameters, and r and D at a speed."""
     match law:
         case SpringDamper():
@@ -60,21 +60,21 @@ def described(law: Any, speed: float = math.nan) -> Answer:
                 "at_impact_speed": speed,
             }
         case Signature(inner):
-            return described(inner, speed)
+            return law_values(inner, speed)
     return {}
 
 
 def orbit_options(parser: Parser) -> None:
     """Add the options of :func:`orbit`."""
-    texts = meanings(calls.orbit)
+    texts = meanings(library.orbit)
     add_number(parser, "n", FAMILY, texts["n"], default=1)
     add_number(parser, "amplitude", AMPLITUDE_OF_ORBIT, texts["amplitude"], required=True)
-    add_choice(parser, "side", get_args(Side), _SIDE, default="stable")
+    add_choice(parser, "side", get_args(SideOrAll), _SIDE, default="stable")
     add_number(parser, "index", FAMILY, _INDEX)
     add_ball(parser)
 
 
-def orbit(*, n: int, amplitude: float, side: Side, index: int | None, **impact: Any) -> Answer:
+def orbit(*, n: int, amplitude: float, side: SideOrAll, index: int | None, **impact: Any) -> Answer:
     """The n-T orbit at Λ on one side of the saddle-node, all orbits there, or one of these.
 
     Raises
@@ -86,12 +86,12 @@ def orbit(*, n: int, amplitude: float, side: Side, index: int | None, **impact: 
     if index is not None:
         if side != "stable":
             raise ParameterError("argument {index}: not allowed with argument {side}")
-        found = _numbered(calls.orbits(ball, n, amplitude=amplitude), index)
+        found = _numbered(library.orbits(ball, n, amplitude=amplitude), index)
         return _orbit(found) | _law_of(found)
     if side == "all":
-        several = calls.orbits(ball, n, amplitude=amplitude)
+        several = library.orbits(ball, n, amplitude=amplitude)
         return {"orbits": [_orbit(each) for each in several]} | _law_of(several[0])
-    one: Any = calls.orbit(ball, n, amplitude=amplitude, side=side)
+    one: Any = library.orbit(ball, n, amplitude=amplitude, side=side)
     return _orbit(one) | _law_of(one)
 
 
@@ -116,12 +116,12 @@ def _orbit(found: Orbit) -> Answer:
 
 
 def _law_of(found: Orbit) -> Answer:
-    return described(found.law, -found.relative_impact_velocity)
+    return law_values(found.law, -found.relative_impact_velocity)
 
 
 def limits_options(parser: Parser) -> None:
     """Add the options of :func:`limits`."""
-    add_number(parser, "n", FAMILY, meanings(calls.limits)["n"], default=1)
+    add_number(parser, "n", FAMILY, meanings(library.limits)["n"], default=1)
     add_optional_number(parser, "certify", _DIGITS, _CERTIFY, const=30)
     add_ball(parser)
 
@@ -140,7 +140,7 @@ def limits(*, n: int, certify: int | None, **impact: Any) -> Answer:
     """
     if certify is not None:
         return {"certified": _certified(n, certify, **impact)} | limits(n=n, certify=None, **impact)
-    found: Any = calls.limits(ball_of(**impact), n)
+    found: Any = library.limits(ball_of(**impact), n)
     answer: Answer = {}
     for name, end in found._asdict().items():
         if not end.exists:
@@ -152,7 +152,7 @@ def limits(*, n: int, certify: int | None, **impact: Any) -> Answer:
     # The two limits have different impact speeds, so that a contact law is described at the impact
     # speed of the restitution model.
     model = found.saddle_node.model
-    return answer | described(model.impact_law, float(restitution_speed(n, model)[0]))
+    return answer | law_values(model.impact_law, float(restitution_speed(n, model)[0]))
 
 
 def _certified(
@@ -197,7 +197,7 @@ def _certified(
 
 def error_law_options(parser: Parser) -> None:
     """Add the options of :func:`error_law`."""
-    texts = meanings(calls.orbit)
+    texts = meanings(library.orbit)
     add_number(parser, "n", FAMILY, texts["n"], default=1)
     add_number(parser, "amplitude", AMPLITUDE_OF_ORBIT, texts["amplitude"], required=True)
     add_contact(parser, with_ratio=False)
@@ -224,7 +224,7 @@ def error_law(*, n: int, amplitude: float, **contact: Any) -> Answer:
         "coefficients": {name: k if k is None else abs(k) for name, k in signed.items()},
         "signed": signed,
         "second_order": {"permanent_contact": abs(float(second))},
-        **described(law),
+        **law_values(law),
     }
 
 
@@ -239,7 +239,7 @@ def permanent_contact(**contact: Any) -> Answer:
     """The Λ up to which the ball stays on the table."""
     ball = _ball(**contact)
     threshold = ball.permanent_contact_threshold()
-    return {"threshold_amplitude": float(threshold), **described(ball.impact_law)}
+    return {"threshold_amplitude": float(threshold), **law_values(ball.impact_law)}
 
 
 def _ball(*, release: str | None, **contact: Any) -> SpringDamperModel:

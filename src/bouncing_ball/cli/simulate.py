@@ -7,8 +7,8 @@ import numpy as np
 
 from bouncing_ball.cli.impact import add_ball, ball_of
 from bouncing_ball.cli.options import Parser, add_number, meanings
-from bouncing_ball.cli.periodic import Answer, described
-from bouncing_ball.datasets.arguments import AMPLITUDE, IMPACTS, STATE, Range
+from bouncing_ball.cli.periodic import Answer, law_values
+from bouncing_ball.datasets.arguments import AMPLITUDE, IMPACTS, START, Range
 from bouncing_ball.models import over_time
 from bouncing_ball.models.sequence import Status
 
@@ -24,8 +24,8 @@ def add_options(parser: Parser) -> None:
 def add_start(parser: Parser, most: Range, texts: dict[str, str], impacts: int) -> None:
     """Add the options for a first impact and for the number of impacts."""
     add_number(parser, "amplitude", AMPLITUDE, texts["amplitude"], required=True)
-    add_number(parser, "phase", STATE, texts["phase"], default=0.0)
-    add_number(parser, "velocity", STATE, texts["velocity"], default=-math.pi)
+    add_number(parser, "phase", START, texts["phase"], default=0.0)
+    add_number(parser, "velocity", START, texts["velocity"], default=-math.pi)
     add_number(parser, "impacts", most, texts["impacts"], default=impacts)
 
 
@@ -41,6 +41,6 @@ def simulate(
     sequence = [[x if math.isfinite(x) else None for x in column] for column in there.tolist()]
     return {
         "status": Status(int(found.status)).name.lower().replace("_", " "),
-        **described(model.impact_law, -float(found.relative_velocity[0])),
+        **law_values(model.impact_law, -float(found.relative_velocity[0])),
         "sequence": dict(zip(_SHOWN, sequence, strict=True)),
     }

@@ -18,12 +18,12 @@ from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.rows import Listed
 from bouncing_ball.contacts.table import Table
 from bouncing_ball.contacts.verdict import (
-    Verdict,
+    Judgement,
     aside,
     assessed,
-    chosen,
     headline,
     judged_by_motion,
+    judged_choice,
 )
 from bouncing_ball.errors import ModelError, NoOrbitError, require
 from bouncing_ball.models.damping import Release
@@ -40,7 +40,7 @@ _LARGEST_OF_LAW = 1e5
 
 
 @dataclass(frozen=True)
-class TimeStep:
+class LargestTimeStep:
     """The largest time step that resolves the contact, in s, and the rule that it follows from."""
 
     largest: Annotated[float, Listed("largest time step", "s")]
@@ -88,7 +88,7 @@ class Assessment:
     stiffness: Annotated[float, Listed("stiffness", "N/m")]
     damping: Annotated[float, Listed("damping", "N s/m")]
     contact_time: Annotated[float, Listed("contact time", "s")]
-    time_step: TimeStep
+    time_step: LargestTimeStep
     static_deflection: Annotated[float, Listed("static deflection", "m")]
     restitution: Annotated[
         dict[str, float],
@@ -114,12 +114,12 @@ class Assessment:
         return next(one for one in self.orbits if one.n == self.n)
 
     @cached_property
-    def judgement(self) -> Verdict:
+    def judgement(self) -> Judgement:
         """Whether the restitution model is good enough, in words, and the reason."""
         if self.chosen is None:
             found = assessed(self.judged, self.needed, self.frequency_ratio)
         else:
-            found = chosen(self.case, self.needed, self.chosen)
+            found = judged_choice(self.case, self.needed, self.chosen)
         # A threshold, such as that of permanent contact, is not a property of one orbit.
         if self.needed.quantity not in OF_ORBITS:
             return found
@@ -237,7 +237,7 @@ def assess(case: ResolvedContact, question: Question, choice: Choice | None = No
         stiffness=case.stiffness,
         damping=case.damping,
         contact_time=case.contact_time,
-        time_step=TimeStep(case.contact_time / STEPS, STEP_RULE),
+        time_step=LargestTimeStep(case.contact_time / STEPS, STEP_RULE),
         static_deflection=case.static_deflection,
         restitution={
             str(rule): float(replace(contact, release=rule).restitution) for rule in Release

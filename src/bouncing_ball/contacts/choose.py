@@ -15,7 +15,7 @@ from bouncing_ball.contacts.resolve import law_type, meant
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.table import Table, TableMotion
 from bouncing_ball.contacts.texts import percent
-from bouncing_ball.contacts.verdict import chosen
+from bouncing_ball.contacts.verdict import judged_choice
 from bouncing_ball.errors import NoOrbitError, ParameterError
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
@@ -44,12 +44,12 @@ class Choice:
     @property
     def verdict(self) -> str:
         """What a simulation needs, in one sentence."""
-        return chosen(self.case, self.needed, self.n).verdict
+        return judged_choice(self.case, self.needed, self.n).verdict
 
     @property
     def reason(self) -> str:
         """Why no more compliant contact is enough."""
-        return chosen(self.case, self.needed, self.n).reason
+        return judged_choice(self.case, self.needed, self.n).reason
 
     @property
     def notes(self) -> tuple[str, ...]:

@@ -145,7 +145,7 @@ def require_short(contact_time: float) -> None:
         )
 
 
-def drop(case: ResolvedContact, speed: Speed) -> Dropped:
+def drop_at_rest(case: ResolvedContact, speed: Speed) -> Dropped:
     """A drop onto a table at rest.
 
     Parameters
@@ -165,7 +165,7 @@ def drop(case: ResolvedContact, speed: Speed) -> Dropped:
     --------
     >>> case = resolve(Contact(mass=0.02, stiffness=1e4, damping=4.0, release="force"),
     ...                TableMotion.at_rest(9.81))
-    >>> found = drop(case, 2.0)
+    >>> found = drop_at_rest(case, 2.0)
     >>> round(found.drop_height, 4), round(found.restitution, 4), round(found.at_tenth, 4)
     (0.2039, 0.6615, 0.6297)
     """

@@ -29,7 +29,7 @@ from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.stability import Bifurcation
 
-Errors = dict[str, float | None]
+ErrorsByQuantity = dict[str, float | None]
 """Relative errors by quantity, (q - q_SD)/q_SD with the value q_SD of the contact; None where one
 of the values does not exist, or that of the contact is zero."""
 
@@ -76,9 +76,9 @@ class ComparedOrbit:
     peak_force: Annotated[float | None, Listed("peak force", "N")]
     peak_force_over_weight: Annotated[float | None, Listed("peak force over weight")]
     values: dict[str, dict[str, float | None]]
-    errors: Errors
-    corrected_errors: Errors
-    law_errors: Errors
+    errors: ErrorsByQuantity
+    corrected_errors: ErrorsByQuantity
+    law_errors: ErrorsByQuantity
     law_holds: bool
 
 
@@ -144,7 +144,7 @@ def prediction_error(predicted: ArrayLike, true: ArrayLike) -> np.ndarray:
     return relative(predicted, true)
 
 
-def _by_quantity(values: np.ndarray) -> Errors:
+def _by_quantity(values: np.ndarray) -> ErrorsByQuantity:
     return {str(q): finite(x) for q, x in zip(Quantity, values, strict=False)}
 
 

@@ -21,8 +21,8 @@ from bouncing_ball.datasets.arguments import (
     POSITIVE,
     RESTITUTION,
     Axis,
-    Positive,
-    Rule,
+    PositiveAxis,
+    ReleaseName,
     checked,
     checked_number,
     chosen,
@@ -53,7 +53,7 @@ class FreeImpactBall(Ball):
 
     Parameters
     ----------
-    law : type of ContactLaw
+    law_type : type of ContactLaw
     restitution : float
         r of the free impact.
     duration : float or array
@@ -62,7 +62,7 @@ class FreeImpactBall(Ball):
         Whether the ball obeys the corrected restitution model of the contact.
     """
 
-    law: type[ContactLaw]
+    law_type: type[ContactLaw]
     restitution: float
     duration: Any
     is_corrected: bool = False
@@ -71,15 +71,19 @@ class FreeImpactBall(Ball):
 
     @cached_property
     def parameters(self) -> Mapping[str, Any]:
-        found = {"law": self.law.name, "restitution": self.restitution, "duration": self.duration}
+        found = {
+            "law": self.law_type.name,
+            "restitution": self.restitution,
+            "duration": self.duration,
+        }
         return found | ({"model": "corrected"} if self.is_corrected else {})
 
     def at_speed(self, speed: ArrayLike) -> Any:
-        return self._with(law_of_impact(self.law, self.restitution, self.duration, speed))
+        return self._with(law_of_impact(self.law_type, self.restitution, self.duration, speed))
 
     def at_orbit(self, n: int, amplitude: float, side: str = "stable") -> Any:
         return self._with(
-            law_at_orbit(self.law, self.restitution, self.duration, n, amplitude, Side(side))
+            law_at_orbit(self.law_type, self.restitution, self.duration, n, amplitude, Side(side))
         )
 
     def at_limits(self, n: ArrayLike) -> Any:
@@ -105,10 +109,10 @@ class FreeImpactBall(Ball):
 def contact_law(
     law: str | ContactLaw,
     *,
-    speed: Positive | None = None,
+    speed: PositiveAxis | None = None,
     restitution: float | None = None,
-    duration: Positive | None = None,
-    release: Rule | None = None,
+    duration: PositiveAxis | None = None,
+    release: ReleaseName | None = None,
     **parameters: Axis,
 ) -> Ball:
     """A ball on a contact of another law than the linear spring and damper.
@@ -165,7 +169,7 @@ def contact_law(
     if is_array(restitution):
         raise ParameterError(f"{{restitution}} must be a single number with {{law}} {kind.name}")
     ball = FreeImpactBall(
-        law=kind,
+        law_type=kind,
         restitution=checked("restitution", restitution, RESTITUTION),
         duration=checked("duration", duration, POSITIVE),
     )

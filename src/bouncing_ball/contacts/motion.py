@@ -29,11 +29,11 @@ from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.motions import Kind
 from bouncing_ball.long_run.sampled_means import (
     Estimate,
-    Look,
+    SampleSize,
     Starts,
     follow,
-    looks,
     quantile,
+    sample_sizes,
     sections,
     start,
     sums_at,
@@ -273,7 +273,7 @@ def _compared(
     if not all(end.impacts.phase.size for end in ends.values()):
         # The only contact that was followed had resumed below the table, and never ended.
         return without_means
-    samples = _looks(sampling, balls, ends.values())
+    samples = _sample_sizes(sampling, balls, ends.values())
     sums = (_sums(case, name, end, samples) for name, end in ends.items())
     for look, *of_models in zip(samples, *sums, strict=False):
         if np.any(np.isnan(of_models[0])) or np.any(np.isnan(of_models[1])):
@@ -300,7 +300,7 @@ def _compared(
     }
 
 
-def _looks(sampling: Sampling, balls: int, ends: Iterable[_End]) -> list[Look]:
+def _sample_sizes(sampling: Sampling, balls: int, ends: Iterable[_End]) -> list[SampleSize]:
     """The sizes of the sample at which the means are examined.
 
     Without a sample there is one look at one ball. Beside a lap on which rounding errors decide, a
@@ -308,13 +308,15 @@ def _looks(sampling: Sampling, balls: int, ends: Iterable[_End]) -> list[Look]:
     """
     ends = list(ends)
     if not any(end.is_sampled for end in ends):
-        return looks(1, 1, (1,))
+        return sample_sizes(1, 1, (1,))
     if any(end.is_unresolved for end in ends):
-        return looks(sampling.unit, sampling.unit, sampling.impacts[-1:])
-    return looks(balls, sampling.usual, sampling.impacts)
+        return sample_sizes(sampling.unit, sampling.unit, sampling.impacts[-1:])
+    return sample_sizes(balls, sampling.usual, sampling.impacts)
 
 
-def _sums(case: ResolvedContact, name: str, end: _End, samples: list[Look]) -> Iterator[np.ndarray]:
+def _sums(
+    case: ResolvedContact, name: str, end: _End, samples: list[SampleSize]
+) -> Iterator[np.ndarray]:
     """The sums over the motion of a model at each look: of the balls of a sample, of sections of a
     lap, or of one repetition.
     """

@@ -47,8 +47,8 @@ def rows(result: Any) -> list[Entry]:
 
     Examples
     --------
-    >>> from bouncing_ball.contacts.assess import TimeStep
-    >>> [tuple(row) for row in rows(TimeStep(2e-6, "a rule"))]
+    >>> from bouncing_ball.contacts.assess import LargestTimeStep
+    >>> [tuple(row) for row in rows(LargestTimeStep(2e-6, "a rule"))]
     [(('largest',), 'largest time step', 's', 2e-06), (('rule',), '', '', 'a rule')]
     """
     found: list[Entry] = []
@@ -74,8 +74,8 @@ def texts(result: Any) -> list[tuple[str, str]]:
 
     Examples
     --------
-    >>> from bouncing_ball.contacts.assess import TimeStep
-    >>> texts(TimeStep(2e-6, "a rule"))
+    >>> from bouncing_ball.contacts.assess import LargestTimeStep
+    >>> texts(LargestTimeStep(2e-6, "a rule"))
     [('largest time step', '2 µs')]
     """
     return [(row.words, row.text) for row in rows(result) if row.words]
@@ -86,8 +86,8 @@ def document(result: Any) -> dict[str, Any]:
 
     Examples
     --------
-    >>> from bouncing_ball.contacts.assess import TimeStep
-    >>> document(TimeStep(2e-6, "a rule"))
+    >>> from bouncing_ball.contacts.assess import LargestTimeStep
+    >>> document(LargestTimeStep(2e-6, "a rule"))
     {'largest': 2e-06, 'rule': 'a rule'}
     """
     found: dict[str, Any] = {}

@@ -31,7 +31,7 @@ _DOES: Mapping[str, str] = {
 _LAID = {**_DOES, Kind.PERMANENT_CONTACT: "stays at rest"}
 
 
-class Verdict(NamedTuple):
+class Judgement(NamedTuple):
     """Whether the restitution model is good enough, this verdict as a sentence, and the reason."""
 
     is_good_enough: bool
@@ -74,7 +74,7 @@ def _opposite(orbit: str, word: str, of_model: bool) -> str:
     return f"its {orbit} is not {word}, and the contact's is"
 
 
-def assessed(family: ComparedOrbit, needed: Needed, frequency_ratio: float) -> Verdict:
+def assessed(family: ComparedOrbit, needed: Needed, frequency_ratio: float) -> Judgement:
     """The verdict on a given contact.
 
     The model is good enough if its orbit agrees with the exact one in existence, admissibility and
@@ -86,16 +86,16 @@ def assessed(family: ComparedOrbit, needed: Needed, frequency_ratio: float) -> V
     if wrong is None and error is None:
         name = QUANTITIES[Quantity(needed.quantity)]
         sentence = f"Whether the restitution model is good enough in the {name} is not known."
-        return Verdict(False, sentence, "the contact or the model has no value to compare")
+        return Judgement(False, sentence, "the contact or the model has no value to compare")
     good = wrong is None and error is not None and abs(error) <= needed.tolerance
     reason = _reason(needed, frequency_ratio, good, tolerance)
     if good:
         found = _prediction(family, needed)
         sentence = f"The restitution model is good enough: {found}, within {tolerance}."
-        return Verdict(True, sentence, reason)
+        return Judgement(True, sentence, reason)
     why = wrong or f"{_prediction(family, needed)}, beyond {tolerance}"
     instead = _instead(family, needed)
-    return Verdict(False, f"The restitution model is not good enough: {why}{instead}.", reason)
+    return Judgement(False, f"The restitution model is not good enough: {why}{instead}.", reason)
 
 
 def _prediction(family: ComparedOrbit, needed: Needed) -> str:
@@ -108,14 +108,14 @@ def _prediction(family: ComparedOrbit, needed: Needed) -> str:
     return f"for {_subject(needed.quantity, family.n)} it predicts {both}, {size}"
 
 
-def judged_by_motion(motion: FinalMotion, tolerance: float, n: int) -> Verdict:
+def judged_by_motion(motion: FinalMotion, tolerance: float, n: int) -> Judgement:
     """The verdict on the motion on which a ball ends, if the orbit is not stable."""
     about = f"no ball stays on the {n}-T orbit, so that its errors are not judged"
     exact = motion.kind
     simple = motion.restitution_kind
     if exact == simple == Kind.PERMANENT_CONTACT:
         sentence = "The restitution model is good enough: the ball rests in both models."
-        return Verdict(True, sentence, about)
+        return Judgement(True, sentence, about)
     # Locked and chaotic motions may be alike in the mean, but other kinds that differ are not. An
     # undecided motion may be of any kind, but is not the n-T orbit, on which no ball stays.
     on_orbit = simple == Kind.ORBIT and motion.restitution_periods == n
@@ -123,7 +123,7 @@ def judged_by_motion(motion: FinalMotion, tolerance: float, n: int) -> Verdict:
     distinct = {Kind.PERMANENT_CONTACT, Kind.ORBIT, Kind.SUBHARMONIC}
     if exact != simple and known and {exact, simple} & distinct:
         sentence = f"its motion is {_named(simple)}, and the contact's is {_named(exact)}"
-        return Verdict(False, f"The restitution model is not good enough: {sentence}.", about)
+        return Judgement(False, f"The restitution model is not good enough: {sentence}.", about)
     if motion.greatest is not None:
         true, predicted = motion.greatest.values()
         error = float(prediction_error(predicted, true))
@@ -132,7 +132,7 @@ def judged_by_motion(motion: FinalMotion, tolerance: float, n: int) -> Verdict:
         return _within(abs(error), abs(error), tolerance, found, about)
     if motion.mean_error is None:
         sentence = "Whether the restitution model is good enough for this motion is not known."
-        return Verdict(False, sentence, f"{about}; nor are means, as some balls come to rest")
+        return Judgement(False, sentence, f"{about}; nor are means, as some balls come to rest")
     means = {"height": motion.mean_height, "power": motion.mean_power}
     found = "it predicts " + " and ".join(
         _of_mean(name, means[name], error) for name, error in motion.mean_error.items()
@@ -204,19 +204,21 @@ def _between(error: Mean) -> str:
 
 def _within(
     least: float, most: float, tolerance: float, found: str, why: str, undecided: str = ""
-) -> Verdict:
+) -> Judgement:
     """The verdict on a largest error between two bounds, against a tolerance.
 
     ``undecided`` says what helps if the tolerance lies between the bounds.
     """
     asked = percent(tolerance)
     if most <= tolerance:
-        return Verdict(True, f"The restitution model is good enough: {found}, within {asked}.", why)
+        return Judgement(
+            True, f"The restitution model is good enough: {found}, within {asked}.", why
+        )
     if least > tolerance:
         sentence = f"The restitution model is not good enough: {found}, beyond {asked}."
-        return Verdict(False, sentence, why)
+        return Judgement(False, sentence, why)
     sentence = f"Whether the restitution model is good enough is not decided at {asked}: {found}."
-    return Verdict(False, sentence, f"{why}; {undecided}")
+    return Judgement(False, sentence, f"{why}; {undecided}")
 
 
 def _instead(family: ComparedOrbit, needed: Needed) -> str:
@@ -244,7 +246,7 @@ def _reason(needed: Needed, frequency_ratio: float, good: bool, tolerance: str) 
     return text
 
 
-def chosen(case: ResolvedContact, needed: Needed, n: int) -> Verdict:
+def judged_choice(case: ResolvedContact, needed: Needed, n: int) -> Judgement:
     """The verdict on the most compliant contact within the tolerance."""
     tolerance = percent(needed.tolerance)
     sentence = (
@@ -254,9 +256,9 @@ def chosen(case: ResolvedContact, needed: Needed, n: int) -> Verdict:
         f"{_subject(needed.quantity, n)} within {tolerance}."
     )
     if needed.frequency_ratio is None:
-        return Verdict(True, sentence, _NO_CROSSING[needed.status])
+        return Judgement(True, sentence, _NO_CROSSING[needed.status])
     where = f"at the frequency ratio ϖ = {needed.frequency_ratio:.4g}"
-    return Verdict(True, sentence, f"the error crosses {tolerance} for the last time {where}")
+    return Judgement(True, sentence, f"the error crosses {tolerance} for the last time {where}")
 
 
 def aside(motion: FinalMotion, amplitude: float) -> str:

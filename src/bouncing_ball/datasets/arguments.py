@@ -34,7 +34,7 @@ DAMPING_RATIO = Range(0, 1, "[)")
 TOLERANCE = Range(0, 1)
 # Heights, speeds and durations, and phases and velocities: their squares keep digits beside Λ.
 POSITIVE = Range(1e-12, 1e8, "[]")
-STATE = Range(-1e8, 1e8, "[]")
+START = Range(-1e8, 1e8, "[]")
 FINITE = Range()
 # An impact takes a third of a millisecond, so that the largest number takes half a minute.
 IMPACTS = count(100_000)
@@ -44,21 +44,21 @@ PERIODS = Range(0, 10_000, "(]")
 SAMPLES = count(100_000)
 POINTS = count(10_000, low=10)
 
-FrequencyRatio = Annotated[Axis, FREQUENCY_RATIO]
-Amplitude = Annotated[Axis, AMPLITUDE]
-AmplitudeOfOrbit = Annotated[Axis, AMPLITUDE_OF_ORBIT]
-Restitution = Annotated[Axis, RESTITUTION]
-DampingRatio = Annotated[Axis, DAMPING_RATIO]
-Tolerance = Annotated[Axis, TOLERANCE]
-Positive = Annotated[Axis, POSITIVE]
-State = Annotated[Axis, STATE]
-Family = Annotated[WholeAxis, FAMILY]
+FrequencyRatioAxis = Annotated[Axis, FREQUENCY_RATIO]
+AmplitudeAxis = Annotated[Axis, AMPLITUDE]
+AmplitudeOfOrbitAxis = Annotated[Axis, AMPLITUDE_OF_ORBIT]
+RestitutionAxis = Annotated[Axis, RESTITUTION]
+DampingRatioAxis = Annotated[Axis, DAMPING_RATIO]
+ToleranceAxis = Annotated[Axis, TOLERANCE]
+PositiveAxis = Annotated[Axis, POSITIVE]
+StartAxis = Annotated[Axis, START]
+FamilyAxis = Annotated[WholeAxis, FAMILY]
 Impacts = Annotated[int, IMPACTS]
-Followed = Annotated[int, FOLLOWED]
+FollowedImpacts = Annotated[int, FOLLOWED]
 Periods = Annotated[float, PERIODS]
-Samples = Annotated[int, SAMPLES]
+SampleCount = Annotated[int, SAMPLES]
 Points = Annotated[int, POINTS]
-Rule = Literal["displacement", "force"]
+ReleaseName = Literal["displacement", "force"]
 SideName = Literal["stable", "unstable"]
 
 

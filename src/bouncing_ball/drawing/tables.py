@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 Rows = Sequence[Sequence[str]]
-Table = tuple[list[str], list[list[str]]]
+TextTable = tuple[list[str], list[list[str]]]
 """Header and rows."""
 
 
@@ -85,7 +85,7 @@ Columns = dict[str, Column]
 """Columns by their headings."""
 
 
-def table(parts: Iterable[xr.Dataset], columns: Columns) -> Table:
+def table(parts: Iterable[xr.Dataset], columns: Columns) -> TextTable:
     """The header, and a row of texts for each part.
 
     Examples

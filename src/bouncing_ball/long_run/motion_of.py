@@ -11,10 +11,10 @@ from bouncing_ball.datasets.arguments import (
     FOLLOWED,
     POSITIVE,
     SAMPLES,
-    Amplitude,
-    Followed,
-    Samples,
-    State,
+    AmplitudeAxis,
+    FollowedImpacts,
+    SampleCount,
+    StartAxis,
     checked,
     checked_number,
 )
@@ -29,10 +29,10 @@ from bouncing_ball.models.over_time import first_impacts
 def motion_of(
     ball: Ball,
     *,
-    amplitude: Amplitude,
-    phase: State = 0.0,
-    velocity: State = -math.pi,
-    impacts: Followed = 1500,
+    amplitude: AmplitudeAxis,
+    phase: StartAxis = 0.0,
+    velocity: StartAxis = -math.pi,
+    impacts: FollowedImpacts = 1500,
 ) -> Result:
     """The motion on which a ball ends, after a first impact as in
     :func:`bouncing_ball.simulate`.
@@ -85,10 +85,10 @@ def motion_of(
 def lyapunov_exponent(
     ball: Ball,
     *,
-    amplitude: Amplitude,
-    phase: State = 0.0,
-    velocity: State = -math.pi,
-    impacts: Followed = 1500,
+    amplitude: AmplitudeAxis,
+    phase: StartAxis = 0.0,
+    velocity: StartAxis = -math.pi,
+    impacts: FollowedImpacts = 1500,
 ) -> Result:
     """The largest Lyapunov exponent of the motion on which a ball ends, per period of the table.
 
@@ -123,10 +123,10 @@ def lyapunov_exponent(
 def orbit_diagram(
     ball: Ball,
     *,
-    amplitudes: Amplitude,
-    starts: Samples = 6,
-    samples: Samples = 64,
-    impacts: Followed = 300,
+    amplitudes: AmplitudeAxis,
+    starts: SampleCount = 6,
+    samples: SampleCount = 64,
+    impacts: FollowedImpacts = 300,
 ) -> Result:
     """The attractors over Λ, reached from several starts and by following balls in Λ.
 
@@ -183,9 +183,9 @@ def basins(
     ball: Ball,
     *,
     amplitude: float,
-    starts: Samples = 200,
+    starts: SampleCount = 200,
     velocity_max: float | None = None,
-    impacts: Followed = 2000,
+    impacts: FollowedImpacts = 2000,
 ) -> Result:
     """The motions on which balls end that start from a grid of first impacts, and their shares.
 

@@ -7,7 +7,7 @@ import numpy as np
 from bouncing_ball.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
     FOLLOWED,
-    STATE,
+    START,
     Impacts,
     checked_number,
 )
@@ -58,8 +58,8 @@ def orbit_of_motion(
       max_height            7.32028
     """
     lam = checked_number("amplitude", amplitude, AMPLITUDE_OF_ORBIT)
-    phi = checked_number("phase", phase, STATE)
-    before = checked_number("velocity", velocity, STATE)
+    phi = checked_number("phase", phase, START)
+    before = checked_number("velocity", velocity, START)
     most = checked_number("impacts", impacts, FOLLOWED)
     model = a_single_ball(ball)
     return of_motion(model, lam, phi, before, most)

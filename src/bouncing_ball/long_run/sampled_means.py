@@ -83,7 +83,7 @@ class Starts(NamedTuple):
         return Starts(phase, w_rate + relative * (1 + apart * (number + 1) / balls))
 
 
-class Look(NamedTuple):
+class SampleSize(NamedTuple):
     """A size of the sample at which the means are examined.
 
     ``level`` is the probability with which the interval may miss the mean.
@@ -94,16 +94,16 @@ class Look(NamedTuple):
     level: float
 
 
-def looks(balls: int, first: int, impacts: Sequence[int]) -> list[Look]:
+def sample_sizes(balls: int, first: int, impacts: Sequence[int]) -> list[SampleSize]:
     """Growing samples of up to a number of balls, followed for up to ``impacts[-1]`` impacts.
 
     The first balls are followed on and on; then more balls are added, as many as there are so far.
 
     Examples
     --------
-    >>> [(each.balls, each.impacts) for each in looks(500, 200, (50, 100))]
+    >>> [(each.balls, each.impacts) for each in sample_sizes(500, 200, (50, 100))]
     [(200, 50), (200, 100), (400, 100), (500, 100)]
-    >>> round(sum(each.level for each in looks(500, 200, (50, 100))), 12)
+    >>> round(sum(each.level for each in sample_sizes(500, 200, (50, 100))), 12)
     0.05
     """
     now = min(first, balls)
@@ -113,11 +113,11 @@ def looks(balls: int, first: int, impacts: Sequence[int]) -> list[Look]:
         sizes.append((now, impacts[-1]))
     shares = np.array([a * b for a, b in sizes]) / (balls * impacts[-1])
     levels = np.diff(_ALPHA * shares**2, prepend=0.0)
-    return [Look(*size, level) for size, level in zip(sizes, levels.tolist(), strict=True)]
+    return [SampleSize(*size, level) for size, level in zip(sizes, levels.tolist(), strict=True)]
 
 
 def sums_at(
-    samples: Sequence[Look], starts: Starts, model: HasDynamics, amplitude: float, before: int
+    samples: Sequence[SampleSize], starts: Starts, model: HasDynamics, amplitude: float, before: int
 ) -> Iterator[np.ndarray]:
     """The sums of each ball at each look: time, ∫ z dτ and work, shape (3, balls).
 

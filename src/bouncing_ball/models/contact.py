@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, Protocol, Self
 import numpy as np
 
 
-class Span(NamedTuple):
+class ContactSpan(NamedTuple):
     """Contacts from their start to their release, arrays with one entry per contact.
 
     ``displacement`` δ, ``velocity`` δ′ and ``phase`` φ are those at the start, ``amplitude`` is Λ,
@@ -26,14 +26,14 @@ class Span(NamedTuple):
     release_velocity: np.ndarray
 
 
-class Contact(Protocol):
+class FiniteContact(Protocol):
     """A contact of finite duration, or a row of contacts with an entry for each ball."""
 
     @property
     def lag(self) -> Any:
         """κ of a contact that ends where δ + κ δ′ = 0; None if its end has no such form."""
 
-    def during(self, span: Span, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def during(self, span: ContactSpan, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """δ and δ′ at times 0 ≤ s ≤ D after the starts of contacts, one time for each contact."""
 
     def take(self, which: Any) -> Self:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError, require
-from bouncing_ball.models.contact import Contact
+from bouncing_ball.models.contact import FiniteContact
 from bouncing_ball.models.deviations import Deviation, Jacobian
 from bouncing_ball.models.flight import Flight, land, table
 from bouncing_ball.models.sequence import RECORDED, Cycle, ImpactSequence, Status
@@ -106,7 +106,7 @@ class Dynamics(Batch, ABC):
         return cls(law, lam)
 
     @property
-    def contact(self) -> Contact | None:
+    def contact(self) -> FiniteContact | None:
         """The law of contacts of finite duration, or None if impacts are instants."""
         return None
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.models.contact import Span
+from bouncing_ball.models.contact import ContactSpan
 from bouncing_ball.models.flight import Flight, table
 from bouncing_ball.models.sequence import ImpactSequence, Status
 
@@ -25,7 +25,7 @@ class History(NamedTuple):
     touching: np.ndarray
 
 
-def history(sequence: ImpactSequence, time: ArrayLike) -> History:
+def motion_at(sequence: ImpactSequence, time: ArrayLike) -> History:
     """The motion of a ball at given times since its first impact, of the shape of the times.
 
     Parameters
@@ -45,7 +45,7 @@ def history(sequence: ImpactSequence, time: ArrayLike) -> History:
     --------
     >>> from bouncing_ball.models.restitution import RestitutionDynamics
     >>> sequence = RestitutionDynamics.of(1.0, 0.0).simulate(0.0, -2.0, 2)
-    >>> history(sequence, [0.0, 2.0, 4.0]).height.tolist()
+    >>> motion_at(sequence, [0.0, 2.0, 4.0]).height.tolist()
     [0.0, 2.0, 0.0]
     """
     if np.ndim(sequence.status):
@@ -80,7 +80,7 @@ def _in_contact(
     """δ and δ′ at times since the starts of contacts; 0 while a ball rests on the table."""
     if sequence.contact is None or not row.size:
         return np.zeros_like(since), np.zeros_like(since)
-    span = Span(
+    span = ContactSpan(
         displacement=sequence.displacement[row],
         velocity=sequence.relative_velocity[row],
         phase=sequence.phase[row],

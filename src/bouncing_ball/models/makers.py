@@ -16,10 +16,10 @@ from bouncing_ball.datasets.arguments import (
     FREQUENCY_RATIO,
     RESTITUTION,
     Axis,
-    DampingRatio,
-    FrequencyRatio,
-    Restitution,
-    Rule,
+    DampingRatioAxis,
+    FrequencyRatioAxis,
+    ReleaseName,
+    RestitutionAxis,
     checked,
     chosen,
     is_array,
@@ -37,7 +37,7 @@ LOSSES = ("restitution", "damping_ratio", "measured_restitution")
 """The parameters that determine the loss of an impact; exactly one of them is needed."""
 
 
-def rigid(*, restitution: Restitution) -> RestitutionModel:
+def rigid(*, restitution: RestitutionAxis) -> RestitutionModel:
     """A ball of the restitution model, whose impacts are instants (Eqs. 1-9).
 
     Parameters
@@ -62,11 +62,11 @@ def rigid(*, restitution: Restitution) -> RestitutionModel:
 
 def spring_damper(
     *,
-    frequency_ratio: FrequencyRatio,
-    restitution: Restitution | None = None,
-    damping_ratio: DampingRatio | None = None,
-    measured_restitution: Restitution | None = None,
-    release: Rule = "displacement",
+    frequency_ratio: FrequencyRatioAxis,
+    restitution: RestitutionAxis | None = None,
+    damping_ratio: DampingRatioAxis | None = None,
+    measured_restitution: RestitutionAxis | None = None,
+    release: ReleaseName = "displacement",
 ) -> SpringDamperModel:
     """A ball on a contact with a spring and a damper (Eqs. 10-27).
 

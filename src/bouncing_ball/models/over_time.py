@@ -18,21 +18,21 @@ from bouncing_ball.datasets.arguments import (
     PERIODS,
     POSITIVE,
     SAMPLES,
-    STATE,
-    Amplitude,
+    START,
+    AmplitudeAxis,
     Axis,
     Impacts,
     Periods,
-    Positive,
-    Samples,
-    State,
+    PositiveAxis,
+    SampleCount,
+    StartAxis,
     checked,
     checked_number,
 )
 from bouncing_ball.errors import ModelError, require
 from bouncing_ball.models.ball import Ball, a_ball
 from bouncing_ball.models.flight import Flight, land, table
-from bouncing_ball.models.history import history as of_one_ball
+from bouncing_ball.models.history import motion_at
 from bouncing_ball.models.sequence import ImpactSequence, Status
 
 # A single simulation of the command line needs no labels, and importing xarray takes longer: it is
@@ -66,7 +66,7 @@ class FirstImpacts(NamedTuple):
 
 
 def first_impacts(
-    ball: Ball, amplitude: Amplitude, phase: State, velocity: State
+    ball: Ball, amplitude: AmplitudeAxis, phase: StartAxis, velocity: StartAxis
 ) -> tuple[Grid, FirstImpacts]:
     """The grid that Λ, the phases, the velocities and the ball span, and its first impacts.
 
@@ -78,8 +78,8 @@ def first_impacts(
     grid = _grid(
         ball,
         amplitude=checked("amplitude", amplitude, AMPLITUDE),
-        phase=checked("phase", phase, STATE),
-        velocity=checked("velocity", velocity, STATE),
+        phase=checked("phase", phase, START),
+        velocity=checked("velocity", velocity, START),
     )
     first = FirstImpacts(grid.row("amplitude"), grid.row("phase"), grid.row("velocity"))
     return grid, first
@@ -88,9 +88,9 @@ def first_impacts(
 def simulate(
     ball: Ball,
     *,
-    amplitude: Amplitude,
-    phase: State = 0.0,
-    velocity: State = -math.pi,
+    amplitude: AmplitudeAxis,
+    phase: StartAxis = 0.0,
+    velocity: StartAxis = -math.pi,
     impacts: Impacts = 100,
 ) -> Result:
     """The sequence of impacts that begins with a given first impact.
@@ -136,11 +136,11 @@ def simulate(
 def history(
     ball: Ball,
     *,
-    amplitude: Amplitude,
-    phase: State = 0.0,
-    velocity: State = -math.pi,
+    amplitude: AmplitudeAxis,
+    phase: StartAxis = 0.0,
+    velocity: StartAxis = -math.pi,
     periods: Periods = 10.0,
-    samples: Samples = 200,
+    samples: SampleCount = 200,
 ) -> Result:
     """A ball over time, from a first impact as in :func:`simulate`.
 
@@ -190,11 +190,11 @@ def history(
 def drop(
     ball: Ball,
     *,
-    height: Positive,
-    amplitude: Amplitude = 0.0,
-    phase: State = 0.0,
+    height: PositiveAxis,
+    amplitude: AmplitudeAxis = 0.0,
+    phase: StartAxis = 0.0,
     periods: Periods = 10.0,
-    samples: Samples = 200,
+    samples: SampleCount = 200,
 ) -> Result:
     """A ball that is dropped at rest above a table, which does not move unless Λ is given.
 
@@ -234,7 +234,7 @@ def drop(
     """
     start = checked("height", height, POSITIVE)
     lam = checked("amplitude", amplitude, AMPLITUDE)
-    phi = checked("phase", phase, STATE)
+    phi = checked("phase", phase, START)
     length = checked_number("periods", periods, PERIODS)
     count = checked_number("samples", samples, SAMPLES)
     grid = _grid(ball, height=start, amplitude=lam, phase=phi)
@@ -305,7 +305,7 @@ def _followed(model: Any, starts: FirstImpacts, time: np.ndarray) -> dict[str, n
     impacts.
     """
     sequence = _until(model, starts, time[:, -1])
-    balls = [of_one_ball(sequence[k], each) for k, each in enumerate(time)]
+    balls = [motion_at(sequence[k], each) for k, each in enumerate(time)]
     for one in balls:
         if np.any(one.touching & np.isnan(one.height)):
             raise ModelError(

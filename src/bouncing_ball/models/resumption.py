@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.models.contact import Contact, Span
+from bouncing_ball.models.contact import ContactSpan, FiniteContact
 from bouncing_ball.models.dynamics import Departure, Dynamics, Impact
 from bouncing_ball.models.flight import Flight, land
 from bouncing_ball.numerics.arrays import pick
@@ -108,7 +108,7 @@ class ResumingDynamics(Dynamics):
     """The dynamics of contacts of finite duration, whose flights may end by a resumption."""
 
     @property
-    def contact(self) -> Contact:
+    def contact(self) -> FiniteContact:
         """The law of the contacts."""
         return self.law
 
@@ -117,7 +117,7 @@ class ResumingDynamics(Dynamics):
     ) -> tuple[np.ndarray, np.ndarray]:
         """δ and δ′ at times 0 ≤ s ≤ D since the starts of contacts, of shape (..., contacts)."""
         which = np.broadcast_to(np.arange(impact.phase.size), time.shape).ravel()
-        spans = Span(
+        spans = ContactSpan(
             displacement=impact.displacement,
             velocity=impact.velocity,
             phase=impact.phase,

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 
-from bouncing_ball.models.contact import Contact
+from bouncing_ball.models.contact import FiniteContact
 from bouncing_ball.numerics.arrays import in_words
 from bouncing_ball.numerics.elementary import reduce_angle
 
@@ -60,7 +60,7 @@ class ImpactSequence:
     ----------
     amplitude : array
         Λ of each ball.
-    contact : Contact or None
+    contact : FiniteContact or None
         The law of the contacts, or None if impacts are instantaneous.
     time, phase : array
         Time of the impact since the first one, and the table's phase, in [-π, π].
@@ -80,7 +80,7 @@ class ImpactSequence:
     """
 
     amplitude: np.ndarray
-    contact: Contact | None
+    contact: FiniteContact | None
     time: np.ndarray
     phase: np.ndarray
     displacement: np.ndarray

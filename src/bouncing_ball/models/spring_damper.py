@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.models import linear_flow
-from bouncing_ball.models.contact import Span
+from bouncing_ball.models.contact import ContactSpan
 from bouncing_ball.models.damping import (
     Release,
     check_positive,
@@ -202,7 +202,7 @@ class SpringDamper(OscillatorLaw):
         numbers = self.frequency_ratio, self.damping_ratio
         return linear_flow.flow(*numbers, time, displacement, velocity, phase, amplitude)
 
-    def during(self, span: Span, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def during(self, span: ContactSpan, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """δ and δ′ at times 0 ≤ s ≤ D after the starts of contacts, one time for each contact."""
         start = span.displacement, span.velocity, span.phase
         flow = self.flow(time, *start, span.amplitude)

@@ -8,7 +8,7 @@ from bouncing_ball.datasets.arguments import (
     FAMILY,
     POINTS,
     POSITIVE,
-    Family,
+    FamilyAxis,
     Points,
     checked,
     checked_number,
@@ -31,7 +31,7 @@ _STRIDE = 2e-3
 
 
 def branch(
-    ball: Ball, n: Family = 1, *, amplitude_max: float | None = None, points: Points = 300
+    ball: Ball, n: FamilyAxis = 1, *, amplitude_max: float | None = None, points: Points = 300
 ) -> Result:
     """The branch of n-T orbits over the amplitude Λ, on both sides of its saddle-node.
 

@@ -9,8 +9,8 @@ import numpy as np
 from bouncing_ball.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
     FAMILY,
-    AmplitudeOfOrbit,
-    Family,
+    AmplitudeOfOrbitAxis,
+    FamilyAxis,
     SideName,
     checked,
     checked_number,
@@ -42,7 +42,7 @@ class TwoLimits(NamedTuple):
 
 
 def orbit(
-    ball: Ball, n: Family = 1, *, amplitude: AmplitudeOfOrbit, side: SideName = "stable"
+    ball: Ball, n: FamilyAxis = 1, *, amplitude: AmplitudeOfOrbitAxis, side: SideName = "stable"
 ) -> Orbit | Result:
     """The n-T orbit at the excitation amplitude Λ.
 
@@ -140,7 +140,7 @@ def orbits(ball: Ball, n: int = 1, *, amplitude: float) -> list[Orbit]:
     return [found[k] for k in range(found.size)]
 
 
-def limits(ball: Ball, n: Family = 1) -> TwoLimits | Result:
+def limits(ball: Ball, n: FamilyAxis = 1) -> TwoLimits | Result:
     """Saddle-node and period doubling of the n-T orbits; NaN where there is none.
 
     Parameters

@@ -11,7 +11,7 @@ from sixty_digits import Exact
 
 from bouncing_ball.beyond.proofs import certificates, newton
 from bouncing_ball.beyond.proofs.balls import ProofError, decimal, precision, rational
-from bouncing_ball.beyond.proofs.branch import Contact, Point, point
+from bouncing_ball.beyond.proofs.branch import EnclosedContact, Point, point
 from bouncing_ball.beyond.proofs.certificates import (
     Proved,
     doubling_test,
@@ -197,12 +197,12 @@ def test_the_return_map_contradicts_a_wrong_sign_in_the_period_doubling(monkeypa
 
 
 def test_the_return_map_contradicts_a_wrong_sign_of_the_damping_force(monkeypatch):
-    right = Contact.acceleration
+    right = EnclosedContact.acceleration
 
     def wrong(self, gap, rate, push):
         return right(self, gap, rate, push) + 4 * self.decay * rate
 
-    monkeypatch.setattr(Contact, "acceleration", wrong)
+    monkeypatch.setattr(EnclosedContact, "acceleration", wrong)
     monkeypatch.setattr(newton, "_NEAR", 100.0)
     problem = Problem(Fraction(10), restitution=Fraction(85, 100), release=Release.FORCE)
     with pytest.raises(ProofError, match="contradicts"):
@@ -325,7 +325,7 @@ def test_the_flip_coefficient_is_that_of_a_normal_form(a, b):
 
 def test_with_a_negative_damping_the_other_multiplier_is_not_inside_the_unit_circle():
     with precision(200):
-        wrong = Contact(arb(10), -GIVEN.damping(), arb(0))
+        wrong = EnclosedContact(arb(10), -GIVEN.damping(), arb(0))
         orbit = point(wrong, 1, arb(0))
         with pytest.raises(ProofError, match="other multiplier"):
             certificates._other_multiplier(wrong, orbit)

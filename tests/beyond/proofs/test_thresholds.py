@@ -13,7 +13,7 @@ from bouncing_ball.accuracy.corrected_errors import errors, search
 from bouncing_ball.beyond.proofs import newton
 from bouncing_ball.beyond.proofs import thresholds as proofs
 from bouncing_ball.beyond.proofs.balls import ProofError, decimal, precision
-from bouncing_ball.beyond.proofs.branch import Contact, Point
+from bouncing_ball.beyond.proofs.branch import EnclosedContact, Point
 from bouncing_ball.beyond.proofs.certificates import Proved
 from bouncing_ball.beyond.proofs.newton import certified_box
 from bouncing_ball.beyond.proofs.problem import damping_of
@@ -229,7 +229,7 @@ def test_a_threshold_of_the_height_needs_its_apex(monkeypatch, found):
 def test_the_corrected_model_without_delay_and_load_is_the_restitution_model():
     with precision(200):
         zeta = damping_of(R)
-        stiff = Contact(arb(10) ** 40, zeta, arb(0))
+        stiff = EnclosedContact(arb(10) ** 40, zeta, arb(0))
         r = arb(65) / 100
         simple = SimpleModel.restitution_model(stiff, r, 2)
         limit = SimpleModel.corrected(stiff, r, 2)

@@ -14,7 +14,7 @@ from bouncing_ball.models.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball.models.laws.hertzian import HuntCrossley, KuwabaraKono, Tsuji, tsuji_damping
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
 from bouncing_ball.models.laws.march import march
-from bouncing_ball.models.laws.panel import Balls, Start
+from bouncing_ball.models.laws.panel import BallsInContact, Start
 from bouncing_ball.models.laws.sweeps import Sweeps
 from bouncing_ball.models.spring_damper import SpringDamper
 
@@ -94,7 +94,7 @@ def test_a_contact_does_not_depend_on_its_neighbours_in_the_row():
 )
 def test_newtons_slopes_at_the_end_of_a_panel_are_the_derivatives_along_the_motion(law, until):
     start = Start(*np.array([0.0, 2.0, 0.4, 1.2, 1.0])[:, np.newaxis])
-    sweeps = Sweeps(law, start, Balls(*np.ones((8, 1))), until)
+    sweeps = Sweeps(law, start, BallsInContact(*np.ones((8, 1))), until)
     m = law.root
     state = np.array([[0.3], [-0.7], [0.2]])
     slope = np.array([[-0.7], [-1.7], [m * 0.3 ** (m - 1)]])

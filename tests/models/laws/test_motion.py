@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from bouncing_ball.contacts.engines.impedance import Impedance
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.flight import Flight, land, table
-from bouncing_ball.models.history import history
+from bouncing_ball.models.history import motion_at
 from bouncing_ball.models.laws.motion import sampled_resumption
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.resumption import resumption
@@ -209,7 +209,7 @@ def test_a_ball_is_unloaded_in_flight_and_loaded_in_contact(
     velocity = lam * np.cos(phase) - speed
     sequence = contact.dynamics(lam).simulate(phase, velocity, 15)
     last = np.max(sequence.time[np.isfinite(sequence.time)])
-    dense = history(sequence, np.linspace(0, last, 3000))
+    dense = motion_at(sequence, np.linspace(0, last, 3000))
     lag = 2 * zeta / omega if release is Release.FORCE else 0.0
     relative = dense.velocity - lam * np.cos(phase + dense.time)
     loaded = dense.gap + lag * relative

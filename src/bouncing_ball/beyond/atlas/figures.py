@@ -14,7 +14,7 @@ from bouncing_ball.datasets.selection import each
 from bouncing_ball.drawing.canvas import WIDE, canvas, legend_below
 from bouncing_ball.drawing.labels import QUANTITIES
 from bouncing_ball.drawing.style import CORRECTED, GUIDE, Look
-from bouncing_ball.drawing.tables import Table, words
+from bouncing_ball.drawing.tables import TextTable, words
 
 LEVELS = (3, 5, 10, 20, 50, 100, 200, 500, 1000)
 """Bounds between the colours; the last colour is for larger values."""
@@ -132,7 +132,7 @@ def _explain_page(axes: Axes, data: xr.Dataset) -> None:
     axes.legend(loc="center", title="the simplest that is right")
 
 
-def shares(data: xr.Dataset) -> Table:
+def shares(data: xr.Dataset) -> TextTable:
     """Accuracy of the models on all nodes, by release rule and quantity; header and rows.
 
     Shares refer to nodes, so that a limit of the families has no share; suprema refer to all

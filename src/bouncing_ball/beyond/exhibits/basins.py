@@ -9,7 +9,7 @@ from bouncing_ball.beyond.exhibits.lives import Place, columns
 from bouncing_ball.beyond.exhibits.motion_samples import (
     MODELS,
     Confidence,
-    Impacts,
+    MostImpacts,
     share_with_limits,
     three_models,
     uncertainty_exponent,
@@ -62,7 +62,7 @@ class Basins(Sharded):
     starts: Annotated[int, number("starts along each axis, at middles of cells", ge=10, le=1000)]
     random: Annotated[int, number("random starts for each case", ge=10, le=10**6)]
     shifts: Many[Annotated[float, number("changes of the phase at the start", "rad", gt=0, le=1)]]
-    impacts: Impacts
+    impacts: MostImpacts
     confidence: Confidence
     seed: Seed
 

@@ -3,11 +3,11 @@
 import xarray as xr
 
 from bouncing_ball.datasets.selection import each
-from bouncing_ball.drawing.tables import Columns, Table, entry_of, table, text
+from bouncing_ball.drawing.tables import Columns, TextTable, entry_of, table, text
 from bouncing_ball.paper.claims.tables import deviation_text
 
 
-def ext_verdicts(data: xr.Dataset) -> Table:
+def ext_verdicts(data: xr.Dataset) -> TextTable:
     """The printed numbers with the limits between which the exact numbers lie, and the verdicts."""
     columns: Columns = {
         "claim": text("claim"),

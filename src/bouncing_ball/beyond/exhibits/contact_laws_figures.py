@@ -9,7 +9,7 @@ from bouncing_ball.drawing.labels import parameters
 from bouncing_ball.drawing.style import GUIDE, LAWS
 from bouncing_ball.drawing.tables import (
     Columns,
-    Table,
+    TextTable,
     at,
     entry_of,
     quantity_in_words,
@@ -42,7 +42,7 @@ def contact_laws(data: xr.Dataset) -> Figure:
     return figure
 
 
-def ext_laws(data: xr.Dataset) -> Table:
+def ext_laws(data: xr.Dataset) -> TextTable:
     """Errors on contacts of five laws with the same restitution coefficient and centroid.
 
     Columns give both models at the smallest, the middle and the largest π/(D + κ) of the grid, and

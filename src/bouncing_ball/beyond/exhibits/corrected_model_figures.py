@@ -9,7 +9,7 @@ from bouncing_ball.drawing.labels import note, parameters
 from bouncing_ball.drawing.style import COLOURS, CONTACT, GUIDE, MODELS, TABLE, Look
 from bouncing_ball.drawing.tables import (
     Columns,
-    Table,
+    TextTable,
     at,
     entry_of,
     quantity_in_words,
@@ -78,7 +78,7 @@ def orders(data: xr.Dataset) -> Figure:
     return figure
 
 
-def ext_orders(data: xr.Dataset) -> Table:
+def ext_orders(data: xr.Dataset) -> TextTable:
     """The error law by quantity; the permanent contact, which has no correction, comes last.
 
     C is the corrected model's error times ϖ²; the last column is the ϖ at which

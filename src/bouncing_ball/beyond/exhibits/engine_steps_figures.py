@@ -9,7 +9,7 @@ from bouncing_ball.datasets.selection import each
 from bouncing_ball.drawing.canvas import WIDE, canvas, legend_below
 from bouncing_ball.drawing.labels import number, parameters
 from bouncing_ball.drawing.style import COLOURS, MODELS, Look
-from bouncing_ball.drawing.tables import Columns, Table, at, entry_of, table, text, value
+from bouncing_ball.drawing.tables import Columns, TextTable, at, entry_of, table, text, value
 
 _IMPLICIT: Look = {"color": COLOURS[2], "linestyle": (0, (6, 1.5, 1, 1.5))}
 # Dashes distinguish the schemes of time stepping, and markers the engines.
@@ -74,7 +74,7 @@ def _draw_steps(axes: Axes, part: xr.Dataset, scheme: str) -> None:
 _OF_ENGINES = ("free_steps", "measured_restitution", "contact_steps", "height_scatter")
 
 
-def ext_engines(data: xr.Dataset) -> Table:
+def ext_engines(data: xr.Dataset) -> TextTable:
     """Physics engines and models: restitution, steps, and the heights of orbits.
 
     Errors are the mean of the bounces ± their scatter. Times are relative to that of the

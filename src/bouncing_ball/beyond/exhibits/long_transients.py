@@ -12,8 +12,8 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.beyond.exhibits.motion_samples import (
-    Impacts,
-    Nodes,
+    MostImpacts,
+    PlaneNodes,
     share,
     share_with_limits,
     with_limits,
@@ -51,17 +51,17 @@ VARIABLES = {
 }
 
 
-class LongTransients(Nodes):
+class LongTransients(PlaneNodes):
     """A grid over (Λ, r) with one ball for each node, all of which start alike."""
 
     phase: Annotated[float, number("phase φ of the first impact", "rad", ge=-10, le=10)]
     impact_speed: Annotated[float, number("relative speed -δ′ of the first impact", gt=0, le=1000)]
-    followed: Many[Impacts]
+    followed: Many[MostImpacts]
     bands: Many[LossyRestitution]
     resolved: Annotated[
         float, number("share of these balls that is followed with many digits", gt=0, le=1)
     ]
-    resolved_impacts: Impacts
+    resolved_impacts: MostImpacts
     seed: Seed
 
 

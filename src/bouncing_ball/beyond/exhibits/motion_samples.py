@@ -35,7 +35,7 @@ from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 
 Confidence = Annotated[float, number("level of the confidence intervals", gt=0.5, lt=1)]
-Impacts = Annotated[
+MostImpacts = Annotated[
     int,
     number(
         "number of impacts after which the search for a repetition ends; an exponent with "
@@ -70,7 +70,7 @@ class Restitutions(Even):
     max: Annotated[LossyRestitution, Field(description="largest r, above min")]
 
 
-class Nodes(Sharded):
+class PlaneNodes(Sharded):
     """A grid over the plane of (Λ, r)."""
 
     amplitude: Amplitudes
@@ -88,11 +88,11 @@ class Nodes(Sharded):
         return values.reshape((*leading, self.restitution.samples, self.amplitude.samples))
 
 
-class ParameterPlane(Nodes):
+class ParameterPlane(PlaneNodes):
     """A grid over the plane of (Λ, r), and contacts at several ϖ."""
 
     frequency_ratio: Many[FrequencyRatio]
-    impacts: Impacts
+    impacts: MostImpacts
 
 
 MODELS = (*SIMPLE, "spring-damper")

@@ -9,7 +9,7 @@ from bouncing_ball.beyond.exhibits.motion_samples import (
     LEAST_ERROR,
     MODELS,
     Amplitudes,
-    Impacts,
+    MostImpacts,
     three_models,
 )
 from bouncing_ball.datasets.parameters import FrequencyRatio, LossyRestitution, Sharded, number
@@ -32,7 +32,7 @@ class Diagram(Sharded):
     amplitude: Amplitudes
     starts: Annotated[int, number("starts at each Λ beside those of the neighbours", ge=1, le=100)]
     samples: Annotated[int, number("impacts of a motion that does not repeat", ge=10, le=10000)]
-    impacts: Impacts
+    impacts: MostImpacts
     bins: Annotated[int, number("equal ranges of the phase of impact", ge=10, le=2000)]
 
     def edges(self) -> np.ndarray:

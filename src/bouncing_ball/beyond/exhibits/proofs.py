@@ -56,7 +56,7 @@ VARIABLES = {
 _GRID = np.geomspace(1.0, 1e4, 101)
 
 
-class Thresholds(Parameters):
+class ToleratedError(Parameters):
     """The orbit whose error decides the thresholds, and the error that is tolerated."""
 
     n: Family
@@ -80,12 +80,12 @@ class Proofs(Parameters):
     n: Many[Family]
     restitution: LossyRestitution
     frequency_ratio: Many[FrequencyRatio]
-    thresholds: Thresholds
+    thresholds: ToleratedError
     apparent: Apparent
     digits: Annotated[int, number("certified decimal digits of each number", ge=10, le=100)]
 
 
-class Row(NamedTuple):
+class CertifiedRow(NamedTuple):
     """One certified number; its ball, or the reason why there is none."""
 
     name: str
@@ -95,15 +95,15 @@ class Row(NamedTuple):
     claim: str
 
 
-def _row(name: str, prove: Callable[[], CertifiedNumber], claim: str = "") -> Row:
+def _row(name: str, prove: Callable[[], CertifiedNumber], claim: str = "") -> CertifiedRow:
     try:
         found = prove()
     except ProofError as error:
-        return Row(name, None, 0, str(error), claim)
-    return Row(name, found.ball, found.bits, "; ".join(found.proved), claim)
+        return CertifiedRow(name, None, 0, str(error), claim)
+    return CertifiedRow(name, found.ball, found.bits, "; ".join(found.proved), claim)
 
 
-def ends_of_table_1(parameters: Proofs) -> Iterator[Row]:
+def ends_of_table_1(parameters: Proofs) -> Iterator[CertifiedRow]:
     """The saddle-nodes and period doublings of all contacts and families."""
     certify = {Bifurcation.SADDLE_NODE: saddle_node, Bifurcation.PERIOD_DOUBLING: period_doubling}
     r = exactly(parameters.restitution)
@@ -118,7 +118,7 @@ def ends_of_table_1(parameters: Proofs) -> Iterator[Row]:
         yield _row(name, prove, f"Table 1: {ratio:g}, {n}, {kind}")
 
 
-def dampings(parameters: Proofs) -> Iterator[Row]:
+def dampings(parameters: Proofs) -> Iterator[CertifiedRow]:
     """ζ of both restitution coefficients (Eq. 16)."""
     bits = working_bits(Fraction(1), parameters.digits)
     for r in (parameters.restitution, parameters.thresholds.restitution):
@@ -130,7 +130,7 @@ def dampings(parameters: Proofs) -> Iterator[Row]:
         yield _row(f"ζ of r = {r:g}", prove, f"damping of {r:g}")
 
 
-def apparent(parameters: Apparent, digits: int) -> Row:
+def apparent(parameters: Apparent, digits: int) -> CertifiedRow:
     """The apparent restitution of an orbit at a given Λ."""
     ratio = exactly(parameters.frequency_ratio)
     r = exactly(parameters.restitution)
@@ -149,7 +149,7 @@ def apparent(parameters: Apparent, digits: int) -> Row:
     return _row(name, prove, f"compliant end of {lam:g}")
 
 
-def comparisons(parameters: Thresholds) -> Iterator[tuple[str, Comparison, float, Fraction]]:
+def comparisons(parameters: ToleratedError) -> Iterator[tuple[str, Comparison, float, Fraction]]:
     """The thresholds and zeros of the errors of both simple models (Eq. 37), as Table 2 has them.
 
     Each has a name, the comparison, ϖ in double precision and the signed value of the error.
@@ -187,7 +187,7 @@ def comparisons(parameters: Thresholds) -> Iterator[tuple[str, Comparison, float
             yield f"ϖ where the error of {words} is 0", comparison, zero, Fraction(0)
 
 
-def thresholds(parameters: Thresholds, digits: int) -> Iterator[Row]:
+def thresholds(parameters: ToleratedError, digits: int) -> Iterator[CertifiedRow]:
     """The ϖ at which errors of the simple models have certain values, and permanent contact."""
     for name, comparison, start, error in comparisons(parameters):
 

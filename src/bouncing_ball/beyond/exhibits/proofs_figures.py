@@ -3,10 +3,10 @@
 import xarray as xr
 
 from bouncing_ball.datasets.selection import each
-from bouncing_ball.drawing.tables import Table, table, text
+from bouncing_ball.drawing.tables import TextTable, table, text
 
 
-def ext_proofs(data: xr.Dataset) -> Table:
+def ext_proofs(data: xr.Dataset) -> TextTable:
     """Certified numbers, a bound of the distance from the exact ones, and what is proved."""
     columns = {
         "number": text("certificate"),

@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 from flint import arb
 
-from bouncing_ball.beyond.proofs.branch import Contact, Point
+from bouncing_ball.beyond.proofs.branch import EnclosedContact, Point
 
 # Largest number of balls of time for one function, and the parts into which the time is divided
 # first.
@@ -52,7 +52,7 @@ def _near_end(function: Callable[[arb], arb], start: arb, length: arb, sign: int
     return None
 
 
-def contact_holds(contact: Contact, orbit: Point) -> bool:
+def contact_holds(contact: EnclosedContact, orbit: Point) -> bool:
     """Whether y < 0 is proved for all times in the contact."""
     lag = contact.lag
 
@@ -79,7 +79,7 @@ def contact_holds(contact: Contact, orbit: Point) -> bool:
     return keeps_sign(grip, first, duration + last, -1)
 
 
-def flight_is_free(contact: Contact, orbit: Point) -> bool:
+def flight_is_free(contact: EnclosedContact, orbit: Point) -> bool:
     """Whether the ball is proved to meet neither the table nor its contact during the flight."""
     turn_sine, turn_cosine = orbit.duration.sin_cos()
     x = orbit.x * turn_cosine - orbit.y * turn_sine

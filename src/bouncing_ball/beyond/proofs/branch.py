@@ -29,7 +29,7 @@ class Responses(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Contact:
+class EnclosedContact:
     """A spring-damper contact whose parameters are balls: ζ in [0, 1), ϖ > 0, and κϖ/2 = sin α.
 
     ``release_sine`` is 0 for the displacement release and ζ for the force release.
@@ -139,7 +139,7 @@ class Point(NamedTuple):
         return height + bounce * bounce / 2
 
 
-def point(contact: Contact, n: int, excess: Number) -> Point:
+def point(contact: EnclosedContact, n: int, excess: Number) -> Point:
     """The orbit with the excess angle ε, by Cramer's rule for conditions (5)-(7) of the page."""
     duration = contact.duration(excess)
     flight = -duration + 2 * n * arb.pi()

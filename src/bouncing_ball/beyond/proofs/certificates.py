@@ -22,7 +22,7 @@ from bouncing_ball.beyond.proofs.balls import (
     precision,
     rational,
 )
-from bouncing_ball.beyond.proofs.branch import Contact, Point, point
+from bouncing_ball.beyond.proofs.branch import EnclosedContact, Point, point
 from bouncing_ball.beyond.proofs.newton import certified_zero
 from bouncing_ball.beyond.proofs.problem import Problem, working_bits
 from bouncing_ball.beyond.proofs.return_map import ReturnMap, flip_coefficient, return_map
@@ -76,12 +76,12 @@ class Certificate:
 # The equations that vanish at a bifurcation, as series in ε of order 1.
 
 
-def fold_test(contact: Contact, n: int, excess: Series) -> Series:
+def fold_test(contact: EnclosedContact, n: int, excess: Series) -> Series:
     """½ dΛ²/dε."""
     return point(contact, n, excess).square.derivative() / 2
 
 
-def doubling_test(contact: Contact, n: int, excess: Series) -> Series:
+def doubling_test(contact: EnclosedContact, n: int, excess: Series) -> Series:
     """1 + tr + det, from ``1 - tr + det = -(det A/(u R_D)) ½ dΛ²/dD`` (docs/closed-form.md)."""
     found = point(contact, n, excess)
     x = found.x
@@ -135,17 +135,17 @@ def orbit_at(
     """
     start = orbit_start(problem.approximate(), problem.n, float(amplitude), side)
 
-    def test(contact: Contact, n: int, excess: Series) -> Series:
+    def test(contact: EnclosedContact, n: int, excess: Series) -> Series:
         return (point(contact, n, excess).square - rational(amplitude) ** 2).truncated(1)
 
     what = f"orbit at Λ = {amplitude}"
     return _certified(problem, digits, test, start, orbit_properties, what)
 
 
-Test = Callable[[Contact, int, Series], Series]
+Test = Callable[[EnclosedContact, int, Series], Series]
 """A function of the branch that vanishes at the solution, as a series in ε of order 1."""
 
-Properties = Callable[[Contact, int, arb], list[Proved]]
+Properties = Callable[[EnclosedContact, int, arb], list[Proved]]
 """What is proved for all orbits whose ε lies in a ball; a :class:`ProofError` if that fails."""
 
 
@@ -197,7 +197,7 @@ def orbit_start(contact: SpringDamper, n: int, amplitude: float, side: str = "st
 # What is proved for a ball that contains exactly one solution.
 
 
-def saddle_node_properties(contact: Contact, n: int, excess: arb) -> list[Proved]:
+def saddle_node_properties(contact: EnclosedContact, n: int, excess: arb) -> list[Proved]:
     """The properties of a saddle-node: a quadratic fold of Λ, and one multiplier 1."""
     orbit = point(contact, n, excess)
     _require_regular(orbit)
@@ -208,7 +208,7 @@ def saddle_node_properties(contact: Contact, n: int, excess: arb) -> list[Proved
     return [Proved.FOLD, _other_multiplier(contact, orbit), Proved.ADMISSIBLE]
 
 
-def period_doubling_properties(contact: Contact, n: int, excess: arb) -> list[Proved]:
+def period_doubling_properties(contact: EnclosedContact, n: int, excess: arb) -> list[Proved]:
     """The properties of a period doubling: a multiplier crosses -1, and the criticality."""
     orbit = point(contact, n, excess)
     _require_regular(orbit)
@@ -223,7 +223,7 @@ def period_doubling_properties(contact: Contact, n: int, excess: arb) -> list[Pr
     return [inside, Proved.CROSSING, kind, Proved.ADMISSIBLE]
 
 
-def orbit_properties(contact: Contact, n: int, excess: arb) -> list[Proved]:
+def orbit_properties(contact: EnclosedContact, n: int, excess: arb) -> list[Proved]:
     """The properties of an orbit: admissible, and stable or unstable if that is certain."""
     orbit = point(contact, n, excess)
     _require_regular(orbit)
@@ -238,7 +238,7 @@ def orbit_properties(contact: Contact, n: int, excess: arb) -> list[Proved]:
     return [Proved.ADMISSIBLE]
 
 
-def criticality(contact: Contact, orbit: Point) -> Proved:
+def criticality(contact: EnclosedContact, orbit: Point) -> Proved:
     """Whether a period doubling is super- or subcritical.
 
     Raises
@@ -256,19 +256,21 @@ def criticality(contact: Contact, orbit: Point) -> Proved:
     raise ProofError("the sign of the period doubling's cubic coefficient is not certain")
 
 
-def _determinant(contact: Contact, orbit: Point) -> Any:
+def _determinant(contact: EnclosedContact, orbit: Point) -> Any:
     """The product of both multipliers, exp(-2ζϖD)."""
     return (-2 * contact.decay * orbit.duration).exp()
 
 
-def _other_multiplier(contact: Contact, orbit: Point) -> Proved:
+def _other_multiplier(contact: EnclosedContact, orbit: Point) -> Proved:
     """Check that the product of both multipliers, of which one is 1 or -1, is below 1."""
     if not _determinant(contact, orbit) < 1:
         raise ProofError("the other multiplier may lie on the unit circle")
     return Proved.INSIDE
 
 
-def _require_multiplier(contact: Contact, orbit: Point, found: ReturnMap, multiplier: int) -> None:
+def _require_multiplier(
+    contact: EnclosedContact, orbit: Point, found: ReturnMap, multiplier: int
+) -> None:
     """Check that the return map has the determinant and the multiplier of the branch's formulas.
 
     The return map is a second derivation: it shares only the flow with the equations of the branch.
@@ -296,7 +298,7 @@ def _require_regular(orbit: Point) -> None:
             raise ProofError(f"{reason}: the orbit is not proved to be regular")
 
 
-def _require_admissible(contact: Contact, orbit: Point) -> None:
+def _require_admissible(contact: EnclosedContact, orbit: Point) -> None:
     with precision(_COARSE):
         admissible = contact_holds(contact, orbit) and flight_is_free(contact, orbit)
     if not admissible:

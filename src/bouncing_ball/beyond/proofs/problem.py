@@ -7,7 +7,7 @@ from fractions import Fraction
 from flint import arb
 
 from bouncing_ball.beyond.proofs.balls import ProofError, rational
-from bouncing_ball.beyond.proofs.branch import Contact
+from bouncing_ball.beyond.proofs.branch import EnclosedContact
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.spring_damper import SpringDamper
 
@@ -69,11 +69,11 @@ class Problem:
         assert self.restitution is not None
         return damping_of(self.restitution)
 
-    def contact(self) -> Contact:
+    def contact(self) -> EnclosedContact:
         """The contact with balls as parameters, at the present precision."""
         zeta = self.damping()
         sine = zeta if self.release is Release.FORCE else arb(0)
-        return Contact(rational(self.frequency_ratio), zeta, sine)
+        return EnclosedContact(rational(self.frequency_ratio), zeta, sine)
 
     def approximate(self) -> SpringDamper:
         """The contact in double precision."""

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from flint import arb
 
-from bouncing_ball.beyond.proofs.branch import Contact, Point
+from bouncing_ball.beyond.proofs.branch import EnclosedContact, Point
 from bouncing_ball.beyond.proofs.series import Series
 
 
@@ -27,7 +27,7 @@ class ReturnMap(NamedTuple):
         return (a, b), (c, d)
 
 
-def return_map(contact: Contact, orbit: Point, order: int = 3) -> ReturnMap:
+def return_map(contact: EnclosedContact, orbit: Point, order: int = 3) -> ReturnMap:
     """The Taylor series of the return map about an orbit.
 
     The constant terms of the conditions are exactly 0 on an orbit; they are set to 0.

@@ -15,7 +15,7 @@ from typing import Any, Self
 
 from flint import arb
 
-from bouncing_ball.beyond.proofs.branch import Contact, Number
+from bouncing_ball.beyond.proofs.branch import EnclosedContact, Number
 from bouncing_ball.beyond.proofs.series import Series, angle
 
 
@@ -30,13 +30,13 @@ class SimpleModel:
     duration: Number
 
     @classmethod
-    def restitution_model(cls, contact: Contact, restitution: arb, n: int) -> Self:
+    def restitution_model(cls, contact: EnclosedContact, restitution: arb, n: int) -> Self:
         """The model of Eqs. 1-9."""
         none = 0 * contact.frequency_ratio
         return cls(n, restitution, none, none, none)
 
     @classmethod
-    def corrected(cls, contact: Contact, restitution: arb, n: int) -> Self:
+    def corrected(cls, contact: EnclosedContact, restitution: arb, n: int) -> Self:
         """The corrected model of a contact whose free impact has this restitution."""
         r = restitution
         duration = contact.free_angle / contact.damped

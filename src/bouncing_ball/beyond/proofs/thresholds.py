@@ -13,7 +13,7 @@ from fractions import Fraction
 from flint import arb
 
 from bouncing_ball.beyond.proofs.balls import ProofError, precision, rational
-from bouncing_ball.beyond.proofs.branch import Contact, Point, point
+from bouncing_ball.beyond.proofs.branch import EnclosedContact, Point, point
 from bouncing_ball.beyond.proofs.certificates import (
     Properties,
     Proved,
@@ -61,14 +61,14 @@ class Comparison:
     amplitude: Fraction
     corrected: bool = False
 
-    def error(self, contact: Contact, orbit: Point) -> Series:
+    def error(self, contact: EnclosedContact, orbit: Point) -> Series:
         """The signed error of Eq. 37 for an orbit of the contact."""
         make = SimpleModel.corrected if self.corrected else SimpleModel.restitution_model
         simple = make(contact, rational(self.restitution), self.n)
         wanted = getattr(simple, self.quantity)(rational(self.amplitude))
         return MEASURED[self.quantity](orbit) / wanted - 1
 
-    def condition(self, contact: Contact, excess: Series) -> Series:
+    def condition(self, contact: EnclosedContact, excess: Series) -> Series:
         """The function that vanishes on the orbits that are compared."""
         if self.quantity == "saddle_node":
             return fold_test(contact, self.n, excess)
@@ -126,14 +126,14 @@ def error_threshold(
 
         def equations(box: list[arb]) -> tuple[Series, Series]:
             epsilon, ratio = (Series.variable(x, k, 2) for k, x in enumerate(box))
-            contact = Contact(ratio, zeta, arb(0))
+            contact = EnclosedContact(ratio, zeta, arb(0))
             first = comparison.condition(contact, epsilon)
             second = comparison.error(contact, point(contact, comparison.n, epsilon)) - value
             return first, second
 
         box = certified_box(equations, [comparison.start(start), start])
         epsilon, ratio = box
-        contact = Contact(ratio, zeta, arb(0))
+        contact = EnclosedContact(ratio, zeta, arb(0))
         proved = comparison.properties(contact, comparison.n, epsilon)
         if comparison.quantity == "max_height":
             _require_apex(point(contact, comparison.n, epsilon))

@@ -7,7 +7,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from bouncing_ball.contacts.engines.engine import Engine, Parameters, Physical, at_speeds, written
+from bouncing_ball.contacts.engines.engine import (
+    Engine,
+    EngineParameters,
+    Physical,
+    at_speeds,
+    written,
+)
 from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.hertzian import LinearHuntCrossley
@@ -35,7 +41,7 @@ class Drake(Engine):
     scheme = Scheme.COMPENSATED
     laws: ClassVar[dict[str, str]] = {"hunt-crossley": "hunt-crossley-linear"}
 
-    def parameters(self, contact: Physical) -> Parameters:
+    def parameters(self, contact: Physical) -> EngineParameters:
         time = contact.damping / contact.stiffness / 2
         return dict(zip(self.names, (2 * contact.stiffness, time), strict=True))
 
@@ -46,8 +52,8 @@ class Drake(Engine):
     def reader(self, parameters: Mapping[str, Any]) -> Engine:
         return HuntCrossleyDrake() if HuntCrossleyDrake.names[1] in parameters else self
 
-    def with_law(self, law: Mapping[str, Any]) -> Engine:
-        return HuntCrossleyDrake(law)
+    def with_law(self, law_in_si: Mapping[str, Any]) -> Engine:
+        return HuntCrossleyDrake(law_in_si)
 
 
 class HuntCrossleyDrake(Drake):
@@ -59,7 +65,7 @@ class HuntCrossleyDrake(Drake):
 
     Parameters
     ----------
-    law : mapping, optional
+    law_in_si : mapping, optional
         The stiffness k in N/m and the damping d that :meth:`parameters` gives.
 
     Examples
@@ -74,11 +80,11 @@ class HuntCrossleyDrake(Drake):
     needs_speed = True
     text = "drake-hunt-crossley"
 
-    def __init__(self, law: Mapping[str, Any] | None = None):
-        self._law = law or {}
+    def __init__(self, law_in_si: Mapping[str, Any] | None = None):
+        self._law_in_si = law_in_si or {}
 
-    def parameters(self, contact: Physical) -> Parameters:
-        values = (written(2 * self._law["stiffness"]), written(self._law["damping"]))
+    def parameters(self, contact: Physical) -> EngineParameters:
+        values = (written(2 * self._law_in_si["stiffness"]), written(self._law_in_si["damping"]))
         return dict(zip(self.names, values, strict=True))
 
     def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:

@@ -24,7 +24,7 @@ ERROR = 0.001
 # A whole number of steps is not rounded down.
 _ALMOST = 1 + 1e-9
 _PLACE = re.compile(r"@([\w.]+)@")
-Parameters = Mapping[str, float | list[float]]
+EngineParameters = Mapping[str, float | list[float]]
 
 
 def written(value: float) -> float:
@@ -46,7 +46,7 @@ class EngineSettings:
     """
 
     name: str
-    parameters: Parameters
+    parameters: EngineParameters
     time_step: float
     release: str
     restitution: float
@@ -97,7 +97,7 @@ class Engine(ABC):
     """Whether the damping depends on the impact speed, so that :meth:`read` returns c = 0."""
 
     @abstractmethod
-    def parameters(self, contact: Physical) -> Parameters:
+    def parameters(self, contact: Physical) -> EngineParameters:
         """The parameters of a contact, in the units and under the names of the engine."""
 
     def for_step(self, contact: Physical, time_step: float) -> Physical:
@@ -177,7 +177,7 @@ class Engine(ABC):
         """
         return None
 
-    def with_law(self, law: Mapping[str, Any]) -> "Engine":
+    def with_law(self, law_in_si: Mapping[str, Any]) -> "Engine":
         """The engine for a contact law, which has a ``name`` and its parameters in SI units.
 
         Its settings are made from the linear contact with the same restitution and duration.
@@ -187,7 +187,7 @@ class Engine(ABC):
         ModelError
             If the engine has no such law.
         """
-        raise ModelError(f"{law['name']} is not written for {self.name}")
+        raise ModelError(f"{law_in_si['name']} is not written for {self.name}")
 
     def remarks(self, parameters: Mapping[str, Any]) -> tuple[str, ...]:
         """Sentences on how the contact with these parameters differs from a spring and damper."""
@@ -355,7 +355,7 @@ class Proportional(Engine):
         """The factors a and b for k and c, for a ball of this mass in kg."""
         return 1.0, 1.0
 
-    def parameters(self, contact: Physical) -> Parameters:
+    def parameters(self, contact: Physical) -> EngineParameters:
         stiff, lossy = self.factors(contact.mass)
         values = (stiff * contact.stiffness, lossy * contact.damping)
         return dict(zip(self.names, values, strict=True))

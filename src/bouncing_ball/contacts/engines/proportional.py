@@ -13,7 +13,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from bouncing_ball.contacts.engines.engine import Parameters, Physical, Proportional
+from bouncing_ball.contacts.engines.engine import EngineParameters, Physical, Proportional
 from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.models.damping import Release
 
@@ -41,7 +41,7 @@ class Generic(Proportional):
     releases = (Release.DISPLACEMENT, Release.FORCE)
     scheme = Scheme.SEMI_IMPLICIT
 
-    def parameters(self, contact: Physical) -> Parameters:
+    def parameters(self, contact: Physical) -> EngineParameters:
         return {"mass": contact.mass, **super().parameters(contact)}
 
     def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.models.laws.force_law import ForceLaw
 from bouncing_ball.models.laws.march import MOST_PANELS, ContactEnds, march, march_through
-from bouncing_ball.models.laws.panel import Start, part_of
+from bouncing_ball.models.laws.panel import Start, selected
 
 # A time counts as the end of the contact if less than this part of the contact remains.
 _END = 1e-12
@@ -27,7 +27,7 @@ def states(
     All arrays have one entry per contact.
     """
     inside = np.flatnonzero((time > 0) & (time < (1 - _END) * end[0]))
-    laws, own = part_of(inside, law, start)
+    laws, own = selected(inside, law, start)
     rows, contact = np.unique(np.array(own), axis=1, return_inverse=True)
     if laws.shape or 2 * rows.shape[1] > inside.size:
         found = march(laws, own, MOST_PANELS, time[inside])

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import require
-from bouncing_ball.models.contact import Span
+from bouncing_ball.models.contact import ContactSpan
 from bouncing_ball.models.damping import check_damping, check_positive
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.flight import table
@@ -43,7 +43,7 @@ class ContactLaw(ForceLaw):
         """
         return ContactDynamics.of(self, amplitude)
 
-    def during(self, span: Span, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def during(self, span: ContactSpan, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """δ and δ′ at times 0 ≤ s ≤ D after the starts of contacts, one time for each contact."""
         start = Start(
             depth=-span.displacement,

@@ -19,13 +19,13 @@ from bouncing_ball.models.laws.linearised import at_end, at_release
 from bouncing_ball.models.laws.panel import (
     FINER,
     NODES,
-    Balls,
+    BallsInContact,
     Panel,
     Start,
     gauss_rule,
     lever_of,
     load_of,
-    part_of,
+    selected,
 )
 from bouncing_ball.models.laws.scales import scales
 from bouncing_ball.models.laws.sweeps import LONGER, Sweeps
@@ -74,7 +74,7 @@ class ContactEnds(NamedTuple):
 
 
 def _in_plain_time(
-    law: ForceLaw, start: Start, now: Balls, until: np.ndarray | None, *, linearised: bool
+    law: ForceLaw, start: Start, now: BallsInContact, until: np.ndarray | None, *, linearised: bool
 ) -> Panel:
     """The next panel in plain time, which costs half as much and suffices if q hardly changes.
 
@@ -94,12 +94,12 @@ def _in_plain_time(
     return panel._replace(root=root, final=panel.final * then, following=following)
 
 
-def _in_root(law: ForceLaw, start: Start, now: Balls, until: np.ndarray | None) -> Panel:
+def _in_root(law: ForceLaw, start: Start, now: BallsInContact, until: np.ndarray | None) -> Panel:
     """The next panel in the time s of the root."""
     return Sweeps(law, start, now, until).panel()
 
 
-def _next(law: ForceLaw, start: Start, now: Balls, until: np.ndarray | None) -> Panel:
+def _next(law: ForceLaw, start: Start, now: BallsInContact, until: np.ndarray | None) -> Panel:
     """The next panels, each in plain time if that suffices and in s otherwise."""
     far = law.root * np.abs(now.rate) * now.step < _FAR * now.root
     settling = _SETTLING * now.length
@@ -117,13 +117,13 @@ def _next(law: ForceLaw, start: Start, now: Balls, until: np.ndarray | None) -> 
     for which, follow in zip(sides, follows, strict=True):
         if which.size:
             limit = None if until is None else until[which]
-            laws, starts, balls = part_of(which, law, start, now)
+            laws, starts, balls = selected(which, law, start, now)
             panels.append(follow(laws, starts, balls, limit))
     order = np.argsort(np.concatenate(sides))
     return Panel(*(np.concatenate(x, axis=-1)[..., order] for x in zip(*panels, strict=True)))
 
 
-def _longest(m: int, now: Balls, panel: Panel) -> np.ndarray:
+def _longest(m: int, now: BallsInContact, panel: Panel) -> np.ndarray:
     """The greatest length of the next panels; time runs faster the deeper a ball is."""
     root = panel.root[-1]
     rate = panel.rate[-1]
@@ -144,14 +144,14 @@ def _integrals(law: ForceLaw, start: Start, panel: Panel) -> np.ndarray:
     return np.stack([(sunk * passed).sum(axis=0), (moved * passed).sum(axis=0)], axis=1)
 
 
-def _begin(law: ForceLaw, start: Start, nodes: int) -> Balls:
+def _begin(law: ForceLaw, start: Start, nodes: int) -> BallsInContact:
     """The balls at the start of their contacts."""
     scale = scales(law, np.abs(start.rate), start.weight + np.abs(start.amplitude))
     rest = _AT_REST * scale.speed
     rate = np.where((start.depth == 0) & (start.rate < rest), rest, start.rate)
     zero = np.zeros_like(rate)
     side = np.where(law.kink(start.depth, rate) < 0, -1.0, 1.0) if law.has_kink else zero
-    return Balls(
+    return BallsInContact(
         root=start.depth ** (1 / law.root),
         rate=rate,
         time=zero,
@@ -188,7 +188,7 @@ class _March:
         self.count = FINER if differentiate else NODES
         # Plain time needs neither the root at the nodes nor the same nodes for all contacts.
         self.allows_time = law.root > 1 and not (differentiate or integrate)
-        self.balls = Balls(*np.full((len(Balls._fields), size), np.nan))
+        self.balls = BallsInContact(*np.full((len(BallsInContact._fields), size), np.nan))
         self.by = np.zeros((size, 3, 4))
         self.by[:, 1, 1] = 1.0
         self.strain = np.zeros(size)
@@ -196,13 +196,13 @@ class _March:
         self.contraction = np.full(size, np.nan)
         self.integrals = np.full((size, 2), 0.0 if integrate else np.nan)
         self.done = np.zeros(size, dtype=bool)
-        self.states: list[tuple[np.ndarray, Balls]] | None = None
+        self.states: list[tuple[np.ndarray, BallsInContact]] | None = None
 
     def begin(self) -> None:
         """Set the balls to the starts of their contacts."""
         active = self._known()
         is_newton = self.law.root == 1 and not self.differentiate
-        law, start = part_of(active, self.law, self.start)
+        law, start = selected(active, self.law, self.start)
         begin = _begin(law, start, nodes=self.count * (1 + is_newton))
         for row, value in zip(self.balls, begin, strict=True):
             row[active] = value
@@ -217,7 +217,7 @@ class _March:
 
     def _record(self, here: np.ndarray) -> None:
         if self.states is not None:
-            self.states.append((here, Balls(*(row[here] for row in self.balls))))
+            self.states.append((here, BallsInContact(*(row[here] for row in self.balls))))
 
     def run(self, panels: int, enough: np.ndarray) -> None:
         """Follow the contacts until all have ended or have reached the times ``enough``, for at
@@ -235,8 +235,8 @@ class _March:
     def _advance(self, here: np.ndarray) -> None:
         """Try the next panel of the contacts with these indices."""
         until = None if self.until is None else self.until[here]
-        law, start = part_of(here, self.law, self.start)
-        now = Balls(*(row[here] for row in self.balls))
+        law, start = selected(here, self.law, self.start)
+        now = BallsInContact(*(row[here] for row in self.balls))
         if self.allows_time:
             panel = _next(law, start, now, until)
         else:
@@ -247,7 +247,7 @@ class _March:
             following = np.minimum(following, longest)
         self.balls.step[here] = following
         good = np.flatnonzero(panel.good)
-        law, start, panel = part_of(good, law, start, panel)
+        law, start, panel = selected(good, law, start, panel)
         self._accept(here[good], law, start, panel)
 
     def _accept(self, here: np.ndarray, law: ForceLaw, start: Start, panel: Panel) -> None:
@@ -266,7 +266,7 @@ class _March:
             self.strain[here] += more
             end = np.flatnonzero(panel.last)
             at = here[end]
-            law, start, panel = part_of(end, law, start, panel)
+            law, start, panel = selected(end, law, start, panel)
             self.jacobian[at], self.contraction[at] = at_release(
                 law, start, panel, self.by[at], self.strain[at]
             )
@@ -386,13 +386,13 @@ def march_through(
     return samples.ends()
 
 
-def _before(contacts: _March, contact: np.ndarray, time: np.ndarray) -> Balls:
+def _before(contacts: _March, contact: np.ndarray, time: np.ndarray) -> BallsInContact:
     """The last recorded states of contacts at or before given times."""
     which = np.concatenate([here for here, _ in contacts.states or []])
     columns = zip(*(balls for _, balls in contacts.states or []), strict=True)
-    rows = Balls(*map(np.concatenate, columns))
+    rows = BallsInContact(*map(np.concatenate, columns))
     # Complex numbers are ordered by their real parts first.
     place = which + 1j * rows.time
     order = np.argsort(place, kind="stable")
     found = order[np.searchsorted(place[order], contact + 1j * time, side="right") - 1]
-    return Balls(*(row[found] for row in rows))
+    return BallsInContact(*(row[found] for row in rows))

@@ -73,7 +73,7 @@ class Start(NamedTuple):
     weight: np.ndarray
 
 
-class Balls(NamedTuple):
+class BallsInContact(NamedTuple):
     """Balls in contact: q, p′, t and F, the length of the next panel, and the scales P and V.
 
     ``side`` is the sign of the law's :meth:`~.ForceLaw.kink` in the state of the ball.
@@ -110,7 +110,7 @@ class Panel(NamedTuple):
     turned: np.ndarray
 
 
-class Rule(NamedTuple):
+class GaussRule(NamedTuple):
     """Gauss nodes in (0, 1), and matrices that act on the values at the nodes.
 
     ``integral`` gives the integrals from 0 to each node and to 1, ``twice`` the integrals of these
@@ -126,7 +126,7 @@ class Rule(NamedTuple):
 
 
 @lru_cache(maxsize=4)
-def gauss_rule(count: int) -> Rule:
+def gauss_rule(count: int) -> GaussRule:
     """The rule with this number of nodes; ``node`` is a column."""
     legendre = np.polynomial.legendre
     degree = np.arange(count)
@@ -134,7 +134,7 @@ def gauss_rule(count: int) -> Rule:
     spectrum = (degree + 0.5)[:, np.newaxis] * legendre.legvander(x, count - 1).T * weight
     sums = legendre.legval(np.append(x, 1.0), legendre.legint(np.eye(count), lbnd=-1)).T
     integral = sums / 2 @ spectrum
-    return Rule(
+    return GaussRule(
         node=(1 + x[:, np.newaxis]) / 2,
         integral=integral,
         twice=integral[:-1] @ integral[:-1],
@@ -172,7 +172,7 @@ def grip_of(law: ForceLaw, m: int, root: Any, rate: Any, load: Any) -> Any:
     return grip if law.lag is None else np.where(law.lag == 0, root, grip)
 
 
-def part_of(which: np.ndarray, law: ForceLaw, *rows: Any) -> Any:
+def selected(which: np.ndarray, law: ForceLaw, *rows: Any) -> Any:
     """The laws of some of the contacts, and tuples of arrays whose last axis is the contacts.
 
     The indices are in ascending order, so that all of them select the rows themselves.

@@ -30,7 +30,7 @@ from bouncing_ball.models.laws.force_law import ForceLaw
 from bouncing_ball.models.laws.panel import (
     IMAGINARY_STEP,
     NODES,
-    Balls,
+    BallsInContact,
     Panel,
     Slopes,
     Start,
@@ -125,7 +125,7 @@ class Sweeps:
     ----------
     law : ForceLaw
     start : Start
-    now : Balls
+    now : BallsInContact
         The states at the start of the panels.
     until : array or None
         Times at which the panels end at the latest. If they are given, releases are not looked for.
@@ -142,7 +142,7 @@ class Sweeps:
         self,
         law: ForceLaw,
         start: Start,
-        now: Balls,
+        now: BallsInContact,
         until: np.ndarray | None,
         count: int = NODES,
         m: int = 0,

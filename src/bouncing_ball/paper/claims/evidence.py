@@ -58,7 +58,7 @@ def worst_when_stiff(values: xr.DataArray) -> xr.DataArray:
     return values.where(stiff).max("frequency_ratio")
 
 
-def rebound(data: Data) -> xr.DataArray:
+def rise_of_error(data: Data) -> xr.DataArray:
     """Largest increase of |r_a - r| above its value at a more compliant contact, by ``orbit``."""
     error = abs(apparent(data)).transpose("orbit", "frequency_ratio")
     smallest_so_far = np.fmin.accumulate(error.values, axis=1)

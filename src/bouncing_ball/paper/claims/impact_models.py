@@ -272,7 +272,9 @@ def closer_with_stiffness(data):
     Answer: the sentence describes the figure, on whose scale the curves do approach r
     """
     seen = {"a hundredth is visible": 0.01, "a thousandth is visible": 0.001}
-    return {reading: at_most(evidence.rebound(data), limit) for reading, limit in seen.items()}
+    return {
+        reading: at_most(evidence.rise_of_error(data), limit) for reading, limit in seen.items()
+    }
 
 
 @claim("Fig. 6")

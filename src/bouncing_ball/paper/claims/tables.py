@@ -13,10 +13,10 @@ import xarray as xr
 
 from bouncing_ball.datasets.rounding import compared_text
 from bouncing_ball.datasets.selection import each
-from bouncing_ball.drawing.tables import Columns, Table, at, entry_of, table, text, value
+from bouncing_ball.drawing.tables import Columns, TextTable, at, entry_of, table, text, value
 
 
-def formulas(data: xr.Dataset) -> Table:
+def formulas(data: xr.Dataset) -> TextTable:
     """Printed formulas: the comparison, the disagreement, and the disagreement allowed.
 
     For a disagreement of the size of rounding the entry is its bound.
@@ -32,7 +32,7 @@ def formulas(data: xr.Dataset) -> Table:
     return table(each(data, "formula"), columns)
 
 
-def forensics(data: xr.Dataset) -> Table:
+def forensics(data: xr.Dataset) -> TextTable:
     """Readings of Table 1, the closest first; differences in units of the last digit.
 
     The entry is a dash if a reading has no orbit.
@@ -49,7 +49,7 @@ def forensics(data: xr.Dataset) -> Table:
     return table(each(data, "reading"), columns)
 
 
-def witness(data: xr.Dataset) -> Table:
+def witness(data: xr.Dataset) -> TextTable:
     """Largest disagreement between the routes to the orbits of each figure or table.
 
     An entry is a bound of the largest disagreement, which is the budget unless this is exceeded,
@@ -68,7 +68,7 @@ def witness(data: xr.Dataset) -> Table:
     return header, [["budget", *(f"{float(value):.0e}" for value in data.budget.values)], *body]
 
 
-def claims(data: xr.Dataset) -> Table:
+def claims(data: xr.Dataset) -> TextTable:
     """Claims of the paper: place, statement, number, deviation, verdict.
 
     The column "printed or required" has the printed number, or the bound that a

@@ -20,7 +20,7 @@ from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.continuation import Branch, ContinuationError
-from bouncing_ball.paper.exhibits.orbit_parameters import BranchEnd, Points
+from bouncing_ball.paper.exhibits.orbit_parameters import BranchEnd, BranchPoints
 from bouncing_ball.paper.exhibits.printed_table1 import printed_table
 from bouncing_ball.periodic import n_t, observables
 from bouncing_ball.periodic import restitution_branch as restitution_orbits
@@ -59,7 +59,7 @@ class Branches(Parameters):
     n: Family
     restitution: LossyRestitution
     amplitude_max: BranchEnd
-    points: Points
+    points: BranchPoints
 
 
 class Domains(Branches):

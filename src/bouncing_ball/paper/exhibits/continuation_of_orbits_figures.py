@@ -18,7 +18,7 @@ from bouncing_ball.drawing.branches import (
 from bouncing_ball.drawing.canvas import canvas, legend_below
 from bouncing_ball.drawing.labels import parameters
 from bouncing_ball.drawing.style import COLOURS
-from bouncing_ball.drawing.tables import Columns, Table, entry_of, table, text, value
+from bouncing_ball.drawing.tables import Columns, TextTable, entry_of, table, text, value
 
 
 def domains(data: xr.Dataset) -> Figure:
@@ -68,7 +68,7 @@ def up_to_second_saddle_node(curve: xr.Dataset) -> xr.Dataset:
     )
 
 
-def table1(data: xr.Dataset) -> Table:
+def table1(data: xr.Dataset) -> TextTable:
     """Stability ranges over Λ: each end of each range computed, printed, and their difference.
 
     Differences are in Λ. The rows of the restitution model have no printed values.

@@ -7,7 +7,7 @@ from bouncing_ball.datasets.selection import each
 from bouncing_ball.drawing.canvas import canvas, draw_curve, logarithmic
 from bouncing_ball.drawing.labels import parameters
 from bouncing_ball.drawing.style import CONTACT, LIMIT
-from bouncing_ball.drawing.tables import Table, at, quantity_in_words, table, threshold
+from bouncing_ball.drawing.tables import TextTable, at, quantity_in_words, table, threshold
 from bouncing_ball.drawing.thresholds import draw_relative_error
 
 
@@ -25,7 +25,7 @@ def height_error(data: xr.Dataset) -> Figure:
     return figure
 
 
-def thresholds(data: xr.Dataset) -> Table:
+def thresholds(data: xr.Dataset) -> TextTable:
     """The ϖ needed for each tolerance, quantity by quantity.
 
     If the threshold is outside the range scanned, the entry is the end of the range after < or >.

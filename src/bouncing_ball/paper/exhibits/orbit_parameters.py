@@ -110,7 +110,7 @@ class OrbitErrors(OrbitsAlongRatio):
 BranchEnd = Annotated[AmplitudeMax, _has_orbits(max)]
 """Λ up to which branches are followed, at or above the saddle-node of the highest family."""
 
-Points = Annotated[
+BranchPoints = Annotated[
     int,
     number(
         "number of points along each branch; fewer than 11 do not show its shape", ge=11, le=20001
@@ -124,4 +124,4 @@ class FamilyBranches(Parameters):
     n: Many[Family]
     restitution: Restitution
     amplitude_max: BranchEnd
-    points: Points
+    points: BranchPoints

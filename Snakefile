@@ -40,6 +40,8 @@ rule all:
         paper=rules.paper.output,
     log:
         "results/logs/all.log",
+    conda:
+        ENVIRONMENT
     shell:
         "tee {log} < results/tally.txt"
 

@@ -7,14 +7,20 @@ import sys
 import tomllib
 from pathlib import Path
 
+import yaml
+
 import bouncing_ball
 
-PROJECT = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text("utf-8"))
+ROOT = Path(__file__).parents[1]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
 EXTRAS = PROJECT["project"]["optional-dependencies"]
 # Where a package is not imported by its name.
 MODULES = {"pillow": "PIL", "pyyaml": "yaml", "pypandoc_binary": "pypandoc"}
 PACKAGES = [re.split(r"[^\w-]", line)[0] for line in EXTRAS["plot"] + EXTRAS["pipeline"]]
 ABSENT = [MODULES.get(name, name) for name in PACKAGES if name != "bouncing-ball"]
+
+# What the pipeline needs, with the extras that it includes.
+USED = ("pipeline", "plot", "proofs")
 
 CONTACT = ["--restitution", "0.85", "--frequency-ratio", "10"]
 TABLE = ["--mass", "20 g", "--frequency", "50 Hz", "--acceleration", "0.8 g"]
@@ -27,6 +33,11 @@ COMMANDS = [
     ["simulate", "--amplitude", "1", *CONTACT],
     DESIGN,
 ]
+
+
+def normal(name):
+    """The name of a package as registries compare it."""
+    return re.sub("[-_.]+", "-", name).lower()
 
 
 def without_extras(code):
@@ -69,3 +80,16 @@ def test_what_is_not_installed_is_said_in_one_line():
         for _ in commands
     ]
     assert re.fullmatch("".join(said), done.stderr)
+
+
+def test_the_environment_of_conda_has_the_versions_of_the_lock():
+    environment = yaml.safe_load((ROOT / "environment.yml").read_text("utf-8"))
+    (*_, pip) = environment["dependencies"]
+    lock = re.findall(r"^([\w.-]+)==([^ ;\\]+)", (ROOT / "requirements.lock").read_text(), re.M)
+    locked = {normal(name): version for name, version in lock}
+    needed = [*PROJECT["project"]["dependencies"], *(line for x in USED for line in EXTRAS[x])]
+    names = {normal(re.split(r"[^\w-]", line)[0]) for line in needed} - {"bouncing-ball"}
+    given = dict(line.split("==") for line in pip["pip"])
+    assert {normal(name): version for name, version in given.items()} == {
+        name: locked[name] for name in names
+    }

@@ -24,6 +24,8 @@ rule set_claims:
         words=WORDS[0],
     log:
         "results/logs/tables/claims.log",
+    conda:
+        ENVIRONMENT
     script:
         "../scripts/claims.py"
 
@@ -49,6 +51,8 @@ rule paper:
         artifacts=ARTIFACTS,
     log:
         "results/logs/paper.log",
+    conda:
+        ENVIRONMENT
     script:
         "../scripts/paper.py"
 
@@ -74,5 +78,7 @@ rule paper_pdf:
         template=f"{ARTICLE}/article.typ",
     log:
         "results/logs/paper_pdf.log",
+    conda:
+        ENVIRONMENT
     script:
         "../scripts/paper_pdf.py"

@@ -26,6 +26,8 @@ rule atlas_shard:
         mem_mb=1000,
     log:
         "results/logs/atlas/shards/{shard}.log",
+    conda:
+        ENVIRONMENT
     script:
         "../scripts/atlas_shard.py"
 
@@ -45,6 +47,8 @@ rule atlas_merge:
         parameters=ATLAS,
     log:
         "results/logs/atlas/atlas.log",
+    conda:
+        ENVIRONMENT
     script:
         "../scripts/atlas_merge.py"
 
@@ -63,5 +67,7 @@ rule atlas:
         parameters=ATLAS,
     log:
         "results/logs/atlas/charts.log",
+    conda:
+        ENVIRONMENT
     script:
         "../scripts/atlas.py"

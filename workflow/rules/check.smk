@@ -22,5 +22,7 @@ rule config_docs:
         artifacts=list(ARTIFACTS.values()),
     log:
         "results/logs/config_docs.log",
+    conda:
+        ENVIRONMENT
     script:
         "../scripts/config_docs.py"

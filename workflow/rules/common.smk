@@ -19,6 +19,8 @@ if shlex.quote(sys.executable) != sys.executable:
 
 # The repository, for both Snakefiles.
 ROOT = os.path.abspath(Path(str(workflow.current_basedir), "..", ".."))
+# The environment of all rules for `--sdm conda`; otherwise a job has the Python of Snakemake itself.
+ENVIRONMENT = f"{ROOT}/environment.yml"
 # The package may belong to another checkout whose environment is active.
 HERE = Path(ROOT, "src", "bouncing_ball")
 found = Path(getattr(find_spec("bouncing_ball"), "origin", "nowhere/at/all")).parent
@@ -40,10 +42,10 @@ sys.path.append(str(SCRIPTS))
 
 from adapter import function
 
-# Snakemake writes these lines before and after every job, and they do not name what it makes.
-logger.addFilter(
-    lambda record: not str(record.msg).startswith(("Select jobs", "Execute ", "Finished jobid"))
-)
+# Snakemake writes these lines before and after every job, and they do not name what it makes; and
+# once that the environments for `--sdm conda` are not used.
+IDLE = ("Select jobs", "Execute ", "Finished jobid", "Conda environments: ignored")
+logger.addFilter(lambda record: not str(record.msg).startswith(IDLE))
 
 # All artifacts by name, as the stages of both sets of studies list them.
 ARTIFACTS = {}

@@ -22,6 +22,8 @@ rule accept:
         files=lambda wildcards: sorted({str(file) for file in rules.all.input}),
     log:
         "results/logs/accept.log",
+    conda:
+        ENVIRONMENT
     script:
         "../scripts/accept.py"
 
@@ -40,6 +42,8 @@ rule diff:
         name=lambda wildcards: name_of_reports(workflow),
     log:
         "results/logs/diff.log",
+    conda:
+        ENVIRONMENT
     script:
         "../scripts/diff.py"
 

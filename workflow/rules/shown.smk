@@ -32,6 +32,8 @@ for each in ARTIFACTS.values():
             svg=f"results/{each.place}.svg",
         log:
             f"results/logs/figures/{each.name}.log",
+        conda:
+            ENVIRONMENT
         script:
             "../scripts/figure.py"
 
@@ -61,6 +63,8 @@ for each in ARTIFACTS.values():
             table=each.table,
         log:
             f"results/logs/tables/{each.name}.log",
+        conda:
+            ENVIRONMENT
         script:
             "../scripts/table.py"
 
@@ -76,5 +80,7 @@ rule draw_explorer:
         html="results/figures/beyond/explorer.html",
     log:
         "results/logs/explorer.log",
+    conda:
+        ENVIRONMENT
     script:
         "../scripts/explorer.py"

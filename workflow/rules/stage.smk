@@ -22,6 +22,8 @@ rule shard:
         arguments=lambda w: arguments_of(ARTIFACTS[w.artifact]),
     log:
         "results/logs/shards/{artifact}/{shard}.log",
+    conda:
+        ENVIRONMENT
     script:
         "../scripts/shard.py"
 
@@ -52,5 +54,7 @@ rule study:
         compressed=lambda w: ARTIFACTS[w.artifact].accepted is not None,
     log:
         "results/logs/stages/{artifact}.log",
+    conda:
+        ENVIRONMENT
     script:
         "../scripts/study.py"

@@ -87,7 +87,7 @@ def test_the_environment_of_conda_has_the_versions_of_the_lock():
     (*_, pip) = environment["dependencies"]
     lock = re.findall(r"^([\w.-]+)==([^ ;\\]+)", (ROOT / "requirements.lock").read_text(), re.M)
     locked = {normal(name): version for name, version in lock}
-    needed = PROJECT["project"]["dependencies"] + sum((EXTRAS[x] for x in USED), [])
+    needed = [*PROJECT["project"]["dependencies"], *(line for x in USED for line in EXTRAS[x])]
     names = {normal(re.split(r"[^\w-]", line)[0]) for line in needed} - {"bouncing-ball"}
     given = dict(line.split("==") for line in pip["pip"])
     assert {normal(name): version for name, version in given.items()} == {

@@ -127,7 +127,7 @@ def test_readings_that_differ_leave_a_claim_open(data):
     assert found["reason"] == ("first: reproduced (82.18); second: contradicted (82.18)")
     assert np.isnan(found["found"]) and found["explained"]
     meant = row(replace(two_readings, meant=True), data)
-    assert (meant["verdict"], meant["found"]) == ("qualified", 82.18)
+    assert (meant["verdict"], meant["found"]) == ("in one reading", 82.18)
     data["fig"]["threshold"] += 100
     assert row(two_readings, data)["verdict"] == "contradicted"
     assert row(replace(two_readings, meant=True), data)["verdict"] == "contradicted"
@@ -141,7 +141,7 @@ def test_a_definition_is_checked_and_not_counted_as_reproduced(data):
     assert row(rising, data)["verdict"] == "reproduced"
     found = row(sure, data)
     assert (found["verdict"], found["found"], found["explained"]) == ("definition", 0.25, True)
-    assert tally(assess([sure], data)) == "1 statements: 1 true by definition"
+    assert tally(assess([sure], data)) == "1 statements: 1 definition"
 
 
 def test_each_claim_is_counted_in_its_group(data):

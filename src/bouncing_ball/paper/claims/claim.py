@@ -159,7 +159,7 @@ class Claim:
             return first, ""
         words = "; ".join(f"{name}: {one.verdict} ({one})" for name, one in readings.items())
         if self.meant and first.verdict is Verdict.REPRODUCED:
-            return replace(first, verdict=Verdict.QUALIFIED), words
+            return replace(first, verdict=Verdict.IN_ONE_READING), words
         return Finding(np.nan, Verdict.UNDECIDABLE), words
 
 

@@ -57,7 +57,7 @@ VARIABLES = {
     "deviation_units": Variable("deviation in units of the last printed digit", budget=math.inf),
     "deviation": Variable("relative deviation", budget=math.inf),
     "verdict": Variable(
-        "reproduced, definition, qualified, close, contradicted, undecidable or not asked"
+        "reproduced, definition, in one reading, close, contradicted, undecidable or not asked"
     ),
     "printed_table": Variable("the printed table whose entry the claim is"),
     "explained_by": Variable("name of the explanation"),
@@ -171,13 +171,6 @@ def claims(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
     )
 
 
-_WORDS = {
-    Verdict.DEFINITION: "true by definition",
-    Verdict.QUALIFIED: "reproduced in one reading only",
-    Verdict.CLOSE: "reproduced closely",
-}
-
-
 _GROUPS = {
     "restored formula": "formulas",
     "number": "printed numbers",
@@ -201,7 +194,7 @@ def tally(decided: xr.Dataset) -> str:
     ...                       "group": ("claim", ["number", "restatement", "number", "statement"]),
     ...                       "explained": ("claim", [True, True, False, True])})
     >>> print(tally(decided))
-    2 printed numbers: 2 reproduced closely, 1 without explanation
+    2 printed numbers: 2 close, 1 without explanation
     1 statements: 1 reproduced
     """
     lines = []
@@ -216,7 +209,7 @@ def _counted(decided: xr.Dataset) -> str:
     """How many claims have each verdict, and how many have no explanation."""
     verdicts = decided.verdict.values
     found = [one for one in Verdict if str(one) in verdicts]
-    counts = [f"{np.sum(verdicts == str(one))} {_WORDS.get(one, one)}" for one in found]
+    counts = [f"{np.sum(verdicts == str(one))} {one}" for one in found]
     unexplained = int(np.sum(~decided.explained.values.astype(bool)))
     counts += [f"{unexplained} without explanation"] if unexplained else []
     return ", ".join(counts)

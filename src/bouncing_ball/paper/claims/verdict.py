@@ -26,7 +26,7 @@ class Verdict(StrEnum):
     """Within half a unit of the last printed digit; a condition that holds."""
     DEFINITION = "definition"
     """A statement that holds by definition, so that its check could not have failed."""
-    QUALIFIED = "qualified"
+    IN_ONE_READING = "in one reading"
     """Reproduced in the reading that the paper means, but not in the others."""
     CLOSE = "close"
     """A number farther away, by no more than :data:`CLOSE_UNITS`."""

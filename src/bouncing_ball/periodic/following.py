@@ -13,6 +13,7 @@ from bouncing_ball.numerics.continuation import (
     Branch,
     ContinuationError,
     End,
+    EndKind,
     StepControl,
     continue_branch,
 )
@@ -26,6 +27,7 @@ from bouncing_ball.periodic.special import (
     MEANINGS,
     Special,
     events,
+    halves,
     loss_of_release,
     turns_apart,
 )
@@ -42,8 +44,6 @@ _NEAR = 0.1
 _CLOSER = 0.1
 _TRIES = 4
 _HALVES = "the two turns of the orbit become nearly equal"
-# If the tangent turns by a finite angle in the shortest step, the branch has a corner.
-_TURNS = "the tangent turns"
 _CORNER = "the branch has a corner, where the map of the model has no derivative"
 # If the steps become too short, a test function this small, or a parameter this close to the end of
 # its range, is given as the reason. Close to an event the functions are of the order of the square
@@ -190,7 +190,7 @@ def follow(
     with np.errstate(all="ignore"):
         for _ in range(_TRIES):
             branch = _followed(orbits, here, limits, near, increasing, control, most)
-            if branch.end.sentence != _HALVES:
+            if branch.end.event != _HALVES:
                 break
             whole = _up_to_halving(orbits, branch)
             if whole is not None:
@@ -218,13 +218,13 @@ def _followed(
     # The first steps must not pass over a place nearby where the turns are equal. If a later step
     # does, the branch is cut off there.
     initial = min(control.initial, near * np.sqrt(2 * orbits.impacts) / 2)
-    halves = Event(_HALVES, two_turns, terminal=True, reason=_HALVES)
+    equal_turns = Event(_HALVES, two_turns, terminal=True, reason=_HALVES)
     try:
         branch = continue_branch(
             orbits,
             start,
             increasing=increasing,
-            events=[*events(orbits), loss_of_release(orbits), halves, *limits],
+            events=[*events(orbits), loss_of_release(orbits), equal_turns, *limits],
             control=replace(control, initial=initial),
             max_points=most,
         )
@@ -235,13 +235,7 @@ def _followed(
 
 def _cut_off(orbits: PeriodicOrbits, branch: Branch) -> Branch:
     """The branch up to the first step on which the difference of the two turns is reversed."""
-    if orbits.impacts % 2:
-        return branch
-    _, velocity = orbits.states(branch.points)
-    phase, _ = orbits.states(branch.points)
-    half = orbits.impacts // 2
-    turned = reduce_angle(phase - np.roll(phase, half, axis=-1))
-    difference = np.concatenate([turned, velocity - np.roll(velocity, half, axis=-1)], axis=-1)
+    difference = halves(orbits, branch.points)
     reversed_at = np.flatnonzero(np.sum(difference[1:] * difference[:-1], axis=-1) < 0)
     if not reversed_at.size:
         return branch
@@ -253,7 +247,7 @@ def _cut_off(orbits: PeriodicOrbits, branch: Branch) -> Branch:
         points=branch.points[:count],
         tangents=branch.tangents[:count],
         special=tuple(before),
-        end=End(_HALVES),
+        end=End(_HALVES, event=_HALVES),
     )
 
 
@@ -295,7 +289,7 @@ def _up_to_halving(orbits: PeriodicOrbits, branch: Branch) -> Branch | None:
 def explained(branch: Branch, tests: Sequence[Event], limits: Sequence[Event]) -> End:
     """The end of a branch, with the event that is near if the steps became too short."""
     end = branch.end
-    if not end.sentence.startswith("step too small"):
+    if not end.stuck:
         return end
     last = branch.points[-1]
     for limit in limits:
@@ -306,5 +300,5 @@ def explained(branch: Branch, tests: Sequence[Event], limits: Sequence[Event]) -
     near = {event.name: abs(float(event.function(last))) for event in tests}
     nearest = min(near, key=lambda name: near[name])
     if not near[nearest] < _CLOSE:
-        return End(_CORNER) if _TURNS in end.sentence else end
+        return End(_CORNER) if end.kind is EndKind.CORNER else end
     return End(f"the orbit is next to a {nearest}, where its equations are not smooth", True)

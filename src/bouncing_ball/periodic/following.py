@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import ClassVar
+from typing import ClassVar, NamedTuple, Protocol, Self
 
 import numpy as np
 
@@ -16,8 +16,9 @@ from bouncing_ball.numerics.continuation import (
     EndKind,
     StepControl,
     continue_branch,
+    resample,
 )
-from bouncing_ball.numerics.corrector import NewtonSettings, newton
+from bouncing_ball.numerics.corrector import NewtonSettings, Problem, newton, tangent
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.periodic.balls import LAMBDA
@@ -50,6 +51,43 @@ _CORNER = "the branch has a corner, where the map of the model has no derivative
 # root of the distance.
 _CLOSE = 1e-2
 _AT_END = 1e-6
+# Without a value at which a branch ends, it ends at this multiple of the first value of the
+# parameter, or of 1, if the range of the parameter has no end.
+_FARTHEST = 10.0
+
+
+class Range(NamedTuple):
+    """The range of a parameter in which a branch or a curve is followed."""
+
+    low: float
+    high: float
+
+
+class Coordinates(Problem, Protocol):
+    """The equations of orbits in some unknowns y: those of
+    :class:`~bouncing_ball.periodic.problem.PeriodicOrbits`, or those of the paper.
+    """
+
+    @property
+    def orbits(self) -> PeriodicOrbits:
+        """The equations in their own unknowns."""
+
+    def inner(self, y: np.ndarray) -> np.ndarray:
+        """The unknowns of :attr:`orbits` at y."""
+
+    def event(self, event: Event) -> Event:
+        """An event of :attr:`orbits` as a function of y."""
+
+
+def orbits_along(problem: Coordinates, y: np.ndarray) -> Orbit:
+    """The orbits at points y, with phases that pass ±π continuously along a branch."""
+    orbits = problem.orbits
+    inner = problem.inner(y)
+    found = orbit_at(orbits, inner)
+    phase, _ = orbits.states(inner)
+    turned = np.round((phase - found.phases) / (2 * np.pi))
+    turns = np.broadcast_to(orbits.turns, phase.shape)
+    return replace(found, phases=found.phases + 2 * np.pi * turned, turns=turns)
 
 
 @dataclass(frozen=True)
@@ -60,7 +98,7 @@ class Orbits:
     points; ``branch.end`` gives the reason why the branch ends, in words.
     """
 
-    problem: PeriodicOrbits
+    problem: Coordinates
     branch: Branch
 
     kinds: ClassVar[type[StrEnum]]
@@ -70,7 +108,10 @@ class Orbits:
         return len(self.branch.points)
 
     def __iter__(self) -> Iterator[Orbit]:
-        return (orbit_at(self.problem, y) for y in self.branch.points)
+        return (self._one(y) for y in self.branch.points)
+
+    def _one(self, y: np.ndarray, kind: str = "") -> Orbit:
+        return orbit_at(self.problem.orbits, self.problem.inner(y), kind)
 
     @property
     def special_points(self) -> list[SpecialPoint]:
@@ -80,16 +121,9 @@ class Orbits:
     @property
     def special(self) -> list[Orbit]:
         """The special orbits in order, with their kinds."""
-        return [orbit_at(self.problem, each.point, each.name) for each in self.special_points]
+        return [self._one(each.point, each.name) for each in self.special_points]
 
-
-@dataclass(frozen=True)
-class Followed(Orbits):
-    """A branch of orbits with k impacts in m periods along one parameter."""
-
-    kinds = Special
-
-    def first(self, kind: Special) -> Orbit:
+    def first(self, kind: StrEnum) -> Orbit:
         """The first special orbit of a kind.
 
         Raises
@@ -99,8 +133,27 @@ class Followed(Orbits):
         """
         for each in self.special_points:
             if each.name == kind:
-                return orbit_at(self.problem, each.point, each.name)
+                return self._one(each.point, each.name)
         raise NoOrbitError(f"the branch has no {kind}; it ends because {self.branch.end}")
+
+    def resampled(self, count: int) -> Self:
+        """The same orbits at ``count`` points with equal steps of arclength.
+
+        Raises
+        ------
+        ContinuationError
+            If the steps along the branch were too long for it to be resampled.
+        """
+        y = resample(self.problem, self.branch, count)
+        tangents = tangent(self.problem.jacobian(y), np.gradient(y, axis=0))
+        return replace(self, branch=replace(self.branch, points=y, tangents=tangents))
+
+
+@dataclass(frozen=True)
+class Followed(Orbits):
+    """A branch of orbits with k impacts in m periods along one parameter."""
+
+    kinds = Special
 
 
 def corrected(problem: PeriodicOrbits, guess: np.ndarray) -> np.ndarray:
@@ -121,20 +174,27 @@ def corrected(problem: PeriodicOrbits, guess: np.ndarray) -> np.ndarray:
     return point
 
 
-def bounds(orbits: PeriodicOrbits, start: np.ndarray, to: float | None) -> list[Event]:
-    """The ends of the branch at the ends of the parameter's range, at the value ``to``, and as far
-    beyond the start.
+def range_ahead(orbits: PeriodicOrbits, start: np.ndarray, to: float | None) -> Range:
+    """The range of the parameter on a branch: up to the value ``to``, and as far beyond the start.
+
+    Without such a value it is the range of the parameter. If this has no largest value, the largest
+    one is ten times that at the start, and at least 10.
     """
     (name,) = orbits.along
     low, high = orbits.balls.bounds(name)
+    here = float(orbits.values(start)[name])
     if to is not None:
-        back = 2 * float(orbits.values(start)[name]) - to
-        low = max(low, min(to, back))
-        high = min(high, max(to, back))
+        back = 2 * here - to
+        return Range(max(low, min(to, back)), min(high, max(to, back)))
+    return Range(low, min(high, _FARTHEST * max(abs(here), 1.0)))
+
+
+def limits_of(name: str, within: Range, column: int) -> list[Event]:
+    """The ends of a branch at the finite ends of the range of a parameter, an entry of y."""
     found = []
-    for bound, sign in ((low, 1.0), (high, -1.0)):
+    for bound, sign in ((within.low, 1.0), (within.high, -1.0)):
         if np.isfinite(bound):
-            found.append(limit(name, bound, sign, orbits.equations))
+            found.append(limit(name, bound, sign, column))
     return found
 
 
@@ -185,11 +245,11 @@ def follow(
     here = corrected(orbits, start.point(orbits))
     if increasing is None:
         increasing = to is None or bool(to > orbits.values(here)[along])
-    limits = bounds(orbits, here, to)
+    limits = limits_of(along, range_ahead(orbits, here, to), orbits.equations)
     near = min(_NEAR, float(turns_apart(orbits, here)) / 2)
     with np.errstate(all="ignore"):
+        branch = _followed(orbits, here, limits, near, increasing, control, most)
         for _ in range(_TRIES):
-            branch = _followed(orbits, here, limits, near, increasing, control, most)
             if branch.end.event != _HALVES:
                 break
             whole = _up_to_halving(orbits, branch)
@@ -197,8 +257,23 @@ def follow(
                 branch = whole
                 break
             near *= _CLOSER
+            rises = bool(branch.tangents[-1, -1] > 0)
+            left = most - len(branch.points) + 1
+            last = branch.points[-1]
+            branch = _joined(branch, _followed(orbits, last, limits, near, rises, control, left))
         tests = [*events(orbits), loss_of_release(orbits)]
         return Followed(orbits, replace(branch, end=explained(branch, tests, limits)))
+
+
+def _joined(branch: Branch, further: Branch) -> Branch:
+    """A branch and its continuation from its last point on."""
+    return replace(
+        branch,
+        points=np.concatenate([branch.points, further.points[1:]]),
+        tangents=np.concatenate([branch.tangents, further.tangents[1:]]),
+        special=(*branch.special, *further.special),
+        end=further.end,
+    )
 
 
 def _followed(

@@ -49,9 +49,9 @@ class Special(StrEnum):
 
     SADDLE_NODE = datasets.SADDLE_NODE
     PERIOD_DOUBLING = datasets.PERIOD_DOUBLING
-    GRAZING_FLIGHT = "grazing of a flight"
+    GRAZING_FLIGHT = datasets.GRAZING_FLIGHT
     GRAZING_IMPACT = "grazing of an impact"
-    GRAZING_RELEASE = "grazing of a release"
+    GRAZING_RELEASE = datasets.GRAZING_RELEASE
     STICKING = "end of sticking"
     PERIOD_HALVING = "period halving"
 
@@ -223,6 +223,19 @@ def bifurcations(orbits: PeriodicOrbits) -> list[Event]:
     return [bifurcation(kind) for kind in Bifurcation]
 
 
+def passed_by(orbits: PeriodicOrbits) -> list[Event]:
+    """The bifurcations and the grazing orbits beyond which a branch goes on."""
+    return [
+        *bifurcations(orbits),
+        Event(Special.GRAZING_FLIGHT, lambda y: flight_margin(orbits, y)),
+        Event(
+            Special.GRAZING_RELEASE,
+            lambda y: release_margin(orbits, y),
+            condition=lambda y: release_condition(orbits, y),
+        ),
+    ]
+
+
 def events(orbits: PeriodicOrbits) -> Sequence[Event]:
     """The events along a branch, which ends where an impact grazes and where sticking ends."""
 
@@ -231,13 +244,7 @@ def events(orbits: PeriodicOrbits) -> Sequence[Event]:
         return Event(kind, lambda y: margin(orbits, y), terminal=True, reason=reason)
 
     return (
-        *bifurcations(orbits),
-        Event(Special.GRAZING_FLIGHT, lambda y: flight_margin(orbits, y)),
-        Event(
-            Special.GRAZING_RELEASE,
-            lambda y: release_margin(orbits, y),
-            condition=lambda y: release_condition(orbits, y),
-        ),
+        *passed_by(orbits),
         end(Special.GRAZING_IMPACT, impact_margin),
         replace(end(Special.STICKING, sticking), is_sign=True),
     )

@@ -1,5 +1,7 @@
 """Admissible orbits and their limits, against dense samples."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
@@ -7,9 +9,12 @@ from scipy.optimize import minimize_scalar
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.numerics.events import domain_limits
 from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.following import orbits_along
 from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.paper_unknowns import PaperUnknowns
+from bouncing_ball.periodic.simulation import is_admissible
 from bouncing_ball.periodic.spring_damper_bifurcations import orbit_at
 from bouncing_ball.periodic.spring_damper_branch import branch_point, orbits_of, orbits_on_branch
 from bouncing_ball.periodic.stability import Side
@@ -69,9 +74,10 @@ def test_the_last_admissible_orbit_grazes_the_table(release):
     contact = SpringDamper(10.0, 0.05, release)
     orbit = orbit_at(contact, 1, np.linspace(1.9, 2.4, 6), Side.UNSTABLE)
     system = PaperUnknowns.of(orbit[0])
-    found = system.grazing(system.point(orbit))
+    inside = partial(is_admissible, system.orbits)
+    found = domain_limits(system, lambda y: inside(system.inner(y)), system.point(orbit))
     assert len(found) == 1
-    at = system.orbit(found[0])
+    at = orbits_along(system, found[0])
     start = float(at.contact_duration)
     lowest = minimize_scalar(
         lambda time: float(at.path(time)[0] - at.amplitude * np.sin(at.phase + time)),

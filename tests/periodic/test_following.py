@@ -1,25 +1,28 @@
 """Branches along any parameter, their events, and the doubled branches."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from orbits_found import FOUND, balls, found_orbit, legs_of
 
 import bouncing_ball
-from bouncing_ball.errors import NoOrbitError, ParameterError
+from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.orbit_of_motion import of_impact, of_motion
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.flight import Flight, table
 from bouncing_ball.numerics.corrector import newton, plane
 from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.numerics.events import domain_limits
 from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.balls import Balls
 from bouncing_ball.periodic.branch import whole_branch
 from bouncing_ball.periodic.following import follow
-from bouncing_ball.periodic.observables import GRAZING, branch_columns
 from bouncing_ball.periodic.orbit import orbit_at
+from bouncing_ball.periodic.problem import twice
 from bouncing_ball.periodic.simulation import is_admissible
-from bouncing_ball.periodic.special import Special
+from bouncing_ball.periodic.special import Special, turns_apart
 from bouncing_ball.periodic.switching import switch
 
 CLOSED = ["restitution", "spring-damper", "force release", "corrected"]
@@ -65,8 +68,14 @@ def test_a_grazing_flight_is_where_the_lowest_point_of_the_flight_is_on_the_tabl
 
 @pytest.mark.parametrize("name", ["restitution", "spring-damper"])
 def test_grazing_orbits_are_those_that_bisection_finds(name):
-    columns = branch_columns(whole_branch(start(name).model, 1, 6.0, 0.1), 100)
-    expected = columns.special_amplitude.values[columns.special_kind.values == GRAZING]
+    whole = whole_branch(start(name).model, 1, 6.0, 0.1).resampled(100)
+    orbits = whole.problem.orbits
+    bisected = domain_limits(
+        whole.problem, lambda y: is_admissible(orbits, whole.problem.inner(y)), whole.branch.points
+    )
+    expected = bisected[:, -1]
+    located = [each.amplitude for each in whole.special if each.kind == Special.GRAZING_FLIGHT]
+    assert np.abs(np.subtract(located, expected)).max() < 1e-12
     ours = []
     for to in (5.9, 0.05):
         found = follow(start(name), to=to)
@@ -275,3 +284,65 @@ def test_an_orbit_that_no_ball_follows_starts_its_branch(name):
             assert found.multiplier_real[k].values == pytest.approx(
                 here.multipliers().real, rel=1e-11
             )
+
+
+@pytest.mark.parametrize("amplitude_max", [None, 6.0])
+def test_a_whole_branch_has_its_orbits_and_its_words_are_those_of_follow(amplitude_max):
+    ball = bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=10.0)
+    whole = bouncing_ball.branch(ball, amplitude_max=amplitude_max, points=200)
+    there = bouncing_ball.orbit(ball, amplitude=1.0)
+    kinds = {
+        orbit.kind: orbit
+        for to in (0.1, 5.9)
+        for orbit in bouncing_ball.follow(there, to=to)._whole.special
+    }
+    assert [kind for kind, _ in whole.special_states()] == whole.special_kind.values.tolist()
+    for kind in ("saddle-node", "period doubling"):
+        assert whole.first(kind).amplitude == pytest.approx(kinds[kind].amplitude, abs=1e-12)
+    orbits = list(whole.states())
+    assert len(orbits) == 200
+    assert [each.amplitude for each in orbits] == whole.amplitude.values.tolist()
+    top = whole.amplitude.values.max()
+    assert str(whole.end_reason[1].values) == f"amplitude = {top:g} is reached"
+    with pytest.raises(NoOrbitError, match="the branch has no end of sticking"):
+        whole.first("end of sticking")
+
+
+def test_several_branches_have_no_orbits(refusal):
+    several = bouncing_ball.branch(bouncing_ball.rigid(restitution=0.5), n=[1, 2], points=10)
+    with refusal(ModelError, "the branches of several balls are plain data, without orbits"):
+        several.first("saddle-node")
+
+
+def test_a_branch_with_an_even_number_of_impacts_passes_a_difference_of_half_a_turn():
+    """Its doubling, and stable orbits beyond it, which simulated balls follow."""
+    orbit = of_motion(balls("restitution", 1.6).model, 1.6, 1.0, -3.0)
+    found = follow(orbit, "restitution", 1.0)
+    assert str(found.branch.end) == "restitution = 1 is reached"
+    doublings = [each for each in found.special if each.kind == Special.PERIOD_DOUBLING]
+    # Located by a code with 40 digits.
+    assert doublings[-1].model.impact_law == pytest.approx(0.983289547688, abs=1e-12)
+    beyond = [each for each in found if 0.9605 < each.model.impact_law < 0.9999]
+    assert len(beyond) > 2
+    stable = [each for each in beyond if each.is_stable() and each.is_admissible()]
+    assert stable
+    for each in stable:
+        simulated = each.model.simulate(1.6, each.phase[0], each.impact_velocity[0], 200)
+        returns = simulated.relative_velocity[::2] - simulated.relative_velocity[0]
+        assert np.abs(returns).max() < 1e-9
+
+
+def test_an_orbit_with_an_odd_number_of_periods_has_no_halves():
+    """Its second half never repeats the first, because the table is at another phase."""
+    case = bouncing_ball.orbit(bouncing_ball.rigid(restitution=0.5), 3, amplitude=4.0)
+    once = case.problem("amplitude")
+    whole, y = twice(once, case.point(once))
+    assert turns_apart(whole, y) == 0.0
+    odd = replace(whole, turns=np.array([1, 2]))
+    assert turns_apart(odd, y) == 1.0
+
+
+def test_without_a_value_a_branch_ends_at_ten_times_its_first_value(refusal):
+    orbit = bouncing_ball.orbit(bouncing_ball.rigid(restitution=0.3), amplitude=2.0)
+    found = bouncing_ball.follow(orbit)
+    assert str(found.end_reason[1].values) == "amplitude = 20 is reached"

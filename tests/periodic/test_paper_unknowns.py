@@ -12,6 +12,7 @@ from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.continuation import StepControl, continue_branch
 from bouncing_ball.numerics.events import parameter_bound
+from bouncing_ball.periodic.following import orbits_along
 from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.paper_unknowns import PaperUnknowns
 from bouncing_ball.periodic.special import bifurcations, ends_of_contact, with_ends
@@ -110,7 +111,7 @@ def test_the_branch_ends_in_permanent_contact(omega, r, largest, reasons):
     # Where impact velocity and flight vanish the ball just stays on the table.
     # Λ is off by the square of the flight left: up to 4e-5 at ϖ = 10, where
     # the impact velocity meets its margin of 1e-4.
-    end = system.orbit(branch.points[-1])
+    end = orbits_along(system, branch.points[-1])
     expected = float(permanent_contact_threshold(omega, damping_ratio(r)))
     assert branch.points[-1, 3] == pytest.approx(expected, abs=float(end.flight_time) ** 2 + 1e-12)
     assert float(end.flight_time) < 1e-2
@@ -141,4 +142,4 @@ def test_the_branch_ends_where_the_ball_no_longer_leaves_the_table():
     # beyond, the contact would have ended earlier and r_a is negative. The
     # branch then turns in Λ without a saddle-node of the return map.
     system, branch = follow_unstable_side(1, 10.0, 0.85, 0.9)
-    assert np.all(system.orbit(branch.points).apparent_restitution >= -1e-6)
+    assert np.all(orbits_along(system, branch.points).apparent_restitution >= -1e-6)

@@ -28,8 +28,8 @@ from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.corrector import newton, plane
 from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.balls import LAMBDA, Balls
-from bouncing_ball.periodic.curves import CurveProblem, Window, condition_of, curve
-from bouncing_ball.periodic.following import follow
+from bouncing_ball.periodic.curves import CurveProblem, condition_of, curve
+from bouncing_ball.periodic.following import Range, follow
 from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.special import Special
 
@@ -186,7 +186,7 @@ def curve_row() -> Row:
     ball = bouncing_ball.rigid(restitution=R)
     start = bouncing_ball.orbit_of_motion(ball, amplitude=1.6, phase=1.0, velocity=-3.0)
     special = follow(start, to=1.8).first(Special.PERIOD_DOUBLING)
-    window = Window(R, 0.8)
+    window = Range(R, 0.8)
     kind = Special.PERIOD_DOUBLING
     ours, found = timed(lambda: curve(special, kind, LAMBDA, "restitution", across_window=window))
     values = found.problem.values(found.branch.points)

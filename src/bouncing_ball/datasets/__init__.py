@@ -7,8 +7,8 @@ velocities Ωẏ/g; phases and angles are in radians.
 SADDLE_NODE, PERIOD_DOUBLING = "saddle-node", "period doubling"
 """The names of the bifurcations in datasets, figures and texts."""
 
-GRAZING = "grazing"
-"""The kind of the special orbits that graze the table."""
+GRAZING_FLIGHT, GRAZING_RELEASE = "grazing of a flight", "grazing of a release"
+"""The kinds of the special orbits beyond which there is another impact or another flight."""
 
 CASE = "case"
 """The single axis of results before :meth:`.Grid.unfold` gives them the axes of the call."""

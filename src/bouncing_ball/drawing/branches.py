@@ -14,11 +14,24 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bouncing_ball.datasets import CASE, GRAZING
+from bouncing_ball.datasets import (
+    CASE,
+    GRAZING_FLIGHT,
+    GRAZING_RELEASE,
+    PERIOD_DOUBLING,
+    SADDLE_NODE,
+)
 from bouncing_ball.drawing.canvas import WIDE, canvas, coloured, legend_below
 from bouncing_ball.drawing.labels import in_a_row, title
 from bouncing_ball.drawing.style import COLOURS, LINES, MARKS
 
+_GRAZING = {GRAZING_FLIGHT, GRAZING_RELEASE}
+# The special orbits of the restitution model, and the beginnings of the names of their variables.
+_OF_RIGID = {
+    SADDLE_NODE: "saddle_node",
+    PERIOD_DOUBLING: "period_doubling",
+    GRAZING_FLIGHT: "grazing",
+}
 # Width in characters of a reason inside of a panel.
 _LINE = 80
 
@@ -81,7 +94,7 @@ def _border(
     if stop == len(kinds):
         return special.between(along[-1], np.inf, set(MARKS))[:, :1]
     grazes = "inadmissible" in kinds[stop - 1 : stop + 1]
-    possible = {GRAZING} if grazes else set(MARKS) - {GRAZING}
+    possible = _GRAZING if grazes else set(MARKS) - _GRAZING
     found = special.between(along[stop - 1], along[stop], possible)[:, :1]
     return found if found.size else line[:, stop : stop + 1]
 
@@ -98,8 +111,7 @@ def draw_rigid_branch(axes: Axes, curve: xr.Dataset, data: xr.Dataset, colour: s
     ``curve`` has the orbits, and ``data`` the numbers Λ and φ of those bifurcations and grazing
     orbits that it names.
     """
-    named = [(kind, kind.replace("-", "_").replace(" ", "_")) for kind in MARKS]
-    named = [(kind, name) for kind, name in named if f"{name}_phase" in data]
+    named = [(kind, name) for kind, name in _OF_RIGID.items() if f"{name}_phase" in data]
     phase = np.array([float(data[f"{name}_phase"]) for _, name in named])
     special = SpecialPoints(
         kind=np.array([kind for kind, _ in named]),

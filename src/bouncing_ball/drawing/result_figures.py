@@ -75,7 +75,7 @@ def special_curve(data: xr.Dataset) -> Figure:
 
 def _parameters_of(data: xr.Dataset) -> list[str]:
     """The parameters of a branch or a curve."""
-    varied = (name for name in data if data[name].dims == ("point",))
+    varied = (name for name in data if data[name].dims == ("point",) and name != "residual")
     return [str(name) for name in varied if f"special_{name}" in data]
 
 

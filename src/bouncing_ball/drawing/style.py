@@ -45,7 +45,8 @@ _HOLLOW: Look = {
 MARKS: dict[str, Look] = {
     "saddle-node": {"marker": "o", **_HOLLOW},
     "period doubling": {"marker": "s", **_HOLLOW},
-    "grazing": {"marker": "^", "markersize": 4.5, "linestyle": "none"},
+    "grazing of a flight": {"marker": "^", "markersize": 4.5, "linestyle": "none"},
+    "grazing of a release": {"marker": "v", "markersize": 4.5, "linestyle": "none"},
 }
 # The line of each model where several are compared; that of the contact is below the others.
 MODELS: dict[str, Look] = {

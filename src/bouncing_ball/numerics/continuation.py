@@ -10,6 +10,7 @@ after a given number of points.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import Enum, auto
 from typing import NamedTuple
 
 import numpy as np
@@ -68,22 +69,41 @@ class StepControl:
         return min(max(step * factor, self.smallest), self.largest)
 
 
+class EndKind(Enum):
+    """Why a branch has no further point."""
+
+    START = auto()
+    EVENT = auto()
+    SHORTEST_STEP = auto()
+    CORNER = auto()
+    POINTS = auto()
+
+
 class End(NamedTuple):
     """An end of a branch.
 
     ``sentence`` gives the reason; it is also the text of the object. ``finished`` tells whether the
     branch really ends here. It is false if the allowed number of points was reached, or if a
-    non-terminal event could not be located even with the smallest step.
+    non-terminal event could not be located even with the smallest step. ``kind`` is one of a
+    starting point, a terminal event, whose name is ``event``, no step that is short enough, a
+    tangent that turns by a finite angle in the shortest step, and the allowed number of points.
     """
 
     sentence: str
     finished: bool = True
+    kind: EndKind = EndKind.EVENT
+    event: str = ""
+
+    @property
+    def stuck(self) -> bool:
+        """Whether no step was short enough."""
+        return self.kind in (EndKind.SHORTEST_STEP, EndKind.CORNER)
 
     def __str__(self) -> str:
         return self.sentence
 
 
-STARTED = End("starting point")
+STARTED = End("starting point", kind=EndKind.START)
 
 
 @dataclass(frozen=True)
@@ -168,14 +188,15 @@ class _Step(NamedTuple):
 class _Rejected(Exception):
     """A step that must be repeated with half its length.
 
-    If the step cannot be shorter, the branch ends, for the reason ``why``. ``finished`` is that of
-    this :class:`End`.
+    If the step cannot be shorter, the branch ends, for the reason ``why``. ``finished`` and
+    ``kind`` are those of this :class:`End`.
     """
 
-    def __init__(self, why: str, finished: bool = True):
+    def __init__(self, why: str, finished: bool = True, kind: EndKind = EndKind.SHORTEST_STEP):
         super().__init__(why)
         self.why = why
         self.finished = finished
+        self.kind = kind
 
 
 def _values(events: Sequence[Event], point: np.ndarray) -> list[float]:
@@ -183,7 +204,7 @@ def _values(events: Sequence[Event], point: np.ndarray) -> list[float]:
 
 
 def _end_at(event: Event) -> End:
-    return End(event.reason or event.name)
+    return End(event.reason or event.name, event=event.name)
 
 
 def _first_state(
@@ -230,7 +251,7 @@ def _step(
     ahead = tangent(matrix, state.tangent)
     angle = float(np.arccos(np.clip(ahead @ state.tangent, -1.0, 1.0)))
     if not angle <= max_angle:
-        raise _Rejected(f"the tangent turns by more than {max_angle} rad")
+        raise _Rejected(f"the tangent turns by more than {max_angle} rad", kind=EndKind.CORNER)
     reached = _State(point, ahead, _values(events, point))
     changed = changes_of_sign(events, state.values, reached.values)
     passage = locate_all(problem, changed, state.point, point)
@@ -312,7 +333,8 @@ def continue_branch(
             step = _step(problem, events, state, length, control.max_angle)
         except _Rejected as rejected:
             if length / 2 < control.smallest:
-                end = End(f"step too small ({length:.1e}): {rejected.why}", rejected.finished)
+                sentence = f"step too small ({length:.1e}): {rejected.why}"
+                end = End(sentence, rejected.finished, rejected.kind)
             length /= 2
             continue
         state = step.reached
@@ -321,7 +343,8 @@ def continue_branch(
         end = step.end
         length = control.after(length, step.iterations, step.angle)
     if end is None:
-        end = End(f"reached the limit of {max_points} points", finished=False)
+        sentence = f"reached the limit of {max_points} points"
+        end = End(sentence, finished=False, kind=EndKind.POINTS)
     points = np.array([state.point for state in states])
     tangents = np.array([state.tangent for state in states])
     return Branch(points, tangents, tuple(special), STARTED, end)

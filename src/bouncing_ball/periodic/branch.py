@@ -6,25 +6,28 @@ sides from an orbit in the stable range, until the orbits end or Λ leaves a win
 """
 
 from collections.abc import Collection
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.model import Model
 from bouncing_ball.numerics.continuation import (
-    Branch,
     ContinuationError,
     StepControl,
     continue_both_ways,
 )
-from bouncing_ball.numerics.events import Event, parameter_bound
+from bouncing_ball.numerics.events import Event
 from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.balls import LAMBDA
+from bouncing_ball.periodic.following import Followed, Range, limits_of
 from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.paper_unknowns import PaperUnknowns
-from bouncing_ball.periodic.special import bifurcations, ends_of_contact, with_ends
+from bouncing_ball.periodic.special import ends_of_contact, passed_by, with_ends
 from bouncing_ball.periodic.stability import Bifurcation
 
+LARGEST_STEP = 0.1
+"""Default of the largest step in arclength."""
 # By default a branch ends at this multiple of the Λ of its period doubling.
 _BEYOND_DOUBLING = 1.4
 # Smallest Λ of a branch: a fold below it belongs to an elastic contact.
@@ -33,25 +36,13 @@ _LOWEST = 1e-4
 _STARTS = 16
 
 
-@dataclass(frozen=True)
-class WholeBranch:
-    """A branch of n-T orbits: its points, and the equations that give them a meaning."""
-
-    problem: PaperUnknowns
-    branch: Branch
-
-    def orbit(self, y: np.ndarray) -> Orbit:
-        """The orbits at points of the branch."""
-        return self.problem.orbit(y)
-
-
 def whole_branch(
     model: Model,
     n: int,
     amplitude_max: float | None,
-    largest_step: float,
+    largest_step: float = LARGEST_STEP,
     ends: Collection[Bifurcation] = (),
-) -> WholeBranch:
+) -> Followed:
     """The branch of n-T orbits of a single model, from one end to the other, up to some Λ.
 
     It is followed to both sides from the orbit in the middle of the stable range, or from the
@@ -69,6 +60,11 @@ def whole_branch(
     ends : collection of Bifurcation, optional
         The bifurcations at which the branch is not followed any further.
 
+    Returns
+    -------
+    Followed
+        The branch in the unknowns of the paper.
+
     Raises
     ------
     NoOrbitError
@@ -80,12 +76,10 @@ def whole_branch(
     --------
     >>> from bouncing_ball.models.rigid import RestitutionModel
     >>> found = whole_branch(RestitutionModel(0.85), 1, 1.2, largest_step=0.1)
-    >>> for special in found.branch.special:
-    ...     print(special.name, round(float(special.point[-1]), 4))
-    parameter bound 1.2
-    saddle-node 0.2547
-    period doubling 1.0383
-    parameter bound 1.2
+    >>> [(each.kind, round(each.amplitude, 4)) for each in found.special]
+    [('saddle-node', 0.2547), ('period doubling', 1.0383)]
+    >>> str(found.branch.end)
+    'amplitude = 1.2 is reached'
     """
     fold = n_t.saddle_node(model, n).amplitude
     doubling = n_t.period_doubling(model, n).amplitude
@@ -104,7 +98,7 @@ def whole_branch(
         if not end.finished:
             raise ContinuationError(f"the branch is not followed to its end: {end}")
     of_contact = [problem.event(event) for event in ends_of_contact(problem.orbits)]
-    return WholeBranch(problem, with_ends(found, of_contact))
+    return Followed(problem, with_ends(found, of_contact))
 
 
 def _default_top(low: float, doubling: float) -> float:
@@ -127,14 +121,16 @@ def _start(model: Model, n: int, middle: float, low: float, top: float) -> Orbit
 
 
 def _events(problem: PaperUnknowns, top: float, ends: Collection[Bifurcation]) -> list[Event]:
-    """The bifurcations, of which those in ``ends`` are terminal, the ends of the domain in which
-    orbits exist, and the bounds of Λ.
+    """The bifurcations and grazing orbits, of which those in ``ends`` are terminal, the ends of the
+    domain in which orbits exist, and the bounds of Λ.
     """
-    of_orbits = [*bifurcations(problem.orbits), *ends_of_contact(problem.orbits)]
-    events = [
+    orbits = problem.orbits
+    of_orbits = [
+        *passed_by(orbits),
+        *ends_of_contact(orbits),
+        *limits_of(LAMBDA, Range(_LOWEST, top), orbits.equations),
+    ]
+    return [
         replace(problem.event(event), terminal=event.terminal or event.name in ends)
         for event in of_orbits
     ]
-    for bound, upper in ((_LOWEST, False), (top, True)):
-        events.append(parameter_bound(bound, upper, f"left the window at amplitude {bound:g}"))
-    return events

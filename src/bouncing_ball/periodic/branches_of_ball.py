@@ -15,24 +15,24 @@ from bouncing_ball.datasets.arguments import (
 )
 from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.ball import Ball, a_ball
 from bouncing_ball.models.model import Model
 from bouncing_ball.numerics.continuation import ContinuationError
-from bouncing_ball.periodic.branch import whole_branch
-from bouncing_ball.periodic.observables import VARIABLES, branch_columns, joined, no_branch
+from bouncing_ball.periodic.branch import LARGEST_STEP, whole_branch
+from bouncing_ball.periodic.following import Followed
+from bouncing_ball.periodic.labelled import FollowedBranch
+from bouncing_ball.periodic.observables import VARIABLES, joined, n_t_columns, no_branch
 from bouncing_ball.periodic.places import by_place
 
-# The longest step along a branch, and as a fraction of the largest Λ, if that is large: a branch
-# has some thousand points at most.
-_LARGEST_STEP = 0.1
+# The longest step along a branch is this fraction of the largest Λ, if that is large: a branch has
+# some thousand points at most.
 _STRIDE = 2e-3
 
 
 def branch(
     ball: Ball, n: FamilyAxis = 1, *, amplitude_max: float | None = None, points: Points = 300
-) -> Result:
+) -> FollowedBranch:
     """The branch of n-T orbits over the amplitude Λ, on both sides of its saddle-node.
 
     Parameters
@@ -47,11 +47,12 @@ def branch(
 
     Returns
     -------
-    Result
+    FollowedBranch
         ``amplitude``, ``phase`` and the other observables of each ``point``, and whether the
         orbit is ``stable`` and ``admissible``; ``special_amplitude`` and others of the
-        saddle-nodes, period doublings and grazing orbits. Where one of several branches does not
-        exist it is NaN, and ``end_reason`` says why.
+        saddle-nodes, period doublings and grazing orbits. The branch of a single ball has the
+        orbits themselves as well, as that of :func:`bouncing_ball.follow`. Where one of several
+        branches does not exist it is NaN, and ``end_reason`` says why.
 
     Raises
     ------
@@ -69,6 +70,8 @@ def branch(
     ['saddle-node', 'period doubling']
     >>> round(float(found.special_amplitude[0]) / math.pi * 1.85 / 0.15, 12)
     1.0
+    >>> found.first("saddle-node").amplitude == float(found.special_amplitude[0])
+    True
     """
     family = checked("n", n, FAMILY)
     count = checked_number("points", points, POINTS)
@@ -76,26 +79,31 @@ def branch(
     if amplitude_max is not None:
         top = checked_number("amplitude_max", amplitude_max, POSITIVE)
 
+    followed: list[Followed] = []
+
     def found(one: Ball, n: int) -> xr.Dataset:
-        return _branch_of(one.at_limits(n), n, top, count)
+        followed.append(_branch_of(one.at_limits(n), n, top, count))
+        return n_t_columns(followed[-1])
 
     grid = Grid(n=family, **a_ball(ball).parameters)
     whole = by_place(grid, ball, ("n",), found, partial(no_branch, count), joined)
-    branches = Result.of(grid.unfold(describe(whole, VARIABLES)), "branch")
-    return branches if top is None else branches.assign_attrs(amplitude_max=top)
+    data = grid.unfold(describe(whole, VARIABLES))
+    single = None if grid.shape else followed[0]
+    if top is not None:
+        data = data.assign_attrs(amplitude_max=top)
+    return FollowedBranch.of_orbits(data, "branch", single)
 
 
-def _branch_of(model: Model, n: int, amplitude_max: float | None, points: int) -> xr.Dataset:
-    """The branch of n-T orbits of a single model up to some Λ, shape (point,).
+def _branch_of(model: Model, n: int, amplitude_max: float | None, points: int) -> Followed:
+    """The branch of n-T orbits of a single model up to some Λ, with this number of points.
 
     Raises
     ------
     NoOrbitError
         If the branch begins above this Λ, or if it cannot be followed.
     """
-    longest = max(_LARGEST_STEP, _STRIDE * (amplitude_max or 0.0))
+    longest = max(LARGEST_STEP, _STRIDE * (amplitude_max or 0.0))
     try:
-        found = whole_branch(model, n, amplitude_max, longest)
-        return branch_columns(found, points)
+        return whole_branch(model, n, amplitude_max, longest).resampled(points)
     except ContinuationError as error:
         raise NoOrbitError(f"the branch of {n}-T orbits for {model.label}: {error}") from None

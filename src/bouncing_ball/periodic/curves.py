@@ -16,7 +16,6 @@ equations alone. The cusp is therefore a zero of the derivative of g in the dire
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import NamedTuple
 
 import numpy as np
 
@@ -29,7 +28,7 @@ from bouncing_ball.numerics.continuation import (
 )
 from bouncing_ball.numerics.corrector import Condition, NewtonSettings, corrected, null_vector
 from bouncing_ball.numerics.events import Event, SpecialPoint, locate, vanishing
-from bouncing_ball.periodic.following import PATIENT, STEPS, Orbits, explained, limit
+from bouncing_ball.periodic.following import PATIENT, STEPS, Orbits, Range, explained, limits_of
 from bouncing_ball.periodic.orbit import Orbit, orbit_at
 from bouncing_ball.periodic.problem import PeriodicOrbits
 from bouncing_ball.periodic.release import release_condition
@@ -56,13 +55,6 @@ class Degenerate(StrEnum):
     CUSP = "cusp"
     ONE_TO_ONE = "1:1 resonance"
     ONE_TO_TWO = "1:2 resonance"
-
-
-class Window(NamedTuple):
-    """The range of a parameter in which a curve is followed."""
-
-    low: float
-    high: float
 
 
 def condition_of(orbits: PeriodicOrbits, kind: Special) -> Condition:
@@ -122,8 +114,8 @@ def curve(
     along: str,
     across: str,
     *,
-    along_window: Window | None = None,
-    across_window: Window | None = None,
+    along_window: Range | None = None,
+    across_window: Range | None = None,
     control: StepControl = STEPS,
     most: int = 1000,
 ) -> Curve:
@@ -136,7 +128,7 @@ def curve(
     kind : Special
     along, across : str
         The two parameters.
-    along_window, across_window : Window, optional
+    along_window, across_window : Range, optional
         The ranges of the two parameters outside which the curve is not followed.
     control : StepControl
     most : int
@@ -186,7 +178,7 @@ def _corrected(problem: CurveProblem, y: np.ndarray) -> np.ndarray:
     return point
 
 
-def _limits(orbits: PeriodicOrbits, windows: dict[str, Window | None]) -> list[Event]:
+def _limits(orbits: PeriodicOrbits, windows: dict[str, Range | None]) -> list[Event]:
     """The ends of the ranges of both parameters, as terminal events."""
     found = []
     for j, (name, window) in enumerate(windows.items()):
@@ -194,10 +186,7 @@ def _limits(orbits: PeriodicOrbits, windows: dict[str, Window | None]) -> list[E
         if window is not None:
             low = max(low, window.low)
             high = min(high, window.high)
-        column = orbits.equations + j
-        for bound, sign in ((low, 1.0), (high, -1.0)):
-            if np.isfinite(bound):
-                found.append(limit(name, bound, sign, column))
+        found += limits_of(name, Range(low, high), orbits.equations + j)
     return found
 
 

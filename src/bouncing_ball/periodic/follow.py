@@ -19,8 +19,8 @@ from bouncing_ball.datasets.arguments import (
 from bouncing_ball.errors import NoOrbitError, ParameterError
 from bouncing_ball.periodic import curves, following, switching
 from bouncing_ball.periodic.balls import LAMBDA, Balls
-from bouncing_ball.periodic.curves import Window
-from bouncing_ball.periodic.labelled import FollowedBranch, SpecialCurve
+from bouncing_ball.periodic.following import Range
+from bouncing_ball.periodic.labelled import FollowedBranch, SpecialCurve, labelled
 from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.special import MEANINGS, Special
 
@@ -74,7 +74,8 @@ def follow(
         "restitution" or the "stiffness" of a contact law. The default is that of the branch from
         which the orbit comes, otherwise the amplitude.
     to : float, optional
-        The value at which the branch ends; by default the parameter rises to the end of its range.
+        The value at which the branch ends; by default the parameter rises to the end of its
+        range, or to ten times its first value, and at least 10, if the range has no end.
         Behind a saddle-node the parameter moves back, at most as far beyond its first value.
     points : int
         The largest number of points, of a curve in each direction.
@@ -143,7 +144,7 @@ def follow(
     elif orbit.kind == Special.SADDLE_NODE:
         increasing = _to_stable_side(orbit, name, value)
     found = following.follow(start, name, value, increasing=increasing, most=most)
-    return FollowedBranch.of_orbits(found)
+    return FollowedBranch.of_orbits(labelled(found), "follow", found)
 
 
 def _to_stable_side(fold: Orbit, name: str, to: float | None) -> bool:
@@ -213,7 +214,8 @@ def _curve(orbit: Orbit, names: tuple[str, ...], ranges: Any, most: int) -> Spec
         across_window=windows[1],
         most=most,
     )
-    return SpecialCurve.of_orbits(found, curve_kind=str(orbit.kind))
+    data = labelled(found).assign_attrs(curve_kind=str(orbit.kind))
+    return SpecialCurve.of_orbits(data, "curve", found)
 
 
 def switch(orbit: Orbit) -> Orbit:
@@ -251,25 +253,24 @@ def switch(orbit: Orbit) -> Orbit:
 def curve(
     orbit: Orbit,
     *,
-    kind: str,
     across: str,
+    kind: str | None = None,
     along_range: Sequence[float] | None = None,
     across_range: Sequence[float] | None = None,
     points: Points = CURVE,
 ) -> SpecialCurve:
-    """The curve of special orbits in two parameters, through one of them: :func:`follow` with two
-    parameters.
+    """The curve of special orbits in two parameters, through one of them: :func:`follow` with the
+    two parameters ``(orbit.along[0], across)``.
 
     Parameters
     ----------
     orbit : Orbit
         A special orbit of a branch, such as ``found.first("saddle-node")``. The first parameter is
         that of the branch.
-    kind : str
-        The kind of the special orbit: "saddle-node", "period doubling", "grazing of a flight",
-        "grazing of an impact" or "grazing of a release".
     across : str
         The second parameter.
+    kind : str, optional
+        The kind of the special orbits; by default that of the orbit.
     along_range, across_range : two floats, optional
         The ranges of both parameters outside which the curve is not followed.
     points : int
@@ -283,21 +284,20 @@ def curve(
     >>> import bouncing_ball
     >>> one = bouncing_ball.orbit(bouncing_ball.rigid(restitution=0.5), amplitude=1.4)
     >>> fold = follow(one, to=0.5).first("saddle-node")
-    >>> found = curve(fold, kind="saddle-node", across="restitution", across_range=(0.2, 0.8))
+    >>> found = curve(fold, across="restitution", across_range=(0.2, 0.8))
     >>> r = found.restitution
     >>> bool(abs(found.amplitude - math.pi * (1 - r) / (1 + r)).max() < 1e-12)
     True
     """
     _check_orbit("curve", orbit)
-    name = chosen("kind", kind, [str(each) for each in Special])
     along = orbit.along[0]
+    special = replace(orbit, kind=chosen("kind", kind or orbit.kind, [str(x) for x in Special]))
     given = {along: along_range, across: across_range}
-    ranges = {each: limits for each, limits in given.items() if limits is not None}
-    special = replace(orbit, kind=name)
+    ranges = {name: limits for name, limits in given.items() if limits is not None}
     return follow(special, along=(along, across), points=points, ranges=ranges)
 
 
-def _window(name: str, given: Any, start: float) -> Window | None:
+def _window(name: str, given: Any, start: float) -> Range | None:
     """The range of a parameter on a curve, which contains its value at the start."""
     if given is None:
         return None
@@ -314,4 +314,4 @@ def _window(name: str, given: Any, start: float) -> Window | None:
             f"the range {low:g} to {high:g} does not contain {name} = {start:g}, "
             "at which the curve starts"
         )
-    return Window(low, high)
+    return Range(low, high)

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import ClassVar
+from typing import ClassVar, NamedTuple, Protocol, Self
 
 import numpy as np
 
@@ -13,10 +13,12 @@ from bouncing_ball.numerics.continuation import (
     Branch,
     ContinuationError,
     End,
+    EndKind,
     StepControl,
     continue_branch,
+    resample,
 )
-from bouncing_ball.numerics.corrector import NewtonSettings, newton
+from bouncing_ball.numerics.corrector import NewtonSettings, Problem, newton, tangent
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.periodic.balls import LAMBDA
@@ -26,6 +28,7 @@ from bouncing_ball.periodic.special import (
     MEANINGS,
     Special,
     events,
+    halves,
     loss_of_release,
     turns_apart,
 )
@@ -42,14 +45,49 @@ _NEAR = 0.1
 _CLOSER = 0.1
 _TRIES = 4
 _HALVES = "the two turns of the orbit become nearly equal"
-# If the tangent turns by a finite angle in the shortest step, the branch has a corner.
-_TURNS = "the tangent turns"
 _CORNER = "the branch has a corner, where the map of the model has no derivative"
 # If the steps become too short, a test function this small, or a parameter this close to the end of
 # its range, is given as the reason. Close to an event the functions are of the order of the square
 # root of the distance.
 _CLOSE = 1e-2
 _AT_END = 1e-6
+# Without a value at which a branch ends, it ends at this multiple of the first value of the
+# parameter, or of 1, if the range of the parameter has no end.
+_FARTHEST = 10.0
+
+
+class Range(NamedTuple):
+    """The range of a parameter in which a branch or a curve is followed."""
+
+    low: float
+    high: float
+
+
+class Coordinates(Problem, Protocol):
+    """The equations of orbits in some unknowns y: those of
+    :class:`~bouncing_ball.periodic.problem.PeriodicOrbits`, or those of the paper.
+    """
+
+    @property
+    def orbits(self) -> PeriodicOrbits:
+        """The equations in their own unknowns."""
+
+    def inner(self, y: np.ndarray) -> np.ndarray:
+        """The unknowns of :attr:`orbits` at y."""
+
+    def event(self, event: Event) -> Event:
+        """An event of :attr:`orbits` as a function of y."""
+
+
+def orbits_along(problem: Coordinates, y: np.ndarray) -> Orbit:
+    """The orbits at points y, with phases that pass ±π continuously along a branch."""
+    orbits = problem.orbits
+    inner = problem.inner(y)
+    found = orbit_at(orbits, inner)
+    phase, _ = orbits.states(inner)
+    turned = np.round((phase - found.phases) / (2 * np.pi))
+    turns = np.broadcast_to(orbits.turns, phase.shape)
+    return replace(found, phases=found.phases + 2 * np.pi * turned, turns=turns)
 
 
 @dataclass(frozen=True)
@@ -60,7 +98,7 @@ class Orbits:
     points; ``branch.end`` gives the reason why the branch ends, in words.
     """
 
-    problem: PeriodicOrbits
+    problem: Coordinates
     branch: Branch
 
     kinds: ClassVar[type[StrEnum]]
@@ -70,7 +108,10 @@ class Orbits:
         return len(self.branch.points)
 
     def __iter__(self) -> Iterator[Orbit]:
-        return (orbit_at(self.problem, y) for y in self.branch.points)
+        return (self._one(y) for y in self.branch.points)
+
+    def _one(self, y: np.ndarray, kind: str = "") -> Orbit:
+        return orbit_at(self.problem.orbits, self.problem.inner(y), kind)
 
     @property
     def special_points(self) -> list[SpecialPoint]:
@@ -80,16 +121,9 @@ class Orbits:
     @property
     def special(self) -> list[Orbit]:
         """The special orbits in order, with their kinds."""
-        return [orbit_at(self.problem, each.point, each.name) for each in self.special_points]
+        return [self._one(each.point, each.name) for each in self.special_points]
 
-
-@dataclass(frozen=True)
-class Followed(Orbits):
-    """A branch of orbits with k impacts in m periods along one parameter."""
-
-    kinds = Special
-
-    def first(self, kind: Special) -> Orbit:
+    def first(self, kind: StrEnum) -> Orbit:
         """The first special orbit of a kind.
 
         Raises
@@ -99,8 +133,27 @@ class Followed(Orbits):
         """
         for each in self.special_points:
             if each.name == kind:
-                return orbit_at(self.problem, each.point, each.name)
+                return self._one(each.point, each.name)
         raise NoOrbitError(f"the branch has no {kind}; it ends because {self.branch.end}")
+
+    def resampled(self, count: int) -> Self:
+        """The same orbits at ``count`` points with equal steps of arclength.
+
+        Raises
+        ------
+        ContinuationError
+            If the steps along the branch were too long for it to be resampled.
+        """
+        y = resample(self.problem, self.branch, count)
+        tangents = tangent(self.problem.jacobian(y), np.gradient(y, axis=0))
+        return replace(self, branch=replace(self.branch, points=y, tangents=tangents))
+
+
+@dataclass(frozen=True)
+class Followed(Orbits):
+    """A branch of orbits with k impacts in m periods along one parameter."""
+
+    kinds = Special
 
 
 def corrected(problem: PeriodicOrbits, guess: np.ndarray) -> np.ndarray:
@@ -121,20 +174,27 @@ def corrected(problem: PeriodicOrbits, guess: np.ndarray) -> np.ndarray:
     return point
 
 
-def bounds(orbits: PeriodicOrbits, start: np.ndarray, to: float | None) -> list[Event]:
-    """The ends of the branch at the ends of the parameter's range, at the value ``to``, and as far
-    beyond the start.
+def range_ahead(orbits: PeriodicOrbits, start: np.ndarray, to: float | None) -> Range:
+    """The range of the parameter on a branch: up to the value ``to``, and as far beyond the start.
+
+    Without such a value it is the range of the parameter. If this has no largest value, the largest
+    one is ten times that at the start, and at least 10.
     """
     (name,) = orbits.along
     low, high = orbits.balls.bounds(name)
+    here = float(orbits.values(start)[name])
     if to is not None:
-        back = 2 * float(orbits.values(start)[name]) - to
-        low = max(low, min(to, back))
-        high = min(high, max(to, back))
+        back = 2 * here - to
+        return Range(max(low, min(to, back)), min(high, max(to, back)))
+    return Range(low, min(high, _FARTHEST * max(abs(here), 1.0)))
+
+
+def limits_of(name: str, within: Range, column: int) -> list[Event]:
+    """The ends of a branch at the finite ends of the range of a parameter, an entry of y."""
     found = []
-    for bound, sign in ((low, 1.0), (high, -1.0)):
+    for bound, sign in ((within.low, 1.0), (within.high, -1.0)):
         if np.isfinite(bound):
-            found.append(limit(name, bound, sign, orbits.equations))
+            found.append(limit(name, bound, sign, column))
     return found
 
 
@@ -185,20 +245,35 @@ def follow(
     here = corrected(orbits, start.point(orbits))
     if increasing is None:
         increasing = to is None or bool(to > orbits.values(here)[along])
-    limits = bounds(orbits, here, to)
+    limits = limits_of(along, range_ahead(orbits, here, to), orbits.equations)
     near = min(_NEAR, float(turns_apart(orbits, here)) / 2)
     with np.errstate(all="ignore"):
+        branch = _followed(orbits, here, limits, near, increasing, control, most)
         for _ in range(_TRIES):
-            branch = _followed(orbits, here, limits, near, increasing, control, most)
-            if branch.end.sentence != _HALVES:
+            if branch.end.event != _HALVES:
                 break
             whole = _up_to_halving(orbits, branch)
             if whole is not None:
                 branch = whole
                 break
             near *= _CLOSER
+            rises = bool(branch.tangents[-1, -1] > 0)
+            left = most - len(branch.points) + 1
+            last = branch.points[-1]
+            branch = _joined(branch, _followed(orbits, last, limits, near, rises, control, left))
         tests = [*events(orbits), loss_of_release(orbits)]
         return Followed(orbits, replace(branch, end=explained(branch, tests, limits)))
+
+
+def _joined(branch: Branch, further: Branch) -> Branch:
+    """A branch and its continuation from its last point on."""
+    return replace(
+        branch,
+        points=np.concatenate([branch.points, further.points[1:]]),
+        tangents=np.concatenate([branch.tangents, further.tangents[1:]]),
+        special=(*branch.special, *further.special),
+        end=further.end,
+    )
 
 
 def _followed(
@@ -218,13 +293,13 @@ def _followed(
     # The first steps must not pass over a place nearby where the turns are equal. If a later step
     # does, the branch is cut off there.
     initial = min(control.initial, near * np.sqrt(2 * orbits.impacts) / 2)
-    halves = Event(_HALVES, two_turns, terminal=True, reason=_HALVES)
+    equal_turns = Event(_HALVES, two_turns, terminal=True, reason=_HALVES)
     try:
         branch = continue_branch(
             orbits,
             start,
             increasing=increasing,
-            events=[*events(orbits), loss_of_release(orbits), halves, *limits],
+            events=[*events(orbits), loss_of_release(orbits), equal_turns, *limits],
             control=replace(control, initial=initial),
             max_points=most,
         )
@@ -235,13 +310,7 @@ def _followed(
 
 def _cut_off(orbits: PeriodicOrbits, branch: Branch) -> Branch:
     """The branch up to the first step on which the difference of the two turns is reversed."""
-    if orbits.impacts % 2:
-        return branch
-    _, velocity = orbits.states(branch.points)
-    phase, _ = orbits.states(branch.points)
-    half = orbits.impacts // 2
-    turned = reduce_angle(phase - np.roll(phase, half, axis=-1))
-    difference = np.concatenate([turned, velocity - np.roll(velocity, half, axis=-1)], axis=-1)
+    difference = halves(orbits, branch.points)
     reversed_at = np.flatnonzero(np.sum(difference[1:] * difference[:-1], axis=-1) < 0)
     if not reversed_at.size:
         return branch
@@ -253,7 +322,7 @@ def _cut_off(orbits: PeriodicOrbits, branch: Branch) -> Branch:
         points=branch.points[:count],
         tangents=branch.tangents[:count],
         special=tuple(before),
-        end=End(_HALVES),
+        end=End(_HALVES, event=_HALVES),
     )
 
 
@@ -295,7 +364,7 @@ def _up_to_halving(orbits: PeriodicOrbits, branch: Branch) -> Branch | None:
 def explained(branch: Branch, tests: Sequence[Event], limits: Sequence[Event]) -> End:
     """The end of a branch, with the event that is near if the steps became too short."""
     end = branch.end
-    if not end.sentence.startswith("step too small"):
+    if not end.stuck:
         return end
     last = branch.points[-1]
     for limit in limits:
@@ -306,5 +375,5 @@ def explained(branch: Branch, tests: Sequence[Event], limits: Sequence[Event]) -
     near = {event.name: abs(float(event.function(last))) for event in tests}
     nearest = min(near, key=lambda name: near[name])
     if not near[nearest] < _CLOSE:
-        return End(_CORNER) if _TURNS in end.sentence else end
+        return End(_CORNER) if end.kind is EndKind.CORNER else end
     return End(f"the orbit is next to a {nearest}, where its equations are not smooth", True)

@@ -4,32 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, Self
 
-import numpy as np
 import xarray as xr
 
 from bouncing_ball.datasets.arguments import chosen
-from bouncing_ball.datasets.variables import SHARED, Variable, described
+from bouncing_ball.datasets.variables import SHARED, Variable, describe
 from bouncing_ball.drawing.result import MADE_BY, Result
 from bouncing_ball.errors import ModelError
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.periodic import observables, stability
-from bouncing_ball.periodic.curves import Curve
-from bouncing_ball.periodic.following import Followed
-from bouncing_ball.periodic.orbit import Orbit, orbit_at
+from bouncing_ball.periodic import observables
+from bouncing_ball.periodic.following import Orbits
+from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.problem import PeriodicOrbits
-from bouncing_ball.periodic.simulation import is_admissible
 from bouncing_ball.periodic.special import Special
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-VARIABLES = {
-    "special_point": Variable("number of the last point of the branch before the special orbit"),
+_AXES = {
+    "point": Variable("number of the point, in order along the branch"),
+    "impact": Variable("number of the impact within the orbit"),
 }
-_IMPACT = {"impact": Variable("number of the impact within the orbit")}
-_ALL = observables.VARIABLES | VARIABLES | _IMPACT
+_PHASES = ("phase", "release_phase", "special_phase")
 
 
 class _Orbits(Result):
@@ -39,15 +36,16 @@ class _Orbits(Result):
 
     __slots__ = ("_found",)
 
-    maker: ClassVar[str]
-
     @classmethod
-    def of_orbits(cls, found: Followed | Curve, **attributes: str) -> Self:
-        """The labelled result of a branch or a curve."""
-        data = _columns(found).assign_attrs(_attributes(found.problem) | attributes)
-        result = cls.of(data, cls.maker)
+    def of_orbits(cls, data: xr.Dataset, made_by: str, found: Orbits | None) -> Self:
+        """The labelled result of a call; ``found`` are the orbits of a single branch or curve."""
+        result = cls.of(data, made_by)
         result._found = found
         return result
+
+    @property
+    def _maker(self) -> str:
+        return str(self.attrs.get(MADE_BY, "a call"))
 
     @property
     def _whole(self) -> Any:
@@ -56,15 +54,19 @@ class _Orbits(Result):
         Raises
         ------
         ModelError
-            If this is a part of a result.
+            If this is a part of a result, or several branches.
         """
-        found = getattr(self, "_found", None)
-        if found is None:
+        if not hasattr(self, "_found"):
             raise ModelError(
-                f"a part of the result of {self.maker} is plain data, without orbits: "
+                f"a part of the result of {self._maker} is plain data, without orbits: "
                 "call the method of the whole result"
             )
-        return found
+        if self._found is None:
+            raise ModelError(
+                "the branches of several balls are plain data, without orbits: "
+                f"call {self._maker} for each ball"
+            )
+        return self._found
 
     def plot(self, path: str | Path | None = None) -> Figure:  # type: ignore[override]
         """As for every result; a part of the points, such as a slice, has the figure as well.
@@ -74,10 +76,11 @@ class _Orbits(Result):
         ModelError
             If a dimension has been selected away.
         """
-        missing = [name for name in ("point", "special", "impact") if name not in self.dims]
+        needed = ("point", "special", *(("impact",) if "impacts" in self.attrs else ()))
+        missing = [name for name in needed if name not in self.dims]
         if missing and MADE_BY in self.attrs:
             raise ModelError(
-                f"a part of the result of {self.maker} without the dimension {missing[0]!r} is "
+                f"a part of the result of {self._maker} without the dimension {missing[0]!r} is "
                 f"plain data, without a figure: select a list or a slice, or plot the whole result"
             )
         return super().plot(path)
@@ -88,14 +91,12 @@ class _Orbits(Result):
 
 
 class FollowedBranch(_Orbits):
-    """A branch of orbits with k impacts in m periods along a parameter.
+    """A branch of orbits with k impacts in m periods along a parameter, or of n-T orbits over Λ.
 
     The figure shows the phases of the impacts over the parameter.
     """
 
     __slots__ = ()
-
-    maker = "follow"
 
     def special_states(self) -> list[tuple[str, Orbit]]:
         """The special orbits with their kinds, in order."""
@@ -121,18 +122,6 @@ class SpecialCurve(_Orbits):
 
     __slots__ = ()
 
-    maker = "curve"
-
-
-def _before(points: np.ndarray, special: np.ndarray) -> int:
-    """The number of the last point of a branch before a special orbit, which makes the shortest
-    detour from this point to the next.
-    """
-    lengths = np.linalg.norm(points - special, axis=1)
-    chords = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    detours = lengths[:-1] + lengths[1:] - chords
-    return int(np.argmin(detours)) if detours.size else 0
-
 
 def _attributes(problem: PeriodicOrbits) -> dict[str, Any]:
     """The values of the parameters that do not vary, and k and m."""
@@ -143,46 +132,12 @@ def _attributes(problem: PeriodicOrbits) -> dict[str, Any]:
     return {"impacts": problem.impacts, "periods": int(problem.periods), **fixed}
 
 
-def _of_impacts(problem: PeriodicOrbits, y: np.ndarray) -> dict[str, np.ndarray]:
-    """The quantities of :data:`.observables.OBSERVED` at each impact, shape (..., k)."""
-    shape = (*y.shape[:-1], problem.impacts)
-    if not y.size:
-        return {name: np.empty(shape) for name in observables.OBSERVED}
-    orbits = orbit_at(problem, y)
-    found = {name: np.reshape(getattr(orbits, name), shape) for name in observables.OBSERVED}
-    for name in ("phase", "release_phase"):
-        found[name] = reduce_angle(found[name])
-    return found
-
-
-def _columns(found: Followed | Curve) -> xr.Dataset:
-    """The orbits along a branch or a curve, its special orbits, and the reasons of its two ends."""
-    problem = found.problem
-    along = problem.along
-    special = found.special_points
-    y = found.branch.points
-    trace, determinant = problem.trace_and_determinant(y)
-    floquet = stability.multipliers(trace, determinant)
-    values = problem.values(y)
-    data: dict[str, Any] = {name: ("point", values[name]) for name in along}
-    impacts = _of_impacts(problem, y)
-    data |= {name: (("point", "impact"), impacts[name]) for name in observables.OBSERVED}
-    data["stable"] = "point", stability.is_stable(trace, determinant)
-    data["admissible"] = "point", is_admissible(problem, y)
-    data["multiplier_real"] = ("point", "multiplier"), floquet.real
-    data["multiplier_imag"] = ("point", "multiplier"), floquet.imag
-    data["residual"] = "point", np.abs(problem.residual(y)).max(axis=-1)
-    data["special_kind"] = "special", np.array([str(each.name) for each in special], dtype=str)
-    points = np.array([each.point for each in special]).reshape(len(special), y.shape[1])
-    places = problem.values(points)
-    for name in along:
-        data[f"special_{name}"] = "special", places[name]
-    impacts = _of_impacts(problem, points)
-    for name in ("phase", "contact_duration"):
-        data[f"special_{name}"] = ("special", "impact"), impacts[name]
-    data["special_point"] = "special", np.array([_before(y, each) for each in points], dtype=int)
-    data["end_reason"] = "end", [str(found.branch.start), str(found.branch.end)]
+def labelled(found: Orbits) -> xr.Dataset:
+    """The dataset of a branch or a curve, with phases in [-π, π]."""
+    data = observables.branch_columns(found)
+    turned = {name: data[name].copy(data=reduce_angle(data[name].values)) for name in _PHASES}
+    along = found.problem.orbits.along
     known = {name: SHARED.get(name, Variable(name.replace("_", " "))) for name in along}
     names = {f"special_{n}": v._replace(long_name=f"{v.long_name} there") for n, v in known.items()}
-    coords = {"special": np.arange(len(special)), "end": ["start", "end"]}
-    return described(data, coords, variables=_ALL | known | names)
+    whole = describe(data.assign(turned), observables.VARIABLES | _AXES | known | names)
+    return whole.assign_attrs(_attributes(found.problem.orbits))

@@ -10,13 +10,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.datasets import GRAZING
 from bouncing_ball.datasets.variables import Variable
 from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.numerics.continuation import resample
-from bouncing_ball.periodic.branch import WholeBranch
+from bouncing_ball.periodic.balls import Balls
+from bouncing_ball.periodic.following import Orbits, orbits_along
 from bouncing_ball.periodic.orbit import Orbit
-from bouncing_ball.periodic.stability import Bifurcation
 
 VARIABLES = {
     "special": Variable("special point of the branch, in order of arclength"),
@@ -33,6 +31,7 @@ VARIABLES = {
         budget=1e-4,
         scale="1",
     ),
+    "special_point": Variable("number of the last point of the branch before the special orbit"),
     "special_residual": Variable(
         "residual of the extended system at the special point", budget=1e-12, scale="1"
     ),
@@ -76,88 +75,114 @@ def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:
     return {name: getattr(orbit, name) for name in names} | judged
 
 
-def branch_columns(found: WholeBranch, count: int) -> xr.Dataset:
-    """A branch at ``count`` points with equal steps of arclength, and its special orbits.
+def branch_columns(found: Orbits) -> xr.Dataset:
+    """The orbits along a branch or a curve, its special orbits, and the reasons for its two ends.
 
-    The variables are those of :func:`orbits_in_columns`, and ``special_arclength``, the place of
-    each special orbit among the points; grazing orbits are found between the points.
-
-    Raises
-    ------
-    ContinuationError
-        If the steps along the branch were too long for it to be resampled.
+    Over ``point``, the dataset has each parameter that varies, ``stable``, ``admissible`` and
+    ``residual``, and over (point, impact) the observables of the orbits, with phases that pass ±π
+    continuously. The multipliers are over (point, multiplier), ``special_…`` over ``special``, of
+    which phases and durations are over (special, impact) too, and ``end_reason`` over ``end``.
+    ``special_point`` is the number of the last point before a special orbit.
     """
-    branch = found.branch
-    y = resample(found.problem, branch, count)
-    points = []
-    kinds = []
-    for special in branch.special:
-        if special.name in list(Bifurcation):
-            points.append(special.point)
-            kinds.append(str(special.name))
-    for point in found.problem.grazing(y):
-        points.append(point)
-        kinds.append(GRAZING)
-    special = np.array(points).reshape(-1, y.shape[-1])
-    place = _places(special, y)
-    order = np.argsort(place)
-    special_orbits = found.orbit(special[order])
-    ends = [str(branch.start), str(branch.end)]
-    columns = orbits_in_columns(found.orbit(y), special_orbits, [kinds[k] for k in order], ends)
-    return columns.assign(special_arclength=("special", place[order]))
+    y = found.branch.points
+    special = np.array([each.point for each in found.special_points]).reshape(-1, y.shape[-1])
+    before, arclength = _places(special, y)
+    # In the order along the branch: the grazing orbits are located one kind after another.
+    order = np.argsort(arclength, kind="stable")
+    kinds = [str(found.special_points[k].name) for k in order]
+    columns = _orbits_in_columns(
+        orbits_along(found.problem, y),
+        orbits_along(found.problem, special[order]),
+        kinds,
+        [str(found.branch.start), str(found.branch.end)],
+    )
+    return columns.assign(
+        special_arclength=("special", arclength[order]), special_point=("special", before[order])
+    )
 
 
-def _places(special: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """The places of special points among the points of a branch, which have equal steps, as shares
-    of its arclength.
+def _places(special: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The number of the last point of a branch before each special point, and the arclength up to
+    the special point over that of the whole branch.
 
     A special point lies between the two neighbours to which it makes the smallest detour.
 
     Examples
     --------
     >>> y = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]])
-    >>> _places(np.array([[0.5, 0.0], [1.0, 1.0]]), y).tolist()
-    [0.25, 1.0]
+    >>> before, share = _places(np.array([[0.5, 0.0], [1.0, 1.0]]), y)
+    >>> before.tolist(), share.tolist()
+    ([0, 1], [0.25, 1.0])
     """
+    if len(y) < 2:
+        return np.zeros(len(special), dtype=int), np.zeros(len(special))
     distance = np.linalg.norm(special[:, np.newaxis] - y, axis=-1)
     step = np.linalg.norm(np.diff(y, axis=0), axis=-1)
     before = np.argmin(distance[:, :-1] + distance[:, 1:] - step, axis=-1)
     row = np.arange(len(special))
     behind = distance[row, before]
     ahead = distance[row, before + 1]
-    return (before + behind / (behind + ahead)) / (len(y) - 1)
+    passed = np.concatenate([[0.0], np.cumsum(step)])
+    return before, (passed[before] + step[before] * behind / (behind + ahead)) / passed[-1]
 
 
-def orbits_in_columns(
+def _orbits_in_columns(
     orbit: Orbit, special: Orbit, kinds: list[str], ends: list[str]
 ) -> xr.Dataset:
-    """Orbits along a branch, its special orbits with their kinds, and the reasons for its two ends.
-
-    Over ``point``, the dataset has the observables of the orbits, with phases in rad, and
-    ``amplitude``, ``stable``, ``admissible`` and ``residual``. The multipliers are over (point,
-    multiplier), ``special_…`` over ``special``, and ``end_reason`` over ``end``, where the end of
-    the unstable side comes first.
+    """Orbits along a branch, its special orbits with their kinds, and the reasons for its two ends,
+    as in :func:`branch_columns`.
     """
-    along = columns(orbit, "amplitude", *OBSERVED) | {"residual": orbit.defect()}
-    data: dict[str, Any] = {name: ("point", values) for name, values in along.items()}
+
+    def of_impacts(orbits: Orbit, name: str) -> np.ndarray:
+        return np.reshape(getattr(orbits, name), (orbits.size, orbits.impacts))
+
+    data: dict[str, Any] = {}
+    for name in orbit.along:
+        data[name] = "point", _values(orbit, name)
+        data[f"special_{name}"] = "special", _values(special, name)
+    data |= {name: (("point", "impact"), of_impacts(orbit, name)) for name in OBSERVED}
+    for name in ("phase", "contact_duration"):
+        data[f"special_{name}"] = ("special", "impact"), of_impacts(special, name)
+    data["stable"] = "point", orbit.is_stable()
+    data["admissible"] = "point", orbit.is_admissible()
+    data["residual"] = "point", orbit.defect()
     floquet = orbit.multipliers()
     data["multiplier_real"] = ("point", "multiplier"), floquet.real
     data["multiplier_imag"] = ("point", "multiplier"), floquet.imag
-    data["special_kind"] = "special", np.array(kinds, dtype=object)
-    for name in PLACE:
-        data[f"special_{name}"] = "special", getattr(special, name)
+    data["special_kind"] = "special", np.array(kinds, dtype=str)
     data["special_residual"] = "special", special.defect()
     data["end_reason"] = "end", ends
     # Numbers, so that branches with different numbers of special points are aligned.
-    coords = {"special": np.arange(len(kinds)), "end": ["unstable side", "stable side"]}
+    coords = {"special": np.arange(len(kinds)), "end": ["start", "end"]}
     return xr.Dataset(data, coords)
 
 
+def _values(orbit: Orbit, name: str) -> np.ndarray:
+    """The values of a parameter, one for each of a row of orbits."""
+    return np.broadcast_to(Balls(orbit.model, orbit.amplitude).values[name], orbit.shape)
+
+
+def n_t_columns(found: Orbits) -> xr.Dataset:
+    """As :func:`branch_columns` for orbits with one impact, from the unstable to the stable side,
+    without an axis of the impacts.
+    """
+    return _of_one_impact(branch_columns(found))
+
+
+def _of_one_impact(columns: xr.Dataset) -> xr.Dataset:
+    one = columns.isel(impact=0, drop=True).drop_vars("special_point")
+    kinds = one.special_kind.astype(object)
+    return one.assign(special_kind=kinds).assign_coords(end=["unstable side", "stable side"])
+
+
 def no_branch(count: int, error: Exception) -> xr.Dataset:
-    """A dataset like that of :func:`branch_columns`, of NaN, with the error as its end reasons."""
+    """A dataset like that of :func:`n_t_columns`, of NaN, with the error as its end reasons."""
     none = Orbit.of(RestitutionModel(1.0), 1, np.full(count, np.nan), np.nan)
-    found = orbits_in_columns(none, none[:0], [], [str(error)] * 2)
-    return found.assign(special_arclength=("special", np.empty(0)))
+    found = _orbits_in_columns(none, none[:0], [], [str(error)] * 2)
+    empty = np.empty(0)
+    return _of_one_impact(
+        found.assign(special_arclength=("special", empty), special_point=("special", empty))
+    )
 
 
 def joined(branches: list[xr.Dataset], dim: str) -> xr.Dataset:

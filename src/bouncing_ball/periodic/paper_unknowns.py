@@ -13,11 +13,10 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball.numerics.corrector import Condition
-from bouncing_ball.numerics.events import Event, domain_limits
+from bouncing_ball.numerics.events import Event
 from bouncing_ball.periodic.balls import LAMBDA
-from bouncing_ball.periodic.orbit import Orbit, orbit_at
+from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.problem import PeriodicOrbits
-from bouncing_ball.periodic.simulation import is_admissible
 
 
 @dataclass(frozen=True)
@@ -82,12 +81,6 @@ class PaperUnknowns:
         y[..., -1] = lam
         return y
 
-    def orbit(self, y: np.ndarray) -> Orbit:
-        """The orbits at points y, with phases that pass ±π continuously along a branch."""
-        found = orbit_at(self.orbits, self.inner(y))
-        turned = np.round((y[..., :1] - found.phases) / (2 * np.pi))
-        return replace(found, phases=found.phases + 2 * np.pi * turned)
-
     def _weights(self) -> np.ndarray:
         """The factors of the equations; that of the duration is of the order of a velocity."""
         weights = np.ones((*np.shape(self.clock), self.orbits.equations))
@@ -122,11 +115,3 @@ class PaperUnknowns:
             return value, (gradient[..., np.newaxis, :] @ self._slopes(y))[..., 0, :]
 
         return condition
-
-    def grazing(self, y: np.ndarray) -> np.ndarray:
-        """The last admissible points along a branch, one for each change of admissibility.
-
-        ``y`` holds points in order along the branch, shape (m, N + 1). The orbits at the k results,
-        shape (k, N + 1), graze the table.
-        """
-        return domain_limits(self, lambda z: is_admissible(self.orbits, self.inner(z)), y)

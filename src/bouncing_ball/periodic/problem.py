@@ -49,6 +49,7 @@ from bouncing_ball.models.dynamics import Departure, Dynamics, Impact
 from bouncing_ball.models.flight import table
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.numerics.events import Event
 from bouncing_ball.periodic.balls import LAMBDA, Balls, dynamics_inside
 from bouncing_ball.periodic.legs import Legs, lag_of, landed, no_legs, without_force
 from bouncing_ball.periodic.products import matrices_of, product_of, shifted_determinant
@@ -104,6 +105,21 @@ class PeriodicOrbits:
     selects: bool = False
     unit: Any = 1.0
     resumes: Any = False
+
+    # The unknowns of a branch may be others, such as those of the paper.
+
+    @property
+    def orbits(self) -> Self:
+        """The equations in the unknowns of this class."""
+        return self
+
+    def inner(self, y: np.ndarray) -> np.ndarray:
+        """The unknowns of this class: y itself."""
+        return y
+
+    def event(self, event: Event) -> Event:
+        """An event as a function of y: the event itself."""
+        return event
 
     @property
     def resuming(self) -> np.ndarray:

@@ -25,7 +25,6 @@ from bouncing_ball import datasets
 from bouncing_ball.models.flight import Flight
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.continuation import Branch, End
-from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.periodic.legs import Legs
 from bouncing_ball.periodic.problem import PeriodicOrbits
@@ -50,9 +49,9 @@ class Special(StrEnum):
 
     SADDLE_NODE = datasets.SADDLE_NODE
     PERIOD_DOUBLING = datasets.PERIOD_DOUBLING
-    GRAZING_FLIGHT = "grazing of a flight"
+    GRAZING_FLIGHT = datasets.GRAZING_FLIGHT
     GRAZING_IMPACT = "grazing of an impact"
-    GRAZING_RELEASE = "grazing of a release"
+    GRAZING_RELEASE = datasets.GRAZING_RELEASE
     STICKING = "end of sticking"
     PERIOD_HALVING = "period halving"
 
@@ -180,18 +179,35 @@ def loss_of_release(orbits: PeriodicOrbits) -> Event:
     return Event(name, share, terminal=True, reason=reason)
 
 
+def halves(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
+    """The differences of the second half of each orbit to the first: those of the times from half
+    the period after an impact to the impact that is k/2 later, and those of the velocities.
+
+    They all vanish for an orbit that repeats after half its period, and change continuously along a
+    branch. Their shape is (..., k), with an axis of length 0 if k or m is odd: such orbits do not
+    repeat after half their period.
+    """
+    half, odd = divmod(orbits.impacts, 2)
+    if odd or np.any(np.asarray(orbits.periods) % 2):
+        return np.empty((*y.shape[:-1], 0))
+    interval = orbits.intervals(y)
+    begun = np.cumsum(interval, axis=-1) - interval
+    of_half = np.pi * np.asarray(orbits.periods)[..., np.newaxis]
+    later = begun[..., half:] - begun[..., :half] - of_half
+    _, velocity = orbits.states(y)
+    faster = velocity[..., half:] - velocity[..., :half]
+    return np.concatenate([later, faster], axis=-1)
+
+
 def turns_apart(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
     """The distance of the two halves of each orbit, the root of the mean square over its impacts.
 
-    It vanishes for an orbit that repeats after half its period; 1 for odd k.
+    It vanishes for an orbit that repeats after half its period; 1 where no orbit does.
     """
-    half, rest = divmod(orbits.impacts, 2)
-    if rest:
+    apart = halves(orbits, y)
+    if not apart.shape[-1]:
         return np.full(y.shape[:-1], _FAR)
-    phase, velocity = orbits.states(y)
-    turned = reduce_angle(phase - np.roll(phase, half, axis=-1))
-    faster = velocity - np.roll(velocity, half, axis=-1)
-    return np.sqrt(np.mean(turned**2 + faster**2, axis=-1))
+    return np.sqrt(np.sum(apart**2, axis=-1) * 2 / orbits.impacts)
 
 
 def bifurcations(orbits: PeriodicOrbits) -> list[Event]:
@@ -207,6 +223,19 @@ def bifurcations(orbits: PeriodicOrbits) -> list[Event]:
     return [bifurcation(kind) for kind in Bifurcation]
 
 
+def passed_by(orbits: PeriodicOrbits) -> list[Event]:
+    """The bifurcations and the grazing orbits beyond which a branch goes on."""
+    return [
+        *bifurcations(orbits),
+        Event(Special.GRAZING_FLIGHT, lambda y: flight_margin(orbits, y)),
+        Event(
+            Special.GRAZING_RELEASE,
+            lambda y: release_margin(orbits, y),
+            condition=lambda y: release_condition(orbits, y),
+        ),
+    ]
+
+
 def events(orbits: PeriodicOrbits) -> Sequence[Event]:
     """The events along a branch, which ends where an impact grazes and where sticking ends."""
 
@@ -215,13 +244,7 @@ def events(orbits: PeriodicOrbits) -> Sequence[Event]:
         return Event(kind, lambda y: margin(orbits, y), terminal=True, reason=reason)
 
     return (
-        *bifurcations(orbits),
-        Event(Special.GRAZING_FLIGHT, lambda y: flight_margin(orbits, y)),
-        Event(
-            Special.GRAZING_RELEASE,
-            lambda y: release_margin(orbits, y),
-            condition=lambda y: release_condition(orbits, y),
-        ),
+        *passed_by(orbits),
         end(Special.GRAZING_IMPACT, impact_margin),
         replace(end(Special.STICKING, sticking), is_sign=True),
     )
@@ -282,7 +305,7 @@ def with_ends(branch: Branch, ends: Sequence[Event]) -> Branch:
 
 def _end_near(end: End, point: np.ndarray, ends: Sequence[Event]) -> Event | None:
     """The end of contact next to a point at which the steps became too short."""
-    if not end.sentence.startswith("step too small"):
+    if not end.stuck:
         return None
     near = [abs(float(event.function(point))) for event in ends]
     nearest = int(np.argmin(near))

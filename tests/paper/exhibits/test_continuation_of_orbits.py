@@ -98,7 +98,7 @@ def test_points_are_orbits(figure_8):
 
 
 def test_branches_start_and_end_where_they_should(figure_8):
-    window = "left the window at amplitude 1.5"
+    window = "amplitude = 1.5 is reached"
     assert figure_8.end_reason.sel(frequency_ratio=10.0).values.tolist() == [window, window]
     # The soft branch comes from permanent contact, where the impact velocity
     # and the flight vanish together; which is seen first is a matter of 1e-4.
@@ -246,7 +246,7 @@ def test_a_window_without_a_period_doubling_has_no_range_and_says_why(continuati
     data = stability_ranges(parameters, "displacement", continuation_settings)
     assert np.isnan(data.computed).all()
     why = str(data.absence[0, 0].item())
-    assert "no period doubling" in why and "left the window at amplitude 0.9" in why
+    assert "no period doubling" in why and "amplitude = 0.9 is reached" in why
 
 
 def test_a_branch_without_a_saddle_node_is_refused(follow, refusal):

@@ -24,8 +24,9 @@ from bouncing_ball.paper.exhibits.orbit_parameters import BranchEnd, BranchPoint
 from bouncing_ball.paper.exhibits.printed_table1 import printed_table
 from bouncing_ball.periodic import n_t, observables
 from bouncing_ball.periodic import restitution_branch as restitution_orbits
-from bouncing_ball.periodic.branch import WholeBranch, whole_branch
-from bouncing_ball.periodic.observables import PLACE, branch_columns, columns, joined, no_branch
+from bouncing_ball.periodic.branch import whole_branch
+from bouncing_ball.periodic.following import Followed, orbits_along
+from bouncing_ball.periodic.observables import PLACE, columns, joined, n_t_columns, no_branch
 from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.stability import Bifurcation
 
@@ -79,7 +80,7 @@ class Ranges(Parameters):
 
 def followed(
     n: int, ratio: float, given: Branches, release: Release, continuation: Continuation
-) -> WholeBranch:
+) -> Followed:
     """The orbits on one contact, from the unstable to the stable side.
 
     Raises
@@ -97,7 +98,7 @@ def _branch(
     """The branch of one contact; NaN, with the reason, where it cannot be followed."""
     try:
         branch = followed(parameters.n, ratio, parameters, release, continuation)
-        found = branch_columns(branch, parameters.points)
+        found = n_t_columns(branch.resampled(parameters.points))
     except (NoOrbitError, ContinuationError) as error:
         found = no_branch(parameters.points, error)
     return found.assign_coords(frequency_ratio=ratio)
@@ -268,7 +269,7 @@ def _stability_range(
     branch = whole_branch(
         model, n, given.amplitude_max, continuation.largest_step, ends=list(Bifurcation)
     )
-    limits = branch.orbit(first_limits(branch.branch))
+    limits = orbits_along(branch.problem, first_limits(branch.branch))
     return np.stack([getattr(limits, name) for name in PLACE], axis=-1)
 
 

@@ -11,9 +11,10 @@ from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.paper.exhibits.orbit_parameters import FamilyBranches, OrbitParameters
 from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic import restitution_branch as orbits
+from bouncing_ball.periodic.branch import whole_branch
 from bouncing_ball.periodic.orbit import Orbit
-from bouncing_ball.periodic.paper_unknowns import PaperUnknowns
 from bouncing_ball.periodic.restitution_branch import ImpactMap
+from bouncing_ball.periodic.special import Special
 
 VARIABLES = {
     "grazing_amplitude": Variable(
@@ -32,15 +33,12 @@ class RestitutionHistory(OrbitParameters):
     samples: Samples
 
 
-def _grazing(orbits: Orbit) -> np.ndarray:
+def _grazing(model: RestitutionModel, n: int, top: float) -> np.ndarray:
     """φ and Λ at which the unstable orbits of one family graze the table; NaN if they do not."""
-    # The equations of one orbit are those of its family.
-    problem = PaperUnknowns.of(orbits[0])
-    found = problem.grazing(problem.point(orbits))
-    if not len(found):
-        return np.full(2, np.nan)
-    # A solution is (φ, …, Λ).
-    return found[0, [0, -1]]
+    for each in whole_branch(model, n, top).special:
+        if each.kind == Special.GRAZING_FLIGHT:
+            return np.array([each.phase, each.amplitude])
+    return np.full(2, np.nan)
 
 
 def restitution_orbits(parameters: FamilyBranches) -> xr.Dataset:
@@ -60,8 +58,9 @@ def restitution_orbits(parameters: FamilyBranches) -> xr.Dataset:
     top = parameters.amplitude_max
     fold = orbits.saddle_node(n, r)
     amplitude, phase = orbits.branch(n, r, top, parameters.points)
-    shown = Orbit.of(RestitutionModel(r), n[:, np.newaxis], amplitude, phase)
-    grazing = np.array([_grazing(shown[k]) for k in range(n.size)])
+    model = RestitutionModel(r)
+    shown = Orbit.of(model, n[:, np.newaxis], amplitude, phase)
+    grazing = np.array([_grazing(model, family, top) for family in parameters.n])
     maps = list(ImpactMap)
     doubling = np.array([orbits.period_doubling(n, r, kind) for kind in maps])
     lift = np.array([[float(orbits.period_doubling_lift(r, kind))] for kind in maps])

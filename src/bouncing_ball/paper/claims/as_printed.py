@@ -299,7 +299,7 @@ def relative_error(spring_damper, restitution):
 
     Examples
     --------
-    >>> relative_error(1.5, 2.0)
+    >>> float(relative_error(1.5, 2.0))
     0.25
     """
     return np.abs(spring_damper - restitution) / restitution

@@ -207,8 +207,9 @@ def of_formula(data: Data, *rows: str) -> Finding:
     found = []
     for row in rows:
         one = data["formulas"].sel(formula=row)
-        found += [at_most(one.disagreement, one.budget)]
-        found += [at_most(one.disagreement_in_use, one.budget)]
+        for each in (one.disagreement, one.disagreement_in_use):
+            # A comparison that finds no value is no agreement.
+            found.append(at_most(each.fillna(np.inf), one.budget))
     failed = [one for one in found if one.verdict is not Verdict.REPRODUCED]
     return [*failed, *found][0]
 

@@ -49,7 +49,7 @@ def two_readings(data):
 
 
 right = formula("a law", "Eq. 1", "the law")
-limit = formula("a limit", "Eq. 2", "the limit", row="Eq. 1")
+limit = formula("a limit", "Eq. 2", "the limit", "Eq. 1")
 
 
 PARAMETERS = {
@@ -77,7 +77,8 @@ def data():
         coords={"n": [1, 2, 3]},
         attrs=PARAMETERS,
     )
-    rows = xr.Dataset({"disagreement": ("formula", [1e-13]), "budget": ("formula", [1e-12])})
+    both = dict.fromkeys(("disagreement", "disagreement_in_use"), ("formula", [1e-13]))
+    rows = xr.Dataset({**both, "budget": ("formula", [1e-12])})
     return {"fig": fig, "formulas": rows.assign_coords(formula=["Eq. 1"])}
 
 
@@ -149,9 +150,16 @@ def test_each_claim_is_counted_in_its_group(data):
     assert [
         row(claim, data)["group"] for claim in (right, height_threshold, rising, two_readings)
     ] == [*("restored formula", "number", "statement", "restatement")]
-    data["formulas"]["disagreement"] *= 100
+
+
+@pytest.mark.parametrize("name", ["disagreement", "disagreement_in_use"])
+def test_a_formula_is_right_if_it_is_right_as_printed_and_as_it_is_used(name, data):
+    assert row(limit, data)["verdict"] == "reproduced"
+    data["formulas"][name] = data["formulas"][name] * 100
     assert row(limit, data)["verdict"] == "contradicted"
     assert row(limit, data)["required"] == "≤ 1e-12"
+    data["formulas"][name] *= np.nan
+    assert row(limit, data)["verdict"] == "contradicted"
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ numbers that decide them, from the datasets     :mod:`.evidence`
 whether a dataset has the paper's parameters    :mod:`.parameters`
 verdicts by printed digits and conditions       :mod:`.verdict`
 the printed formulas, computed again            :mod:`.formulas`
+and as the package uses them                    :mod:`.formulas_in_use`
 every orbit shown, by three routes              :mod:`.witness`
 Table 1 under other readings of the paper       :mod:`.forensics`
 =============================================== ==================================

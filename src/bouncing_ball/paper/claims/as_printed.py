@@ -1,9 +1,11 @@
 """Equations in the form that the paper prints, right or wrong, as far as they are legible.
 
-These are Eqs. 2-8, 12-16, 27, 31 and 33-36. There are no functions of the others: Eqs. 17-26 of
-the n-T orbits, the errors of Eqs. 37 and 38, and Eqs. 1, 9-11, 28-30 and 32. The functions are used
-only for the check of :mod:`bouncing_ball.paper.claims.formulas`; no other result is
-computed from them. All quantities are dimensionless, and the functions broadcast.
+These are Eqs. 2-8, 10-17, 19, 21 and 22, 27, 31 and 33-38. There are no functions of the others:
+Eqs. 1, 9, 28-30 and 32, and the conditions of Eqs. 18, 20 and 23-26, which say that two of these
+functions are equal. The functions are used only for the checks of
+:mod:`~bouncing_ball.paper.claims.formulas` and
+:mod:`~bouncing_ball.paper.claims.formulas_in_use`; no other result is computed from them. All
+quantities are dimensionless except those of Eq. 10, and the functions broadcast.
 """
 
 import numpy as np
@@ -91,6 +93,19 @@ def period_doubling(n, restitution):
     return np.sqrt(1 + saddle_node(n, restitution) ** 2)
 
 
+def acceleration(rise, rate, frequency, damping_ratio, gravity=1.0):
+    """Eq. 11: the absolute acceleration in contact, δ″ + w″ = -1 - 2ζϖ δ′ - ϖ² δ.
+
+    With the frequency of the contact in rad/s and g in m/s² this is Eq. 10.
+
+    Examples
+    --------
+    >>> acceleration(-0.25, 0.0, 2.0, 0.1)
+    0.0
+    """
+    return -gravity - 2 * damping_ratio * frequency * rate - frequency**2 * rise
+
+
 def contact(time, frequency_ratio, damping_ratio, amplitude, phase, a, b):
     """Eqs. 12 and 13: height and velocity of the ball in contact.
 
@@ -125,6 +140,41 @@ def contact(time, frequency_ratio, damping_ratio, amplitude, phase, a, b):
     return height + chi * table_sine, velocity - beta * table_sine + chi * table_cosine
 
 
+def contact_after_impact(time, frequency_ratio, damping_ratio, amplitude, phase, impact_velocity):
+    """Eqs. 12 and 13 for a contact that starts with an impact: height and velocity, shape (2, ...).
+
+    The constants A and B are linear in the height and velocity of the impact (Eqs. 21-22).
+
+    Examples
+    --------
+    >>> contact_after_impact(0.0, 2.0, 0.0, 0.0, 0.0, -3.0).tolist()
+    [0.0, -3.0]
+    """
+    zero, rate = contact(
+        time=0.0,
+        frequency_ratio=frequency_ratio,
+        damping_ratio=damping_ratio,
+        amplitude=amplitude,
+        phase=phase,
+        a=0.0,
+        b=0.0,
+    )
+    a = amplitude * np.sin(phase) - zero
+    damped = frequency_ratio * np.sqrt(1 - damping_ratio**2)
+    b = (impact_velocity - rate + damping_ratio * frequency_ratio * a) / damped
+    return np.array(
+        contact(
+            time=time,
+            frequency_ratio=frequency_ratio,
+            damping_ratio=damping_ratio,
+            amplitude=amplitude,
+            phase=phase,
+            a=a,
+            b=b,
+        )
+    )
+
+
 def flight(time, release_time, bounce_velocity, amplitude, phase):
     """Eqs. 14 and 15: height and velocity of the ball in flight since τ_b.
 
@@ -148,6 +198,28 @@ def damping_ratio(restitution):
     """
     loss = np.log(restitution)
     return -loss / np.sqrt(np.pi**2 + loss**2)
+
+
+def apparent_restitution(bounce_velocity, table_at_bounce, impact_velocity, table_at_impact):
+    """Eq. 17: r_a = -(z′_b - w′_b)/(z′_i - w′_i).
+
+    Examples
+    --------
+    >>> apparent_restitution(1.0, 0.0, -2.0, 0.0)
+    0.5
+    """
+    return -(bounce_velocity - table_at_bounce) / (impact_velocity - table_at_impact)
+
+
+def flight_time(n, duration):
+    """Eqs. 18 and 19: the time of flight τ_2 - τ_b, where τ_2 = τ_i + 2πn and τ_i = 0.
+
+    Examples
+    --------
+    >>> flight_time(1, np.pi) == np.pi
+    True
+    """
+    return 2 * np.pi * n - duration
 
 
 def bounce_velocity(impact_velocity, n, duration):
@@ -209,3 +281,25 @@ def permanent_contact_minimum(damping_ratio):
     0.96
     """
     return 2 * damping_ratio * np.sqrt(1 - damping_ratio**2)
+
+
+def greatest_height(bounce_velocity, bounce_height):
+    """The greatest height of Eq. 14, z_b + z′_b²/2, which Eq. 37 compares.
+
+    Examples
+    --------
+    >>> greatest_height(2.0, 0.0)
+    2.0
+    """
+    return free_flight(bounce_velocity, 0.0, bounce_height, bounce_velocity)[0]
+
+
+def relative_error(spring_damper, restitution):
+    """Eqs. 37 and 38: |q_SD - q_CR|/q_CR of the greatest height, or of the threshold.
+
+    Examples
+    --------
+    >>> float(relative_error(1.5, 2.0))
+    0.25
+    """
+    return np.abs(spring_damper - restitution) / restitution

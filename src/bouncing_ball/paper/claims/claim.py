@@ -185,25 +185,33 @@ def claim(item: str, id: str = "", **given: Any) -> Callable[[Callable[[Data], A
     return made
 
 
-def formula(name: str, item: str, text: str, row: str = "", **given: Any) -> Claim:
-    """The claim that a printed formula is right, decided by one row of the dataset ``formulas``.
+def formula(name: str, item: str, text: str, *rows: str, **given: Any) -> Claim:
+    """The claim that a printed formula is right, decided by rows of the dataset ``formulas``.
 
-    The name of the row is ``item`` unless ``row`` is given.
+    The name of the row is ``item`` unless ``rows`` are given.
     """
 
     def decide(data: Data) -> Finding:
-        return of_formula(data, row or item)
+        return of_formula(data, *(rows or [item]))
 
     return Claim(name, "restored formula", item, text, decide, **given)
 
 
-def of_formula(data: Data, row: str) -> Finding:
-    """The finding that a formula agrees with its second computation up to rounding.
+def of_formula(data: Data, *rows: str) -> Finding:
+    """The finding that formulas agree with their second computations up to rounding, and that the
+    package computes with the same formulas.
 
-    ``row`` is the label of the formula along ``formula`` in the dataset ``formulas``.
+    ``rows`` are labels along ``formula`` in the dataset ``formulas``. The finding is that of the
+    first comparison that fails, or of the first one if none does.
     """
-    one = data["formulas"].sel(formula=row)
-    return at_most(one.disagreement, one.budget)
+    found = []
+    for row in rows:
+        one = data["formulas"].sel(formula=row)
+        for each in (one.disagreement, one.disagreement_in_use):
+            # A comparison that finds no value is no agreement.
+            found.append(at_most(each.fillna(np.inf), one.budget))
+    failed = [one for one in found if one.verdict is not Verdict.REPRODUCED]
+    return [*failed, *found][0]
 
 
 def defined_in(module: ModuleType) -> Iterator[Claim]:

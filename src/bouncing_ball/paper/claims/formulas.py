@@ -5,6 +5,10 @@ disagreement that rounding explains. The formulas are those of
 :mod:`bouncing_ball.paper.claims.as_printed`. They are compared with simulated cycles, with the
 multipliers of orbits, and with the equations of motion, differentiated by complex steps. These
 computations use the formulas only where the comparison says so.
+
+Each row also has the functions with which the package computes, if there are any, and their
+largest disagreement with the printed form (:mod:`bouncing_ball.paper.claims.formulas_in_use`). A
+formula is reproduced only if both comparisons agree.
 """
 
 from typing import Annotated
@@ -15,7 +19,6 @@ import xarray as xr
 from bouncing_ball.datasets.parameters import Parameters, Seed, number
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.models.linear_contact import LinearContactDynamics
-from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.restitution import RestitutionDynamics
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
@@ -23,6 +26,7 @@ from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.models.sticking import lift_off_phase
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.claims import as_printed as printed
+from bouncing_ball.paper.claims.formulas_in_use import InUse, forms_in_use, largest
 from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.stability import Bifurcation
@@ -30,6 +34,12 @@ from bouncing_ball.periodic.stability import Bifurcation
 VARIABLES = {
     "formula": Variable("printed formula"),
     "compared_with": Variable("what the formula is compared with"),
+    "used": Variable("functions of the package that compute with the formula"),
+    "disagreement_in_use": Variable(
+        "largest disagreement of these functions with the printed form, 0 if there are none",
+        budget=1.0,
+        scale="budget",
+    ),
     "static_error": Variable(
         "relative error of Eq. 16 on a table at rest, with gravity", equation="Eq. 16", budget=1e-12
     ),
@@ -45,6 +55,9 @@ WEIGHTLESS = 1e16
 _COMPLIANT = 1e-4
 # The r and ϖ for Eq. 16 on a table at rest; the impact velocity is that of the 1-T orbit.
 STATIC = {"restitution": [0.85, 0.65], "frequency_ratio": [10.0, 100.0]}
+# Rows of definitions, about which the paper can claim nothing: r_a, and the error of a model. They
+# are compared because the package computes with them.
+DEFINITIONS = ("Eq. 17", "Eqs. 37-38")
 # For each formula: the comparison, the disagreement, and the disagreement that rounding explains.
 Checks = dict[str, tuple[str, float, float]]
 
@@ -59,7 +72,7 @@ def check(comparison: str, *defects, budget: float = ROUNDING) -> tuple[str, flo
     >>> check("a root", [0.5, -2.0], 1.0, budget=1e-8)
     ('a root', 2.0, 1e-08)
     """
-    return comparison, float(np.max([np.max(np.abs(x)) for x in defects])), budget
+    return comparison, largest(*defects), budget
 
 
 def slopes(motion, time):
@@ -161,43 +174,6 @@ def _rest_on_the_table() -> Checks:
     return {"Eq. 9": check("lift-off of a ball at rest", float(not stays))}
 
 
-def printed_contact(time, omega, zeta, lam, phase, impact):
-    """Eqs. 12-13 for a contact that starts with an impact: height and velocity, shape (2, ...).
-
-    The constants A and B are linear in the height and velocity of the impact (Eqs. 21-22).
-    """
-    zero, rate = printed.contact(
-        time=0.0,
-        frequency_ratio=omega,
-        damping_ratio=zeta,
-        amplitude=lam,
-        phase=phase,
-        a=0.0,
-        b=0.0,
-    )
-    a = lam * np.sin(phase) - zero
-    b = (impact - rate + zeta * omega * a) / (omega * np.sqrt(1 - zeta**2))
-    return np.array(
-        printed.contact(
-            time=time,
-            frequency_ratio=omega,
-            damping_ratio=zeta,
-            amplitude=lam,
-            phase=phase,
-            a=a,
-            b=b,
-        )
-    )
-
-
-def acceleration(rise, rate, frequency, damping, gravity=1.0):
-    """The absolute acceleration by Eq. 11, δ″ + w″ = -1 - 2ζϖ δ′ - ϖ² δ.
-
-    With the frequency of the contact in rad/s and g in m/s² this is Eq. 10.
-    """
-    return -gravity - 2 * damping * frequency * rate - frequency**2 * rise
-
-
 def measured_restitution(r, frequency_ratio, velocity):
     """Speed after a simulated impact on a table at rest, divided by the speed before this impact.
 
@@ -257,20 +233,29 @@ def contact_orbits(rng, samples) -> Checks:
 
     time = end * rng.uniform(0.1, 1, end.size)
     rise, rate, *held = simulated(time)
-    off = printed_contact(time, omega, zeta, lam, phase, impact) - held
+    off = printed.contact_after_impact(time, omega, zeta, lam, phase, impact) - held
 
     # Eqs. 21-22 give A and B; the following defects are those of Eqs. 23-26.
-    *_, level, velocity = simulated(end)
-    left = printed_contact(end, omega, zeta, lam, phase, impact) - (level, velocity)
+    _, leaving, level, velocity = simulated(end)
+    left = printed.contact_after_impact(end, omega, zeta, lam, phase, impact) - (level, velocity)
     landing = np.array(printed.flight(2 * np.pi * n, end, velocity, lam, phase))
     landed = landing - (lam * np.sin(phase), impact)
     thrown = printed.bounce_velocity(impact, n, end) - velocity
+    aloft = printed.flight_time(n, end) - (again.time - end)
+    slowed = printed.apparent_restitution(
+        velocity, lam * np.cos(phase + end), impact, lam * np.cos(phase)
+    )
+    # Without damping Λ_SD = 1 - 1/ϖ².
+    undamped = printed.relative_error(1 - omega**-2.0, 1.0) - omega**-2.0
     orbits = "orbits that repeat in the simulation"
     return _frequency_ratio(rng, rise, rate, omega, zeta) | {
         "Eqs. 12-13": check("simulated contact", off),
         "Eqs. 14-15": check(orbits, landed),
+        "Eq. 17": check("simulated contact", slowed + leaving / u),
+        "Eqs. 18-20": check(orbits, aloft),
         "Eqs. 21-26": check(orbits, *repeated, left, landed),
         "Eq. 27": check("simulated contact", thrown),
+        "Eqs. 37-38": check("undamped permanent contact", undamped),
     }
 
 
@@ -283,11 +268,12 @@ def _frequency_ratio(rng, rise, rate, omega, zeta) -> Checks:
     table = rng.uniform(20, 60, omega.size)
     length = gravity / table**2
     speed = gravity / table
-    physical = acceleration(rise * length, rate * speed, omega * table, zeta, gravity) / gravity
+    force = printed.acceleration(rise * length, rate * speed, omega * table, zeta, gravity)
+    physical = force / gravity
 
     def scaled(ratio):
         """The difference of Eq. 11 with a frequency ratio from Eq. 10, over ϖ."""
-        return (acceleration(rise, rate, ratio, zeta) - physical) / omega
+        return (printed.acceleration(rise, rate, ratio, zeta) - physical) / omega
 
     units = "Eq. 10 in physical units; "
     return {
@@ -347,13 +333,20 @@ def _threshold(omega, zeta) -> Checks:
     }
 
 
+def _resonance_threshold(omega, zeta):
+    """The Λ at which a harmonic oscillation of δ, with the response of Eq. 11, has the amplitude
+    1/ϖ² of its mean; it does not use the package's Λ_SD, so that a mistake there stays there.
+    """
+    return np.abs(omega**2 - 1 + 2j * zeta * omega) / omega**2
+
+
 def _inverse_threshold(rng, zeta) -> Checks:
     """Checks of Eqs. 34 to 36: both ϖ with a given Λ_SD, and the lowest Λ_SD.
 
     Λ_SD² is quadratic in 1/ϖ², so that its only stationary point is the minimum.
     """
     place = (1 - 2 * zeta**2) ** -0.5
-    bottom = permanent_contact_threshold(place, zeta)
+    bottom = _resonance_threshold(place, zeta)
     flat = slopes(lambda ratio: printed.permanent_contact_threshold(ratio, zeta), place)
     # Λ between the minimum and 1, where both frequency ratios exist.
     level = bottom + (1 - bottom) * rng.uniform(0.1, 0.9, zeta.size)
@@ -361,7 +354,7 @@ def _inverse_threshold(rng, zeta) -> Checks:
     def inverse(sign):
         """Defects of a printed ϖ: in its threshold, and in its place beside the minimum."""
         ratio = printed.permanent_contact_frequency_ratio(level, zeta, sign)
-        off = permanent_contact_threshold(ratio, zeta) / level - 1
+        off = _resonance_threshold(ratio, zeta) / level - 1
         return check("roots of Λ_SD", off, np.sign(ratio - place) - sign)
 
     minimum = printed.permanent_contact_minimum(zeta) / bottom - 1
@@ -384,19 +377,26 @@ def formulas(parameters: Formulas) -> xr.Dataset:
 
     The dataset has ``disagreement`` (formula,), the largest difference in the sample, NaN if a
     comparison found no value; ``budget`` (formula,), the difference that rounding explains; the
-    text ``compared_with`` (formula,); and ``static_error`` (restitution, frequency_ratio), the
-    relative error of r on a table at rest. All are dimensionless.
+    text ``compared_with`` (formula,); ``disagreement_in_use`` (formula,), the largest difference of
+    the functions in the text ``used`` (formula,) from the printed form; and ``static_error``
+    (restitution, frequency_ratio), the relative error of r on a table at rest. All are
+    dimensionless.
     """
     rng = np.random.default_rng(parameters.seed)
     checks: Checks = {}
     for part in (restitution_model, contact_orbits, damping, permanent_contact):
         checks |= part(rng, parameters.samples)
     comparison, disagreement, budget = zip(*checks.values(), strict=True)
+    forms = forms_in_use(rng, parameters.samples)
+    nowhere = InUse("", 0.0)
+    used, in_use = zip(*(forms.get(name, nowhere) for name in checks), strict=True)
     return described(
         {
             "disagreement": ("formula", np.array(disagreement)),
             "budget": ("formula", np.array(budget)),
             "compared_with": ("formula", np.array(comparison)),
+            "used": ("formula", np.array(used)),
+            "disagreement_in_use": ("formula", np.array(in_use)),
             "static_error": static_error(),
         },
         coords={"formula": list(checks)},

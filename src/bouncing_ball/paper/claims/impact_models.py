@@ -81,7 +81,7 @@ MOTION = [
         "flight",
         "Eqs. 1, 3 and 4",
         "flight of the ball",
-        row="Eq. 4",
+        "Eq. 4",
     ),
     formula(
         "impact map",
@@ -168,7 +168,7 @@ CONTACT = [
         "contact equation",
         "Eqs. 10-11",
         "equation of contact, in physical and in dimensionless variables",
-        row="ϖ = Ω/ω, Ω of the contact",
+        "ϖ = Ω/ω, Ω of the contact",
         remark="with the contact's frequency over the table's as the frequency ratio",
     ),
     formula(

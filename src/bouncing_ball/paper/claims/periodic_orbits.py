@@ -21,7 +21,8 @@ EQUATIONS = [
         "orbit equations",
         "Eqs. 18-26",
         "equations of the n-T orbits",
-        row="Eqs. 21-26",
+        "Eqs. 18-20",
+        "Eqs. 21-26",
     ),
     formula(
         "velocity balance",
@@ -243,13 +244,13 @@ THRESHOLD = [
         "steady response",
         "Eqs. 29-31",
         "displacement in permanent contact",
-        row="Eq. 31",
+        "Eq. 31",
     ),
     formula(
         "threshold",
         "Eqs. 32-33",
         "the largest amplitude of permanent contact",
-        row="Eq. 33",
+        "Eq. 33",
     ),
 ]
 
@@ -269,14 +270,14 @@ SHAPE = [
         "compliant threshold",
         "after Eq. 33",
         "the threshold grows beyond all bounds for a vanishing frequency ratio",
-        row="Eq. 33, ϖ → 0",
+        "Eq. 33, ϖ → 0",
         remark="found to grow as the inverse square of the frequency ratio",
     ),
     formula(
         "resonant threshold",
         "after Eq. 33",
         "the threshold is 2ζ at ϖ = 1",
-        row="Eq. 33, ϖ = 1",
+        "Eq. 33, ϖ = 1",
     ),
     formula(
         "larger frequency ratio",
@@ -292,6 +293,6 @@ SHAPE = [
         "lowest threshold",
         "Eq. 36, Fig. 11",
         "the lowest threshold, at any ϖ",
-        row="Eq. 36",
+        "Eq. 36",
     ),
 ]

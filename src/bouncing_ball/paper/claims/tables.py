@@ -6,6 +6,7 @@ Each function returns the header and the rows as texts, made from parts of the d
 Claims and their verdicts in the form in which an article needs them.
 """
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -17,16 +18,27 @@ from bouncing_ball.drawing.tables import Columns, TextTable, at, entry_of, table
 
 
 def formulas(data: xr.Dataset) -> TextTable:
-    """Printed formulas: the comparison, the disagreement, and the disagreement allowed.
+    """Printed formulas: the comparison, the disagreement, the functions of the package that compute
+    with the formula, their disagreement with the printed form, and the disagreement allowed.
 
     For a disagreement of the size of rounding the entry is its bound.
     """
+
+    def disagreement(name: str) -> Callable[[xr.Dataset], str]:
+        return lambda part: compared_text(float(part[name]), float(part.budget), ".1e")
+
+    def in_use(part: xr.Dataset) -> str:
+        return disagreement("disagreement_in_use")(part) if part.used.item() else ""
+
+    def functions(part: xr.Dataset) -> str:
+        return ", ".join(name.rpartition(".")[2] for name in part.used.item().split(", "))
+
     columns: Columns = {
         "formula": text("formula"),
         "compared with": text("compared_with"),
-        "largest disagreement": lambda part: compared_text(
-            float(part.disagreement), float(part.budget), ".1e"
-        ),
+        "largest disagreement": disagreement("disagreement"),
+        "functions in use": functions,
+        "their disagreement": in_use,
         "allowed": value("budget", ".0e"),
     }
     return table(each(data, "formula"), columns)

@@ -1,0 +1,329 @@
+"""The formulas of the paper in the form in which the package uses them, against the printed form.
+
+The printed form (:mod:`~bouncing_ball.paper.claims.as_printed`) is compared with second
+computations in :mod:`~bouncing_ball.paper.claims.formulas`. The stages compute with other
+functions, which are written so that they lose no digits. Here each of those is compared with the
+printed form, so that a mistake in one of them is a disagreement in the row of its formula.
+"""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from bouncing_ball.accuracy.errors import Quantity, relative_errors
+from bouncing_ball.accuracy.thresholds import restitution_thresholds
+from bouncing_ball.models import permanent_contact as threshold
+from bouncing_ball.models.damping import Release, damping_ratio, restitution_coefficient
+from bouncing_ball.models.dynamics import Impact
+from bouncing_ball.models.flight import Flight
+from bouncing_ball.models.restitution import RestitutionDynamics
+from bouncing_ball.models.rigid import RestitutionModel
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.sticking import lift_off_phase
+from bouncing_ball.paper.claims import as_printed as printed
+from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic import restitution_branch as rigid
+from bouncing_ball.periodic.paper_unknowns import PaperUnknowns
+from bouncing_ball.periodic.restitution_branch import ImpactMap
+from bouncing_ball.periodic.stability import Bifurcation
+
+# A grid on which the threshold of an undamped contact, ϖ = 10 for 1 %, is found.
+_RATIOS = np.geomspace(1.0, 1e3, 31)
+_TOLERANCE = 0.01
+
+
+class InUse(NamedTuple):
+    """The functions of the package for a formula, and their largest difference from its form."""
+
+    functions: str
+    disagreement: float
+
+
+Rows = dict[str, InUse]
+
+
+def _used(*functions: str, defects: tuple) -> InUse:
+    """A row from the names of functions and from the defects of all of them."""
+    return InUse(", ".join(functions), largest(*defects))
+
+
+def largest(*defects) -> float:
+    """The largest modulus among the entries of all defects, NaN if one of them is NaN.
+
+    Examples
+    --------
+    >>> largest([0.5, -2.0], 1.0), largest([0.5], float("nan"))
+    (2.0, nan)
+    """
+    return float(np.max([np.max(np.abs(x)) for x in defects]))
+
+
+def forms_in_use(rng: np.random.Generator, samples: int) -> Mapping[str, InUse]:
+    """The comparison of each formula that the package uses, by the row of the formula.
+
+    ``samples`` is the number of random parameter sets.
+    """
+    r = rng.uniform(0.1, 0.95, samples)
+    return (
+        _impacts(rng, r)
+        | _restitution_orbits(rng, r)
+        | _contact(rng, samples)
+        | _contact_orbits(rng, samples)
+        | _permanent_contact(rng, samples)
+        | _errors(rng, samples)
+    )
+
+
+def _impacts(rng, r) -> Rows:
+    """Eqs. 1 to 5 and 9: flights, impacts and rest on the table."""
+    lam = rng.uniform(0.1, 3, r.size)
+    phase = rng.uniform(-np.pi, np.pi, r.size)
+    velocity = lam + rng.uniform(0.5, 6, r.size)
+    x = lam * np.cos(phase)
+    y = lam * np.sin(phase)
+
+    time = rng.uniform(0.1, 2, r.size)
+    rise, rate, *_ = Flight(0.0, velocity - x, x, y, lam).gap(time)
+    held = rise + lam * np.sin(phase + time), rate + lam * np.cos(phase + time)
+    flight = np.array(printed.free_flight(phase + time, phase, y, velocity)) - held
+
+    dynamics = RestitutionDynamics.of(r, lam)
+    before = x - (velocity - x) / r
+    left = dynamics.depart(Impact.at_level(phase, before - x)).flight.velocity + x
+    cycle = dynamics.next_impact(phase, before - x)
+    rebound = lam * np.cos(cycle.phase) - r * cycle.relative_velocity
+    landing = printed.landing_defect(phase, velocity, cycle.time, lam)
+    bounced = printed.bounced_velocity(phase, velocity, cycle.time, lam, r) - rebound
+
+    # At lift-off the table's downward acceleration, Λ sin φ, is that of gravity.
+    above = 1 + lam
+    lift = above * np.sin(lift_off_phase(above)) - 1
+    return {
+        "Eq. 2": _used(
+            "models.restitution.RestitutionDynamics.depart",
+            defects=(printed.restitution_law(before, x, r) - left,),
+        ),
+        "Eq. 4": _used("models.flight.Flight", defects=(flight,)),
+        "Eq. 5": _used("models.restitution.RestitutionDynamics", defects=(landing, bounced)),
+        "Eq. 9": _used(
+            "models.sticking.lift_off_phase",
+            "models.permanent_contact.RESTITUTION_THRESHOLD",
+            defects=(lift, threshold.RESTITUTION_THRESHOLD - 1),
+        ),
+    }
+
+
+def _restitution_orbits(rng, r) -> Rows:
+    """Eqs. 6 to 8: the n-T orbits of the restitution model and their bifurcations."""
+    n = rng.integers(1, 6, r.size)
+    along = n * np.pi * (1 - r) / (1 + r)
+    fold = printed.saddle_node(n, r)
+    lam = along * rng.uniform(1.01, 3, r.size)
+    phase, velocity = printed.fixed_point(n, r, lam)
+    orbit = n_t.orbit(RestitutionModel(r), n, lam)
+    corrected = np.hypot(2 * (1 + r * r) / (1 + r) ** 2, along)
+    bifurcation = n_t.saddle_node(RestitutionModel(r), n).amplitude
+    doubling = n_t.period_doubling(RestitutionModel(r), n).amplitude
+    holmes = rigid.period_doubling(n, r, ImpactMap.HOLMES)
+    return {
+        "Eq. 6": _used(
+            "periodic.restitution_branch.phase",
+            defects=(
+                rigid.phase(n, r, lam) - phase,
+                orbit.phase - phase,
+                orbit.bounce_velocity - velocity,
+            ),
+        ),
+        "Eq. 7": _used(
+            "periodic.restitution_branch.saddle_node",
+            defects=(rigid.saddle_node(n, r) - fold, bifurcation - fold),
+        ),
+        "Eq. 8, Holmes' map": _used(
+            "periodic.restitution_branch.period_doubling",
+            defects=(holmes - printed.period_doubling(n, r),),
+        ),
+        "Eq. 8, corrected": _used(
+            "periodic.restitution_branch.period_doubling",
+            defects=(rigid.period_doubling(n, r) - corrected, doubling - corrected),
+        ),
+    }
+
+
+def _contact(rng, samples) -> Rows:
+    """Eqs. 10 and 11, 16: the force of the contact, and its damping."""
+    omega = np.exp(rng.uniform(0.7, 5, samples))
+    zeta = rng.uniform(0.01, 0.5, samples)
+    rise = -rng.uniform(0.1, 1, samples) / omega
+    rate = rng.uniform(-3, 3, samples)
+    force = SpringDamper(omega, zeta).force(-rise, -rate)
+    r = rng.uniform(0.1, 0.99, samples)
+    damping = printed.damping_ratio(r)
+    return {
+        "ϖ = Ω/ω, Ω of the contact": _used(
+            "models.spring_damper.SpringDamper.force",
+            # The force over ϖ is of the order of the velocity.
+            defects=((printed.acceleration(rise, rate, omega, zeta) + 1 - force) / omega,),
+        ),
+        "Eq. 16": _used(
+            "models.damping.damping_ratio",
+            "models.damping.restitution_coefficient",
+            defects=(
+                damping_ratio(r) - damping,
+                SpringDamper.from_restitution(r, omega).damping_ratio - damping,
+                restitution_coefficient(damping) - r,
+            ),
+        ),
+    }
+
+
+def _contact_orbits(rng, samples) -> Rows:
+    """Eqs. 12 to 15 and 17 to 27: the n-T orbits of the spring-damper model."""
+    omega = np.exp(rng.uniform(0.7, 5, samples))
+    zeta = rng.uniform(0.01, 0.5, samples)
+    n = rng.integers(1, 4, samples)
+    fold = n_t.saddle_node(SpringDamperModel(SpringDamper(omega, zeta)), n)
+    # A compliant contact with strong damping may have no saddle-node, or no period doubling.
+    there = np.isfinite(fold.amplitude)
+    omega, zeta, n = omega[there], zeta[there], n[there]
+    contact = SpringDamper(omega, zeta)
+    model = SpringDamperModel(contact)
+    node = n_t.saddle_node(model, n)
+    doubling = n_t.period_doubling(model, n)
+    lam = node.amplitude + rng.uniform(0.05, 0.5, n.size)
+    orbit = n_t.orbit(model, n, lam)
+    phase = orbit.phase
+    impact = orbit.impact_velocity
+    end = orbit.contact_duration
+
+    def held(time) -> np.ndarray:
+        """Height and velocity by Eqs. 12 and 13."""
+        return printed.contact_after_impact(time, omega, zeta, lam, phase, impact)
+
+    time = end * rng.uniform(0.1, 1, n.size)
+    closing = impact - lam * np.cos(phase)
+    rise, rate, *_ = contact.flow(time, 0.0, closing, phase, lam)
+    flow = held(time) - (rise + lam * np.sin(phase + time), rate + lam * np.cos(phase + time))
+
+    dynamics = model.dynamics(lam)
+    ended = dynamics.depart(dynamics.start(phase, closing)).duration
+    height, _ = held(end)
+    level = lam * np.sin(phase + end)
+    aloft = end + orbit.flight_time * rng.uniform(0, 1, n.size)
+    bounce = orbit.bounce_velocity
+    flown = np.array(printed.flight(aloft, end, bounce, lam, phase)) - orbit.flight_path(aloft)
+    apparent = printed.apparent_restitution(
+        bounce, lam * np.cos(phase + end), impact, lam * np.cos(phase)
+    )
+    equations = PaperUnknowns.of(orbit)
+    point = equations.point(orbit)
+    node_test = Bifurcation.SADDLE_NODE.test(*node.trace_and_determinant())
+    doubling_test = Bifurcation.PERIOD_DOUBLING.test(*doubling.trace_and_determinant())
+    return {
+        "Eqs. 12-13": _used("models.spring_damper.SpringDamper.flow", defects=(flow,)),
+        "Eqs. 14-15": _used("periodic.orbit.Orbit.flight_path", defects=(flown,)),
+        "Eq. 17": _used(
+            "periodic.orbit.Orbit.apparent_restitution",
+            defects=(orbit.apparent_restitution - apparent,),
+        ),
+        "Eqs. 18-20": _used(
+            "periodic.orbit.Orbit.flight_time",
+            defects=(orbit.flight_time - printed.flight_time(n, end),),
+        ),
+        "Eqs. 21-26": _used(
+            "models.spring_damper.SpringDamper.flow",
+            "models.linear_contact.LinearContactDynamics.depart",
+            "periodic.problem.PeriodicOrbits",
+            "periodic.paper_unknowns.PaperUnknowns",
+            "periodic.spring_damper_branch.branch_point",
+            "periodic.spring_damper_bifurcations.saddle_node",
+            "periodic.spring_damper_bifurcations.period_doubling",
+            defects=(
+                height - level,
+                ended - end,
+                equations.residual(point),
+                node_test[np.isfinite(node_test)],
+                doubling_test[np.isfinite(doubling_test)],
+            ),
+        ),
+        "Eq. 27": _used(
+            "periodic.orbit.Orbit.bounce_velocity",
+            defects=(bounce - printed.bounce_velocity(impact, n, end),),
+        ),
+    }
+
+
+def _permanent_contact(rng, samples) -> Rows:
+    """Eqs. 33 to 36: the threshold of permanent contact, its inverse and its minimum."""
+    omega = np.exp(rng.uniform(-0.5, 2, samples))
+    zeta = rng.uniform(0.02, 0.5, samples)
+    lowest = 2 * zeta * np.sqrt(1 - zeta**2)
+    level = lowest + (1 - lowest) * rng.uniform(0.1, 0.9, samples)
+    lower, upper = threshold.permanent_contact_frequency_ratios(level, zeta)
+    found = threshold.permanent_contact_threshold(omega, zeta)
+    inverse = "models.permanent_contact.permanent_contact_frequency_ratios"
+    return {
+        "Eq. 33": _used(
+            "models.permanent_contact.permanent_contact_threshold",
+            defects=(found / printed.permanent_contact_threshold(omega, zeta) - 1,),
+        ),
+        "Eq. 34": _used(
+            inverse,
+            defects=(upper / printed.permanent_contact_frequency_ratio(level, zeta, 1) - 1,),
+        ),
+        "Eq. 35": _used(
+            inverse,
+            defects=(lower / printed.permanent_contact_frequency_ratio(level, zeta, -1) - 1,),
+        ),
+        "Eq. 36": _used(
+            "models.permanent_contact.permanent_contact_minimum",
+            defects=(
+                threshold.permanent_contact_minimum(zeta).threshold
+                / printed.permanent_contact_minimum(zeta)
+                - 1,
+            ),
+        ),
+    }
+
+
+def _errors(rng, samples) -> Rows:
+    """Eqs. 37 and 38: greatest heights, errors of the restitution model, and their thresholds."""
+    r = rng.uniform(0.5, 0.95, samples)
+    omega = np.exp(rng.uniform(2, 5, samples))
+    lam = np.pi * (1 - r) / (1 + r) + rng.uniform(0.05, 0.5, samples)
+    exact = SpringDamperModel(SpringDamper.from_restitution(r, omega))
+    simple = RestitutionModel(r)
+    compared = [Quantity.MAX_HEIGHT, Quantity.PERMANENT_CONTACT]
+    errors = np.abs(relative_errors(exact, [simple], 1, lam, compared)[0])
+    contact = n_t.orbit(exact, 1, lam)
+    impact = n_t.orbit(simple, 1, lam)
+    limits = exact.permanent_contact_threshold(), simple.permanent_contact_threshold()
+    thrown = [
+        orbit.max_height - printed.greatest_height(orbit.bounce_velocity, orbit.bounce_height)
+        for orbit in (contact, impact)
+    ]
+    # Without damping Λ_SD = 1 - 1/ϖ², which differs from Λ_CR = 1 by 1 % at ϖ = 10.
+    found = restitution_thresholds(
+        0.0,
+        Release.DISPLACEMENT,
+        1.0,
+        1,
+        1.0,
+        ratios=_RATIOS,
+        tolerances=[_TOLERANCE],
+        quantities=[Quantity.PERMANENT_CONTACT],
+    )
+    return {
+        "Eqs. 37-38": _used(
+            "periodic.orbit.Orbit.max_height",
+            "accuracy.errors.relative_errors",
+            "accuracy.thresholds.restitution_thresholds",
+            defects=(
+                *thrown,
+                errors[0] - printed.relative_error(contact.max_height, impact.max_height),
+                errors[1] - printed.relative_error(*limits),
+                found.ratio * np.sqrt(_TOLERANCE) - 1,
+            ),
+        ),
+    }

@@ -1,0 +1,189 @@
+"""A wrong edit in any formula with which a stage computes shows in the row of this formula."""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from bouncing_ball import paper
+from bouncing_ball.paper.claims.formulas import formulas
+from bouncing_ball.pipeline.configuration import typed
+
+PACKAGE = Path(paper.__file__).parents[1]
+PARAMETERS = {"samples": 16, "seed": 2011}
+# The rows that do not agree, as a run with an edited package finds them.
+FIND = f"""
+import json, warnings
+warnings.simplefilter("ignore")
+from bouncing_ball.paper.claims.formulas import formulas
+from bouncing_ball.pipeline.configuration import typed
+data = typed(formulas)({PARAMETERS})
+right = (data.disagreement <= data.budget) & (data.disagreement_in_use <= data.budget)
+print(json.dumps(data.formula.values[~right.values].tolist()))
+"""
+
+
+class Edit(NamedTuple):
+    """A formula of a module, a wrong one in its place, and the row that shows this."""
+
+    module: str
+    right: str
+    wrong: str
+    row: str
+
+
+RIGID = "periodic/restitution_branch.py"
+BRANCH = "periodic/spring_damper_branch.py"
+ENDS = "periodic/spring_damper_bifurcations.py"
+LINEAR = "models/linear_contact.py"
+PERMANENT = "models/permanent_contact.py"
+ORBIT = "periodic/orbit.py"
+EDITS = [
+    Edit("models/flight.py", "(self.velocity - _HALF * time)", "(self.velocity - time)", "Eq. 4"),
+    Edit("models/flight.py", "slowing = y * sine + x * versine", "slowing = y * sine", "Eq. 5"),
+    Edit(
+        "models/restitution.py",
+        "velocity = -r * impact.velocity\n        x, y",
+        "velocity = -0.9 * r * impact.velocity\n        x, y",
+        "Eq. 2",
+    ),
+    Edit(RIGID, "np.sqrt((lam - fold) * (lam + fold))", "np.sqrt(lam * lam + fold)", "Eq. 6"),
+    Edit(RIGID, "* np.pi * (1 - r) / (1 + r)\n", "* np.pi * (1 - r) / (1 + 0.9 * r)\n", "Eq. 7"),
+    Edit(RIGID, "return np.ones_like(r)", "return 2 * np.ones_like(r)", "Eq. 8, Holmes' map"),
+    Edit(RIGID, "2 * (1 + r * r) / (1 + r) ** 2", "(1 + r * r) / (1 + r)", "Eq. 8, corrected"),
+    Edit("models/sticking.py", "arctangent(1.0, cosine)", "arctangent(0.9, cosine)", "Eq. 9"),
+    Edit(PERMANENT, "RESTITUTION_THRESHOLD = 1.0", "RESTITUTION_THRESHOLD = 1.1", "Eq. 9"),
+    Edit(
+        "models/spring_damper.py",
+        "omega * penetration + 2 * self.damping_ratio * rate",
+        "omega * penetration + self.damping_ratio * rate",
+        "ϖ = Ω/ω, Ω of the contact",
+    ),
+    Edit(
+        "models/linear_flow.py",
+        "d0 * free + v0 * g.value - G",
+        "d0 * free + v0 * g.value + G",
+        "Eqs. 12-13",
+    ),
+    Edit(ORBIT, "+ (bounce + velocity) / 2 * s, velocity", "+ bounce * s, velocity", "Eqs. 14-15"),
+    Edit(
+        "models/damping.py",
+        "np.pi * np.pi + decrement * decrement",
+        "np.pi * np.pi + 0.9 * decrement * decrement",
+        "Eq. 16",
+    ),
+    Edit(
+        "models/damping.py",
+        "exponential(-angle * zeta",
+        "exponential(-0.9 * angle * zeta",
+        "Eq. 16",
+    ),
+    Edit(
+        ORBIT,
+        "self._shaped(-self._leaving / closing)",
+        "self._shaped(self._bounces / closing)",
+        "Eq. 17",
+    ),
+    Edit(
+        ORBIT,
+        "return self._shaped(self._flights)",
+        "return self._shaped(self._intervals)",
+        "Eqs. 18-20",
+    ),
+    Edit(LINEAR, "self.a = self.start + (_ONE /", "self.a = self.start - (_ONE /", "Eqs. 21-26"),
+    Edit(BRANCH, "right=end.g + flight,", "right=end.g + 0.9 * flight,", "Eqs. 21-26"),
+    Edit(ENDS, "return point.saddle_node", "return point.saddle_node - 0.01", "Eqs. 21-26"),
+    Edit(
+        ENDS,
+        "return Bifurcation.PERIOD_DOUBLING.test(point.trace,",
+        "return Bifurcation.PERIOD_DOUBLING.test(0.9 * point.trace,",
+        "Eqs. 21-26",
+    ),
+    Edit(
+        "periodic/problem.py",
+        "height = speed * landing.late",
+        "height = speed + landing.late",
+        "Eqs. 21-26",
+    ),
+    Edit(
+        "periodic/paper_unknowns.py", "inner[..., 1] -= lam", "inner[..., 1] += lam", "Eqs. 21-26"
+    ),
+    Edit(
+        ORBIT,
+        "return np.roll(self.velocities, -1, axis=-1) + self._flights",
+        "return np.roll(self.velocities, -1, axis=-1) + self._intervals",
+        "Eq. 27",
+    ),
+    Edit(PERMANENT, "loss = 2 * zeta / omega", "loss = zeta / omega", "Eq. 33"),
+    Edit(PERMANENT, "(centre + root) / divisor", "(centre + 0.9 * root) / divisor", "Eq. 34"),
+    Edit(PERMANENT, "1 / (centre + root)", "1 / (centre - root)", "Eq. 35"),
+    Edit(PERMANENT, "omega = 1 / np.sqrt(x)", "omega = 1.1 / np.sqrt(x)", "Eq. 36"),
+    Edit(ORBIT, "rising * rising / 2", "rising * rising / 4", "Eqs. 37-38"),
+    Edit(
+        "accuracy/errors.py",
+        "dtype=float) - reference) / reference",
+        "dtype=float) - reference) / exact",
+        "Eqs. 37-38",
+    ),
+    Edit(
+        "accuracy/thresholds.py",
+        "np.exp(np.where(root.success, root.x, end))",
+        "np.where(root.success, root.x, end)",
+        "Eqs. 37-38",
+    ),
+]
+
+
+def disagreeing(package: Path) -> set[str]:
+    """The rows of the formulas that do not agree in another process with this package."""
+    paths = {"PYTHONPATH": str(package.parent), "PYTHONDONTWRITEBYTECODE": "1"}
+    run = subprocess.run(
+        [sys.executable, "-c", FIND], env=os.environ | paths, capture_output=True, text=True
+    )
+    assert not run.returncode, run.stderr
+    return {*json.loads(run.stdout)}
+
+
+@pytest.fixture(scope="module")
+def copy(tmp_path_factory):
+    """A copy of the package, to be edited."""
+    folder = tmp_path_factory.mktemp("edited") / "bouncing_ball"
+    shutil.copytree(PACKAGE, folder, ignore=shutil.ignore_patterns("__pycache__"))
+    return folder
+
+
+@pytest.fixture(scope="module")
+def wrong_in_the_paper(copy):
+    return disagreeing(copy)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("edit", EDITS, ids=lambda edit: f"{edit.row}: {edit.wrong}")
+def test_a_wrong_edit_shows_in_the_row_of_its_formula(edit, copy, wrong_in_the_paper):
+    path = copy / edit.module
+    text = path.read_text(encoding="utf-8")
+    assert text.count(edit.right) == 1
+    path.write_text(text.replace(edit.right, edit.wrong), encoding="utf-8")
+    try:
+        found = disagreeing(copy)
+    finally:
+        path.write_text(text, encoding="utf-8")
+    assert edit.row in found - wrong_in_the_paper
+
+
+def test_the_index_of_equations_names_the_functions_that_are_compared():
+    index = {name for name in re.findall(r"``([\w.]+)``", paper.__doc__) if "." in name}
+    used = {name for text in typed(formulas)(PARAMETERS).used.values for name in text.split(", ")}
+    assert index - {"paper.claims.as_printed.steady_displacement"} == used - {""}
+
+
+def test_every_row_with_a_form_in_use_has_a_wrong_edit():
+    data = typed(formulas)(PARAMETERS)
+    used = {str(name) for name in data.formula.values[data.used.values != ""]}
+    assert {edit.row for edit in EDITS} == used

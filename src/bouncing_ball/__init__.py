@@ -38,7 +38,12 @@ Everything else is dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g
 are in radians. NaN stands for a number that does not exist, such as the phase of an orbit below its
 saddle-node.
 
-The package is a library, from ``models`` to ``contacts``, and two sets of studies on it. Each floor
+Measured restitution coefficients and contact times determine a contact::
+
+    fit = bouncing_ball.fit_contact([0.5, 2.0, 6.0], [0.857, 0.825, 0.795], 0.75e-3, mass="454 g")
+    bouncing_ball.assess_contact(table, fit.best.contact_on(table))
+
+The package is a library, from ``models`` to ``measured``, and two sets of studies on it. Each floor
 imports only from those below it in this list:
 
 ``cli``         the command line, ``bouncing-ball``
@@ -46,6 +51,7 @@ imports only from those below it in this list:
 ``pipeline``    the configuration, jobs, the record and its comparison; knows no balls
 ``beyond``      the studies that go past the paper: exhibits, atlas, proofs
 ``paper``       the replication: the formulas as printed, exhibits, claims
+``measured``    measured impacts, and the contacts that are fitted to them
 ``contacts``    an engineer's contact with units, and those of physics engines
 ``accuracy``    errors of one model against another, their thresholds
 ``long_run``    the motions on which balls end
@@ -72,6 +78,7 @@ if TYPE_CHECKING:
     from bouncing_ball.errors import ModelError, NoOrbitError
     from bouncing_ball.long_run.motion_of import basins, lyapunov_exponent, motion_of, orbit_diagram
     from bouncing_ball.long_run.orbit_of_motion import orbit_of_motion
+    from bouncing_ball.measured.fit import fit_contact
     from bouncing_ball.models.makers import corrected, rigid, spring_damper
     from bouncing_ball.models.over_time import drop, history, simulate
     from bouncing_ball.models.rigid import RestitutionModel
@@ -103,6 +110,7 @@ __all__ = [
     "describe_contact",
     "drop",
     "error_thresholds",
+    "fit_contact",
     "follow",
     "history",
     "limits",
@@ -147,6 +155,8 @@ def __getattr__(name: str) -> Any:
             from bouncing_ball.long_run import motion_of as module
         case "error_thresholds":
             from bouncing_ball.accuracy import error_thresholds as module
+        case "fit_contact":
+            from bouncing_ball.measured import fit as module
         case "describe_contact":
             from bouncing_ball.contacts import describe as module
         case "assess_contact":

@@ -38,7 +38,12 @@ Everything else is dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g
 are in radians. NaN stands for a number that does not exist, such as the phase of an orbit below its
 saddle-node.
 
-The package is a library, from ``models`` to ``contacts``, and two sets of studies on it, ``paper``,
+Measured restitution coefficients and contact times determine a contact::
+
+    fit = bouncing_ball.fit_contact([0.5, 2.0, 6.0], [0.857, 0.825, 0.795], 0.75e-3, mass="454 g")
+    bouncing_ball.assess_contact(table, fit.best.contact_on(table))
+
+The package is a library, from ``models`` to ``measured``, and two sets of studies on it, ``paper``,
 the replication, and ``beyond``, which goes past it. The docstring of each room says what is in it;
 ``CONTRIBUTING.md`` describes the rooms, and ``pyproject.toml`` states which imports from which.
 """
@@ -65,6 +70,7 @@ if TYPE_CHECKING:
     from bouncing_ball.long_run.motion_of import motion_of as motion_of
     from bouncing_ball.long_run.motion_of import orbit_diagram as orbit_diagram
     from bouncing_ball.long_run.orbit_of_motion import orbit_of_motion as orbit_of_motion
+    from bouncing_ball.measured.fit import fit_contact as fit_contact
     from bouncing_ball.models.makers import corrected as corrected
     from bouncing_ball.models.makers import rigid as rigid
     from bouncing_ball.models.makers import spring_damper as spring_damper
@@ -106,6 +112,7 @@ _MODULES = {
     "describe_contact": "contacts.describe",
     "drop": "models.over_time",
     "error_thresholds": "accuracy.error_thresholds",
+    "fit_contact": "measured.fit",
     "follow": "periodic.follow",
     "history": "models.over_time",
     "limits": "periodic.orbits_of_ball",

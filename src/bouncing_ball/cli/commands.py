@@ -134,6 +134,17 @@ def _design() -> Program:
     return Program(design.add_options, design.design, lines, design.document)
 
 
+def _fit() -> Program:
+    from bouncing_ball.cli import fit
+    from bouncing_ball.cli.options import add_parameters
+
+    return Program(
+        add_options=lambda parser: add_parameters(parser, fit.fit),
+        answer=lambda file, **options: fit.fit(file, **options),
+        lines=fit.lines,
+    )
+
+
 def _explain() -> Program:
     from bouncing_ball.cli.options import add_parameters
     from bouncing_ball.pipeline.provenance import explain, lines
@@ -307,6 +318,23 @@ COMMANDS = {
         program=_design,
         has_symbols=False,
         cheaper="a single family n, fewer balls, or a spring and a damper in place of a law",
+    ),
+    "fit": Command(
+        purpose="the contact laws that fit measured impacts, ranked and judged",
+        text=(
+            "The file has columns such as speed [m/s],restitution or drop_height [cm],"
+            "rebound_height [cm], see docs/measured.md. Each law is fitted to it, and judged by "
+            "points that the fit has not seen. The last line is the command for the contact. The "
+            "name of an experiment of the package, such as croquet, stands for its file."
+        ),
+        examples=(
+            "fit croquet",
+            "fit croquet --frequency '50 Hz'",
+            "fit drops.csv --mass '20 g' --diameter '25 mm' --contact-time '0.3 ms'",
+            "fit heard.csv --intervals --resolution '0.1 ms'",
+        ),
+        program=_fit,
+        has_symbols=False,
     ),
     "explain": Command(
         purpose="where an artifact comes from, and how to make it again",

@@ -1,0 +1,235 @@
+"""``bouncing-ball fit``: the contact laws that are fitted to a file of measured impacts."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bouncing_ball.contacts.quantities import Speed, quantities
+from bouncing_ball.contacts.table import Table
+from bouncing_ball.contacts.units import in_si
+from bouncing_ball.errors import ParameterError
+from bouncing_ball.measured.experiment import Experiment, experiment, names, read
+from bouncing_ball.measured.fit import ContactFit, LawFit
+from bouncing_ball.measured.verdicts import Judgement, judge
+
+
+class _At:
+    """The quantity of the option ``speed``."""
+
+    speed: Speed
+
+
+def fit(
+    file: str,
+    /,
+    *,
+    intervals: bool = False,
+    mass: str | None = None,
+    diameter: str | None = None,
+    contact_time: str | None = None,
+    contact_time_uncertainty: str | None = None,
+    resolution: str | None = None,
+    speed: str | None = None,
+    frequency: str | None = None,
+) -> dict[str, Any]:
+    """The laws fitted to a file, ranked, with verdicts, as values for JSON.
+
+    Parameters
+    ----------
+    file
+        File of measured impacts, or the name of an experiment of the package.
+    intervals
+        The file has the intervals between the impacts of one bouncing ball, one on each line.
+    mass
+        Mass of the ball, such as "20 g".
+    diameter
+        Diameter of the ball; with the mass, the drag of the air is removed.
+    contact_time
+        Duration of a contact; without one no stiffness is identified.
+    contact_time_uncertainty
+        Standard deviation of the contact time.
+    resolution
+        Standard deviation of the times of impacts, for intervals.
+    speed
+        Impact speed of the contact for "design"; by default the middle of the measured speeds.
+    frequency
+        Frequency of a table, in place of the speed: that of its 1-T orbit.
+
+    Raises
+    ------
+    ModelError
+        If the file or an option is not understood.
+    """
+    if speed is not None and frequency is not None:
+        raise ParameterError("{speed} and {frequency} each give the impact speed: give one")
+    found = _experiment(
+        file,
+        intervals=intervals,
+        mass=mass,
+        diameter=diameter,
+        contact_time=contact_time,
+        contact_time_uncertainty=contact_time_uncertainty,
+        resolution=resolution,
+    )
+    fitted = found.fit()
+    judged = judge(fitted)
+    best = fitted.best
+    if frequency is not None:
+        # The impact speed of an orbit is the same at every amplitude.
+        v = best.speed_on(Table(frequency=frequency, acceleration="1 g"))
+    elif speed is not None:
+        v = in_si("speed", speed, quantities(_At)["speed"])
+    else:
+        v = best.speed
+    return {
+        "experiment": found.title,
+        "points": fitted.points.size,
+        "slowest": float(fitted.points.speeds.min()),
+        "fastest": float(fitted.points.speeds.max()),
+        "reference_speed": best.speed,
+        "impacts": _impacts(found),
+        "laws": [_law(each, judged[each.law]) for each in fitted.laws],
+        "notes": [*fitted.notes, *_notes(found, fitted, v)],
+        "design": _design(best, v),
+    }
+
+
+def _experiment(file: str, *, intervals: bool, **options: str | None) -> Experiment:
+    known = file in names() and not Path(file).exists()
+    if known and not intervals and not any(options.values()):
+        return experiment(file)
+    from bouncing_ball.measured.experiment import DATA
+
+    return read(DATA / f"{file}.csv" if known else file, intervals=intervals, **options)
+
+
+def _number(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
+
+
+def _impacts(found: Experiment) -> list[dict[str, float]]:
+    """The impacts of a bouncing ball with the biases that were removed; empty for other files."""
+    heard = found.heard
+    if heard is None:
+        return []
+    columns = {
+        "speed": heard.speeds,
+        "restitution": heard.restitutions,
+        "ratio_of_intervals": heard.ratios,
+        "drag_bias": heard.drag_bias,
+        "resolution_bias": heard.resolution_bias,
+    }
+    return [
+        dict(zip(columns, map(float, row), strict=True))
+        for row in zip(*columns.values(), strict=True)
+    ]
+
+
+def _law(fitted: LawFit, judgement: Judgement) -> dict[str, Any]:
+    return {
+        "law": fitted.law,
+        "verdict": str(judgement.verdict),
+        "restitution": fitted.restitution,
+        "restitution_interval": [_number(x) for x in fitted.interval],
+        "rms": fitted.rms,
+        "left_out_rms": _number(fitted.left_out),
+        "extrapolation_rms": _number(judgement.extrapolation),
+        "chi_square_probability": _number(fitted.p_value),
+        "left_out_probability": _number(judgement.left_out),
+        "extrapolation_probability": _number(judgement.extrapolated),
+        "akaike": _number(fitted.criterion),
+        "contact_time": _number(fitted.contact_time),
+        "contact_time_interval": [_number(x) for x in fitted.time_interval],
+        "parameters": fitted.parameters() if fitted.has_stiffness else None,
+        "units": fitted.units,
+    }
+
+
+def _notes(found: Experiment, fitted: ContactFit, speed: float) -> list[str]:
+    notes = []
+    if found.drag_bias:
+        notes += [f"The drag of the air was removed: it changes e by up to {found.drag_bias:.2g}."]
+    elif found.heard is not None:
+        notes += ["The drag of the air was not removed: give the mass and the diameter."]
+    speeds = fitted.points.speeds
+    if not speeds.min() <= speed <= speeds.max():
+        notes += [f"The impact speed {speed:.3g} m/s is outside the measured ones."]
+    if fitted.best.has_stiffness and fitted.best.mass is None:
+        notes += ["Without the mass, stiffness and damping are per kilogram."]
+    return notes
+
+
+def _design(best: LawFit, speed: float) -> str:
+    """The command for the contact at an impact speed."""
+    mass = "MASS" if best.mass is None else f'"{best.mass:.6g} kg"'
+    words = f"bouncing-ball design --mass {mass}"
+    if best.has_stiffness:
+        words += f' --contact-time "{float(best.duration_at(speed)):.6g} s"'
+    return f"{words} --measured-restitution {float(best.restitution_at(speed)):.6g}"
+
+
+def lines(answer: dict[str, Any]) -> list[str]:
+    """The answer as text: the impacts that were heard, the laws, notes and the next command."""
+    found = [
+        f"{answer['experiment']}: {answer['points']} impacts at {answer['slowest']:.3g} to "
+        f"{answer['fastest']:.3g} m/s",
+        "",
+    ]
+    if answer["impacts"]:
+        found += _table(
+            ("v in m/s", "e", "ratio", "by drag", "by resolution"),
+            [[f"{value:.5f}" for value in row.values()] for row in answer["impacts"]],
+        )
+        found += [""]
+    found += _table(
+        ("law", f"e at {answer['reference_speed']:.3g} m/s", "95 %", "rms", "left out", "verdict"),
+        [
+            [
+                law["law"],
+                f"{law['restitution']:.4f}",
+                _interval(law["restitution_interval"], 1, "{:.4f}"),
+                f"{law['rms']:.4f}",
+                "-" if law["left_out_rms"] is None else f"{law['left_out_rms']:.4f}",
+                law["verdict"],
+            ]
+            for law in answer["laws"]
+        ],
+    )
+    timed = [law for law in answer["laws"] if law["contact_time"] is not None]
+    if timed:
+        found += ["", *_timed(timed)]
+    found += ["", *answer["notes"], "", f"{_best(answer)} as a contact:", f"  {answer['design']}"]
+    return found
+
+
+def _best(answer: dict[str, Any]) -> str:
+    return next(law["law"] for law in answer["laws"] if law["law"] != "restitution")
+
+
+def _timed(laws: list[dict[str, Any]]) -> list[str]:
+    rows = []
+    for law in laws:
+        numbers = ", ".join(
+            f"{name} {value:.6g} {law['units'][name]}".rstrip()
+            for name, value in law["parameters"].items()
+        )
+        time = f"{law['contact_time'] * 1e3:.4g}"
+        interval = _interval(law["contact_time_interval"], 1e3, "{:.3g}")
+        rows += [[law["law"], time, interval, numbers.replace("_", " ")]]
+    return _table(("law", "contact time in ms", "95 %", "parameters"), rows)
+
+
+def _interval(ends: list[float | None], unit: float, digits: str) -> str:
+    if None in ends:
+        return "-"
+    return " to ".join(digits.format(unit * end) for end in ends if end is not None)
+
+
+def _table(head: tuple[str, ...], rows: list[list[str]]) -> list[str]:
+    """Columns of equal width, two spaces apart."""
+    widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
+    return [
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in (head, *rows)
+    ]

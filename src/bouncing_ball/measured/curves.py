@@ -1,0 +1,135 @@
+r"""Restitution and contact time over the impact speed, for each contact law.
+
+In units of its scales P and P/v a free impact depends on one number, the dissipation *group*, which
+is proportional to a power of the speed (:mod:`bouncing_ball.models.laws.force_law`). Relative to
+their values at a speed v₀ therefore ::
+
+    r(v) = R(G (v/v₀)^a),    T(v) = τ (v/v₀)^b D(G (v/v₀)^a)
+
+with the functions R and D of the law, and two parameters: the group G at v₀ and the time τ = P/v₀.
+Hence restitution coefficients alone determine G, and never a stiffness, which takes a contact time.
+If a = 0, r is the same at every speed, and r itself is the parameter.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball.contacts.named_laws import law_named
+from bouncing_ball.errors import ModelError, one_of
+from bouncing_ball.models.laws.contact_law import ContactLaw
+from bouncing_ball.models.laws.elasto_backlash import ElastoBacklash
+from bouncing_ball.models.laws.hertzian import HuntCrossley, KuwabaraKono, LinearHuntCrossley, Tsuji
+from bouncing_ball.models.laws.law_of_impact import reference
+from bouncing_ball.models.laws.signature import Signature
+from bouncing_ball.models.spring_damper import SpringDamper
+
+# The logarithms of the groups that are searched for a restitution coefficient.
+_GROUPS = np.linspace(-30.0, 4.0, 341)
+# The least and the greatest constant r, so that a search cannot leave the range of r.
+_LEAST, _MOST = 1e-6, 1.0
+
+
+@dataclass(frozen=True)
+class Curve:
+    """r(v) and T(v) of one kind of contact law.
+
+    The parameter θ is ln G, or r if it does not depend on the speed.
+
+    Parameters
+    ----------
+    name : str
+    kind : type of ContactLaw or None
+        None for a restitution coefficient without a contact.
+    exponent, time_exponent : float
+        a and b.
+    """
+
+    name: str
+    kind: type[ContactLaw] | None
+    exponent: float = 0.0
+    time_exponent: float = 0.0
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether r is the same at every speed."""
+        return self.exponent == 0
+
+    def restitution(self, theta: float, ratio: ArrayLike) -> np.ndarray:
+        """r at the speeds v = ``ratio`` v₀.
+
+        Examples
+        --------
+        >>> curve_named("tsuji").restitution(0.8, [0.5, 2.0]).tolist()
+        [0.8, 0.8]
+        """
+        x = np.asarray(ratio, dtype=float)
+        if self.kind is None or self.is_constant:
+            return np.full(x.shape, min(max(theta, _LEAST), _MOST))
+        return _free(self.kind, theta + self.exponent * np.log(x))[0]
+
+    def duration(self, theta: float, ratio: ArrayLike) -> np.ndarray:
+        """T/τ at the speeds v = ``ratio`` v₀.
+
+        Raises
+        ------
+        ModelError
+            If there is no contact.
+        """
+        if self.kind is None:
+            raise ModelError("a restitution coefficient alone has no contact time")
+        x = np.asarray(ratio, dtype=float)
+        if self.is_constant:
+            shape = np.full(x.shape, reference(self.kind, min(theta, _MOST))[1])
+        else:
+            shape = _free(self.kind, theta + self.exponent * np.log(x))[1]
+        return x**self.time_exponent * shape
+
+    def parameter(self, restitution: float) -> float:
+        """θ of the law that has this r at v₀, close enough for the start of a fit."""
+        if self.kind is None or self.is_constant:
+            return restitution
+        return float(np.interp(-restitution, -_table(self.kind), _GROUPS))
+
+
+def _free(kind: type[ContactLaw], logarithm: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """r and D of impacts with these logarithms of their groups."""
+    log = np.clip(logarithm, _GROUPS[0], _GROUPS[-1])
+    instant = Signature(kind.of_scales(np.exp(log), 1.0, 1.0))(1.0)
+    return instant.restitution, instant.duration
+
+
+@lru_cache(maxsize=16)
+def _table(kind: type[ContactLaw]) -> np.ndarray:
+    return _free(kind, _GROUPS)[0]
+
+
+def _of(kind: type[ContactLaw]) -> Curve:
+    scaled = kind.of_scales(0.1, 1.0, 1.0).scaled(np.ones(1))
+    if scaled is None:
+        return Curve(kind.name, kind)
+    return Curve(kind.name, kind, scaled.group_exponent, scaled.time_exponent)
+
+
+_KINDS = (SpringDamper, ElastoBacklash, Tsuji, KuwabaraKono, HuntCrossley, LinearHuntCrossley)
+CONSTANT = "restitution"
+CURVES = {CONSTANT: Curve(CONSTANT, None)} | {kind.name: _of(kind) for kind in _KINDS}
+"""The laws that are fitted, by name. The paper's two models are the first two."""
+
+
+def curve_named(name: str) -> Curve:
+    """The curve of the law with this name.
+
+    Raises
+    ------
+    ModelError
+        If there is no such law, or its impacts have no scales.
+    """
+    return one_of("law", name, CURVES) if name == CONSTANT else _contact_curve(name)
+
+
+def _contact_curve(name: str) -> Curve:
+    kind = law_named(name)
+    return one_of("law for a fit", kind.name, CURVES)

@@ -1,0 +1,315 @@
+r"""A text file of measured impacts, and the experiments that belong to the package.
+
+A file has lines ``# key: value`` with the source and the ball, one line with the names and units of
+the columns, and one line of numbers for each impact ::
+
+    # mass: 9.6 g
+    drop_height [m],rebound_height [m]
+    0.10,0.015
+
+The columns are ``speed`` and ``restitution``, or ``drop_height`` and ``rebound_height``, or
+``interval`` or ``time``, the intervals between the impacts of one bouncing ball or their times.
+``uncertainty``, of the restitution coefficient, ``duration`` and ``duration_uncertainty`` may
+follow. If the mass and the diameter of the ball are known, the drag of the air is removed from
+heights and intervals (:mod:`bouncing_ball.measured.flights`).
+"""
+
+import csv
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bouncing_ball.contacts.units import SIParameter, in_si, number
+from bouncing_ball.errors import ModelError, ParameterError, Range
+from bouncing_ball.measured.fit import ContactFit, fit_contact
+from bouncing_ball.measured.flights import Heard, drag_length, drop_speeds, heard
+
+DATA = Path(__file__).with_name("data")
+"""The folder of the package's experiments."""
+
+COLUMNS = {
+    "speed": SIParameter("m/s", "1 m/s"),
+    "restitution": SIParameter("", "0.85", Range(0, 1, "(]")),
+    "uncertainty": SIParameter("", "0.01"),
+    "duration": SIParameter("s", "1 ms"),
+    "duration_uncertainty": SIParameter("s", "0.1 ms"),
+    "drop_height": SIParameter("m", "1 m"),
+    "rebound_height": SIParameter("m", "70 cm"),
+    "interval": SIParameter("s", "0.5 s"),
+    "time": SIParameter("s", "0.5 s", Range(-1e40, 1e40, "[]")),
+}
+"""The columns of a file, their units and ranges."""
+QUANTITIES = {
+    "mass": SIParameter("kg", "20 g"),
+    "diameter": SIParameter("m", "40 mm"),
+    "contact time": SIParameter("s", "1 ms"),
+    "contact time uncertainty": SIParameter("s", "0.1 ms"),
+    "resolution": SIParameter("s", "1 ms"),
+}
+"""The numbers at the head of a file."""
+TEXTS = ("title", "ball", "measured by", "published", "source", "read", "note")
+"""The texts at the head of a file; each may stand on several lines."""
+_WAYS = ({"speed", "restitution"}, {"drop_height", "rebound_height"}, {"interval"}, {"time"})
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """Measured impacts and where they come from, in SI units.
+
+    Parameters
+    ----------
+    name : str
+        The name of the file without its ending.
+    texts : dict
+        The texts at the head of the file.
+    speeds, restitutions : ndarray
+        Impact speeds and restitution coefficients, after the removal of the drag.
+    uncertainties : ndarray or None
+        Standard deviations of the restitution coefficients, or their covariance matrix.
+    durations, duration_uncertainties : ndarray, float or None
+        Contact times: one for each point, or a single one.
+    mass, diameter : float or None
+        Of the ball.
+    drag_bias : float
+        The largest change of a restitution coefficient by the removal of the drag; 0 if it was not
+        removed.
+    heard : Heard or None
+        The impacts of a bouncing ball with the biases that were removed.
+    """
+
+    name: str
+    texts: dict[str, str]
+    speeds: np.ndarray
+    restitutions: np.ndarray
+    uncertainties: np.ndarray | None = None
+    durations: Any = None
+    duration_uncertainties: Any = None
+    mass: float | None = None
+    diameter: float | None = None
+    drag_bias: float = 0.0
+    heard: Heard | None = field(default=None, repr=False)
+
+    @property
+    def title(self) -> str:
+        """The title, by default the name."""
+        return self.texts.get("title", self.name)
+
+    def fit(self, laws: tuple[str, ...] | None = None) -> ContactFit:
+        """The contact laws fitted to this experiment, see :func:`.fit.fit_contact`."""
+        return fit_contact(
+            self.speeds,
+            self.restitutions,
+            self.durations,
+            uncertainties=self.uncertainties,
+            duration_uncertainties=self.duration_uncertainties,
+            mass=self.mass,
+            laws=laws,
+        )
+
+
+def names() -> list[str]:
+    """The names of the package's experiments.
+
+    Examples
+    --------
+    >>> "croquet" in names()
+    True
+    """
+    return sorted(each.stem for each in DATA.glob("*.csv"))
+
+
+def experiment(name: str) -> Experiment:
+    """The experiment of the package with this name.
+
+    Raises
+    ------
+    ModelError
+        If there is no such experiment.
+
+    Examples
+    --------
+    >>> experiment("croquet").speeds.size
+    10
+    """
+    if name not in names():
+        raise ModelError(f"unknown experiment {name!r}: one of {', '.join(names())}")
+    return read(DATA / f"{name}.csv")
+
+
+def read(file: str | Path, **options: Any) -> Experiment:
+    """The experiment in a file.
+
+    Parameters
+    ----------
+    file : path
+    **options
+        Numbers in place of those at the head of the file, with ``_`` for a space: ``mass``,
+        ``diameter``, ``contact_time``, ``contact_time_uncertainty`` and ``resolution``.
+        ``intervals=True`` reads the intervals of one bouncing ball, for which a line with the names
+        of the columns is not needed.
+
+    Raises
+    ------
+    ModelError
+        If the file cannot be read or a line is not understood; the message names the line.
+    """
+    path = Path(file)
+    intervals = options.pop("intervals", False)
+    try:
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
+    except (OSError, UnicodeError) as error:
+        why = error.strerror if isinstance(error, OSError) else "it is not a text in UTF-8"
+        raise ModelError(f"{path} cannot be read: {why}") from None
+    head, rows = _parts(path, lines)
+    if intervals and rows and _is_number(rows[0][1].split(",")[0]):
+        rows = [(0, "interval [s]"), *rows]
+    columns = _columns(path, rows)
+    if intervals and not columns.keys() & {"interval", "time"}:
+        raise ModelError(f"{path} has no column interval or time")
+    numbers = {key: value for key, value in head.items() if key in QUANTITIES}
+    for name, value in options.items():
+        if value is not None:
+            key = name.replace("_", " ")
+            numbers[key] = in_si(name, value, QUANTITIES[key])
+    texts = {key: value for key, value in head.items() if key in TEXTS}
+    return _experiment(path.stem, texts, numbers, columns)
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def _parts(path: Path, lines: list[str]) -> tuple[dict[str, Any], list[tuple[int, str]]]:
+    """The head of a file, and its other lines with their numbers."""
+    head: dict[str, Any] = {}
+    rows = []
+    for at, line in enumerate(lines, start=1):
+        if not line.startswith("#"):
+            if line.strip():
+                rows.append((at, line))
+            continue
+        key, colon, value = (part.strip() for part in line[1:].partition(":"))
+        if not colon:
+            continue
+        if key in QUANTITIES:
+            head[key] = _quantity(path, at, key, value, QUANTITIES[key])
+        elif key in TEXTS:
+            head[key] = f"{head[key]} {value}" if key in head else value
+        else:
+            known = ", ".join((*TEXTS, *QUANTITIES))
+            raise ModelError(f"{path}, line {at}: unknown key {key!r}: one of {known}")
+    return head, rows
+
+
+def _quantity(path: Path, at: int, name: str, value: Any, kind: SIParameter) -> float:
+    try:
+        return in_si(name, value, kind)
+    except ParameterError as error:
+        raise ModelError(f"{path}, line {at}: {error}") from None
+
+
+def _columns(path: Path, rows: list[tuple[int, str]]) -> dict[str, np.ndarray]:
+    """The columns of a file in SI units, by name."""
+    if not rows:
+        raise ModelError(f"{path} has no line with the names of the columns")
+    at, line = rows[0]
+    titles = [_title(path, at, each) for each in next(csv.reader([line]))]
+    wanted = [name for name, _ in titles]
+    if len(set(wanted)) < len(wanted) or not any(way <= set(wanted) for way in _WAYS):
+        ways = "; or ".join(" and ".join(sorted(way, reverse=True)) for way in _WAYS)
+        raise ModelError(f"{path}, line {at}: the columns must be {ways}, each of them once")
+    found: dict[str, list[float]] = {name: [] for name in wanted}
+    for at, line in rows[1:]:
+        cells = next(csv.reader([line]))
+        if len(cells) != len(titles):
+            raise ModelError(
+                f"{path}, line {at}: {len(cells)} values for {len(titles)} columns; numbers have "
+                "a decimal point and no comma"
+            )
+        for (name, factor), cell in zip(titles, cells, strict=True):
+            found[name].append(_cell(path, at, name, cell, factor))
+    if not found[wanted[0]]:
+        raise ModelError(f"{path} has no line of numbers")
+    return {name: np.array(values) for name, values in found.items()}
+
+
+def _title(path: Path, at: int, text: str) -> tuple[str, float]:
+    """The name of a column and the SI value of its unit."""
+    name, _, unit = text.strip().removesuffix("]").partition("[")
+    name = name.strip()
+    if name not in COLUMNS:
+        raise ModelError(f"{path}, line {at}: unknown column {name!r}: one of {', '.join(COLUMNS)}")
+    if not unit:
+        return name, 1.0
+    try:
+        return name, number(name, f"1 {unit}", COLUMNS[name])
+    except ParameterError as error:
+        raise ModelError(f"{path}, line {at}: {error}") from None
+
+
+def _cell(path: Path, at: int, name: str, cell: str, factor: float) -> float:
+    kind = COLUMNS[name]
+    text = cell.strip()
+    if name in ("duration", "duration_uncertainty") and not text:
+        return math.nan
+    try:
+        # Fifteen digits keep those of the file without the rounding of the factor.
+        value = float(f"{number(name, text, kind) * factor:.15g}")
+    except ParameterError as error:
+        raise ModelError(f"{path}, line {at}: {error}") from None
+    if value not in kind.allowed:
+        raise ModelError(f"{path}, line {at}: {name} = {value:g} is not {kind.allowed}")
+    return value
+
+
+def _experiment(
+    name: str, texts: dict[str, str], numbers: dict[str, float], columns: dict[str, np.ndarray]
+) -> Experiment:
+    mass, diameter = numbers.get("mass"), numbers.get("diameter")
+    length = math.inf
+    if mass is not None and diameter is not None:
+        length = drag_length(mass, diameter)
+    found: Heard | None = None
+    bias = 0.0
+    if "speed" in columns:
+        speeds, restitutions = columns["speed"], columns["restitution"]
+        errors = columns.get("uncertainty")
+    elif "drop_height" in columns:
+        heights = columns["drop_height"], columns["rebound_height"]
+        speeds, back = drop_speeds(*heights, length)
+        restitutions = back / speeds
+        errors = columns.get("uncertainty")
+        without, back = drop_speeds(*heights)
+        bias = float(np.max(np.abs(restitutions - back / without)))
+    else:
+        times = columns["interval"] if "interval" in columns else np.diff(columns["time"])
+        found = heard(
+            times,
+            resolution=numbers.get("resolution"),
+            length=length,
+            contact_time=numbers.get("contact time", 0.0),
+        )
+        speeds, restitutions, errors = found.speeds, found.restitutions, found.covariance
+        bias = float(np.max(np.abs(found.drag_bias)))
+    return Experiment(
+        name=name,
+        texts=texts,
+        speeds=speeds,
+        restitutions=restitutions,
+        uncertainties=errors,
+        durations=columns.get("duration", numbers.get("contact time")),
+        duration_uncertainties=columns.get(
+            "duration_uncertainty", numbers.get("contact time uncertainty")
+        ),
+        mass=mass,
+        diameter=diameter,
+        drag_bias=bias,
+        heard=found,
+    )

@@ -109,6 +109,11 @@ class Needed:
 # height.
 _SAMPLES = 1001
 _IN_A_RADIAN = 16
+# A bifurcation of a law is followed in Λ, which takes the longer the stronger its loss is. It is not
+# searched for if the simple models, which for a contact above this ϖ are within a few percent of
+# the law, have their saddle-nodes at a multiple of Λ.
+_STIFF = 10.0
+_FAR = 2.0
 
 
 def finite(value: float | np.ndarray) -> float | None:
@@ -233,19 +238,16 @@ def families(
     [1]
     """
     n = np.array(asked)
-    orbits: list[Orbit] = []
-    found: list[list[np.ndarray]] = []
-    for model in case.models.values():
-        is_exact = not orbits
-        orbit, quantities = _in_model(
-            model,
-            n,
-            case.table.amplitude,
-            case.permanent_contact if is_exact else RESTITUTION_THRESHOLD,
-        )
-        orbits.append(orbit)
-        found.append(quantities)
-    values = np.array(found)
+    lam = case.table.amplitude
+    exact, *simple = case.models.values()
+    of_simple = [_in_model(model, n, lam, RESTITUTION_THRESHOLD) for model in simple]
+    near = np.ones(n.shape, dtype=bool)
+    if case.law is not None and case.contact.frequency_ratio > _STIFF:
+        nodes = [found[len(OF_ORBITS)] for _, found in of_simple]
+        near = ~(np.nanmin(nodes, axis=0) > _FAR * lam)
+    in_models = [_in_model(exact, n, lam, case.permanent_contact, near), *of_simple]
+    orbits = [orbit for orbit, _ in in_models]
+    values = np.array([found for _, found in in_models])
     there = np.any([orbit.exists for orbit in orbits], axis=0)
     there[0] |= or_first and not there.any()
     if not there.any():
@@ -265,13 +267,24 @@ def families(
 
 
 def _in_model(
-    model: Model, n: np.ndarray, amplitude: float, permanent_contact: float
+    model: Model,
+    n: np.ndarray,
+    amplitude: float,
+    permanent_contact: float,
+    near: np.ndarray | None = None,
 ) -> tuple[Orbit, list[np.ndarray]]:
-    """The n-T orbits of one model and the values of all quantities, in the order of Quantity."""
-    node = n_t.saddle_node(model, n).amplitude
-    doubling = n_t.period_doubling(model, n).amplitude
+    """The n-T orbits of one model and the values of all quantities, in the order of Quantity.
+
+    Families that are not ``near`` Λ have neither orbits nor bifurcations in the result.
+    """
+    node = np.full(n.shape, np.nan)
+    doubling = np.full(n.shape, np.nan)
+    which = np.ones(n.shape, dtype=bool) if near is None else near
+    if which.any():
+        node[which] = n_t.saddle_node(model, n[which]).amplitude
+        doubling[which] = n_t.period_doubling(model, n[which]).amplitude
     # Below its saddle-node a model has no orbit, so that none is searched for.
-    orbit = n_t.orbit(model, n, np.where(amplitude < node, np.nan, amplitude))
+    orbit = n_t.orbit(model, n, np.where((amplitude < node) | ~which, np.nan, amplitude))
     of_orbits = [getattr(orbit, quantity) for quantity in OF_ORBITS]
     return orbit, [*of_orbits, node, doubling, np.full(n.shape, permanent_contact)]
 

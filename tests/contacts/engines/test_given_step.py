@@ -9,12 +9,11 @@ from engine_runs import RUN, Trial, only_if_installed
 
 from bouncing_ball import Contact, EngineSetup, ModelError, write_contact
 from bouncing_ball.contacts.engines.choice import ENGINES
-from bouncing_ball.contacts.engines.given_step import at_step
+from bouncing_ball.contacts.engines.given_step import at_step, spread_in_steps, stiffest_contact
 from bouncing_ball.contacts.engines.physical import Physical
 from bouncing_ball.contacts.engines.scheme import (
     FEWEST,
     Scheme,
-    fewest_steps,
     free_impact,
     impacts_in_steps,
     is_stable,
@@ -70,11 +69,13 @@ def test_semi_implicit_steps_grow_beyond_their_limit_and_implicit_ones_never(zet
 def test_the_stiffest_contact_is_within_the_error_and_a_stiffer_one_is_not(scheme, error):
     zeta = 0.1
     duration, r = free_impact(zeta, Release.FORCE)
-    steps = fewest_steps(scheme, zeta, Release.FORCE, error)
+    _, steps = stiffest_contact(scheme, 1.0, zeta, Release.FORCE, 1.0, error)
     assert steps > FEWEST
-    for more, within in ((1.0, True), (1 - 1e-5, False)):
+    # As many instants within a step as show a jump at its side of 1e-5.
+    instants = np.linspace(1e-9, 1.0, 100_001)
+    for more, within in ((1.0, True), (1 - 1e-3, False)):
         h = duration / (more * steps)
-        off = np.abs(impacts_in_steps(scheme, zeta, Release.FORCE, h) - r).max()
+        off = np.abs(impacts_in_steps(scheme, zeta, Release.FORCE, h, instants) - r).max()
         assert bool(off <= error) is within
     ball = Physical(2.0, 1e6, 2 * zeta * 2.0 * np.sqrt(1e6 / 2.0))
     found = at_step("any", scheme, ball, Release.FORCE, 1e-4, error)
@@ -82,6 +83,22 @@ def test_the_stiffest_contact_is_within_the_error_and_a_stiffer_one_is_not(schem
     stiff = Physical(2.0, found.stiffest, found.stiffest_damping)
     assert stiff.damping_ratio == pytest.approx(zeta, rel=1e-12)
     assert stiff.contact_time(Release.FORCE) == pytest.approx(1e-4 * steps, rel=1e-12)
+
+
+@pytest.mark.parametrize("scheme", Scheme)
+@pytest.mark.parametrize("steps", [1.6, 3.3, 7.7, 41.0])
+def test_the_range_of_r_at_a_coarse_step_is_that_of_a_million_instants(scheme, steps):
+    """r is linear between jumps, so that samples miss at most their distance times its slope."""
+    zeta = 0.0335
+    instants = np.linspace(1e-9, 1.0, 1_000_001)
+    for rule in Release:
+        h = free_impact(zeta, rule).duration / steps
+        many = np.maximum(impacts_in_steps(scheme, zeta, rule, h, instants), 0.0)
+        found = spread_in_steps(scheme, zeta, rule, h)
+        # No slope is steeper than 100.
+        assert found.least == pytest.approx(many.min(), abs=1e-4) and found.least <= many.min()
+        assert found.most == pytest.approx(many.max(), abs=1e-4) and found.most >= many.max()
+        assert found.mean == pytest.approx(many.mean(), abs=1e-5)
 
 
 def test_the_answer_about_an_unstable_solref_says_so(said, ask):
@@ -103,7 +120,9 @@ def test_without_a_stiffness_the_contact_is_the_stiffest_that_the_step_resolves(
     assert found.at_step.is_within and found.time_step == 1e-4
     stiff = found.at_step.stiffest
     again = write_contact(replace(contact, stiffness=stiff), setup)
-    assert again.parameters == found.parameters
+    for one, other in zip(again.parameters.values(), found.parameters.values(), strict=True):
+        # Twelve digits are written, twice.
+        assert np.ravel(one) == pytest.approx(np.ravel(other), rel=1e-11)
     too_stiff = write_contact(replace(contact, stiffness=4 * stiff), setup)
     assert not too_stiff.at_step.is_within
     assert too_stiff.parameters.keys() == found.parameters.keys()

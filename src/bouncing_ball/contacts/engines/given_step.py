@@ -9,14 +9,25 @@ units of 1/ω is fixed, so that a contact that needs N steps has ::
     ω = T/(N Δt),   k = m ω²,   c = 2ζmω
 
 With the smallest N for which r is within the error, this is the stiffest contact.
+
+r is a function of the time, within a step, from meeting the wall to the first step in contact. Each
+state of the contact is linear in this time, so that r is linear between the times at which the
+number of steps in contact changes, where it jumps. :func:`spread` bisects for these times, because
+the bounds of r are the limits at the jumps.
 """
 
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
+from typing import NamedTuple
 
 import numpy as np
+from scipy.optimize import brentq
 
 from bouncing_ball.contacts.engines.physical import Physical
 from bouncing_ball.contacts.engines.scheme import (
+    FEWEST,
     Scheme,
     fewest_steps,
     free_impact,
@@ -28,6 +39,20 @@ from bouncing_ball.models.damping import Release
 
 # Velocities below this part of that of the impact are those of a ball that does not leave.
 _STAYS = 1e-6
+# Samples of the time within a step, each of which is divided where r is not linear. A jump is found
+# within the last length, and a bend is not seen where it is smaller than the last number.
+_SAMPLES = 257
+_ROUNDS = 48
+_MOST_PARTS = 4096
+_STRAIGHT = 1e-10
+# How closely the number of steps of the stiffest contact, and ζ of a retuned one, are found.
+_FINE = 1e-9
+# The sampled error of a number of steps is smaller than the exact one by less than this part.
+_MARGIN = 0.1
+_TRIED = 81
+_ASIDE = 1e-6
+# Digits of ζ that decide about this number: the ζ of parameters with twelve digits is the same.
+_DIGITS = 10
 # Time steps in a contact of a simulation, with a wide margin.
 _FEWEST = 1e-3
 _MOST = 1e8
@@ -40,9 +65,12 @@ class AtStep:
     ``restitution`` is the r of the contact with small steps. In the engine a free impact has an r
     between ``least`` and ``most``, which depends on where in a step the contact begins, and
     ``error`` is the largest difference from ``restitution``; ``is_within`` tells whether it is
-    ``allowed``. A ball that does not leave has r = 0. The contact takes so many ``steps``; it is
-    unstable if the steps of a lasting contact grow. The stiffest contact with the same r is within
-    the error allowed. ``remarks`` are sentences on how the engine changes the contact at this step.
+    ``allowed``. ``mean`` is the mean r over all these instants. A ball that does not leave has
+    r = 0. The contact takes so many ``steps``; it is unstable if the steps of a lasting contact
+    grow. With the damping ``retuned`` in N s/m and the same stiffness the mean is ``restitution``;
+    it is None if no damping achieves that, or if the contact is within the error as it is. The
+    stiffest contact with the same r is within the error allowed. ``remarks`` are sentences on how
+    the engine changes the contact at this step.
     """
 
     engine: str
@@ -59,20 +87,136 @@ class AtStep:
     stiffest_damping: float
     stiffest_contact_time: float
     stiffest_steps: float
+    mean: float = math.nan
+    retuned: float | None = None
     remarks: tuple[str, ...] = ()
+
+    @property
+    def span(self) -> str:
+        """The r at this step: from the least to the greatest, or one number if they are alike."""
+        least, most = f"{self.least:.4g}", f"{self.most:.4g}"
+        return least if least == most else f"{least} to {most}"
 
     @property
     def verdict(self) -> str:
         """What the contact does at this step, in one sentence."""
-        span = f"r = {self.least:.4g} to {self.most:.4g}"
-        if f"{self.least:.4g}" == f"{self.most:.4g}":
-            span = f"r = {self.least:.4g}"
-        found = f"a free impact has {span} in place of {self.restitution:.4g}"
+        found = f"a free impact has r = {self.span} in place of {self.restitution:.4g}"
         if not self.is_stable:
             return f"unstable in {self.engine}: {found}"
         held = "resolved" if self.is_within else "not resolved"
         allowed = "within" if self.is_within else "not within"
         return f"{held} in {self.engine}: {found}, {allowed} {self.allowed:g}"
+
+
+class Spread(NamedTuple):
+    """The least and the greatest r over all instants of contact within a step, and the mean."""
+
+    least: float
+    most: float
+    mean: float
+
+    def error(self, restitution: float) -> float:
+        """The largest difference from an r."""
+        return max(self.most - restitution, restitution - self.least)
+
+
+def spread(impacts: Callable[[np.ndarray], np.ndarray]) -> Spread:
+    """The range and the mean of r, a function of the instant in (0, 1] that is linear in pieces.
+
+    Examples
+    --------
+    >>> spread(lambda f: np.where(f < 1 / 3, f, f - 1))
+    Spread(least=-0.66666666..., most=0.33333333..., mean=-0.16666666...)
+    """
+    place = np.linspace(1e-9, 1.0, _SAMPLES)
+    value = impacts(place)
+    found = [np.stack([place, value])]
+    low, high = found[0][:, :-1], found[0][:, 1:]
+    for _ in range(_ROUNDS):
+        middle = (low[0] + high[0]) / 2
+        between = np.stack([middle, impacts(middle)])
+        found.append(between)
+        size = _STRAIGHT * np.maximum(1.0, np.abs(between[1]))
+        bent = np.abs(between[1] - (low[1] + high[1]) / 2) > size
+        if not 0 < np.count_nonzero(bent) < _MOST_PARTS:
+            break
+        low, high = (
+            np.concatenate([low[:, bent], between[:, bent]], axis=1),
+            np.concatenate([between[:, bent], high[:, bent]], axis=1),
+        )
+    place, value = np.concatenate(found, axis=1)
+    order = np.argsort(place, kind="stable")
+    mean = np.trapezoid(value[order], place[order]) / np.ptp(place)
+    return Spread(float(value.min()), float(value.max()), float(mean))
+
+
+def spread_in_steps(scheme: Scheme, zeta: float, release: Release, step: float) -> Spread:
+    """The range and the mean of r of free impacts with a step h = ωΔt; 0 for balls that stay."""
+
+    def impacts(fraction: np.ndarray) -> np.ndarray:
+        found = impacts_in_steps(scheme, zeta, release, step, fraction)
+        return np.where(found < _STAYS, 0.0, found)
+
+    return spread(impacts)
+
+
+def retuned(
+    scheme: Scheme, zeta: float, release: Release, step: float, restitution: float
+) -> float | None:
+    """ζ with which the mean r is the one asked for at a step h = ωΔt; None if there is none.
+
+    Examples
+    --------
+    Implicit steps damp, so that less damping gives the r asked for, or none gives it:
+
+    >>> zeta = retuned(Scheme.IMPLICIT, 0.1, Release.FORCE, 0.05, 0.7439)
+    >>> 0 < zeta < 0.1, retuned(Scheme.IMPLICIT, 0.1, Release.FORCE, 0.8, 0.7439)
+    (True, None)
+    """
+
+    def surplus(ratio: float) -> float:
+        return spread_in_steps(scheme, ratio, release, step).mean - restitution
+
+    most = min(2 * zeta + 0.5, 1 - 1e-6 if release is Release.DISPLACEMENT else math.inf)
+    stable = [ratio for ratio in np.linspace(0.0, most, 9) if is_stable(scheme, ratio, step)]
+    over = [surplus(ratio) for ratio in stable]
+    for k in range(len(stable) - 1):
+        if over[k] >= 0 > over[k + 1]:
+            return float(brentq(surplus, stable[k], stable[k + 1], xtol=_FINE, rtol=_FINE))
+    return None
+
+
+@cache
+def _fewest(scheme: Scheme, zeta: float, release: Release, error: float) -> float:
+    """The number of steps in a contact from which on every r is within an error.
+
+    The error as a function of this number has bends and jumps. Below the number returned the
+    contact is not within the error, and with any more steps it is.
+    """
+    duration, exact = free_impact(zeta, release)
+
+    def within(steps: float) -> bool:
+        return spread_in_steps(scheme, zeta, release, duration / steps).error(exact) <= error
+
+    sampled = fewest_steps(scheme, zeta, release, error)
+    tried = sampled * np.linspace(1 + _MARGIN, 1 - _MARGIN, _TRIED)
+    tried = np.append(tried[tried > FEWEST], FEWEST) if sampled * (1 - _MARGIN) < FEWEST else tried
+    good = float(tried[0])
+    for steps in tried.tolist():
+        if not within(steps):
+            break
+        good = steps
+    else:
+        return good
+    bad = steps
+    while good - bad > _FINE * good:
+        middle = (good + bad) / 2
+        if within(middle):
+            good = middle
+        else:
+            bad = middle
+    # Parameters are written with twelve digits, which may not lead to the other side of a jump.
+    return good * (1 + _ASIDE)
 
 
 def stiffest_contact(
@@ -83,10 +227,10 @@ def stiffest_contact(
     Examples
     --------
     >>> ball, steps = stiffest_contact(Scheme.IMPLICIT, 1.0, 0.0, Release.FORCE, 1e-3, 0.1)
-    >>> f"{ball.stiffness:.5g} N/m", round(ball.contact_time(Release.FORCE) / 1e-3 - steps, 9)
-    ('4550.6 N/m', 0.0)
+    >>> f"{ball.stiffness:.5g} N/m", abs(ball.contact_time(Release.FORCE) / 1e-3 - steps) < 1e-9
+    ('4550.6 N/m', True)
     """
-    fewest = fewest_steps(scheme, zeta, release, error)
+    fewest = _fewest(scheme, round(zeta, _DIGITS), release, error)
     omega = free_impact(zeta, release).duration / (fewest * time_step)
     return Physical(mass, mass * omega**2, 2 * zeta * mass * omega), fewest
 
@@ -140,10 +284,11 @@ def at_step(
             f"{_FEWEST:g} and {_MOST:g}: check the units"
         )
     zeta = contact.damping_ratio
-    found = np.maximum(impacts_in_steps(scheme, zeta, release, step), 0.0)
-    found = np.where(found < _STAYS, 0.0, found)
-    off = float(np.max(np.abs(found - r)))
+    found = spread_in_steps(scheme, zeta, release, step)
+    off = found.error(r)
     stable = is_stable(scheme, zeta, step)
+    within = stable and off <= error
+    ratio = None if within else retuned(scheme, zeta, release, step, r)
     same = wanted.damping_ratio
     most, fewest = stiffest_contact(scheme, contact.mass, same, release, time_step, error)
     return AtStep(
@@ -152,13 +297,15 @@ def at_step(
         steps=wanted.contact_time(release) / time_step,
         is_stable=stable,
         restitution=r,
-        least=float(found.min()),
-        most=float(found.max()),
+        least=found.least,
+        most=found.most,
         error=off,
         allowed=error,
-        is_within=stable and off <= error,
+        is_within=within,
         stiffest=most.stiffness,
         stiffest_damping=most.damping,
         stiffest_contact_time=fewest * time_step,
         stiffest_steps=fewest,
+        mean=found.mean,
+        retuned=None if ratio is None else 2 * ratio * contact.mass * contact.angular_frequency,
     )

@@ -90,6 +90,8 @@ _ASYMPTOTIC = 4096
 _FINE = 1e-6
 FEWEST = 8
 """The smallest number of steps that resolve a contact."""
+# Rounding errors of the state of a contact of many steps.
+_TIE = 1e-10
 # An undamped contact has eigenvalues of the amount 1, to rounding of a double root.
 _ROUNDING = 1e-7
 
@@ -244,7 +246,8 @@ def _by_powers(matrix: np.ndarray, grip: np.ndarray, state: np.ndarray, further:
         state = np.where(grip @ later < 0, later, state)
         further -= half
     state = matrix @ state
-    return np.where(grip @ state < 0, -1.0, state[1])
+    # At a jump of the number of steps, rounding decides whether the last one ends the contact.
+    return np.where(grip @ state < -_TIE, -1.0, state[1])
 
 
 # A ball that has not left within so many coarse steps does not leave.

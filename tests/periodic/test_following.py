@@ -346,3 +346,28 @@ def test_without_a_value_a_branch_ends_at_ten_times_its_first_value(refusal):
     orbit = bouncing_ball.orbit(bouncing_ball.rigid(restitution=0.3), amplitude=2.0)
     found = bouncing_ball.follow(orbit)
     assert str(found.end_reason[1].values) == "amplitude = 20 is reached"
+
+
+def test_the_limits_of_a_family_know_what_they_are(refusal):
+    """From a saddle-node the stable side is followed, and from a doubling the doubled branch."""
+    fold, doubling = bouncing_ball.limits(bouncing_ball.rigid(restitution=0.5))
+    assert (fold.kind, doubling.kind) == ("saddle-node", "period doubling")
+    side = bouncing_ball.follow(fold, to=1.5)
+    assert side.stable[1:-1].all() and side.special_kind.values.tolist() == []
+    with refusal(NoOrbitError, "is beyond the saddle-node: its orbits exist only for amplitude"):
+        bouncing_ball.follow(fold, to=0.5)
+    assert bouncing_ball.follow(doubling, to=1.6).attrs["impacts"] == 2
+    elastic = bouncing_ball.limits(bouncing_ball.contact_law("tsuji", stiffness=900.0, damping=0.0))
+    assert elastic.saddle_node.kind == "saddle-node"
+
+
+def test_a_point_that_is_no_period_doubling_is_not_switched(refusal):
+    """A grazing at Λ = 4.597 gave an orbit at 2.805, and a fold at 1.0472 one at 1.527."""
+    ball = bouncing_ball.rigid(restitution=0.5)
+    fold, _ = bouncing_ball.limits(ball)
+    unstable = bouncing_ball.orbit(ball, amplitude=2.0, side="unstable")
+    for point in (fold, unstable):
+        with refusal(NoOrbitError, "the orbit is no period doubling: det(M + 1) = "):
+            bouncing_ball.switch(replace(point, kind="period doubling"))
+        with refusal(NoOrbitError, "the orbit is no period doubling: det(M + 1) = "):
+            switch(point)

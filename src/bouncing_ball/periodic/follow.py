@@ -172,6 +172,8 @@ def _check_orbit(call: str, orbit: Any) -> None:
         raise ParameterError(f"{call} needs an orbit of bouncing_ball, not {{}}", kind)
     if orbit.shape:
         raise ParameterError(f"{call} needs a single orbit, not {{}}", str(orbit.size))
+    if not orbit.exists:
+        raise NoOrbitError(f"{call} needs an orbit, but there is none: its quantities are NaN")
 
 
 def _names(orbit: Orbit, along: Any) -> tuple[str, ...]:

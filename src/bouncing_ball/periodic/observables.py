@@ -5,6 +5,7 @@ of each special orbit, over ``special``: its bifurcations, and the grazing orbit
 orbits become inadmissible.
 """
 
+import math
 from typing import Any
 
 import numpy as np
@@ -40,6 +41,9 @@ VARIABLES = {
     "multiplier_imag": Variable("imaginary part of the Floquet multiplier", symbol="Im μ"),
     "residual": Variable(
         "largest defect of the orbit equations", equation="Eqs. 21-26", budget=1e-12, scale="1"
+    ),
+    "digits_left": Variable(
+        "certain decimal digits of the states, see Orbit.digits_left", budget=math.inf
     ),
     "end": Variable("end of the branch"),
     "end_reason": Variable("why the branch ends there"),
@@ -78,10 +82,11 @@ def columns(orbit: Orbit, *names: str) -> dict[str, np.ndarray]:
 def branch_columns(found: Orbits) -> xr.Dataset:
     """The orbits along a branch or a curve, its special orbits, and the reasons for its two ends.
 
-    Over ``point``, the dataset has each parameter that varies, ``stable``, ``admissible`` and
-    ``residual``, and over (point, impact) the observables of the orbits, with phases that pass ±π
-    continuously. The multipliers are over (point, multiplier), ``special_…`` over ``special``, of
-    which phases and durations are over (special, impact) too, and ``end_reason`` over ``end``.
+    Over ``point``, the dataset has each parameter that varies, ``stable``, ``admissible``,
+    ``residual`` and ``digits_left``, and over (point, impact) the observables of the orbits, with
+    phases that pass ±π continuously. The multipliers are over (point, multiplier), ``special_…``
+    over ``special``, of which phases and durations are over (special, impact) too, and
+    ``end_reason`` over ``end``.
     ``special_point`` is the number of the last point before a special orbit.
     """
     y = found.branch.points
@@ -146,6 +151,7 @@ def _orbits_in_columns(
     data["stable"] = "point", orbit.is_stable()
     data["admissible"] = "point", orbit.is_admissible()
     data["residual"] = "point", orbit.defect()
+    data["digits_left"] = "point", orbit.digits_left()
     floquet = orbit.multipliers()
     data["multiplier_real"] = ("point", "multiplier"), floquet.real
     data["multiplier_imag"] = ("point", "multiplier"), floquet.imag
@@ -170,7 +176,7 @@ def n_t_columns(found: Orbits) -> xr.Dataset:
 
 
 def _of_one_impact(columns: xr.Dataset) -> xr.Dataset:
-    one = columns.isel(impact=0, drop=True).drop_vars("special_point")
+    one = columns.isel(impact=0, drop=True).drop_vars(["special_point", "digits_left"])
     kinds = one.special_kind.astype(object)
     return one.assign(special_kind=kinds).assign_coords(end=["unstable side", "stable side"])
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -23,7 +24,7 @@ from bouncing_ball.models.model import Model
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.periodic import n_t
 from bouncing_ball.periodic.orbit import OBSERVABLES, Orbit
-from bouncing_ball.periodic.stability import Side
+from bouncing_ball.periodic.stability import Bifurcation, Side
 
 if TYPE_CHECKING:
     from bouncing_ball.drawing.result import Result
@@ -166,6 +167,8 @@ def limits(ball: Ball, n: FamilyAxis = 1) -> TwoLimits | Result:
     >>> found = limits(rigid(restitution=0.85))
     >>> round(found.saddle_node.amplitude, 6), round(found.period_doubling.amplitude, 6)
     (0.254724, 1.038304)
+    >>> found.saddle_node.kind
+    'saddle-node'
     """
     family = checked("n", n, FAMILY)
     if _is_grid(a_ball(ball), family):
@@ -173,9 +176,11 @@ def limits(ball: Ball, n: FamilyAxis = 1) -> TwoLimits | Result:
 
         return labelled("limits", ball, {"n": family}, _both_limits)
     model = ball.at_limits(family)
+    fold = n_t.saddle_node(model, family)
+    doubling = n_t.period_doubling(model, family)
     return TwoLimits(
-        saddle_node=n_t.saddle_node(model, family),
-        period_doubling=n_t.period_doubling(model, family),
+        saddle_node=replace(fold, kind=str(Bifurcation.SADDLE_NODE)),
+        period_doubling=replace(doubling, kind=str(Bifurcation.PERIOD_DOUBLING)),
     )
 
 

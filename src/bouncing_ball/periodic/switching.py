@@ -16,10 +16,15 @@ from bouncing_ball.periodic.balls import LAMBDA
 from bouncing_ball.periodic.following import PATIENT, corrected
 from bouncing_ball.periodic.orbit import Orbit, orbit_at
 from bouncing_ball.periodic.problem import PeriodicOrbits, twice
-from bouncing_ball.periodic.stability import is_stable
+from bouncing_ball.periodic.stability import Bifurcation, is_stable
 
 ASIDE = 0.02
 """The distance of the first doubled orbit from the old one, in y."""
+# The branch of twice the period bends, so that its first orbit is a little farther away.
+_FARTHER = 2.0
+# det(M + 1) at a period doubling, over the size of the entries of M. Doublings are located to
+# 1e-12 in y, and the derivatives of M grow as the impacts become slow.
+_DOUBLES = 1e-6
 # The distance at which the rise of the parameter is measured.
 _MEASURED = 1e-4
 # The distance from a saddle-node at which its sides are told apart.
@@ -85,15 +90,30 @@ def switch(doubling: Orbit, along: str = LAMBDA, aside: float = ASIDE) -> Orbit:
     Raises
     ------
     NoOrbitError
-        If no orbit of twice the period is found.
+        If the orbit is no period doubling, or if no orbit of twice the period is found beside it.
     """
     orbits = doubling.problem(along)
+    here = doubling.point(orbits)
     with np.errstate(all="ignore"):
-        whole, found = doubled(orbits, doubling.point(orbits), aside)
+        product = orbits.monodromy(here)
+        off = float(Bifurcation.PERIOD_DOUBLING.test(*orbits.trace_and_determinant(here)))
+        size = 1 + float(np.max(np.abs(product)))
+        if not abs(off) <= _DOUBLES * size:
+            raise NoOrbitError(
+                f"the orbit is no period doubling: det(M + 1) = {off:.1e}, which is 0 at one"
+            )
+        whole, found = doubled(orbits, here, aside)
     if not found.converged:
         raise NoOrbitError(
             f"no orbit of twice the period was found beside the period doubling: residual "
             f"{float(found.residual):.1e} after {found.iterations} Newton iterations"
+        )
+    _, at = twice(orbits, here)
+    away = float(np.linalg.norm(found.point - at))
+    if not away <= _FARTHER * aside:
+        raise NoOrbitError(
+            f"the orbit of twice the period that was found is {away:.1e} from the period doubling, "
+            f"and not about {aside:g}: it is on another branch"
         )
     return orbit_at(whole, found.point)
 

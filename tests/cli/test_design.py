@@ -109,7 +109,6 @@ def test_choosing(said):
             2,
             "--gravity = 1.62 m/s3 is in meter / second ** 3",
         ),
-        (("--radius", "5 mm"), 2, "--radius of a Hertz contact needs --reduced-modulus"),
         (("--plot", "page.jpg"), 2, "'page.jpg' does not end in .pdf or .png or .svg"),
         (("--plot", "/dev/null/page.png"), 2, "/dev/null/page.png cannot be written"),
     ],

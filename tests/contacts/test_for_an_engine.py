@@ -151,7 +151,7 @@ def test_a_solref_that_no_simulation_has_is_refused_with_what_was_meant(solref, 
         ),
         (
             {"stiffness": None, "reduced_modulus": 1e9, "radius": 0.01, "engine": None},
-            "the frequency of the table is missing",
+            "radius needs a table, such as frequency and acceleration, or speed of an impact",
         ),
     ],
 )

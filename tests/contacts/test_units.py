@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bouncing_ball.contacts.contact import Contact
-from bouncing_ball.contacts.describe import drop_at_rest
+from bouncing_ball.contacts.drops import drop_at_rest
 from bouncing_ball.contacts.quantities import quantities
 from bouncing_ball.contacts.question import EngineSetup, Question
 from bouncing_ball.contacts.table import Table

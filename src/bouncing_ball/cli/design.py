@@ -15,7 +15,8 @@ from bouncing_ball.contacts import rows
 from bouncing_ball.contacts.assess import Assessment, LargestTimeStep, assess
 from bouncing_ball.contacts.choose import choose
 from bouncing_ball.contacts.contact import Contact
-from bouncing_ball.contacts.describe import Description, describe, drop_at_rest
+from bouncing_ball.contacts.describe import Description, describe
+from bouncing_ball.contacts.drops import drop_at_rest
 from bouncing_ball.contacts.engines.engine import ERROR, EngineSettings
 from bouncing_ball.contacts.quantities import quantities
 from bouncing_ball.contacts.question import EngineSetup, Question
@@ -24,9 +25,11 @@ from bouncing_ball.contacts.table import Table, TableMotion
 from bouncing_ball.contacts.units import in_si
 from bouncing_ball.contacts.write import (
     at_given_step,
+    dropped_at_step,
     resolve_for,
     settings,
     settings_on_table,
+    softer,
 )
 from bouncing_ball.datasets.files import PICTURES, require_writable
 from bouncing_ball.errors import NoOrbitError, ParameterError, extra
@@ -99,8 +102,7 @@ def answer(given: Mapping[str, Any]) -> DesignAnswer:
     read = {**given, **si}
     setup = None if given.get("engine") is None else EngineSetup(**_of(EngineSetup, read))
     has_table = any(given.get(name) is not None for name in ("n", *_OF_TABLE))
-    has_stiffness = contact.from_engine or contact.stiffness or contact.contact_time
-    if has_table or not (setup or has_stiffness):
+    if has_table or not (setup or contact.is_stiff):
         table = Table(**_of(Table, read))
         read |= _quantities_of(table)
         # An acceleration in m/s², with or without its unit, may have been meant in g.
@@ -108,13 +110,25 @@ def answer(given: Mapping[str, Any]) -> DesignAnswer:
         found, engine = _on_table(contact, table, question, setup, hint)
     else:
         hint = ""
-        found, engine = _at_rest(contact, TableMotion.at_rest(si.get("gravity")), setup)
+        found, engine = _at_rest(
+            contact, TableMotion.at_rest(si.get("gravity")), setup, si.get("speed")
+        )
     dropped = drop_at_rest(found.case, si["speed"]) if "speed" in si else None
     at_step = None if engine is None else engine.at_step
+    other = None if engine is None else softer(found.case, engine, question, si.get("speed"))
     if "time_step" in si and engine is None:
         at_step = at_given_step(contact, si["time_step"], si.get("restitution_error", ERROR))
     read |= _quantities_of(contact) | _quantities_of(question)
-    return DesignAnswer(found, dropped, engine, at_step, read, hint)
+    return DesignAnswer(
+        found=found,
+        dropped=dropped,
+        engine=engine,
+        at_step=at_step,
+        question=read,
+        hint=hint,
+        dropped_at_step=dropped_at_step(found.case, engine, si.get("speed")),
+        softer=other,
+    )
 
 
 def _of(kind: Any, given: Mapping[str, Any]) -> dict[str, Any]:
@@ -149,17 +163,19 @@ def _on_table(
         return found, None
     engine = settings_on_table(found, setup)
     # The time step of the engine is the only one.
-    rule = f"r of a free impact in {engine.name} is within {engine.error:g}"
+    at = engine.at_step
+    within = f"within {engine.error:g}" if at is None or at.is_within else at.span
+    rule = f"r of a free impact in {engine.name} is {within}"
     return replace(found, time_step=LargestTimeStep(engine.time_step, rule)), engine
 
 
 def _at_rest(
-    contact: Contact, table: TableMotion, setup: EngineSetup | None
+    contact: Contact, table: TableMotion, setup: EngineSetup | None, speed: float | None
 ) -> tuple[Description, EngineSettings | None]:
     """The contact without a table, and what to write into an engine."""
     if setup is None:
-        return describe(resolve(contact, table)), None
-    found = describe(resolve_for(contact, setup, table))
+        return describe(resolve(contact, table, speed=speed)), None
+    found = describe(resolve_for(contact, setup, table, speed))
     return found, settings(found.case, setup)
 
 
@@ -194,7 +210,7 @@ def document(given: DesignAnswer) -> dict[str, Any]:
     if isinstance(given.found, Assessment):
         found["reason"] = reason(given.found, given.hint)
     # What was not asked for has no key.
-    for name in ("dropped", "engine", "at_step"):
+    for name in ("dropped", "engine", "at_step", "dropped_at_step", "softer"):
         more = getattr(given, name)
         if more is not None:
             found[name] = rows.document(more)

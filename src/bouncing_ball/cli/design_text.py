@@ -9,7 +9,9 @@ from bouncing_ball.cli.options import option
 from bouncing_ball.contacts import rows
 from bouncing_ball.contacts.assess import Assessment
 from bouncing_ball.contacts.contact import Contact
-from bouncing_ball.contacts.describe import Description, Dropped, drop_at_rest
+from bouncing_ball.contacts.describe import Description
+from bouncing_ball.contacts.drops import Dropped, drop_at_rest
+from bouncing_ball.contacts.engines.drop_in_steps import Rise
 from bouncing_ball.contacts.engines.engine import EngineSettings
 from bouncing_ball.contacts.engines.given_step import AtStep
 from bouncing_ball.contacts.families import ComparedOrbit, ErrorsByQuantity, Needed
@@ -17,6 +19,7 @@ from bouncing_ball.contacts.quantities import quantities
 from bouncing_ball.contacts.question import EngineSetup, Question
 from bouncing_ball.contacts.table import Table
 from bouncing_ball.contacts.texts import percent, shown, signed
+from bouncing_ball.contacts.write import Softer
 
 _SIMPLE = "error law", "corrected"
 # The row that an engine's time step takes the place of.
@@ -39,7 +42,9 @@ class DesignAnswer(NamedTuple):
     """The contact with all that was asked about it, and the options with quantities in SI units.
 
     ``found`` is the assessment of a contact on a table, or the description of one without a table.
-    ``dropped``, ``engine`` and ``at_step`` are None if nothing was asked about them. ``hint`` is
+    ``dropped``, ``engine`` and ``at_step`` are None if nothing was asked about them, and so are the
+    rises of a drop at the engine's time step, and the softer contact that this step resolves if it
+    does not resolve the one asked for. ``hint`` is
     what may have been meant if no model has an orbit, and ``whole`` tells whether all numbers of
     each family are printed.
     """
@@ -51,6 +56,8 @@ class DesignAnswer(NamedTuple):
     question: dict[str, Any]
     hint: str = ""
     whole: bool = True
+    dropped_at_step: Rise | None = None
+    softer: Softer | None = None
 
 
 def both(reason: str, hint: str) -> str:
@@ -124,41 +131,96 @@ def _family_lines(one: ComparedOrbit) -> list[str]:
 
 def _engine_lines(given: DesignAnswer) -> list[str]:
     """The settings of an engine, if one is named, and what it does at the time step given."""
-    at = [] if given.at_step is None else _step_lines(given.at_step)
+    at = given.at_step
     engine = given.engine
     if engine is None:
-        return at
+        return [] if at is None else [*_step_lines(at), *_alternatives_at(at)]
     speed = given.found.slowed_speed
     slowed = "" if speed is None else f" of a fast impact, 1 % less at {shown(speed, 'm/s')}"
     expected = [
-        ("greatest height", engine.max_height, "m"),
-        ("duration of contact", engine.contact_duration, "s"),
-        ("penetration", engine.penetration, "m"),
+        ("depth at rest", given.found.case.static_deflection, "m"),
+        ("orbit, greatest height", engine.max_height, "m"),
+        ("orbit, duration of contact", engine.contact_duration, "s"),
+        ("orbit, penetration", engine.penetration, "m"),
     ]
+    met = (
+        f"r = {engine.restitution:.4g}{slowed}, within {engine.error:g} in {engine.steps} steps "
+        f"of {engine.scheme} in a contact"
+    )
+    if at is not None and not at.is_within:
+        met = f"r = {at.span} at this step, {at.mean:.4g} in the mean"
     return [
-        *at,
+        *([] if at is None else _step_lines(at)),
         "",
-        f"For {engine.name}, with the {engine.release} release "
-        f"(r = {engine.restitution:.4g}{slowed}, within {engine.error:g} in {engine.steps} steps "
-        f"of {engine.scheme} in a contact):",
-        "",
-        *(f"    {line}".rstrip() for line in engine.snippet.splitlines()),
-        "",
+        f"For {engine.name}, with the {engine.release} release ({met}):",
+        *_pasted(engine),
         _line("time step", shown(engine.time_step, "s")),
-        *(_line(f"orbit, {words}", shown(x, unit)) for words, x, unit in expected if x is not None),
+        *(_line(words, shown(x, unit)) for words, x, unit in expected if x is not None),
+        *_rise(given.dropped_at_step),
+        *_alternatives(engine, given.softer),
     ]
+
+
+def _pasted(engine: EngineSettings) -> list[str]:
+    return ["", *(f"    {line}".rstrip() for line in engine.snippet.splitlines()), ""]
+
+
+def _rise(found: Rise | None) -> list[str]:
+    if found is None:
+        return []
+    ends = [shown(height, "m") for height in (found.least, found.most)]
+    return [_line("the drop rises at this step to", " to ".join(dict.fromkeys(ends)))]
 
 
 def _step_lines(at: AtStep) -> list[str]:
-    allowed = f"the same r within {at.allowed:g}"
     return [
         "",
         f"At a time step of {shown(at.time_step, 's')} the given contact, of {at.steps:.4g} steps, "
         f"is {at.verdict}.",
-        f"The stiffest contact with {allowed} has {shown(at.stiffest, 'N/m')}, with a damping of "
-        f"{shown(at.stiffest_damping, 'N s/m')} and a contact time of "
-        f"{shown(at.stiffest_contact_time, 's')} ({at.stiffest_steps:.4g} steps).",
         *(f"Note: {remark}." for remark in at.remarks),
+    ]
+
+
+def _retuned(at: AtStep) -> str:
+    if at.retuned is None:
+        return f"No damping of this stiffness has a mean r of {at.restitution:.4g} at this step."
+    return (
+        f"With a damping of {shown(at.retuned, 'N s/m')} in place of the given one the mean r is "
+        f"{at.restitution:.4g} at this step"
+    )
+
+
+def _alternatives_at(at: AtStep) -> list[str]:
+    """What else a given step allows, for parameters that were given."""
+    tuned = [] if at.is_within else [_retuned(at).rstrip(".") + "."]
+    return [
+        *tuned,
+        f"The stiffest contact with the same r within {at.allowed:g} has "
+        f"{shown(at.stiffest, 'N/m')}, with a damping of {shown(at.stiffest_damping, 'N s/m')} and "
+        f"a contact time of {shown(at.stiffest_contact_time, 's')} ({at.stiffest_steps:.4g} "
+        "steps).",
+    ]
+
+
+def _alternatives(engine: EngineSettings, other: Softer | None) -> list[str]:
+    """The retuned and the softer contact, if the given step does not resolve the one asked for."""
+    at = engine.at_step
+    if at is None or other is None or engine.softer is None:
+        return [] if at is None else ["", *_alternatives_at(at)]
+    found = ["", _retuned(at)]
+    if engine.retuned is not None and engine.retuned.at_step is not None:
+        found[-1] += f", and any is r = {engine.retuned.at_step.span}:"
+        found += _pasted(engine.retuned)
+    return [
+        *found,
+        f"A softer contact has this r within {at.allowed:g} at this step. Its numbers are:",
+        "",
+        *(_line(*row) for row in rows.texts(other.contact)),
+        *([] if other.dropped is None else (_line(*row) for row in rows.texts(other.dropped))),
+        *_rise(other.dropped_at_step),
+        *([] if other.dropped is None else (f"Note: {one}." for one in other.dropped.remarks)),
+        *([other.verdict] if other.verdict else []),
+        *_pasted(engine.softer),
     ]
 
 
@@ -196,7 +258,21 @@ def _whole(found: Assessment) -> list[str]:
     ]
 
 
-def _law_lines(found: Assessment) -> list[str]:
+def _at_small_steps(at: AtStep | None) -> list[str]:
+    """What the verdict on a table is about, if the engine's time step changes the contact."""
+    if at is None or at.is_within:
+        return []
+    about = (
+        f"the contact with small time steps, and at {shown(at.time_step, 's')} its r is {at.span}"
+    )
+    return [f"Note: motion, verdict and orbits are those of {about}."]
+
+
+def _drop_remarks(given: DesignAnswer) -> list[str]:
+    return [] if given.dropped is None else [f"Note: {one}." for one in given.dropped.remarks]
+
+
+def _law_lines(found: Assessment | Description) -> list[str]:
     """The parameters of a contact law, with their units."""
     law = found.case.law
     values = dict(found.law or {})
@@ -255,7 +331,9 @@ def _description(given: DesignAnswer, found: Description) -> list[str]:
         _echo(given.question),
         *(_line(*row) for row in numbers(given)),
         _line("release", found.release),
+        *_law_lines(found),
         *(f"Note: {note}." for note in found.notes),
+        *_drop_remarks(given),
         *_engine_lines(given),
     ]
 
@@ -280,6 +358,8 @@ def _assessment(given: DesignAnswer, found: Assessment) -> list[str]:
         f"Reason: {reason(found, given.hint)}.",
         _echo(given.question),
         *(f"Note: {note}." for note in found.notes),
+        *_drop_remarks(given),
+        *_at_small_steps(given.at_step),
         *_engine_lines(given),
         "",
         *(_line(*row) for row in numbers(given) if not by_engine or row[0] != _STEP),

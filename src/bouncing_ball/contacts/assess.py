@@ -117,7 +117,8 @@ class Assessment:
     def judgement(self) -> Judgement:
         """Whether the restitution model is good enough, in words, and the reason."""
         if self.chosen is None:
-            found = assessed(self.judged, self.needed, self.frequency_ratio)
+            law = None if self.case.law is None else self.case.law.name
+            found = assessed(self.judged, self.needed, self.frequency_ratio, law)
         else:
             found = judged_choice(self.case, self.needed, self.chosen)
         # A threshold, such as that of permanent contact, is not a property of one orbit.

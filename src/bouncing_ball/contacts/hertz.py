@@ -49,7 +49,9 @@ def reduced_modulus(contact: Contact) -> float | None:
                 f"{{{known[0]}}} needs {missing}: both bodies are elastic, each with E and ν"
             )
     elastic = "youngs_modulus" if known else "reduced_modulus"
-    if (elastic in data) != ("radius" in data):
+    # Beside a stiffness the radius says how deep a ball may sink in.
+    by_itself = elastic not in data and not data.keys().isdisjoint(("stiffness", "contact_time"))
+    if not by_itself and (elastic in data) != ("radius" in data):
         ways = "{reduced_modulus}, or {youngs_modulus} and the other data of both materials"
         raise ParameterError(
             f"{{{elastic}}} needs {{radius}}, the radius of curvature at the contact"

@@ -68,7 +68,8 @@ class FinalMotion:
     three values for the restitution model. For motions that repeat in the same way in both models
     there is then the ``greatest`` height in each model; for other motions there are means over
     time of the height and of the power that the table transfers, over a number of ``balls``, with
-    the signed relative errors of the restitution model.
+    the signed relative errors of the restitution model. ``is_laid`` tells whether the ball was
+    laid on the table, because no model has an orbit on which a ball can arrive.
     """
 
     kind: str
@@ -83,6 +84,7 @@ class FinalMotion:
     mean_power: dict[str, Mean | None] | None = None
     mean_error: dict[str, Mean] | None = None
     balls: int | None = None
+    is_laid: bool = False
 
 
 class Sampling(NamedTuple):
@@ -149,10 +151,12 @@ def of_family(
     """
     if family.exists and family.is_stable and family.is_admissible:
         return FinalMotion(str(Kind.ORBIT), family.n, 1, laid=_laid(case, family))
-    orbit = _first_orbit(case, family.n)
+    orbit = _first_orbit(case, family)
     if orbit is not None and _is_elliptic(case, family, orbit):
         return FinalMotion(str(Kind.UNDECIDED), 0, 0)
-    first = _start(case, orbit)
+    first = None if orbit is None else _beside(case, orbit)
+    is_laid = first is None
+    first = first or _laid_down(case)
     # The exact model and the restitution model.
     ends = {name: _end(case, name, first) for name in list(case.models)[:2]}
     ideal = family.standing["restitution"]
@@ -173,6 +177,7 @@ def of_family(
         restitution_kind=simple.kind,
         restitution_periods=simple.periods,
         restitution_impacts=simple.impacts,
+        is_laid=is_laid,
         **values,
     )
 
@@ -182,12 +187,11 @@ def _followed(case: ResolvedContact) -> int:
     return _IMPACTS if case.law is None else _IMPACTS_OF_LAW
 
 
-def _first_orbit(case: ResolvedContact, n: int) -> Any | None:
+def _first_orbit(case: ResolvedContact, family: ComparedOrbit) -> Any | None:
     """The n-T orbit of the first model that has one: exact, restitution or corrected."""
-    for model in case.models.values():
-        orbit = n_t.orbit(model, n, case.table.amplitude)
-        if orbit.exists:
-            return orbit
+    for name, model in case.models.items():
+        if family.standing[name].exists:
+            return n_t.orbit(model, family.n, case.table.amplitude)
     return None
 
 
@@ -200,13 +204,20 @@ def _is_elliptic(case: ResolvedContact, family: ComparedOrbit, orbit: Any) -> bo
     return abs(float(trace)) < 2
 
 
-def _start(case: ResolvedContact, orbit: Any | None) -> _Start:
-    """An impact beside the orbit, or without one that of a ball laid on the table at the phase
-    where the table moves down fastest.
+def _beside(case: ResolvedContact, orbit: Any) -> _Start | None:
+    """An impact beside the orbit; None if no ball arrives with it, because it would rise from
+    below the table, as on some inadmissible orbits of compliant contacts.
     """
-    if orbit is None:
-        return _Start(np.pi, -case.table.amplitude)
-    return _Start(float(orbit.phase), float(orbit.impact_velocity) * (1 + _BESIDE))
+    phase = float(orbit.phase)
+    velocity = float(orbit.impact_velocity) * (1 + _BESIDE)
+    if velocity > case.table.amplitude * math.cos(phase):
+        return None
+    return _Start(phase, velocity)
+
+
+def _laid_down(case: ResolvedContact) -> _Start:
+    """A ball that is laid on the table at the phase where the table moves down fastest."""
+    return _Start(np.pi, -case.table.amplitude)
 
 
 def _laid(case: ResolvedContact, family: ComparedOrbit) -> str | None:

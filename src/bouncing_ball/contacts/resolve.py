@@ -23,6 +23,7 @@ from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.table import TableMotion
 from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.models.damping import Release
+from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
 from bouncing_ball.models.laws.signature import Signature
@@ -40,6 +41,7 @@ def resolve(
     table: TableMotion,
     families: Sequence[int] = (1,),
     written: str | None = None,
+    speed: float | None = None,
 ) -> ResolvedContact:
     """The model of a contact that is given with its stiffness, and its SI scales.
 
@@ -47,12 +49,14 @@ def resolve(
     ----------
     contact : Contact
     table : TableMotion
-        The table. On a table at rest a contact has no impact speed, which a law needs.
+        The table. On a table at rest a law needs an impact speed.
     families : sequence of int
         Families n. The impact speed of a nonlinear contact is that of the first stable family.
     written : str, optional
         Name of the engine for which the contact is written. It then ends as in this engine, with
         the spring and damper in place of the law of the engine whose parameters were given.
+    speed : float, optional
+        Speed of an impact on a table at rest, in m/s.
 
     Raises
     ------
@@ -69,14 +73,16 @@ def resolve(
     kind = law_type(plain)
     is_stiff = single(given(plain), STIFF, "the stiffness of the contact") != ""
     modulus = reduced_modulus(plain)
+    if speed is not None and not table.is_at_rest:
+        speed = None
     if not is_stiff:
         raise ParameterError("no stiffness: give {stiffness}, or {contact_time}")
     if kind is None and modulus is None:
         found = _spring_damper(plain, table)
     else:
-        found = _of_law(plain, table, families, kind, modulus)
-    found = replace(found, given=contact, written=written)
-    return found if table.is_at_rest else _with_law_of_engine(found, families)
+        found = _of_law(plain, table, families, kind, modulus, speed)
+    found = replace(found, given=contact, written=written, impact_speed=speed)
+    return _with_law_of_engine(found, families)
 
 
 def law_type(contact: Contact) -> type[ContactLaw] | None:
@@ -137,9 +143,10 @@ def _of_law(
     families: Sequence[int],
     kind: type[ContactLaw] | None,
     modulus: float | None,
+    speed: float | None,
 ) -> ResolvedContact:
-    """A contact law with its r and duration at the impact speed of the first stable family: of a
-    kind, or the Hertz contact of a reduced modulus.
+    """A contact law with its r and duration at the impact speed of the first stable family, or on a
+    table at rest at the speed that is given: of a kind, or the Hertz contact of a reduced modulus.
     """
     # The parameters of a law follow from a free impact, so that r counts as measured.
     measured = contact if kind is None else contact.with_measured_restitution()
@@ -147,25 +154,28 @@ def _of_law(
     unit = SpringDamper(1.0, loss(measured), rule)
     if modulus is not None and rule is not Release.DISPLACEMENT:
         raise ModelError("a Hertz contact with Tsuji's damping has the displacement release only")
-    if table.is_at_rest:
+    r = float(unit.restitution)
+    if not table.is_at_rest:
+        at = float(rigid_speed(meant(families, r, table.amplitude), r))
+    elif speed is None:
         what = "{radius}" if kind is None else "{law}"
         why = "the contact time" if kind is None else "r"
         raise needs_table(what, why)
-    r = float(unit.restitution)
-    speed = rigid_speed(meant(families, r, table.amplitude), r)
+    else:
+        at = speed * table.time / table.length
     if modulus is not None:
         law: ContactLaw = hertz(contact.mass, modulus, contact.radius, r, table)
-        duration = float(law.signature(speed).duration)
+        duration = float(law.signature(at).duration)
     else:
         assert kind is not None
         duration = contact.contact_time / table.time
-        law = law_of_impact(kind, r, duration, speed)
+        law = law_of_impact(kind, r, duration, at)
     linear = replace(unit, frequency_ratio=float(unit.free_duration) / duration)
     return ResolvedContact(contact.mass, table, linear, law)
 
 
 def needs_table(what: str, why: str) -> ParameterError:
-    needs = "a table, such as {frequency} and {acceleration}"
+    needs = "a table, such as {frequency} and {acceleration}, or {speed} of an impact"
     return ParameterError(f"{what} needs {needs}: {why} depends on the speed")
 
 
@@ -177,6 +187,8 @@ def _with_law_of_engine(case: ResolvedContact, families: Sequence[int]) -> Resol
     table = case.table
     law = engine.law(case.given.engine_parameters, case.mass, table.time, table.length)
     if law is None:
+        return case
+    if case.is_of_no_impact and engine.needs_speed:
         return case
     if engine.needs_speed:
         case = with_law(case, law, families)
@@ -213,13 +225,20 @@ def with_law(case: ResolvedContact, law: ContactLaw, asked: Sequence[int]) -> Re
     >>> round(float(found.contact.restitution), 12)
     0.8
     """
+    if case.impact_speed is not None:
+        at = case.impact_speed * case.table.time / case.table.length
+        return _with_impact(case, law.signature(at))
     signature = Signature(law)
     r = np.ones(len(asked))
     # A contraction: where r falls like 1/v at most, each step at least halves the error.
     for _ in range(np.finfo(float).nmant):
         r = signature(rigid_speed(asked, r)).restitution
     n = meant(asked, r, case.table.amplitude)
-    impact = law.signature(float(rigid_speed(n, r[asked.index(n)])))
+    return _with_impact(case, law.signature(float(rigid_speed(n, r[asked.index(n)]))))
+
+
+def _with_impact(case: ResolvedContact, impact: Instant) -> ResolvedContact:
+    """The case with the linear contact that has the r and the duration of an impact."""
     unit = SpringDamper.from_restitution(
         float(impact.restitution), 1.0, case.contact.release, measured=True
     )

@@ -12,6 +12,7 @@ from bouncing_ball.accuracy.corrected_errors import exact_and_simple_models
 from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.drop_test import slowed_speed
 from bouncing_ball.contacts.engines.physical import Physical
+from bouncing_ball.contacts.rebounds import slowed
 from bouncing_ball.contacts.table import TableMotion
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.instant import Instant
@@ -58,6 +59,8 @@ class ResolvedContact:
         The contact as it was given, for the sentences on how it was read.
     written : str, optional
         Name of the engine for which it is written.
+    impact_speed : float, optional
+        On a table at rest, the speed in m/s of the impact at which a law has the r of ``contact``.
 
     Examples
     --------
@@ -76,6 +79,12 @@ class ResolvedContact:
     given_damping: float | None = None
     given: Contact = _NOTHING
     written: str | None = None
+    impact_speed: float | None = None
+
+    @property
+    def is_of_no_impact(self) -> bool:
+        """Whether there is neither a table that moves nor an impact with a speed."""
+        return self.table.is_at_rest and self.impact_speed is None
 
     @property
     def omega(self) -> float:
@@ -121,14 +130,24 @@ class ResolvedContact:
 
     @property
     def slowed_speed(self) -> float | None:
-        """The impact speed in m/s at which gravity lowers r by 1 %; None for a contact law, without
-        damping, and for ζ ≥ 1.
+        """The impact speed in m/s at which gravity lowers r by 1 %; None without damping, for
+        ζ ≥ 1, and on a vibrating table for a contact law.
         """
         zeta = float(self.contact.damping_ratio)
-        if self.law is not None or zeta >= 1:
+        if self.law is not None:
+            return self._slowed_speed_of_law() if self.table.is_at_rest else None
+        if zeta >= 1:
             return None
         r = float(self.contact.restitution)
         return slowed_speed(self.omega, zeta, r, self.table.gravity, self.contact.release)
+
+    def _slowed_speed_of_law(self) -> float | None:
+        """The same for a contact law: of drops on its own contact."""
+        assert self.law is not None
+        unit = self.table.length / self.table.time
+        # In an impact with this speed gravity changes r by a thousandth of a percent.
+        found = slowed(self.law, 1e5 * rest(self.law) * self.omega * self.table.time)
+        return None if found is None else found * unit
 
     @property
     def needs_speed(self) -> bool:

@@ -74,8 +74,10 @@ def _opposite(orbit: str, word: str, of_model: bool) -> str:
     return f"its {orbit} is not {word}, and the contact's is"
 
 
-def assessed(family: ComparedOrbit, needed: Needed, frequency_ratio: float) -> Judgement:
-    """The verdict on a given contact.
+def assessed(
+    family: ComparedOrbit, needed: Needed, frequency_ratio: float, law: str | None = None
+) -> Judgement:
+    """The verdict on a given contact, which may be of another ``law`` than the linear one.
 
     The model is good enough if its orbit agrees with the exact one in existence, admissibility and
     stability, and if the error is within the tolerance.
@@ -88,7 +90,7 @@ def assessed(family: ComparedOrbit, needed: Needed, frequency_ratio: float) -> J
         sentence = f"Whether the restitution model is good enough in the {name} is not known."
         return Judgement(False, sentence, "the contact or the model has no value to compare")
     good = wrong is None and error is not None and abs(error) <= needed.tolerance
-    reason = _reason(needed, frequency_ratio, good, tolerance)
+    reason = _reason(needed, frequency_ratio, good, tolerance, law)
     if good:
         found = _prediction(family, needed)
         sentence = f"The restitution model is good enough: {found}, within {tolerance}."
@@ -232,8 +234,21 @@ def _instead(family: ComparedOrbit, needed: Needed) -> str:
     return "; nor is the corrected one: simulate the contact"
 
 
-def _reason(needed: Needed, frequency_ratio: float, good: bool, tolerance: str) -> str:
-    """A clause that compares the ϖ of the contact with the ϖ that the tolerance needs."""
+def _reason(
+    needed: Needed, frequency_ratio: float, good: bool, tolerance: str, law: str | None
+) -> str:
+    """A clause that compares the ϖ of the contact with the ϖ that the tolerance needs.
+
+    That ϖ is one of linear contacts, so that it is no reason for a verdict on another law.
+    """
+    if law is not None:
+        text = f"both values are computed, that of the contact with the {law} law itself"
+        if needed.frequency_ratio is None:
+            return text
+        return (
+            f"{text}; of linear contacts those from ϖ = {needed.frequency_ratio:.4g} on are within "
+            f"{tolerance}, and that with its r and duration has ϖ = {frequency_ratio:.4g}"
+        )
     if needed.frequency_ratio is None:
         return _NO_CROSSING[needed.status]
     place = "above" if frequency_ratio >= needed.frequency_ratio else "below"
@@ -280,12 +295,15 @@ def headline(motion: FinalMotion, family: ComparedOrbit) -> str:
     if motion.restitution_kind is None:
         return f"A ball near the {orbit} stays near it, because the contact loses no energy."
     none = not any(each.exists for each in family.standing.values())
-    does = (_LAID if none else _DOES)[motion.kind]
+    does = (_LAID if motion.is_laid else _DOES)[motion.kind]
     if motion.periods > 1 and motion.kind != Kind.PERMANENT_CONTACT:
         does += f" after {motion.periods} periods of the table and {motion.impacts} impacts"
     why = "not stable" if family.is_admissible else "not admissible"
     if none:
         return f"No model has an n-T orbit. A ball laid on the table {does}."
+    if motion.is_laid:
+        said = f"The {orbit} is {why}" if family.exists else f"The contact has no {orbit}"
+        return f"{said}. A ball laid on the table {does}."
     if not family.exists:
         return f"The contact has no {orbit}. A ball that starts as on such an orbit {does}."
     return f"The {orbit} is {why}. A ball that starts near it {does}."

@@ -1,24 +1,30 @@
 """The third question: what does one write into an engine for a contact?
 
-The time step follows from the contact, or is given. A given step is too long for stiff contacts;
-the settings are then those of the stiffest contact with the same r that it resolves.
+The time step follows from the contact, or is given. A given step is too long for stiff contacts.
+The settings are those of the contact that was asked for, with the r that it has at this step.
+Beside them are those with a retuned damping, and those of a softer contact with its own numbers.
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from bouncing_ball.contacts.assess import Assessment, assess
 from bouncing_ball.contacts.contact import Contact
-from bouncing_ball.contacts.describe import LONGEST, describe
+from bouncing_ball.contacts.describe import LONGEST, Description, describe
+from bouncing_ball.contacts.drops import Dropped, drop_at_rest
 from bouncing_ball.contacts.engines.choice import engine_named
+from bouncing_ball.contacts.engines.drop_in_steps import MOST_STEPS, Rise, drop_in_steps
 from bouncing_ball.contacts.engines.engine import EngineSettings
 from bouncing_ball.contacts.engines.given_step import AtStep, stiffest_contact
+from bouncing_ball.contacts.engines.physical import Physical
+from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.contacts.loss import of_loss
 from bouncing_ball.contacts.quantities import check_kind
 from bouncing_ball.contacts.question import EngineSetup, Question
 from bouncing_ball.contacts.resolve import resolve
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.table import Table, TableMotion
-from bouncing_ball.errors import ParameterError
+from bouncing_ball.errors import ModelError, ParameterError
+from bouncing_ball.models.spring_damper import SpringDamper
 
 _OF_A_LAW = (
     "{time_step} is given for a spring and a damper: the r of this contact depends on the speed"
@@ -60,11 +66,13 @@ def write_contact(
     >>> found.parameters["solref"][0], round(found.restitution, 6), found.release
     (-100000.0, 0.75, 'force')
 
-    A step of a millisecond is too long for it:
+    A step of a millisecond is too long for it, but the mean r can be restored:
 
     >>> found = write_contact(contact, EngineSetup(engine="mujoco", time_step="1 ms"))
-    >>> found.at_step.is_within, f"{found.at_step.stiffest:.3g} N/m"
-    (False, '74.1 N/m')
+    >>> found.at_step.is_within, found.parameters["solref"][0]
+    (False, -100000.0)
+    >>> round(found.retuned.at_step.mean, 6), f"{found.at_step.stiffest:.3g} N/m"
+    (0.75, '74.1 N/m')
     """
     asked = Question() if question is None else question
     check_kind("contact", contact, Contact)
@@ -78,7 +86,9 @@ def write_contact(
     return settings_on_table(assess(case, asked), setup)
 
 
-def resolve_for(contact: Contact, setup: EngineSetup, at_rest: TableMotion) -> ResolvedContact:
+def resolve_for(
+    contact: Contact, setup: EngineSetup, at_rest: TableMotion, speed: float | None = None
+) -> ResolvedContact:
     """The contact as it ends in the engine, or without a stiffness the stiffest one that the time
     step of the engine resolves.
 
@@ -90,7 +100,7 @@ def resolve_for(contact: Contact, setup: EngineSetup, at_rest: TableMotion) -> R
     """
     step = setup.time_step
     if contact.is_stiff or step is None:
-        return resolve(contact, at_rest, written=setup.engine)
+        return resolve(contact, at_rest, written=setup.engine, speed=speed)
     plain = contact.by_stiffness_and_loss(setup.engine)
     scheme = engine_named(setup.engine).scheme
     allowed = setup.restitution_error
@@ -137,13 +147,73 @@ def settings_on_table(found: Assessment, setup: EngineSetup) -> EngineSettings:
     """
     written = settings(found.case, setup)
     if written.at_step is not None and not written.at_step.is_within:
-        # The settings are those of another contact, with another orbit.
+        # At this step the contact has another r, and so another orbit.
         return written
     return replace(
         written,
         max_height=found.judged.max_height,
         contact_duration=found.judged.contact_duration,
         penetration=found.judged.greatest_compression,
+    )
+
+
+@dataclass(frozen=True)
+class Softer:
+    """The stiffest contact with the same ζ that a given time step resolves, with its own numbers.
+
+    ``dropped`` is a drop with the speed that was asked about, and ``dropped_at_step`` the least and
+    the greatest rise at this step. ``verdict`` is that on a vibrating table, otherwise empty.
+    """
+
+    contact: Description
+    dropped: Dropped | None = None
+    dropped_at_step: Rise | None = None
+    verdict: str = ""
+
+
+def softer(
+    case: ResolvedContact, written: EngineSettings, question: Question, speed: float | None
+) -> Softer | None:
+    """The softer contact of settings for a given time step; None if the step resolves the contact.
+
+    ``speed`` is the impact speed of a drop in m/s.
+    """
+    if written.softer is None or written.softer.at_step is None:
+        return None
+    at = written.softer.at_step
+    ball = Physical(case.mass, at.stiffest, at.stiffest_damping)
+    ratio = ball.angular_frequency * case.table.time
+    spring = SpringDamper(ratio, ball.damping_ratio, case.contact.release)
+    own = replace(case, contact=spring, given_stiffness=ball.stiffness, given_damping=ball.damping)
+    return Softer(
+        contact=describe(own),
+        dropped=None if speed is None else drop_at_rest(own, speed),
+        dropped_at_step=dropped_at_step(own, written.softer, speed),
+        verdict="" if case.table.is_at_rest else _verdict(own, question),
+    )
+
+
+def _verdict(case: ResolvedContact, question: Question) -> str:
+    """The headline and the verdict on a contact, or the reason why there are none."""
+    try:
+        found = assess(case, question)
+    except ModelError as error:
+        return f"It is not judged: {error}."
+    return f"{found.headline} {found.verdict}"
+
+
+def dropped_at_step(
+    case: ResolvedContact, written: EngineSettings | None, speed: float | None
+) -> Rise | None:
+    """The rises of balls that are dropped, in an engine with a time step that is given."""
+    if speed is None or written is None or written.at_step is None:
+        return None
+    if written.at_step.steps > MOST_STEPS:
+        return None
+    release = case.contact.release
+    scheme = Scheme(written.scheme)
+    return drop_in_steps(
+        scheme, case.physical, release, written.time_step, speed, case.table.gravity
     )
 
 

@@ -123,11 +123,23 @@ def test_without_a_stiffness_the_contact_is_the_stiffest_that_the_step_resolves(
     for one, other in zip(again.parameters.values(), found.parameters.values(), strict=True):
         # Twelve digits are written, twice.
         assert np.ravel(one) == pytest.approx(np.ravel(other), rel=1e-11)
+    # A stiffer one is written as it is asked for, and this one beside it.
     too_stiff = write_contact(replace(contact, stiffness=4 * stiff), setup)
-    assert not too_stiff.at_step.is_within
-    assert too_stiff.parameters.keys() == found.parameters.keys()
-    for one, other in zip(too_stiff.parameters.values(), found.parameters.values(), strict=True):
+    assert not too_stiff.at_step.is_within and found.softer is None
+    for one, other in zip(
+        too_stiff.softer.parameters.values(), found.parameters.values(), strict=True
+    ):
         assert np.ravel(one) == pytest.approx(np.ravel(other), rel=1e-9)
+    if ENGINES[name].scheme is Scheme.COMPENSATED:
+        # This step alone damps more than the contact.
+        assert too_stiff.retuned is None and too_stiff.at_step.mean < 0.75
+        return
+    read = ENGINES[name].read(too_stiff.parameters, 0.5)
+    assert read.stiffness == pytest.approx(4 * stiff, rel=1e-11)
+    # The same stiffness with another damping has this r in the mean.
+    at = too_stiff.retuned.at_step
+    assert at.mean == pytest.approx(0.75, abs=1e-8)
+    assert at.least < 0.75 < at.most and at.restitution == pytest.approx(0.75, rel=1e-11)
 
 
 def test_the_stiffest_contact_of_a_drop_test_rebounds_as_measured():
@@ -150,7 +162,11 @@ def test_a_step_that_does_not_resolve_a_contact_has_no_orbit_of_it():
     assert fine.found.time_step.largest == 1e-6
     coarse = answered(**table, **given, time_step="1 ms")
     assert coarse.engine.max_height is None and not coarse.at_step.is_within
-    assert coarse.engine.parameters["kn"] < 1e6
+    # The contact that is written is the one of the verdict; the softer one has its own.
+    assert coarse.engine.parameters["kn"] == 1e6
+    soft = coarse.softer.contact.stiffness
+    assert coarse.engine.softer.parameters["kn"] == pytest.approx(soft, rel=1e-11) and soft < 1e6
+    assert coarse.softer.verdict and fine.softer is None
 
 
 def test_a_time_step_needs_an_engine(refusal):

@@ -5,7 +5,7 @@ import math
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.resources import files
 from typing import Any, ClassVar
 
@@ -42,7 +42,10 @@ class EngineSettings:
     contact under each release that the engine has.
     ``max_height`` and ``penetration`` in m and ``contact_duration`` in s belong to the orbit of a
     design; they are None if there is no orbit. ``at_step`` is what the contact does at a time step
-    that is given, None if the time step follows from the contact.
+    that is given, None if the time step follows from the contact. If the given step does not keep
+    the r of the contact within the error, ``retuned`` has the settings of the same stiffness with
+    the damping that restores the mean r, None if no damping does, and ``softer`` those of the
+    stiffest contact with the same ζ that the step resolves.
     """
 
     name: str
@@ -59,6 +62,8 @@ class EngineSettings:
     contact_duration: float | None = None
     penetration: float | None = None
     at_step: AtStep | None = None
+    retuned: "EngineSettings | None" = None
+    softer: "EngineSettings | None" = None
 
 
 def text_of(name: str) -> str:
@@ -142,8 +147,11 @@ class Engine(ABC):
         lines = (line.rpartition("|") for line in text_of(self.text or self.name).splitlines())
         return "\n".join(line for rule, _, line in lines if rule in ("", release))
 
-    def snippet(self, contact: Physical, release: Release, time_step: float) -> str:
-        """The text to paste for a contact and a time step in s; its comments give the units.
+    def snippet(
+        self, contact: Physical, release: Release, time_step: float, at: AtStep | None = None
+    ) -> str:
+        """The text to paste for a contact and a time step in s; its comments give the units, and r,
+        at a step that does not resolve the contact as it is there.
 
         It has no line about a release under which the ball would not rebound.
         """
@@ -151,6 +159,9 @@ class Engine(ABC):
         values |= self.numbers(self.for_step(contact, time_step))
         texts = {name: repr(value) for name, value in values.items()}
         texts |= {rule: f"{r:.4f}" for rule, r in self.restitutions(contact, release).items()}
+        if at is not None and not at.is_within:
+            texts = {name: text for name, text in texts.items() if name not in list(Release)}
+            texts[release] = f"{at.span} at this step"
         return filled(self.template(release), texts)
 
     @abstractmethod
@@ -234,8 +245,8 @@ class Engine(ABC):
     ) -> EngineSettings:
         """The settings for a contact, with a time step that changes r by at most ``error``.
 
-        With a ``time_step`` in s they are for this step: for the contact, if the step resolves it,
-        and otherwise for the stiffest contact with the same r that it resolves.
+        With a ``time_step`` in s they are for this step, whatever r the contact then has; the
+        result also has a retuned and a softer contact if the step does not resolve this one.
 
         Raises
         ------
@@ -247,37 +258,56 @@ class Engine(ABC):
         --------
         >>> from bouncing_ball.contacts.engines.mujoco import MuJoCo
         >>> found = MuJoCo().settings(Physical(1.0, 1e6, 200.0), error=0.01, time_step=2e-4)
-        >>> found.at_step.is_within, found.time_step, found.parameters["solref"][0] > -1e6
-        (False, 0.0002, True)
+        >>> found.at_step.is_within, found.time_step, found.parameters["solref"]
+        (False, 0.0002, [-1000000.0, -200.0])
+        >>> found.retuned.parameters["solref"][0], found.softer.parameters["solref"][0] > -1e6
+        (-1000000.0, True)
         """
         rule = self.release(release)
         contact = Physical(*map(written, contact))
-        restitution = contact.restitution(rule)
-        at = None
         if time_step is None:
             steps = steps_for(self.scheme, contact.damping_ratio, rule, error)
             step = written(contact.contact_time(rule) / steps)
-        else:
-            step = time_step
-            at = self.at_step(contact, rule, step, error)
-            if not at.is_within:
-                stiffest = (contact.mass, at.stiffest, at.stiffest_damping)
-                contact = Physical(*map(written, stiffest))
-            steps = math.floor(contact.contact_time(rule) / step * _ALMOST)
-        text = self.snippet(contact, rule, step)
-        found = self.parameters(self.for_step(contact, step))
-        by_rule = {str(one): r for one, r in self.restitutions(contact, rule).items()}
+            return self._settings(contact, rule, error, step, steps)
+        at = self.at_step(contact, rule, time_step, error)
+        found = self._at(contact, rule, at)
+        if at.is_within:
+            return found
+        again = None
+        if at.retuned is not None:
+            other = Physical(contact.mass, contact.stiffness, written(at.retuned))
+            again = at_step(self.name, self.scheme, other, rule, time_step, error, asked=contact)
+            again = self._at(other, rule, again)
+        soft = Physical(*map(written, (contact.mass, at.stiffest, at.stiffest_damping)))
+        softer = self._at(soft, rule, self.at_step(soft, rule, time_step, error))
+        return replace(found, retuned=again, softer=softer)
+
+    def _at(self, contact: Physical, release: Release, at: AtStep) -> EngineSettings:
+        """The settings of a contact at a time step that is given."""
+        steps = math.floor(contact.contact_time(release) / at.time_step * _ALMOST)
+        return self._settings(contact, release, at.allowed, at.time_step, steps, at)
+
+    def _settings(
+        self,
+        contact: Physical,
+        release: Release,
+        error: float,
+        step: float,
+        steps: int,
+        at: AtStep | None = None,
+    ) -> EngineSettings:
+        by_rule = {str(one): r for one, r in self.restitutions(contact, release).items()}
         return EngineSettings(
             name=self.name,
-            parameters=found,
+            parameters=self.parameters(self.for_step(contact, step)),
             time_step=step,
-            release=str(rule),
-            restitution=restitution,
+            release=str(release),
+            restitution=contact.restitution(release),
             restitutions=by_rule,
             steps=steps,
             error=error,
             scheme=str(self.scheme),
-            snippet=text,
+            snippet=self.snippet(contact, release, step, at),
             at_step=at,
         )
 

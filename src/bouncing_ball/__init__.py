@@ -69,6 +69,7 @@ if TYPE_CHECKING:
     from bouncing_ball.contacts.question import EngineSetup, Question
     from bouncing_ball.contacts.table import Table
     from bouncing_ball.contacts.write import write_contact
+    from bouncing_ball.drawing.result import open
     from bouncing_ball.errors import ModelError, NoOrbitError
     from bouncing_ball.long_run.motion_of import basins, lyapunov_exponent, motion_of, orbit_diagram
     from bouncing_ball.long_run.orbit_of_motion import orbit_of_motion
@@ -108,6 +109,7 @@ __all__ = [
     "limits",
     "lyapunov_exponent",
     "motion_of",
+    "open",
     "orbit",
     "orbit_diagram",
     "orbit_of_motion",
@@ -145,6 +147,8 @@ def __getattr__(name: str) -> Any:
             from bouncing_ball.models import over_time as module
         case "basins" | "lyapunov_exponent" | "motion_of" | "orbit_diagram":
             from bouncing_ball.long_run import motion_of as module
+        case "open":
+            from bouncing_ball.drawing import result as module
         case "error_thresholds":
             from bouncing_ball.accuracy import error_thresholds as module
         case "describe_contact":

@@ -72,6 +72,7 @@ PARTS = {
         "supplement",
         "figures/*",
         "config/README",
+        "docs/datasets",
         "docs/record",
     ],
     "Code": ["results/api/modules", "CONTRIBUTING", "CHANGELOG"],

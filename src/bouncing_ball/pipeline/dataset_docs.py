@@ -8,9 +8,10 @@ from bouncing_ball.pipeline.artifacts import FOLDER, Artifact
 
 _HEAD = """# The datasets
 
-Every dataset of the record: what each of its variables is, over which dimensions it is given, its unit, its symbol and its equation in
-the paper, and where it is shown. `make config-docs` makes this page from the datasets themselves. Everything is dimensionless except
-angles: times are Ωt, lengths Ω²y/g, velocities Ωẏ/g. The parameters are among the attributes of each dataset.
+Every dataset of the record: what each of its variables is, over which dimensions it is given, its
+unit, its symbol and its equation in the paper, and where it is shown. `make config-docs` makes this
+page from the datasets themselves. Everything is dimensionless except angles: times are Ωt, lengths
+Ω²y/g, velocities Ωẏ/g. The parameters are among the attributes of each dataset.
 
 ```python
 import bouncing_ball

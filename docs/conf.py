@@ -73,6 +73,7 @@ PARTS = {
         "figures/*",
         "figures/beyond/*",
         "config/README",
+        "docs/datasets",
         "docs/record",
     ],
     "Code": ["results/api/modules", "CONTRIBUTING", "CHANGELOG"],

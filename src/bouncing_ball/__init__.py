@@ -63,6 +63,7 @@ if TYPE_CHECKING:
     from bouncing_ball.contacts.question import Question as Question
     from bouncing_ball.contacts.table import Table as Table
     from bouncing_ball.contacts.write import write_contact as write_contact
+    from bouncing_ball.drawing.result import open as open
     from bouncing_ball.errors import ModelError as ModelError
     from bouncing_ball.errors import NoOrbitError as NoOrbitError
     from bouncing_ball.long_run.motion_of import basins as basins
@@ -118,6 +119,7 @@ _MODULES = {
     "limits": "periodic.orbits_of_ball",
     "lyapunov_exponent": "long_run.motion_of",
     "motion_of": "long_run.motion_of",
+    "open": "drawing.result",
     "orbit": "periodic.orbits_of_ball",
     "orbit_diagram": "long_run.motion_of",
     "orbit_of_motion": "long_run.orbit_of_motion",

@@ -49,6 +49,7 @@ rule study:
         module=lambda w: ARTIFACTS[w.artifact].module,
         study=lambda w: ARTIFACTS[w.artifact].study,
         title=lambda w: ARTIFACTS[w.artifact].title,
+        drawing=lambda w: ARTIFACTS[w.artifact].drawn_by,
         arguments=lambda w: arguments_of(ARTIFACTS[w.artifact]),
         # An accepted sample is in the repository.
         compressed=lambda w: ARTIFACTS[w.artifact].accepted is not None,

@@ -12,3 +12,6 @@ GRAZING_FLIGHT, GRAZING_RELEASE = "grazing of a flight", "grazing of a release"
 
 CASE = "case"
 """The single axis of results before :meth:`.Grid.unfold` gives them the axes of the call."""
+
+DRAWING = "drawing"
+"""The attribute of a dataset with the function that draws it, ``module:function``."""

@@ -1,6 +1,7 @@
 """Figures without overlaps, and the parts that all of their panels share."""
 
 from collections.abc import Iterator
+from contextvars import ContextVar
 from itertools import cycle
 from typing import Any
 
@@ -13,12 +14,16 @@ from matplotlib.ticker import NullLocator
 
 from bouncing_ball.drawing.labels import QUANTITIES
 from bouncing_ball.drawing.style import COLOURS, LINES
+from bouncing_ball.errors import ModelError
 
 WIDTH = 3.4
 """Width of a one-column figure in inches."""
 
 WIDE = 7.0
 """Width of a two-column figure in inches."""
+
+GIVEN: ContextVar[tuple[Axes, ...]] = ContextVar("GIVEN", default=())
+"""The axes into which a user draws, see :mod:`bouncing_ball.drawing.fitted`; none, as a rule."""
 
 
 def canvas(
@@ -28,12 +33,22 @@ def canvas(
 
     Further options are those of :meth:`matplotlib.figure.Figure.subplots`.
     """
+    if given := GIVEN.get():
+        if len(given) != rows * columns:
+            raise ModelError(
+                f"this figure has {rows * columns} panels: give as many axes, not {len(given)}"
+            )
+        panels = np.reshape(np.array(given, dtype=object), (rows, columns)).squeeze()
+        figure: Any = given[0].figure
+        return figure, panels if panels.ndim else given[0]
     figure = Figure(figsize=(width, height), layout="constrained")
     return figure, figure.subplots(rows, columns, **options)
 
 
 def stacked(height: float, heights: tuple[float, ...]) -> tuple[Figure, Any]:
     """A two-column figure of a height in inches, and its parts with the given relative heights."""
+    if GIVEN.get():
+        raise ModelError("this figure has parts with panels of their own: draw it without ax")
     figure = Figure(figsize=(WIDE, height), layout="constrained")
     return figure, figure.subfigures(len(heights), height_ratios=heights)
 
@@ -80,8 +95,13 @@ def legend_below(figure: Figure | SubFigure, handles: Any = None, **options: Any
     Without given handles the legend has those of the first panel, each name once.
     """
     if handles is None:
-        drawn, names = figure.axes[0].get_legend_handles_labels()
+        first = GIVEN.get()[0] if GIVEN.get() else figure.axes[0]
+        drawn, names = first.get_legend_handles_labels()
         handles = [handle for k, handle in enumerate(drawn) if names[k] not in names[:k]]
+    if given := GIVEN.get():
+        # The figure is that of the user and may have other panels.
+        given[0].legend(handles=handles, **options | {"ncols": 1})
+        return
     figure.legend(handles=handles, loc="outside lower center", **options)
 
 

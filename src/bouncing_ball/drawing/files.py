@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from matplotlib import rcParams
+from matplotlib import rc_context, rcParams
 from matplotlib.backend_bases import get_registered_canvas_class
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -15,9 +15,16 @@ from bouncing_ball.drawing.canvas import lay_out
 from bouncing_ball.drawing.style import style
 from bouncing_ball.errors import ModelError
 
+# Text that a program for drawings or a search can read, in place of outlines.
+_AS_TEXT: dict[Any, Any] = {"svg.fonttype": "none", "pdf.fonttype": 42}
 
-def save(figure: Figure, path: str | Path, metadata: Mapping[str, str]) -> None:
+
+def save(
+    figure: Figure, path: str | Path, metadata: Mapping[str, str], *, as_text: bool = False
+) -> None:
     """Write a figure, completely or not at all, with the same bytes every time.
+
+    With ``as_text`` the words of a PDF or an SVG are text, for which the reader needs the font.
 
     The metadata become text chunks of a PNG; an SVG, whose vocabulary is
     limited, holds them as JSON in its description.
@@ -36,7 +43,7 @@ def save(figure: Figure, path: str | Path, metadata: Mapping[str, str]) -> None:
     if kind == "png":
         # A third of the time, and files of one tenth more.
         options["pil_kwargs"] = {"compress_level": 3}
-    with replacing(path) as temporary, style():
+    with replacing(path) as temporary, style(), rc_context(_AS_TEXT if as_text else {}):
         figure.set_dpi(rcParams["savefig.dpi"])
         if engine := figure.get_layout_engine():
             # Laid out once for all formats. The canvas of a PNG keeps the extents of the texts.
@@ -58,6 +65,6 @@ def write(figure: Figure, path: Path, title: str) -> None:
     """
     require_writable(path, PICTURES)
     try:
-        save(figure, path, {"Title": title})
+        save(figure, path, {"Title": title}, as_text=True)
     except OSError as error:
         raise ModelError(f"{path} cannot be written: {error.strerror}") from None

@@ -1,17 +1,24 @@
-"""The result of a public function: a labelled dataset that draws itself."""
+"""Labelled datasets that draw themselves: results of public functions, and files of a run."""
 
+import re
+from collections.abc import Callable, Iterable
+from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import xarray as xr
 
+from bouncing_ball.datasets import DRAWING
+from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.errors import ModelError, extra
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 MADE_BY = "made_by"
 """The attribute with the name of the command or the call that made a result."""
+_FUNCTION = re.compile(r"(bouncing_ball(?:\.[a-z]\w*)+):([a-z]\w*)")
 
 
 class Result(xr.Dataset):
@@ -35,26 +42,90 @@ class Result(xr.Dataset):
         return cls(found.data_vars, found.coords, {**found.attrs, MADE_BY: made_by})
 
     # The accessor of the same name of an xarray.Dataset is no method.
-    def plot(self, path: str | Path | None = None) -> "Figure":  # type: ignore[override]
+    def plot(  # type: ignore[override]
+        self,
+        path: str | Path | None = None,
+        *,
+        ax: "Axes | Iterable[Axes] | None" = None,
+        size: tuple[float, float] | None = None,
+        font_size: float | None = None,
+    ) -> "Figure":
         """This result as a figure in the common style, which is written to ``path`` if it is given.
 
-        The docstring of the call that made the result tells what the figure shows.
+        The docstring of the call that made the result tells what the figure shows. The dataset of
+        an artifact has the figure of the artifact.
+
+        Parameters
+        ----------
+        path : str or Path, optional
+            A file that ends in ``.pdf``, ``.png`` or ``.svg``. In PDF and SVG texts are text.
+        ax : Axes, or several, optional
+            Axes of matplotlib into which the figure is drawn, one for each of its panels; the
+            legend is then in the first one.
+        size : tuple of float, optional
+            Width and height in inches.
+        font_size : float, optional
+            Size of titles and labels in points; all other texts keep their proportion to it.
 
         Raises
         ------
         ModelError
-            If the suffix of the path is not that of a picture, or the file cannot be written, or if
-            a computation with the result has dropped its attributes.
+            If the suffix of the path is not that of a picture, or the file cannot be written, if
+            a computation with the result has dropped its attributes, if an artifact has no
+            figure, or if the number of axes is not that of the panels.
         """
-        if MADE_BY not in self.attrs:
-            raise ModelError("this dataset has lost the attributes of the result of a call")
         with extra("plot"):
             from bouncing_ball.drawing.files import write
-            from bouncing_ball.drawing.result_figures import FIGURES
+            from bouncing_ball.drawing.fitted import axes_in, drawn_into, fit
             from bouncing_ball.drawing.style import style
-        maker = self.attrs[MADE_BY]
+        draw, title = self._drawing()
         with style():
-            figure = FIGURES[maker](self)
+            with drawn_into(ax):
+                figure = draw(self)
+            if (size, font_size) != (None, None):
+                fit(figure, axes_in(ax), size, font_size)
             if path is not None:
-                write(figure, Path(path), f"bouncing-ball {maker}")
+                write(figure, Path(path), title)
         return figure
+
+    def _drawing(self) -> "tuple[Callable[[xr.Dataset], Figure], str]":
+        """The function that draws this dataset, and the title of the file of the figure."""
+        if MADE_BY in self.attrs:
+            from bouncing_ball.drawing.result_figures import FIGURES
+
+            maker = self.attrs[MADE_BY]
+            return FIGURES[maker], f"bouncing-ball {maker}"
+        if DRAWING in self.attrs:
+            return _function(self.attrs[DRAWING]), str(self.attrs["title"])
+        if "title" in self.attrs:
+            raise ModelError(f"the dataset {self.attrs['title']!r} has no figure")
+        raise ModelError("this dataset has lost the attributes of the result of a call")
+
+
+def _function(name: str) -> Callable[..., Any]:
+    """The function of this package that a dataset names as ``package.module:function``.
+
+    This is the only place of the library that imports by a name, because the functions that draw
+    artifacts are above it. Nothing outside the package is imported.
+    """
+    found = _FUNCTION.fullmatch(str(name))
+    if not found:
+        raise ModelError(f"drawing = {name!r} is no function of this package")
+    try:
+        return getattr(import_module(found[1]), found[2])
+    except (ModuleNotFoundError, AttributeError):
+        raise ModelError(f"this version of the package has no {name}, which draws it") from None
+
+
+def open(path: str | Path) -> Result:
+    """The dataset in a netCDF file, such as that of an artifact of the replication.
+
+    ``bouncing_ball.open("figures/fig06.nc").plot("talk.pdf")`` draws the artifact's figure from it.
+
+    Raises
+    ------
+    ModelError
+        If the file does not exist or is damaged.
+    """
+    found = read_dataset(path)
+    return Result(found.data_vars, found.coords, found.attrs)

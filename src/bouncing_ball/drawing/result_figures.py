@@ -217,7 +217,7 @@ def orbits(data: xr.Dataset) -> Figure:
 def limits(data: xr.Dataset) -> Figure:
     """Saddle-node and period doubling over the last axis of a labelled dataset."""
     figure, axes = canvas(WIDTH, 2.8)
-    figure.suptitle(title(data))
+    axes.set_title(title(data))
     for curve, place, look in _curves(data, [axes]):
         for kind, dashes in ((SADDLE_NODE, "-"), (PERIOD_DOUBLING, "--")):
             values = curve[f"{kind.replace('-', '_').replace(' ', '_')}_amplitude"]

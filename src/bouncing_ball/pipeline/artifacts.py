@@ -112,6 +112,11 @@ class Artifact:
         return f"{paper if self.part == 'paper' else beyond}/{self.name}"
 
     @property
+    def drawn_by(self) -> str | None:
+        """The function that draws its figure, as its dataset names it; None without a figure."""
+        return f"bouncing_ball.{self.figures}:{self.drawing}" if self.drawing else None
+
+    @property
     def computed(self) -> str | None:
         """The dataset that the study computes, also where an accepted one is read in its place."""
         return f"results/{self.place}{DATASET}" if self.study else None

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.datasets import DRAWING
 from bouncing_ball.datasets.files import (
     CONVENTIONS,
     parameter_attributes,
@@ -224,9 +225,11 @@ def publish(
     snakemake: Any, dataset: xr.Dataset, parameters: Mapping[str, Any], *, compressed: bool = False
 ) -> None:
     """Write the job's dataset, with its title, parameters and provenance as attributes."""
+    drawing = snakemake.params.get("drawing")
     dataset.attrs = {
         "Conventions": CONVENTIONS,
         "title": snakemake.params.title,
+        **({DRAWING: drawing} if drawing else {}),
         "references": REFERENCE,
         "history": HISTORY,
         **parameters,

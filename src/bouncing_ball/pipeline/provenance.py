@@ -21,6 +21,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from bouncing_ball.datasets import DRAWING
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.artifacts import CARRIERS, DATASET, RECORD, TEXTS, carrier_of
 from bouncing_ball.pipeline.configuration import read_yaml
@@ -197,7 +198,7 @@ def read_provenance(path: Path) -> dict[str, Any]:
 # Git ignores this file, so that it does not mark the next run as dirty.
 _CHANGED = "results/configuration.json"
 # Attributes of a dataset that are no parameters.
-_TEXTUAL = ("title", "references", "history", "Conventions")
+_TEXTUAL = ("title", "references", "history", "Conventions", DRAWING)
 
 
 def parameters_of(attributes: Mapping[Any, Any]) -> dict[str, Any]:

@@ -90,7 +90,7 @@ HISTORY = {"n": 1, "restitution": 0.85, "amplitude": 1.0, "periods": 2, "samples
 
 def test_the_ball_of_fig_2_touches_the_table_at_its_impacts_only(described):
     data = described(restitution_history(HISTORY))
-    assert data.ball.dims == ("sample",) and data.sizes["sample"] == 401
+    assert data.ball.dims == ("time",) and data.sizes["time"] == 401
     assert float(data.time[-1]) == pytest.approx(4 * np.pi, rel=1e-15)
     phase = float(data.phase)
     assert np.cos(phase) == pytest.approx(np.pi * 0.15 / 1.85, rel=1e-14)  # Eq. 6

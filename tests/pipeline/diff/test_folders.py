@@ -280,6 +280,23 @@ def test_the_page_says_first_what_moved_each_thing_once_and_is_small_if_nothing_
     assert "data:image" not in page
 
 
+def test_a_page_with_pictures_is_small_enough_to_load_at_once(pair):
+    shutil.copyfile(pair.new / "figures" / "fig08.png", pair.new / "figures" / "fig09.png")
+    sizes = [
+        (folder / "figures" / "fig09.png").stat().st_size for folder in (pair.record, pair.new)
+    ]
+    page = to_html(pair.compare())
+    assert page.count("data:image") == 2 and len(page) < 0.5 * sum(sizes)
+
+
+def test_artifacts_with_the_same_change_share_a_line(pair):
+    for name in ("fig05", "fig08"):
+        for folder, ratio in ((pair.record, 0.125), (pair.new, 0.25)):
+            data = xr.Dataset({"damping_ratio": ((), ratio, {"long_name": "damping"})})
+            write_dataset(data, folder / "figures" / f"{name}.nc")
+    assert headline(pair.compare()) == ["fig05, fig08: +100 % in damping: 0.125 → 0.250"]
+
+
 def test_words_that_changed_are_counted_and_named(pair):
     data = pair.dataset("table1")
     record, new = (

@@ -54,7 +54,7 @@ addEventListener("load", () => {
       image.alt, [image.naturalWidth, image.naturalHeight, drawn(image)]
     ]),
     sections: [...page.querySelectorAll("section")].map(section => [
-      section.id, section.dataset.outcome, section.querySelector("details").open
+      section.id, section.dataset.outcome, Boolean(section.querySelector("details[open]"))
     ]),
     cells: [...page.querySelectorAll("td")].map(cell => cell.textContent),
     fetched: view.performance.getEntriesByType("resource").map(entry => entry.name),
@@ -100,10 +100,11 @@ def test_a_browser_shows_all_pictures_and_columns_of_the_page(pair, tmp_path, br
 
 def every_picture_is_there_and_the_worst_first(seen, pair):
     images = dict(seen["images"])
-    for name in ("fig01, record and new", "fig05, record and new"):
-        assert images.pop(name)[2]
+    # Of the pictures those that moved, with at most a thousand pixels across.
     with Image.open(pair.record / "figures" / "fig09.png") as picture:
-        expected = [*picture.size, True]
+        width, height = picture.size
+    small = min(1, 1000 / width)
+    expected = [round(small * width), round(small * height), True]
     assert images == {"fig09, record": expected, "fig09, new": expected}
     worst = [["fig01", "missing", True], ["fig05", "drifted", True], ["fig09", "drifted", True]]
     assert seen["sections"][:3] == worst

@@ -282,11 +282,11 @@ def law_errors(parameters: LawErrors) -> xr.Dataset:
             "error_calibration": str(Calibration.CONTACT),
             "error_threshold": (by_case, threshold),
             "stable_at_threshold": (by_case, stable),
+        },
+        coords={
             "n": ("case", [case.n for case in cases]),
             "restitution": ("case", [case.restitution for case in cases]),
             "amplitude": ("case", [case.amplitude for case in cases]),
-        },
-        coords={
             "law": list(NAMES),
             "model": list(SIMPLE),
             "quantity": list(QUANTITIES),

@@ -194,7 +194,7 @@ def period_doubling_lowest(data: Data) -> xr.DataArray:
 
 def permanent_contact_error(data: Data) -> float:
     """Fig. 16: the relative error at the printed threshold; NaN outside the scan."""
-    error = data["fig16"].relative_error.isel(quantity=0)
+    error = data["fig16"].relative_error
     grid = np.log(error.frequency_ratio.values)
     where = np.log(PERMANENT_CONTACT)
     return float(np.interp(where, grid, error.values, left=np.nan, right=np.nan))

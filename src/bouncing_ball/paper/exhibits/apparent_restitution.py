@@ -111,12 +111,12 @@ def _sweep(
     found = columns(orbits, *OBSERVED, "max_height")
     dims = ("case", "frequency_ratio")
     return xr.Dataset(
-        {
+        {name: (dims, values) for name, values in found.items()},
+        coords={
+            "frequency_ratio": ratios,
             "restitution": ("case", r),
             "amplitude": ("case", lam),
-            **{name: (dims, values) for name, values in found.items()},
         },
-        coords={"frequency_ratio": ratios},
     )
 
 
@@ -125,7 +125,7 @@ def apparent_restitution(parameters: Cases, release: Release) -> xr.Dataset:
 
     The dataset has ``apparent_restitution``, the other observables of the stable orbit,
     ``max_height``, ``stable`` and ``admissible``, shape (case, ϖ), NaN where there is no orbit;
-    ``restitution`` and ``amplitude``, shape (case,). Phases are in rad.
+    and the coordinates ``restitution`` and ``amplitude``, shape (case,). Phases are in rad.
 
     Raises
     ------

@@ -61,7 +61,8 @@ def error_thresholds(parameters: ErrorThresholds, release: Release) -> xr.Datase
 def height_error(parameters: OrbitErrors, release: Release) -> xr.Dataset:
     """Greatest height along ϖ in both models, and ϖ_h for the tolerance (Eq. 37, Fig. 14).
 
-    The dataset has the variables of :func:`error_thresholds` for the one quantity, and
+    The dataset has ``relative_error`` (ϖ,), the numbers ``error_threshold`` and
+    ``threshold_status`` (see :func:`error_thresholds`), and
     ``max_height``, ``phase`` in rad, ``contact_duration``, ``impact_velocity`` and ``admissible``
     of the exact orbit, shape (ϖ,), NaN where there is none; ``restitution_max_height`` is a number.
 
@@ -81,7 +82,7 @@ def height_error(parameters: OrbitErrors, release: Release) -> xr.Dataset:
         ratios=ratios,
         quantities=[Quantity.MAX_HEIGHT],
         tolerances=[parameters.tolerance],
-    )
+    ).squeeze(["quantity", "tolerance"], drop=True)
     contact = SpringDamper.from_restitution(parameters.restitution, ratios, release)
     orbit = n_t.orbit(SpringDamperModel(contact), n, lam)
     require_any_orbit(orbit.exists, n, lam, ratios)

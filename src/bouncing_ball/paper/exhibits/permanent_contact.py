@@ -74,8 +74,9 @@ class PermanentContactError(PermanentContact):
 def permanent_contact_error(parameters: PermanentContactError, release: Release) -> xr.Dataset:
     """Permanent contact along ϖ in both models, and ϖ_PC for the tolerance (Eq. 38, Fig. 16).
 
-    The dataset has the variables of :func:`~.errors_along_ratio.errors_along_ratio` for the one
-    quantity, and those of :func:`permanent_contact`.
+    The dataset has ``relative_error`` (ϖ,), the numbers ``error_threshold`` and
+    ``threshold_status`` (see :func:`~.errors_along_ratio.errors_along_ratio`), and the variables of
+    :func:`permanent_contact`.
 
     Raises
     ------
@@ -91,5 +92,5 @@ def permanent_contact_error(parameters: PermanentContactError, release: Release)
         ratios=parameters.frequency_ratio.grid(),
         quantities=[Quantity.PERMANENT_CONTACT],
         tolerances=[parameters.tolerance],
-    )
+    ).squeeze(["quantity", "tolerance"], drop=True)
     return describe(dataset.merge(permanent_contact(parameters, release)), variables=VARIABLES)

@@ -85,8 +85,8 @@ def restitution_orbits(parameters: FamilyBranches) -> xr.Dataset:
 def restitution_history(parameters: RestitutionHistory) -> xr.Dataset:
     """Ball and table over some periods of an orbit of the restitution model (Fig. 2).
 
-    The dataset has ``time``, ``ball``, ``ball_velocity`` and ``table`` (sample,), and the number
-    ``phase`` in rad.
+    The dataset has ``ball``, ``ball_velocity`` and ``table`` (time,), and the number ``phase`` in
+    rad.
 
     Raises
     ------
@@ -100,11 +100,11 @@ def restitution_history(parameters: RestitutionHistory) -> xr.Dataset:
     height, velocity = orbit.path(time)
     return described(
         {
-            "time": ("sample", time),
-            "ball": ("sample", height),
-            "ball_velocity": ("sample", velocity),
-            "table": ("sample", lam * np.sin(time + orbit.phase)),
+            "ball": ("time", height),
+            "ball_velocity": ("time", velocity),
+            "table": ("time", lam * np.sin(time + orbit.phase)),
             "phase": ((), float(orbit.phase)),
         },
+        coords={"time": time},
         variables=VARIABLES,
     )

@@ -2,24 +2,29 @@
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from bouncing_ball.datasets.parameters import FrequencyRatio, Many, Samples
-from bouncing_ball.datasets.variables import Variable, describe
+from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.exhibits.orbit_parameters import OrbitParameters
 from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.orbit import Orbit
 
 VARIABLES = {
-    "table_phase": Variable("phase of the table", symbol="τ + φ", units="rad"),
+    "table_phase": Variable("phase of the table, whose height is Λ sin τ", symbol="τ", units="rad"),
     "restitution_ball": Variable(
         "height of the ball, restitution model", symbol="z_CR", equation="Eq. 4"
     ),
 }
 # Quantities of each orbit in the datasets.
 _STATE = ("phase", "contact_duration", "impact_velocity", "bounce_velocity")
+# Phases of some radians differ by less if they are the same up to rounding.
+_ROUNDING = 1e-13
+_CURVES = ("frequency_ratio", "table_phase")
 
 
 class ContactHistory(OrbitParameters):
@@ -36,76 +41,92 @@ class Histories(OrbitParameters):
     samples: Samples
 
 
-def _cycle(parameters: ContactHistory | Histories, ratio: float, release: Release) -> xr.Dataset:
-    """One cycle on one contact: the contact, then the flight.
-
-    Half the samples fall in either part, and τ_b is a sample in both, because the
-    contact may last a hundredth of the cycle and must still be resolved.
-    """
-    n = parameters.n
-    lam = parameters.amplitude
-    half = parameters.samples // 2
+def _orbit(
+    parameters: ContactHistory | Histories, ratio: ArrayLike, release: Release
+) -> tuple[Orbit, dict[str, float]]:
+    """The orbit on one contact, which is admissible, and the numbers of its dataset."""
     contact = SpringDamper.from_restitution(parameters.restitution, ratio, release)
-    orbit = n_t.require_admissible(SpringDamperModel(contact), n, lam)
-    during = np.linspace(0.0, orbit.contact_duration, half)
-    after = np.linspace(orbit.contact_duration, 2 * np.pi * n, parameters.samples - half)
-    ball, velocity = np.hstack([orbit.contact_path(during), orbit.flight_path(after)])
-    phase = np.concatenate([during, after]) + orbit.phase
-    return xr.Dataset(
-        {
-            "time": ("sample", np.concatenate([during, after])),
-            "ball": ("sample", ball),
-            "ball_velocity": ("sample", velocity),
-            "table": ("sample", lam * np.sin(phase)),
-            "table_phase": ("sample", phase),
-            "contact": ("sample", np.arange(parameters.samples) < half),
-            "frequency_ratio": ratio,
-            **{name: float(getattr(orbit, name)) for name in _STATE},
-        }
-    )
+    model = SpringDamperModel(contact)
+    orbit = n_t.require_admissible(model, parameters.n, parameters.amplitude)
+    return orbit, {name: float(getattr(orbit, name)) for name in _STATE}
 
 
 def contact_history(parameters: ContactHistory, release: Release) -> xr.Dataset:
     """One cycle of the spring-damper model from the start of contact (Fig. 7).
 
-    The dataset has ``time``, ``ball``, ``ball_velocity``, ``table`` and ``contact``, a mask, of
-    shape (sample,), and the numbers ``frequency_ratio``, ``phase`` in rad, ``contact_duration``,
-    ``impact_velocity`` and ``bounce_velocity``.
+    Half of the samples are in the contact, because it may last a hundredth of the cycle and must
+    still be resolved. The dataset has ``ball``, ``ball_velocity``, ``table`` and ``contact``, a
+    mask, of shape (time,), and the numbers ``frequency_ratio``, ``phase`` in rad,
+    ``contact_duration``, ``impact_velocity`` and ``bounce_velocity``.
 
     Raises
     ------
     NoOrbitError
         If the orbit does not exist or is inadmissible.
     """
-    cycle = _cycle(parameters, parameters.frequency_ratio, release)
-    return describe(cycle.drop_vars("table_phase"), variables=VARIABLES)
+    orbit, state = _orbit(parameters, parameters.frequency_ratio, release)
+    half = parameters.samples // 2
+    during = np.linspace(0.0, orbit.contact_duration, half)
+    flight = np.linspace(
+        orbit.contact_duration, 2 * np.pi * parameters.n, parameters.samples - half + 1
+    )
+    # The end of the contact is its last sample.
+    after = flight[1:]
+    ball, velocity = np.hstack([orbit.contact_path(during), orbit.flight_path(after)])
+    time = np.concatenate([during, after])
+    return described(
+        {
+            "ball": ("time", ball),
+            "ball_velocity": ("time", velocity),
+            "table": ("time", parameters.amplitude * np.sin(time + orbit.phase)),
+            "contact": ("time", np.arange(parameters.samples) < half),
+            "frequency_ratio": parameters.frequency_ratio,
+            **state,
+        },
+        coords={"time": time},
+        variables=VARIABLES,
+    )
 
 
 def both_histories(parameters: Histories, release: Release) -> xr.Dataset:
     """One cycle of both models against the phase of the table (Fig. 12).
 
-    The dataset has ``table_phase`` in rad, ``ball`` and ``contact``, a mask, (ϖ, sample);
-    ``phase``, ``contact_duration``, ``impact_velocity`` and ``bounce_velocity`` (ϖ,); and for the
-    restitution model ``time`` and ``restitution_ball`` (sample,) and the number
-    ``restitution_phase`` in rad.
+    All curves have the same samples: as many as given, at equal steps of the table's phase, and the
+    starts and ends of all contacts, where the curves have their corners. The dataset has ``ball``
+    and ``contact``, a mask, (ϖ, table_phase); ``restitution_ball`` and ``table`` (table_phase,);
+    ``phase``, ``contact_duration``, ``impact_velocity`` and ``bounce_velocity`` (ϖ,); and the
+    number ``restitution_phase``. Phases are in rad.
 
     Raises
     ------
     NoOrbitError
         If an orbit does not exist or is inadmissible.
     """
-    cycles = [_cycle(parameters, ratio, release) for ratio in sorted(parameters.frequency_ratio)]
-    dataset = xr.concat([x.set_coords("frequency_ratio") for x in cycles], "frequency_ratio")
     n = parameters.n
     lam = parameters.amplitude
+    period = 2 * np.pi * n
+    ratios = sorted(parameters.frequency_ratio)
+    orbits, states = zip(*(_orbit(parameters, ratio, release) for ratio in ratios), strict=True)
     rigid = n_t.require_orbit(RestitutionModel(parameters.restitution), n, lam)
-    time = np.linspace(0.0, 2 * np.pi * n, parameters.samples)
-    height, _ = rigid.path(time)
-    return describe(
-        dataset[["table_phase", "ball", "contact", *_STATE]].assign(
-            restitution_ball=("sample", height),
-            time=("sample", time),
-            restitution_phase=float(rigid.phase),
-        ),
+    corners = [rigid.phase, *(x for one in orbits for x in (one.phase, one.release_phase))]
+    phase = np.union1d(np.linspace(0.0, period, parameters.samples), np.mod(corners, period))
+    # The start of a contact is at the time 0 and not, by rounding, at the end of the cycle.
+    since = [np.mod(phase - one.phase + _ROUNDING, period) - _ROUNDING for one in orbits]
+    return described(
+        {
+            "ball": (_CURVES, [one.path(time)[0] for one, time in zip(orbits, since, strict=True)]),
+            "contact": (
+                _CURVES,
+                [
+                    time <= one.contact_duration + _ROUNDING
+                    for one, time in zip(orbits, since, strict=True)
+                ],
+            ),
+            "restitution_ball": ("table_phase", rigid.path(phase - rigid.phase)[0]),
+            "table": ("table_phase", lam * np.sin(phase)),
+            "restitution_phase": ((), float(rigid.phase)),
+            **{name: ("frequency_ratio", [one[name] for one in states]) for name in _STATE},
+        },
+        coords={"frequency_ratio": ratios, "table_phase": phase},
         variables=VARIABLES,
     )

@@ -25,7 +25,8 @@ def contact_history(data: xr.Dataset) -> Figure:
     touching = data.contact.values.astype(bool)
     end = float(time[-1])
     axes.plot(time, table, color=TABLE)
-    axes.plot(time[~touching], ball[~touching], color=CONTACT)
+    flight = time >= time[touching][-1]
+    axes.plot(time[flight], ball[flight], color=CONTACT)
     axes.plot(time[touching], ball[touching], color=CONTACT, linewidth=2.6)
     low = table.min() - 0.16 * (ball.max() - table.min())
     duration = float(data.contact_duration)
@@ -98,7 +99,7 @@ def _enlarge_summit(summit: Axes, data: xr.Dataset) -> None:
     """Limits that separate the stiffest contact from the restitution model at the summit."""
     ball = data.restitution_ball.values
     top = float(ball.max())
-    at = float(data.time[int(ball.argmax())] + data.restitution_phase)
+    at = float(data.table_phase[int(ball.argmax())])
     stiffest = float(data.ball.isel(frequency_ratio=-1).max())
     below = max(3 * (top - stiffest), 0.02 * top)
     reach = np.sqrt(2 * below)  # of a free flight
@@ -108,13 +109,13 @@ def _enlarge_summit(summit: Axes, data: xr.Dataset) -> None:
 
 def _draw_both_models(axes: Axes, data: xr.Dataset, period: float) -> None:
     """Both models; the restitution model is a broad line, on which the other lines are visible."""
-    phase = data.time.values + float(data.restitution_phase)
+    phase = data.table_phase.values
     rigid = _three_cycles(phase, data.restitution_ball.values, period)
     axes.plot(*rigid, color=_RIGID, label="restitution", linewidth=3.5)
     # The stiffest contact is black, solid and above the others for any number of contacts.
     stiffest_first = coloured(data.sortby("frequency_ratio", ascending=False), "frequency_ratio")
     for k, ((curve, colour), dashes) in enumerate(zip(stiffest_first, cycle(_DASHES))):
-        flight = _three_cycles(curve.table_phase.values, curve.ball.values, period)
+        flight = _three_cycles(phase, curve.ball.values, period)
         look: Look = {"color": colour, "linestyle": dashes, "linewidth": 1.0, "zorder": 3 - k / 10}
         axes.plot(*flight, label=rf"$\varpi={number(curve.frequency_ratio.item())}$", **look)
 

@@ -6,6 +6,7 @@ Both name the cause of a difference first. The page needs neither a network nor 
 import base64
 import re
 from difflib import SequenceMatcher
+from io import BytesIO
 from itertools import takewhile
 from urllib.parse import quote
 
@@ -193,15 +194,44 @@ def marked(record: str | None, new: str | None) -> tuple[_Words, _Words]:
     return old_marked, new_marked
 
 
+# Pixels across, and colours, of the pictures in the page: enough to see what moved.
+_WIDTH = 1000
+_COLOURS = 32
+
+
+def _small(content: bytes) -> bytes:
+    """A PNG as a smaller one; a file that is no picture as it is."""
+    # Imported here, because the lines for the terminal do not need it.
+    from PIL import Image
+
+    try:
+        with Image.open(BytesIO(content)) as picture:
+            whole = picture.convert("RGBA")
+    except OSError:
+        return content
+    ground = Image.new("RGBA", whole.size, "white")
+    flat = Image.alpha_composite(ground, whole).convert("RGB")
+    if flat.width > _WIDTH:
+        flat = flat.resize((_WIDTH, round(flat.height * _WIDTH / flat.width)))
+    small = BytesIO()
+    flat.quantize(_COLOURS).save(small, "PNG", optimize=True)
+    return min(small.getvalue(), content, key=len)
+
+
 def _base64(content: bytes) -> str:
-    return base64.b64encode(content).decode("ascii")
+    return base64.b64encode(_small(content)).decode("ascii")
+
+
+def _shown_pictures(artifact: Whole) -> list[Whole]:
+    """The pictures of an artifact that do not agree with the record."""
+    return [file for file in artifact.parts if any(file.pictures) and not file.outcome.agrees]
 
 
 def to_html(comparison: Whole) -> str:
     """The page: artifacts worst first, with the record's and the new version of each picture.
 
-    The pictures of artifacts that do not agree with the record are embedded; a picture that is
-    identical on both sides is embedded once. The buttons work by style sheets, without a script.
+    The pictures that do not agree with the record are embedded, with fewer pixels and colours.
+    Artifacts that agree have one line. The buttons work by style sheets, without a script.
 
     Examples
     --------
@@ -224,6 +254,7 @@ def to_html(comparison: Whole) -> str:
         sentence=sentence(comparison),
         headline=headline(comparison),
         told_files=told_files,
+        shown_pictures=_shown_pictures,
         numbers=numbers,
         percent=percent,
         marked=marked,

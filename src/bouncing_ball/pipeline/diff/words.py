@@ -1,6 +1,7 @@
 """What moved, in words: a line for each artifact, that of the largest change first."""
 
 import math
+from contextlib import suppress
 
 from bouncing_ball.pipeline.artifacts import DATASET
 from bouncing_ball.pipeline.diff.outcome import Outcome, Row, Whole
@@ -11,6 +12,8 @@ _NAMED = 6
 # unless the change itself is below the second number: it is rounding.
 _LARGE = 1.0
 _ROUNDING = 1e-9
+# Digits of a number beside which there is none.
+_ENOUGH = 5
 # A number in double precision has no more digits.
 _ALL_DIGITS = 17
 # A percentage above this is read more easily as a factor.
@@ -42,11 +45,16 @@ def numbers(row: Row) -> str:
     '0.84032 → 0.83950'
     >>> numbers(Row("orbits", Outcome.DRIFTED, "1204", "1187"))
     '1204 → 1187'
+    >>> numbers(Row("phase", Outcome.DRIFTED, "0.15487439262148725", "nan"))
+    '0.15487 → nan'
     """
     record = str(row.record)
     new = str(row.new)
     if row.record is None or row.new is None or record.lstrip("-").isdigit():
         return f"{row.record or 'nothing'} → {row.new or 'nothing'}"
+    with suppress(ValueError):
+        if not math.isfinite(float(record)) or not math.isfinite(float(new)):
+            return " → ".join(f"{float(text):.{_ENOUGH}g}" for text in (record, new))
     try:
         far = abs(float(new) - float(record)) / max(abs(float(new)), abs(float(record)))
         digits = max(3, 2 - math.ceil(math.log10(far)))
@@ -101,7 +109,9 @@ def _large(artifact: Whole) -> list[Row]:
 
 
 def headline(comparison: Whole) -> list[str]:
-    """A line for each artifact that does not agree with the record: what moved, and by how much.
+    """A line for each change from the record: the artifacts, what moved, and by how much.
+
+    Artifacts with the same change share a line.
 
     Examples
     --------
@@ -111,13 +121,15 @@ def headline(comparison: Whole) -> list[str]:
     >>> headline(Whole("", (fig14,)))
     ['fig14: +0.97 % in threshold: 82.20 → 83.00']
     """
-    found: list[tuple[int, int, float, str]] = []
+    found: dict[str, tuple[tuple[int, int, float], list[str]]] = {}
+
+    def tell(name: str, told: str, order: tuple[int, int, float]) -> None:
+        found.setdefault(told, (order, []))[1].append(name)
+
     for artifact in comparison.parts:
         if artifact.outcome.agrees:
-            hidden = [
-                f"{artifact.name}: within its budget, {_told(row)}" for row in _large(artifact)
-            ]
-            found += [(1, 0, 0.0, line) for line in hidden]
+            for row in _large(artifact):
+                tell(artifact.name, f"within its budget, {_told(row)}", (1, 0, 0.0))
             continue
         row = telling_row(artifact) if artifact.outcome is Outcome.DRIFTED else None
         told = _told(row) if row else artifact.cause
@@ -125,5 +137,8 @@ def headline(comparison: Whole) -> list[str]:
         size = 0.0 if math.isnan(change) else abs(change)
         # Words first, then what became NaN, then the largest change.
         kind = 0 if row is None or row.changes else 2 - math.isnan(change)
-        found.append((-artifact.outcome.rank, kind, -size, f"{artifact.name}: {told}"))
-    return [line for *_, line in sorted(found, key=lambda each: each[:3])]
+        tell(artifact.name, told, (-artifact.outcome.rank, kind, -size))
+    return [
+        f"{', '.join(sorted(names))}: {told}"
+        for told, (_, names) in sorted(found.items(), key=lambda each: each[1][0])
+    ]

@@ -1,0 +1,114 @@
+"""The dataset of an artifact draws its figure, in the axes, size and fonts that a user asks for."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from declared_artifacts import ARTIFACTS
+from matplotlib.text import Text
+
+import bouncing_ball
+from bouncing_ball.datasets import DRAWING
+from bouncing_ball.datasets.files import write_dataset
+
+DRAWN = sorted(each.name for each in ARTIFACTS.values() if each.drawing and each.study)
+
+
+@pytest.fixture
+def opened(record, tmp_path):
+    """The dataset of an artifact, from a file as a run writes it."""
+
+    def opened(name):
+        drawing = {DRAWING: ARTIFACTS[name].drawn_by}
+        path = tmp_path / f"{name}.nc"
+        write_dataset(record[name].assign_attrs(drawing), path)
+        return bouncing_ball.open(path)
+
+    return opened
+
+
+@pytest.mark.parametrize("name", [name for name in DRAWN if name.startswith("fig")])
+def test_every_figure_of_the_paper_is_drawn_from_its_file(name, opened, tmp_path):
+    path = tmp_path / f"{name}.svg"
+    figure = opened(name).plot(path)
+    assert path.is_file() and figure.axes
+
+
+def test_words_in_vector_graphics_are_text(opened, tmp_path):
+    for kind in ("svg", "pdf"):
+        opened("fig15").plot(tmp_path / f"talk.{kind}")
+    svg = (tmp_path / "talk.svg").read_text(encoding="utf-8")
+    assert ">unstable</text>" in svg
+    # Type 42 are fonts that programs can edit; Type 3 are drawings of letters.
+    assert b"/Type0" in (tmp_path / "talk.pdf").read_bytes()
+    assert b"/Type3" not in (tmp_path / "talk.pdf").read_bytes()
+
+
+@pytest.mark.parametrize("name", ["fig05", "fig08", "fig12", "fig14"])
+def test_every_text_follows_the_font_size(name, opened):
+    data = opened(name)
+
+    def sizes(figure):
+        figure.canvas.draw()
+        texts = [text for text in figure.findobj(Text) if text.get_text()]
+        return {text.get_text(): text.get_fontsize() for text in texts}
+
+    normal = sizes(data.plot(font_size=9, size=(9, 6)))
+    large = sizes(data.plot(font_size=18, size=(9, 6)))
+    shared = normal.keys() & large.keys()
+    # Titles, labels, names in the legend, notes, and numbers at the ticks.
+    assert len(shared) >= 7
+    assert all(large[text] == pytest.approx(2 * normal[text]) for text in shared)
+
+
+def test_a_legend_has_as_many_columns_as_fit(opened):
+    figure = opened("fig15").plot(size=(4, 4), font_size=12)
+    figure.canvas.draw()
+    assert figure.get_size_inches().tolist() == [4, 4]
+    (legend,) = figure.legends
+    assert legend.get_window_extent().width <= figure.bbox.width
+    assert len(legend.get_texts()) == 7
+
+
+def test_a_figure_is_drawn_into_given_axes(opened):
+    figure, (left, right) = plt.subplots(1, 2)
+    try:
+        assert opened("fig06").plot(ax=left) is figure
+        opened("fig15").plot(ax=right, font_size=12)
+        assert left.get_xscale() == "log" and len(left.lines) >= 3
+        assert right.get_legend() is not None and figure.legends == []
+        assert right.xaxis.label.get_fontsize() == pytest.approx(
+            left.xaxis.label.get_fontsize() * 12 / 9
+        )
+        with pytest.raises(bouncing_ball.ModelError, match="2 panels: give as many axes, not 1"):
+            opened("fig14").plot(ax=left)
+        opened("fig14").plot(ax=np.array([left, right]))
+    finally:
+        plt.close(figure)
+
+
+def test_mistakes_have_one_line(opened, record, tmp_path, refusal):
+    data = opened("fig06")
+    with refusal(bouncing_ball.ModelError, "'talk.jpg' does not end in .pdf or .png or .svg"):
+        data.plot("talk.jpg")
+    with refusal(bouncing_ball.ModelError, "size = (0, 1) is not a width and a height"):
+        data.plot(size=(0, 1))
+    with refusal(bouncing_ball.ModelError, "font_size = -1 is not a number of points > 0"):
+        data.plot(font_size=-1)
+    with refusal(bouncing_ball.ModelError, "no dataset"):
+        bouncing_ball.open(tmp_path / "nowhere.nc")
+    write_dataset(record["table1"], tmp_path / "table1.nc")
+    with refusal(bouncing_ball.ModelError, "'Table 1: stability ranges over the amplitude' has no"):
+        bouncing_ball.open(tmp_path / "table1.nc").plot()
+
+
+@pytest.mark.parametrize("name", ["os:system", "bouncing_ball.drawing.style", "os.path:join"])
+def test_only_functions_of_the_package_are_called(name, opened, refusal):
+    data = opened("fig06").assign_attrs({DRAWING: name})
+    with refusal(bouncing_ball.ModelError, "is no function of this package"):
+        data.plot()
+
+
+def test_a_function_that_is_gone_is_named(opened, refusal):
+    data = opened("fig06").assign_attrs({DRAWING: "bouncing_ball.paper.exhibits.gone:figure"})
+    with refusal(bouncing_ball.ModelError, "this version of the package has no bouncing_ball"):
+        data.plot()

@@ -23,7 +23,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 # Targets run one after another, because clean, run and compare share results/.
 .NOTPARALLEL:
-.PHONY: all replication setup lint test quick speed test-cluster test-long setup-engines test-engines docs test-docs gallery mutants diff accept samples report clean ci setup-newest newest config-docs lock
+.PHONY: all replication setup lint test quick speed test-cluster test-long setup-engines test-engines docs test-docs gallery mutants diff accept samples report clean ci setup-newest newest config-docs readme lock
 
 all: $(SETUP)
 	$(BIN)/snakemake --cores 2 $(QUIETLY)
@@ -152,6 +152,10 @@ newest: setup-newest clean
 
 config-docs: $(SETUP)
 	$(BIN)/snakemake --cores 1 config_docs $(QUIETLY)
+
+# The verdicts and Table 1 in README.md, and the lists of files in figures/, from the accepted record.
+readme: $(SETUP)
+	$(BIN)/snakemake --cores 1 readme $(QUIETLY)
 
 # Renew the lock files, for maintainers; this needs uv.
 lock:

@@ -49,6 +49,23 @@ html_math_renderer = "mathml"
 suppress_warnings = ["ref.python"]
 
 PARTS = {
+    "Replication": [
+        "paper",
+        "supplement",
+        "figures/*",
+        "docs/datasets",
+        "docs/variables",
+        "config/README",
+        "docs/record",
+    ],
+    "Beyond the paper": ["figures/beyond/*"],
+    "Theory": [
+        "docs/how-an-orbit-is-found",
+        "docs/impact-as-an-instant",
+        "docs/error-law",
+        "docs/closed-form",
+        "docs/proofs",
+    ],
     "Use": [
         "docs/lesson",
         "docs/gallery",
@@ -59,22 +76,6 @@ PARTS = {
         "docs/contact-laws",
         "docs/atlas",
         "docs/speed",
-    ],
-    "Theory": [
-        "docs/how-an-orbit-is-found",
-        "docs/impact-as-an-instant",
-        "docs/error-law",
-        "docs/closed-form",
-        "docs/proofs",
-    ],
-    "Replication": [
-        "paper",
-        "supplement",
-        "figures/*",
-        "figures/beyond/*",
-        "config/README",
-        "docs/datasets",
-        "docs/record",
     ],
     "Code": ["results/api/modules", "CONTRIBUTING", "CHANGELOG"],
 }

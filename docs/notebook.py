@@ -1,11 +1,11 @@
-"""The notebook of the lesson from its page: ``python docs/notebook.py`` writes lesson.ipynb."""
+"""Notebooks from their pages: ``python docs/notebook.py`` writes them beside the pages."""
 
 import json
 import re
 from doctest import DocTestParser
 from pathlib import Path
 
-PAGE = Path(__file__).with_name("lesson.md")
+PAGES = [Path(__file__).with_name(name) for name in ("lesson.md", "datasets.md")]
 
 
 def parts(block: str) -> list[str]:
@@ -41,4 +41,5 @@ def notebook(page: str) -> str:
 
 
 if __name__ == "__main__":
-    PAGE.with_suffix(".ipynb").write_text(notebook(PAGE.read_text("utf-8")), encoding="utf-8")
+    for page in PAGES:
+        page.with_suffix(".ipynb").write_text(notebook(page.read_text("utf-8")), encoding="utf-8")

@@ -9,9 +9,12 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
+from declared_artifacts import ARTIFACTS
+from readme import pages
 
 ROOT = Path(__file__).parents[1]
-PAGES = [*ROOT.glob("*.md"), ROOT / "config" / "README.md", *(ROOT / "docs").glob("*.md")]
+LISTS = [ROOT / "figures" / "README.md", ROOT / "figures" / "beyond" / "README.md"]
+PAGES = [*ROOT.glob("*.md"), ROOT / "config" / "README.md", *LISTS, *(ROOT / "docs").glob("*.md")]
 # The changelog tells of files that are gone; the article is made and has a test of its own.
 PAGES = [page for page in PAGES if page.name not in ("CHANGELOG.md", "paper.md", "supplement.md")]
 FOLDERS = "src|tests|docs|config|workflow|figures|profiles"
@@ -21,6 +24,24 @@ LINK = re.compile(r"\]\(([^):\s#]+)[^):\s]*\)")
 # The figure and the study that the recipes of CONTRIBUTING make, and the schema for editors, which
 # is made and not in git.
 MADE = re.compile("heights|height_levels|schema.json")
+
+
+def test_the_generated_parts_of_readme_and_the_lists_of_figures_follow_the_record():
+    # Otherwise `make readme` writes them.
+    for path, text in pages(ROOT, ARTIFACTS).items():
+        assert (ROOT / path).read_text(encoding="utf-8") == text, path
+
+
+def test_readme_shows_the_sixteen_figures_in_their_order():
+    shown = re.findall(r'<img src="figures/fig(\d+)\.png"', (ROOT / "README.md").read_text("utf-8"))
+    assert shown == [f"{number:02}" for number in range(1, 17)]
+
+
+def test_every_accepted_file_is_in_the_list_of_its_folder():
+    for page in LISTS:
+        linked = {page.parent / path for path in LINK.findall(page.read_text("utf-8"))}
+        beside = {path for path in page.parent.iterdir() if path.is_file()} - {page}
+        assert beside <= linked
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

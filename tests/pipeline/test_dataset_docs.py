@@ -9,7 +9,7 @@ from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.pipeline.dataset_docs import dictionary, in_record
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGE = ROOT / "docs" / "datasets.md"
+PAGE = ROOT / "docs" / "variables.md"
 
 
 @pytest.fixture(scope="module")

@@ -17,7 +17,7 @@ if workflow.is_main_process:
 
 rule config_docs:
     message:
-        "Writing config/README.md, config/schema.json and docs/datasets.md"
+        "Writing config/README.md, config/schema.json and docs/variables.md"
     params:
         artifacts=list(ARTIFACTS.values()),
     log:
@@ -26,3 +26,17 @@ rule config_docs:
         ENVIRONMENT
     script:
         "../scripts/config_docs.py"
+
+
+# From the accepted record, so that it has no inputs that a run makes.
+rule readme:
+    message:
+        "Writing the generated parts of README.md and the pages of figures/"
+    params:
+        artifacts=ARTIFACTS,
+    log:
+        "results/logs/readme.log",
+    conda:
+        ENVIRONMENT
+    script:
+        "../scripts/readme.py"

@@ -22,4 +22,4 @@ with logged(snakemake):
         each.name: repository / in_record(each.dataset) for each in artifacts if each.dataset
     }
     datasets = {name: read_dataset(path) for name, path in accepted.items() if path.is_file()}
-    write_text(repository / "docs" / "datasets.md", dictionary(artifacts, datasets))
+    write_text(repository / "docs" / "variables.md", dictionary(artifacts, datasets))

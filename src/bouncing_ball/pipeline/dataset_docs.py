@@ -4,9 +4,9 @@ from collections.abc import Iterable, Mapping
 
 import xarray as xr
 
-from bouncing_ball.pipeline.artifacts import FOLDER, Artifact
+from bouncing_ball.pipeline.artifacts import Artifact
 
-_HEAD = """# The datasets
+_HEAD = """# The variables of all datasets
 
 Every dataset of the record: what each of its variables is, over which dimensions it is given, its
 unit, its symbol and its equation in the paper, and where it is shown. `make config-docs` makes this
@@ -34,8 +34,7 @@ def in_record(path: str) -> str:
     >>> in_record("results/figures/fig14.nc"), in_record("config/ext_means.nc")
     ('figures/fig14.nc', 'config/ext_means.nc')
     """
-    run, _, _ = FOLDER.rpartition("/")
-    return path.removeprefix(f"{run}/")
+    return path.removeprefix("results/")
 
 
 def _cell(text: str) -> str:

@@ -1,0 +1,128 @@
+"""The generated parts of README, and the pages that list the accepted files.
+
+README holds its generated parts between comments; the rest of it is written by hand. Everything is
+read from the accepted datasets, so that ``make readme`` follows ``make accept``.
+"""
+
+import os
+from collections.abc import Iterable, Mapping
+from pathlib import Path, PurePosixPath
+
+from bouncing_ball.pipeline.artifacts import FOLDERS, Artifact
+
+KINDS = {
+    ".nc": "dataset",
+    ".csv": "CSV",
+    ".png": "PNG",
+    ".svg": "SVG",
+    ".md": "table",
+    ".html": "page",
+}
+"""How a page names a file, by its suffix."""
+
+
+def with_parts(page: str, parts: Mapping[str, str]) -> str:
+    """The page with new texts between the comments ``<!-- name -->`` and ``<!-- end of name -->``.
+
+    Raises
+    ------
+    KeyError
+        If the page has no such comments.
+
+    Examples
+    --------
+    >>> page = "One.\\n<!-- two -->\\nold\\n<!-- end of two -->\\nThree.\\n"
+    >>> with_parts(page, {"two": "Two.\\n"}) == page.replace("old", "\\nTwo.\\n")
+    True
+    """
+    for name, text in parts.items():
+        begin, end = f"<!-- {name} -->\n", f"<!-- end of {name} -->\n"
+        before, found, rest = page.partition(begin)
+        _, also_found, after = rest.partition(end)
+        if not (found and also_found):
+            raise KeyError(name)
+        page = f"{before}{begin}\n{text}\n{end}{after}"
+    return page
+
+
+def links(artifact: Artifact) -> str:
+    """Links to the accepted files of an artifact, from the page of its folder."""
+    folder = PurePosixPath(artifact.place).parent
+    paths = [file.removeprefix("results/") for file in artifact.files]
+    if artifact.accepted:
+        paths = [artifact.accepted, *paths]
+    return ", ".join(
+        f"[{KINDS[Path(path).suffix]}]({os.path.relpath(path, folder)})" for path in paths
+    )
+
+
+def page_of(part: str) -> str:
+    """The path of the page that lists the artifacts of the paper, or those beyond it.
+
+    Examples
+    --------
+    >>> page_of("paper"), page_of("beyond")
+    ('figures/README.md', 'figures/beyond/README.md')
+    """
+    paper, beyond = FOLDERS
+    return f"{paper if part == 'paper' else beyond}/README.md"
+
+
+def _by_number(artifact: Artifact) -> tuple[bool, str]:
+    """The order of a list: the figures of the paper by their numbers, then the rest as declared."""
+    is_figure = artifact.name.startswith("fig")
+    return not is_figure, artifact.name if is_figure else ""
+
+
+_IN_A_ROW = 4
+
+
+def thumbnails(artifacts: Iterable[Artifact]) -> str:
+    """A table of small pictures, each a link to the whole, with their names below."""
+    drawn = (each for each in artifacts if each.part == "paper" and each.drawing)
+    shown = sorted(drawn, key=_by_number)
+    names = [each.name.replace("fig", "Fig. ").replace(". 0", ". ") for each in shown]
+    pictures = [
+        f'[<img src="{each.place}.png" alt="{each.title}" width="180">]({each.place}.png)'
+        for each in shown
+    ]
+    lines = []
+    for first in range(0, len(shown), _IN_A_ROW):
+        row = slice(first, first + _IN_A_ROW)
+        lines += [pictures[row], names[row]]
+    lines.insert(1, ["---"] * _IN_A_ROW)
+    return "".join(f"| {' | '.join(cells)} |\n" for cells in lines)
+
+
+_ABOUT = {
+    "paper": """\
+# The figures and tables of the paper
+
+The accepted results of the replication. Each figure, table and check has a dataset (netCDF), its
+picture (PNG and SVG) and its table (Markdown and CSV); two figures are schematics without data.
+What goes past the paper is in [beyond](beyond/README.md).
+""",
+    "beyond": """\
+# Beyond the paper
+
+The accepted results of the studies that go past [the paper](../README.md), in the same form.
+Datasets that take longer to compute than a run should are in `config/`.
+[The explorer](explorer.html) is a page to open from a clone in a browser.
+""",
+}
+_HOW = """\
+The name of a file is that of its target: `snakemake --cores 2 {name}` makes the files anew in
+`results/`, and `bouncing-ball explain FILE` prints from which commit, parameters and versions a
+file was made.
+
+| name | what it shows | files |
+| --- | --- | --- |
+"""
+
+
+def folder_page(part: str, artifacts: Iterable[Artifact]) -> str:
+    """The page of ``figures/``, or of ``figures/beyond/``: a line for each artifact."""
+    here = [each for each in artifacts if page_of(each.part) == page_of(part) and each.files]
+    shown = sorted(here, key=_by_number)
+    rows = [f"| `{each.name}` | {each.title} | {links(each)} |\n" for each in shown]
+    return f"{_ABOUT[part]}\n{_HOW.format(name=shown[0].name)}{''.join(rows)}"

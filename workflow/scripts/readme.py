@@ -1,0 +1,34 @@
+"""The generated parts of README, and the pages that list the accepted files."""
+
+from pathlib import Path
+
+from bouncing_ball.datasets.files import read_dataset, write_text
+from bouncing_ball.paper.claims.claims import tally
+from bouncing_ball.paper.claims.tables import Claims
+from bouncing_ball.pipeline.article import render_article
+from bouncing_ball.pipeline.front import folder_page, page_of, thumbnails, with_parts
+from bouncing_ball.pipeline.jobs import logged
+
+
+def pages(top, artifacts):
+    """The texts by their paths, from the accepted datasets of a checkout."""
+    data = {name: read_dataset(top / f"figures/{name}.nc") for name in ("claims", "table1")}
+    tables = {"tally": tally(data["claims"])}
+    claims = Claims(data["claims"])
+    templates = sorted(top.glob("workflow/report/front/*.md.j2"))
+    parts = {
+        path.name.removesuffix(".md.j2"): render_article(path, data, tables, claims, artifacts)
+        for path in templates
+    }
+    parts["figures"] = thumbnails(artifacts.values())
+    readme = with_parts((top / "README.md").read_text(encoding="utf-8"), parts)
+    folders = {page_of(part): folder_page(part, artifacts.values()) for part in ("paper", "beyond")}
+    return {"README.md": readme, **folders}
+
+
+if "snakemake" in globals():
+    with logged(snakemake) as lines:
+        top = Path(snakemake.scriptdir).resolve().parents[1]
+        for path, text in pages(top, snakemake.params.artifacts).items():
+            write_text(top / path, text)
+            lines.append(path)

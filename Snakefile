@@ -16,6 +16,10 @@ include: "workflow/rules/readable.smk"
 configfile: "config/config.yaml"
 
 
+# The first page of `snakemake --report`; `make report`.
+report: "workflow/report/workflow.rst"
+
+
 # From parameters to datasets: what all stages have in common, and the stages of both sets of
 # studies, with the study, the drawing and the table of each artifact.
 include: "workflow/rules/stage.smk"

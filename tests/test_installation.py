@@ -93,3 +93,35 @@ def test_the_environment_of_conda_has_the_versions_of_the_lock():
     assert {normal(name): version for name, version in given.items()} == {
         name: locked[name] for name in names
     }
+
+
+def test_all_files_name_the_same_release():
+    version = PROJECT["project"]["version"]
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text("utf-8"))
+    changes = (ROOT / "CHANGELOG.md").read_text("utf-8")
+    released = re.findall(r"^## (\d\S*) \((.*)\)$", changes, re.MULTILINE)[0]
+    assert bouncing_ball.__version__ == version == citation["version"] == released[0]
+    assert str(citation["date-released"]) == released[1]
+
+
+def test_the_classifiers_name_the_versions_that_are_tested():
+    jobs = yaml.safe_load((ROOT / ".github" / "workflows" / "ci.yml").read_text("utf-8"))["jobs"]
+    tested = {
+        version
+        for job in jobs.values()
+        for version in job.get("strategy", {}).get("matrix", {}).get("python", [])
+    }
+    named = re.findall(r"Python :: (3\.\d+)", "\n".join(PROJECT["project"]["classifiers"]))
+    assert {*named} == tested
+    assert PROJECT["project"]["requires-python"] == f">={named[0]}"
+
+
+def test_the_metadata_for_the_journal_are_those_of_the_article():
+    metadata = yaml.safe_load((ROOT / "metadata.yaml").read_text("utf-8"))
+    article = (ROOT / "paper.md").read_text("utf-8")
+    assert article.startswith(f"# {metadata['title']}\n")
+    references = yaml.safe_load((ROOT / metadata["bibliography"]).read_text("utf-8"))
+    original = {key: text for one in metadata["replication"] for key, text in one.items()}
+    (found,) = [one for one in references["references"] if one["id"] == original["bib"]]
+    assert found["DOI"] == original["doi"] and found["title"] in original["cite"]
+    assert PROJECT["project"]["urls"]["Paper"].endswith(original["doi"])

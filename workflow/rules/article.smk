@@ -18,10 +18,16 @@ rule set_claims:
         ),
         data="results/figures/claims.nc",
     output:
-        csv="results/figures/claims.csv",
+        csv=report(
+            "results/figures/claims.csv",
+            caption="../report/title.rst",
+            category="Claims",
+            labels={"table": "claims"},
+        ),
         md="results/figures/claims.md",
     params:
         words=WORDS[0],
+        title=ARTIFACTS["claims"].title,
     log:
         "results/logs/tables/claims.log",
     conda:

@@ -3,6 +3,7 @@
 
 CAPTIONS = [path.stem for path in Path(ROOT, "workflow/report").glob("*.rst")]
 
+# Below its picture the report has the caption `workflow/report/NAME.rst`, or else the title.
 for each in ARTIFACTS.values():
     if not each.drawing:
         continue
@@ -20,12 +21,13 @@ for each in ARTIFACTS.values():
             ),
             data=[each.dataset] if each.dataset else [],
         params:
+            title=each.title,
             figures=each.figures,
             drawing=each.drawing,
         output:
             png=report(
                 f"results/{each.place}.png",
-                caption=f"../report/{each.name if each.name in CAPTIONS else 'figure'}.rst",
+                caption=f"../report/{each.name if each.name in CAPTIONS else 'title'}.rst",
                 category="Figures" if each.part == "paper" else "Beyond the paper",
                 labels={"figure": each.name},
             ),
@@ -56,9 +58,15 @@ for each in ARTIFACTS.values():
             ),
             data=each.dataset,
         output:
-            csv=f"results/{each.place}.csv",
+            csv=report(
+                f"results/{each.place}.csv",
+                caption="../report/title.rst",
+                category="Tables" if each.part == "paper" else "Beyond the paper",
+                labels={"table": each.name},
+            ),
             md=f"results/{each.place}.md",
         params:
+            title=each.title,
             figures=each.figures,
             table=each.table,
         log:

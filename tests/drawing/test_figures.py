@@ -9,6 +9,7 @@ import pytest
 from adapter import function
 from declared_artifacts import ARTIFACTS
 
+from bouncing_ball.beyond.exhibits.motion_maps import LOWEST_RATE
 from bouncing_ball.drawing.files import save
 from bouncing_ball.drawing.style import COLOURS, LINES, style
 from bouncing_ball.paper.exhibits.printed_table1 import PERMANENT_CONTACT
@@ -190,6 +191,38 @@ def test_figure_16_shows_where_its_error_is_zero(record):
     step = np.log(data.frequency_ratio.values[1] / data.frequency_ratio.values[0])
     assert abs(np.log(ratio[np.argmin(error)] / exact)) < step**2
     assert error.min() < 1e-9 < below.get_ylim()[0]
+
+
+def test_errors_beyond_the_paper_show_their_zeros(record):
+    data = record["ext_orders"]
+    for axes, quantity in zip(drawn("ext_orders", data).axes, data["quantity"].values, strict=True):
+        zero = float(data.error_zero.sel(quantity=quantity))
+        (line,) = [x for x in axes.lines if x.get_label() == "restitution"]
+        ratio, error = line.get_data()
+        step = data.frequency_ratio.values[1] / data.frequency_ratio.values[0]
+        if np.isfinite(zero):
+            assert error.min() < 1e-9 and abs(np.log(ratio[error.argmin()] / zero)) < np.log(step)
+    data = record["ext_cascades"]
+    shown = data.isel(restitution=data.sizes["restitution"] // 2).cascade_error
+    changes = (np.diff(np.sign(shown.transpose(..., "frequency_ratio").values)) != 0).any(axis=-1)
+    panel = drawn("ext_cascades", data).axes[0]
+    curves = [line for line in panel.lines if len(line.get_xdata()) > 100]
+    lowest = [line.get_ydata().min() < panel.get_ylim()[0] for line in curves]
+    assert sum(lowest) == changes.sum() > 0
+
+
+def test_an_orbit_diagram_has_every_exponent_that_was_found(record):
+    data = record["ext_diagram"]
+    axes = drawn("ext_diagram", data).axes[-1]
+    for model in data["model"].values:
+        (line,) = [x for x in axes.lines if x.get_label() == f"{model} model"]
+        exponent = data.lyapunov_exponent.sel(model=model).values
+        height = line.get_ydata()
+        # Those below the axis are in one row for each model.
+        low = exponent < LOWEST_RATE
+        assert len(set(height[low])) <= 1 and np.all(height[low] < LOWEST_RATE)
+        np.testing.assert_array_equal(height[~low], exponent[~low])
+        assert np.nanmax(height) <= axes.get_ylim()[1]
 
 
 @pytest.mark.parametrize("name", ["fig02", "fig07", "fig12"])

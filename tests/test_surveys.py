@@ -1,6 +1,7 @@
 """Calls that return labelled datasets: balls over time, drops, branches."""
 
 import pickle
+from itertools import product
 
 import numpy as np
 import pytest
@@ -262,14 +263,14 @@ def test_balls_on_a_law_are_followed_at_the_speeds_of_their_first_impacts():
 def test_the_plot_of_a_branch_shows_all_that_its_dataset_has():
     """At ϖ = 2 the branch turns twice, and two period doublings lie on the longer contacts."""
     found = bb.branch(bb.spring_damper(restitution=0.85, frequency_ratio=2.0), points=100)
-    (axes,) = found.plot().axes
-    for kind in ("saddle-node", "period doubling"):
+    panels = found.plot().axes
+    assert len(panels) == 2
+    for axes, kind in product(panels, ("saddle-node", "period doubling")):
         here = (found.special_kind == kind).values
-        drawn = [line for line in axes.lines if line.get_label() == kind]
-        assert len(drawn) == 2
-        for line in drawn:
-            x = line.get_xdata()[np.isfinite(line.get_ydata().astype(float))]
-            np.testing.assert_array_equal(np.sort(x), np.sort(found.special_amplitude.values[here]))
+        (line,) = [line for line in axes.lines if line.get_label() == kind]
+        x = line.get_xdata()[np.isfinite(line.get_ydata().astype(float))]
+        np.testing.assert_array_equal(np.sort(x), np.sort(found.special_amplitude.values[here]))
+    axes = panels[0]
     stable = np.unique(
         np.concatenate([x.get_xdata() for x in axes.lines if x.get_label() == "stable"])
     )

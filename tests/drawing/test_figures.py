@@ -9,9 +9,10 @@ import pytest
 from adapter import function
 from declared_artifacts import ARTIFACTS
 
+from bouncing_ball.beyond.exhibits.motion_maps import LOWEST_RATE
 from bouncing_ball.drawing.files import save
 from bouncing_ball.drawing.style import COLOURS, LINES, style
-from bouncing_ball.paper.exhibits.continuation_of_orbits_figures import up_to_second_saddle_node
+from bouncing_ball.paper.exhibits.printed_table1 import PERMANENT_CONTACT
 from bouncing_ball.pipeline.provenance import read_attributes
 
 pytestmark = pytest.mark.slow
@@ -80,7 +81,8 @@ def test_figure_7_marks_the_instants_and_velocities(record):
     ):
         x0, y0 = arrow.xyann
         x1, y1 = arrow.xy
-        assert x1 > x0 and (y1 - y0) / (x1 - x0) == pytest.approx(float(velocity))
+        slope = (y1 - y0) / (2 * np.pi * (x1 - x0))
+        assert x1 > x0 and slope == pytest.approx(float(velocity))
 
 
 def test_stability_is_drawn_solid_dashed_and_dotted(record):
@@ -100,7 +102,7 @@ def test_stability_is_drawn_solid_dashed_and_dotted(record):
 def test_a_line_changes_its_look_at_a_special_point_and_nowhere_else(record, name):
     data = record[name]
     found = lines(drawn(name, data))
-    marks = [line.get_xydata() for line in found if line.get_marker() in ("o", "s", "^")]
+    marks = [line.get_xydata() for line in found if line.get_marker() in ("o", "s", "^", ".")]
     marks = {tuple(point) for line in marks for point in line if np.all(np.isfinite(point))}
     runs = [line for line in found if line.get_marker() == "None" and len(line.get_xdata()) > 1]
     assert len(runs) > 4
@@ -108,10 +110,11 @@ def test_a_line_changes_its_look_at_a_special_point_and_nowhere_else(record, nam
     top = data.attrs["amplitude_max"]
     # The others are the ends of the branches, at the largest Λ.
     assert all(end in marks or end[0] == pytest.approx(top, abs=1e-12) for end in ends)
-    # At each mark a solid line meets a dashed one, but for a branch drawn up to a saddle-node.
+    # At each mark a solid line meets a dashed one, but for a branch that ends inside.
     met = Counter(end for end in ends if end in marks)
-    turned = 2 if name == "fig08" else 0
-    assert set(met) == marks and sorted(met.values()).count(1) == turned
+    # It has an end in each of the two panels.
+    inside = 2 if name == "fig08" else 0
+    assert set(met) == marks and sorted(met.values()).count(1) == inside
 
 
 def test_markers_stand_at_the_bifurcations(record):
@@ -123,12 +126,14 @@ def test_markers_stand_at_the_bifurcations(record):
         assert at.size and np.all(np.isin(at, shown))
 
 
-@pytest.mark.parametrize(("name", "curves"), [("fig03", 0), ("fig08", 3), ("fig15", 3)])
+@pytest.mark.parametrize(("name", "curves"), [("fig03", 1), ("fig08", 4), ("fig15", 2)])
 def test_every_curve_and_mark_is_named_once(record, name, curves):
+    """Besides the kinds: Eq. 8 in Fig. 3, and the end of a branch in Fig. 8."""
     figure = drawn(name, record[name])
     (legend,) = figure.legends
-    names = [text.get_text() for text in legend.get_texts()]
+    names = [text.get_text() for text in legend.get_texts() if text.get_text()]
     if name == "fig03":
+        assert "period doubling, Eq. 8" in names
         assert [text.get_text() for text in figure.axes[0].texts] == [
             f"$n={n}$" for n in range(1, 6)
         ]
@@ -136,22 +141,97 @@ def test_every_curve_and_mark_is_named_once(record, name, curves):
     assert kinds <= set(names) and len(names) == len(set(names)) == curves + len(kinds)
 
 
-def test_figure_8_is_drawn_up_to_where_its_softest_branch_turns_back(record):
-    data = record["fig08"]
-    soft = data.sel(frequency_ratio=2.0)
-    turns = soft.special_amplitude.values[soft.special_kind.values == "saddle-node"]
-    assert len(turns) == 2
-    part = up_to_second_saddle_node(soft)
-    assert part.sizes["point"] < soft.sizes["point"]
-    assert float(part.contact_duration.max()) < float(soft.contact_duration.max())
-    # Its points end a step before the turn, and the line at the turn.
-    assert float(part.amplitude[0]) == pytest.approx(turns.max(), abs=1e-3)
-    drawn_lines = [line for line in lines(drawn("fig08", data)) if line.get_marker() == "None"]
-    assert any(line.get_xdata()[0] == turns.max() for line in drawn_lines if len(line.get_xdata()))
-    shown = np.concatenate([line.get_ydata() for line in drawn_lines])
-    assert np.nanmin(shown) >= float(part.phase.min()) / np.pi - 1e-3
-    stiff = data.sel(frequency_ratio=10.0)
-    assert up_to_second_saddle_node(stiff) is stiff
+@pytest.mark.parametrize("name", ["fig08", "fig09"])
+def test_figures_8_and_9_have_every_orbit_of_their_dataset_in_both_panels(record, name):
+    data = record[name]
+    start, end = drawn(name, data).axes
+    assert start.get_title() == r"start of contact, $\varphi$"
+    assert end.get_title() == r"end of contact, $\varphi+\tau_b$"
+    for axes, phase in ((start, data.phase), (end, data.release_phase)):
+        for kind, orbits in (("stable", data.stable), ("unstable", ~data.stable)):
+            shown = [line for line in axes.lines if line.get_label() == kind]
+            points = {tuple(point) for line in shown for point in line.get_xydata()}
+            there = (orbits & data.admissible).values
+            of_data = zip(data.amplitude.values[there], phase.values[there] / np.pi, strict=True)
+            assert set(of_data) <= points
+    # The branch of the most compliant contact has stable orbits beyond its second saddle-node.
+    soft = data.isel(frequency_ratio=-1)
+    longest = soft.contact_duration.where(soft.stable).max()
+    if name == "fig08":
+        assert (
+            longest > soft.special_contact_duration.where(soft.special_kind == "saddle-node").max()
+        )
+
+
+def test_figure_3_marks_equation_8_beside_the_exact_map(record):
+    data = record["fig03"]
+    found = lines(drawn("fig03", data))
+    for marker, kind in (("s", "exact"), ("x", "holmes")):
+        shown = sorted(
+            float(line.get_xdata().item()) for line in found if line.get_marker() == marker
+        )
+        assert shown == data.period_doubling_amplitude.sel(impact_map=kind).values.tolist()
+
+
+def test_figure_16_marks_the_printed_ratio_of_its_own_parameters_only(record):
+    data = record["fig16"]
+    (mark,) = [line for line in lines(drawn("fig16", data)) if line.get_marker() == "D"]
+    assert mark.get_xydata().tolist() == [[PERMANENT_CONTACT, data.attrs["tolerance"]]]
+    for change in ({"restitution": 0.2}, {"tolerance": 0.02}, {"release": "force"}):
+        others = lines(drawn("fig16", data.assign_attrs(change)))
+        assert not [line for line in others if line.get_marker() == "D"]
+
+
+def test_figure_16_shows_where_its_error_is_zero(record):
+    data = record["fig16"]
+    below = drawn("fig16", data).axes[1]
+    ratio, error = max(below.lines, key=lambda line: len(line.get_xdata())).get_data()
+    # Eq. 33 equals one at 1/√(2 - 4ζ²); the zero lies between two samples of the grid.
+    exact = 1 / np.sqrt(2 - 4 * float(data.damping_ratio) ** 2)
+    step = np.log(data.frequency_ratio.values[1] / data.frequency_ratio.values[0])
+    assert abs(np.log(ratio[np.argmin(error)] / exact)) < step**2
+    assert error.min() < 1e-9 < below.get_ylim()[0]
+
+
+def test_errors_beyond_the_paper_show_their_zeros(record):
+    data = record["ext_orders"]
+    for axes, quantity in zip(drawn("ext_orders", data).axes, data["quantity"].values, strict=True):
+        zero = float(data.error_zero.sel(quantity=quantity))
+        (line,) = [x for x in axes.lines if x.get_label() == "restitution"]
+        ratio, error = line.get_data()
+        step = data.frequency_ratio.values[1] / data.frequency_ratio.values[0]
+        if np.isfinite(zero):
+            assert error.min() < 1e-9 and abs(np.log(ratio[error.argmin()] / zero)) < np.log(step)
+    data = record["ext_cascades"]
+    shown = data.isel(restitution=data.sizes["restitution"] // 2).cascade_error
+    changes = (np.diff(np.sign(shown.transpose(..., "frequency_ratio").values)) != 0).any(axis=-1)
+    panel = drawn("ext_cascades", data).axes[0]
+    curves = [line for line in panel.lines if len(line.get_xdata()) > 100]
+    lowest = [line.get_ydata().min() < panel.get_ylim()[0] for line in curves]
+    assert sum(lowest) == changes.sum() > 0
+
+
+def test_an_orbit_diagram_has_every_exponent_that_was_found(record):
+    data = record["ext_diagram"]
+    axes = drawn("ext_diagram", data).axes[-1]
+    for model in data["model"].values:
+        (line,) = [x for x in axes.lines if x.get_label() == f"{model} model"]
+        exponent = data.lyapunov_exponent.sel(model=model).values
+        height = line.get_ydata()
+        # Those below the axis are in one row for each model.
+        low = exponent < LOWEST_RATE
+        assert len(set(height[low])) <= 1 and np.all(height[low] < LOWEST_RATE)
+        np.testing.assert_array_equal(height[~low], exponent[~low])
+        assert np.nanmax(height) <= axes.get_ylim()[1]
+
+
+@pytest.mark.parametrize("name", ["fig02", "fig07", "fig12"])
+def test_time_is_in_periods_of_the_table(record, name):
+    drawn_axes = drawn(name, record[name]).axes
+    assert {axes.get_xlabel() for axes in drawn_axes} == {r"time $\tau/2\pi$"}
+    first = drawn_axes[0].get_lines()
+    longest = max(float(np.max(line.get_xdata())) for line in first)
+    assert 1 <= longest <= 3, longest
 
 
 def test_figure_13_marks_round_frequency_ratios(record):

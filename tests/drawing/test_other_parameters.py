@@ -1,9 +1,155 @@
-"""What is not compared with the paper is compared in no text."""
+"""Runs with other parameters: the texts compare nothing with the paper, and the figures remain
+legible: no text overlaps another one, and every colour has its name.
+"""
+
+from itertools import combinations
+from pathlib import Path
 
 import numpy as np
 import pytest
+from adapter import function
+from declared_artifacts import ARTIFACTS
+from matplotlib.colors import to_hex
+from matplotlib.text import Text
 
+from bouncing_ball.drawing.canvas import lay_out
+from bouncing_ball.drawing.style import LINES, MARKS, style
 from bouncing_ball.errors import ModelError
+from bouncing_ball.pipeline.configuration import arguments, read_yaml, typed
+from bouncing_ball.pipeline.jobs import recorded
+
+ROOT = Path(__file__).resolve().parents[2]
+SPAN = {"min": 1.0, "max": 1000.0, "samples": 31}
+
+
+def cases(*pairs):
+    return [{"restitution": r, "amplitude": lam} for r, lam in pairs]
+
+
+OTHERS = [
+    ("fig02", {"n": 3, "restitution": 0.2, "amplitude": 12.0, "periods": 20}),
+    ("fig03", {"n": [*range(1, 16)], "restitution": 0.98, "amplitude_max": 40.0}),
+    ("fig03", {"n": [3, 1], "restitution": 0.3, "amplitude_max": 9.0}),
+    ("fig05", {"cases": cases(*((0.9 - 0.1 * k, 1.0 + 0.3 * k) for k in range(8)))}),
+    ("fig06", {"cases": cases((0.655, 1.001), (0.65, 1.0005), (0.123456, 2.54321))}),
+    ("fig07", {"frequency_ratio": 1000.0}),
+    ("fig07", {"frequency_ratio": 1.5}),
+    ("fig07", {"n": 5, "amplitude": 1.5}),
+    ("fig08", {"frequency_ratio": [1e4, 20.0, 10.0, 2.0], "points": 61}),
+    ("fig08", {"frequency_ratio": [2.5e5, 100.0, 20.0, 10.0, 5.0, 3.0, 2.0], "points": 61}),
+    ("fig09", {"frequency_ratio": [10.0, 0.3, 0.2], "points": 61}),
+    ("fig10", {"amplitude": [0.52, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1], "frequency_ratio": SPAN}),
+    ("fig11", {"restitution": 0.2}),
+    ("fig11", {"frequency_ratio": {"min": 0.1, "max": 0.5, "samples": 31}}),
+    (
+        "fig12",
+        {"n": 3, "restitution": 0.9, "frequency_ratio": [1.5, 2.0, 3.0, 5.0, 9.0, 20.0, 1e5]},
+    ),
+    ("fig13", {"amplitude": [1.0, 0.75], "frequency_ratio": SPAN}),
+    ("fig13", {"amplitude": [1.2, 1.0, 0.8, 0.7], "frequency_ratio": SPAN}),
+    ("fig14", {"n": 2, "restitution": 0.8, "tolerance": 0.001, "frequency_ratio": SPAN}),
+    ("fig14", {"tolerance": 1e-4, "frequency_ratio": SPAN}),
+    ("fig15", {"n": 1, "restitution": 0.85, "frequency_ratio": 0.6, "points": 61}),
+    ("fig16", {"restitution": 0.2}),
+    ("fig16", {"restitution": 0.05, "frequency_ratio": SPAN}),
+]
+
+
+def drawn(name, changes):
+    """The figure of an artifact with some parameters changed, laid out as it is saved."""
+    artifact = ARTIFACTS[name]
+    configuration = read_yaml(ROOT / "config" / "config.yaml")
+    configuration["paper"][name] |= changes
+    study = function(artifact.module, artifact.study)
+    given = arguments(study, "paper", name, configuration)
+    data = typed(study)(**given).assign_attrs(recorded(given))
+    with style():
+        figure = function(artifact.figures, artifact.drawing)(data)
+        figure.draw_without_rendering()
+        lay_out(figure, figure.get_layout_engine())
+    return figure
+
+
+def texts_of(figure):
+    """All texts that are shown."""
+    with style():
+        ticks = [
+            tick.label1
+            for axes in figure.axes
+            for axis in (axes.xaxis, axes.yaxis)
+            for tick in axis._update_ticks()
+        ]
+    labels = [each for axes in figure.axes for each in (axes.xaxis.label, axes.yaxis.label)]
+    panels = [each for axes in figure.axes for each in (*axes.texts, axes.title)]
+    legends = [text for legend in figure.legends for text in legend.get_texts()]
+    found = [*ticks, *labels, *panels, *legends, *figure.texts]
+    return [text for text in found if text.get_visible() and text.get_text().strip()]
+
+
+def overlaps(figure):
+    """Pairs of texts of which one hides a part of the other, and texts that are cut off."""
+    with style():
+        # Without the arrow of an annotation.
+        boxes = [(text.get_text(), Text.get_window_extent(text)) for text in texts_of(figure)]
+    pairs = [(a, b) for (a, one), (b, other) in combinations(boxes, 2) if one.overlaps(other)]
+    page = figure.bbox
+    return pairs + [
+        (text, "the edge")
+        for text, box in boxes
+        if not (page.x0 <= box.x0 and box.x1 <= page.x1 and page.y0 <= box.y0 and box.y1 <= page.y1)
+    ]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "changes"), OTHERS)
+def test_no_text_of_a_figure_overlaps_another(name, changes):
+    assert not overlaps(drawn(name, changes))
+
+
+def test_texts_that_overlap_are_found():
+    with style():
+        figure = drawn("fig02", {})
+        figure.axes[0].text(0.5, 3.0, "one")
+        figure.axes[0].text(0.5, 3.0, "other")
+        figure.text(0.99, 0.5, "too long")
+    assert overlaps(figure) == [("one", "other"), ("too long", "the edge")]
+
+
+@pytest.mark.parametrize(
+    ("name", "changes"),
+    [
+        ("fig08", {"frequency_ratio": [1e4, 20.0, 10.0, 2.0], "points": 61}),
+        ("fig13", {"amplitude": [1.0, 0.75], "frequency_ratio": SPAN}),
+        ("fig10", {"amplitude": [0.52, 0.6, 0.7, 0.8, 0.9, 1.0], "frequency_ratio": SPAN}),
+    ],
+)
+def test_every_colour_has_its_name_in_the_order_of_the_parameters(name, changes):
+    figure = drawn(name, changes)
+    (legend,) = figure.legends
+    names = [text.get_text() for text in legend.get_texts()]
+    symbol, values = next(iter(changes.items()))
+    mark = {"frequency_ratio": r"\varpi=", "amplitude": r"\Lambda="}[symbol]
+    handles = {n: h for n, h in zip(names, legend.legend_handles, strict=True) if mark in n}
+    colours = [to_hex(handle.get_color()) for handle in handles.values()]
+    assert len(set(colours)) == len(handles) == len(values)
+    used = {
+        to_hex(line.get_color())
+        for axes in figure.axes
+        for line in axes.lines
+        if len(line.get_xdata()) > 2
+    }
+    assert set(colours) <= used <= {*colours, to_hex("black")}
+
+
+def test_stable_comes_first_in_a_legend():
+    figure = drawn("fig08", {"frequency_ratio": [1e4, 20.0, 10.0, 2.0], "points": 61})
+    legend = figure.legends[0]
+    # matplotlib fills the columns one after another.
+    places = {t.get_text(): t.get_window_extent() for t in legend.get_texts() if t.get_text()}
+    read = sorted(places, key=lambda name: (-round(places[name].y0, -1), places[name].x0))
+    ratios = [rf"$\varpi={value}$" for value in ("10^{4}", "20", "10", "2")]
+    kinds = [kind for kind in LINES | MARKS if kind in places]
+    assert read == ratios + kinds and kinds[0] == "stable"
 
 
 @pytest.fixture(scope="module")

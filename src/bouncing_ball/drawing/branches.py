@@ -4,8 +4,8 @@ Lines are solid for stable, dashed for unstable and dotted for inadmissible orbi
 15).
 """
 
-from collections.abc import Callable
-from itertools import cycle, pairwise
+from collections.abc import Sequence
+from itertools import pairwise
 from textwrap import fill
 from typing import NamedTuple
 
@@ -23,7 +23,7 @@ from bouncing_ball.datasets import (
 )
 from bouncing_ball.drawing.canvas import WIDE, canvas, coloured, legend_below
 from bouncing_ball.drawing.labels import in_a_row, title
-from bouncing_ball.drawing.style import COLOURS, LINES, MARKS
+from bouncing_ball.drawing.style import LINES, MARKS
 
 _GRAZING = {GRAZING_FLIGHT, GRAZING_RELEASE}
 # The special orbits of the restitution model, and the beginnings of the names of their variables.
@@ -32,14 +32,18 @@ _OF_RIGID = {
     PERIOD_DOUBLING: "period_doubling",
     GRAZING_FLIGHT: "grazing",
 }
-# Width in characters of a reason inside of a panel.
-_LINE = 80
+# Width in characters of a reason below the title.
+_LINE = 110
+# Relative distance below which the end of a branch is at the largest Λ of the panel.
+_AT_THE_EDGE = 1e-9
+SPECIAL = (SADDLE_NODE, PERIOD_DOUBLING, GRAZING_FLIGHT, GRAZING_RELEASE)
+"""The kinds of special points at which the line of a branch may change its look."""
 
 
 class SpecialPoints(NamedTuple):
     """The special points of a branch: arrays of one shape, NaN where there is no special point.
 
-    ``kind`` is a name in ``MARKS``, ``along`` the place on the branch in the measure of its
+    ``kind`` is one of ``SPECIAL``, ``along`` the place on the branch in the measure of its
     points, ``amplitude`` Λ and ``phase`` the phase shown, in rad.
     """
 
@@ -73,10 +77,12 @@ def draw_branch(
     of which a part is drawn begins and ends at the special points beyond its points.
     """
     line = np.stack([curve.amplitude.values, phase.values / np.pi])
+    if np.isnan(line).all():
+        return
     stability = np.where(curve.stable, "stable", "unstable")
     kinds = np.where(curve.admissible, stability, "inadmissible")
     edges = [0, *(np.flatnonzero(kinds[1:] != kinds[:-1]) + 1), len(kinds)]
-    first = special.between(-np.inf, along[0], set(MARKS))[:, -1:]
+    first = special.between(-np.inf, along[0], set(SPECIAL))[:, -1:]
     for start, stop in pairwise(edges):
         last = _border(line, kinds, along, special, stop)
         x, y = np.concatenate([first, line[:, start:stop], last], axis=-1)
@@ -92,9 +98,9 @@ def _border(
     Where the look changes but no special point is known the place is the next point.
     """
     if stop == len(kinds):
-        return special.between(along[-1], np.inf, set(MARKS))[:, :1]
+        return special.between(along[-1], np.inf, set(SPECIAL))[:, :1]
     grazes = "inadmissible" in kinds[stop - 1 : stop + 1]
-    possible = _GRAZING if grazes else set(MARKS) - _GRAZING
+    possible = _GRAZING if grazes else set(SPECIAL) - _GRAZING
     found = special.between(along[stop - 1], along[stop], possible)[:, :1]
     return found if found.size else line[:, stop : stop + 1]
 
@@ -124,49 +130,45 @@ def draw_rigid_branch(axes: Axes, curve: xr.Dataset, data: xr.Dataset, colour: s
         mark_orbits(axes, kind, data[f"{name}_amplitude"], data[f"{name}_phase"], colour)
 
 
-def label_branch_axes(
-    axes: Axes, data: xr.Dataset, ylabel: str, title: str, left: float = 0.0
-) -> None:
-    """Labels of the axes, a title, and the range of Λ from ``left`` to the end of the branches."""
-    axes.set(xlabel=r"amplitude $\Lambda$", ylabel=ylabel, title=title)
-    axes.set_xlim(left, data.attrs["amplitude_max"])
+def phase_panels(touching: bool) -> tuple[Figure, list[Axes]]:
+    """A panel for the phase of the table at which contact starts, and one for that at its end.
 
-
-def over_amplitude(
-    data: xr.Dataset, shown: Callable[[xr.Dataset], xr.Dataset] = lambda curve: curve
-) -> Figure:
-    """Branches of a labelled dataset as in Figs. 8 and 9, named by the arguments that differ.
-
-    ``shown`` is the part of each branch that is drawn; by default it is the whole branch.
+    Without contacts of finite duration there is only the first.
     """
-    figure, axes = canvas(WIDE, 4.2)
+    figure, panels = canvas(WIDE, 3.9, columns=1 + touching, sharex=True, sharey=True)
+    panels = np.atleast_1d(panels)
+    titles = (r"start of contact, $\varphi$", r"end of contact, $\varphi+\tau_b$")
+    for axes, name in zip(panels, titles, strict=False):
+        axes.set(xlabel=r"amplitude $\Lambda$", title=name if touching else "")
+    panels[0].set_ylabel(r"phase of the table over $\pi$")
+    return figure, [*panels]
+
+
+def over_amplitude(data: xr.Dataset) -> Figure:
+    """Branches of a labelled dataset as in Figs. 8 and 9, named by the arguments that differ."""
     rows, names = in_a_row(data, "point", "special", "multiplier", "end")
-    name_curves(axes, [name for name in names if name])
+    figure, panels = phase_panels(bool((rows.contact_duration > 0).any()))
+    panels[0].set_xlim(0.0, data.attrs.get("amplitude_max", data.amplitude.max()))
     # Both phases of a curve have its colour.
-    for curve, colour in coloured(rows, CASE):
-        draw_both_phases(axes, shown(placed(curve)), colour, colour)
-    touching = bool((rows.contact_duration > 0).any())
-    above = r", and above it $\varphi+\tau_b$" if touching else ""
-    axes.set(xlabel=r"amplitude $\Lambda$", title=title(data), xlim=(0.0, data.amplitude.max()))
-    axes.set(ylabel=rf"phase of the table over $\pi$: $\varphi${above}")
-    say_what_is_missing(axes, rows)
-    legend_below(figure, ncols=7)
+    for (curve, colour), name in zip(coloured(rows, CASE), names, strict=True):
+        if name and curve.amplitude.notnull().any():
+            name_curve(panels[0], name, colour)
+        draw_both_phases(panels, placed(curve), colour)
+    legend_below(figure)
+    head(figure, title(data), rows)
     return figure
 
 
-def say_what_is_missing(axes: Axes, rows: xr.Dataset) -> None:
-    """The reasons for the branches that cannot be followed, in the panel, a line for each."""
+def head(figure: Figure, title: str, rows: xr.Dataset) -> None:
+    """The title, and a line for each branch that cannot be followed, with the reason."""
     missing = rows.amplitude.isnull().all("point").values
     reasons = rows.end_reason.isel(end=0).values[missing]
-    if reasons.size:
-        text = "\n".join(fill(reason, _LINE) for reason in reasons)
-        axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", fontsize=7)
+    figure.suptitle("\n".join([title, *(fill(reason, _LINE) for reason in reasons)]))
 
 
-def name_curves(axes: Axes, names: list[str]) -> None:
-    """Entries of the legend, in the order of the colours."""
-    for name, colour in zip(names, cycle(COLOURS), strict=False):
-        axes.plot([], [], color=colour, label=name)
+def name_curve(axes: Axes, name: str, colour: str) -> None:
+    """The entry of a curve in the legend."""
+    axes.plot([], [], color=colour, label=name)
 
 
 def placed(curve: xr.Dataset) -> xr.Dataset:
@@ -174,11 +176,13 @@ def placed(curve: xr.Dataset) -> xr.Dataset:
     return curve.assign(arclength=("point", np.linspace(0.0, 1.0, curve.sizes["point"])))
 
 
-def draw_both_phases(axes: Axes, curve: xr.Dataset, start: str, end: str) -> None:
-    """The phases at the start and at the end of contact, with the special points."""
-    _draw_phase(axes, curve, curve.phase, curve.special_phase, start)
-    special_release = curve.special_phase + curve.special_contact_duration
-    _draw_phase(axes, curve, curve.release_phase, special_release, end)
+def draw_both_phases(panels: Sequence[Axes], curve: xr.Dataset, colour: str) -> None:
+    """The phases at the start and at the end of contact, a panel for each, with special points."""
+    release = curve.special_phase + curve.special_contact_duration
+    phases = ((curve.phase, curve.special_phase), (curve.release_phase, release))
+    # Without contacts of finite duration there is one panel.
+    for axes, (phase, special) in zip(panels, phases, strict=False):
+        _draw_phase(axes, curve, phase, special, colour)
 
 
 def _draw_phase(
@@ -192,6 +196,10 @@ def _draw_phase(
         phase=special.values,
     )
     draw_branch(axes, curve, curve.arclength.values, phase, points, colour)
-    for kind in MARKS:
+    for kind in SPECIAL:
         there = special.where(curve.special_kind == kind)
         mark_orbits(axes, kind, curve.special_amplitude, there, colour)
+    # A branch that does not leave the window ends where its contact or its flight does.
+    ends = curve.amplitude[[0, -1]]
+    inside = ends < axes.get_xlim()[1] * (1 - _AT_THE_EDGE)
+    mark_orbits(axes, "end of a branch", ends, phase[[0, -1]].where(inside), colour)

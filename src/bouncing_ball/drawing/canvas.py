@@ -1,8 +1,7 @@
 """Figures without overlaps, and the parts that all of their panels share."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextvars import ContextVar
-from itertools import cycle
 from typing import Any
 
 import numpy as np
@@ -10,10 +9,11 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.layout_engine import LayoutEngine
+from matplotlib.lines import Line2D
 from matplotlib.ticker import NullLocator
 
-from bouncing_ball.drawing.labels import QUANTITIES
-from bouncing_ball.drawing.style import COLOURS, LINES
+from bouncing_ball.drawing.labels import QUANTITIES, number
+from bouncing_ball.drawing.style import LINES, MARKS, palette
 from bouncing_ball.errors import ModelError
 
 WIDTH = 3.4
@@ -89,20 +89,59 @@ def image(axes: Axes, values: Any, extent: tuple[float, float, float, float], **
     return axes.imshow(values, extent=extent, **look)
 
 
-def legend_below(figure: Figure | SubFigure, handles: Any = None, **options: Any) -> None:
-    """A legend below all panels.
+def legend_below(
+    figure: Figure | SubFigure,
+    *groups: Sequence[Any],
+    ncols: int | None = None,
+    labels: Sequence[str] = (),
+    **options: Any,
+) -> None:
+    """A legend below all panels, read row by row, with as many columns as its width has room for.
 
-    Without given handles the legend has those of the first panel, each name once.
+    Each group of handles begins a row. Without groups the legend has the handles of all panels,
+    each name once, and the kinds of orbits come last. ``labels`` are the names of the handles in
+    their order, and ``ncols`` is the largest number of columns.
     """
-    if handles is None:
-        first = GIVEN.get()[0] if GIVEN.get() else figure.axes[0]
-        drawn, names = first.get_legend_handles_labels()
-        handles = [handle for k, handle in enumerate(drawn) if names[k] not in names[:k]]
+    rows = [list(group) for group in groups] or _named(figure)
+    for handle, label in zip((handle for row in rows for handle in row), labels, strict=False):
+        handle.set_label(label)
     if given := GIVEN.get():
         # The figure is that of the user and may have other panels.
-        given[0].legend(handles=handles, **options | {"ncols": 1})
+        entries = [handle for row in rows for handle in row]
+        given[0].legend(handles=entries, ncols=1, **options)
         return
-    figure.legend(handles=handles, loc="outside lower center", **options)
+    blank = Line2D([], [], linestyle="none", label="")
+    most = max(map(len, rows))
+    for columns in range(min(most, ncols or most), 0, -1):
+        filled = [row + [blank] * (-len(row) % columns) for row in rows[:-1]]
+        entries = [handle for row in (*filled, rows[-1]) for handle in row]
+        # matplotlib fills the columns one after another.
+        by_column = [entry for k in range(columns) for entry in entries[k::columns]]
+        legend = figure.legend(
+            handles=by_column, loc="outside lower center", ncols=columns, **options
+        )
+        if legend.get_window_extent().width <= figure.bbox.width or columns == 1:
+            return
+        legend.remove()
+
+
+def _named(figure: Figure | SubFigure) -> list[list[Any]]:
+    """What the panels name, each name once: the curves, and the kinds of orbits in their order."""
+    found: dict[str, Any] = {}
+    for axes in GIVEN.get() or figure.axes:
+        for handle, name in zip(*axes.get_legend_handles_labels(), strict=True):
+            found.setdefault(name, handle)
+    kinds = [_in_black(found[kind]) for kind in LINES | MARKS if kind in found]
+    curves = [handle for name, handle in found.items() if name not in LINES | MARKS]
+    return [row for row in (curves, kinds) if row]
+
+
+def _in_black(line: Line2D) -> Line2D:
+    """The look of a line without its colour, which is that of one curve of several."""
+    entry = Line2D([], [])
+    entry.update_from(line)
+    entry.set(color="black", label=line.get_label())
+    return entry
 
 
 def logarithmic(axes: Axes, ratio: xr.DataArray | None = None, **settings: Any) -> None:
@@ -114,14 +153,14 @@ def logarithmic(axes: Axes, ratio: xr.DataArray | None = None, **settings: Any) 
     if ratio is not None:
         axes.set(xlabel=r"frequency ratio $\varpi$", xlim=(float(ratio[0]), float(ratio[-1])))
     axes.set(xscale="log", **settings)
-    axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    axes.xaxis.set_major_formatter(lambda value, _: f"${number(value)}$")
     axes.xaxis.set_minor_formatter(lambda value, _: "")
 
 
 def coloured(data: xr.Dataset, dim: str) -> Iterator[tuple[xr.Dataset, str]]:
-    """The dataset at each place along a dimension, with the next colour for each place."""
+    """The dataset at each place along a dimension, with a colour for each place."""
     places = (data.isel({dim: k}) for k in range(data.sizes[dim]))
-    return zip(places, cycle(COLOURS))
+    return zip(places, palette(data.sizes[dim]), strict=True)
 
 
 def draw_curve(axes: Axes, x: Any, y: Any, admissible: Any, **look: Any) -> None:

@@ -1,11 +1,16 @@
 """The texts on figures: quantities, parameters, notes."""
 
+from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.text import Annotation
+from scipy.optimize import isotonic_regression
 
 from bouncing_ball.datasets import CASE
+from bouncing_ball.drawing.style import GUIDE
 
 QUANTITIES = {
     "phase": r"phase of impact $\varphi$",
@@ -17,6 +22,12 @@ QUANTITIES = {
     "permanent_contact": "permanent contact",
 }
 """The titles of the quantities compared between the models."""
+
+_POINTS_PER_INCH = 72.0
+# Height of a line of text in points, and offsets of a text from its point, in points and sides.
+_LINE_HEIGHT = 9.5
+_DISTANCES = (4.0, 8.0, 14.0)
+_SIDES = ((1, 1), (-1, 1), (1, -1), (-1, -1), (0, 1.5), (0, -1.5), (1.5, 0), (-1.5, 0))
 
 # Parameters in the order in which a title lists them.
 _SYMBOLS = {
@@ -66,11 +77,12 @@ def symbol(name: str) -> str:
 
 def title(data: xr.Dataset) -> str:
     """A title of a labelled dataset: its model and its law, and the parameters among its attributes
-    and its coordinates without an axis, such as those of a part of a result.
+    and its coordinates without an axis, such as those of a part of a result. A parameter with
+    several values names the curves and not the figure.
     """
     fixed = {name: each.item() for name, each in data.coords.items() if not each.dims}
     data = data.assign_attrs(fixed)
-    known = [name for name in _SYMBOLS if name in data.attrs]
+    known = [name for name in _SYMBOLS if name in data.attrs and np.ndim(data.attrs[name]) == 0]
     words = [str(data.attrs[name]) for name in ("model", "law") if name in data.attrs]
     return ", ".join(x for x in (*words, parameters(data, *known)) if x)
 
@@ -98,3 +110,70 @@ def in_a_row(data: xr.Dataset, *kept: str) -> tuple[xr.Dataset, list[str]]:
 def note(axes: Axes, text: str, point: Any, offset: Any, **look: Any) -> None:
     """A text at an offset in points from a point of the data."""
     axes.annotate(text, point, xytext=offset, textcoords="offset points", **look)
+
+
+def names_at_the_right(axes: Axes, ends: Sequence[tuple[str, float, str]]) -> None:
+    """Names of lines that end at the right edge: name, height and colour of each.
+
+    Each name is as near to its line as the height of the others and of the panel allows, so that
+    this comes after the layout of the panel.
+    """
+    places = axes.transData.transform([(0.0, height) for _, height, _ in ends])[:, 1]
+    places *= _POINTS_PER_INCH / axes.figure.dpi
+    order = np.argsort(places)
+    steps = _LINE_HEIGHT * np.arange(len(ends))
+    low, high = axes.get_window_extent().intervaly * _POINTS_PER_INCH / axes.figure.dpi
+    spread = isotonic_regression(places[order] - steps).x.clip(low, max(low, high - steps[-1]))
+    spread += steps
+    moved = np.empty_like(places)
+    moved[order] = spread - places[order]
+    for (name, height, colour), offset in zip(ends, moved, strict=True):
+        look = {"va": "center", "color": colour, "xycoords": axes.get_yaxis_transform()}
+        note(axes, name, (1.0, height), (3, offset), **look)
+
+
+def note_beside(axes: Axes, text: str, point: tuple[float, float], **look: Any) -> None:
+    """A text beside a point of the data, where it hides the least of the lines, marks and texts.
+
+    The limits and the place of the panel must be known, so that this comes after its layout.
+    """
+    written = axes.annotate(text, point, xytext=(0, 0), textcoords="offset points", **look)
+
+    def hidden(place: tuple[float, float]) -> float:
+        _move(written, place)
+        return _hidden(axes, written)
+
+    places = [(far * x, far * y) for far in _DISTANCES for x, y in _SIDES]
+    _move(written, min(places, key=hidden))
+
+
+def _move(text: Annotation, place: tuple[float, float]) -> None:
+    """Put a text at an offset in points, aligned with its point on the near side."""
+    x, y = place
+    text.set(
+        position=place,
+        ha="center" if x == 0 else "left" if x > 0 else "right",
+        va="center" if y == 0 else "bottom" if y > 0 else "top",
+    )
+
+
+def _hidden(axes: Axes, text: Annotation) -> float:
+    """How much of a panel a text hides: a text more than a curve, and a curve more than a guide."""
+    box = text.get_window_extent().padded(1.0)
+    inside = axes.get_window_extent()
+    cost = 0.0 if inside.x0 <= box.x0 and box.x1 <= inside.x1 else 8.0
+    cost += 0.0 if inside.y0 <= box.y0 and box.y1 <= inside.y1 else 8.0
+    others = [x for x in axes.texts if x is not text and x.get_text()]
+    cost += 4.0 * sum(box.overlaps(x.get_window_extent()) for x in others)
+    arrows = [x.arrow_patch for x in axes.texts if isinstance(x, Annotation) and x.arrow_patch]
+    paths = [x.get_transform().transform_path(x.get_path()) for x in arrows]
+    cost += 2.0 * sum(path.intersects_bbox(box, filled=False) for path in paths)
+    for line in axes.lines:
+        path = line.get_transform().transform_path(line.get_path())
+        guide = line.get_color() == GUIDE["color"]
+        if line.get_linestyle() != "None" and path.cleaned().intersects_bbox(box, filled=False):
+            cost += 1.0 if guide else 2.0
+        if line.get_marker() != "None":
+            reach = line.get_markersize() / 2 * axes.figure.dpi / _POINTS_PER_INCH
+            cost += 2.0 * min(1, box.padded(reach).count_contains(path.vertices))
+    return cost

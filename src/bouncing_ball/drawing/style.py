@@ -1,10 +1,14 @@
 """The look that all figures share: colours, lines, markers and matplotlib's settings."""
 
+from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
 
 import matplotlib
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.colors import to_hex
 
 # Read once, because a context that is given the file reads it again and imports matplotlib.style.
 _FILE = Path(__file__).with_name("matplotlibrc")
@@ -13,6 +17,8 @@ _SETTINGS = matplotlib.rc_params_from_file(_FILE, use_default_template=False)
 # contrast of at least 3:1 with white, in an order in which neighbours differ in
 # greyscale too (grey levels 0, 87, 132, 85, 130).
 COLOURS = ("#000000", "#0072B2", "#C77C00", "#AA3A00", "#3F96CC")
+# Above this share of the colour map the contrast with white is below 3:1.
+_DARKEST = 0.55
 RESTITUTION = "#000000"
 CONTACT = "#0072B2"
 CORRECTED = "#AA3A00"
@@ -41,12 +47,15 @@ _HOLLOW: Look = {
     "markerfacecolor": "none",
     "markeredgewidth": 1.0,
 }
-# Special points of a branch; hollow, so that markers which coincide can all be seen.
+# Special points of a branch; hollow, so that markers which coincide can all be seen. That of Eq. 8
+# is inside that of the exact map.
 MARKS: dict[str, Look] = {
     "saddle-node": {"marker": "o", **_HOLLOW},
     "period doubling": {"marker": "s", **_HOLLOW},
     "grazing of a flight": {"marker": "^", "markersize": 4.5, "linestyle": "none"},
     "grazing of a release": {"marker": "v", "markersize": 4.5, "linestyle": "none"},
+    "end of a branch": {"marker": ".", "markersize": 7, "linestyle": "none"},
+    "period doubling, Eq. 8": {"marker": "x", "markersize": 4, "linestyle": "none"},
 }
 # The line of each model where several are compared; that of the contact is below the others.
 MODELS: dict[str, Look] = {
@@ -65,6 +74,22 @@ LAWS: dict[str, Look] = {
     "tsuji": {"color": COLOURS[2], "linestyle": (0, (6, 1.5, 1, 1.5))},
     "kuwabara-kono": {"color": COLOURS[3], "linestyle": (0, (2, 1))},
 }
+
+
+def palette(count: int) -> Sequence[str]:
+    """Colours for curves; more than ``COLOURS`` has are steps from dark to light.
+
+    Examples
+    --------
+    >>> palette(2)
+    ('#000000', '#0072B2')
+    >>> len(set(palette(9)))
+    9
+    """
+    if count <= len(COLOURS):
+        return COLOURS[:count]
+    shades = colormaps["viridis"](np.linspace(0.0, _DARKEST, count))
+    return [to_hex(shade) for shade in shades]
 
 
 def style() -> AbstractContextManager[None]:

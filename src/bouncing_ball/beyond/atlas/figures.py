@@ -6,9 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 import xarray as xr
+from matplotlib import colormaps
 from matplotlib.axes import Axes
-from matplotlib.colors import BoundaryNorm
+from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.drawing.canvas import WIDE, canvas, legend_below
@@ -16,9 +18,10 @@ from bouncing_ball.drawing.labels import QUANTITIES
 from bouncing_ball.drawing.style import CORRECTED, GUIDE, Look
 from bouncing_ball.drawing.tables import TextTable, words
 
-LEVELS = (3, 5, 10, 20, 50, 100, 200, 500, 1000)
+LEVELS = (3, 5, 10, 20, 30, 40, 50, 60, 70, 80, 90, 100, 200, 500, 1000)
 """Bounds between the colours; the last colour is for larger values."""
 
+_PALEST = 0.12
 # More lines would lie too close together for labels.
 _LAW_LEVELS = (50, 100)
 _LAW: Look = {"colors": CORRECTED, "linewidths": 1.1, "linestyles": ("--", "-")}
@@ -85,13 +88,16 @@ def over_range(data: xr.Dataset, quantity: str = "max_height", n: int = 1) -> Fi
     """
     figure, slots = canvas(WIDE, 5.4, rows=2, columns=2, sharex=True, sharey=True)
     tolerance = float(data.summary_tolerance)
-    norm = BoundaryNorm(LEVELS, 256, extend="max")
+    # The palest bin is darker than paper, and what is not computed is hatched.
+    shades = ListedColormap(colormaps["Blues"](np.linspace(_PALEST, 1.0, 256)))
+    norm = BoundaryNorm(LEVELS, shades.N, extend="max")
     for row, release in zip(slots, data.release.values, strict=True):
         for axes, model in zip(row, _BESIDE, strict=True):
             part = data.sel(n=n, quantity=quantity, release=release, model=model)
             edges = part.restitution_edge, part.position_edge
             needed = part.needed.transpose("position", "restitution").clip(LEVELS[0], 1e6)
-            mesh = axes.pcolormesh(*edges, needed, cmap="Blues", norm=norm, rasterized=True)
+            mesh = axes.pcolormesh(*edges, needed, cmap=shades, norm=norm, rasterized=True)
+            axes.patch.set(facecolor="white", edgecolor=GUIDE["color"], hatch="////", linewidth=0)
             axes.set(xlabel="restitution coefficient $r$", ylabel="position in the range")
             axes.label_outer()
             axes.set_title(f"{model} model, {release}", fontsize=8)
@@ -103,7 +109,9 @@ def over_range(data: xr.Dataset, quantity: str = "max_height", n: int = 1) -> Fi
     bar.set_label(rf"$\varpi$ from which the error is below {100 * tolerance:g} %")
     figure.suptitle(rf"{QUANTITIES[quantity]}: how stiff a contact must be, $n={n}$", fontsize=10)
     names = [rf"error law, $|K|/\varepsilon={level}$" for level in _LAW_LEVELS]
-    legend_below(figure, lines.legend_elements()[0], labels=names)
+    absent = Patch(facecolor="white", edgecolor=GUIDE["color"], hatch="////")
+    handles = [*lines.legend_elements()[0], absent]
+    legend_below(figure, handles, labels=[*names, "not computed"])
     return figure
 
 

@@ -5,11 +5,13 @@ period doublings by the contact, with the errors of both simple models.
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
+from scipy.interpolate import PchipInterpolator
 
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.drawing.canvas import WIDE, canvas, coloured, legend_below, logarithmic
 from bouncing_ball.drawing.labels import number, parameters
 from bouncing_ball.drawing.style import COLOURS, GUIDE, MODELS
+from bouncing_ball.drawing.thresholds import with_zeros
 
 _DASHES = ("-", (0, (6, 1.5)), (0, (4, 1.5, 1, 1.5)), (0, (2, 1)))
 _RATIO = r"frequency ratio $\varpi$"
@@ -24,7 +26,9 @@ def cascade_of_flights(data: xr.Dataset) -> Figure:
     for one, line, colour in zip(each(shown, "flights"), excess, COLOURS, strict=False):
         k = int(one.flights)
         name = rf"from {k} to {k + 1}, $E_{k}$"
-        left.plot(ratio, line, color=colour, linestyle=_DASHES[k % 4], label=name)
+        # Dots at the contacts computed, because the openings of compliant contacts undulate.
+        look = {"color": colour, "linestyle": _DASHES[k % 4], "marker": ".", "markersize": 3}
+        left.plot(ratio, line, label=name, **look)
         left.plot(ratio[-1], one.stiff_opening, marker=5, color=colour, clip_on=False)
     ylabel = r"$E=\varpi^2\,(\Lambda-\Lambda_{SD})$"
     title = rf"flights in a period, $r={number(float(shown.restitution))}$"
@@ -41,6 +45,7 @@ def cascade_of_flights(data: xr.Dataset) -> Figure:
     return figure
 
 
+_FINE = 400
 _CASCADE_DASHES = ("-", (0, (6, 1.5)), (0, (4, 1.5, 1, 1.5)), (0, (2, 1)), (0, (1, 1.5)))
 
 
@@ -51,15 +56,19 @@ def cascades(data: xr.Dataset) -> Figure:
     ratio = data.frequency_ratio.values
     lines = []
     for order, model in enumerate(data["model"].values, 1):
-        one = np.abs(shown.cascade_error.sel(model=model))
+        one = shown.cascade_error.sel(model=model)
         look = MODELS[model] | {"linewidth": 0.9}
-        lines.append(errors.plot(ratio, one.transpose("frequency_ratio", ...), **look)[0])
-        guide = float(one.isel(doubling=-1, frequency_ratio=-1)) * (ratio[-1] / ratio) ** order
+        for k in range(one.sizes["doubling"]):
+            curve = one.isel(doubling=k).values
+            errors.plot(ratio, np.abs(curve), ".", color=look["color"], markersize=3)
+            line = errors.plot(*_between(ratio, curve), **look)
+        lines += line
+        guide = abs(float(one.isel(doubling=-1, frequency_ratio=-1))) * (ratio[-1] / ratio) ** order
         errors.plot(ratio, guide, **GUIDE)
     logarithmic(errors, xlabel=r"frequency ratio $\varpi$", yscale="log", ylim=(1e-8, 1))
     errors.set_ylabel(r"relative error of $\Lambda$ at the period doublings")
     chosen = rf"{parameters(data, 'n')}, $r$ = {float(shown.restitution):g}"
-    errors.set_title(f"{chosen}; all doublings; dotted: slopes 1, 2")
+    errors.set_title(f"{chosen}; dots: computed; dotted: slopes 1, 2")
     for r, colour, dashes in zip(data.restitution.values, COLOURS, _CASCADE_DASHES, strict=False):
         one = data.cascade_coefficient.sel(restitution=r)
         name = rf"$r$ = {r:g}"
@@ -70,3 +79,15 @@ def cascades(data: xr.Dataset) -> Figure:
     law.legend(loc="best")
     legend_below(figure, lines, labels=[f"{x} model" for x in data["model"].values], ncols=2)
     return figure
+
+
+def _between(ratio: np.ndarray, error: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """ϖ and the size of a signed error between its samples, with its zeros.
+
+    ϖ times the error, which tends to a constant for stiff contacts, is interpolated.
+    """
+    known = np.isfinite(error)
+    place = np.log(ratio[known])
+    fine = np.linspace(place[0], place[-1], _FINE)
+    curve = PchipInterpolator(place, ratio[known] * error[known])(fine)
+    return with_zeros(np.exp(fine), curve / np.exp(fine))

@@ -3,26 +3,28 @@
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 
 from bouncing_ball.beyond.exhibits.motion_maps import bars
-from bouncing_ball.drawing.canvas import WIDE, canvas, coloured, logarithmic
+from bouncing_ball.drawing.canvas import coloured, legend_below, logarithmic, stacked
 from bouncing_ball.drawing.labels import number
 from bouncing_ball.drawing.style import COLOURS, GUIDE, Look
 
 _DASHES = ("-", (0, (4, 1.5)), (0, (1, 1.2)), (0, (6, 1.5, 1, 1.5)))
-_BEYOND = 1e15
+# The part of the axis of ϖ on either side of the contacts computed.
+_BEYOND = 10.0
 _LOOK: Look = {"color": COLOURS[1], "marker": "o"}
 
 
 def locked_orbits(data: xr.Dataset) -> Figure:
-    """The share with the same period by ϖ over its scale and by ϖ, the share next to a
-    discontinuity, and the survival of transients.
+    """The share with the same period by ϖ over its scale and by ϖ, and the share next to a
+    discontinuity; below, the survival of transients for each case.
     """
-    figure, ((by_place, by_ratio), (jumps, lives)) = canvas(WIDE, 5.4, rows=2, columns=2)
+    figure, (above, below) = stacked(5.4, (1.0, 1.1))
+    by_place, by_ratio, jumps = above.subplots(1, 3)
     _draw_predictions(by_place, by_ratio, data)
     _draw_jumps(jumps, data)
-    _draw_survival(lives, data)
+    _draw_survival(below, data)
     return figure
 
 
@@ -38,9 +40,10 @@ def _draw_predictions(by_place: Axes, by_ratio: Axes, data: xr.Dataset) -> None:
     share = np.arange(1, wanted.size + 1) / wanted.size
     by_ratio.plot(wanted, share, color=COLOURS[3], label=r"$\varpi\geq\max(S/W, P)$")
     bars(by_ratio, data.frequency_ratio.values, data, "same", label="contact", **_LOOK, ls="none")
-    by_ratio.set(
-        xlabel=r"frequency ratio $\varpi$", ylim=(0, 1.03), xlim=(1, _BEYOND), xscale="log"
-    )
+    # Beyond the contacts computed the scale has nothing to be compared with.
+    computed = data.frequency_ratio.values
+    by_ratio.set(xlabel=r"frequency ratio $\varpi$", ylim=(0, 1.03), xscale="log")
+    by_ratio.set_xlim(computed.min() / _BEYOND, computed.max() * _BEYOND)
     by_ratio.set_title("by frequency ratio")
     by_ratio.legend(loc="lower right")
 
@@ -53,16 +56,18 @@ def _draw_jumps(jumps: Axes, data: xr.Dataset) -> None:
     jumps.set(title="next to a discontinuity", ylabel="share with another\nlocked period")
 
 
-def _draw_survival(lives: Axes, data: xr.Dataset) -> None:
-    """The share of the balls that are not locked yet, over time."""
-    for one, colour in coloured(data, "case"):
+def _draw_survival(part: SubFigure, data: xr.Dataset) -> None:
+    """The share of the balls that are not locked yet, over time, in a panel for each case."""
+    panels = part.subplots(1, data.sizes["case"], sharex=True, sharey=True, squeeze=False)[0]
+    for axes, k in zip(panels, range(data.sizes["case"]), strict=True):
+        one = data.isel(case=k)
+        for (curve, colour), dashes in zip(coloured(one, "life_ratio"), _DASHES, strict=False):
+            ratio = float(curve.life_ratio)
+            name = "restitution" if np.isinf(ratio) else rf"$\varpi={number(ratio)}$"
+            look: Look = {"color": colour, "linestyle": dashes, "where": "post", "linewidth": 1.1}
+            axes.step(data.life, curve.survival, label=name, **look)
         r, lam = (number(float(one[f"case_{x}"])) for x in ("restitution", "amplitude"))
-        lives.plot([], [], color=colour, label=rf"$r={r}$, $\Lambda={lam}$")
-        for curve, dashes in zip(one.survival.values, _DASHES, strict=False):
-            lives.step(data.life, curve, color=colour, linestyle=dashes, where="post", linewidth=1)
-    for ratio, dashes in zip(data.life_ratio.values, _DASHES, strict=False):
-        name = "restitution" if np.isinf(ratio) else rf"$\varpi={number(float(ratio))}$"
-        lives.plot([], [], color="#8c8c8c", linestyle=dashes, label=name)
-    lives.set(xlabel="table periods", ylabel="share of balls not locked", title="transients")
-    lives.set(xscale="log", yscale="log", ylim=(0.01, 6))
-    lives.legend(fontsize=6, ncols=2, loc="upper right")
+        axes.set(xlabel="table periods", title=rf"transients, $r={r}$, $\Lambda={lam}$")
+    panels[0].set(xscale="log", yscale="log", ylim=(0.01, 1.3))
+    panels[0].set_ylabel("share of balls not locked")
+    legend_below(part)

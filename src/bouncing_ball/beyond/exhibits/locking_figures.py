@@ -15,6 +15,7 @@ from bouncing_ball.beyond.exhibits.motion_maps import (
     OTHER_COLOURS,
     PERIODS,
     RATES,
+    curves_of_bifurcations,
     draw_shares,
     kinds_shown,
     legend_of_kinds,
@@ -45,9 +46,9 @@ def locking(data: xr.Dataset) -> Figure:
     kinds[0].set_ylabel("restitution coefficient $r$")
     rates[0].set_ylabel("restitution coefficient $r$")
     bar: Look = {"location": "bottom", "aspect": 60, "shrink": 0.6, "extend": "both"}
-    label = r"largest Lyapunov exponent $\lambda$ per period of the table"
+    label = r"largest Lyapunov exponent $\lambda$ per period of the table; grey: permanent contact"
     exponents.colorbar(shown, ax=list(rates), label=label, **bar)
-    legend_below(maps, legend_of_kinds(data), ncols=5, fontsize=7)
+    legend_below(maps, [*legend_of_kinds(data), *curves_of_bifurcations()], ncols=5, fontsize=7)
     title = "contact against the {} model"
     draw_shares(below, data, "agreement", "motion_group", GROUP_LOOKS, title)
     below.axes[0].set_ylabel("share of nodes with the\nsame kind and period")

@@ -9,8 +9,10 @@ import xarray as xr
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
+from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from bouncing_ball.datasets import PERIOD_DOUBLING, SADDLE_NODE
 from bouncing_ball.drawing.canvas import image, legend_below, logarithmic
 from bouncing_ball.drawing.style import COLOURS, Look
 
@@ -48,6 +50,11 @@ HIGHEST_RATE = 1.5
 _FALLING = colormaps["Blues_r"](np.linspace(0, 0.65, 128))
 _GROWING = colormaps["YlOrBr_r"](np.linspace(0.5, 1, 128))
 RATES = ListedColormap([*_FALLING, *_GROWING]).with_extremes(bad=OTHER_COLOURS["permanent contact"])
+_BIFURCATION: Look = {"color": "#000000", "linewidth": 0.9}
+_BIFURCATIONS: dict[str, Look] = {
+    SADDLE_NODE: _BIFURCATION | {"linestyle": "-"},
+    PERIOD_DOUBLING: _BIFURCATION | {"linestyle": (0, (3, 1.5))},
+}
 GROUP_LOOKS = {"all": ("all nodes", COLOURS[0], "o"), "orbit": ("n-T orbits", COLOURS[4], "s"),
           "locked, 1 to 4 T": ("locked, 1 to 4 T", COLOURS[2], "^"),
           "locked": ("locked", COLOURS[1], "D"),
@@ -65,11 +72,19 @@ def node_map(
         mark_nodes(axes, one, one.kind == kind, DOTS[kind])
     xlim = axes.get_xlim()
     ylim = axes.get_ylim()
-    for name, dashes in (("saddle_node", "-"), ("period_doubling", (0, (3, 1.5)))):
-        lam = one[f"{name}_amplitude"]
-        axes.plot(lam, one.restitution, color="#000000", linewidth=0.9, linestyle=dashes)
+    for name, look in _BIFURCATIONS.items():
+        lam = one[f"{name.replace('-', '_').replace(' ', '_')}_amplitude"]
+        axes.plot(lam, one.restitution, **look)
     axes.set(xlim=xlim, ylim=ylim)
     return drawn
+
+
+def curves_of_bifurcations() -> list[Line2D]:
+    """Entries of a legend for the bifurcations of the 1-T orbit."""
+    return [
+        Line2D([], [], label=f"{name} of the 1-T orbit", **look)
+        for name, look in _BIFURCATIONS.items()
+    ]
 
 
 def kinds_shown(data: xr.Dataset) -> xr.DataArray:

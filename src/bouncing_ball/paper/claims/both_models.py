@@ -2,8 +2,9 @@
 
 from bouncing_ball.paper.claims import evidence
 from bouncing_ball.paper.claims.claim import claim, of_formula
-from bouncing_ball.paper.claims.evidence import PERMANENT_CONTACT, TOLERANCE
+from bouncing_ball.paper.claims.evidence import TOLERANCE
 from bouncing_ball.paper.claims.verdict import above, at_least, at_most
+from bouncing_ball.paper.exhibits.printed_table1 import PERMANENT_CONTACT
 
 
 @claim("Fig. 10")

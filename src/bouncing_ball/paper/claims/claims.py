@@ -17,6 +17,7 @@ from bouncing_ball.paper.claims import (
 from bouncing_ball.paper.claims.claim import Claim, checked, defined_in, name_of, paragraphs
 from bouncing_ball.paper.claims.parameters import Digests, PaperData
 from bouncing_ball.paper.claims.verdict import CLOSE_UNITS, Verdict
+from bouncing_ball.paper.exhibits.printed_table1 import PERMANENT_CONTACT
 
 VARIABLES = {
     "item": Variable("figure, table or equation of the paper"),
@@ -167,7 +168,7 @@ def claims(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
         close_units=CLOSE_UNITS,
         tolerance=evidence.TOLERANCE,
         stiff_frequency_ratio=evidence.STIFF,
-        permanent_contact_frequency_ratio=evidence.PERMANENT_CONTACT,
+        permanent_contact_frequency_ratio=PERMANENT_CONTACT,
     )
 
 

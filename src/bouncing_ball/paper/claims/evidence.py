@@ -10,6 +10,7 @@ import xarray as xr
 
 from bouncing_ball.paper.claims import as_printed as printed
 from bouncing_ball.paper.claims.verdict import largest
+from bouncing_ball.paper.exhibits.printed_table1 import PERMANENT_CONTACT
 from bouncing_ball.periodic.stability import Bifurcation
 
 Data = Mapping[str, xr.Dataset]
@@ -18,8 +19,6 @@ TOLERANCE = 0.01
 """The paper's limit for the error of the restitution model, 1 % (Eqs. 37 and 38)."""
 STIFF = 100.0
 """ϖ above which the paper treats both models as equal."""
-PERMANENT_CONTACT = 6.0
-"""ϖ at which, according to the paper, the thresholds of permanent contact differ by its limit."""
 # A point of a logarithmic grid equals a round number, and a sample a bifurcation, up to rounding.
 GRID = 1e-9
 

@@ -4,7 +4,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from bouncing_ball.datasets.selection import each
-from bouncing_ball.drawing.canvas import canvas, draw_curve, logarithmic
+from bouncing_ball.drawing.canvas import canvas, draw_curve, legend_below, logarithmic
 from bouncing_ball.drawing.labels import parameters
 from bouncing_ball.drawing.style import CONTACT, LIMIT
 from bouncing_ball.drawing.tables import TextTable, at, quantity_in_words, table, threshold
@@ -13,15 +13,15 @@ from bouncing_ball.drawing.thresholds import draw_relative_error
 
 def height_error(data: xr.Dataset) -> Figure:
     """Fig. 14: the greatest height in both models; below, the relative error."""
-    figure, (axes, below) = canvas(height=4.2, rows=2, sharex=True)
+    figure, (axes, below) = canvas(height=4.4, rows=2, sharex=True)
     look = {"color": CONTACT, "label": "spring-damper"}
     draw_curve(axes, data.frequency_ratio, data.max_height, data.admissible, **look)
     limit = float(data.restitution_max_height)
     axes.axhline(limit, label="restitution", **LIMIT)
     title = parameters(data, "n", "restitution", "amplitude")
-    logarithmic(axes, ylabel=r"greatest height $\max\,z$", title=title, ylim=(None, 1.09 * limit))
-    axes.legend(loc="lower right")
-    draw_relative_error(below, data, "h", digits=1)
+    logarithmic(axes, ylabel=r"greatest height $\max\,z$", title=title)
+    draw_relative_error(below, data, data.max_height - limit, "h", digits=1)
+    legend_below(figure, ncols=2)
     return figure
 
 

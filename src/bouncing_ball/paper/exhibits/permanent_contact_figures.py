@@ -7,13 +7,15 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bouncing_ball.drawing.canvas import canvas, logarithmic
-from bouncing_ball.drawing.labels import note, parameters
+from bouncing_ball.drawing.canvas import canvas, legend_below, logarithmic
+from bouncing_ball.drawing.labels import parameters
 from bouncing_ball.drawing.style import CONTACT, GUIDE, LIMIT
 from bouncing_ball.drawing.thresholds import draw_relative_error
+from bouncing_ball.paper.exhibits.printed_table1 import printed_contact_ratio
 
-# The top of the axis of Λ.
+# The least top of the axis of Λ, and its least ratio to the lowest threshold.
 _HIGHEST = 2.0
+_ROOM = 1.5
 # The names of the regions below and above the threshold, and the forms in which a name is tried:
 # on one line, on two, and upright on two.
 _PERMANENT = ("permanent", "contact")
@@ -25,56 +27,50 @@ _MARGIN = 0.01
 _NEARLY = 0.95
 # Number of places along the axis that are compared.
 _PLACES = 401
-# The share of the axis that the formula of the minimum takes.
-_OF_NOTE = 0.25
 
 
 def permanent_contact(data: xr.Dataset) -> Figure:
     """Fig. 11: Λ_SD and its minimum."""
-    figure, axes = canvas(height=2.6)
+    figure, axes = canvas(height=3.1)
     _draw_threshold(axes, data)
+    legend_below(figure)
     # The places depend on the sizes of axes and texts, which are known after the layout.
     figure.draw_without_rendering()
     ratio = data.frequency_ratio.values
     threshold = data.threshold_amplitude.values
     lowest = np.full_like(threshold, float(data.minimum_threshold))
     _name(axes, _PERMANENT, ratio, lowest, threshold)
-    _name(axes, _LEAVES, ratio, threshold, np.full_like(threshold, _HIGHEST))
+    _name(axes, _LEAVES, ratio, threshold, np.full_like(threshold, axes.get_ylim()[1]))
     return figure
 
 
 def permanent_contact_error(data: xr.Dataset) -> Figure:
     """Fig. 16: Λ_SD and the restitution model's Λ_CR; below, the relative error."""
-    figure, (axes, below) = canvas(height=4.2, rows=2, sharex=True)
+    figure, (axes, below) = canvas(height=4.6, rows=2, sharex=True)
     _draw_threshold(axes, data)
     limit = float(data.restitution_threshold)
     axes.axhline(limit, label=r"restitution, $\Lambda_{CR}$", **LIMIT)
     axes.set(xlabel="", ylabel=r"threshold amplitude $\Lambda$")
-    axes.legend(loc="upper right")
-    draw_relative_error(below, data, "PC", digits=2)
+    given = (data.attrs[name] for name in ("restitution", "tolerance", "release"))
+    printed = printed_contact_ratio(*given)
+    difference = data.threshold_amplitude - limit
+    draw_relative_error(below, data, difference, "PC", digits=2, printed=printed)
+    legend_below(figure, ncols=2)
     return figure
 
 
 def _draw_threshold(axes: Axes, data: xr.Dataset) -> None:
     """Λ_SD, or Λ_F of the force release, with its minimum."""
-    low = float(data.frequency_ratio[0])
-    high = float(data.frequency_ratio[-1])
-    minimum = float(data.minimum_threshold)
     force = data.attrs.get("release") == "force"
     symbol = r"$\Lambda_{F}$" if force else r"$\Lambda_{SD}$"
     name = f"spring-damper, {symbol}"
     axes.plot(data.frequency_ratio, data.threshold_amplitude, color=CONTACT, label=name)
-    axes.axhline(minimum, **GUIDE)
-    name = "minimum" if force else r"$2\zeta\sqrt{1-\zeta^2}$"
-    # At the end where the curve is farther from the line of the minimum.
-    share = np.log(data.frequency_ratio / low) / np.log(high / low)
-    at_left = data.threshold_amplitude.where(share <= _OF_NOTE).min()
-    at_right = data.threshold_amplitude.where(share >= 1 - _OF_NOTE).min()
-    end, side = (low, "left") if at_left > at_right else (high, "right")
-    note(axes, name, (end, minimum), (0, 3), ha=side, fontsize=8)
+    formula = "" if force else r", $2\zeta\sqrt{1-\zeta^2}$"
+    axes.axhline(float(data.minimum_threshold), label=f"minimum{formula}", **GUIDE)
     ylabel = f"threshold amplitude {symbol}"
     title = rf"{parameters(data, 'restitution')}, $\zeta={float(data.damping_ratio):.4f}$"
-    logarithmic(axes, data.frequency_ratio, ylabel=ylabel, ylim=(0, _HIGHEST), title=title)
+    highest = max(_HIGHEST, _ROOM * float(data.threshold_amplitude.min()))
+    logarithmic(axes, data.frequency_ratio, ylabel=ylabel, ylim=(0, highest), title=title)
 
 
 def _name(

@@ -1,8 +1,10 @@
-"""Table 1 as the paper prints it: ends of the stability ranges over Λ, r = 0.85.
+"""Table 1 as the paper prints it: ends of the stability ranges over Λ, r = 0.85; and the ϖ that
+it reads off Fig. 16.
 
 The exponent of the first frequency ratio is unreadable and taken as 4.
 """
 
+import numpy as np
 import xarray as xr
 
 from bouncing_ball.periodic.stability import Bifurcation
@@ -49,3 +51,22 @@ def printed_table() -> xr.DataArray:
     [0.238, 1.035]
     """
     return _TEXTS.astype(float)
+
+
+PERMANENT_CONTACT = 6.0
+"""ϖ at which the thresholds of permanent contact of both models differ by 1 %, "≈ 6" (Fig. 16)."""
+
+_FIGURE_16 = (0.65, 0.01, "displacement")
+
+
+def printed_contact_ratio(restitution: float, tolerance: float, release: str) -> float:
+    """``PERMANENT_CONTACT`` for the parameters of Fig. 16, NaN for others.
+
+    Examples
+    --------
+    >>> printed_contact_ratio(0.65, 0.01, "displacement")
+    6.0
+    >>> printed_contact_ratio(0.65, 0.02, "displacement")
+    nan
+    """
+    return PERMANENT_CONTACT if (restitution, tolerance, release) == _FIGURE_16 else np.nan

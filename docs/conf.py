@@ -57,6 +57,7 @@ PARTS = {
         "docs/design",
         "docs/engines",
         "docs/contact-laws",
+        "docs/measured",
         "docs/atlas",
         "docs/speed",
     ],

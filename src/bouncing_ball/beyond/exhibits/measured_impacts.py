@@ -34,7 +34,7 @@ from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic import restitution_branch
 
 # Ten times the largest change when a fit starts elsewhere, see tests/beyond/exhibits.
-_FITTED = 1e-8
+_FITTED = 1e-10
 
 VARIABLES = {
     "experiment": Variable("name of the experiment"),
@@ -129,7 +129,7 @@ def measured_impacts(parameters: Measured) -> xr.Dataset:
     parts = [_one(each, each.fit(), longest, parameters.samples) for each in found]
     data = xr.concat(parts, "experiment")
     return described(
-        {name: data[name].variable for name in data.data_vars},
+        {str(name): data[name].variable for name in data.data_vars},
         coords={
             "experiment": [each.name for each in found],
             "fitted_law": list(CURVES),
@@ -192,7 +192,7 @@ def on_shakers(parameters: Shaker) -> xr.Dataset:
     rows = [_on_shakers(each.fit(), parameters) for each in found]
     data = xr.concat(rows, "experiment")
     return described(
-        {name: data[name].variable for name in data.data_vars},
+        {str(name): data[name].variable for name in data.data_vars},
         coords={
             "experiment": [each.name for each in found],
             "experiment_title": ("experiment", [each.title for each in found]),

@@ -31,7 +31,7 @@ def measured_impacts(data: xr.Dataset) -> Figure:
     """ext_measured: a panel for each experiment with several speeds."""
     several = data.isel(experiment=np.flatnonzero(data.measured_speed.count("impact") > 1))
     rows = -(-several.sizes["experiment"] // _COLUMNS)
-    figure, axes = canvas(WIDE, 2.2 * rows + 0.5, rows=rows, columns=_COLUMNS)
+    figure, axes = canvas(WIDE, 2.2 * rows + 0.5, rows=rows, columns=_COLUMNS, squeeze=False)
     spare = axes.flat[several.sizes["experiment"] :]
     for empty in spare:
         empty.axis("off")

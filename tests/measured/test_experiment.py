@@ -1,6 +1,7 @@
 """Files of measured impacts: those of the package, and hostile ones."""
 
 import re
+import sys
 
 import numpy as np
 import pytest
@@ -18,6 +19,13 @@ def test_every_experiment_says_where_its_numbers_come_from():
             assert found.texts[text], (name, text)
         assert found.texts["source"].startswith("http")
         assert np.all((found.restitutions > 0) & (found.restitutions <= 1))
+
+
+def test_the_experiments_of_the_package_need_no_other_units(monkeypatch):
+    # A job of the workflow may not import pint.
+    monkeypatch.setitem(sys.modules, "pint", None)
+    for name in names():
+        assert experiment(name).speeds.size
 
 
 def test_the_table_of_gugan():

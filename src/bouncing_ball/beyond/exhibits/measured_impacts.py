@@ -20,6 +20,7 @@ import xarray as xr
 
 from bouncing_ball.accuracy.error_law import first_order, small_parameter
 from bouncing_ball.accuracy.errors import Quantity
+from bouncing_ball.contacts.quantities import STANDARD_GRAVITY
 from bouncing_ball.contacts.table import Table
 from bouncing_ball.datasets.parameters import Family, Many, Parameters, Samples, number
 from bouncing_ball.datasets.variables import Variable, described
@@ -214,7 +215,7 @@ def _on_shakers(fit: ContactFit, parameters: Shaker) -> xr.Dataset:
 def _on_shaker(fit: ContactFit, frequency: float, parameters: Shaker) -> xr.Dataset:
     n = parameters.n
     best = fit.best
-    speed = best.speed_on(Table(frequency=frequency, acceleration="1 g"), n)
+    speed = best.speed_on(Table(frequency=frequency, acceleration=STANDARD_GRAVITY), n)
     r = float(best.restitution_at(speed))
     fold = float(restitution_branch.saddle_node(n, r))
     doubling = float(restitution_branch.period_doubling(n, r))
@@ -241,7 +242,7 @@ def _by_duration(
     best: LawFit, speed: float, frequency: float, n: int, amplitude: float
 ) -> tuple[float, np.ndarray, float]:
     """ϖ, the errors by the error law and its small parameter δ."""
-    motion = Table(frequency=frequency, acceleration="1 g").motion
+    motion = Table(frequency=frequency, acceleration=STANDARD_GRAVITY).motion
     r, time = float(best.restitution_at(speed)), float(best.duration_at(speed))
     duration = time / motion.time
     unit = SpringDamper(1.0, float(damping_ratio(r)))

@@ -10,8 +10,9 @@ the columns, and one line of numbers for each impact ::
 The columns are ``speed`` and ``restitution``, or ``drop_height`` and ``rebound_height``, or
 ``interval`` or ``time``, the intervals between the impacts of one bouncing ball or their times.
 ``uncertainty``, of the restitution coefficient, ``duration`` and ``duration_uncertainty`` may
-follow. The files of the package are in SI units. If the mass and the diameter of the ball are known, the drag of the air is removed from
-heights and intervals (:mod:`bouncing_ball.measured.flights`).
+follow. If the mass and the diameter of the ball are known, the drag of the air is removed from
+heights and intervals (:mod:`bouncing_ball.measured.flights`). The files of the package are in SI
+units.
 """
 
 import csv

@@ -18,7 +18,7 @@ from typing import Annotated
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.accuracy.error_law import first_order, small_parameter
+from bouncing_ball.accuracy.error_law import VALID_BELOW, first_order, small_parameter
 from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.contacts.quantities import STANDARD_GRAVITY
 from bouncing_ball.contacts.table import Table
@@ -26,8 +26,8 @@ from bouncing_ball.datasets.parameters import Family, Many, Parameters, Samples,
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.measured.curves import CONSTANT, CURVES
 from bouncing_ball.measured.experiment import Experiment, experiment
-from bouncing_ball.measured.fit import ContactFit, LawFit
-from bouncing_ball.measured.verdicts import Judgement, judge, noise
+from bouncing_ball.measured.fit import LEVEL, ContactFit, LawFit
+from bouncing_ball.measured.verdicts import ACCEPTED, REJECTED, Judgement, judge, noise
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
 from bouncing_ball.models.laws.signature import Signature
@@ -68,6 +68,10 @@ VARIABLES = {
         "probability of greater errors at the faster half", symbol="p", budget=_FITTED
     ),
     "law_verdict": Variable("whether the law is compatible with the experiment"),
+    "rejected_below": Variable("a law is incompatible if a probability is below", symbol="p"),
+    "accepted_above": Variable("a law may be compatible if both probabilities are above"),
+    "band_level": Variable("probability of the bands"),
+    "useful_below": Variable("small parameter below which the error law is useful", symbol="δ"),
     "shaker_frequency": Variable("frequency of the shaker", symbol="Ω/2π", units="Hz"),
     "shaker_law": Variable("contact law that fits the experiment best"),
     "shaker_speed": Variable(
@@ -130,7 +134,12 @@ def measured_impacts(parameters: Measured) -> xr.Dataset:
     parts = [_one(each, each.fit(), longest, parameters.samples) for each in found]
     data = xr.concat(parts, "experiment")
     return described(
-        {str(name): data[name].variable for name in data.data_vars},
+        {
+            **{str(name): data[name].variable for name in data.data_vars},
+            "rejected_below": REJECTED / 2,
+            "accepted_above": ACCEPTED,
+            "band_level": LEVEL,
+        },
         coords={
             "experiment": [each.name for each in found],
             "fitted_law": list(CURVES),
@@ -193,7 +202,10 @@ def on_shakers(parameters: Shaker) -> xr.Dataset:
     rows = [_on_shakers(each.fit(), parameters) for each in found]
     data = xr.concat(rows, "experiment")
     return described(
-        {str(name): data[name].variable for name in data.data_vars},
+        {
+            **{str(name): data[name].variable for name in data.data_vars},
+            "useful_below": VALID_BELOW,
+        },
         coords={
             "experiment": [each.name for each in found],
             "experiment_title": ("experiment", [each.title for each in found]),

@@ -74,6 +74,7 @@ PARTS = {
         "docs/design",
         "docs/engines",
         "docs/contact-laws",
+        "docs/measured",
         "docs/atlas",
         "docs/speed",
     ],

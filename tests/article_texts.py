@@ -11,6 +11,7 @@ from bouncing_ball.beyond.exhibits import (
     contact_laws_figures,
     corrected_model_figures,
     engine_steps_figures,
+    measured_impacts_figures,
     proofs_figures,
 )
 from bouncing_ball.beyond.exhibits.certified_verdicts import certified_verdicts
@@ -28,6 +29,8 @@ TABLES = {
     "thresholds": error_thresholds_figures.thresholds,
     "ext_orders": corrected_model_figures.ext_orders,
     "ext_laws": contact_laws_figures.ext_laws,
+    "ext_measured": measured_impacts_figures.ext_measured,
+    "ext_shaker": measured_impacts_figures.ext_shaker,
     "ext_engines": engine_steps_figures.ext_engines,
     "ext_proofs": proofs_figures.ext_proofs,
     "ext_verdicts": certified_verdicts_figures.ext_verdicts,

@@ -76,6 +76,25 @@ use rule beyond_study as contact_laws_study with:
         ),
 
 
+use rule beyond_study as measured_impacts_study with:
+    """Measured impacts against every law."""
+    wildcard_constraints:
+        artifact=stage(
+            "beyond.exhibits.measured_impacts",
+            ext_measured=dict(
+                title="Measured impacts against every contact law",
+                study="measured_impacts",
+                drawing="measured_impacts",
+                table="ext_measured",
+            ),
+            ext_shaker=dict(
+                title="The balls of the experiments on shakers, and the cost of a constant r",
+                study="on_shakers",
+                table="ext_shaker",
+            ),
+        ),
+
+
 use rule beyond_study as cascades_study with:
     """Flights in a period, and cascades of period doublings."""
     wildcard_constraints:

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.contacts.named_laws import law_named
 from bouncing_ball.errors import ModelError, one_of
+from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball.models.laws.hertzian import HuntCrossley, KuwabaraKono, LinearHuntCrossley, Tsuji
@@ -68,7 +69,7 @@ class Curve:
         x = np.asarray(ratio, dtype=float)
         if self.kind is None or self.is_constant:
             return np.full(x.shape, min(max(theta, _LEAST), _MOST))
-        return _free(self.kind, theta + self.exponent * np.log(x))[0]
+        return self._free(self.kind, theta, x).restitution
 
     def duration(self, theta: float, ratio: ArrayLike) -> np.ndarray:
         """T/τ at the speeds v = ``ratio`` v₀.
@@ -84,8 +85,28 @@ class Curve:
         if self.is_constant:
             shape = np.full(x.shape, reference(self.kind, min(theta, _MOST))[1])
         else:
-            shape = _free(self.kind, theta + self.exponent * np.log(x))[1]
+            shape = self._free(self.kind, theta, x).duration
         return x**self.time_exponent * shape
+
+    def slope(self, theta: float, ratio: ArrayLike) -> np.ndarray:
+        """∂r/∂θ at the speeds v = ``ratio`` v₀.
+
+        Examples
+        --------
+        >>> kono, step = curve_named("kuwabara-kono"), 1e-5
+        >>> up, down = (kono.restitution(-2.0 + s * step, 3.0) for s in (1, -1))
+        >>> bool(abs((up - down) / (2 * step) - kono.slope(-2.0, 3.0)) < 1e-9)
+        True
+        """
+        x = np.asarray(ratio, dtype=float)
+        if self.kind is None or self.is_constant:
+            return np.ones(x.shape)
+        # At a speed of 1 the derivative with respect to ln v is a times that with respect to ln G.
+        return np.asarray(self._free(self.kind, theta, x).d_restitution) / self.exponent
+
+    def _free(self, kind: type[ContactLaw], theta: float, ratio: np.ndarray) -> Instant:
+        """Impacts at the speeds v = ``ratio`` v₀, in units of their scales."""
+        return _free(kind, theta + self.exponent * np.log(ratio))
 
     def parameter(self, restitution: float) -> float:
         """θ of the law that has this r at v₀, close enough for the start of a fit."""
@@ -94,16 +115,15 @@ class Curve:
         return float(np.interp(-restitution, -_table(self.kind), _GROUPS))
 
 
-def _free(kind: type[ContactLaw], logarithm: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """r and D of impacts with these logarithms of their groups."""
+def _free(kind: type[ContactLaw], logarithm: np.ndarray) -> Instant:
+    """Impacts with these logarithms of their groups, in units of their scales."""
     log = np.clip(logarithm, _GROUPS[0], _GROUPS[-1])
-    instant = Signature(kind.of_scales(np.exp(log), 1.0, 1.0))(1.0)
-    return instant.restitution, instant.duration
+    return Signature(kind.of_scales(np.exp(log), 1.0, 1.0))(1.0)
 
 
 @lru_cache(maxsize=16)
 def _table(kind: type[ContactLaw]) -> np.ndarray:
-    return _free(kind, _GROUPS)[0]
+    return _free(kind, _GROUPS).restitution
 
 
 def _of(kind: type[ContactLaw]) -> Curve:

@@ -11,7 +11,8 @@ The columns are ``speed`` and ``restitution``, or ``drop_height`` and ``rebound_
 ``interval`` or ``time``, the intervals between the impacts of one bouncing ball or their times.
 ``uncertainty``, of the restitution coefficient, ``duration`` and ``duration_uncertainty`` may
 follow. If the mass and the diameter of the ball are known, the drag of the air is removed from
-heights and intervals (:mod:`bouncing_ball.measured.flights`).
+heights and intervals (:mod:`bouncing_ball.measured.flights`). The files of the package are in SI
+units.
 """
 
 import csv
@@ -208,9 +209,21 @@ def _parts(path: Path, lines: list[str]) -> tuple[dict[str, Any], list[tuple[int
     return head, rows
 
 
-def _quantity(path: Path, at: int, name: str, value: Any, kind: SIParameter) -> float:
+def _plain(text: str, kind: SIParameter) -> str:
+    """A text without its unit if that is the SI unit, so that no other unit needs to be known.
+
+    Examples
+    --------
+    >>> _plain("0.3 kg", QUANTITIES["mass"]), _plain("3 g", QUANTITIES["mass"])
+    ('0.3', '3 g')
+    """
+    value, _, unit = text.partition(" ")
+    return value if unit.strip() == kind.name else text
+
+
+def _quantity(path: Path, at: int, name: str, value: str, kind: SIParameter) -> float:
     try:
-        return in_si(name, value, kind)
+        return in_si(name, _plain(value, kind), kind)
     except ParameterError as error:
         raise ModelError(f"{path}, line {at}: {error}") from None
 
@@ -249,7 +262,7 @@ def _title(path: Path, at: int, text: str) -> tuple[str, float]:
     if not unit:
         return name, 1.0
     try:
-        return name, number(name, f"1 {unit}", COLUMNS[name])
+        return name, number(name, _plain(f"1 {unit}", COLUMNS[name]), COLUMNS[name])
     except ParameterError as error:
         raise ModelError(f"{path}, line {at}: {error}") from None
 

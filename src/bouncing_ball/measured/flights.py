@@ -48,7 +48,7 @@ def drag_length(
     Examples
     --------
     >>> round(drag_length(0.0096, 0.025), 1)
-    69.3
+    69.4
     """
     return 2 * mass / (air_density * drag_coefficient * math.pi * diameter**2 / 4)
 

@@ -22,7 +22,7 @@ import numpy as np
 from scipy import stats
 
 from bouncing_ball.measured.curves import Curve
-from bouncing_ball.measured.fit import ContactFit, Points, fit_law, sensitivity
+from bouncing_ball.measured.fit import ContactFit, Points, fit_law
 
 REJECTED = 0.01
 ACCEPTED = 0.05
@@ -94,7 +94,7 @@ def left_out(curve: Curve, points: Points) -> float:
     ratio = points.speeds / fit.speed
     whiten = points.whitening
     errors = whiten @ (points.restitutions - curve.restitution(fit.theta, ratio))
-    slope = whiten @ sensitivity(curve, fit.theta, ratio)
+    slope = whiten @ curve.slope(fit.theta, ratio)
     hat = np.outer(slope, slope) / (slope @ slope)
     scale = 1 / (1 - np.diag(hat))
     spread = np.linalg.eigvalsh((np.eye(points.size) - hat) * np.outer(scale, scale))
@@ -118,8 +118,8 @@ def extrapolated(curve: Curve, points: Points) -> tuple[float, float]:
     variance, freedom = noise(points)
     if not np.isfinite(variance):
         return np.nan, size
-    steep = slow.whitening @ sensitivity(curve, fit.theta, slow.speeds / fit.speed)
-    ahead = fast.whitening @ sensitivity(curve, fit.theta, fast.speeds / fit.speed)
+    steep = slow.whitening @ curve.slope(fit.theta, slow.speeds / fit.speed)
+    ahead = fast.whitening @ curve.slope(fit.theta, fast.speeds / fit.speed)
     spread = np.eye(fast.size) + np.outer(ahead, ahead) / (steep @ steep)
     white = fast.whitening @ errors
     statistic = white @ np.linalg.solve(spread, white) / (variance * fast.size)

@@ -1,0 +1,121 @@
+"""Measured restitution coefficients over the speed with the laws, and the verdicts."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from bouncing_ball.datasets.selection import each
+from bouncing_ball.drawing.canvas import WIDE, canvas, legend_below
+from bouncing_ball.drawing.style import COLOURS, LAWS, Look
+from bouncing_ball.drawing.tables import Column, Columns, Table, at, table, text, value
+
+# Laws with the same r(v) have one line: all with a constant r, and both of Hunt and Crossley.
+_DRAWN: dict[str, tuple[str, Look]] = {
+    "restitution": ("constant r, of both models of the paper", LAWS["linear"]),
+    "kuwabara-kono": ("Kuwabara and Kono", LAWS["kuwabara-kono"]),
+    "hunt-crossley": ("Hunt and Crossley", LAWS["hunt-crossley"]),
+}
+_POINTS: Look = {
+    "marker": "o",
+    "markersize": 3.6,
+    "markerfacecolor": "white",
+    "markeredgewidth": 0.9,
+    "linestyle": "none",
+    "color": COLOURS[0],
+}
+_COLUMNS = 3
+
+
+def measured_impacts(data: xr.Dataset) -> Figure:
+    """ext_measured: a panel for each experiment with several speeds."""
+    several = data.isel(experiment=np.flatnonzero(data.measured_speed.count("impact") > 1))
+    rows = -(-several.sizes["experiment"] // _COLUMNS)
+    figure, axes = canvas(WIDE, 2.2 * rows + 0.5, rows=rows, columns=_COLUMNS, squeeze=False)
+    spare = axes.flat[several.sizes["experiment"] :]
+    for empty in spare:
+        empty.axis("off")
+    for panel, one in zip(axes.flat, each(several, "experiment"), strict=False):
+        _panel(panel, one)
+    for row in axes:
+        row[0].set_ylabel("restitution $e$, $r(v)$")
+    for panel in axes[-1]:
+        panel.set_xlabel("impact speed in m/s")
+    legend_below(figure, axes.flat[0].get_legend_handles_labels()[0], ncols=2)
+    return figure
+
+
+def _panel(axes: Axes, one: xr.Dataset) -> None:
+    for law, (name, look) in _DRAWN.items():
+        fitted = one.sel(fitted_law=law)
+        axes.plot(one.curve_speed, fitted.fitted_restitution, label=name, linewidth=1.2, **look)
+        axes.fill_between(
+            one.curve_speed,
+            fitted.band_low,
+            fitted.band_high,
+            color=look["color"],
+            alpha=0.13,
+            linewidth=0,
+        )
+    axes.errorbar(
+        one.measured_speed,
+        one.measured_restitution,
+        yerr=one.measured_scatter.item(),
+        label="measured, with the scatter about a smooth curve",
+        zorder=4,
+        elinewidth=0.7,
+        **_POINTS,
+    )
+    axes.set(xscale="log", title=one.experiment_title.item())
+    ticks = [tick for tick in (0.1, 0.2, 0.5, 1, 1.5, 2, 3, 5) if _shown(tick, one.curve_speed)]
+    axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    axes.set_xticks([], minor=True)
+    axes.set_xlim(float(one.curve_speed[0]), float(one.curve_speed[-1]))
+    # The scale is that of the points; the worst law may leave the panel.
+    low, high = float(one.measured_restitution.min()), float(one.measured_restitution.max())
+    room = 0.7 * (high - low)
+    axes.set_ylim(low - room, high + room)
+
+
+def _shown(tick: float, speed: xr.DataArray) -> bool:
+    return float(speed[0]) <= tick <= float(speed[-1])
+
+
+def ext_measured(data: xr.Dataset) -> Table:
+    """The verdict on each law and experiment, with the errors of its predictions."""
+    columns: Columns = {
+        "experiment": text("experiment_title"),
+        "impacts": lambda part: str(int(part.measured_speed.count())),
+        "law": text("fitted_law"),
+        "verdict": text("law_verdict"),
+        "rms": value("fit_rms", ".4f"),
+        "left out": value("left_out_rms", ".4f"),
+        "p": value("left_out_probability", ".2g"),
+        "extrapolated": value("extrapolation_rms", ".4f"),
+        "p of it": value("extrapolation_probability", ".2g"),
+    }
+    return table(each(data, "experiment", "fitted_law"), columns)
+
+
+def ext_shaker(data: xr.Dataset) -> Table:
+    """The balls of the experiments on shakers, and the errors of the restitution model there."""
+    columns: Columns = {
+        "experiment": text("experiment_title"),
+        "Hz": value("shaker_frequency", "g"),
+        "law": text("shaker_law"),
+        "v in m/s": value("shaker_speed", ".3g"),
+        "measured": lambda part: "yes" if part.shaker_within.item() else "no",
+        "ϖ": value("shaker_ratio", ".3g"),
+        "r": value("mean_restitution", ".4f"),
+        "r(v)": value("shaker_restitution", ".4f"),
+        "δ": value("law_remainder", ".2g"),
+    }
+    for quantity in data["quantity"].values:
+        name = str(quantity).replace("_", " ")
+        columns[f"{name}, by the duration"] = _of("by_duration", quantity)
+        columns[f"{name}, by the constant r"] = _of("by_constant", quantity)
+    return table(each(data, "experiment", "shaker_frequency"), columns)
+
+
+def _of(name: str, quantity: str) -> Column:
+    return at(value(name, "+.2g"), quantity=quantity)

@@ -1,0 +1,82 @@
+"""``bouncing-ball fit``: the answer as text and as JSON, the next command, and mistakes."""
+
+import json
+import shlex
+
+import pytest
+
+HEARD = "0.8\n0.62\n0.483\n0.377\n"
+
+
+@pytest.fixture
+def heard(tmp_path):
+    path = tmp_path / "heard.csv"
+    path.write_text(HEARD, encoding="utf-8")
+    return path
+
+
+def test_the_laws_are_ranked_with_verdicts(outcome):
+    status, out, err = outcome("fit", "croquet")
+    assert (status, err) == (0, "")
+    rows = out.splitlines()
+    assert rows[0].startswith("Croquet ball on wood: 10 impacts at 0.5 to 6.01 m/s")
+    assert rows[3].startswith("kuwabara-kono") and rows[3].endswith("incompatible")
+    assert "0.0041" in rows[3]
+    assert any("N/m^1.5" in row for row in rows)
+
+
+def test_the_second_command_is_the_contact_of_the_first(outcome):
+    """From measured impacts to solref in two commands."""
+    _, out, _ = outcome("fit", "croquet", "--frequency", "20 Hz")
+    second = shlex.split(out.splitlines()[-1])
+    assert second[:2] == ["bouncing-ball", "design"]
+    status, out, err = outcome(*second[1:], "--engine", "mujoco")
+    assert (status, err) == (0, "")
+    assert "solref" in out
+
+
+def test_the_impact_speed_is_that_of_the_orbit_or_given(outcome):
+    found = {}
+    for option in (("--frequency", "20 Hz"), ("--speed", "0.6 m/s"), ()):
+        answer = json.loads(outcome("fit", "croquet", *option, "--json")[1])
+        found[option[:1]] = answer["design"]
+    assert len(set(found.values())) == 3
+
+
+def test_json_has_the_numbers(outcome):
+    answer = json.loads(outcome("fit", "croquet", "--json")[1])
+    best = answer["laws"][0]
+    assert best["law"] == "kuwabara-kono" and best["units"]["damping"] == "s"
+    low, high = best["restitution_interval"]
+    assert low < best["restitution"] < high
+    assert best["contact_time"] == pytest.approx(0.7314e-3)
+    assert answer["impacts"] == []
+
+
+def test_intervals_show_the_biases_that_were_removed(outcome, heard):
+    options = ("--mass", "2.7 g", "--diameter", "40 mm", "--resolution", "1 ms")
+    answer = json.loads(outcome("fit", str(heard), "--intervals", *options, "--json")[1])
+    for row in answer["impacts"]:
+        assert row["drag_bias"] < 0 < row["resolution_bias"]
+        total = row["restitution"] + row["drag_bias"] + row["resolution_bias"]
+        assert total == pytest.approx(row["ratio_of_intervals"], abs=1e-12)
+    text = outcome("fit", str(heard), "--intervals", *options)[1]
+    assert "by resolution" in text and "drag of the air was removed" in text
+    plain = outcome("fit", str(heard), "--intervals")[1]
+    assert "drag of the air was not removed" in plain
+
+
+@pytest.mark.parametrize(
+    ("arguments", "part"),
+    [
+        (("nowhere.csv",), "nowhere.csv cannot be read"),
+        (("croquet", "--mass", "1 m"), "mass = 1 m"),
+        (("croquet", "--intervals"), "no column interval or time"),
+        (("croquet", "--speed", "1", "--frequency", "1"), "--speed and --frequency each"),
+        (("croquet", "--speed", "1 kg"), "--speed = 1 kg"),
+    ],
+)
+def test_a_mistake_gets_one_line(outcome, arguments, part):
+    status, out, err = outcome("fit", *arguments)
+    assert (status, out) == (2, "")
+    assert part in err and err.count("\n") == 1

@@ -1,0 +1,95 @@
+"""Verdicts on laws, from simulated experiments and from those of the package."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.measured.curves import curve_named
+from bouncing_ball.measured.experiment import experiment
+from bouncing_ball.measured.fit import Points, fit_contact
+from bouncing_ball.measured.verdicts import Verdict, extrapolated, judge, left_out, noise
+
+SPEEDS = np.geomspace(0.5, 6.0, 12)
+
+
+def sample(law, noise, count, known):
+    """Simulated experiments with a law."""
+    generator = np.random.default_rng(5)
+    curve = curve_named(law)
+    exact = curve.restitution(curve.parameter(0.8), SPEEDS / np.exp(np.mean(np.log(SPEEDS))))
+    spread = np.eye(SPEEDS.size) * noise**2 if known else None
+    for _ in range(count):
+        yield Points(SPEEDS, exact + noise * generator.standard_normal(SPEEDS.size), spread)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("known", [True, False])
+@pytest.mark.parametrize("law", ["linear", "kuwabara-kono"])
+def test_a_true_law_is_rarely_rejected(law, known):
+    curve = curve_named(law)
+    tests = [
+        (left_out(curve, points), extrapolated(curve, points)[0])
+        for points in sample(law, 0.003, 150, known)
+    ]
+    for p in np.transpose(tests):
+        # A test with the level 0.05 rejects 7.5 of 150; more than 18 have a probability of 4e-4.
+        # With the scatter about a smooth curve the probabilities may be too large, never too small.
+        assert np.count_nonzero(p < 0.05) <= 18
+        if known:
+            assert np.count_nonzero(p < 0.5) >= 50
+
+
+@pytest.mark.parametrize(
+    ("law", "others"),
+    [("linear", ("kuwabara-kono", "hunt-crossley")), ("kuwabara-kono", ("linear", "tsuji"))],
+)
+def test_a_false_law_is_incompatible_and_the_true_one_compatible(law, others):
+    (points,) = sample(law, 0.001, 1, True)
+    found = judge(fit_contact(points.speeds, points.restitutions, uncertainties=points.covariance))
+    assert found[law].verdict is Verdict.COMPATIBLE
+    assert {found[other].verdict for other in others} == {Verdict.INCOMPATIBLE}
+
+
+def test_an_experiment_that_rejects_no_law_confirms_none():
+    fit = fit_contact([1.0, 1.1, 1.2, 1.3], [0.8, 0.78, 0.81, 0.79], uncertainties=0.05)
+    assert {each.verdict for each in judge(fit).values()} == {Verdict.UNDECIDED}
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 4])
+def test_few_points_without_uncertainties_decide_nothing(count):
+    fit = fit_contact(SPEEDS[:count], np.linspace(0.9, 0.5, count))
+    found = judge(fit)
+    assert {each.verdict for each in found.values()} == {Verdict.UNDECIDED}
+    assert np.isnan(noise(fit.points)[0])
+
+
+def test_equal_speeds_decide_nothing():
+    fit = fit_contact([2.0] * 8, np.linspace(0.7, 0.9, 8))
+    assert {each.verdict for each in judge(fit).values()} == {Verdict.UNDECIDED}
+
+
+def test_the_scatter_about_a_smooth_curve_is_the_variance():
+    generator = np.random.default_rng(2)
+    speeds = np.geomspace(0.5, 5.0, 400)
+    points = Points(speeds, 0.8 - 0.03 * np.log(speeds) + 0.01 * generator.standard_normal(400))
+    variance, freedom = noise(points)
+    # The relative error of a variance with f degrees of freedom is √(2/f).
+    assert freedom == 397 and variance == pytest.approx(1e-4, rel=4 * np.sqrt(2 / 397))
+
+
+def test_the_extrapolation_is_that_of_a_fit_to_the_slower_half():
+    croquet = experiment("croquet")
+    points = Points(croquet.speeds, croquet.restitutions)
+    size = extrapolated(curve_named("linear"), points)[1]
+    order = np.argsort(croquet.speeds)
+    slow, fast = croquet.restitutions[order[:5]], croquet.restitutions[order[5:]]
+    assert size == pytest.approx(np.sqrt(np.mean((fast - slow.mean()) ** 2)), rel=1e-9)
+
+
+def test_hunt_and_crossleys_law_is_contradicted_by_most_experiments():
+    verdicts = {
+        name: judge(experiment(name).fit()) for name in ("croquet", "bouncy_ball", "plastic_ball")
+    }
+    for found in verdicts.values():
+        assert found["hunt-crossley"].verdict is Verdict.INCOMPATIBLE
+    assert verdicts["croquet"]["restitution"].verdict is Verdict.INCOMPATIBLE
+    assert verdicts["bouncy_ball"]["restitution"].verdict is Verdict.COMPATIBLE

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.numerics.first_zero import Motion, State, first_zero
+from bouncing_ball.numerics.first_zero import Derivatives, Motion, first_zero
 
 EPS = np.finfo(float).eps
 
@@ -19,7 +19,7 @@ class Waves(Motion):
     def __call__(self, time):
         sine = np.sin(time - self.top)
         cosine = np.cos(time - self.top)
-        return State(
+        return Derivatives(
             value=(cosine - 1) + self.height,
             rate=-sine,
             second=-cosine,

@@ -30,7 +30,9 @@ releases = st.sampled_from(list(Release))
     release=releases,
     phase=st.floats(-3, 3),
     impact=st.floats(-12, -0.5),
-    longer=st.floats(-1e-3, 1e-3),
+    # A duration that is off by this number moves the release by its square, which is below the
+    # rounding errors.
+    longer=st.floats(-1e-7, 1e-7),
 )
 def test_the_residual_is_that_of_the_papers_solution(
     reference, n, zeta, omega, lam, release, phase, impact, longer

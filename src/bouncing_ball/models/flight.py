@@ -14,7 +14,7 @@ import numpy as np
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.numerics.elementary import sine_and_versine
-from bouncing_ball.numerics.first_zero import Motion, State, Zero, first_zero
+from bouncing_ball.numerics.first_zero import Derivatives, Motion, Zero, first_zero
 
 # Constants are arrays without an axis, as in :mod:`bouncing_ball.numerics.elementary`.
 _ZERO = np.array(0.0)
@@ -74,10 +74,10 @@ class Flight(Motion):
         second = y + (x * sine - y * versine) - _ONE
         return displacement, rate, second, x - slowing
 
-    def __call__(self, time: np.ndarray) -> State:
+    def __call__(self, time: np.ndarray) -> Derivatives:
         displacement, rate, second, third = self.gap(time)
         lam = self.amplitude
-        return State(
+        return Derivatives(
             value=-displacement,
             rate=-rate,
             second=-second,
@@ -125,10 +125,10 @@ class Rise(Motion):
     def __init__(self, flight: Flight):
         self.flight = flight
 
-    def __call__(self, time: np.ndarray) -> State:
+    def __call__(self, time: np.ndarray) -> Derivatives:
         displacement, rate, second, third = self.flight.gap(time)
         lam = self.flight.amplitude
-        return State(
+        return Derivatives(
             value=displacement,
             rate=rate,
             second=second,
@@ -146,11 +146,11 @@ class Fall(Motion):
     def __init__(self, flight: Flight):
         self.flight = flight
 
-    def __call__(self, time: np.ndarray) -> State:
+    def __call__(self, time: np.ndarray) -> Derivatives:
         _, rate, second, third = self.flight.gap(time)
         lam = self.flight.amplitude
         # The fourth derivative of δ is minus that of the table: δ⁗ = -Λ sin τ = -(1 + δ″).
-        return State(
+        return Derivatives(
             value=-rate,
             rate=-second,
             second=-third,

@@ -21,7 +21,6 @@ bounds of the higher derivatives follow from the equation of motion.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -40,10 +39,8 @@ from bouncing_ball.numerics.elementary import (
     sine_and_cosine,
     sine_and_versine,
 )
-from bouncing_ball.numerics.first_zero import Motion, State, Zero, first_zero, nearest_zero
+from bouncing_ball.numerics.first_zero import Derivatives, Motion, Zero, first_zero, nearest_zero
 
-# The closed form is used for √γ above this value: the relative error of the steady part is ε/√γ.
-_RESONANCE = 1e-4
 # Number of steps after which the expensive bound of :meth:`ContactMotion.skip` is used.
 _PATIENCE = 12
 # Bound of |p(ν)|² s⁴ below which the responses to the table are computed by their integrals: above
@@ -59,25 +56,6 @@ _PI = np.array(np.pi)
 _TURN = np.array(2 * np.pi)
 _LARGEST_GROWTH = np.array(690.0)
 _TINY = np.array(1e-300)
-
-
-def _resistance(contact: OscillatorLaw):
-    """ϖ² - 1 and 2ζϖ, the sum of whose squares is γ."""
-    omega = np.asarray(contact.frequency_ratio, dtype=float)
-    return (omega - 1) * (omega + 1), 2 * np.asarray(contact.damping_ratio) * omega
-
-
-def has_closed_form(contact: OscillatorLaw) -> bool:
-    """Whether all contacts are underdamped and away from the undamped resonance ζ = 0, ϖ = 1.
-
-    Examples
-    --------
-    >>> from bouncing_ball.models.spring_damper import SpringDamper
-    >>> has_closed_form(SpringDamper(2.0, 0.1)), has_closed_form(SpringDamper(1.0, 0.0))
-    (True, False)
-    """
-    underdamped = np.all(np.asarray(contact.damping_ratio) < 1)
-    return bool(underdamped and np.all(np.hypot(*_resistance(contact)) >= _RESONANCE))
 
 
 class ContactMotion(Motion):
@@ -100,8 +78,8 @@ class ContactMotion(Motion):
         self.zeta = contact.damping_ratio
         self.lag = contact.lag
         self.damped = contact.damped_frequency
-        self.stiffness = self.omega * self.omega
-        self.decay = self.zeta * self.omega
+        self.stiffness = contact.stiffness
+        self.decay = contact.decay_rate
         # The amplitude of the forcing Λ sin τ + κ Λ cos τ of y, and its value at the start.
         self.forcing = amplitude * np.sqrt(_ONE + self.lag * self.lag)
         self.push = y + self.lag * x
@@ -146,8 +124,9 @@ class ClosedFormMotion(ContactMotion):
 
     def __init__(self, contact: OscillatorLaw, amplitude, displacement, velocity, x, y):
         super().__init__(contact, amplitude, displacement, velocity, x, y)
-        detuning, loss = _resistance(contact)
-        gamma = detuning * detuning + loss * loss
+        detuning = contact.detuning
+        loss = contact.loss
+        gamma = contact.off_resonance
         # Coefficients of Λ sin τ and Λ cos τ in the steady response to Λ sin τ + κ Λ cos τ.
         in_phase = (detuning + self.lag * loss) / gamma
         quadrature = (self.lag * detuning - loss) / gamma
@@ -158,7 +137,7 @@ class ClosedFormMotion(ContactMotion):
         self.b = (self.start_rate - self.sine + self.decay * self.a) / self.damped
         self.envelope = np.sqrt(self.a * self.a + self.b * self.b)
 
-    def __call__(self, time: np.ndarray) -> State:
+    def __call__(self, time: np.ndarray) -> Derivatives:
         angles = np.array([self.damped * time, time])
         (sine, slow_sine), (cosine, slow_cosine) = sine_and_cosine(angles)
         decay = exponential(-self.decay * time)
@@ -174,7 +153,7 @@ class ClosedFormMotion(ContactMotion):
         level = _ONE / self.stiffness
         envelope = self.envelope * decay
         bound = self.stiffness * envelope
-        return State(
+        return Derivatives(
             value=(free - level) + forced,
             rate=free_rate + forced_rate,
             second=free_second - forced,
@@ -219,7 +198,7 @@ class ResonantMotion(ContactMotion):
         # The phase of the forcing Λ sin τ + κ Λ cos τ at the start.
         self.phase = np.arctan2(self.push, x - self.lag * y)
 
-    def __call__(self, time: np.ndarray) -> State:
+    def __call__(self, time: np.ndarray) -> Derivatives:
         state = time, self.start, self.start_rate, self.phase, self.forcing
         flow = linear_flow(self.omega, self.zeta, *state)
         value = flow.displacement
@@ -238,7 +217,7 @@ class ResonantMotion(ContactMotion):
         by_second = np.maximum(by_second, -2 * (value + rate))
         by_third = np.maximum(by_third, 3 * np.abs(second))
         by_fourth = np.maximum(by_fourth, 12 * (by_second + np.abs(second)))
-        return State(
+        return Derivatives(
             value=value,
             rate=rate,
             second=second,
@@ -259,10 +238,6 @@ class LinearContactDynamics(ResumingDynamics):
 
     continues: ClassVar[bool] = True
 
-    @cached_property
-    def _has_closed_form(self) -> bool:
-        return has_closed_form(self.law)
-
     def depart(self, impact: Impact, *, differentiate: bool = False) -> Departure:
         """The end of each contact, or permanent contact if it is proved never to end."""
         motion = self._motion(impact)
@@ -271,7 +246,7 @@ class LinearContactDynamics(ResumingDynamics):
         return self._ended(impact, motion, end._replace(rate=np.maximum(end.rate, _ZERO)))
 
     def depart_after(self, impact: Impact, duration: np.ndarray) -> Departure:
-        """The ends of the contacts nearest to given durations, also beyond an earlier end."""
+        """The ends of the contacts near given durations, also beyond an earlier end."""
         motion = self._motion(impact)
         departure = self._ended(impact, motion, nearest_zero(motion, duration))
         return departure._replace(by=self._released(impact, departure))
@@ -290,12 +265,11 @@ class LinearContactDynamics(ResumingDynamics):
 
     def contraction(self, impact: Impact, departure: Departure) -> np.ndarray:
         """exp(-2ζϖD), because areas contract only in contact, at the rate 2ζϖ."""
-        loss = np.asarray(self.law.damping_ratio) * self.law.frequency_ratio
-        return np.exp(-2 * loss * departure.duration)
+        return np.exp(-self.law.loss * departure.duration)
 
     def _motion(self, impact: Impact) -> ContactMotion:
         x, y = self.table_at(impact)
-        kind = ClosedFormMotion if self._has_closed_form else ResonantMotion
+        kind = ClosedFormMotion if self.law.has_closed_form else ResonantMotion
         return kind(self.law, self.amplitude, impact.displacement, impact.velocity, x, y)
 
     def _ended(self, impact: Impact, motion: ContactMotion, end: Zero) -> Departure:
@@ -345,10 +319,9 @@ class LinearContactDynamics(ResumingDynamics):
         contact = self.law
         flight = departure.flight
         duration = departure.duration
-        omega = contact.frequency_ratio
-        stiffness = omega**2
-        loss = 2 * contact.damping_ratio * omega
-        half = loss / _TWO
+        stiffness = contact.stiffness
+        loss = contact.loss
+        half = contact.decay_rate
         # The impulse response g, g′, and g′ + 2ζϖ g, the response to a unit displacement.
         sine, versine = sine_and_versine(contact.damped_frequency * duration)
         decay = exponential(-half * duration)
@@ -363,7 +336,7 @@ class LinearContactDynamics(ResumingDynamics):
         lag = contact.lag * (impact.displacement < _ZERO)
         first = (y - _ONE) - loss * impact.velocity - stiffness * impact.displacement
         # The last digits of this form are multiplied by ϖ and by the decay.
-        forgets = decay * omega < _ONE
+        forgets = decay * contact.frequency_ratio < _ONE
         by_phase = Deviation(
             phase=np.where(forgets, _ZERO, _ONE),
             displacement=np.where(
@@ -395,8 +368,9 @@ class LinearContactDynamics(ResumingDynamics):
         In short or resonant contacts the quotients lose digits, and the values come from
         :func:`.responses` instead.
         """
-        detuning, loss = _resistance(self.law)
-        gamma = detuning * detuning + loss * loss
+        detuning = self.law.detuning
+        loss = self.law.loss
+        gamma = self.law.off_resonance
         square = duration * duration
         delicate = gamma * square * square < _DELICATE
         sine, versine = sine_and_versine(duration)

@@ -135,7 +135,8 @@ class Model(Batch, Ball, ABC):
 
 
 def _is_number(value: Any) -> bool:
-    return np.asarray(value).dtype.kind in "iuf"
+    # A row of laws is a sequence, of which numpy would make an array of objects one by one.
+    return not is_dataclass(value) and np.asarray(value).dtype.kind in "iuf"
 
 
 def _inner(law: Any) -> Iterator[Any]:

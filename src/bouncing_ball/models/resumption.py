@@ -22,7 +22,7 @@ from bouncing_ball.models.dynamics import Departure, Dynamics, Impact
 from bouncing_ball.models.flight import Flight, land
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.numerics.first_zero import Motion, State, first_zero
+from bouncing_ball.numerics.first_zero import Derivatives, Motion, first_zero
 
 
 class _Unloaded(Motion):
@@ -33,7 +33,7 @@ class _Unloaded(Motion):
         self.lag = lag
         self.forcing = flight.amplitude * np.sqrt(1 + lag * lag)
 
-    def __call__(self, time: np.ndarray) -> State:
+    def __call__(self, time: np.ndarray) -> Derivatives:
         lag = self.lag
         displacement, rate, second, third = self.flight.gap(time)
         # At the release y = 0 but for rounding; this zero is not the one that is searched for.
@@ -43,7 +43,7 @@ class _Unloaded(Motion):
         # The fourth derivative of δ is minus that of the table: δ⁗ = -Λ sin τ = -(1 + δ″).
         y_third = third - lag * (1 + second)
         bounds = 1 + self.forcing, self.forcing, self.forcing
-        return State(-y, -y_rate, -y_second, -y_third, *bounds, ended=displacement >= 0)
+        return Derivatives(-y, -y_rate, -y_second, -y_third, *bounds, ended=displacement >= 0)
 
 
 def resumption(flight: Flight, lag: Any) -> tuple[np.ndarray, np.ndarray]:

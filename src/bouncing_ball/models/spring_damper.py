@@ -30,7 +30,7 @@ from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.flight import table
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.contact_law import OscillatorLaw
-from bouncing_ball.models.linear_contact import LinearContactDynamics, has_closed_form
+from bouncing_ball.models.linear_contact import LinearContactDynamics
 from bouncing_ball.models.linear_flow import ContactFlow
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 
@@ -220,7 +220,7 @@ class SpringDamper(OscillatorLaw):
 
         The arguments are those of :meth:`.ContactLaw.over_contact`.
         """
-        if not has_closed_form(self):
+        if not self.has_closed_form:
             return super().over_contact(amplitude, duration, phase, gap, rate)
         numbers = self.frequency_ratio, self.damping_ratio, amplitude
         return linear_flow.integrals(*numbers, duration, table(phase, amplitude), gap, rate)

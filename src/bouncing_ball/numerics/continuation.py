@@ -1,8 +1,9 @@
 """Predictor-corrector continuation of a branch, with events.
 
-A step starts from a state: a point y of the branch, its tangent t, and the values of the test
-functions. The predictor is ``y + h t``, and Newton's method in the plane normal to t is the
-corrector. Events within the step are then located, and :class:`StepControl` chooses the next h. A
+A step starts from a state: a point y of the branch, its tangent t with the derivative t′ along the
+branch, and the values of the test functions. The predictor is ``y + h t + h² t′/2``, and Newton's
+method in the plane normal to t is the corrector; t′ is the difference of the tangents over the last
+step. Events within the step are then located, and :class:`StepControl` chooses the next h. A
 step is repeated with half its length if the corrector fails, if the tangent turns too much, or if
 an event cannot be located. The branch ends at a terminal event, where no step is short enough, or
 after a given number of points.
@@ -51,7 +52,7 @@ class StepControl:
     initial: float = 0.02
     smallest: float = 1e-8
     largest: float = 0.2
-    target_iterations: int = 4
+    target_iterations: int = 3
     max_angle: float = 0.2
 
     def after(self, step: float, iterations: int, angle: float) -> float:
@@ -163,10 +164,13 @@ def solve_at(problem: Problem, guess: np.ndarray) -> np.ndarray:
 
 
 class _State(NamedTuple):
-    """A point of a branch, its unit tangent, and the values of the test functions at the point."""
+    """A point of a branch, its unit tangent and the derivative of the tangent along the branch, and
+    the values of the test functions at the point.
+    """
 
     point: np.ndarray
     tangent: np.ndarray
+    curvature: np.ndarray
     values: list[float]
 
 
@@ -219,7 +223,7 @@ def _first_state(
             f"the start {np.array2string(point, precision=4)} has no direction: the derivatives of "
             "the equations are not defined there"
         )
-    state = _State(point, along, _values(events, point))
+    state = _State(point, along, np.zeros_like(point), _values(events, point))
     for event, value in zip(events, state.values, strict=True):
         if event.terminal and value < 0:
             raise ContinuationError(
@@ -240,7 +244,7 @@ def _step(
         If the corrector fails, the tangent turns by more than ``max_angle``, or an event cannot be
         located.
     """
-    predicted = state.point + length * state.tangent
+    predicted = state.point + length * (state.tangent + length / 2 * state.curvature)
     corrected = newton(problem, predicted, plane(state.tangent, predicted))
     if not corrected.converged:
         raise _Rejected(f"the corrector fails with residual {corrected.residual:.1e}")
@@ -252,7 +256,8 @@ def _step(
     angle = float(np.arccos(np.clip(ahead @ state.tangent, -1.0, 1.0)))
     if not angle <= max_angle:
         raise _Rejected(f"the tangent turns by more than {max_angle} rad", kind=EndKind.CORNER)
-    reached = _State(point, ahead, _values(events, point))
+    curvature = (ahead - state.tangent) / np.linalg.norm(point - state.point)
+    reached = _State(point, ahead, curvature, _values(events, point))
     changed = changes_of_sign(events, state.values, reached.values)
     passage = locate_all(problem, changed, state.point, point)
     if passage.missed is not None:
@@ -268,7 +273,7 @@ def _step(
         # At the end of its domain the derivative may be undefined; the branch keeps its direction.
         if np.all(np.isfinite(matrix)):
             ahead = tangent(matrix, ahead)
-        reached = _State(point, ahead, [])
+        reached = _State(point, ahead, curvature, [])
     return _Step(reached, passage.special, end, corrected.iterations, angle)
 
 

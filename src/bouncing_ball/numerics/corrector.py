@@ -13,6 +13,10 @@ import numpy as np
 _TINY = np.finfo(float).tiny
 # Largest defect of a point of which the last Newton step is not small: a hundred roundings.
 _SATISFIED = 1e-13
+_ROUNDING = np.finfo(float).eps
+# The largest size of a last step that is longer than the tolerance. Its product with the error of a
+# Jacobian by differences, about 1e-9, is a rounding error.
+_SMALL = 2e-7
 # The accuracy in the parameter with which folds are located.
 _LOCATED = 1e-12
 
@@ -51,8 +55,9 @@ class NewtonSettings(NamedTuple):
     """Criteria for the convergence and the failure of a Newton iteration.
 
     ``tolerance`` bounds the norm of the last step, relative to 1 + |y|. Because the
-    convergence is quadratic, the point is then as accurate as F is computed. ``longest`` is the
-    greatest length of a step, and ``max_iterations`` the greatest number of steps.
+    convergence is quadratic, the point is then as accurate as F is computed. A longer step is also
+    the last one if the next one would be a rounding error. ``longest`` is the greatest length of a
+    step, and ``max_iterations`` the greatest number of steps.
     """
 
     tolerance: float = 1e-12
@@ -122,19 +127,43 @@ def solve(
     while iteration < settings.max_iterations and np.any(going):
         iteration += 1
         values, matrix = equations(y)
-        residual = np.where(going, np.max(np.abs(values), axis=-1), residual)
-        going &= np.isfinite(residual) & np.all(np.isfinite(matrix), axis=(-2, -1))
-        # A matrix of NaN would cause a warning beside one that is singular.
-        known = np.where(going[..., np.newaxis, np.newaxis], matrix, np.eye(y.shape[-1]))
-        change = _solve_linear(known, values)
-        length = np.linalg.norm(change, axis=-1)
+        residual = np.where(going, np.abs(values).max(axis=-1), residual)
+        going &= np.isfinite(residual) & np.isfinite(matrix).all(axis=(-2, -1))
+        if not going.all():
+            # A matrix of NaN would cause a warning beside one that is singular.
+            matrix = np.where(going[..., np.newaxis, np.newaxis], matrix, np.eye(y.shape[-1]))
+        change = _solve_linear(matrix, values)
+        length = _norm(change)
         share = np.minimum(1.0, settings.longest / np.maximum(length, _TINY))
         going &= np.isfinite(length)
         y = np.where(going[..., np.newaxis], y - share[..., np.newaxis] * change, y)
-        size = np.where(going, length / (1 + np.linalg.norm(y, axis=-1)), size)
-        converged |= going & (size <= settings.tolerance)
+        before = size
+        size = np.where(going, length / (1 + _norm(y)), size)
+        last = (size <= settings.tolerance) | _next_is_rounding(before, size)
+        converged |= going & last
         going &= ~converged
     return Correction(y, converged, iteration, residual, size)
+
+
+def _norm(vector: np.ndarray) -> np.ndarray:
+    """The Euclidean norm along the last axis."""
+    return np.sqrt((vector * vector).sum(axis=-1))
+
+
+def _next_is_rounding(before: np.ndarray, size: np.ndarray) -> np.ndarray:
+    """Whether the step after two steps of these sizes is a rounding error.
+
+    Quadratic convergence makes the steps e₂ = C e₁² and e₃ = C e₂², so that e₃ = e₂³/e₁². Because
+    an inexact Jacobian adds its error times e₂, e₂ must itself be small.
+
+    Examples
+    --------
+    >>> before = np.array([1e-4, 1e-6, np.inf])
+    >>> _next_is_rounding(before, np.array([1e-8, 1e-8, 1e-8])).tolist()
+    [True, False, False]
+    """
+    quadratic = (size <= _SMALL) & np.isfinite(before)
+    return quadratic & (size**3 <= _ROUNDING * np.where(quadratic, before, 0.0) ** 2)
 
 
 def _solve_linear(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:

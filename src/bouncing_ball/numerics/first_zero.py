@@ -38,10 +38,9 @@ _REACH = np.array(4.0)
 # Number of steps after which the search ends as undecided. Each step is a considerable part of
 # the shortest time scale of the function, so that these are hundreds of oscillations.
 _MAX_STEPS = 3000
-# Newton's steps to a zero that is known to three digits or better, and the largest last step
-# relative to the time: the error that is left is of the order of its square.
+# Newton's steps to a zero, and the largest last step relative to the time.
 _NEWTON_STEPS = 5
-_SETTLED = 1e-6
+_SETTLED = 1e-5
 _ZERO = np.array(0.0)
 _HALF = np.array(0.5)
 _QUARTER = np.array(0.25)
@@ -51,7 +50,7 @@ _TINY = np.array(1e-280)
 _MINUS_TWO = np.array(-2.0)
 
 
-class State(NamedTuple):
+class Derivatives(NamedTuple):
     """y and its derivatives at one time, and the bounds K, J, L from this time on.
 
     ``ended`` marks the functions for which the search may stop without a zero; ``None`` means
@@ -72,8 +71,8 @@ class Motion(Row, ABC):
     """A row of functions of time whose first upward zeros are computed."""
 
     @abstractmethod
-    def __call__(self, time: np.ndarray) -> State:
-        """The state of each function at its time."""
+    def __call__(self, time: np.ndarray) -> Derivatives:
+        """Each function and its derivatives at its time."""
 
     def skip(self, time: np.ndarray, steps: int) -> np.ndarray:
         """A later time before which there is certainly no zero, or the time itself.
@@ -87,8 +86,8 @@ class Motion(Row, ABC):
 class Zero(NamedTuple):
     """First upward zeros: their times, and y′ there.
 
-    ``ended`` marks the functions whose search stopped without a zero (see :class:`State`), and
-    ``undecided`` those for which it took too many steps.
+    ``ended`` marks the functions whose search stopped without a zero (see :class:`Derivatives`),
+    and ``undecided`` those for which it took too many steps.
     """
 
     time: np.ndarray
@@ -106,10 +105,10 @@ class _Start(NamedTuple):
     twice: np.ndarray
 
     @classmethod
-    def of(cls, state: State) -> "_Start":
-        rate = state.rate
+    def of(cls, at: Derivatives) -> "_Start":
+        rate = at.rate
         # If y touches zero from below, rounding may give a positive value.
-        twice = _MINUS_TWO * np.minimum(state.value, _ZERO)
+        twice = _MINUS_TWO * np.minimum(at.value, _ZERO)
         return cls(rate, rate > _ZERO, rate * rate, twice)
 
     def root(self, bound: np.ndarray) -> np.ndarray:
@@ -133,7 +132,7 @@ class _Bounds(NamedTuple):
         return np.minimum(self.second + reach * growth * _THIRD, self.second_bound)
 
 
-def safe_step(state: State) -> tuple[np.ndarray, np.ndarray]:
+def safe_step(at: Derivatives) -> tuple[np.ndarray, np.ndarray]:
     """The longest step that certainly passes no zero, and whether it may be the last.
 
     Examples
@@ -141,28 +140,28 @@ def safe_step(state: State) -> tuple[np.ndarray, np.ndarray]:
     The step is exact for a parabola, here y = s² - 1 at s = 0:
 
     >>> one = np.ones(1)
-    >>> step, _ = safe_step(State(-one, 0 * one, 2 * one, 0 * one, 2.0, 0.0, 0.0))
+    >>> step, _ = safe_step(Derivatives(-one, 0 * one, 2 * one, 0 * one, 2.0, 0.0, 0.0))
     >>> step.tolist()
     [1.0]
     """
-    start = _Start.of(state)
-    first = start.root(state.second_bound)
-    step = _prolonged(first, start, state)
+    start = _Start.of(at)
+    first = start.root(at.second_bound)
+    step = _prolonged(first, start, at)
     # From y = y′ = 0 with y″ < 0 on, y ≤ y″ h²/2 + J h³/6.
     if not start.rising.all():
-        sinking = -3 * state.second / (state.third_bound + _TINY)
+        sinking = -3 * at.second / (at.third_bound + _TINY)
         step = np.maximum(step, np.where(start.rising, _ZERO, sinking))
-    bend = (np.abs(state.third) + state.fourth_bound * first) * (first * first)
-    simple = state.second_bound * start.twice <= _SIMPLE * start.square
-    return step, (bend <= _CLOSE * state.rate) & simple & start.rising
+    bend = (np.abs(at.third) + at.fourth_bound * first) * (first * first)
+    simple = at.second_bound * start.twice <= _SIMPLE * start.square
+    return step, (bend <= _CLOSE * at.rate) & simple & start.rising
 
 
-def _prolonged(first: np.ndarray, start: _Start, state: State) -> np.ndarray:
+def _prolonged(first: np.ndarray, start: _Start, at: Derivatives) -> np.ndarray:
     """Certified steps, at least as long as the ``first`` ones, with the local bounds K_H."""
     step = first.copy()
     now = first
     which: Any = slice(None)
-    bounds = _Bounds(state.second, state.third, state.second_bound, state.fourth_bound)
+    bounds = _Bounds(at.second, at.third, at.second_bound, at.fourth_bound)
     while True:
         reach = _REACH * now
         longer = np.minimum(start.root(bounds.within(reach)), reach)
@@ -192,12 +191,12 @@ def first_zero(motion: Motion, start: np.ndarray) -> Zero:
     part = motion
     now = time.copy()
     for steps in range(_MAX_STEPS):
-        state = part(now)
-        step, last = safe_step(state)
-        here = _zero_here(state)
-        if state.ended is not None:
-            if state.ended.any():
-                stop = state.ended & ~(last | here)
+        at = part(now)
+        step, last = safe_step(at)
+        here = _zero_here(at)
+        if at.ended is not None:
+            if at.ended.any():
+                stop = at.ended & ~(last | here)
                 ended[active] = stop
                 here |= stop
         later = part.skip(now + step, steps)
@@ -221,45 +220,52 @@ def first_zero(motion: Motion, start: np.ndarray) -> Zero:
 def nearest_zero(motion: Motion, about: np.ndarray) -> Zero:
     """The zero of each motion near a time, by Newton's method, whether it is the first or not.
 
-    ``undecided`` marks the motions for which the last step was not small against the time.
+    The last step is small against the time, and the error is of the order of its square: equations
+    that are solved together with the zero lose nothing, and a zero is its own nearest zero.
+    ``undecided`` marks the motions for which the last step was not small.
 
     Examples
     --------
     >>> class Parabola(Motion):
     ...     def __call__(self, time):
     ...         one = np.ones_like(time)
-    ...         return State(time**2 - 4, 2 * time, 2 * one, 0 * one, 2 * one, 0 * one, 0 * one)
-    >>> nearest_zero(Parabola(), np.array([1.9, 2.2])).time.tolist()
-    [2.0, 2.0]
+    ...         return Derivatives(time**2 - 4, 2 * time, 2 * one, 0 * one, 2 * one, 0.0, 0.0)
+    >>> found = nearest_zero(Parabola(), np.array([2.0, 2.2]))
+    >>> found.time.round(9).tolist(), found.undecided.tolist()
+    ([2.0, 2.0], [False, False])
     """
-    time = np.array(about, dtype=float)
+    time = about
+    rate = np.full(time.shape, np.nan)
+    settled = np.zeros(time.shape, dtype=bool)
     for _ in range(_NEWTON_STEPS):
-        state = motion(time)
-        step = state.value / state.rate
-        time = time - step
-    rate = state.rate - step * state.second
-    none = np.zeros(time.shape, dtype=bool)
-    return Zero(time, rate, none, ~(np.abs(step) <= _SETTLED * np.abs(time)))
+        at = motion(time)
+        later = -at.value / at.rate
+        rate = np.where(settled, rate, at.rate + later * at.second)
+        time = np.where(settled, time, time + later)
+        settled |= np.abs(later) <= _SETTLED * np.abs(time)
+        if np.all(settled | np.isnan(later)):
+            break
+    return Zero(time, rate, np.zeros(time.shape, dtype=bool), ~settled)
 
 
-def _zero_here(state: State) -> np.ndarray:
+def _zero_here(at: Derivatives) -> np.ndarray:
     """Whether y is zero and rises: at the start, or where y touches zero up to rounding."""
-    here = state.value >= _ZERO
+    here = at.value >= _ZERO
     if here.any():
-        rate = state.rate
-        here &= (rate > 0) | ((rate == 0) & (state.second >= 0))
+        rate = at.rate
+        here &= (rate > 0) | ((rate == 0) & (at.second >= 0))
     return here
 
 
 def _to_the_last_digit(motion: Motion, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The times, improved by one step to the zero of the function's parabola, and y′ there."""
-    state = motion(time)
-    rate = state.rate
-    acceleration = state.second
-    twice = _MINUS_TWO * state.value
+    at = motion(time)
+    rate = at.rate
+    acceleration = at.second
+    twice = _MINUS_TWO * at.value
     square = rate * rate
     root = np.sqrt(np.maximum(square + acceleration * twice, _ZERO))
     # If the zero may be multiple, because y touches zero, the time is not changed.
-    simple = (rate > _ZERO) & (state.second_bound * np.abs(twice) <= square)
+    simple = (rate > _ZERO) & (at.second_bound * np.abs(twice) <= square)
     step = np.where(simple, twice / (rate + root + _TINY), _ZERO)
-    return time + step, rate + step * (acceleration + _HALF * step * state.third)
+    return time + step, rate + step * (acceleration + _HALF * step * at.third)

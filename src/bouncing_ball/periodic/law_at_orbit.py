@@ -1,7 +1,6 @@
 """The contact law whose impact on an orbit has a given restitution and duration."""
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,6 +11,7 @@ from bouncing_ball.models.laws.law_of_impact import law_of_impact
 from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.numerics.corrector import NewtonSettings, solve
 from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.balls import Balls
 from bouncing_ball.periodic.orbit import Orbit, orbit_at
 from bouncing_ball.periodic.restitution_branch import rigid_speed
 from bouncing_ball.periodic.stability import Side
@@ -23,16 +23,6 @@ _ROUNDS = 20
 _SETTLED = 1e-10
 # From the orbits of the round before, the error after a step of this length is its square.
 _CLOSE = NewtonSettings(tolerance=1e-7)
-
-
-def _next_to(model: LawModel, orbit: Orbit) -> Orbit:
-    """The orbits of laws with the n and Λ of given orbits of similar laws; NaN where Newton's
-    method does not converge from these.
-    """
-    near = replace(orbit, model=model)
-    problem = near.problem()
-    found = solve(problem.equations_at, near.point(problem), _CLOSE)
-    return orbit_at(problem, np.where(found.converged[..., np.newaxis], found.point, np.nan))
 
 
 def law_at_orbit(
@@ -82,26 +72,51 @@ def law_at_orbit(
     >>> round(float(law.signature(speed).duration), 12)
     0.1
     """
+    return orbit_of_law(kind, restitution, duration, n, amplitude, side).law
+
+
+def orbit_of_law(
+    kind: type[ContactLaw],
+    restitution: float,
+    duration: ArrayLike,
+    n: int,
+    amplitude: float,
+    side: Side = Side.STABLE,
+) -> Orbit:
+    """The n-T orbits at Λ on the contacts of :func:`law_at_orbit`, which has the same arguments.
+
+    The unknowns of an orbit are the phase and δ′ of the impact, whatever the law is, so that the
+    orbits of one round are the guesses of the next.
+
+    Raises
+    ------
+    NoOrbitError, ModelError
+        As :func:`law_at_orbit`.
+    """
     side = Side(side)
     taken = np.asarray(duration, dtype=float)
     speed = np.full_like(taken, rigid_speed(n, restitution))
     before = missed_before = np.full_like(taken, np.nan)
-    orbit: Any = None
-    for tried in range(_ROUNDS):
-        law = law_of_impact(kind, restitution, taken, speed)
-        model = LawModel(law)
-        orbit = _next_to(model, orbit) if tried else n_t.orbit(model, n, amplitude, side)
-        lost = np.flatnonzero(~np.atleast_1d(orbit.exists))
+    law = law_of_impact(kind, restitution, taken, speed)
+    orbit = n_t.orbit(LawModel(law), n, amplitude, side)
+    problem = orbit.problem()
+    y = orbit.point(problem)
+    for _ in range(_ROUNDS):
+        lost = np.flatnonzero(np.isnan(y).any(axis=-1))
         if lost.size:
             n_t.require_orbit(LawModel(law.take(lost[0])), n, amplitude, side)
-        missed = -orbit.relative_impact_velocity - speed
+        missed = -problem.states(y)[1][..., 0] - speed
         slope = np.full_like(taken, -1.0)
         np.divide(missed - missed_before, speed - before, out=slope, where=speed != before)
         before = speed
         missed_before = missed
         speed = speed - missed / np.where(np.abs(slope + 1) < 0.5, slope, -1.0)
-        if np.all(np.abs(missed) <= _SETTLED * speed):
-            return law_of_impact(kind, restitution, taken, speed)
+        law = law_of_impact(kind, restitution, taken, speed)
+        problem = replace(problem, balls=Balls(LawModel(law), amplitude))
+        found = solve(problem.equations_at, y, _CLOSE)
+        y = np.where(found.converged[..., np.newaxis], found.point, np.nan)
+        if np.all((np.abs(missed) <= _SETTLED * speed) & found.converged):
+            return orbit_at(problem, y)
     raise NoOrbitError(
         f"no {n}-T orbit at Λ = {amplitude:g} whose impact has r = {restitution:g} and "
         f"D = {float(taken.flat[0]):g} was found for {kind.name}"

@@ -4,6 +4,9 @@ The landing is the one near the next state of the orbit, and not the first one, 
 depends smoothly on its start also where the flight grazes the table.
 """
 
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,57 +22,80 @@ _ROUNDS = 6
 _SETTLED = 1e-15
 
 
-class Legs(NamedTuple):
+@dataclass(frozen=True)
+class Legs:
     """The legs of orbits, arrays of shape (..., k).
 
-    ``residual`` are the two sides of Eq. 2 of :mod:`bouncing_ball.periodic.problem`, shape
-    (..., k, 2), and ``duration`` the durations of the contacts. ``tangent`` is DP, and
-    ``contraction`` the factor by which the contacts multiply areas. ``longer`` are the derivatives
-    of the durations by θ and v, shape (..., k, 2), if the durations are unknowns. ``near`` is the
-    same matrix as ``tangent`` as if the contact began at the phase θ_{i+1}, and ``velocity`` and
-    ``acceleration`` are y′ and δ″ there, with y = δ, or δ + κ δ′ where a contact resumes.
-    ``dynamics``, ``impact``, ``departure`` and ``passed``, the time of the leg, are flat.
+    ``residual`` are the two equations of each leg, its height and its velocity in the words of
+    :mod:`bouncing_ball.periodic.problem`, shape (..., k, 2), and ``duration`` the durations of the
+    contacts. ``velocity`` and ``acceleration`` are y′ and δ″ at the phase θ_{i+1}, with y = δ, or
+    δ + κ δ′ where a contact resumes. ``dynamics``, which is None where no ball is inside the ranges
+    of the parameters, ``impact``, ``departure`` and ``landing`` are flat.
     """
 
     residual: np.ndarray
     duration: np.ndarray
-    tangent: Jacobian
-    near: Jacobian
-    contraction: np.ndarray
-    longer: np.ndarray
     velocity: np.ndarray
     acceleration: np.ndarray
     dynamics: Any
     impact: Any
     departure: Any
-    passed: np.ndarray
+    landing: Any
 
+    @classmethod
+    def unknown(cls, shape: tuple[int, ...]) -> "Legs":
+        """Legs of which nothing is known."""
+        none = np.full(shape, np.nan)
+        return cls(np.full((*shape, 2), np.nan), none, none, none, None, None, None, None)
 
-def no_legs(shape: tuple[int, ...]) -> Legs:
-    """Legs of which nothing is known, where no ball is inside the ranges of the parameters."""
-    none = np.full(shape, np.nan)
-    return Legs(
-        residual=np.full((*shape, 2), np.nan),
-        duration=none,
-        tangent=Jacobian(none, none, none, none),
-        near=Jacobian(none, none, none, none),
-        contraction=none,
-        longer=np.full((*shape, 2), np.nan),
-        velocity=none,
-        acceleration=none,
-        dynamics=None,
-        impact=None,
-        departure=None,
-        passed=none.ravel(),
-    )
+    @cached_property
+    def tangent(self) -> Jacobian:
+        """DP, the derivative of the map from the start of each leg to its landing."""
+        return self._jacobian(lambda landing: (landing.after, landing.passed))
+
+    @cached_property
+    def near(self) -> Jacobian:
+        """The derivative of the map from the start of each leg to the phase θ_{i+1}.
+
+        It is that of a landing at this phase. It belongs to the equations, and is equal to
+        :attr:`tangent` once they are satisfied.
+        """
+        return self._jacobian(lambda landing: (landing.near, landing.passed_near))
+
+    @cached_property
+    def contraction(self) -> np.ndarray:
+        """The factors by which the contacts multiply areas."""
+        if self.dynamics is None:
+            return self.duration
+        with np.errstate(all="ignore"):
+            factor = self.dynamics.contraction(self.impact, self.departure)
+        return np.reshape(factor, self.duration.shape)
+
+    @cached_property
+    def duration_slopes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Derivatives of the durations by θ and by v, for a model that continues its contacts."""
+        if self.dynamics is None:
+            return self.duration, self.duration
+        with np.errstate(all="ignore"):
+            by_phase, by_velocity = self.dynamics.duration_slopes(self.impact, self.departure)
+        return by_phase.reshape(self.duration.shape), by_velocity.reshape(self.duration.shape)
+
+    def _jacobian(self, end: Callable[["Landing"], tuple[Impact, np.ndarray]]) -> Jacobian:
+        """The derivative of the map up to an impact, after a time since the start of the leg."""
+        if self.dynamics is None:
+            return Jacobian(*(4 * [self.duration]))
+        with np.errstate(all="ignore"):
+            found = self.dynamics.jacobian(self.impact, self.departure, *end(self.landing))
+        return Jacobian(*(entry.reshape(self.duration.shape) for entry in found))
 
 
 class Landing(NamedTuple):
     """Landings of flights near given times.
 
-    ``after`` are the impacts, ``passed`` the times from impact to impact, and ``late`` those by
-    which the impacts are late on the section. ``near`` and ``passed_near`` are the impacts as if
-    the contacts began at the given times, and their times.
+    ``after`` are the impacts, ``passed`` the times from impact to impact, and ``late`` the times by
+    which the impacts come later on the section than given. ``near`` is the state of the flight at
+    the given time, as an impact: there the ball has not landed yet, or should have landed before.
+    ``passed_near`` is the time from impact to impact if the flight ends there.
     """
 
     after: Impact

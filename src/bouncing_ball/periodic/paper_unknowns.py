@@ -8,6 +8,7 @@ equations are those of :mod:`~bouncing_ball.periodic.problem` with one impact, w
 """
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -55,7 +56,7 @@ class PaperUnknowns:
         inner = np.array(y, dtype=float)
         lam = y[..., -1]
         inner[..., 1] -= lam * np.cos(y[..., 0])
-        inner[..., 2:-1] /= np.asarray(self.clock)[..., np.newaxis]
+        inner[..., 2:-1] /= self._clock
         inner[..., -1] = np.arcsinh(lam)
         return inner
 
@@ -63,8 +64,10 @@ class PaperUnknowns:
         """Derivatives of :meth:`inner` by y, shape (..., N + 1, N + 1)."""
         lam = y[..., -1]
         size = y.shape[-1]
-        slopes = np.broadcast_to(np.eye(size), (*y.shape, size)).copy()
+        slopes = np.zeros((*y.shape, size))
+        slopes[..., 0, 0] = 1
         slopes[..., 1, 0] = lam * np.sin(y[..., 0])
+        slopes[..., 1, 1] = 1
         slopes[..., 1, -1] = -np.cos(y[..., 0])
         for k in range(2, size - 1):
             slopes[..., k, k] = 1 / np.asarray(self.clock)
@@ -77,26 +80,32 @@ class PaperUnknowns:
         lam = np.sinh(inner[..., -1])
         y = inner.copy()
         y[..., 1] += lam * np.cos(inner[..., 0])
-        y[..., 2:-1] *= np.asarray(self.clock)[..., np.newaxis]
+        y[..., 2:-1] *= self._clock
         y[..., -1] = lam
         return y
 
+    @cached_property
+    def _clock(self) -> np.ndarray:
+        """ϖ with an axis for the unknowns."""
+        return np.asarray(self.clock)[..., np.newaxis]
+
+    @cached_property
     def _weights(self) -> np.ndarray:
         """The factors of the equations; that of the duration is of the order of a velocity."""
         weights = np.ones((*np.shape(self.clock), self.orbits.equations))
-        weights[..., 2:] = np.asarray(self.clock)[..., np.newaxis]
+        weights[..., 2:] = self._clock
         return weights
 
     def residual(self, y: np.ndarray) -> np.ndarray:
         """The defects of the equations, shape (..., N)."""
-        return self._weights() * self.orbits.residual(self.inner(y))
+        return self._weights * self.orbits.residual(self.inner(y))
 
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """The Jacobian of the residual, shape (..., N, N + 1)."""
         # The duration of a contact that touches its release has infinite derivatives.
         with np.errstate(invalid="ignore"):
             matrix = self.orbits.jacobian(self.inner(y)) @ self._slopes(y)
-        return self._weights()[..., np.newaxis] * matrix
+        return self._weights[..., np.newaxis] * matrix
 
     def event(self, event: Event) -> Event:
         """An event of the equations as a function of these unknowns."""

@@ -40,18 +40,18 @@ equations.
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import Any, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
 from bouncing_ball.models.deviations import Jacobian
-from bouncing_ball.models.dynamics import Departure, Dynamics, Impact
+from bouncing_ball.models.dynamics import Dynamics, Impact
 from bouncing_ball.models.flight import table
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import Event
 from bouncing_ball.periodic.balls import LAMBDA, Balls, dynamics_inside
-from bouncing_ball.periodic.legs import Legs, lag_of, landed, no_legs, without_force
+from bouncing_ball.periodic.legs import Legs, lag_of, landed, without_force
 from bouncing_ball.periodic.products import matrices_of, product_of, shifted_determinant
 from bouncing_ball.periodic.stability import Bifurcation
 
@@ -65,6 +65,10 @@ _LEAST = 1e-3
 # the side has no derivative but a jump. At an end of a range both differences are equal, and
 # smaller. A jump that is not noticed spoils a solution by 1e-7 of its size.
 _JUMP = 1e-3
+# The ends of the range of a phase or a velocity.
+_UNLIMITED = np.array([-np.inf, np.inf])
+# κ of a contact that starts at δ = 0.
+_NONE = np.array(0.0)
 # Number of points at which the legs are known at the same time.
 _KEPT = 8
 
@@ -121,7 +125,7 @@ class PeriodicOrbits:
         """An event as a function of y: the event itself."""
         return event
 
-    @property
+    @cached_property
     def resuming(self) -> np.ndarray:
         """Which contacts resume, shape (k,)."""
         return np.broadcast_to(self.resumes, (self.impacts,))
@@ -175,15 +179,9 @@ class PeriodicOrbits:
         return lru_cache(maxsize=_KEPT)(legs)
 
     @cached_property
-    def _compared(self) -> Any:
-        # The points around y and the legs there.
-        def compared(
-            shape: tuple[int, ...], entries: bytes, everywhere: bool
-        ) -> tuple[np.ndarray, Legs]:
-            points = self._points_around(np.frombuffer(entries).reshape(shape), everywhere)
-            return points, self.legs(points)
-
-        return lru_cache(maxsize=_KEPT)(compared)
+    def _kept(self) -> dict[tuple[tuple[int, ...], bytes], "Compared"]:
+        # The last points at which legs were compared, in order.
+        return {}
 
     def legs(self, y: np.ndarray) -> Legs:
         """The legs of the orbits at points y of shape (..., N + parameters)."""
@@ -192,11 +190,16 @@ class PeriodicOrbits:
     def dynamics(self, y: np.ndarray) -> tuple[Dynamics | None, np.ndarray]:
         """The dynamics of the legs in a row, and which legs are inside the ranges."""
         leading = y.shape[:-1]
-        row = self.balls.row(leading, self.impacts)
+        row = self.balls if self._one_ball else self.balls.row(leading, self.impacts)
         if not self.along:
             return row.dynamics(), np.ones(math.prod(leading) * self.impacts, dtype=bool)
         varied = {name: np.repeat(x.ravel(), self.impacts) for name, x in self.values(y).items()}
         return dynamics_inside(row, varied, self.along)
+
+    @cached_property
+    def _one_ball(self) -> bool:
+        """Whether one ball serves all orbits, up to the parameters that vary."""
+        return not self.balls.model.shape and not np.ndim(self.balls.amplitude)
 
     def amplitude(self, y: np.ndarray) -> np.ndarray:
         """Λ of the orbits, of the leading shape of y."""
@@ -223,65 +226,60 @@ class PeriodicOrbits:
             turns=turns[which] if turns.ndim > 1 else turns,
         )
 
+    @cached_property
+    def _next(self) -> np.ndarray:
+        """The index of the impact after each impact of an orbit."""
+        return np.roll(np.arange(self.impacts), -1)
+
+    def _lag(self, dynamics: Dynamics, resumes: np.ndarray, shape: tuple[int, ...]) -> Any:
+        """κ of the legs in a row, where ``resumes`` tells it for the legs of an orbit."""
+        if not resumes.any():
+            return _NONE
+        return lag_of(dynamics, np.broadcast_to(resumes, shape).ravel())
+
     def impact(self, dynamics: Dynamics, y: np.ndarray) -> Impact:
         """The impacts of the orbits in a row."""
         phase, velocity = self.states(y)
         start = dynamics.at_section(reduce_angle(phase.ravel()), velocity.ravel().copy())
-        resumes = np.broadcast_to(self.resuming, phase.shape).ravel()
-        return without_force(start, lag_of(dynamics, resumes))
+        return without_force(start, self._lag(dynamics, self.resuming, phase.shape))
 
     def intervals(self, y: np.ndarray) -> np.ndarray:
         """θ_{i+1} - θ_i, shape (..., k)."""
         phase, _ = self.states(y)
-        return (np.roll(phase, -1, axis=-1) - phase) + 2 * np.pi * np.asarray(self.turns)
+        return (phase[..., self._next] - phase) + 2 * np.pi * np.asarray(self.turns)
 
     def _legs(self, y: np.ndarray) -> Legs:
         dynamics, inside = self.dynamics(y)
         shape = (*y.shape[:-1], self.impacts)
         if dynamics is None:
-            return no_legs(shape)
-        phase, velocity = self.states(y)
+            return Legs.unknown(shape)
         interval = self.intervals(y).ravel()
         impact = self.impact(dynamics, y)
         departure = dynamics.depart_after(impact, self.durations(y).ravel())
         bouncing = inside & (departure.status == Status.BOUNCING)
         duration = np.where(bouncing, departure.duration, np.nan)
-        resumes = np.broadcast_to(np.roll(self.resuming, -1), shape).ravel()
-        lag = lag_of(dynamics, resumes)
+        lag = self._lag(dynamics, self.resuming[self._next], shape)
         landing = landed(dynamics, impact, departure, duration, interval, lag)
+        phase, velocity = (x[..., self._next].ravel() for x in self.states(y))
         _, end_velocity = dynamics.section(landing.near)
         _, landing_velocity = dynamics.section(landing.after)
-        next_phase = np.roll(phase, -1, axis=-1).ravel()
-        acceleration = table(reduce_angle(next_phase), dynamics.amplitude)[1] - 1
-        too_fast = landing_velocity - np.roll(velocity, -1, axis=-1).ravel()
+        acceleration = table(reduce_angle(phase), dynamics.amplitude)[1] - 1
         speed = end_velocity + lag * acceleration
         height = speed * landing.late
-        residual = np.stack([height, too_fast - acceleration * landing.late], axis=-1)
-        tangent = dynamics.jacobian(impact, departure, landing.after, landing.passed)
-        near = dynamics.jacobian(impact, departure, landing.near, landing.passed_near)
+        faster = (landing_velocity - velocity) - acceleration * landing.late
         return Legs(
-            residual=residual.reshape(*shape, 2),
+            residual=np.stack([height, faster], axis=-1).reshape(*shape, 2),
             duration=duration.reshape(shape),
-            tangent=Jacobian(*(entry.reshape(shape) for entry in tangent)),
-            near=Jacobian(*(entry.reshape(shape) for entry in near)),
-            contraction=np.reshape(dynamics.contraction(impact, departure), shape),
-            longer=self._longer(dynamics, impact, departure).reshape(*shape, 2),
             velocity=speed.reshape(shape),
             acceleration=acceleration.reshape(shape),
             dynamics=dynamics,
             impact=impact,
             departure=departure,
-            passed=landing.passed,
+            landing=landing,
         )
 
-    def _longer(self, dynamics: Dynamics, impact: Impact, departure: Departure) -> np.ndarray:
-        """Derivatives of the durations by θ and v, shape (legs, 2); 0 if they are no unknowns."""
-        if not self.selects:
-            return np.zeros((impact.phase.size, 2))
-        return np.stack(dynamics.duration_slopes(impact, departure), axis=-1)
-
     def residual(self, y: np.ndarray) -> np.ndarray:
-        """Both sides of Eq. 2, and the errors of the durations, shape (..., N)."""
+        """The two equations of each leg, and the errors of the durations, shape (..., N)."""
         legs = self.beside(y)
         here = legs.residual[0].reshape(*y.shape[:-1], -1)
         if not self.selects:
@@ -290,7 +288,7 @@ class PeriodicOrbits:
 
     def beside(self, y: np.ndarray, everywhere: bool = False) -> Legs:
         """The legs at the points :meth:`around` y, along a first axis; the first of them is y."""
-        return self._compared(y.shape, y.tobytes(), everywhere)[1]
+        return self.compared(y, everywhere).legs
 
     def around(self, y: np.ndarray, everywhere: bool = False) -> np.ndarray:
         """The points at which legs are compared: y and the points beside it, along a first axis.
@@ -299,93 +297,108 @@ class PeriodicOrbits:
         ``everywhere`` is set, y with all θ or all v moved: a leg depends on the state at its start
         alone.
         """
-        return self._compared(y.shape, y.tobytes(), everywhere)[0]
+        return self.compared(y, everywhere).points
 
-    def _points_around(self, y: np.ndarray, everywhere: bool) -> np.ndarray:
-        """The points of :meth:`around`."""
-        columns: list[Any] = [self.equations + j for j in range(len(self.along))]
+    def compared(self, y: np.ndarray, everywhere: bool = False) -> "Compared":
+        """The points :meth:`around` y and the legs there; they may be those ``everywhere``."""
+        place = y.shape, y.tobytes()
+        known = self._kept.get(place)
+        if known is None or (everywhere and not known.everywhere):
+            points, lengths = self._points_around(y, everywhere)
+            known = Compared(points, lengths, self.legs(points), everywhere)
+            self._kept[place] = known
+            if len(self._kept) > _KEPT:
+                del self._kept[next(iter(self._kept))]
+        return known
+
+    def _points_around(
+        self, y: np.ndarray, everywhere: bool
+    ) -> tuple[np.ndarray, list[np.ndarray]]:
+        """The points of :meth:`around`, and the distances of each pair of them.
+
+        Points beside y do not leave the ranges of the parameters. Where y itself is outside of
+        them, they are equal to y.
+        """
+        columns: list[Any] = [slice(j, j + 1) for j in range(self.equations, y.shape[-1])]
+        limits = self._limits
         if everywhere:
             columns += [slice(0, 2 * self.impacts, 2), slice(1, 2 * self.impacts, 2)]
+            limits = [*limits, _UNLIMITED, _UNLIMITED]
         points = np.repeat(y[np.newaxis], 1 + 2 * len(columns), axis=0)
+        if not columns:
+            return points, []
         step = self._step(y)
-        for j, column in enumerate(columns):
-            points[1 + 2 * j, ..., column] += step[..., column]
-            points[2 + 2 * j, ..., column] -= step[..., column]
-        return self._within(points)
+        lengths = []
+        for j, (column, (low, high)) in enumerate(zip(columns, limits, strict=True)):
+            here = y[..., column]
+            inside = (here >= low) & (here <= high)
+            moved = np.where(inside, step[..., column], 0.0)
+            right = np.where(inside, np.minimum(here + moved, high), here)
+            left = np.where(inside, np.maximum(here - moved, low), here)
+            points[1 + 2 * j, ..., column] = right
+            points[2 + 2 * j, ..., column] = left
+            lengths.append(right - left)
+        return points, lengths
+
+    @cached_property
+    def _limits(self) -> list[np.ndarray]:
+        """The least and the greatest coordinates of the parameters that vary."""
+        return [np.arcsinh(self.balls.bounds(name)) for name in self.along]
 
     def _step(self, y: np.ndarray) -> np.ndarray:
         """The steps of the central differences, of the shape of y."""
-        unit = np.broadcast_to(np.asarray(self.unit), y.shape)
-        step = _DIFFERENCE * unit
+        unit = np.asarray(self.unit)
+        step = np.full(y.shape, _DIFFERENCE * unit)
         _, speed = self.states(np.abs(y / unit))
-        share = np.clip(speed.min(axis=-1) / _SLOW, _LEAST, 1.0)
+        share = np.minimum(np.maximum(speed.min(axis=-1) / _SLOW, _LEAST), 1.0)
         step[..., self.equations :] *= np.where(np.isnan(share), 1.0, share)[..., np.newaxis]
         return step
 
-    def _within(self, y: np.ndarray) -> np.ndarray:
-        """Points beside y, moved back to the ends of the ranges of the parameters."""
-        for j, name in enumerate(self.along):
-            low, high = np.arcsinh(self.balls.bounds(name))
-            here = y[0, ..., self.equations + j]
-            beside = np.clip(y[1:, ..., self.equations + j], low, high)
-            # A point that is itself outside the range is left where it is.
-            outside = (here < low) | (here > high)
-            y[1:, ..., self.equations + j] = np.where(outside, here, beside)
-        return y
-
     def jacobian(self, y: np.ndarray) -> np.ndarray:
         """Jacobian of the residual, shape (..., N, N + parameters)."""
-        legs = self.beside(y)
+        compared = self.compared(y)
+        legs = compared.legs
         k = self.impacts
         matrix = np.zeros((*y.shape[:-1], self.equations, y.shape[-1]))
-        first = np.arange(k)
-        after = (first + 1) % k
+        first = 2 * np.arange(k)
+        after = first[self._next]
         speed = legs.velocity[0]
         pull = legs.acceleration[0]
         a, b, c, d = (entry[0] for entry in legs.near)
-        height = 2 * first
-        rate = height + 1
-        matrix[..., height, 2 * first] += speed * a
-        matrix[..., height, 2 * first + 1] += speed * b
-        matrix[..., rate, 2 * first] += c - pull * a
-        matrix[..., rate, 2 * first + 1] += d - pull * b
-        matrix[..., height, 2 * after] -= speed
-        matrix[..., rate, 2 * after] += pull
-        matrix[..., rate, 2 * after + 1] -= 1
-        for j, length in enumerate(self._lengths(y)):
-            change = legs.residual[1 + 2 * j] - legs.residual[2 + 2 * j]
-            bend = legs.residual[1 + 2 * j] + legs.residual[2 + 2 * j] - 2 * legs.residual[0]
-            jumps = (np.abs(bend) > _JUMP) & (np.abs(bend) > np.abs(change) / 2)
-            slope = np.where(jumps, np.nan, change).reshape(*y.shape[:-1], -1) / length
-            matrix[..., : 2 * k, self.equations + j] = slope
+        height = first
+        rate = first + 1
+        matrix[..., height, first] = speed * a
+        matrix[..., height, first + 1] = speed * b
+        matrix[..., rate, first] = c - pull * a
+        matrix[..., rate, first + 1] = d - pull * b
+        matrix[..., height, after] -= speed
+        matrix[..., rate, after] += pull
+        matrix[..., rate, after + 1] -= 1
+        for j in range(len(self.along)):
+            slope = compared.slope(j, legs.residual)
+            right, left = compared.sides(j, legs.residual)
+            bend = np.abs(right + left - 2 * legs.residual[0])
+            jumps = (bend > _JUMP) & (bend > np.abs(right - left) / 2)
+            slope = np.where(jumps, np.nan, slope)
+            matrix[..., : 2 * k, self.equations + j] = slope.reshape(*y.shape[:-1], -1)
         if self.selects:
-            self._fill_durations(matrix, legs, y)
+            self._fill_durations(matrix, compared)
         return matrix
 
     def equations_at(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The residual and its Jacobian, which is square if no parameter varies."""
         return self.residual(y), self.jacobian(y)
 
-    def _fill_durations(self, matrix: np.ndarray, legs: Legs, y: np.ndarray) -> None:
+    def _fill_durations(self, matrix: np.ndarray, compared: "Compared") -> None:
         """The rows of the Jacobian that belong to the durations."""
+        legs = compared.legs
         contact = np.arange(self.impacts)
         row = 2 * self.impacts + contact
         matrix[..., row, row] = 1
-        for j, length in enumerate(self._lengths(y)):
-            longer = legs.duration[1 + 2 * j] - legs.duration[2 + 2 * j]
-            matrix[..., row, self.equations + j] = -longer / length
-        for j in range(2):
-            matrix[..., row, 2 * contact + j] = -legs.longer[0, ..., j]
-
-    def _lengths(self, y: np.ndarray) -> list[np.ndarray]:
-        """The lengths of the central differences in each parameter, shape (..., 1): shorter where
-        the range of the parameter ends.
-        """
-        points = self.around(y)
-        return [
-            points[1 + 2 * j][..., [column]] - points[2 + 2 * j][..., [column]]
-            for j, column in enumerate(range(self.equations, y.shape[-1]))
-        ]
+        for j in range(len(self.along)):
+            matrix[..., row, self.equations + j] = -compared.slope(j, legs.duration)
+        for j, slopes in enumerate(legs.duration_slopes):
+            matrix[..., row, 2 * contact + j] = -slopes[0]
 
     def matrices(self, y: np.ndarray) -> np.ndarray:
         """DP of the legs, shape (..., k, 2, 2)."""
@@ -410,8 +423,8 @@ class PeriodicOrbits:
         The derivatives of the matrices of the legs are central differences. The results have the
         shapes (...,) and (..., N + parameters).
         """
-        around = self.beside(y, everywhere=True)
-        matrices = matrices_of(around.tangent)
+        compared = self.compared(y, everywhere=True)
+        matrices = matrices_of(compared.legs.tangent)
         multiplier = 1.0 if kind is Bifurcation.SADDLE_NODE else -1.0
         value, weights = shifted_determinant(matrices[0], multiplier)
         # tr(W_i dM_i) for each leg.
@@ -427,14 +440,40 @@ class PeriodicOrbits:
         ``change`` are the differences of the function between the two points :meth:`around` y on
         both sides, everywhere, shape (pairs of points, ..., k).
         """
+        lengths = self.compared(y, everywhere=True).lengths
+        parameters = len(self.along)
         gradient = np.zeros(y.shape)
-        for j, length in enumerate(self._lengths(y)):
-            gradient[..., self.equations + j] = change[j].sum(axis=-1) / length[..., 0]
-        step = self._step(y)
+        for j in range(parameters):
+            gradient[..., self.equations + j] = change[j].sum(axis=-1) / lengths[j][..., 0]
         for j in range(2):
             column = slice(j, 2 * self.impacts, 2)
-            gradient[..., column] = change[len(self.along) + j] / (2 * step[..., column])
+            gradient[..., column] = change[parameters + j] / lengths[parameters + j]
         return gradient
+
+
+class Compared(NamedTuple):
+    """Points beside some points y, and the legs there.
+
+    The first axis of ``points`` and of the legs has y, and then a pair of points for each direction
+    in which y is moved: along the parameters, and, if ``everywhere`` is set, along all θ and all v.
+    ``lengths`` are the distances of the two points of each pair, shape (..., 1), or (..., k) for θ
+    and v.
+    """
+
+    points: np.ndarray
+    lengths: list[np.ndarray]
+    legs: Legs
+    everywhere: bool
+
+    def sides(self, j: int, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The values at the two points of a pair, of values of the legs."""
+        return values[1 + 2 * j], values[2 + 2 * j]
+
+    def slope(self, j: int, values: np.ndarray) -> np.ndarray:
+        """The derivative of values of the legs, by a parameter."""
+        right, left = self.sides(j, values)
+        length = self.lengths[j]
+        return (right - left) / length.reshape(*length.shape, *(1,) * (right.ndim - length.ndim))
 
 
 def twice(orbits: PeriodicOrbits, y: np.ndarray) -> tuple[PeriodicOrbits, np.ndarray]:

@@ -78,7 +78,7 @@ def flight_margin(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
     flight = legs.departure.flight
     duration = np.where(np.isfinite(legs.duration.ravel()), legs.departure.duration, np.nan)
     with np.errstate(all="ignore"):
-        lowest = _lowest(flight, legs.passed - duration)
+        lowest = _lowest(flight, legs.landing.passed - duration)
     return lowest.reshape(legs.duration.shape).min(axis=-1)
 
 

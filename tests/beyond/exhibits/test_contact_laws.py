@@ -65,9 +65,8 @@ def test_the_linear_law_is_that_of_the_paper():
 def test_a_contact_has_its_restitution_and_its_centroid_at_the_speed_of_its_calibration(
     calibration,
 ):
-    model = CalibratedContacts("hunt-crossley", LawOrbit(**ONE), calibration).models(
-        np.array([80.0])
-    )
+    contacts = CalibratedContacts("hunt-crossley", LawOrbit(**ONE), calibration)
+    model = contacts.orbits(np.array([80.0])).model
     on_contact = -n_t.orbit(model, 1, 1.0).relative_impact_velocity
     speeds = {
         Calibration.CONTACT: on_contact,
@@ -182,7 +181,7 @@ def test_the_threshold_of_a_further_orbit_is_that_of_its_own_search(errors):
 @pytest.mark.long
 def test_contacts_of_one_centroid_take_different_times(errors):
     for name in NAMES:
-        models = CalibratedContacts(name, LawOrbit(**ONE)).models(np.array([100.0]))
+        models = CalibratedContacts(name, LawOrbit(**ONE)).orbits(np.array([100.0])).model
         speed = -n_t.orbit(models, 1, 1.0).relative_impact_velocity
         impact = models.signature(speed)
         assert impact.delay == pytest.approx(0.65 / 1.65 * np.pi / 100, rel=1e-8)

@@ -44,7 +44,8 @@ from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.exhibits.orbit_parameters import OrbitParameters, OrbitsAlongRatio
 from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.law_at_orbit import law_at_orbit
+from bouncing_ball.periodic.law_at_orbit import orbit_of_law
+from bouncing_ball.periodic.orbit import Orbit
 from bouncing_ball.periodic.restitution_branch import rigid_speed
 
 VARIABLES = {
@@ -152,24 +153,25 @@ class CalibratedContacts:
     orbit: OrbitParameters
     calibration: Calibration = Calibration.CONTACT
 
-    def models(self, ratios: np.ndarray) -> Any:
-        """The exact models of the contacts; ``ratios`` are π/(D + κ), shape (m,).
+    def orbits(self, ratios: np.ndarray) -> Orbit:
+        """The orbits on the contacts; ``ratios`` are π/(D + κ), shape (m,).
 
         Raises
         ------
         NoOrbitError, ModelError
             If a contact has no such orbit, for example because D exceeds the cycle.
         """
-        orbit = self.orbit
-        r = orbit.restitution
+        one = self.orbit
+        r = one.restitution
         duration = np.pi / ratios * share_in_contact(self.law, r)
         # A linear contact has the same r and D at every speed.
         if self.law in LINEAR or self.calibration is Calibration.RESTITUTION:
-            return exact_model(self.law, r, duration, rigid_speed(orbit.n, r))
-        return LawModel(law_at_orbit(LAWS[self.law], r, duration, orbit.n, orbit.amplitude))
+            model = exact_model(self.law, r, duration, rigid_speed(one.n, r))
+            return n_t.orbit(model, one.n, one.amplitude)
+        return orbit_of_law(LAWS[self.law], r, duration, one.n, one.amplitude)
 
-    def along(self, ratios: np.ndarray, value: Callable[[Any], np.ndarray]) -> np.ndarray:
-        """A quantity of the exact models along π/(D + κ), shape (..., m).
+    def along(self, ratios: np.ndarray, value: Callable[[Orbit], np.ndarray]) -> np.ndarray:
+        """A quantity of the orbits along π/(D + κ), shape (..., m).
 
         It is NaN for contacts below the smallest π/(D + κ) above which all contacts have the orbit.
 
@@ -180,7 +182,7 @@ class CalibratedContacts:
         """
         for first in range(ratios.size):
             with suppress(ModelError, NoOrbitError):
-                found = value(self.models(ratios[first:]))
+                found = value(self.orbits(ratios[first:]))
                 return np.concatenate([np.full((*found.shape[:-1], first), np.nan), found], axis=-1)
         one = self.orbit
         raise NoOrbitError(
@@ -191,7 +193,7 @@ class CalibratedContacts:
         """Moduli of the relative errors of the restitution model's greatest height, shape (m,)."""
         one = self.orbit
         simple = n_t.orbit(RestitutionModel(one.restitution), one.n, one.amplitude).max_height
-        exact = self.along(ratios, lambda x: n_t.orbit(x, one.n, one.amplitude).max_height)
+        exact = self.along(ratios, lambda orbits: orbits.max_height)
         return np.abs(relative(exact, simple))
 
     def threshold(self, ratios: np.ndarray, error: np.ndarray, tolerance: float) -> float:
@@ -216,7 +218,7 @@ class CalibratedContacts:
         """Whether the orbit at one π/(D + κ) is stable and admissible; False for NaN."""
         if np.isnan(ratio):
             return False
-        found = n_t.orbit(self.models(np.array([ratio])), self.orbit.n, self.orbit.amplitude)
+        found = self.orbits(np.array([ratio]))
         return bool(np.all(found.is_stable() & found.is_admissible()))
 
 
@@ -231,7 +233,8 @@ def _errors(name: str, parameters: LawErrors) -> np.ndarray:
     lam = parameters.amplitude
     rigid = RestitutionModel(parameters.restitution)
 
-    def of_both_models(exact: Any) -> np.ndarray:
+    def of_both_models(orbits: Orbit) -> np.ndarray:
+        exact = orbits.model
         wanted = values(exact, n, lam, QUANTITIES)
         constant = values(rigid, n, lam, QUANTITIES)[:, np.newaxis]
         corrected = corrected_values(exact, n, lam, QUANTITIES)

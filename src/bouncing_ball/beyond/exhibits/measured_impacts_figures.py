@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.drawing.canvas import WIDE, canvas, legend_below
 from bouncing_ball.drawing.style import COLOURS, LAWS, Look
-from bouncing_ball.drawing.tables import Column, Columns, Table, at, table, text, value
+from bouncing_ball.drawing.tables import Column, Columns, TextTable, at, table, text, value
 
 # Laws with the same r(v) have one line: all with a constant r, and both of Hunt and Crossley.
 _DRAWN: dict[str, tuple[str, Look]] = {
@@ -81,7 +81,7 @@ def _shown(tick: float, speed: xr.DataArray) -> bool:
     return float(speed[0]) <= tick <= float(speed[-1])
 
 
-def ext_measured(data: xr.Dataset) -> Table:
+def ext_measured(data: xr.Dataset) -> TextTable:
     """The verdict on each law and experiment, with the errors of its predictions."""
     columns: Columns = {
         "experiment": text("experiment_title"),
@@ -97,7 +97,7 @@ def ext_measured(data: xr.Dataset) -> Table:
     return table(each(data, "experiment", "fitted_law"), columns)
 
 
-def ext_shaker(data: xr.Dataset) -> Table:
+def ext_shaker(data: xr.Dataset) -> TextTable:
     """The balls of the experiments on shakers, and the errors of the restitution model there."""
     columns: Columns = {
         "experiment": text("experiment_title"),

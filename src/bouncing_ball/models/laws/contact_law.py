@@ -23,6 +23,10 @@ from bouncing_ball.models.laws.motion import ContactDynamics
 from bouncing_ball.models.laws.panel import Start
 from bouncing_ball.models.laws.signature import computed
 
+# The closed form of a motion is used for √γ above this value: the relative error of its steady part
+# is ε/√γ.
+_RESONANCE = 1e-4
+
 
 @dataclass(frozen=True, repr=False)
 class ContactLaw(ForceLaw):
@@ -124,6 +128,45 @@ class OscillatorLaw(ContactLaw):
         check_positive(self.frequency_ratio, "frequency ratio ϖ")
         check_damping(self.damping_ratio, "damping ratio ζ")
         super().__post_init__()
+
+    @cached_property
+    def stiffness(self) -> np.ndarray:
+        """ϖ², the stiffness over that of the table's oscillation."""
+        return np.square(np.asarray(self.frequency_ratio, dtype=float))
+
+    @cached_property
+    def decay_rate(self) -> np.ndarray:
+        """ζϖ, the rate at which free oscillations decay."""
+        return np.asarray(self.damping_ratio * self.frequency_ratio, dtype=float)
+
+    @cached_property
+    def loss(self) -> np.ndarray:
+        """2ζϖ, the rate at which areas of the phase plane contract in contact."""
+        return 2 * self.decay_rate
+
+    @cached_property
+    def detuning(self) -> np.ndarray:
+        """ϖ² - 1, without cancellation next to the resonance."""
+        omega = np.asarray(self.frequency_ratio, dtype=float)
+        return (omega - 1) * (omega + 1)
+
+    @cached_property
+    def off_resonance(self) -> np.ndarray:
+        """γ = (ϖ² - 1)² + (2ζϖ)², which is 0 at the undamped resonance ζ = 0, ϖ = 1."""
+        return self.detuning * self.detuning + self.loss * self.loss
+
+    @cached_property
+    def has_closed_form(self) -> bool:
+        """Whether all contacts are underdamped and away from the undamped resonance.
+
+        Examples
+        --------
+        >>> from bouncing_ball.models.spring_damper import SpringDamper
+        >>> SpringDamper(2.0, 0.1).has_closed_form, SpringDamper(1.0, 0.0).has_closed_form
+        (True, False)
+        """
+        underdamped = np.asarray(self.damping_ratio) < 1
+        return bool(np.all(underdamped & (self.off_resonance >= _RESONANCE**2)))
 
     @cached_property
     def damped_frequency(self) -> np.ndarray:

@@ -17,6 +17,7 @@ import typing
 from pathlib import Path
 from types import UnionType
 
+import numpy as np
 import pytest
 import xarray as xr
 from declared_artifacts import ARTIFACTS
@@ -40,6 +41,10 @@ ROOT = Path(__file__).parents[1]
 NUMBERS = st.floats() | st.integers() | st.sampled_from([10**400, -1, 0, 1.5, 5e-324, 1e300])
 # Words that begin no number, no name and no choice.
 WORDS = st.text("qxyz#_ ", min_size=1, max_size=30).filter(str.strip)
+
+
+def is_float(value: object) -> bool:
+    return isinstance(value, float)
 
 
 def outside(allowed: Range) -> st.SearchStrategy:
@@ -172,7 +177,9 @@ def test_a_wrong_argument_is_refused(refusal, data, case):
     if isinstance(allowed, Range):
         number = outside(allowed)
         odd = st.sampled_from([True, "1", b"1", 1j, {}, object()])
-        wrong = data.draw(number | WORDS | odd | st.lists(number, min_size=1, max_size=3))
+        several = st.lists(number, min_size=1, max_size=3)
+        array = st.lists(outside(allowed).filter(is_float), min_size=1, max_size=3).map(np.array)
+        wrong = data.draw(number | WORDS | odd | several | array)
         said = "must be a single number", f"is not {allowed}"
     else:
         wrong = data.draw(WORDS | NUMBERS | st.just(True))

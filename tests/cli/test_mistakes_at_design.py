@@ -70,8 +70,8 @@ BALL --time-step "1 ms"
     solref is missing: give it, such as '-10000 -20'
 --mass "20 g" --from mujoco --solref "0.02,1"
     solref = '0.02,1' is not 2 numbers: write it without commas, '0.02 1'
---mass "20 g" --from mujoco --solref "0 0"
-    solref = '0 0' is neither two negative numbers, -k/m and -c/m, nor two positive ones, a time
+--mass "20 g" --from mujoco --solref "0.02 0"
+    solref = '0.02 0' is neither two negative numbers, -k/m and -c/m, nor two positive ones, a
 --mass "20 g" --from mujoco --solref "0.02 1" --solimp "2 3"
     solimp has the impedance 2, which is not in [0, 1]
 --mass "20 g" --solref "0.02 1"

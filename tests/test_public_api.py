@@ -77,11 +77,9 @@ def test_help_shows_the_way_in():
         assert call in text
 
 
-@pytest.mark.parametrize("impacts", [0, -1, 2.5, True, "3", None])
-def test_a_number_of_impacts_is_a_whole_number(impacts, refusal):
-    why = "is missing" if impacts is None else f"= {impacts!r} is not a whole number from 1 to"
-    with refusal(bouncing_ball.ModelError, f"impacts {why}"):
-        simulate(RIGID, amplitude=1.0, impacts=impacts)
+def test_an_argument_that_is_none_is_missing(refusal):
+    with refusal(bouncing_ball.ModelError, "impacts is missing"):
+        simulate(RIGID, amplitude=1.0, impacts=None)
 
 
 def test_a_single_number_in_is_a_python_number_out():
@@ -335,14 +333,9 @@ def test_a_misspelt_parameter_is_named_with_its_function():
     ("call", "says"),
     [
         (lambda: orbits(CONTACT, amplitude=[0.5, 1.0]), "amplitude must be a single number"),
-        (lambda: orbit(CONTACT, amplitude=1.0, side="up"), "'up' is not one of stable, unstable"),
         (lambda: n_t.orbit(RIGID, 1, 1.0, "up"), "one of stable, unstable"),
-        (lambda: orbit(RIGID, n="1", amplitude=1.0), "n = '1' is not a whole number from 1 to 10"),
-        (lambda: orbit(RIGID, n=True, amplitude=1.0), "n = True is not a whole number"),
-        (lambda: orbit(RIGID, n=[1, 2.5], amplitude=1.0), "n = 2.5 is not a whole number"),
         (lambda: orbit(RIGID, n=np.array([True]), amplitude=1.0), "n = True is not a whole"),
         (lambda: orbit(0.85, amplitude=1.0), "the ball = 0.85 is not made by rigid, spring_damp"),
-        (lambda: rigid(restitution="x"), "restitution = 'x' is not a number in (0, 1]"),
         (lambda: rigid(restitution=[[0.5]]), "restitution has several axes without names"),
         (lambda: rigid(restitution=np.array([0.5, np.nan])), "restitution = nan is not a number"),
         (
@@ -357,25 +350,17 @@ def test_a_misspelt_parameter_is_named_with_its_function():
             lambda: spring_damper(frequency_ratio=1.0, restitution=0.5, damping_ratio=0.1),
             "argument damping_ratio: not allowed with argument restitution",
         ),
-        (lambda: spring_damper(frequency_ratio=1.0, damping_ratio=2), "damping_ratio = 2 is not"),
         (
             lambda: spring_damper(frequency_ratio=None, damping_ratio=0),
             "frequency_ratio is missing",
         ),
         (lambda: corrected(RIGID), "restitution impacts have no contact"),
-        (lambda: orbit(RIGID, amplitude="a"), "amplitude = 'a' is not a number in [1e-12, 1e+08]"),
         # A text of the user is shown as it is, and is no placeholder of a message.
         (lambda: orbit(RIGID, amplitude="{law} {}"), "amplitude = '{law} {}' is not a num"),
         (lambda: contact_law("tsuji", **{"{x}": 1.0}), "unknown parameter '{x}' of tsuji"),
-        (lambda: contact_law("tsuji", stifness=1.0), "its parameters are stiffness, damping"),
         (lambda: contact_law("tsuji", stiffness=1.0), "tsuji also needs damping=NUMBER"),
         (lambda: contact_law("tsuji"), "needs stiffness=NUMBER, damping=NUMBER, or restitution"),
-        (lambda: contact_law("rubber"), "unknown contact law 'rubber': one of hunt-crossley"),
         (lambda: contact_law(["tsuji"]), "unknown contact law"),
-        (
-            lambda: contact_law("tsuji", restitution=0.5, duration="long"),
-            "duration = 'long' is not a number in [1e-12, 1e+08]",
-        ),
         (
             lambda: bouncing_ball.permanent_contact(
                 contact_law("tsuji", restitution=0.5, duration=0.1)
@@ -423,15 +408,8 @@ def test_what_needs_an_underdamped_contact_says_so(use, refusal):
     "ask",
     [
         lambda: bouncing_ball.history(RIGID, amplitude=1e-300),
-        lambda: bouncing_ball.simulate(RIGID, amplitude=1e-300),
         lambda: bouncing_ball.simulate(RIGID, amplitude=1.0, velocity=-1e300),
-        lambda: bouncing_ball.simulate(RIGID, amplitude=1.0, phase=1e300),
         lambda: bouncing_ball.drop(RIGID, height=1e12),
-        lambda: orbit(
-            bouncing_ball.contact_law("linear", restitution=0.85, duration=0.3),
-            n=333,
-            amplitude=1e-300,
-        ),
     ],
 )
 def test_numbers_whose_squares_have_no_digits_are_refused(ask):

@@ -12,7 +12,7 @@ from bouncing_ball.pipeline.configuration import ConfigurationError, parse_yaml,
 ROOT = Path(bouncing_ball.__file__).resolve().parents[2]
 
 
-MISTAKES = pytest.mark.parametrize(
+@pytest.mark.parametrize(
     ("content", "said"),
     [
         (None, "No such file or directory"),
@@ -26,14 +26,9 @@ MISTAKES = pytest.mark.parametrize(
             'start any token in "<unicode string>", line 3, column 1: ',
         ),
         (b"a: 1\nb: " + 3000 * b"[" + 3000 * b"]", "not YAML: maximum recursion depth exceeded"),
-        (b"a: 1\nb: \x07\n", "not YAML: "),
-        (b"a: 1\nb: [1\n", "not YAML: while parsing a flow sequence"),
         (b"a: 1\nb: !!python/name:os.system\n", "not YAML: could not determine a constructor"),
     ],
 )
-
-
-@MISTAKES
 def test_a_file_that_cannot_be_read_gives_one_line(tmp_path, one_line, content, said):
     path = tmp_path / "a.yaml"
     if content is not None:
@@ -47,12 +42,9 @@ def test_a_file_that_cannot_be_read_gives_one_line(tmp_path, one_line, content, 
     ("text", "said"),
     [
         ("release: a\nb: 1\nrelease: c\n", "duplicate key 'release' in line 3"),
-        ("a: {n: 1, n: 1}", "duplicate key 'n' in line 1"),
         # Two keys of the mapping in Python, which are the same text.
         ("- {1: a, '1': b}", "duplicate key '1' in line 1"),
         ("? [1, 2]\n: 3", "found unhashable key"),
-        ("a: &a [1]\nb: *c", "found undefined alias"),
-        ("a: 1\n---\nb: 1", "not YAML: expected a single document"),
     ],
 )
 def test_a_duplicate_key_and_what_yaml_forbids_are_refused(refusal, text, said):

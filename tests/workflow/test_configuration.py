@@ -24,14 +24,9 @@ def test_a_configuration_that_is_no_text_of_yaml_gives_one_line(complete):
     path = complete.path / "config/config.yaml"
     kept = path.read_bytes()
     try:
-        for content, said in (
-            ("# Größe\n".encode("latin-1") + kept, "'utf-8' codec can't decode byte 0xf6"),
-            (kept.decode().encode("utf-16"), "'utf-8' codec can't decode byte 0xff"),
-            (b"a:\n\tb: 1\n", "while scanning for the next token found character '\\t'"),
-            (b"a: " + 3000 * b"[" + 3000 * b"]", "maximum recursion depth exceeded"),
-        ):
-            path.write_bytes(content)
-            assert complete.refusal().startswith(f"config/config.yaml: not YAML: {said}")
+        path.write_bytes("# Größe\n".encode("latin-1") + kept)
+        said = "config/config.yaml: not YAML: 'utf-8' codec can't decode byte 0xf6"
+        assert complete.refusal().startswith(said)
     finally:
         path.write_bytes(kept)
 

@@ -8,7 +8,7 @@ from bouncing_ball.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
     FOLLOWED,
     START,
-    Impacts,
+    FollowedImpacts,
     checked_number,
 )
 from bouncing_ball.errors import NoOrbitError
@@ -28,7 +28,7 @@ def orbit_of_motion(
     amplitude: float,
     phase: float = 0.0,
     velocity: float = -math.pi,
-    impacts: Impacts = 4000,
+    impacts: FollowedImpacts = 4000,
 ) -> Orbit:
     """The periodic orbit on which a ball ends, as a start for :func:`follow`.
 

@@ -1,0 +1,239 @@
+"""Mistakes drawn at random from what the package declares.
+
+These are the ranges and choices of options and arguments, the units of quantities, and the types of
+the configuration.
+
+Each is refused with one line, which names what is wrong and says what is allowed. How each way of
+refusing words it is tested where this way is defined.
+"""
+
+import argparse
+import copy
+import inspect
+import math
+import shlex
+import string
+import typing
+from pathlib import Path
+from types import UnionType
+
+import numpy as np
+import pytest
+import xarray as xr
+from declared_artifacts import ARTIFACTS
+from hypothesis import given
+from hypothesis import strategies as st
+from whole_configuration import configuration_type
+
+import bouncing_ball as bb
+from bouncing_ball.cli.commands import COMMANDS
+from bouncing_ball.cli.main import parser
+from bouncing_ball.contacts.contact import Contact
+from bouncing_ball.contacts.quantities import quantities
+from bouncing_ball.contacts.question import EngineSetup, Question
+from bouncing_ball.contacts.table import Table
+from bouncing_ball.drawing.result import Result
+from bouncing_ball.errors import ModelError, Range
+from bouncing_ball.models.makers import LOSSES
+from bouncing_ball.pipeline.configuration import ConfigurationError, check, place, read_yaml
+
+ROOT = Path(__file__).parents[1]
+NUMBERS = st.floats() | st.integers() | st.sampled_from([10**400, -1, 0, 1.5, 5e-324, 1e300])
+# Words that begin no number, no name and no choice.
+WORDS = st.text("qxyz#_ ", min_size=1, max_size=30).filter(str.strip)
+
+
+def is_float(value: object) -> bool:
+    return isinstance(value, float)
+
+
+def outside(allowed: Range) -> st.SearchStrategy:
+    return NUMBERS.filter(lambda value: value not in allowed)
+
+
+# The command line.
+
+
+def options(command: str) -> dict[str, argparse.Action]:
+    """The options of a command that take a number in a range, or one of several names."""
+    (commands,) = parser([command])._subparsers._group_actions
+    found = commands.choices[command]._option_string_actions
+    return {k: each for k, each in found.items() if each.choices or range_of(each)}
+
+
+def range_of(action: argparse.Action) -> Range | None:
+    """The range that the parser of a number holds."""
+    if not inspect.isfunction(action.type):
+        return None
+    return inspect.getclosurevars(action.type).nonlocals.get("allowed")
+
+
+TYPED = [
+    (about.examples[0], name, action)
+    for command, about in COMMANDS.items()
+    for name, action in options(command).items()
+]
+
+
+@given(st.data(), st.sampled_from(TYPED))
+def test_a_wrong_option_is_refused(refused, data, case):
+    example, name, action = case
+    allowed = range_of(action)
+    wrong = WORDS if allowed is None else WORDS | outside(allowed).map(repr)
+    if action.nargs == 2:
+        more = [name, "1", data.draw(wrong.filter(lambda text: not text.startswith("-")))]
+    else:
+        # After a sign of equality any text is a value, even if it begins with a dash.
+        more = [f"{name}={data.draw(wrong)}"]
+    status, line = refused(*shlex.split(example), *more)
+    assert status == 2 and line.startswith(f"bouncing-ball: argument {name}: ")
+    assert all(choice in line for choice in action.choices or [str(allowed)]), line
+
+
+@given(st.sampled_from(sorted(COMMANDS)), st.text("qxyz", min_size=1, max_size=12))
+def test_an_unknown_option_is_refused(refused, command, word):
+    status, line = refused(*shlex.split(COMMANDS[command].examples[0]), f"--{word}=1")
+    assert status == 2 and f"unrecognized arguments: --{word}=1" in line
+
+
+# Quantities with units.
+
+MEASURED = [
+    (kind, name, quantity)
+    for kind in (Contact, Table, Question, EngineSetup)
+    for name, quantity in quantities(kind).items()
+]
+
+
+def example_of_another_unit(unit: str) -> st.SearchStrategy:
+    """Quantities in units that are not those of a parameter, by any meaning of g and of a turn."""
+    same = next((pair for pair in ({"Hz", "rad/s"}, {"kg", "m/s^2"}) if unit in pair), {unit})
+    return st.sampled_from([x.example for *_, x in MEASURED if x.name and x.name not in same])
+
+
+@given(st.data(), st.sampled_from(MEASURED))
+def test_a_wrong_quantity_is_refused(refusal, data, case):
+    kind, name, quantity = case
+    number = outside(quantity.allowed).filter(lambda x: abs(x) < 1e300)
+    wrong = data.draw(number | WORDS | example_of_another_unit(quantity.name))
+    engine = {"engine": "mujoco"} if kind is EngineSetup else {}
+    if isinstance(wrong, str):
+        with refusal(ModelError, name, "write it as", quantity.example):
+            kind(**engine, **{name: wrong})
+    else:
+        said = "not a finite number" if math.isnan(wrong) else f"is not {quantity.allowed}"
+        with refusal(ModelError, name, said):
+            kind(**engine, **{name: wrong})
+
+
+# Arguments of public functions.
+
+BALL = bb.rigid(restitution=0.85)
+CALLS = {
+    "rigid": {}, "spring_damper": {"restitution": 0.85, "frequency_ratio": 10.0},
+    "contact_law": {"law": "tsuji", "restitution": 0.85, "duration": 0.1},
+    "simulate": {"ball": BALL, "amplitude": 1.0}, "history": {"ball": BALL, "amplitude": 1.0},
+    "drop": {"ball": BALL, "height": 1.0}, "orbit": {"ball": BALL, "amplitude": 1.0},
+    "limits": {"ball": BALL},
+    "branch": {"ball": BALL}, "error_thresholds": {"ball": BALL, "amplitude": 1.0},
+    "motion_of": {"ball": BALL, "amplitude": 1.0},
+    "lyapunov_exponent": {"ball": BALL, "amplitude": 1.0},
+    "orbit_diagram": {"ball": BALL, "amplitudes": [0.9, 1.0]},
+    "basins": {"ball": BALL, "amplitude": 1.0},
+    "orbit_of_motion": {"ball": BALL, "amplitude": 1.0},
+}  # fmt: skip
+"""Arguments of calls that are right."""
+
+
+def declared(hint: typing.Any) -> Range | tuple[str, ...] | None:
+    """The range or the names of an argument with this annotation."""
+    origin = typing.get_origin(hint)
+    if origin is typing.Literal:
+        return typing.get_args(hint)
+    if origin is typing.Annotated:
+        return next((each for each in hint.__metadata__ if isinstance(each, Range)), None)
+    if origin in (typing.Union, UnionType):
+        return next(filter(None, map(declared, typing.get_args(hint))), None)
+    return None
+
+
+# What is imported for type checkers only.
+LATER = {"DataArray": xr.DataArray, "Dataset": xr.Dataset, "xr": xr, "Result": Result}
+GIVEN = [
+    (call, name, allowed)
+    for call in CALLS
+    for name, hint in typing.get_type_hints(
+        getattr(bb, call), localns=LATER, include_extras=True
+    ).items()
+    # A release is for the parameters of one law only.
+    if (allowed := declared(hint)) and (call, name) != ("contact_law", "release")
+]
+
+
+@given(st.data(), st.sampled_from(GIVEN))
+def test_a_wrong_argument_is_refused(refusal, data, case):
+    call, name, allowed = case
+    right = {k: v for k, v in CALLS[call].items() if not {k, name} <= set(LOSSES)}
+    if isinstance(allowed, Range):
+        number = outside(allowed)
+        odd = st.sampled_from([True, "1", b"1", 1j, {}, object()])
+        several = st.lists(number, min_size=1, max_size=3)
+        array = st.lists(outside(allowed).filter(is_float), min_size=1, max_size=3).map(np.array)
+        wrong = data.draw(number | WORDS | odd | several | array)
+        said = "must be a single number", f"is not {allowed}"
+    else:
+        wrong = data.draw(WORDS | NUMBERS | st.just(True))
+        said = (f"is not one of {', '.join(allowed)}",)
+    with pytest.raises(ModelError) as error:
+        getattr(bb, call)(**right | {name: wrong})
+    line = str(error.value)
+    assert "\n" not in line and line.startswith(name) and any(x in line for x in said), line
+
+
+def test_the_declarations_are_found():
+    assert len(TYPED) > 60 and len(MEASURED) > 20 and len(GIVEN) > 40
+    assert {call for call, *_ in GIVEN} == CALLS.keys()
+
+
+# The configuration.
+
+CONFIG = read_yaml(ROOT / "config" / "config.yaml")
+STUDIES = configuration_type(ARTIFACTS.values())
+
+
+def leaves(value: typing.Any, path: tuple = ()) -> typing.Iterator[tuple]:
+    """The places of the numbers and texts of the configuration."""
+    if not isinstance(value, dict | list):
+        yield path
+        return
+    for key, each in value.items() if isinstance(value, dict) else enumerate(value):
+        yield from leaves(each, (*path, key))
+
+
+@given(
+    st.sampled_from(list(leaves(CONFIG))),
+    st.sampled_from([{}, [], None, math.nan, math.inf, -1e300, ""]) | WORDS,
+)
+def test_a_wrong_value_in_the_configuration_is_refused(refusal, path, wrong):
+    config = copy.deepcopy(CONFIG)
+    section = config
+    for key in path[:-1]:
+        section = section[key]
+    section[path[-1]] = wrong
+    with refusal(ConfigurationError, place(path), " must "):
+        check(STUDIES, config)
+
+
+@given(
+    st.sampled_from([p for p in leaves(CONFIG) if isinstance(p[-1], str)]),
+    st.text(string.ascii_lowercase, min_size=12),
+)
+def test_an_unknown_key_in_the_configuration_is_refused(refusal, path, word):
+    config = copy.deepcopy(CONFIG)
+    section = config
+    for key in path[:-1]:
+        section = section[key]
+    known = list(section)
+    section[word] = section.pop(path[-1])
+    with refusal(ConfigurationError, f"unknown key {place((*path[:-1], word))} = ", *known):
+        check(STUDIES, config)

@@ -139,3 +139,30 @@ def test_the_cascade_of_flights_is_the_curve_on_which_a_long_contact_opens():
             order = values["frequency_ratio"].argsort()
             there = openings([zeta], values["frequency_ratio"][order], 1).amplitude[0, 0]
             assert np.abs(there - values["amplitude"][order]).max() < 1e-10
+
+
+@pytest.mark.parametrize("name", ["rigid", "spring-damper"])
+def test_a_curve_without_ranges_ends_with_a_reason_and_its_points_are_spread(name):
+    """It took 500 points at an end, most of them within 1e-3 of it."""
+    ball = {
+        "rigid": bouncing_ball.rigid(restitution=0.5),
+        "spring-damper": bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=10.0),
+    }[name]
+    fold = bouncing_ball.limits(ball).saddle_node
+    found = bouncing_ball.follow(fold, along=("amplitude", "restitution"))
+    first, last = found.end_reason.values
+    assert str(last) == "amplitude = 0.0001 is reached"
+    expected = {
+        "rigid": "restitution = 1e-09 is reached",
+        "spring-damper": "the orbit is next to a release without speed, where its equations are "
+        "not smooth",
+    }
+    assert str(first) == expected[name]
+    assert found.sizes["point"] < 150
+    place = np.arcsinh(np.stack([found.amplitude, found.restitution]))
+    near = [np.hypot(*(place.T - place[:, end]).T) < 1e-3 for end in (0, -1)]
+    assert all(each.sum() < 25 for each in near)
+    # The closed form of the restitution model.
+    if name == "rigid":
+        r = found.restitution
+        assert np.abs(found.amplitude - np.pi * (1 - r) / (1 + r)).max() < 1e-12

@@ -2,10 +2,13 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.branch import whole_branch
+from bouncing_ball.periodic.spring_damper_branch import orbits_on_branch
 from bouncing_ball.periodic.stability import Bifurcation, Side
 from bouncing_ball.periodic.start import continued, orbit_at
 
@@ -72,3 +75,28 @@ def test_by_default_a_branch_is_followed_to_its_end():
     special = continued(SHORT, 1, 0.9)
     assert special[-1].name == "release lost"
     assert [each.name for each in special].count(Bifurcation.SADDLE_NODE) == 1
+
+
+@pytest.mark.parametrize("release", ["displacement", "force"])
+@pytest.mark.parametrize(("restitution", "ratio"), [(0.65, 3.0), (0.85, 10.0)])
+def test_the_end_of_a_branch_at_a_lost_release_is_that_of_its_closed_form(
+    restitution, ratio, release
+):
+    """On the explicit branch δ′ + κ δ″ at the release vanishes there."""
+    model = SpringDamperModel(SpringDamper.from_restitution(restitution, ratio, release))
+    law = model.impact_law
+    end = whole_branch(model, 1, 20.0).special[0]
+    assert end.kind == "release lost"
+
+    def rise(excess):
+        orbit = orbits_on_branch(excess, law, 1)
+        acceleration = orbit.amplitude * np.sin(orbit.release_phase) - 1
+        return float(orbit.relative_bounce_velocity + law.lag * acceleration)
+
+    first = float(orbits_on_branch(0.0, law, 1).contact_duration)
+    near = (end.contact_duration - first) * law.damped_frequency
+    excess = brentq(rise, near - 1e-2, near + 1e-2, xtol=1e-15)
+    orbit = orbits_on_branch(excess, law, 1)
+    assert end.amplitude == pytest.approx(orbit.amplitude, rel=1e-12)
+    # Beside a double zero the duration changes with the root of the time.
+    assert end.contact_duration == pytest.approx(orbit.contact_duration, abs=1e-11)

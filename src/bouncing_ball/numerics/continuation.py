@@ -26,6 +26,9 @@ from bouncing_ball.numerics.corrector import (
 )
 from bouncing_ball.numerics.events import Event, SpecialPoint, changes_of_sign, locate_all
 
+# Number of steps after which a branch whose points accumulate ends.
+_CREEPING = 16
+
 
 class ContinuationError(RuntimeError):
     """The continuation finds no solution to start from, or a branch cannot be resampled."""
@@ -47,6 +50,8 @@ class StepControl:
         Number of Newton iterations at which the step is unchanged.
     max_angle : float
         Largest angle in radians between the tangents of neighbouring points.
+    creep : float
+        A branch whose last 16 steps lead no farther than this ends; by default it goes on.
     """
 
     initial: float = 0.02
@@ -54,6 +59,7 @@ class StepControl:
     largest: float = 0.2
     target_iterations: int = 3
     max_angle: float = 0.2
+    creep: float = 0.0
 
     def after(self, step: float, iterations: int, angle: float) -> float:
         """The length of the next step after an accepted step.
@@ -277,6 +283,16 @@ def _step(
     return _Step(reached, passage.special, end, corrected.iterations, angle)
 
 
+def _creeping(states: Sequence[_State], creep: float) -> End | None:
+    """The end of a branch whose last steps lead no farther than ``creep``; None if they do."""
+    if len(states) <= _CREEPING:
+        return None
+    way = float(np.linalg.norm(states[-1].point - states[-1 - _CREEPING].point))
+    if way >= creep:
+        return None
+    return End(f"step too small: {_CREEPING} steps lead {way:.1e}", kind=EndKind.SHORTEST_STEP)
+
+
 def continue_branch(
     problem: Problem,
     start: np.ndarray,
@@ -345,7 +361,7 @@ def continue_branch(
         state = step.reached
         states.append(state)
         special.extend(step.special)
-        end = step.end
+        end = step.end or _creeping(states, control.creep)
         length = control.after(length, step.iterations, step.angle)
     if end is None:
         sentence = f"reached the limit of {max_points} points"

@@ -97,8 +97,7 @@ def whole_branch(
     for end in (found.start, found.end):
         if not end.finished:
             raise ContinuationError(f"the branch is not followed to its end: {end}")
-    of_contact = [problem.event(event) for event in ends_of_contact(problem.orbits)]
-    return Followed(problem, with_ends(found, of_contact))
+    return Followed(problem, with_ends(problem, found))
 
 
 def _default_top(low: float, doubling: float) -> float:

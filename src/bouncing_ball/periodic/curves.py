@@ -28,13 +28,27 @@ from bouncing_ball.numerics.continuation import (
 )
 from bouncing_ball.numerics.corrector import Condition, NewtonSettings, corrected, null_vector
 from bouncing_ball.numerics.events import Event, SpecialPoint, locate, vanishing
+from bouncing_ball.periodic.balls import LAMBDA
 from bouncing_ball.periodic.following import PATIENT, STEPS, Orbits, Range, explained, limits_of
 from bouncing_ball.periodic.orbit import Orbit, orbit_at
 from bouncing_ball.periodic.problem import PeriodicOrbits
 from bouncing_ball.periodic.release import release_condition
-from bouncing_ball.periodic.special import Special, flight_margin, impact_margin
+from bouncing_ball.periodic.special import (
+    Special,
+    events,
+    flight_margin,
+    impact_margin,
+    loss_of_release,
+)
 from bouncing_ball.periodic.stability import Bifurcation
 
+CURVE_STEPS = replace(STEPS, creep=1e-3)
+"""Steps of a curve, which ends where its points accumulate, for example at a release without speed,
+where the equations have no derivatives.
+"""
+# The smallest Λ of a curve: at Λ = 0, where the saddle-nodes of elastic contacts are, no phase is
+# defined.
+_LOWEST = 1e-4
 # A point on a resonance has multipliers that differ from it by less than this. Next to a double
 # multiplier the multipliers differ by the square root of rounding.
 _RESONANT = 1e-6
@@ -116,7 +130,7 @@ def curve(
     *,
     along_window: Range | None = None,
     across_window: Range | None = None,
-    control: StepControl = STEPS,
+    control: StepControl = CURVE_STEPS,
     most: int = 1000,
 ) -> Curve:
     """The curve of special orbits through one of them, in both directions.
@@ -160,11 +174,12 @@ def curve(
             raise NoOrbitError(str(error)) from None
         special = [*_cusps(problem, branch, kind), *_resonances(problem, branch, kind)]
         backwards = replace(branch, points=branch.points[::-1], end=branch.start)
+        tests = [each for each in (*events(orbits), loss_of_release(orbits)) if each.name != kind]
         named = replace(
             branch,
             special=tuple(special),
-            start=explained(backwards, (), limits),
-            end=explained(branch, (), limits),
+            start=explained(backwards, tests, limits),
+            end=explained(branch, tests, limits),
         )
     return Curve(orbits, named, kind)
 
@@ -183,6 +198,8 @@ def _limits(orbits: PeriodicOrbits, windows: dict[str, Range | None]) -> list[Ev
     found = []
     for j, (name, window) in enumerate(windows.items()):
         low, high = orbits.balls.bounds(name)
+        if name == LAMBDA:
+            low = _LOWEST
         if window is not None:
             low = max(low, window.low)
             high = min(high, window.high)

@@ -26,8 +26,8 @@ from bouncing_ball.periodic.special import MEANINGS, Special
 
 BRANCH, CURVE = 500, 500
 """Default of the largest number of points of a branch, and of a curve in each direction."""
-# A branch ends at these orbits, because an impact or a rest disappears there.
-_ENDS = (Special.GRAZING_IMPACT, Special.STICKING)
+# A branch ends at these orbits, because an impact, a flight or a rest disappears there.
+_ENDS = (Special.GRAZING_IMPACT, Special.RELEASE_LOST, Special.STICKING)
 
 
 @overload

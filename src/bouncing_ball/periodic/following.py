@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import ClassVar, NamedTuple, Protocol, Self
+from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
 
@@ -18,14 +18,16 @@ from bouncing_ball.numerics.continuation import (
     continue_branch,
     resample,
 )
-from bouncing_ball.numerics.corrector import NewtonSettings, Problem, newton, tangent
+from bouncing_ball.numerics.corrector import NewtonSettings, newton, tangent
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.periodic.balls import LAMBDA
+from bouncing_ball.periodic.lost_release import lost_release
 from bouncing_ball.periodic.orbit import Orbit, orbit_at
 from bouncing_ball.periodic.problem import PeriodicOrbits, twice
 from bouncing_ball.periodic.special import (
     MEANINGS,
+    Coordinates,
     Special,
     events,
     halves,
@@ -51,6 +53,13 @@ _CORNER = "the branch has a corner, where the map of the model has no derivative
 # root of the distance.
 _CLOSE = 1e-2
 _AT_END = 1e-6
+# The duration of a contact is that of the release near the unknown one, of which Newton's method
+# finds twelve digits; a release at another time is another one.
+_SAME_DURATION = 1e-6
+_PLACES = {kind: f"a {kind}" for kind in Special} | {
+    Special.STICKING: "the end of sticking",
+    Special.RELEASE_LOST: "a release without speed",
+}
 # Without a value at which a branch ends, it ends at this multiple of the first value of the
 # parameter, or of 1, if the range of the parameter has no end.
 _FARTHEST = 10.0
@@ -63,28 +72,27 @@ class Range(NamedTuple):
     high: float
 
 
-class Coordinates(Problem, Protocol):
-    """The equations of orbits in some unknowns y: those of
-    :class:`~bouncing_ball.periodic.problem.PeriodicOrbits`, or those of the paper.
+def _orbits_at(problem: Coordinates, y: np.ndarray, kind: str = "") -> Orbit:
+    """The orbits at points y, with phases in [-π, π].
+
+    Where a release is lost, which is a double zero, the duration among the unknowns is the one that
+    is known.
     """
-
-    @property
-    def orbits(self) -> PeriodicOrbits:
-        """The equations in their own unknowns."""
-
-    def inner(self, y: np.ndarray) -> np.ndarray:
-        """The unknowns of :attr:`orbits` at y."""
-
-    def event(self, event: Event) -> Event:
-        """An event of :attr:`orbits` as a function of y."""
+    orbits = problem.orbits
+    inner = problem.inner(y)
+    found = orbit_at(orbits, inner, kind)
+    if not orbits.selects:
+        return found
+    unknown = orbits.durations(inner)
+    same = np.abs(found.durations - unknown) <= _SAME_DURATION
+    return replace(found, durations=np.where(same, found.durations, unknown))
 
 
 def orbits_along(problem: Coordinates, y: np.ndarray) -> Orbit:
     """The orbits at points y, with phases that pass ±π continuously along a branch."""
     orbits = problem.orbits
-    inner = problem.inner(y)
-    found = orbit_at(orbits, inner)
-    phase, _ = orbits.states(inner)
+    found = _orbits_at(problem, y)
+    phase, _ = orbits.states(problem.inner(y))
     turned = np.round((phase - found.phases) / (2 * np.pi))
     turns = np.broadcast_to(orbits.turns, phase.shape)
     return replace(found, phases=found.phases + 2 * np.pi * turned, turns=turns)
@@ -111,7 +119,7 @@ class Orbits:
         return (self._one(y) for y in self.branch.points)
 
     def _one(self, y: np.ndarray, kind: str = "") -> Orbit:
-        return orbit_at(self.problem.orbits, self.problem.inner(y), kind)
+        return _orbits_at(self.problem, y, kind)
 
     @property
     def special_points(self) -> list[SpecialPoint]:
@@ -262,7 +270,20 @@ def follow(
             last = branch.points[-1]
             branch = _joined(branch, _followed(orbits, last, limits, near, rises, control, left))
         tests = [*events(orbits), loss_of_release(orbits)]
-        return Followed(orbits, replace(branch, end=explained(branch, tests, limits)))
+        whole = replace(branch, end=explained(branch, tests, limits))
+        return Followed(orbits, _with_lost_release(orbits, whole))
+
+
+def _with_lost_release(orbits: PeriodicOrbits, branch: Branch) -> Branch:
+    """A branch with the orbit at which its ball no longer leaves the table, if it ends there."""
+    if branch.end.event != Special.RELEASE_LOST:
+        return branch
+    place = lost_release(orbits, branch.points[-1])
+    if place is None:
+        return branch
+    special = (*branch.special, SpecialPoint(Special.RELEASE_LOST, place))
+    reason = f"{Special.RELEASE_LOST}: {MEANINGS[Special.RELEASE_LOST]}"
+    return replace(branch, special=special, end=End(reason, event=Special.RELEASE_LOST))
 
 
 def _joined(branch: Branch, further: Branch) -> Branch:
@@ -376,4 +397,7 @@ def explained(branch: Branch, tests: Sequence[Event], limits: Sequence[Event]) -
     nearest = min(near, key=lambda name: near[name])
     if not near[nearest] < _CLOSE:
         return End(_CORNER) if end.kind is EndKind.CORNER else end
-    return End(f"the orbit is next to a {nearest}, where its equations are not smooth", True)
+    sentence = (
+        f"the orbit is next to {_PLACES[Special(nearest)]}, where its equations are not smooth"
+    )
+    return End(sentence, event=nearest)

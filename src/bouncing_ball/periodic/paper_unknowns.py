@@ -76,7 +76,10 @@ class PaperUnknowns:
 
     def point(self, orbit: Orbit) -> np.ndarray:
         """y of n-T orbits, shape (..., N + 1)."""
-        inner = orbit.point(self.orbits)
+        return self.outer(orbit.point(self.orbits))
+
+    def outer(self, inner: np.ndarray) -> np.ndarray:
+        """y at the unknowns (φ, δ′, D, arsinh Λ)."""
         lam = np.sinh(inner[..., -1])
         y = inner.copy()
         y[..., 1] += lam * np.cos(inner[..., 0])

@@ -121,6 +121,10 @@ class PeriodicOrbits:
         """The unknowns of this class: y itself."""
         return y
 
+    def outer(self, inner: np.ndarray) -> np.ndarray:
+        """The inverse of :meth:`inner`."""
+        return inner
+
     def event(self, event: Event) -> Event:
         """An event as a function of y: the event itself."""
         return event

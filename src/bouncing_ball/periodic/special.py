@@ -18,6 +18,7 @@ is positive there and nowhere else. All minima are therefore found.
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from enum import StrEnum
+from typing import Protocol
 
 import numpy as np
 
@@ -25,8 +26,10 @@ from bouncing_ball import datasets
 from bouncing_ball.models.flight import Flight
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.continuation import Branch, End
+from bouncing_ball.numerics.corrector import Problem
 from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.periodic.legs import Legs
+from bouncing_ball.periodic.lost_release import lost_release, rise_of_release
 from bouncing_ball.periodic.problem import PeriodicOrbits
 from bouncing_ball.periodic.release import release_condition, release_margin
 from bouncing_ball.periodic.stability import Bifurcation
@@ -44,6 +47,25 @@ _CLOSE = 1e-2
 _FAR = 1.0
 
 
+class Coordinates(Problem, Protocol):
+    """The equations of orbits in some unknowns y: those of
+    :class:`~bouncing_ball.periodic.problem.PeriodicOrbits`, or those of the paper.
+    """
+
+    @property
+    def orbits(self) -> PeriodicOrbits:
+        """The equations in their own unknowns."""
+
+    def inner(self, y: np.ndarray) -> np.ndarray:
+        """The unknowns of :attr:`orbits` at y."""
+
+    def outer(self, inner: np.ndarray) -> np.ndarray:
+        """y at unknowns of :attr:`orbits`."""
+
+    def event(self, event: Event) -> Event:
+        """An event of :attr:`orbits` as a function of y."""
+
+
 class Special(StrEnum):
     """The kinds of special orbits."""
 
@@ -52,6 +74,7 @@ class Special(StrEnum):
     GRAZING_FLIGHT = datasets.GRAZING_FLIGHT
     GRAZING_IMPACT = "grazing of an impact"
     GRAZING_RELEASE = datasets.GRAZING_RELEASE
+    RELEASE_LOST = "release lost"
     STICKING = "end of sticking"
     PERIOD_HALVING = "period halving"
 
@@ -63,9 +86,15 @@ MEANINGS = {
     Special.GRAZING_IMPACT: "the ball lands with the speed of the table: an impact disappears",
     Special.GRAZING_RELEASE: "a contact touches its release: beyond it there is one flight more",
     Special.PERIOD_HALVING: "the orbit merges with one of half its period, whose period doubles",
+    Special.RELEASE_LOST: "the ball no longer leaves the table as the contact ends",
     Special.STICKING: "the ball comes to rest as the table leaves it behind",
 }
 """What each kind of special orbit is."""
+
+
+def _reason(kind: Special) -> str:
+    """Why a branch ends at a special orbit."""
+    return f"{kind}: {MEANINGS[kind]}"
 
 
 def flight_margin(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
@@ -153,12 +182,13 @@ def _at_point(legs: Legs, values: np.ndarray) -> np.ndarray:
 
 
 def loss_of_release(orbits: PeriodicOrbits) -> Event:
-    """The speed δ′ with which the ball leaves the table relative to that of its impact, the
+    """The rate δ′ + κ δ″ with which a contact opens relative to the speed of its impact, the
     smallest of an orbit.
 
     Where it vanishes, a flight disappears. The release then is a double zero and its time is not a
-    smooth function of the state, so that the place is the end of a branch, which often cannot be
-    located. An impact that grazes also has a slow release, but their ratio tends to 1.
+    smooth function of the state, so that the place is the end of a branch, which is located by
+    :mod:`~bouncing_ball.periodic.lost_release`. An impact that grazes also has a slow release, but
+    their ratio tends to 1.
     """
 
     def share(y: np.ndarray) -> np.ndarray:
@@ -166,7 +196,7 @@ def loss_of_release(orbits: PeriodicOrbits) -> Event:
         if legs.departure is None:
             return np.full(y.shape[:-1], np.nan)
         _, closing = orbits.states(y)
-        velocity = _at_point(legs, legs.departure.flight.velocity)
+        velocity = _at_point(legs, rise_of_release(legs))
         # The bounces before a rest on the table become arbitrarily slow.
         rests = legs.dynamics.forgets and np.any(_at_point(legs, legs.departure.sticks))
         approach = np.where(orbits.resuming, closing, -closing)
@@ -174,9 +204,7 @@ def loss_of_release(orbits: PeriodicOrbits) -> Event:
             lowest = (velocity / approach).min(axis=-1)
         return np.full(lowest.shape, _FAR) if rests else lowest
 
-    name = "release without speed"
-    reason = f"the orbit is next to a {name}, where its equations are not smooth"
-    return Event(name, share, terminal=True, reason=reason)
+    return Event(Special.RELEASE_LOST, share, terminal=True, reason=_reason(Special.RELEASE_LOST))
 
 
 def halves(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
@@ -240,8 +268,7 @@ def events(orbits: PeriodicOrbits) -> Sequence[Event]:
     """The events along a branch, which ends where an impact grazes and where sticking ends."""
 
     def end(kind: Special, margin) -> Event:
-        reason = f"{kind}: {MEANINGS[kind]}"
-        return Event(kind, lambda y: margin(orbits, y), terminal=True, reason=reason)
+        return Event(kind, lambda y: margin(orbits, y), terminal=True, reason=_reason(kind))
 
     return (
         *passed_by(orbits),
@@ -266,7 +293,7 @@ def ends_of_contact(orbits: PeriodicOrbits) -> list[Event]:
         legs = orbits.beside(y)
         if legs.departure is None:
             return np.full(y.shape[:-1], np.nan)
-        return _at_point(legs, legs.departure.flight.velocity).min(axis=-1)
+        return _at_point(legs, rise_of_release(legs)).min(axis=-1)
 
     def aloft(y: np.ndarray) -> np.ndarray:
         return (orbits.intervals(y) - orbits.beside(y).duration[0]).min(axis=-1)
@@ -277,36 +304,35 @@ def ends_of_contact(orbits: PeriodicOrbits) -> list[Event]:
             "the ball no longer closes in on the table at impact",
             lambda y: impact_margin(orbits, y) - _MARGIN,
         ),
-        end("release lost", "the ball no longer leaves the table as the contact ends", released),
+        end(Special.RELEASE_LOST, MEANINGS[Special.RELEASE_LOST], released),
         end("flight lost", "the contact fills the whole cycle", lambda y: aloft(y) - _MARGIN),
     ]
 
 
-def with_ends(branch: Branch, ends: Sequence[Event]) -> Branch:
+def with_ends(problem: Coordinates, branch: Branch) -> Branch:
     """A branch with its ends of contact where the steps became too short.
 
     Where the ball no longer leaves the table, the time of the release is not a smooth function of
-    the state, so that Newton's method approaches this end up to the shortest step. The last point
-    becomes the special point.
+    the state, so that a branch approaches this end up to the shortest step. The special point is
+    found by :mod:`~bouncing_ball.periodic.lost_release`, or else it is the last point.
     """
-    special = list(branch.special)
-    start = branch.start
-    end = branch.end
-    first = _end_near(start, branch.points[0], ends)
-    last = _end_near(end, branch.points[-1], ends)
-    if first is not None:
-        special.insert(0, SpecialPoint(first.name, branch.points[0]))
-        start = End(first.reason)
-    if last is not None:
-        special.append(SpecialPoint(last.name, branch.points[-1]))
-        end = End(last.reason)
-    return replace(branch, special=tuple(special), start=start, end=end)
+    ends = ends_of_contact(problem.orbits)
+    start, first = _end_near(problem, branch.start, branch.points[0], ends)
+    end, last = _end_near(problem, branch.end, branch.points[-1], ends)
+    return replace(branch, special=(*first, *branch.special, *last), start=start, end=end)
 
 
-def _end_near(end: End, point: np.ndarray, ends: Sequence[Event]) -> Event | None:
-    """The end of contact next to a point at which the steps became too short."""
+def _end_near(
+    problem: Coordinates, end: End, point: np.ndarray, ends: Sequence[Event]
+) -> tuple[End, list[SpecialPoint]]:
+    """The end of contact next to a point at which the steps became too short, with its point."""
     if not end.stuck:
-        return None
-    near = [abs(float(event.function(point))) for event in ends]
-    nearest = int(np.argmin(near))
-    return ends[nearest] if near[nearest] < _CLOSE else None
+        return end, []
+    inner = problem.inner(point)
+    near = [abs(float(event.function(inner))) for event in ends]
+    nearest = ends[int(np.argmin(near))]
+    if not min(near) < _CLOSE:
+        return end, []
+    place = lost_release(problem.orbits, inner) if nearest.name == Special.RELEASE_LOST else None
+    there = point if place is None else problem.outer(place)
+    return End(nearest.reason, event=nearest.name), [SpecialPoint(nearest.name, there)]

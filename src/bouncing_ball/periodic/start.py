@@ -291,10 +291,9 @@ def continued(
         return ()
     most = max(farther * amplitude, farther, _ABOVE * float(above[0]))
     here = float(np.arcsinh(amplitude))
-    ends = ends_of_contact(problem)
     events = (
         *bifurcations(problem),
-        *ends,
+        *ends_of_contact(problem),
         Event(_HERE, lambda y: y[..., -1] - here),
         parameter_bound(float(np.arcsinh(most)), upper=True, reason=f"Λ = {most:g}"),
         parameter_bound(float(np.arcsinh(_LOWEST)), upper=False, reason=f"Λ = {_LOWEST:g}"),
@@ -305,7 +304,7 @@ def continued(
         )
     except ContinuationError:
         return ()
-    branch = with_ends(branch, ends)
+    branch = with_ends(problem, branch)
     # If the continuation failed, there may be further events beyond, and the list would be
     # incomplete.
     return branch.special if branch.end.finished or len(branch.points) == _POINTS else ()

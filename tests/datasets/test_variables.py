@@ -8,7 +8,6 @@ from bouncing_ball.datasets.variables import SHARED, Variable, describe
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.diff.budgets import ARTIFACTS, budget_of
 
-
 # Measured impacts have units; everything else is dimensionless.
 IN_SI = dict.fromkeys(("measured_speed", "curve_speed", "shaker_speed"), "m s-1") | {
     "shaker_frequency": "Hz"

@@ -285,10 +285,23 @@ def write_contact(draw: Draw) -> Any:
     return draw.call("write_contact", contact, setup, table)
 
 
+def fit_contact(draw: Draw) -> Any:
+    count = draw.random.choice((1, 2, 3, 8))
+    arguments = draw.some(
+        durations=lambda: draw.number(1e-6, 1.0),
+        uncertainties=lambda: draw.number(1e-6, 0.5),
+        mass=lambda: draw.number(1e-6, 1e3),
+        laws=lambda: [draw.pick("tsuji", "kuwabara-kono", "hunt-crossley", "linear")],
+    )
+    points = [draw.number(1e-3, 1e3) for _ in range(count)], [draw.share() for _ in range(count)]
+    return draw.call("fit_contact", *points, **arguments)
+
+
 CALLS = (
     simulate, history, drop, orbit, orbits, limits, branch, permanent_contact, error_thresholds,
     motion_of, lyapunov_exponent, orbit_diagram, basins, orbit_of_motion, follow, switch, curve,
     describe_contact, assess_contact, choose_contact, write_contact,
+    fit_contact,
 )  # fmt: skip
 """A function for each public function, which draws its arguments and calls it."""
 QUICK = (orbit, limits, permanent_contact, error_thresholds, write_contact)

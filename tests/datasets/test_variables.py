@@ -8,11 +8,16 @@ from bouncing_ball.datasets.variables import SHARED, Variable, describe
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.diff.budgets import ARTIFACTS, budget_of
 
+# Measured impacts have units; everything else is dimensionless.
+IN_SI = dict.fromkeys(("measured_speed", "curve_speed", "shaker_speed"), "m s-1") | {
+    "shaker_frequency": "Hz"
+}
+
 
 def test_every_declaration_is_complete(declared):
     for name, entry in declared.items():
         assert name.isidentifier()
-        assert entry.units == ("rad" if name.endswith("phase") else "1")
+        assert entry.units == IN_SI.get(name, "rad" if name.endswith("phase") else "1")
         assert entry.long_name and entry.long_name == entry.long_name.strip()
         assert not entry.equation or entry.equation.startswith(("Eq", "Table"))
 

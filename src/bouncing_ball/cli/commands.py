@@ -329,9 +329,8 @@ COMMANDS = {
         ),
         examples=(
             "fit croquet",
-            "fit croquet --frequency '50 Hz'",
-            "fit drops.csv --mass '20 g' --diameter '25 mm' --contact-time '0.3 ms'",
-            "fit heard.csv --intervals --resolution '0.1 ms'",
+            'fit croquet --frequency "50 Hz"',
+            'fit plastic_ball --contact-time "1 ms" --speed "1.5 m/s"',
         ),
         program=_fit,
         has_symbols=False,

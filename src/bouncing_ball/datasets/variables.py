@@ -1,7 +1,7 @@
 """The variables of datasets: name, symbol, unit, equation and budget of each.
 
-A name has the same meaning in every dataset. All quantities are dimensionless:
-times are Ωt, lengths Ω²y/g, velocities Ωẏ/g, and phases and angles are in
+A name has the same meaning in every dataset. All quantities but those of measured impacts are
+dimensionless: times are Ωt, lengths Ω²y/g, velocities Ωẏ/g, and phases and angles are in
 radians of the table's motion. Units follow the CF conventions ("1", "rad").
 """
 

@@ -28,6 +28,7 @@ from bouncing_ball.contacts.units import in_si
 from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError, require
 from bouncing_ball.measured.curves import CURVES, Curve, curve_named
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
+from bouncing_ball.numerics.arrays import as_numbers
 from bouncing_ball.periodic.restitution_branch import rigid_speed
 
 # The probability of the intervals.
@@ -35,8 +36,10 @@ LEVEL = 0.95
 # The least-squares fit ends in the rounding of a sum of squares, where θ has about half of the
 # digits. The zero of its derivative has all; the secant starts with this step.
 _SECANT = 1e-6
+_SECANTS = 8
 # How far the least-squares fit may be from it.
 _NEXT = 1e-2
+_POSITIVE = "a finite number > 0"
 # Steps of the fixed point for the impact speed on a table, a contraction.
 _SPEEDS = 60
 
@@ -333,11 +336,17 @@ def fit_law(curve: Curve, points: Points) -> LawFit:
 
 def _polished(derivative: Callable[[float], float], theta: float) -> float:
     """The zero of the derivative of the sum of squares next to θ; θ if there is none."""
-    found = optimize.root_scalar(
-        derivative, x0=theta, x1=theta + _SECANT, method="secant", xtol=1e-14, maxiter=20
-    )
-    is_next = np.isfinite(found.root) and abs(found.root - theta) < _NEXT
-    return float(found.root) if is_next else theta
+    now, before = theta, theta + _SECANT
+    old = derivative(before)
+    for _ in range(_SECANTS):
+        value = derivative(now)
+        if value == old:
+            break
+        step = value * (now - before) / (value - old)
+        if not abs(now - step - theta) < _NEXT:
+            return theta
+        now, before, old = now - step, now, value
+    return now
 
 
 def _quantile(is_known: bool, freedom: int) -> float:
@@ -433,20 +442,20 @@ def checked(speeds: ArrayLike, restitutions: ArrayLike, uncertainties: ArrayLike
     ModelError
         See :func:`fit_contact`.
     """
-    v = np.atleast_1d(np.asarray(speeds, dtype=float))
-    e = np.atleast_1d(np.asarray(restitutions, dtype=float))
+    v = np.atleast_1d(as_numbers(speeds, "impact speed", _POSITIVE))
+    e = np.atleast_1d(as_numbers(restitutions, "restitution coefficient", "in (0, 1]"))
     if v.ndim != 1 or v.shape != e.shape or not v.size:
         raise ParameterError(
             f"{{speeds}} and {{restitutions}} are lists of one length, not {v.size} and {e.size}"
         )
-    require(np.isfinite(v) & (v > 0), v, "impact speed", "a finite number > 0 in m/s")
+    require(np.isfinite(v) & (v > 0), v, "impact speed", _POSITIVE)
     require((e > 0) & (e <= 1), e, "restitution coefficient", "in (0, 1]")
     if uncertainties is None:
         return Points(v, e)
-    u = np.asarray(uncertainties, dtype=float)
+    u = as_numbers(uncertainties, "uncertainty", _POSITIVE)
     if u.ndim < 2:
         u = np.broadcast_to(u, v.shape) if u.size in (1, v.size) else u
-        require(np.isfinite(u) & (u > 0), u, "uncertainty", "a finite number > 0")
+        require(np.isfinite(u) & (u > 0), u, "uncertainty", _POSITIVE)
         if u.shape == v.shape:
             u = np.diag(u**2)
     if u.shape != (v.size, v.size):
@@ -466,21 +475,28 @@ class _Times:
 def _times(durations: Any, errors: Any, points: Points) -> _Times | None:
     if durations is None:
         return None
-    t = np.asarray(durations, dtype=float)
+    t = as_numbers(durations, "contact time", _POSITIVE)
     v = points.speeds
     if t.ndim == 0:
         t, v = t.reshape(1), np.array([points.reference])
     if t.shape != v.shape:
         raise ParameterError(f"{{durations}} has not one number for each of {v.size} points")
-    s = None if errors is None else np.broadcast_to(np.asarray(errors, dtype=float), t.shape)
+    s = None
+    if errors is not None:
+        s = as_numbers(errors, "uncertainty of a contact time", _POSITIVE)
+        if s.shape not in ((), t.shape):
+            raise ParameterError(
+                f"{{duration_uncertainties}} has not one number for each of {t.size}"
+            )
+        s = np.broadcast_to(s, t.shape)
     known = ~np.isnan(t)
     if not known.any():
         return None
     t, v = t[known], v[known]
-    require(np.isfinite(t) & (t > 0), t, "contact time", "a finite number > 0 in s")
+    require(np.isfinite(t) & (t > 0), t, "contact time", _POSITIVE)
     if s is not None:
         s = s[known]
-        require(np.isfinite(s) & (s > 0), s, "uncertainty of a contact time", "a finite number > 0")
+        require(np.isfinite(s) & (s > 0), s, "uncertainty of a contact time", _POSITIVE)
     return _Times(v, t, s)
 
 

@@ -43,16 +43,16 @@ def test_the_points_and_curves_are_those_of_the_fits(laws):
     fit = experiment("croquet").fit()
     one = laws.sel(experiment="croquet")
     assert int(one.measured_speed.count()) == 10
-    assert sorted(one.measured_restitution.values.tolist()) == sorted(fit.points.restitutions)
+    assert sorted(one.experiment_restitution.values.tolist()) == sorted(fit.points.restitutions)
     for name in CURVES:
         law = one.sel(fitted_law=name)
         curve = fit.law(name).restitution_at(one.curve_speed)
         np.testing.assert_array_equal(law.fitted_restitution, curve)
-        assert np.all((law.band_low <= curve) & (curve <= law.band_high))
+        assert np.all((law.fitted_low <= curve) & (curve <= law.fitted_high))
         assert law.law_verdict.item() == str(judge(fit)[name].verdict)
     # A single point has no band and no verdict.
     single = laws.sel(experiment="superball")
-    assert np.isnan(single.band_low).all() and np.isnan(single.measured_scatter)
+    assert np.isnan(single.fitted_low).all() and np.isnan(single.measured_scatter)
     assert set(single.law_verdict.values) == {"undecided"}
 
 

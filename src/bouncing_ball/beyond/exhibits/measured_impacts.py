@@ -40,19 +40,19 @@ _FITTED = 1e-10
 VARIABLES = {
     "experiment": Variable("name of the experiment"),
     "experiment_title": Variable("ball and surface"),
-    "impact": Variable("number of the impact"),
+    "measured_impact": Variable("number of the impact, by its speed"),
     "fitted_law": Variable("contact law; restitution is a constant r without a contact"),
     "measured_speed": Variable("measured impact speed", symbol="v", units="m s-1"),
-    "measured_restitution": Variable("measured restitution coefficient", symbol="e"),
+    "experiment_restitution": Variable("measured restitution coefficient", symbol="e"),
     "measured_scatter": Variable(
         "standard deviation about the parabola of least squares in ln v", budget=_FITTED
     ),
-    "curve_speed": Variable("impact speed", symbol="v", units="m s-1"),
+    "curve_speed": Variable("impact speed of the curves", symbol="v", units="m s-1"),
     "fitted_restitution": Variable(
         "restitution coefficient of the law", symbol="r(v)", budget=_FITTED
     ),
-    "band_low": Variable("lower end of the 95 % band", budget=_FITTED),
-    "band_high": Variable("upper end of the 95 % band", budget=_FITTED),
+    "fitted_low": Variable("lower end of the 95 % band", budget=_FITTED),
+    "fitted_high": Variable("upper end of the 95 % band", budget=_FITTED),
     "fit_rms": Variable("root mean square of e - r(v)", budget=_FITTED),
     "left_out_rms": Variable(
         "root mean square of the errors at points left out of the fit", budget=_FITTED
@@ -93,7 +93,7 @@ VARIABLES = {
     "by_constant": Variable(
         "relative error of the restitution model by its constant r", budget=_FITTED
     ),
-    "law_remainder": Variable(
+    "shaker_small": Variable(
         "small parameter of the error law, useful below 0.3", symbol="δ", budget=_FITTED
     ),
 }
@@ -125,9 +125,9 @@ class Shaker(Parameters):
 def measured_impacts(parameters: Measured) -> xr.Dataset:
     """Every law on every experiment: curves with bands, errors and verdicts.
 
-    The dataset has the measured points over (experiment, impact), NaN beyond the last one; the
-    curves and their bands over (experiment, fitted_law, sample) with their speeds over (experiment,
-    sample); and errors, probabilities and verdicts over (experiment, fitted_law).
+    The dataset has the measured points over (experiment, measured_impact), NaN beyond the last
+    one; the curves and their bands over (experiment, fitted_law, sample) with their speeds over
+    (experiment, sample); and errors, probabilities and verdicts over (experiment, fitted_law).
     """
     found = [experiment(name) for name in parameters.experiments]
     longest = max(each.speeds.size for each in found)
@@ -165,16 +165,19 @@ def _one(measured: Experiment, fit: ContactFit, longest: int, samples: int) -> x
     bands = np.array([each.band(speeds) for each in laws])
     return xr.Dataset(
         {
-            "measured_speed": ("impact", _padded(points.speeds[order], longest)),
-            "measured_restitution": ("impact", _padded(points.restitutions[order], longest)),
+            "measured_speed": ("measured_impact", _padded(points.speeds[order], longest)),
+            "experiment_restitution": (
+                "measured_impact",
+                _padded(points.restitutions[order], longest),
+            ),
             "measured_scatter": float(np.sqrt(noise(points)[0])),
             "curve_speed": ("sample", speeds),
             "fitted_restitution": (
                 ("fitted_law", "sample"),
                 np.array([each.restitution_at(speeds) for each in laws]),
             ),
-            "band_low": (("fitted_law", "sample"), bands[:, 0]),
-            "band_high": (("fitted_law", "sample"), bands[:, 1]),
+            "fitted_low": (("fitted_law", "sample"), bands[:, 0]),
+            "fitted_high": (("fitted_law", "sample"), bands[:, 1]),
             "fit_rms": ("fitted_law", [each.rms for each in laws]),
             "left_out_rms": ("fitted_law", [each.left_out for each in laws]),
             **_verdicts(verdicts),
@@ -245,7 +248,7 @@ def _on_shaker(fit: ContactFit, frequency: float, parameters: Shaker) -> xr.Data
             "shaker_restitution": r,
             "by_duration": ("quantity", by_duration),
             "by_constant": ("quantity", _by_constant(fit, r, n, amplitude)),
-            "law_remainder": delta,
+            "shaker_small": delta,
         }
     )
 

@@ -29,7 +29,7 @@ _COLUMNS = 3
 
 def measured_impacts(data: xr.Dataset) -> Figure:
     """ext_measured: a panel for each experiment with several speeds."""
-    several = data.isel(experiment=np.flatnonzero(data.measured_speed.count("impact") > 1))
+    several = data.isel(experiment=np.flatnonzero(data.measured_speed.count("measured_impact") > 1))
     rows = -(-several.sizes["experiment"] // _COLUMNS)
     figure, axes = canvas(WIDE, 2.2 * rows + 0.5, rows=rows, columns=_COLUMNS, squeeze=False)
     spare = axes.flat[several.sizes["experiment"] :]
@@ -51,15 +51,15 @@ def _panel(axes: Axes, one: xr.Dataset) -> None:
         axes.plot(one.curve_speed, fitted.fitted_restitution, label=name, linewidth=1.2, **look)
         axes.fill_between(
             one.curve_speed,
-            fitted.band_low,
-            fitted.band_high,
+            fitted.fitted_low,
+            fitted.fitted_high,
             color=look["color"],
             alpha=0.13,
             linewidth=0,
         )
     axes.errorbar(
         one.measured_speed,
-        one.measured_restitution,
+        one.experiment_restitution,
         yerr=one.measured_scatter.item(),
         label="measured, with the scatter about a smooth curve",
         zorder=4,
@@ -72,7 +72,7 @@ def _panel(axes: Axes, one: xr.Dataset) -> None:
     axes.set_xticks([], minor=True)
     axes.set_xlim(float(one.curve_speed[0]), float(one.curve_speed[-1]))
     # The scale is that of the points; the worst law may leave the panel.
-    low, high = float(one.measured_restitution.min()), float(one.measured_restitution.max())
+    low, high = float(one.experiment_restitution.min()), float(one.experiment_restitution.max())
     room = 0.7 * (high - low)
     axes.set_ylim(low - room, high + room)
 
@@ -108,7 +108,7 @@ def ext_shaker(data: xr.Dataset) -> TextTable:
         "ϖ": value("shaker_ratio", ".3g"),
         "r": value("mean_restitution", ".4f"),
         "r(v)": value("shaker_restitution", ".4f"),
-        "δ": value("law_remainder", ".2g"),
+        "δ": value("shaker_small", ".2g"),
     }
     for quantity in data["quantity"].values:
         name = str(quantity).replace("_", " ")

@@ -1,0 +1,67 @@
+"""docs/measured.md: its files are read, its commands answer, and its list is complete."""
+
+import re
+import shlex
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from bouncing_ball.measured.experiment import COLUMNS, QUANTITIES, TEXTS, experiment, names, read
+from bouncing_ball.measured.flights import drag_length, heard
+
+PAGE = (Path(__file__).parents[2] / "docs" / "measured.md").read_text(encoding="utf-8")
+BLOCKS = re.findall(r"```\w*\n(.*?)```", PAGE, re.DOTALL)
+
+
+@pytest.fixture
+def files(tmp_path, monkeypatch):
+    """The files of the page, in the folder in which its commands are called."""
+    monkeypatch.chdir(tmp_path)
+    for name, block in zip(("drops.csv", "heard.csv"), BLOCKS, strict=False):
+        (tmp_path / name).write_text(block, encoding="utf-8")
+    return tmp_path
+
+
+def test_the_files_of_the_page_are_read(files):
+    drops = read(files / "drops.csv")
+    assert drops.speeds.size == 5 and drops.drag_bias > 0
+    assert read(files / "heard.csv", intervals=True).speeds.size == 3
+
+
+def test_the_commands_of_the_page_answer(files, outcome):
+    commands = [
+        line for block in BLOCKS for line in block.splitlines() if "bouncing-ball fit" in line
+    ]
+    assert len(commands) == 3
+    for line in commands:
+        status, out, err = outcome(*shlex.split(line)[1:])
+        assert (status, err) == (0, ""), line
+        assert "as a contact" in out
+
+
+def test_every_column_and_key_is_named():
+    for name in (*COLUMNS, *(f"# {key}:" for key in (*QUANTITIES, *TEXTS))):
+        assert f"`{name}`" in PAGE or f"`{name}" in PAGE, name
+
+
+def test_every_experiment_is_in_the_list():
+    rows = [
+        line
+        for line in PAGE.splitlines()
+        if (line.startswith("| `") and " to " in line) or "`superball`" in line
+    ]
+    listed = " ".join(rows)
+    for name in names():
+        assert f"`{name}`" in listed
+    for name in ("croquet", "bouncy_ball", "metallic_glass", "plastic_ball"):
+        (row,) = (line for line in rows if f"`{name}`" in line)
+        low, high = map(float, re.search(r"([\d.]+) to ([\d.]+) m/s", row).groups())
+        speeds = experiment(name).speeds
+        assert float(f"{speeds.min():.2g}") == low and float(f"{speeds.max():.2g}") == high
+        assert f"| {speeds.size} |" in row
+
+
+def test_the_drag_on_a_table_tennis_ball_is_some_per_cent():
+    found = heard([0.8, 0.6, 0.45], length=drag_length(2.7e-3, 0.04))
+    assert np.all((found.drag_bias < -0.01) & (found.drag_bias > -0.1))

@@ -88,7 +88,7 @@ def test_choosing(said):
 @pytest.mark.parametrize(
     ("arguments", "status", "says"),
     [
-        (("--stiffness", "-5N/m"), 2, "stiffness = -5 N/m is not a number in"),
+        (("--stiffness", "-5N/m"), 2, "stiffness = -5 N/m is not a positive number"),
         (
             ("--acceleration", "0.1 g", "--n", "1"),
             1,

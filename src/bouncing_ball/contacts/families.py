@@ -109,8 +109,8 @@ class Needed:
 # height.
 _SAMPLES = 1001
 _IN_A_RADIAN = 16
-# A bifurcation of a law is followed in Λ, which takes long if the loss is strong. It is not searched
-# for if the simple models, which above this ϖ are within a few percent of the law,
+# A bifurcation of a law is followed in Λ, which takes long if the loss is strong. It is not
+# searched for if the simple models, which above this ϖ are within a few percent of the law,
 # have their saddle-nodes at a multiple of Λ.
 _STIFF = 10.0
 _FAR = 2.0

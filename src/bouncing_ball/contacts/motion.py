@@ -376,7 +376,9 @@ def _changes(
         if not all(end.impacts.phase.size for end in there.values()):
             return None
         samples = _looks(small, balls, there.values())
-        *_, sums = zip(*(_sums(changed, *each, samples) for each in there.items()), strict=False)
+        looked = (_sums(changed, *each, samples) for each in there.items())
+        # There is no end to the sums of a motion that repeats.
+        *_, (_, *sums) = zip(samples, *looked, strict=False)
         if any(np.any(np.isnan(each)) for each in sums):
             return None
         exact, simple = (_estimate(*each) for each in zip(there.values(), sums, strict=True))

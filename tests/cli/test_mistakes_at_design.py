@@ -34,9 +34,9 @@ MISTAKES = """
 --mass "20 g" --stiffness "1 MN/M" --restitution 0.85
     --stiffness = 1 MN/M is in meganewton / molar, not in N/m: did you mean '1 MN/m'?
 --mass "20 g" --stiffness "-1e6" --restitution 0.85
-    --stiffness = -1e+06 N/m is not a number in [1e-40, 1e+40]
+    --stiffness = -1e+06 N/m is not a positive number
 --mass "20 g" --stiffness 0 --restitution 0.85
-    --stiffness = 0 N/m is not a number in [1e-40, 1e+40]
+    --stiffness = 0 N/m is not a positive number
 --mass "20 g" --stiffness 1e6 --restitution 0
     --restitution = 0 is not a number in (0, 1]
 --mass "20 g" --stiffness 1e6 --restitution 1.2
@@ -68,7 +68,7 @@ MISTAKES = """
 --mass "20 g" --frequency "50 hertz" --acceleration "0.8g's" --stiffness 1e6 --restitution 0.8
     --acceleration = 0.8g's has an unknown unit: write it as '2 g'
 --mass "20 g" --frequency "-50 Hz" --acceleration "0.8 g" --stiffness 1e6 --restitution 0.8
-    --frequency = -50 Hz is not a number in [1e-40, 1e+40]
+    --frequency = -50 Hz is not a positive number
 --mass "20 g" TABLE --table-amplitude "1 mm" --stiffness 1e6 --restitution 0.8
     --table-amplitude and --acceleration contradict each other, because each gives the amplitude
 --mass "20 g" --frequency "50 Hz" --amplitude "1 mm" --stiffness 1e6 --restitution 0.8
@@ -116,7 +116,7 @@ BALL --engine mujoco --timestep "1 ms"
 BALL --engine mujoco --time-step "1 kHz"
     --time-step = 1 kHz is in kilohertz, not in s: write it as '1 ms'
 BALL --engine mujoco --time-step 0
-    --time-step = 0 s is not a number in [1e-40, 1e+40]
+    --time-step = 0 s is not a positive number
 --mass "20 g" --restitution 0.8 --engine mujoco
     no stiffness: give --stiffness, or --contact-time
 --mass "20 g" --restitution 0.8 --engine mujoco --time-step "1 ms" --restitution-error 1e-12
@@ -148,7 +148,7 @@ BALL --engine mujoco --time-step 0
 BALL --plot page
     'page' does not end in .pdf or .png or .svg
 BALL --speed 0
-    --speed = 0 m/s is not a number in [1e-40, 1e+40]
+    --speed = 0 m/s is not a positive number
 BALL --speed "1 m"
     --speed = 1 m is in meter, not in m/s: write it as '1 m/s'
 BALL --speed "1 ms"
@@ -162,7 +162,7 @@ BALL --json --plot
 --mass "20 g" --stifness 1e6 --restitution 0.8
     unrecognized arguments: --stifness 1e6; did you mean --stiffness?
 --gravity 0 BALL
-    --gravity = 0 m/s^2 is not a number in [1e-40, 1e+40]
+    --gravity = 0 m/s^2 is not a positive number
 --gravity "9,81" BALL
     --gravity = 9,81 has a comma: write '9.81', with a decimal point
 --gravity "9.81 m/s" BALL
@@ -178,7 +178,7 @@ BALL --json --plot
 --mass "20 µg" --frequency "50 Hz" --acceleration "1000000000 g" --stiffness 1e6 --restitution 0.8
     Λ = 1000000000.0 is not below 1e+08
 --mass "20 g" --frequency "0 Hz" --acceleration "1 g" --stiffness 1e6 --restitution 0.8
-    --frequency = 0 Hz is not a number in [1e-40, 1e+40]
+    --frequency = 0 Hz is not a positive number
 --mass "20 g" --stiffness "1,500 N/m" --restitution 0.8
     --stiffness = 1,500 N/m has a comma: write '1.500 N/m' or '1500 N/m'
 --mass "20 gm" --stiffness "1500 N/m" --restitution 0.8

@@ -288,6 +288,9 @@ def short_runs(monkeypatch):
 
     for impacts in ("_IMPACTS", "_IMPACTS_OF_LAW"):
         monkeypatch.setattr(motion, impacts, 20)
+    monkeypatch.setattr("bouncing_ball.contacts.starts._STARTS", 3)
+    monkeypatch.setattr("bouncing_ball.contacts.starts._IMPACTS", 20)
+    monkeypatch.setattr(motion, "_BALLS_OF_CHANGE", 4)
     few = motion.Sampling(unit=4, usual=4, impacts=(8,), before=4)
     for samples in ("_SAMPLES", "_SAMPLES_OF_LAW"):
         monkeypatch.setattr(motion, samples, few)

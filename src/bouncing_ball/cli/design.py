@@ -22,7 +22,7 @@ from bouncing_ball.contacts.quantities import quantities
 from bouncing_ball.contacts.question import EngineSetup, Question
 from bouncing_ball.contacts.resolve import resolve
 from bouncing_ball.contacts.table import Table, TableMotion
-from bouncing_ball.contacts.units import in_si
+from bouncing_ball.contacts.units import doubts, in_si
 from bouncing_ball.contacts.write import (
     at_given_step,
     dropped_at_step,
@@ -128,6 +128,7 @@ def answer(given: Mapping[str, Any]) -> DesignAnswer:
         hint=hint,
         dropped_at_step=dropped_at_step(found.case, engine, si.get("speed")),
         softer=other,
+        doubts=doubts(given, KINDS),
     )
 
 
@@ -214,4 +215,6 @@ def document(given: DesignAnswer) -> dict[str, Any]:
         more = getattr(given, name)
         if more is not None:
             found[name] = rows.document(more)
+    if given.doubts:
+        found["doubts"] = list(given.doubts)
     return found | {"question": given.question}

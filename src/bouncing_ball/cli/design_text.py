@@ -12,7 +12,7 @@ from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.describe import Description
 from bouncing_ball.contacts.drops import Dropped, drop_at_rest
 from bouncing_ball.contacts.engines.drop_in_steps import Rise
-from bouncing_ball.contacts.engines.engine import EngineSettings
+from bouncing_ball.contacts.engines.engine import ERROR, EngineSettings
 from bouncing_ball.contacts.engines.given_step import AtStep
 from bouncing_ball.contacts.families import ComparedOrbit, ErrorsByQuantity, Needed
 from bouncing_ball.contacts.quantities import quantities
@@ -44,7 +44,8 @@ class DesignAnswer(NamedTuple):
     ``found`` is the assessment of a contact on a table, or the description of one without a table.
     ``dropped``, ``engine`` and ``at_step`` are None if nothing was asked about them, and so are the
     rises of a drop at the engine's time step, and the softer contact that this step resolves if it
-    does not resolve the one asked for. ``hint`` is
+    does not resolve the one asked for. ``doubts`` are sentences on numbers that may have been meant
+    in another unit. ``hint`` is
     what may have been meant if no model has an orbit, and ``whole`` tells whether all numbers of
     each family are printed.
     """
@@ -58,6 +59,7 @@ class DesignAnswer(NamedTuple):
     whole: bool = True
     dropped_at_step: Rise | None = None
     softer: Softer | None = None
+    doubts: tuple[str, ...] = ()
 
 
 def both(reason: str, hint: str) -> str:
@@ -155,10 +157,22 @@ def _engine_lines(given: DesignAnswer) -> list[str]:
         f"For {engine.name}, with the {engine.release} release ({met}):",
         *_pasted(engine),
         _line("time step", shown(engine.time_step, "s")),
+        *_many(engine),
         *(_line(words, shown(x, unit)) for words, x, unit in expected if x is not None),
         *_rise(given.dropped_at_step),
         *_alternatives(engine, given.softer),
     ]
+
+
+# More time steps in a contact than simulations have.
+_MANY = 100_000
+
+
+def _many(engine: EngineSettings) -> list[str]:
+    if engine.steps < _MANY:
+        return []
+    instead = f"{option('restitution_error')} {ERROR:g} takes fewer"
+    return [f"Note: {engine.steps} steps in a contact are more than simulations have: {instead}."]
 
 
 def _pasted(engine: EngineSettings) -> list[str]:
@@ -329,6 +343,7 @@ def _description(given: DesignAnswer, found: Description) -> list[str]:
     """The contact without a table."""
     return [
         _echo(given.question),
+        *(f"Note: {doubt}." for doubt in given.doubts),
         *(_line(*row) for row in numbers(given)),
         _line("release", found.release),
         *_law_lines(found),
@@ -357,6 +372,8 @@ def _assessment(given: DesignAnswer, found: Assessment) -> list[str]:
         found.verdict,
         f"Reason: {reason(found, given.hint)}.",
         _echo(given.question),
+        found.ends.sentence,
+        *(f"Note: {doubt}." for doubt in given.doubts),
         *(f"Note: {note}." for note in found.notes),
         *_drop_remarks(given),
         *_at_small_steps(given.at_step),

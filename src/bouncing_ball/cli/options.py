@@ -176,7 +176,7 @@ def _plain(text: str, allowed: Range) -> str:
     (': give it without a unit', '')
     """
     share = text.strip().removesuffix("%")
-    in_percent = allowed.high == 1 and (share != text or 1 < _number(share) < _WHOLE)
+    in_percent = allowed.high == 1 and (share != text or _FEW <= _number(share) < _WHOLE)
     for meant in (_number(text.replace(",", ".")), _number(share) / _WHOLE if in_percent else None):
         if meant in allowed:
             return f": did you mean {meant:g}?"
@@ -184,8 +184,9 @@ def _plain(text: str, allowed: Range) -> str:
     return ": give it without a unit" if has_unit else ""
 
 
-# Percent in a whole.
+# Percent in a whole, and the fewest that a number without a sign may mean: 1.5 is a slip for 0.5.
 _WHOLE = 100
+_FEW = 5
 
 
 def add_number(

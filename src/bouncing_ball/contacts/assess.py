@@ -16,6 +16,7 @@ from bouncing_ball.contacts.question import Question
 from bouncing_ball.contacts.resolve import resolve
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.rows import Listed
+from bouncing_ball.contacts.starts import FEW, Ends, ends_of_starts
 from bouncing_ball.contacts.table import Table
 from bouncing_ball.contacts.verdict import (
     Judgement,
@@ -79,7 +80,7 @@ class Assessment:
         "frequency_ratio", "damping_ratio", "amplitude", "stiffness", "damping", "contact_time",
         "time_step", "static_deflection", "restitution", "measured_restitution", "slowed_speed",
         "permanent_contact", "law", "corrected", "orbits", "needed", "motion", "headline",
-        "is_good_enough", "verdict", "reason", "notes", "case", "n",
+        "is_good_enough", "verdict", "reason", "starts", "notes", "case", "n",
     )  # fmt: skip
 
     frequency_ratio: Annotated[float, Listed("frequency ratio ϖ")]
@@ -105,6 +106,7 @@ class Assessment:
     motion: FinalMotion
     case: ResolvedContact
     n: int
+    ends: Ends
     chosen: int | None = None
     no_orbit: str = ""
 
@@ -128,7 +130,8 @@ class Assessment:
             said = f"{found.verdict[:-1]}{aside(self.motion, self.amplitude)}."
             return found._replace(verdict=said)
         before = "" if self.chosen is None else f"{found.verdict} "
-        end = judged_by_motion(self.motion, self.needed.tolerance, self.n)
+        share = self.ends.of_orbit(self.n) if self.motion.is_common else None
+        end = judged_by_motion(self.motion, self.needed.tolerance, self.n, share)
         return end._replace(verdict=before + end.verdict, reason=self.no_orbit or end.reason)
 
     @property
@@ -150,6 +153,11 @@ class Assessment:
     def headline(self) -> str:
         """The motion of the ball, in one sentence."""
         return headline(self.motion, self.judged)
+
+    @property
+    def starts(self) -> dict[str, float]:
+        """The shares of an even grid of starts that end on each motion, the greatest first."""
+        return self.ends.shares
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -225,7 +233,9 @@ def assess(case: ResolvedContact, question: Question, choice: Choice | None = No
         no_orbit = str(error)
         found = families(case, question.families, or_first=True)
     require(1 / _LARGEST < ratio < _LARGEST, ratio, "ϖ", f"between {1 / _LARGEST:g} and 1e8")
-    one = _judged(found, choice)
+    ends = ends_of_starts(case)
+    one = _judged(found, choice, None if question.n is not None else ends)
+    is_rare = question.n is None and _stays(one) and ends.of_orbit(one.n) < FEW
     if choice is None:
         need = needed(question.quantity, question.tolerance, contact, one.n, amplitude)
     else:
@@ -254,19 +264,35 @@ def assess(case: ResolvedContact, question: Question, choice: Choice | None = No
         ),
         orbits=found,
         needed=need,
-        motion=of_family(case, one, need.tolerance, question.balls),
+        motion=of_family(
+            case, one, need.tolerance, question.balls, ends.first if is_rare else None
+        ),
         case=case,
         n=one.n,
+        ends=ends,
         chosen=None if choice is None else choice.n,
         no_orbit=no_orbit,
     )
 
 
-def _judged(found: tuple[ComparedOrbit, ...], choice: Choice | None) -> ComparedOrbit:
+def _stays(one: ComparedOrbit) -> bool:
+    """Whether a ball on the orbit of a family stays on it."""
+    return one.exists and one.is_stable and one.is_admissible
+
+
+def _judged(
+    found: tuple[ComparedOrbit, ...], choice: Choice | None, ends: Ends | None
+) -> ComparedOrbit:
     """The family of the verdict: that of the choice, or the first whose orbit is stable and
-    admissible, or else exists.
+    admissible, and on which not few balls end, or else is stable, or exists.
     """
-    first = max(found, key=lambda one: (one.exists, one.is_stable and one.is_admissible))
+
+    def rank(one: ComparedOrbit) -> tuple[bool, ...]:
+        is_common = ends is None or ends.of_orbit(one.n) >= FEW
+        stays = one.is_stable and one.is_admissible
+        return one.exists, stays, stays and is_common
+
+    first = max(found, key=rank)
     if choice is None:
         return first
     return next((each for each in found if each.n == choice.n), first)

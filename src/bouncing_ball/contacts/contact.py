@@ -132,6 +132,10 @@ class Contact:
 
     def __post_init__(self) -> None:
         convert(self)
+        named: Any = self.parameters
+        if named is not None and not isinstance(named, Mapping):
+            why = "is not a mapping from names to numbers, such as dict(kn=1e5)"
+            raise ParameterError(f"{{parameters}} = {{}} {why}", repr(named))
         if self.from_engine is None and self.engine_parameters:
             first = next(iter(self.engine_parameters))
             what = f"{{{first}}}" if first in _OF_MUJOCO else f"{{parameters}} {first}"

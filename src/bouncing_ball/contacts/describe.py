@@ -113,13 +113,18 @@ def describe(case: ResolvedContact) -> Description:
             raise needs_table(f"{{from_engine}} {case.given.from_engine}", "r")
         return replace(found, static_deflection=case.static_deflection)
     time = case.physical.contact_time(release)
+    restitution = case.physical.restitution(release)
+    if case.law is not None and case.impact_speed is not None:
+        impact = case.law.signature(case.impact_speed * case.table.time / case.table.length)
+        time = float(impact.duration) * case.table.time
+        restitution = float(impact.restitution)
     require_short(time)
     return replace(
         found,
         damping=case.damping,
         damping_ratio=float(case.contact.damping_ratio),
         contact_time=time,
-        measured_restitution=case.physical.restitution(release),
+        measured_restitution=restitution,
         slowed_speed=case.slowed_speed,
         static_deflection=case.static_deflection,
         law=case.law_in_si,

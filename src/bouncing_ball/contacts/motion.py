@@ -17,7 +17,7 @@ computed, and its error that of a sample of as many impacts.
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import repeat
 from typing import Any, NamedTuple
 
@@ -39,6 +39,7 @@ from bouncing_ball.long_run.sampled_means import (
     sums_at,
 )
 from bouncing_ball.models.sequence import ImpactSequence
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic import n_t
 
 # Relative change of an orbit's impact velocity for a start beside the orbit.
@@ -69,7 +70,13 @@ class FinalMotion:
     there is then the ``greatest`` height in each model; for other motions there are means over
     time of the height and of the power that the table transfers, over a number of ``balls``, with
     the signed relative errors of the restitution model. ``is_laid`` tells whether the ball was
-    laid on the table, because no model has an orbit on which a ball can arrive.
+    laid on the table, because no model has an orbit on which a ball can arrive, and ``is_common``
+    whether it is the motion on which most balls end, because few end on the orbit. ``changes`` has
+    the relative errors of the means if r, k or g change by a thousandth; "r -0.1 %" and the like
+    are the names of these changes. They are known for a linear contact.
+
+    The mean height is the mean over time of the height of the ball above the middle of the table,
+    and the mean power that of the contact force times the velocity of the table.
     """
 
     kind: str
@@ -85,6 +92,8 @@ class FinalMotion:
     mean_error: dict[str, Mean] | None = None
     balls: int | None = None
     is_laid: bool = False
+    is_common: bool = False
+    changes: dict[str, dict[str, Mean]] | None = None
 
 
 class Sampling(NamedTuple):
@@ -107,6 +116,9 @@ _SAMPLES_OF_LAW = Sampling(128, 256, (20, 40), 40)
 # than e⁻⁴; but so many impacts are not left out next to r = 1.
 _FORGOTTEN = 2.0
 _MOST_BEFORE = 400
+# The relative change of r, k and g, which few users know better, and the balls of its samples.
+_CHANGE = 1e-3
+_BALLS_OF_CHANGE = 1024
 # Quantities of which means over time are compared.
 _MEANS = ("height", "power")
 
@@ -142,25 +154,32 @@ class _End(NamedTuple):
 
 
 def of_family(
-    case: ResolvedContact, family: ComparedOrbit, tolerance: float, balls: int | None = None
+    case: ResolvedContact,
+    family: ComparedOrbit,
+    tolerance: float,
+    balls: int | None = None,
+    start: tuple[float, float] | None = None,
 ) -> FinalMotion:
-    """The motion of a ball that starts on the orbit of a family, or beside an unstable orbit.
+    """The motion of a ball that starts on the orbit of a family, or beside an unstable orbit; or
+    from the phase and velocity of a ``start``, if few balls end on the orbit.
 
     The sample for means over time grows until these decide about the tolerance, up to ``balls``,
     rounded up to multiples of 256, or of 128 for a contact law.
     """
-    if family.exists and family.is_stable and family.is_admissible:
+    stays = family.exists and family.is_stable and family.is_admissible
+    if stays and start is None:
         return FinalMotion(str(Kind.ORBIT), family.n, 1, laid=_laid(case, family))
-    orbit = _first_orbit(case, family)
+    orbit = None if start is not None else _first_orbit(case, family)
     if orbit is not None and _is_elliptic(case, family, orbit):
         return FinalMotion(str(Kind.UNDECIDED), 0, 0)
     first = None if orbit is None else _beside(case, orbit)
+    first = first if start is None else _Start(*start)
     is_laid = first is None
     first = first or _laid_down(case)
     # The exact model and the restitution model.
     ends = {name: _end(case, name, first) for name in list(case.models)[:2]}
     ideal = family.standing["restitution"]
-    if ideal.exists and ideal.is_stable and ideal.is_admissible:
+    if start is None and ideal.exists and ideal.is_stable and ideal.is_admissible:
         # If the orbit is weakly stable, the mapper may not recognise that the motion repeats.
         ends["restitution"] = _on_orbit(case, family.n)
     exact, simple = (end.kind for end in ends.values())
@@ -169,7 +188,7 @@ def of_family(
     if exact == simple and exact.periods > 0 and not rests:
         values["greatest"] = {name: _greatest(case, name, end) for name, end in ends.items()}
     elif not rests:
-        values = _compared(case, ends, tolerance, balls)
+        values = _compared(case, ends, tolerance, balls, first)
     return FinalMotion(
         kind=exact.kind,
         periods=exact.periods,
@@ -178,6 +197,7 @@ def of_family(
         restitution_periods=simple.periods,
         restitution_impacts=simple.impacts,
         is_laid=is_laid,
+        is_common=start is not None,
         **values,
     )
 
@@ -275,7 +295,11 @@ def _greatest(case: ResolvedContact, name: str, end: _End) -> float:
 
 
 def _compared(
-    case: ResolvedContact, ends: Mapping[str, _End], tolerance: float, most: int | None
+    case: ResolvedContact,
+    ends: Mapping[str, _End],
+    tolerance: float,
+    most: int | None,
+    first: _Start,
 ) -> dict[str, Any]:
     """Means of both models, in m and W, and the relative errors of the second model."""
     sampling = _SAMPLES if case.law is None else _SAMPLES_OF_LAW
@@ -298,6 +322,9 @@ def _compared(
         size = np.abs(error)
         if np.all(size + margin <= tolerance) or np.any(size - margin > tolerance):
             break
+    changes = None
+    if case.law is None and any(end.is_sampled for end in ends.values()):
+        changes = _changes(case, ends, sampling, first)
     table = case.table
     watt = case.mass * table.gravity**2 / table.angular_frequency
     means = dict(zip(ends, (exact, simple), strict=True))
@@ -308,7 +335,59 @@ def _compared(
             name: Mean(float(error[k]), float(margin[k])) for k, name in enumerate(_MEANS)
         },
         "balls": look.balls,
+        "changes": changes,
     }
+
+
+def _changed(case: ResolvedContact) -> dict[str, ResolvedContact]:
+    """The case with r, k or g changed by a thousandth, the others as they are."""
+    contact = case.contact
+    r = float(contact.restitution)
+    ratio = float(contact.frequency_ratio)
+
+    def with_r(restitution: float) -> ResolvedContact:
+        changed = SpringDamper.from_restitution(restitution, ratio, contact.release, measured=True)
+        return replace(case, contact=changed)
+
+    stiffer = replace(contact, frequency_ratio=ratio * math.sqrt(1 + _CHANGE))
+    heavier = replace(case.table, gravity=case.table.gravity * (1 + _CHANGE))
+    found = {"r -0.1 %": with_r(r * (1 - _CHANGE))}
+    if r * (1 + _CHANGE) <= 1:
+        found["r +0.1 %"] = with_r(r * (1 + _CHANGE))
+    found["k +0.1 %"] = replace(case, contact=stiffer)
+    found["g +0.1 %"] = replace(case, table=heavier)
+    return found
+
+
+def _changes(
+    case: ResolvedContact, ends: Mapping[str, _End], sampling: Sampling, first: _Start
+) -> dict[str, dict[str, Mean]] | None:
+    """The errors of the means in the changed cases, of the motions on which a ball with the same
+    start ends there, from smaller samples; None if a ball rests.
+    """
+    balls = min(_BALLS_OF_CHANGE, sampling.usual)
+    small = sampling._replace(unit=balls, usual=balls, impacts=sampling.impacts[-2:][:1])
+    found = {}
+    for name, changed in _changed(case).items():
+        lam = changed.table.amplitude
+        # A ball beside a table that moves less would rise from it.
+        start = first._replace(velocity=min(first.velocity, lam * math.cos(first.phase)))
+        there = {model: _end(changed, model, start) for model in ends}
+        if not all(end.impacts.phase.size for end in there.values()):
+            return None
+        samples = _sample_sizes(small, balls, there.values())
+        looked = (_sums(changed, *each, samples) for each in there.items())
+        # There is no end to the sums of a motion that repeats.
+        *_, (_, *sums) = zip(samples, *looked, strict=False)
+        if any(np.any(np.isnan(each)) for each in sums):
+            return None
+        exact, simple = (_estimate(*each) for each in zip(there.values(), sums, strict=True))
+        factor = quantile(samples[-1].level, min(exact.freedom, simple.freedom))
+        error, margin = _error_of_means(exact, simple, factor)
+        found[name] = {
+            each: Mean(float(error[k]), float(margin[k])) for k, each in enumerate(_MEANS)
+        }
+    return found
 
 
 def _sample_sizes(sampling: Sampling, balls: int, ends: Iterable[_End]) -> list[SampleSize]:

@@ -105,7 +105,7 @@ def notes(case: ResolvedContact, family: ComparedOrbit, motion: FinalMotion) -> 
         )
     if not family.exists:
         found.append(f"at this Λ the contact has no {orbit}")
-    elif motion.restitution_kind is not None:
+    elif motion.restitution_kind is not None and not motion.is_common:
         what = "unstable" if family.is_admissible else "inadmissible (an earlier impact occurs)"
         found.append(f"the {orbit} is {what}, so that no ball stays on it")
     if contact.frequency_ratio < 1:

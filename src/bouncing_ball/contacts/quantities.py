@@ -15,6 +15,8 @@ from bouncing_ball.errors import ParameterError, Range
 STANDARD_GRAVITY = 9.80665
 """Standard acceleration of gravity, in m/s²."""
 
+# A longer value is named by its type in a message.
+_LONGEST_SHOWN = 60
 _NONE_TOO = Range(0, 1e40, "[]")
 Frequency = Annotated[Any, SIParameter("Hz", "50 Hz")]
 AngularFrequency = Annotated[Any, SIParameter("rad/s", "314 rad/s")]
@@ -85,7 +87,7 @@ def check_kind(name: str, value: Any, kind: type) -> None:
     if not isinstance(value, kind):
         # The text of a ball or of a dataset has several lines.
         text = repr(value)
-        shown = type(value).__name__ if "\n" in text else text
+        shown = type(value).__name__ if "\n" in text or len(text) > _LONGEST_SHOWN else text
         article = "an" if kind.__name__[0] in "AEIOU" else "a"
         raise ParameterError(f"{{{name}}} = {{}} is not {article} {kind.__name__}", shown)
 

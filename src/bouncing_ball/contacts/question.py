@@ -51,8 +51,8 @@ class Question:
     def __post_init__(self) -> None:
         convert(self)
         one_of("quantity", self.quantity, {str(each): each for each in QUANTITIES})
-        if self.n is not None and self.n not in FAMILY:
-            raise ModelError(f"index of the family n = {self.n} is not {FAMILY}")
+        if self.n is not None and (isinstance(self.n, bool) or self.n not in FAMILY):
+            raise ModelError(f"index of the family n = {self.n!r} is not {FAMILY}")
         if self.balls is not None and self.balls not in MOST_BALLS:
             raise ParameterError(f"{{balls}} = {self.balls} is not {MOST_BALLS}")
 

@@ -98,9 +98,9 @@ def law_type(contact: Contact) -> type[ContactLaw] | None:
     >>> law_type(Contact(law="hunt-crossley", contact_time="1 ms")).name
     'hunt-crossley'
     """
-    name = contact.law
-    if name is None:
+    if contact.law is None:
         return None
+    name = str(contact.law)
     if name.casefold() in ("hertz", "hertzian"):
         raise ParameterError(
             f"{{law}} {name} has no damper: Hertz's spring with a damper is {{law}} tsuji, or give "

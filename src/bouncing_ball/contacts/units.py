@@ -12,6 +12,7 @@ or radians.
 import math
 import re
 import textwrap
+from collections.abc import Mapping
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
@@ -140,6 +141,9 @@ write it as '50 Hz'
     def wrong(why: str, said: str = short) -> ParameterError:
         return ParameterError(f"{{{name}}} = {{}} {why}", said)
 
+    if isinstance(value, bool):
+        raise wrong("is neither a number nor a text", repr(value))
+
     if isinstance(value, str):
         if spelled := _plain_spelling(value.strip()[:60]):
             raise wrong(spelled)
@@ -250,6 +254,37 @@ def _in_another_unit(unit: str, kind: SIParameter) -> str:
     return f"is in {unit}, not in {kind.name.replace('*', ' ')}"
 
 
+# What is more, in SI units and without a unit in the text, was probably meant in thousandths.
+_MOST_BARE = {
+    "contact_time": 0.5,
+    "radius": 0.5,
+    "table_amplitude": 0.02,
+    "time_step": 0.1,
+    "mass": 1e3,
+    "drop_height": 100.0,
+    "speed": 100.0,
+}
+
+
+def doubts(given: Mapping[str, Any], kinds: Mapping[str, SIParameter]) -> tuple[str, ...]:
+    """Sentences on plain numbers that are unusually large in SI units.
+
+    Examples
+    --------
+    >>> time = {"contact_time": SIParameter("s", "50 us")}
+    >>> doubts({"contact_time": "7"}, time)[0][:47], doubts({"contact_time": "7 s"}, time)
+    ('contact time 7 was read as 7 s: write a unit, s', ())
+    """
+    found = []
+    for name, most in _MOST_BARE.items():
+        value = given.get(name)
+        if value is not None and name in kinds and _is_bare(value) and float(value) > most:
+            words, unit = name.replace("_", " "), kinds[name].name
+            why = f"write a unit, such as {kinds[name].example!r}, if another one was meant"
+            found.append(f"{words} {value} was read as {float(value):g} {unit}: {why}")
+    return tuple(found)
+
+
 def _is_bare(value: Any) -> bool:
     """Whether a number has no unit."""
     try:
@@ -261,6 +296,8 @@ def _is_bare(value: Any) -> bool:
 
 def _out_of_range(name: str, text: Any, value: float, kind: SIParameter) -> ParameterError:
     said = f"{{{name}}} = {value:g} {kind.name}".rstrip()
+    if value <= 0 < kind.allowed.low:
+        return ParameterError(f"{said} is not a positive number")
     # A share above 1 was probably meant in percent. A restitution of a few percent is rare.
     least = _PERCENT if 1 in kind.allowed else 1
     is_share = kind.allowed.high == 1 and least <= value < 100 and "%" not in str(text)

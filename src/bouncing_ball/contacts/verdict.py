@@ -110,9 +110,16 @@ def _prediction(family: ComparedOrbit, needed: Needed) -> str:
     return f"for {_subject(needed.quantity, family.n)} it predicts {both}, {size}"
 
 
-def judged_by_motion(motion: FinalMotion, tolerance: float, n: int) -> Judgement:
-    """The verdict on the motion on which a ball ends, if the orbit is not stable."""
+def judged_by_motion(
+    motion: FinalMotion, tolerance: float, n: int, share: float | None = None
+) -> Judgement:
+    """The verdict on the motion on which a ball ends, if the orbit is not stable, or if only a
+    small share of the starts ends on it.
+    """
     about = f"no ball stays on the {n}-T orbit, so that its errors are not judged"
+    if share is not None:
+        ends = f"{shown(share, '%')} of the starts end" if share else "no start ends"
+        about = f"{ends} on the stable {n}-T orbit, so that its errors are not judged"
     exact = motion.kind
     simple = motion.restitution_kind
     if exact == simple == Kind.PERMANENT_CONTACT:
@@ -142,8 +149,53 @@ def judged_by_motion(motion: FinalMotion, tolerance: float, n: int) -> Judgement
     errors = motion.mean_error.values()
     least = max(abs(error.value) - error.half_width for error in errors)
     most = max(abs(error.value) + error.half_width for error in errors)
-    why = f"{about}; means over time are compared"
+    why = f"{about}; means over time are compared, of the height above the table's middle and of "
+    why += "the power that the table transfers; ± is of sampling alone"
+    if motion.changes:
+        why += f"; {_said_of(motion.changes)}"
+        if decided := _by_change(motion, tolerance):
+            return decided._replace(reason=why)
     return _within(least, most, tolerance, found, why, _larger_sample(motion, tolerance))
+
+
+def _said_of(changes: Mapping[str, Mapping[str, Mean]]) -> str:
+    """What small changes of the contact and of gravity do to the error of the mean height."""
+    heights = {name: of["height"] for name, of in changes.items()}
+    parts = [
+        f"{100 * one.value:+.2g} % ± {100 * one.half_width:.2g} % with {name}"
+        for name, one in heights.items()
+    ]
+    return f"from smaller samples the mean height is off by {', '.join(parts)}"
+
+
+# Five samples of one mean have intervals so much wider that do not meet in one of a hundred cases.
+_WIDER = 1.25
+
+
+def _by_change(motion: FinalMotion, tolerance: float) -> Judgement | None:
+    """The verdict if a change of a thousandth decides about the error; otherwise None."""
+    assert motion.mean_error is not None and motion.changes is not None
+    for name, error in motion.mean_error.items():
+        found = [error, *(of[name] for of in motion.changes.values())]
+        lows = [one.value - _WIDER * one.half_width for one in found]
+        highs = [one.value + _WIDER * one.half_width for one in found]
+        if max(lows) <= min(highs):
+            continue
+        sizes = [
+            (max(low, -high, 0.0), max(abs(low), abs(high)))
+            for low, high in zip(lows, highs, strict=True)
+        ]
+        apart = any(most <= tolerance for _, most in sizes) and any(
+            least > tolerance for least, _ in sizes
+        )
+        if apart or max(lows) > 0 > min(highs):
+            ends = f"{100 * min(lows):+.2g} % to {100 * max(highs):+.2g} %"
+            sentence = (
+                f"Whether the restitution model is good enough at {percent(tolerance)} is decided "
+                f"by changes of 0.1 % in r, k or g: its mean {name} is off by {ends}."
+            )
+            return Judgement(False, sentence, "")
+    return None
 
 
 def _larger_sample(motion: FinalMotion, tolerance: float) -> str:
@@ -284,6 +336,14 @@ def aside(motion: FinalMotion, amplitude: float) -> str:
     return f"; a ball laid on the table {_LAID[motion.laid]}, and is not judged"
 
 
+def _common(motion: FinalMotion) -> str:
+    """A clause on the motion on which most balls end."""
+    does = f"such a ball {_DOES[motion.kind]}"
+    if motion.periods > 1 and motion.kind != Kind.PERMANENT_CONTACT:
+        does += f" after {motion.periods} periods of the table and {motion.impacts} impacts"
+    return does
+
+
 def headline(motion: FinalMotion, family: ComparedOrbit) -> str:
     """The motion of the ball, in one sentence."""
     orbit = f"{family.n}-T orbit"
@@ -295,6 +355,8 @@ def headline(motion: FinalMotion, family: ComparedOrbit) -> str:
     if motion.restitution_kind is None:
         return f"A ball near the {orbit} stays near it, because the contact loses no energy."
     none = not any(each.exists for each in family.standing.values())
+    if motion.is_common:
+        return f"Most balls end otherwise than on the stable {orbit}: {_common(motion)}."
     does = (_LAID if motion.is_laid else _DOES)[motion.kind]
     if motion.periods > 1 and motion.kind != Kind.PERMANENT_CONTACT:
         does += f" after {motion.periods} periods of the table and {motion.impacts} impacts"

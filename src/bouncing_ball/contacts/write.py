@@ -72,7 +72,7 @@ def write_contact(
     >>> found.at_step.is_within, found.parameters["solref"][0]
     (False, -100000.0)
     >>> round(found.retuned.at_step.mean, 6), f"{found.at_step.stiffest:.3g} N/m"
-    (0.75, '74.1 N/m')
+    (0.75, '74.6 N/m')
     """
     asked = Question() if question is None else question
     check_kind("contact", contact, Contact)

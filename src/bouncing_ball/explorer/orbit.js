@@ -4,7 +4,6 @@
 const NAMES = ["spring-damper", "restitution", "corrected"];
 // Of their dots: each is seen where they lie upon each other.
 const SIZES = [8, 5.5, 3.5];
-const TOLERANCE = 0.01;
 
 // What a ball does that starts beside an unstable orbit, as far as the page follows contacts.
 const BESIDE = 1e-3;
@@ -14,7 +13,7 @@ function insteadOf({amplitude, phase, impact_velocity}, {contact}) {
   return `one that starts beside it ${SAID[end.kind](end)}`;
 }
 
-function verdictOf(found, {n, physical}) {
+function verdictOf(found, {n, physical, tolerance}) {
   const [exact, simple, corrected] = found.orbits, error = found.errors.max_height;
   const wrong = exact.exists !== simple.exists
     ? (exact.exists ? `it misses the ${n}-T orbit, which the contact has`
@@ -31,11 +30,11 @@ function verdictOf(found, {n, physical}) {
       + `${shown(found.limits[0].saddle_node, 4)}.`];
   if (exact.exists && !exact.is_stable)
     return [false, `No ball stays on the ${n}-T orbit, because it is unstable: ${insteadOf(exact, found)}.`];
-  if (!wrong && Math.abs(error) <= TOLERANCE)
-    return [true, `The restitution model is good enough: ${predicted}, within ${percent(TOLERANCE)}.`];
+  if (!wrong && Math.abs(error) <= tolerance)
+    return [true, `The restitution model is good enough: ${predicted}, within ${percent(tolerance)}.`];
   return [false, `The restitution model is not good enough: `
-    + `${wrong || `${predicted}, beyond ${percent(TOLERANCE)}`}`
-    + (same && Math.abs(found.corrected.max_height) <= TOLERANCE
+    + `${wrong || `${predicted}, beyond ${percent(tolerance)}`}`
+    + (same && Math.abs(found.corrected.max_height) <= tolerance
       ? `; the corrected restitution model is good enough: its error is ${signed(found.corrected.max_height)}.`
       : "; nor is the corrected one: simulate the contact.")];
 }
@@ -144,7 +143,7 @@ function fillTables(found, question) {
   );
   $("error-rows").replaceChildren(...Object.entries(QUANTITIES).map(([key, name]) => row(name,
     [found.errors[key], found.corrected[key]].map((value, k) =>
-      [`${signed(value)}${Math.abs(value) <= TOLERANCE ? ", within" : Number.isFinite(value) ? ", beyond" : ""}`,
+      [`${signed(value)}${Math.abs(value) <= question.tolerance ? ", within" : Number.isFinite(value) ? ", beyond" : ""}`,
         value, `${k ? "corrected_errors" : "errors"} ${key}`]))));
 }
 

@@ -30,6 +30,7 @@ function show(hash) {
   }
   const onStage = state.tab === "stage";
   $("sides").hidden = state.tab === "design";
+  $("design-answer").hidden = state.tab !== "design";
   for (const id of ["contact-choice", "orbit-key", "orbit-views"]) $(id).hidden = onStage;
   $("slice-views").hidden = !onStage;
   $("command-name").textContent = `The same in the shell${onStage ? "" : ", with every digit and certified"}:`;

@@ -7,13 +7,13 @@ const $ = id => document.getElementById(id);
 // differs from the one before, the periods that have passed, and how many times slower it plays.
 const DEFAULTS = {
   tab: "orbit", r: 0.85, w: 10, a: 0.8, n: 1, release: "displacement", side: "stable",
-  m: 20, f: 50, acc: 0.8, k: 1e7, engine: "none", e: 0.001, given: "stiffness",
+  m: 20, f: 50, acc: 0.8, k: 1e7, engine: "none", e: 0.001, t: 1, given: "stiffness",
   one: "", two: "", three: "",
   model: "both", phi: 0, v: -3, balls: 1, dv: 0, dphi: 0, from: 0, pace: "1", view: "height",
 };
 const RANGES = {
   r: [0.001, 1], w: [0.1, 1e6], a: [0.001, 100], n: [1, 20],
-  m: [1e-9, 1e9], f: [1e-6, 1e9], acc: [0.001, 100], k: [1e-9, 1e18], e: [1e-6, 0.5],
+  m: [1e-9, 1e9], f: [1e-6, 1e9], acc: [0.001, 100], k: [1e-9, 1e18], e: [1e-6, 0.5], t: [1e-4, 99],
   phi: [-10, 10], v: [-1000, 1000], balls: [1, 9], dv: [-10, 10], dphi: [-10, 10], from: [0, 1000],
 };
 // The parameters of an engine, as they are written in it.
@@ -42,7 +42,9 @@ function parse(hash) {
   const given = new URLSearchParams(hash.replace(/^#/, "")), scene = SCENES[given.get("scene")];
   const state = {...DEFAULTS, ...(scene && {tab: "stage", ...scene.state})}, refused = [];
   const tab = given.get("tab") ?? state.tab;
-  if (scene) given.delete("scene");
+  if (given.has("scene") && !scene)
+    refused.push(`scene = ${given.get("scene")} (the scenes are ${Object.keys(SCENES).join(", ")})`);
+  given.delete("scene");
   for (const [name, text] of given) {
     const value = Number(text), range = rangeOf(name, tab);
     if (TEXTS.includes(name) || (name === "engine" && !CHOICES.engine.includes(text))) state[name] = text;
@@ -119,8 +121,8 @@ function impossible(state) {
 const givenBy = given => given in ENGINES ? TEXTS.slice(0, ENGINE_NAMES[given].length) : ["k", "r"];
 const TABS = {
   orbit: () => ["r", "w", "a", "n", "release", "side"],
-  design: ({engine, given}) => ["tab", "m", "f", "acc", ...givenBy(given), "n", "release",
-    ...(given === "stiffness" ? [] : ["given"]), ...(engine === "none" ? [] : ["engine", "e"])],
+  design: ({engine, given, t}) => ["tab", "m", "f", "acc", ...givenBy(given), "n", "release",
+    ...(t === DEFAULTS.t ? [] : ["t"]), ...(given === "stiffness" ? [] : ["given"]), ...(engine === "none" ? [] : ["engine", "e"])],
   stage: ({model}) => ["tab", "model", "r", ...(model === "restitution" ? [] : ["w"]), "a", "phi",
     "v", "balls", "dv", "dphi", "from", "pace", "view"],
 };
@@ -130,10 +132,13 @@ const hashOf = state => "#" + TABS[state.tab](state).map(
 // What the model is asked: of the physical tab, its dimensionless groups.
 function asked(state) {
   const {r, n, release, side} = state;
-  if (state.tab === "orbit") return {r, n, release, side, omega: state.w, amplitude: state.a};
+  // The tolerance is given in percent, on the physical tab.
+  if (state.tab === "orbit")
+    return {r, n, release, side, omega: state.w, amplitude: state.a, tolerance: DEFAULTS.t / 100};
   const one = caseOf(state);
   // `bouncing-ball design` asks for the orbit that is stable next to the saddle-node.
-  return {n, side: "stable", amplitude: state.acc, contact: one.contact, physical: one};
+  return {n, side: "stable", amplitude: state.acc, contact: one.contact, physical: one,
+    tolerance: state.t / 100};
 }
 
 function commandOf(state) {
@@ -151,5 +156,6 @@ function commandOf(state) {
       given === "mujoco" ? `--${name} "${text}"` : `--set ${name}=${text}`)];
   return [`bouncing-ball design --mass "${state.m} g" --frequency "${state.f} Hz"`,
     `--acceleration "${state.acc} g"`, ...contact, `--n ${state.n}`, `--release ${release}`,
+    ...(state.t === DEFAULTS.t ? [] : [`--tolerance "${state.t} %"`]),
     ...(engine === "none" ? [] : [`--engine ${engine} --restitution-error ${state.e}`])].join(" ");
 }

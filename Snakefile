@@ -13,7 +13,7 @@ include: "workflow/rules/common.smk"
 include: "workflow/rules/readable.smk"
 
 
-configfile: "config/config.yaml"
+configfile: here("config/config.yaml")
 
 
 # From parameters to datasets: what all stages have in common, and the stages of both sets of

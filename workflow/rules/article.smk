@@ -37,7 +37,7 @@ rule paper:
             "paper.py",
             files=[*TEMPLATES, f"{ARTICLE}/references.yaml", f"{ARTICLE}/numbered.csl"],
         ),
-        atlas="config/atlas.nc",
+        atlas=here("config/atlas.nc"),
         data=[each.dataset for each in ARTIFACTS.values() if each.study],
         tables=expand("results/figures/{table}.md", table=TABLES),
     output:

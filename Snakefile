@@ -13,7 +13,7 @@ include: "workflow/rules/common.smk"
 include: "workflow/rules/readable.smk"
 
 
-configfile: "config/config.yaml"
+configfile: here("config/config.yaml")
 
 
 # The first page of `snakemake --report`; `make report`.

@@ -10,7 +10,12 @@ from declared_artifacts import ARTIFACTS
 from snakemake.utils import update_config
 from whole_configuration import configuration_type
 
-from bouncing_ball.pipeline.configuration import ConfigurationError, check, read_yaml
+from bouncing_ball.pipeline.configuration import (
+    ConfigurationError,
+    check,
+    check_configuration,
+    read_yaml,
+)
 from bouncing_ball.pipeline.configuration_docs import configuration_page, configuration_schema
 
 FOLDER = Path(__file__).resolve().parents[2] / "config"
@@ -65,7 +70,7 @@ SPAN = (*FIG05, "frequency_ratio")
         ((*FIG08, "resitution"), 1, "paper.fig08.resitution = 1, did you mean restitution?"),
         (("papers",), {}, "unknown key papers = {}, did you mean paper? Allowed here: "),
         (FIG08, 3, "paper.fig08 = 3 must be a mapping of the keys n, restitution, "),
-        (("paper",), {"fig2": 1}, "unknown key paper.fig2 = 1, did you mean fig"),
+        (("paper", "fig2"), 1, "unknown key paper.fig2 = 1, did you mean fig"),
         (("paper",), 3, "paper = 3 must be a mapping"),
         (("beyond",), REMOVED, "missing section beyond"),
         # An artifact of the other set of studies.
@@ -118,6 +123,48 @@ def test_a_mistake_is_named_in_one_line(model, keys, value, message):
 def test_a_study_that_does_not_exist_is_named_in_one_line(refusal, module, study):
     with refusal(ConfigurationError, f"{module}.{study}", "nothing"):
         function(module, study)
+
+
+def test_all_mistakes_are_in_one_answer(model):
+    config = copy.deepcopy(CONFIG)
+    config["paper"]["fig08"]["n"] = 0
+    config["paper"]["fig05"]["frequency_ratio"]["min"] = -1.0
+    config["paper"]["fig14"]["toleranc"] = config["paper"]["fig14"].pop("tolerance")
+    del config["paper"]["table1"]["restitution"]
+    del config["beyond"]
+    with pytest.raises(ConfigurationError) as error:
+        check(model, config)
+    lines = error.value.mistakes
+    assert len(lines) == 5 and all(line.isprintable() for line in lines)
+    for said in (
+        "unknown key paper.fig14.toleranc = 0.01, did you mean tolerance?",
+        "paper.fig08.n = 0 must be at least 1",
+        "paper.fig05.frequency_ratio.min = -1.0 must be at least",
+        "missing key paper.table1.restitution",
+        "missing section beyond",
+    ):
+        assert sum(line.startswith(said) for line in lines) == 1
+
+
+def test_keys_that_are_missing_at_one_place_have_one_line(model):
+    config = copy.deepcopy(CONFIG)
+    config["paper"] = {name: config["paper"][name] for name in ("fig05", "fig06")}
+    with pytest.raises(ConfigurationError) as error:
+        check(model, config)
+    (line,) = error.value.mistakes
+    assert line.startswith("missing keys in paper: fig02, fig03, ")
+
+
+def test_mistakes_in_files_and_in_their_values_are_in_one_answer(model, tmp_path):
+    path = tmp_path / "mine.yaml"
+    path.write_text("release: force\nrelease: force\n", encoding="utf-8")
+    config = copy.deepcopy(CONFIG)
+    config["paper"]["fig08"]["n"] = 0
+    with pytest.raises(ConfigurationError) as error:
+        check_configuration([path], config, model)
+    first, second = error.value.mistakes
+    assert first == f"{path}: duplicate key 'release' in line 2"
+    assert second.startswith("configuration: paper.fig08.n = 0 must be at least 1")
 
 
 def test_a_refusal_is_printable(model, one_line):

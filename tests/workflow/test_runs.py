@@ -4,6 +4,7 @@ import json
 import re
 import shutil
 import signal
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
@@ -102,6 +103,27 @@ def test_a_run_that_nothing_interrupts_gives_the_same_bytes(pristine, fresh):
     expected = pristine.contents("results")
     assert after.keys() == expected.keys()
     assert [name for name in after if after[name] != expected[name]] == []
+
+
+def test_runs_with_other_parameters_stand_beside_each_other(fresh, tmp_path):
+    values = {"elastic": 0.9, "plastic": 0.5}
+
+    def run(name):
+        given = tmp_path / f"{name}.yaml"
+        given.write_text(f"paper: {{fig11: {{restitution: {values[name]}}}}}\n", encoding="utf-8")
+        beside = ("--directory", str(tmp_path / name), "--configfile", str(given))
+        return fresh.run("--cores", "1", "fig11", "diff", *beside, check=False)
+
+    # At the same time, each with its own results and its own comparison.
+    with ThreadPoolExecutor() as pool:
+        done = dict(zip(values, pool.map(run, values), strict=True))
+    for name, restitution in values.items():
+        results = tmp_path / name / "results"
+        assert read_dataset(results / "figures" / "fig11.nc").attrs["restitution"] == restitution
+        page = (results / "diff" / "fig11.txt").read_text(encoding="utf-8")
+        assert f"parameter changed, restitution 0.65 → {restitution}" in page
+        assert done[name].returncode == 1 and "results differ from the record" in done[name].stderr
+    assert not (fresh.path / "results").exists()
 
 
 @pytest.mark.long

@@ -45,7 +45,7 @@ rule paper:
             "paper.py",
             files=[*TEMPLATES, f"{ARTICLE}/references.yaml", f"{ARTICLE}/numbered.csl"],
         ),
-        atlas="config/atlas.nc",
+        atlas=here("config/atlas.nc"),
         data=[each.dataset for each in ARTIFACTS.values() if each.study],
         tables=[f"results/{each.place}.md" for each in ARTIFACTS.values() if each.table],
     output:

@@ -47,6 +47,13 @@ from adapter import function
 IDLE = ("Select jobs", "Execute ", "Finished jobid", "Conda environments: ignored")
 logger.addFilter(lambda record: not str(record.msg).startswith(IDLE))
 
+
+# A file in `config`: that of the working directory if there is one, otherwise that of the
+# repository, so that `--directory` makes a run of its own beside others.
+def here(path):
+    return path if os.path.exists(path) else os.path.relpath(Path(ROOT, path))
+
+
 # All artifacts by name, as the stages of both sets of studies list them.
 ARTIFACTS = {}
 
@@ -56,6 +63,8 @@ ARTIFACTS = {}
 # result is a pattern of their names.
 def stage(module, figures=None, **artifacts):
     for name, given in artifacts.items():
+        if accepted := given.get("accepted"):
+            given = {**given, "accepted": here(accepted)}
         ARTIFACTS[name] = Artifact(
             name=name, module=module, figures=figures or f"{module}_figures", **given
         )

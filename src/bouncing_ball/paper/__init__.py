@@ -25,22 +25,23 @@ Eqs.     what                        where
 21, 22   start of the contact        ``models.spring_damper.SpringDamper.flow``
 23       end of the contact          ``models.linear_contact.LinearContactDynamics.depart``
 24-26    return to the start         ``periodic.problem.PeriodicOrbits``
-21-26    all, in unknowns of paper   ``periodic.paper_unknowns.PaperUnknowns``
+..       all, in unknowns of paper   ``periodic.paper_unknowns.PaperUnknowns``
 ..       solved at a given duration  ``periodic.spring_damper_branch.branch_point``
 ..       their saddle-node           ``periodic.spring_damper_bifurcations.saddle_node``
 ..       their period doubling       ``periodic.spring_damper_bifurcations.period_doubling``
 27       bouncing-off velocity       ``periodic.orbit.Orbit.bounce_velocity``
-33       permanent contact, Λ_SD     ``models.permanent_contact.permanent_contact_threshold``
+28-31    only as printed             ``paper.claims.as_printed.steady_displacement``
+32, 33   permanent contact, Λ_SD     ``models.permanent_contact.permanent_contact_threshold``
 34, 35   the inverse of Λ_SD         ``models.permanent_contact.permanent_contact_frequency_ratios``
 36       the smallest Λ_SD           ``models.permanent_contact.permanent_contact_minimum``
-37       greatest height             ``periodic.orbit.Orbit.max_height``
 37, 38   errors                      ``accuracy.errors.relative_errors``
+..       of the greatest height      ``periodic.orbit.Orbit.max_height``
 ..       their thresholds, ϖ_h, ϖ_PC ``accuracy.thresholds.restitution_thresholds``
 ======== =========================== ==========================================================
 
-Eqs. 28-32 are not in this table: the motion in permanent contact, of which the library needs only
-the threshold that follows (Eq. 33). Their printed form is
-``paper.claims.as_printed.steady_displacement`` (Eq. 31).
+The library does not compute with Eqs. 28-31, the motion in permanent contact, because it needs only
+the threshold that follows from them (Eqs. 32 and 33). The row of these equations leads to the
+printed form of the last one.
 
 Eqs. 1 and 10 are in metres and seconds, all others dimensionless. The paper solves Eqs. 21-26 by
 continuation; at a given duration of the contact they are linear, so that the library also has

@@ -7,12 +7,12 @@ the datasets that the stage names; ``part`` and ``found`` are those of
 name. The annotations of the arguments are the types of the configuration, so that the allowed
 values and the reasons for them are defined beside the study.
 
-Every mistake gives a message of one line. A duplicate key is a mistake, because otherwise the last
-value would be used without a warning.
+Every mistake gives one line, and all mistakes are in one message. A duplicate key is a mistake,
+because otherwise the last value would be used without a warning.
 """
 
 import inspect
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
@@ -25,10 +25,17 @@ from bouncing_ball.errors import ModelError, escaped, printable
 
 
 class ConfigurationError(ModelError):
-    """A wrong key, type or value in a file. The message is one line that is safe to print."""
+    """Wrong keys, types or values in files. The message has a line for each mistake, and is safe to
+    print.
+    """
 
-    def __init__(self, text: str) -> None:
-        super().__init__(escaped(text))
+    def __init__(self, *mistakes: str) -> None:
+        super().__init__("\n".join(map(escaped, mistakes)))
+
+    @property
+    def mistakes(self) -> list[str]:
+        """The lines of the message."""
+        return str(self).split("\n")
 
 
 class _Loader(yaml.SafeLoader):
@@ -168,32 +175,35 @@ def configuration_model(
 def check_configuration(
     files: Iterable[str], config: Mapping[str, Any], model: type[BaseModel]
 ) -> None:
-    """Raise on the first mistake in the files of a run, or in the configuration read from them.
+    """Raise on mistakes in the files of a run, and in the configuration read from them.
 
     Raises
     ------
     ConfigurationError
-        The message is one line that names the file or the key.
+        The message has a line for each mistake, which names the file or the key.
     """
+    found: list[str] = []
     for where in files:
         try:
             # Snakemake has read the file already, but accepts duplicate keys without an error.
             read_yaml(where)
         except ConfigurationError as error:
-            raise ConfigurationError(f"{where}: {error}") from None
+            found += [f"{where}: {mistake}" for mistake in error.mistakes]
     try:
         check(model, config)
     except ConfigurationError as error:
-        raise ConfigurationError(f"configuration: {error}") from None
+        found += [f"configuration: {mistake}" for mistake in error.mistakes]
+    if found:
+        raise ConfigurationError(*found)
 
 
 def check(model: type[BaseModel], config: Mapping[str, Any]) -> None:
-    """Raise on the first mistake in a configuration of this type.
+    """Raise on the mistakes in a configuration of this type.
 
     Raises
     ------
     ConfigurationError
-        The message is one line that names the key, the value and the allowed values.
+        The message has a line for each mistake: the key, the value and the allowed values.
 
     Examples
     --------
@@ -207,9 +217,46 @@ samples? Allowed here: min, max, samples
     try:
         model.model_validate(config)
     except ValidationError as error:
-        # Pydantic reports a mistyped key as unknown and as missing; the first report is clearer.
-        first = min(error.errors(), key=lambda each: each["type"] != "extra_forbidden")
-        raise ConfigurationError(_sentence(model, first)) from None
+        found = _each_once(error.errors())
+        raise ConfigurationError(*_sentences(model, found)) from None
+
+
+def _each_once(errors: Iterable[Any]) -> list[Any]:
+    """The errors of pydantic with unknown keys first, and one for each mistake.
+
+    A mistyped key is reported as unknown and its right name as missing. Where a key is unknown, a
+    missing key beside it is therefore left out if it may be the one that was meant.
+    """
+    ordered = sorted(errors, key=lambda each: each["type"] != "extra_forbidden")
+    unknown = [each["loc"] for each in ordered if each["type"] == "extra_forbidden"]
+    kept: dict[tuple[str | int, ...], Any] = {}
+    for each in ordered:
+        *above, key = each["loc"]
+        meant = any(
+            list(other[:-1]) == above and get_close_matches(str(other[-1]), [str(key)])
+            for other in unknown
+        )
+        if each["type"] != "missing" or not meant:
+            kept.setdefault(each["loc"], each)
+    # A list without its wrong entries is too short; the entries are the mistake.
+    inside = {loc[:k] for loc in kept for k in range(len(loc))}
+    return [each for loc, each in kept.items() if each["type"] != "too_short" or loc not in inside]
+
+
+def _sentences(model: type[BaseModel], errors: Iterable[Any]) -> Iterator[str]:
+    """A sentence for each error; keys that are missing at one place share one."""
+    missing: dict[tuple[str | int, ...], list[Any]] = {}
+    for each in errors:
+        if each["type"] == "missing":
+            missing.setdefault(each["loc"][:-1], []).append(each)
+        else:
+            yield _sentence(model, each)
+    for above, all_of_them in missing.items():
+        if len(all_of_them) == 1:
+            yield _sentence(model, all_of_them[0])
+        else:
+            names = ", ".join(str(each["loc"][-1]) for each in all_of_them)
+            yield f"missing keys in {place(above) or 'the file'}: {names}"
 
 
 def place(path: Sequence[str | int]) -> str:

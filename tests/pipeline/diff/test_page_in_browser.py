@@ -100,10 +100,10 @@ def test_a_browser_shows_all_pictures_and_columns_of_the_page(pair, tmp_path, br
 
 def every_picture_is_there_and_the_worst_first(seen, pair):
     images = dict(seen["images"])
-    # Of the pictures those that moved, with at most a thousand pixels across.
+    # Of the pictures those that moved, with at most 800 pixels across.
     with Image.open(pair.record / "figures" / "fig09.png") as picture:
         width, height = picture.size
-    small = min(1, 1000 / width)
+    small = min(1, 800 / width)
     expected = [round(small * width), round(small * height), True]
     assert images == {"fig09, record": expected, "fig09, new": expected}
     worst = [["fig01", "missing", True], ["fig05", "drifted", True], ["fig09", "drifted", True]]

@@ -195,7 +195,7 @@ def marked(record: str | None, new: str | None) -> tuple[_Words, _Words]:
 
 
 # Pixels across, and colours, of the pictures in the page: enough to see what moved.
-_WIDTH = 1000
+_WIDTH = 800
 _COLOURS = 32
 
 

@@ -18,17 +18,20 @@ _ENOUGH = 5
 _ALL_DIGITS = 17
 # A percentage above this is read more easily as a factor.
 _FACTOR = 10.0
+# Above this the record's number is rounding.
+_FROM_NOTHING = 1e6
 
 
 def percent(change: float) -> str:
-    """A relative change with two digits, as a factor if it is large; empty if there is none.
+    """A relative change with two digits, as a factor if it is large; empty if there is none, and
+    for a change from rounding to a number, of which a factor says nothing.
 
     Examples
     --------
-    >>> [percent(change) for change in (0.000941, -0.25, 8.0, 41.0, 0.0)]
-    ['+0.094 %', '-25 %', '+800 %', '× 42', '']
+    >>> [percent(change) for change in (0.000941, -0.25, 8.0, 41.0, 0.0, 1e10)]
+    ['+0.094 %', '-25 %', '+800 %', '× 42', '', '']
     """
-    if not math.isfinite(change) or change == 0:
+    if not math.isfinite(change) or change == 0 or change > _FROM_NOTHING:
         return ""
     if change > _FACTOR:
         return f"× {1 + change:.2g}"

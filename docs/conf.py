@@ -58,7 +58,7 @@ PARTS = {
         "config/README",
         "docs/record",
     ],
-    "Beyond the paper": ["figures/beyond/*"],
+    "Beyond the paper": ["docs/beyond", "figures/beyond/*"],
     "Theory": [
         "docs/how-an-orbit-is-found",
         "docs/impact-as-an-instant",

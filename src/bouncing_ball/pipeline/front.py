@@ -78,14 +78,11 @@ _IN_A_ROW = 4
 
 
 def thumbnails(artifacts: Iterable[Artifact]) -> str:
-    """A table of small pictures, each a link to the whole, with their names below."""
+    """A table of small pictures with their names below; a forge links each to the whole."""
     drawn = (each for each in artifacts if each.part == "paper" and each.drawing)
     shown = sorted(drawn, key=_by_number)
     names = [each.name.replace("fig", "Fig. ").replace(". 0", ". ") for each in shown]
-    pictures = [
-        f'[<img src="{each.place}.png" alt="{each.title}" width="180">]({each.place}.png)'
-        for each in shown
-    ]
+    pictures = [f'<img src="{each.place}.png" alt="{each.title}" width="200">' for each in shown]
     lines = []
     for first in range(0, len(shown), _IN_A_ROW):
         row = slice(first, first + _IN_A_ROW)

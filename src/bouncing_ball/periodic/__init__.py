@@ -14,6 +14,7 @@ Branches of any model:
 
 ``special``       the special orbits on a branch
 ``release``       one of them, the grazing of a release
+``lost_release``  another one, at which a contact no longer opens and the branch ends
 ``following``     a branch along one parameter, up to a value or an end
 ``switching``     from one branch to another, and the two sides of a saddle-node
 ``curves``        curves of special orbits in two parameters

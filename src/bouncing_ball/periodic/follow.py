@@ -61,8 +61,9 @@ def follow(
     the period, and from the grazing of a flight or of a release the branch on which it lies. A
     saddle-node has orbits on one side of the parameter only, and two branches there: the stable one
     is followed. The other one comes behind the saddle-node if an orbit of the stable one is
-    followed towards it. At the grazing of an impact and at the end of sticking a branch ends. With
-    two parameters the curve of special orbits of this kind is followed in both directions.
+    followed towards it. At the grazing of an impact, at a lost release and at the end of sticking a
+    branch ends. With two parameters the curve of special orbits of this kind is followed in both
+    directions.
 
     Parameters
     ----------

@@ -202,8 +202,13 @@ class Range(NamedTuple):
             return f"a whole number from {self.low:g} to {self.high:.0f}"
         if math.isinf(self.high):
             return "a finite number" + ("" if math.isinf(self.low) else f" > {self.low:g}")
-        interval = f"a number in {self.ends[0]}{self.low:g}, {self.high:g}{self.ends[1]}"
+        interval = f"a number in {self.interval}"
         return f"0 or {interval}" if self.or_zero else interval
+
+    @property
+    def interval(self) -> str:
+        """The interval with its brackets, for example "(0, 1]"."""
+        return f"{self.ends[0]}{self.low:g}, {self.high:g}{self.ends[1]}"
 
 
 def count(high: int, low: int = 1) -> Range:

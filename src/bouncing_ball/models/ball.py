@@ -1,8 +1,11 @@
 """Balls, which all public functions take: models of the impact, with their parameters as labels.
 
 Every model is a ball (:class:`~bouncing_ball.models.model.Model`), also an array of models.
-A contact law that is given by the r and D of a free impact has a model only at a speed
-(:class:`~bouncing_ball.contacts.law_balls.FreeImpactBall`).
+The parameters of a contact law may be unknown, and given instead by the restitution r and the
+duration D of one free impact. These depend on the impact speed, so that such a ball
+(:class:`~bouncing_ball.contacts.law_balls.FreeImpactBall`) has a model only once this speed is
+chosen, by one of the methods ``at_…``. A ball whose parameters are known is its own model at every
+speed.
 """
 
 from __future__ import annotations
@@ -61,14 +64,12 @@ class Ball:
         return ball
 
     def at_speed(self, speed: ArrayLike) -> Any:
-        """The model, where a law that is given by the r and D of a free impact has them at this
-        impact speed.
-        """
+        """The model of a ball whose free impact has the given r and D at this impact speed."""
         return self
 
     def at_orbit(self, n: int, amplitude: float, side: str = "stable") -> Any:
-        """The model, where a law that is given by the r and D of a free impact has them at the
-        impact speed of this n-T orbit.
+        """The model of a ball whose free impact has the given r and D at the impact speed of this
+        n-T orbit.
 
         Raises
         ------
@@ -78,8 +79,8 @@ class Ball:
         return self
 
     def at_limits(self, n: ArrayLike) -> Any:
-        """The model, where a law that is given by the r and D of a free impact has them at the
-        impact speed of the restitution model's n-T orbits, 2πn/(1 + r).
+        """The model of a ball whose free impact has the given r and D at the impact speed of the
+        restitution model's n-T orbits, 2πn/(1 + r).
         """
         return self
 

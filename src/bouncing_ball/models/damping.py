@@ -17,7 +17,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import one_of, require
+from bouncing_ball.errors import RESTITUTION, one_of, require
 from bouncing_ball.numerics.arrays import as_numbers
 from bouncing_ball.numerics.elementary import arctangent, exponential, logarithm, sine_and_versine
 
@@ -116,7 +116,7 @@ def check_restitution(value: ArrayLike) -> np.ndarray:
     Raises
     ------
     ModelError
-        If any r lies outside (0, 1] or is no number.
+        If any r lies outside of its range or is no number.
 
     Examples
     --------
@@ -126,9 +126,9 @@ def check_restitution(value: ArrayLike) -> np.ndarray:
     bouncing_ball.errors.ModelError: restitution coefficient r = 'x' is not in (0, 1]
     """
     name = "restitution coefficient r"
-    allowed = "in (0, 1]"
+    allowed = f"in {RESTITUTION.interval}"
     r = as_numbers(value, name, allowed)
-    require((r > 0) & (r <= 1), r, name, allowed)
+    require((r > RESTITUTION.low) & (r <= RESTITUTION.high), r, name, allowed)
     return r
 
 

@@ -323,12 +323,15 @@ class LinearContactDynamics(ResumingDynamics):
         loss = contact.loss
         half = contact.decay_rate
         # The impulse response g, g′, and g′ + 2ζϖ g, the response to a unit displacement.
-        sine, versine = sine_and_versine(contact.damped_frequency * duration)
+        angles = np.array([contact.damped_frequency * duration, duration])
+        (sine, slow_sine), (versine, slow_versine) = sine_and_versine(angles)
         decay = exponential(-half * duration)
         impulse = decay * sine / contact.damped_frequency
         impulse_rate = decay * (_ONE - versine) - half * impulse
         level = impulse_rate + loss * impulse
-        in_phase, quadrature = self._table_response(duration, impulse, level)
+        in_phase, quadrature = self._table_response(
+            duration, (_ONE - slow_versine) - level, slow_sine - impulse
+        )
         x, y = self.table_at(impact)
         speed = flight.velocity
         last = (flight.y - _ONE) - loss * speed - stiffness * flight.displacement
@@ -361,9 +364,9 @@ class LinearContactDynamics(ResumingDynamics):
         )
 
     def _table_response(
-        self, duration: np.ndarray, impulse: np.ndarray, level: np.ndarray
+        self, duration: np.ndarray, real: np.ndarray, imaginary: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Q and P at the ends of the contacts, from g and g′ + 2ζϖ g there.
+        """Q and P at the ends of the contacts, from cos D - g′ - 2ζϖ g and sin D - g there.
 
         In short or resonant contacts the quotients lose digits, and the values come from
         :func:`.responses` instead.
@@ -373,9 +376,6 @@ class LinearContactDynamics(ResumingDynamics):
         gamma = self.law.off_resonance
         square = duration * duration
         delicate = gamma * square * square < _DELICATE
-        sine, versine = sine_and_versine(duration)
-        real = (_ONE - versine) - level
-        imaginary = sine - impulse
         with np.errstate(divide="ignore", invalid="ignore"):
             in_phase = np.asarray((real * detuning + imaginary * loss) / gamma)
             quadrature = np.asarray((imaginary * detuning - real * loss) / gamma)

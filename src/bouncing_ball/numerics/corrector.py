@@ -16,7 +16,7 @@ _SATISFIED = 1e-13
 _ROUNDING = np.finfo(float).eps
 # The largest size of a last step that is longer than the tolerance. Its product with the error of a
 # Jacobian by differences, about 1e-9, is a rounding error.
-_SMALL = 2e-7
+_SMALL = 1e-8
 # The accuracy in the parameter with which folds are located.
 _LOCATED = 1e-12
 

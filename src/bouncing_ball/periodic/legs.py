@@ -4,6 +4,7 @@ The landing is the one near the next state of the orbit, and not the first one, 
 depends smoothly on its start also where the flight grazes the table.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -47,6 +48,20 @@ class Legs:
         """Legs of which nothing is known."""
         none = np.full(shape, np.nan)
         return cls(np.full((*shape, 2), np.nan), none, none, none, None, None, None, None)
+
+    def first(self) -> "Legs":
+        """The legs of the first of several points along a first axis."""
+        shape = self.duration.shape[1:]
+        if self.dynamics is None:
+            return Legs.unknown(shape)
+        flat = self.impact, self.departure, self.landing
+        return Legs(
+            self.residual[0],
+            self.duration[0],
+            self.velocity[0],
+            self.acceleration[0],
+            *self.dynamics.kept(np.arange(math.prod(shape)), *flat),
+        )
 
     @cached_property
     def tangent(self) -> Jacobian:

@@ -4,30 +4,32 @@ An impact has the state (θ, v) on the Poincaré section of the model: for most 
 the table and δ′ at the start of the contact. A leg is a contact and the flight after it. It leads
 from the state s_i of impact i to P(s_i), which must be the state of the next impact::
 
-    P(s_i) = s_{i+1},    s_{k+1} = s_1 + (2πm, 0)                                            (1)
+    P(s_i) = s_{i+1},    s_{k+1} = s_1 + (2πm, 0)
 
 The landing is the one near the phase θ_{i+1} among the unknowns, found by one step of Newton's
 method, and not the first one. The equations therefore are smooth where a flight grazes the table,
 and a branch can be followed beyond this point, where no ball follows the orbit. With a landing that
-is late by t, the two equations of a leg are multiplied by δ′ and combined ::
+is late by t, the two equations of a leg are ::
 
-    δ′ t = 0,    (δ′ at the landing - v_{i+1}) - δ″ t = 0                                     (2)
+    height:    δ′ t = 0
+    velocity:  (δ′ at the landing - v_{i+1}) - δ″ t = 0
 
-These are the height, with the opposite sign, and the velocity at the phase θ_{i+1}, which are
-smooth where v_{i+1} vanishes, whereas t is not. Because δ′ t must be this height also before
-Newton's method has converged, the factor δ′ and the matrix in the Jacobian are those at the phase
-θ_{i+1}. Those of the monodromy are at the landing, so that they depend on θ_i and v_i alone.
+They are the height, with the opposite sign, and the velocity at the phase θ_{i+1}, which are smooth
+where v_{i+1} vanishes, whereas t is not. Because δ′ t must be this height also before Newton's
+method has converged, the factor δ′ and the matrix in the Jacobian are those at the phase θ_{i+1}.
+Those of the monodromy are at the landing, so that they depend on θ_i and v_i alone.
 
 After a release by force a contact may resume below the level of the table, with δ + κ δ′ = 0 and
-δ′ > 0. Its state is also (θ, δ′), and in Eq. 2 the factor δ′ of t becomes δ′ + κ δ″.
+δ′ > 0. Its state is also (θ, δ′), and in the equation of the height the factor δ′ of t becomes
+δ′ + κ δ″.
 
 If a model can continue its contacts beyond their first release (:meth:`.Dynamics.depart_after`),
-the duration D_i of each contact is a further unknown. It selects the release near D_i, and nothing
-else depends on it: its equation is that D_i is the duration of the contact. The equations of such a
-model are smooth also where a contact grazes the release.
+the duration D_i of each contact is a further unknown. It selects the release near D_i, which
+Newton's method finds, and nothing else depends on it: its equation is that D_i is the duration of
+the contact. The equations of such a model are smooth also where a contact grazes the release.
 
-The derivatives of Eq. 2 and of the durations with respect to the states follow from the tangent
-maps of the models, exactly at a solution. Those with respect to a parameter are central
+The derivatives of these equations and of the durations with respect to the states follow from the
+tangent maps of the models, exactly at a solution. Those with respect to a parameter are central
 differences, whose error of 1e-9 only affects how fast Newton's method converges and not the
 solution. Their step is small against the slowest impact, because the legs change rapidly next to a
 grazing impact.
@@ -61,9 +63,9 @@ _DIFFERENCE = 6e-6
 # and by this factor at most.
 _SLOW = 0.1
 _LEAST = 1e-3
-# Where the second difference of a side of Eq. 2 is larger than this and than half of the first one,
-# the side has no derivative but a jump. At an end of a range both differences are equal, and
-# smaller. A jump that is not noticed spoils a solution by 1e-7 of its size.
+# Where the second difference of the height or the velocity of a leg is larger than this and than
+# half of the first one, it has no derivative but a jump. At an end of a range both differences are
+# equal, and smaller. A jump that is not noticed spoils a solution by 1e-7 of its size.
 _JUMP = 1e-3
 # The ends of the range of a phase or a velocity.
 _UNLIMITED = np.array([-np.inf, np.inf])
@@ -177,6 +179,8 @@ class PeriodicOrbits:
         # A step along a branch evaluates the residual, the Jacobian and the events at the same
         # points.
         def legs(shape: tuple[int, ...], entries: bytes) -> Legs:
+            if known := self._kept.get((shape, entries)):
+                return known.legs.first()
             with np.errstate(all="ignore"):
                 return self._legs(np.frombuffer(entries).reshape(shape))
 

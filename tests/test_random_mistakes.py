@@ -48,7 +48,12 @@ def is_float(value: object) -> bool:
 
 
 def outside(allowed: Range) -> st.SearchStrategy:
-    return NUMBERS.filter(lambda value: value not in allowed)
+    """Numbers outside a range, often just beyond its ends."""
+    low, high = allowed.low, allowed.high
+    ends = [math.nextafter(low, -math.inf), math.nextafter(high, math.inf)]
+    ends += [low] * (allowed.ends[0] == "(") + [high] * (allowed.ends[1] == ")")
+    ends += [low + 0.5] * allowed.whole
+    return st.sampled_from(ends) | NUMBERS.filter(lambda value: value not in allowed)
 
 
 # The command line.

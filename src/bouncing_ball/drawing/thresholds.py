@@ -56,19 +56,21 @@ def with_zeros(ratio: np.ndarray, error: np.ndarray) -> tuple[np.ndarray, np.nda
     Examples
     --------
     >>> ratio, size = with_zeros(np.array([1.0, 100.0]), np.array([-1.0, 1.0]))
-    >>> float(ratio[np.argmin(size)]), float(size.min())
+    >>> round(float(ratio[np.argmin(size)]), 12), float(size.min())
     (10.0, 0.0)
     """
     place = np.log(ratio)
     parts = [ratio]
+    zeros = []
     for k in np.flatnonzero(error[1:] * error[:-1] < 0):
         zero = np.interp(0.0, *_rising(error[k : k + 2], place[k : k + 2]))
         # Nearer and nearer to the zero, as a logarithmic axis shows it.
         shares = 0.5 ** np.arange(_STEPS)
         parts += [np.exp(zero + (end - zero) * shares[1:]) for end in place[k : k + 2]]
-        parts.append(np.exp([zero]))
-    fine = np.unique(np.concatenate(parts))
+        zeros.append(np.exp(zero))
+    fine = np.unique(np.concatenate([*parts, zeros]))
     size = np.abs(np.interp(np.log(fine), place, error))
+    size[np.isin(fine, zeros)] = 0.0
     return fine, size
 
 

@@ -2,14 +2,22 @@
 
 The way of a contact through the modules:
 
-``contact``, ``table``, ``question``   what a user gives; each text is read once, by ``units``
-``resolve``    from the parameters to a :class:`~.resolved.ResolvedContact`: the dimensionless model
-               and its SI scales. ``loss``, ``drop_test`` and ``hertz`` have the formulas
-``assess``     is a restitution coefficient good enough? By the orbits in all models (``families``)
-               and the motion on which a ball ends (``motion``)
-``choose``     how stiff must a contact be for that?
-``write``      what does one write into an engine for it? (``engines``)
-``describe``   the numbers of a contact without a table
-``verdict``, ``notes``   sentences, which results write when they are asked for them
-``rows``, ``texts``, ``page_data``, ``page_figures``   results as text, as JSON and on a page
+``contact``, ``table``, ``question``
+    what a user gives; each text is read once, by ``units``
+``resolve``
+    from the parameters to a :class:`~.resolved.ResolvedContact`: the dimensionless model and
+    its SI scales. ``loss``, ``drop_test`` and ``hertz`` have the formulas
+``assess``
+    is a restitution coefficient good enough? By the orbits in all models (``families``) and the
+    motion on which most balls end (``motion``, ``starts``)
+``choose``
+    how stiff must a contact be for that?
+``write``
+    what does one write into an engine for it? (``engines``)
+``describe``
+    the numbers of a contact without a table; ``drops`` and ``rebounds`` have those of a drop
+``verdict``, ``notes``
+    sentences, which results write when they are asked for them
+``rows``, ``texts``, ``page_data``, ``page_figures``
+    results as text, as JSON and on a page
 """

@@ -11,7 +11,7 @@ import numpy as np
 
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.texts import shown
-from bouncing_ball.long_run import grids
+from bouncing_ball.long_run.basins import MotionName, basins
 from bouncing_ball.long_run.motions import Kind
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 
@@ -47,7 +47,7 @@ class Ends:
 
     def of_orbit(self, n: int) -> float:
         """The share of starts that end on the n-T orbit."""
-        return self.shares.get(_name(str(Kind.ORBIT), n, 1), 0.0)
+        return self.shares.get(_name(MotionName(Kind.ORBIT, n, 1)), 0.0)
 
     @property
     def sentence(self) -> str:
@@ -57,16 +57,19 @@ class Ends:
             words = _in_words(name)
             by_words[words] = by_words.get(words, 0.0) + share
         order = sorted(by_words.items(), key=lambda item: -item[1])
-        parts = [f"{shown(share, '%')} {words}" for words, share in order[:_NAMED]]
+        (most, share), *less = order[:_NAMED]
+        parts = [f"{shown(share, '%')} end {most}"]
+        parts += [f"{shown(share, '%')} {words}" for words, share in less]
         left = 1 - sum(share for _, share in order[:_NAMED])
         if len(order) > _NAMED:
             parts.append(f"{shown(left, '%')} on others")
         contact = "" if self.is_linear else " of the linear contact with this r and duration"
-        return f"Of {self.balls} balls{contact} with other starts end {', '.join(parts)}."
+        return f"Of {self.balls} balls{contact} with other starts, {', '.join(parts)}."
 
 
-def _name(kind: str, periods: int, impacts: int) -> str:
-    return f"{kind} {periods}/{impacts}" if impacts else kind
+def _name(motion: MotionName) -> str:
+    kind = str(motion.kind)
+    return f"{kind} {motion.periods}/{motion.impacts}" if motion.impacts else kind
 
 
 def _in_words(name: str) -> str:
@@ -89,21 +92,17 @@ def ends_of_starts(case: ResolvedContact) -> Ends:
     >>> found = ends_of_starts(
     ...     ResolvedContact(1.0, TableMotion(1.0, 0.2, 1.0), SpringDamper(10.0, 0.2)))
     >>> found.shares, found.sentence
-    ({'permanent contact': 1.0}, 'Of 144 balls with other starts end 100 % at rest on the table.')
+    ({'permanent contact': 1.0}, 'Of 144 balls with other starts, 100 % end at rest on the table.')
     """
     lam = case.table.amplitude
-    found = grids.basins(SpringDamperModel(case.contact), lam, _STARTS, None, _IMPACTS)
-    order = np.argsort(-found.share.values, kind="stable")
-    kinds, periods, impacts = (
-        found[name].values[order] for name in ("motion_kind", "motion_periods", "motion_impacts")
-    )
-    names = [_name(str(k), int(p), int(i)) for k, p, i in zip(kinds, periods, impacts, strict=True)]
-    row, column = np.argwhere(found.destination.values == order[0])[0]
-    phase = float(found.start_phase[column])
-    velocity = lam * np.cos(phase) - float(found.start_speed[row])
+    found = basins(SpringDamperModel(case.contact), lam, _STARTS, impacts=_IMPACTS)
+    order = np.argsort(-found.share, kind="stable")
+    row, column = np.argwhere(found.which == order[0])[0]
+    phase = float(found.phase[column])
+    velocity = lam * np.cos(phase) - float(found.speed[row])
     return Ends(
-        shares=dict(zip(names, found.share.values[order].tolist(), strict=True)),
+        shares={_name(found.motions[k]): float(found.share[k]) for k in order},
         first=(phase, float(velocity)),
-        balls=int(found.destination.size),
+        balls=int(found.which.size),
         is_linear=case.law is None,
     )

@@ -125,7 +125,9 @@ def open(path: str | Path) -> Result:
     Raises
     ------
     ModelError
-        If the file does not exist or is damaged.
+        If there is no such file, or if it is damaged.
     """
+    if not isinstance(path, str | Path):
+        raise ParameterError("{path} = {} is not the path of a file", repr(path))
     found = read_dataset(path)
     return Result(found.data_vars, found.coords, found.attrs)

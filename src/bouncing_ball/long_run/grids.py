@@ -12,8 +12,10 @@ import xarray as xr
 from bouncing_ball.datasets import CASE
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.errors import ParameterError
+from bouncing_ball.long_run.basins import basins as basins_of
+from bouncing_ball.long_run.basins import fastest
 from bouncing_ball.long_run.destination import final_motions
-from bouncing_ball.long_run.motions import Kind, Motions
+from bouncing_ball.long_run.motions import Motions
 from bouncing_ball.periodic import n_t
 
 VARIABLES = {
@@ -90,23 +92,6 @@ def _variables(found: Motions, dims: tuple[str, ...]) -> dict[str, Any]:
     """The fields of motions as the variables of a dataset over these dimensions."""
     renamed = {"exponent": "lyapunov_exponent", "exponent_error": "lyapunov_error"}
     return {renamed.get(name, name): (dims, values) for name, values in vars(found).items()}
-
-
-def fastest(model: Any, amplitude: Any) -> np.ndarray:
-    """A speed above which every impact slows the ball, (1 + r) max(Λ, 1)/(1 - r), 1 - r ≥ 0.05.
-
-    An impact changes the absolute speed v of the ball to r v + (1 + r) Λ at most, which is less
-    than v above this value. r is that of a free impact with the speed 2π.
-
-    Examples
-    --------
-    >>> from bouncing_ball.models.rigid import RestitutionModel
-    >>> float(fastest(RestitutionModel(0.5), 2.0))
-    6.0
-    """
-    lam = np.asarray(amplitude, dtype=float)
-    r = np.asarray(model.signature(2 * np.pi).restitution)
-    return (1 + r) * np.maximum(lam, 1.0) / np.maximum(1 - r, 0.05)
 
 
 def diagram(
@@ -220,26 +205,17 @@ def basins(
         If there are too many starts.
     """
     require_memory(starts * starts, "a grid of starts")
-    middle = (np.arange(starts) + 0.5) / starts
-    phase = 2 * np.pi * middle - np.pi
-    speed = (float(fastest(model, amplitude)) if fast is None else fast) * middle
-    start_phase, start_speed = np.meshgrid(phase, speed)
-    velocity = amplitude * np.cos(start_phase) - start_speed
-    found = final_motions(model, amplitude, start_phase, velocity, impacts=impacts)
-    kinds = np.array(list(Kind))
-    kind_number = np.argmax(found.kind[..., np.newaxis] == kinds, axis=-1)
-    keys = np.stack([kind_number, found.periods, found.impacts], axis=-1).reshape(-1, 3)
-    known, which, count = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
-    share = count / which.size
+    found = basins_of(model, amplitude, starts, fast, impacts)
+    share = found.share
     dims = ("start_speed", "start_phase")
     data = {
-        "destination": (dims, which.reshape(found.shape)),
+        "destination": (dims, found.which),
         "lyapunov_exponent": (dims, found.exponent),
-        "motion_kind": ("motion", kinds[known[:, 0]]),
-        "motion_periods": ("motion", known[:, 1]),
-        "motion_impacts": ("motion", known[:, 2]),
+        "motion_kind": ("motion", np.array([each.kind for each in found.motions])),
+        "motion_periods": ("motion", np.array([each.periods for each in found.motions])),
+        "motion_impacts": ("motion", np.array([each.impacts for each in found.motions])),
         "share": ("motion", share),
-        "share_error": ("motion", np.sqrt(share * (1 - share) / which.size)),
+        "share_error": ("motion", np.sqrt(share * (1 - share) / found.which.size)),
     }
-    coords = {"start_phase": phase, "start_speed": speed}
+    coords = {"start_phase": found.phase, "start_speed": found.speed}
     return described(data, coords, VARIABLES)

@@ -66,7 +66,7 @@ class StepControl:
 
         Examples
         --------
-        >>> StepControl(largest=1.0).after(0.1, iterations=4, angle=0.0)
+        >>> StepControl(largest=1.0).after(0.1, iterations=3, angle=0.0)
         0.1
         """
         factor = 2.0 ** ((self.target_iterations - iterations) / 2)
@@ -218,12 +218,11 @@ def _end_at(event: Event) -> End:
 
 
 def _first_state(
-    problem: Problem, start: np.ndarray, increasing: bool, events: Sequence[Event]
+    problem: Problem, start: np.ndarray, towards: np.ndarray, events: Sequence[Event]
 ) -> _State:
-    """The corrected start, with a tangent along which the parameter increases or decreases."""
+    """The corrected start, with the tangent that is at most at a right angle to ``towards``."""
     point = solve_at(problem, np.asarray(start, dtype=float))
-    parameter = np.eye(point.size)[-1] * (1.0 if increasing else -1.0)
-    along = tangent(problem.jacobian(point), parameter)
+    along = tangent(problem.jacobian(point), towards)
     if not np.all(np.isfinite(along)):
         raise ContinuationError(
             f"the start {np.array2string(point, precision=4)} has no direction: the derivatives of "
@@ -297,7 +296,8 @@ def continue_branch(
     problem: Problem,
     start: np.ndarray,
     *,
-    increasing: bool,
+    increasing: bool = True,
+    towards: np.ndarray | None = None,
     events: Sequence[Event] = (),
     control: StepControl = StepControl(),
     max_points: int = 2000,
@@ -311,6 +311,9 @@ def continue_branch(
         A solution or an approximation to it, which is corrected at fixed parameter.
     increasing : bool
         Whether the parameter increases at the start.
+    towards : ndarray, shape (N + 1,), optional
+        A direction in place of ``increasing``: the first step makes at most a right angle with it.
+        At a fold, where the parameter stands still, only this decides.
     events : sequence of Event
         Events to be located; a terminal event ends the branch exactly at its zero.
     control : StepControl
@@ -344,7 +347,9 @@ def continue_branch(
     >>> [np.abs(special.point.round(12)).tolist() for special in found.special]
     [[0.0, 1.0]]
     """
-    state = _first_state(problem, start, increasing, events)
+    if towards is None:
+        towards = np.eye(np.size(start))[-1] * (1.0 if increasing else -1.0)
+    state = _first_state(problem, start, towards, events)
     states = [state]
     special: list[SpecialPoint] = []
     length = control.initial

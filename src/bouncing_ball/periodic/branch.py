@@ -76,7 +76,7 @@ def whole_branch(
     --------
     >>> from bouncing_ball.models.rigid import RestitutionModel
     >>> found = whole_branch(RestitutionModel(0.85), 1, 1.2, largest_step=0.1)
-    >>> [(each.kind, round(each.amplitude, 4)) for each in found.special]
+    >>> [(str(each.kind), round(each.amplitude, 4)) for each in found.special]
     [('saddle-node', 0.2547), ('period doubling', 1.0383)]
     >>> str(found.branch.end)
     'amplitude = 1.2 is reached'

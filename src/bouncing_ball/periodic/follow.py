@@ -137,19 +137,19 @@ def follow(
         kind = Special(orbit.kind)
         raise NoOrbitError(f"the branch ends at the {kind}: {MEANINGS[kind]}")
     start = orbit
-    increasing = None
+    towards = None
     if orbit.kind == Special.PERIOD_DOUBLING:
         start = switching.switch(orbit, name)
     elif orbit.kind == Special.PERIOD_HALVING:
         start = switching.halved(orbit)
     elif orbit.kind == Special.SADDLE_NODE:
-        increasing = _to_stable_side(orbit, name, value)
-    found = following.follow(start, name, value, increasing=increasing, most=most)
+        towards = _to_stable_side(orbit, name, value)
+    found = following.follow(start, name, value, towards=towards, most=most)
     return FollowedBranch.of_orbits(labelled(found), "follow", found)
 
 
-def _to_stable_side(fold: Orbit, name: str, to: float | None) -> bool:
-    """The direction in which the stable side of a saddle-node is followed.
+def _to_stable_side(fold: Orbit, name: str, to: float | None) -> np.ndarray:
+    """The direction of the unknowns in which the stable side of a saddle-node is followed.
 
     Raises
     ------
@@ -164,7 +164,7 @@ def _to_stable_side(fold: Orbit, name: str, to: float | None) -> bool:
                 f"to = {to:g} is beyond the saddle-node: its orbits exist only for {name} {where} "
                 f"{sides.at:g}"
             )
-    return sides.increasing
+    return sides.stable
 
 
 def _check_orbit(call: str, orbit: Any) -> None:

@@ -221,6 +221,7 @@ def follow(
     to: float | None = None,
     *,
     increasing: bool | None = None,
+    towards: np.ndarray | None = None,
     control: StepControl = STEPS,
     most: int = 2000,
 ) -> Followed:
@@ -236,8 +237,10 @@ def follow(
         The value at which the branch ends. The parameter first moves towards it. Behind a
         saddle-node it moves back, at most as far beyond the start as the value is before it.
     increasing : bool, optional
-        The direction at the start; by default towards ``to``, and otherwise up. At a saddle-node,
-        where the parameter stands still, it chooses the side.
+        The direction at the start; by default towards ``to``, and otherwise up.
+    towards : ndarray, optional
+        The direction at the start as one of the unknowns. At a saddle-node, where the parameter
+        stands still, it chooses the side.
     control : StepControl
     most : int
         Number of points after which the branch is left unfinished.
@@ -253,10 +256,12 @@ def follow(
     here = corrected(orbits, start.point(orbits))
     if increasing is None:
         increasing = to is None or bool(to > orbits.values(here)[along])
+    if towards is None:
+        towards = np.eye(here.size)[-1] * (1.0 if increasing else -1.0)
     limits = limits_of(along, range_ahead(orbits, here, to), orbits.equations)
     near = min(_NEAR, float(turns_apart(orbits, here)) / 2)
     with np.errstate(all="ignore"):
-        branch = _followed(orbits, here, limits, near, increasing, control, most)
+        branch = _followed(orbits, here, limits, near, towards, control, most)
         for _ in range(_TRIES):
             if branch.end.event != _HALVES:
                 break
@@ -265,10 +270,10 @@ def follow(
                 branch = whole
                 break
             near *= _CLOSER
-            rises = bool(branch.tangents[-1, -1] > 0)
             left = most - len(branch.points) + 1
             last = branch.points[-1]
-            branch = _joined(branch, _followed(orbits, last, limits, near, rises, control, left))
+            ahead = branch.tangents[-1]
+            branch = _joined(branch, _followed(orbits, last, limits, near, ahead, control, left))
         tests = [*events(orbits), loss_of_release(orbits)]
         whole = replace(branch, end=explained(branch, tests, limits))
         return Followed(orbits, _with_lost_release(orbits, whole))
@@ -302,7 +307,7 @@ def _followed(
     start: np.ndarray,
     limits: list[Event],
     near: float,
-    increasing: bool,
+    towards: np.ndarray,
     control: StepControl,
     most: int,
 ) -> Branch:
@@ -319,7 +324,7 @@ def _followed(
         branch = continue_branch(
             orbits,
             start,
-            increasing=increasing,
+            towards=towards,
             events=[*events(orbits), loss_of_release(orbits), equal_turns, *limits],
             control=replace(control, initial=initial),
             max_points=most,

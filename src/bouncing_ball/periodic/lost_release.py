@@ -35,8 +35,9 @@ _NEAR = 0.1
 
 
 def _lag(dynamics: Dynamics) -> Any:
-    """κ, 0 for an instant."""
-    return 0.0 if dynamics.contact is None else dynamics.contact.lag
+    """κ, and 0 for an instant and for a contact whose release is no line δ + κ δ′ = 0."""
+    lag = None if dynamics.contact is None else dynamics.contact.lag
+    return 0.0 if lag is None else lag
 
 
 def rise_of_release(legs: Legs) -> np.ndarray:

@@ -140,13 +140,13 @@ class Sides(NamedTuple):
     """The two sides of a saddle-node along a parameter, whose value there is ``at``.
 
     ``above`` tells whether the orbits are at larger values of the parameter; None if they are on
-    both sides. ``increasing`` is the direction in which a branch leaves to the stable side. If not
-    exactly one side is stable it is the direction in which the parameter rises at first.
+    both sides. ``stable`` is the direction of the unknowns in which a branch leaves to the stable
+    side. If not exactly one side is stable it is one of the two directions.
     """
 
     at: float
     above: bool | None
-    increasing: bool
+    stable: np.ndarray
 
 
 def sides(fold: Orbit, along: str) -> Sides:
@@ -171,5 +171,5 @@ def sides(fold: Orbit, along: str) -> Sides:
     return Sides(
         at=float(orbits.values(here)[along]),
         above=bool(rises[0]) if is_fold else None,
-        increasing=bool(stable[0] or not stable[1]),
+        stable=leaves if stable[0] or not stable[1] else -leaves,
     )

@@ -51,13 +51,20 @@ def imports(path: Path) -> frozenset[str]:
 
 @cache
 def _data_of_folder(folder: Path) -> tuple[Path, ...]:
-    """The files of a package that are not Python, also in its folders that are no packages."""
+    """The files of a package that are not Python, also in its folders that are no packages.
+
+    An empty file, such as the mark of a typed package, holds no data.
+    """
     found: list[Path] = []
     for path in folder.iterdir():
         if path.is_dir():
             if path.name != "__pycache__" and not (path / "__init__.py").exists():
                 found += _data_of_folder(path)
-        elif path.suffix not in (".py", ".pyc") and not path.name.startswith("."):
+        elif (
+            path.suffix not in (".py", ".pyc")
+            and not path.name.startswith(".")
+            and path.stat().st_size
+        ):
             found.append(path)
     return tuple(found)
 

@@ -16,6 +16,8 @@ _DRAWN: dict[str, tuple[str, Look]] = {
     "kuwabara-kono": ("Kuwabara and Kono", LAWS["kuwabara-kono"]),
     "hunt-crossley": ("Hunt and Crossley", LAWS["hunt-crossley"]),
 }
+# Below this a probability is only bounded.
+_LEAST = 1e-3
 _POINTS: Look = {
     "marker": "o",
     "markersize": 3.6,
@@ -88,13 +90,19 @@ def ext_measured(data: xr.Dataset) -> TextTable:
         "impacts": lambda part: str(int(part.measured_speed.count())),
         "law": text("fitted_law"),
         "verdict": text("law_verdict"),
-        "rms": value("fit_rms", ".4f"),
-        "left out": value("left_out_rms", ".4f"),
-        "p": value("left_out_probability", ".2g"),
-        "extrapolated": value("extrapolation_rms", ".4f"),
-        "p of it": value("extrapolation_probability", ".2g"),
+        "rms": value("fit_rms", "z.4f"),
+        "left out": value("left_out_rms", "z.4f"),
+        "p": _probability("left_out_probability"),
+        "extrapolated": value("extrapolation_rms", "z.4f"),
+        "p of it": _probability("extrapolation_probability"),
     }
     return table(each(data, "experiment", "fitted_law"), columns)
+
+
+def _probability(name: str) -> Column:
+    """A column of probabilities, in which the smallest are only bounded."""
+    shown = value(name, ".2g")
+    return lambda part: f"< {_LEAST:g}" if float(part[name]) < _LEAST else shown(part)
 
 
 def ext_shaker(data: xr.Dataset) -> TextTable:

@@ -10,7 +10,7 @@ import xarray as xr
 
 from bouncing_ball.datasets import DRAWING
 from bouncing_ball.datasets.files import read_dataset
-from bouncing_ball.errors import ModelError, extra
+from bouncing_ball.errors import ModelError, ParameterError, extra
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

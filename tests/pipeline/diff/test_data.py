@@ -37,7 +37,7 @@ def test_half_a_budget_agrees_and_two_budgets_have_drifted(
     data = pair.dataset(figure)
     if index is None:
         index = np.unravel_index(np.nanargmin(np.abs(data[name])), data[name].shape)
-    budget = budget_of(figure, name)
+    budget = budget_of(figure, name, data[name].attrs)
     scale = data.budget.values[index[1]] if budget.scale == "budget" else span(data[name])
     pair.write(figure, moved(data, name, index, part * budget.size * scale))
     row = pair.variable(figure, name)

@@ -126,4 +126,4 @@ def ext_shaker(data: xr.Dataset) -> TextTable:
 
 
 def _of(name: str, quantity: str) -> Column:
-    return at(value(name, "+.2g"), quantity=quantity)
+    return at(value(name, "+z.4f"), quantity=quantity)

@@ -49,7 +49,8 @@ def is_float(value: object) -> bool:
 
 def outside(allowed: Range) -> st.SearchStrategy:
     """Numbers outside a range, often just beyond its ends."""
-    low, high = allowed.low, allowed.high
+    low = allowed.low
+    high = allowed.high
     ends = [math.nextafter(low, -math.inf), math.nextafter(high, math.inf)]
     ends += [low] * (allowed.ends[0] == "(") + [high] * (allowed.ends[1] == ")")
     ends += [low + 0.5] * allowed.whole

@@ -225,7 +225,8 @@ def test_a_change_of_a_thousandth_that_decides_leaves_no_percentage():
     # The change is as large as that of the contact with this r, which starts from its own orbit and
     # so may end on another lap: both are far from the error without the change.
     other = assessed(**given | {"restitution": 0.4995}, stiffness="1e7 N/m", tolerance=0.2465)
-    one, two = changes["r -0.1 %"]["height"], other.motion.mean_error["height"]
+    one = changes["r -0.1 %"]["height"]
+    two = other.motion.mean_error["height"]
     nominal = found.motion.mean_error["height"]
     assert abs(one.value - two.value) < 0.1 * abs(two.value - nominal.value)
 

@@ -120,7 +120,8 @@ def ball_of(answer):
         ]
         solimp = law["at_surface"], law["share"], law["width"]
         return Ball(mass, impedance(mass, solref, solimp), False, 1e-7)
-    k, c = law["stiffness"], law["damping"]
+    k = law["stiffness"]
+    c = law["damping"]
     made = {
         "tsuji": (tsuji(mass, k, c), True),
         "hunt-crossley": (hunt_crossley(k, c, 1.5), True),
@@ -159,7 +160,8 @@ DROPS = [
 @pytest.mark.parametrize("given", DROPS)
 def test_a_drop(given):
     answer = answered(**given)
-    found, dropped = answer.found, answer.dropped
+    found = answer.found
+    dropped = answer.dropped
     ball = ball_of(answer)
     speed = dropped.speed
     near = {"rel": ball.accuracy, "abs": 1e-9}
@@ -216,9 +218,16 @@ def test_an_orbit_on_a_table(given):
     omega = 40 * math.pi
     amplitude = 0.8 * G / omega**2
     exact, simple, _ = one.values["phase"].values()
-    lift = lambda t: amplitude * math.sin(omega * t + exact)  # noqa: E731
-    push = lambda t: -amplitude * omega**2 * math.sin(omega * t + exact)  # noqa: E731
-    rate = lambda t: amplitude * omega * math.cos(omega * t + exact)  # noqa: E731
+
+    def lift(t):
+        return amplitude * math.sin(omega * t + exact)
+
+    def push(t):
+        return -amplitude * omega**2 * math.sin(omega * t + exact)
+
+    def rate(t):
+        return amplitude * omega * math.cos(omega * t + exact)
+
     ball.longest = 0.02
     ended, time, p, going, deepest, force = ball.contact(one.impact_speed, (lift, push))
     assert ended
@@ -251,10 +260,12 @@ def in_steps(scheme, m, k, c, h, fractions, *, pulls, drop=None):
     found = []
     for f in fractions:
         g = 0.0 if drop is None else G
-        x, v = -1.0 * f * h, -1.0
+        x = -1.0 * f * h
+        v = -1.0
         if drop is not None:
             start = drop + math.sqrt(2 * G * drop) * h * (f - 0.5)
-            x, v = start, 0.0
+            x = start
+            v = 0.0
         was_in = False
         for _ in range(1_000_000):
             if x < 0:

@@ -62,7 +62,8 @@ def test_a_fit_has_the_impact_of_an_integration_that_shares_no_code(law):
         ),
     }
     if law not in forces:
-        omega, zeta = numbers["frequency_ratio"], numbers["damping_ratio"]
+        omega = numbers["frequency_ratio"]
+        zeta = numbers["damping_ratio"]
         is_limited = law == "elasto-backlash"
 
         def damped(x, u):
@@ -156,7 +157,8 @@ def test_the_error_of_a_point_left_out_is_that_of_a_fit_without_it():
 
 
 def test_a_constant_r_is_the_weighted_mean():
-    e, u = np.array([0.8, 0.82, 0.85]), np.array([0.01, 0.02, 0.04])
+    e = np.array([0.8, 0.82, 0.85])
+    u = np.array([0.01, 0.02, 0.04])
     fit = fit_contact([1.0, 2.0, 3.0], e, uncertainties=u, laws=["linear"]).best
     mean = np.sum(e / u**2) / np.sum(1 / u**2)
     assert fit.restitution == pytest.approx(mean, abs=1e-12)

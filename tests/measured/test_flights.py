@@ -29,7 +29,8 @@ def flight(up, length):
     def floor(t, y):
         return y[0] if t > 0 else 1.0
 
-    floor.terminal, floor.direction = True, -1
+    floor.terminal = True
+    floor.direction = -1
     path = solve_ivp(motion, (0, 10), (0.0, up), events=(top, floor), **PRECISE)
     return path.t_events[1][0], -path.y_events[1][0][1], path.y_events[0][0][0]
 
@@ -105,7 +106,8 @@ def noisy():
 def test_the_bias_of_the_resolution_is_removed(noisy):
     ratios, e, exact = noisy
     # The mean of a pair with opposite errors has no error of the first order.
-    biased, free = ratios.mean(axis=1), e.mean(axis=1)
+    biased = ratios.mean(axis=1)
+    free = e.mean(axis=1)
     error = biased.std(axis=0) / math.sqrt(len(biased))
     # What is shown as the bias differs from that of the ratio by terms of the fourth order in σ/T,
     # of which the shortest interval has (σ/T)⁴ = 4·10⁻⁷ with factors below 20.

@@ -81,7 +81,8 @@ def test_the_extrapolation_is_that_of_a_fit_to_the_slower_half():
     points = Points(croquet.speeds, croquet.restitutions)
     size = extrapolated(curve_named("linear"), points)[1]
     order = np.argsort(croquet.speeds)
-    slow, fast = croquet.restitutions[order[:5]], croquet.restitutions[order[5:]]
+    slow = croquet.restitutions[order[:5]]
+    fast = croquet.restitutions[order[5:]]
     assert size == pytest.approx(np.sqrt(np.mean((fast - slow.mean()) ** 2)), rel=1e-9)
 
 

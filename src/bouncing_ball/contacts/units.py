@@ -279,7 +279,8 @@ def doubts(given: Mapping[str, Any], kinds: Mapping[str, SIParameter]) -> tuple[
     for name, most in _MOST_BARE.items():
         value = given.get(name)
         if value is not None and name in kinds and _is_bare(value) and float(value) > most:
-            words, unit = name.replace("_", " "), kinds[name].name
+            words = name.replace("_", " ")
+            unit = kinds[name].name
             why = f"write a unit, such as {kinds[name].example!r}, if another one was meant"
             found.append(f"{words} {value} was read as {float(value):g} {unit}: {why}")
     return tuple(found)

@@ -285,14 +285,16 @@ def _cell(path: Path, at: int, name: str, cell: str, factor: float) -> float:
 def _experiment(
     name: str, texts: dict[str, str], numbers: dict[str, float], columns: dict[str, np.ndarray]
 ) -> Experiment:
-    mass, diameter = numbers.get("mass"), numbers.get("diameter")
+    mass = numbers.get("mass")
+    diameter = numbers.get("diameter")
     length = math.inf
     if mass is not None and diameter is not None:
         length = drag_length(mass, diameter)
     found: Heard | None = None
     bias = 0.0
     if "speed" in columns:
-        speeds, restitutions = columns["speed"], columns["restitution"]
+        speeds = columns["speed"]
+        restitutions = columns["restitution"]
         errors = columns.get("uncertainty")
     elif "drop_height" in columns:
         heights = columns["drop_height"], columns["rebound_height"]
@@ -309,7 +311,9 @@ def _experiment(
             length=length,
             contact_time=numbers.get("contact time", 0.0),
         )
-        speeds, restitutions, errors = found.speeds, found.restitutions, found.covariance
+        speeds = found.speeds
+        restitutions = found.restitutions
+        errors = found.covariance
         bias = float(np.max(np.abs(found.drag_bias)))
     return Experiment(
         name=name,

@@ -336,7 +336,8 @@ def fit_law(curve: Curve, points: Points) -> LawFit:
 
 def _polished(derivative: Callable[[float], float], theta: float) -> float:
     """The zero of the derivative of the sum of squares next to θ; θ if there is none."""
-    now, before = theta, theta + _SECANT
+    now = theta
+    before = theta + _SECANT
     old = derivative(before)
     for _ in range(_SECANTS):
         value = derivative(now)
@@ -478,7 +479,8 @@ def _times(durations: Any, errors: Any, points: Points) -> _Times | None:
     t = as_numbers(durations, "contact time", _POSITIVE)
     v = points.speeds
     if t.ndim == 0:
-        t, v = t.reshape(1), np.array([points.reference])
+        t = t.reshape(1)
+        v = np.array([points.reference])
     if t.shape != v.shape:
         raise ParameterError(f"{{durations}} has not one number for each of {v.size} points")
     s = None
@@ -492,7 +494,8 @@ def _times(durations: Any, errors: Any, points: Points) -> _Times | None:
     known = ~np.isnan(t)
     if not known.any():
         return None
-    t, v = t[known], v[known]
+    t = t[known]
+    v = v[known]
     require(np.isfinite(t) & (t > 0), t, "contact time", _POSITIVE)
     if s is not None:
         s = s[known]

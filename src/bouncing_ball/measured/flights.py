@@ -64,7 +64,8 @@ def drop_speeds(
     >>> round(float(u / v), 12)
     0.5
     """
-    h, back = np.asarray(height, dtype=float), np.asarray(rebound, dtype=float)
+    h = np.asarray(height, dtype=float)
+    back = np.asarray(rebound, dtype=float)
     require((h > 0) & np.isfinite(h), h, "drop height", "a finite height > 0")
     require((back > 0) & (back <= h), back, "rebound height", "> 0 and at most the drop height")
     g = STANDARD_GRAVITY

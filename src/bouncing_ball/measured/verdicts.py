@@ -98,7 +98,8 @@ def left_out(curve: Curve, points: Points) -> float:
     hat = np.outer(slope, slope) / (slope @ slope)
     scale = 1 / (1 - np.diag(hat))
     spread = np.linalg.eigvalsh((np.eye(points.size) - hat) * np.outer(scale, scale))
-    total, square = spread.sum(), (spread**2).sum()
+    total = spread.sum()
+    square = (spread**2).sum()
     statistic = np.sum((scale * errors) ** 2) / (variance * total)
     return _tail(float(statistic), float(total**2 / square), freedom)
 
@@ -111,7 +112,8 @@ def extrapolated(curve: Curve, points: Points) -> tuple[float, float]:
     half = points.size // 2
     if half < 2 or np.ptp(points.speeds) == 0:
         return np.nan, np.nan
-    slow, fast = points.take(order[:half]), points.take(order[half:])
+    slow = points.take(order[:half])
+    fast = points.take(order[half:])
     fit = fit_law(curve, slow)
     errors = fast.restitutions - fit.restitution_at(fast.speeds)
     size = float(np.sqrt(np.mean(errors**2)))

@@ -64,7 +64,8 @@ class _LostRelease:
         duration = orbits.durations(y).ravel()
         start = impact.displacement, impact.velocity, impact.phase
         state = dynamics.law.flow(duration, *start, dynamics.amplitude)
-        displacement, velocity = state.displacement, state.velocity
+        displacement = state.displacement
+        velocity = state.velocity
         x, level = table(impact.phase + duration, dynamics.amplitude)
         flight = Flight(displacement, velocity, x, level, dynamics.amplitude)
         gap, rate, _, _ = flight.gap(orbits.intervals(y).ravel() - duration)

@@ -36,7 +36,8 @@ def with_parts(page: str, parts: Mapping[str, str]) -> str:
     True
     """
     for name, text in parts.items():
-        begin, end = f"<!-- {name} -->\n", f"<!-- end of {name} -->\n"
+        begin = f"<!-- {name} -->\n"
+        end = f"<!-- end of {name} -->\n"
         before, found, rest = page.partition(begin)
         _, also_found, after = rest.partition(end)
         if not (found and also_found):

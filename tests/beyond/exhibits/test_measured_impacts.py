@@ -98,7 +98,8 @@ def test_the_impact_speed_on_a_shaker_is_that_of_the_orbit(shakers):
 
 def test_the_error_by_the_constant_r_is_that_of_the_closed_forms(shakers):
     one = shakers.sel(experiment="croquet", shaker_frequency=5.0)
-    r, mean = one.shaker_restitution.item(), one.mean_restitution.item()
+    r = one.shaker_restitution.item()
+    mean = one.mean_restitution.item()
     fold, other = (np.pi * (1 - x) / (1 + x) for x in (r, mean))
     by_constant = one.by_constant.sel(quantity="saddle_node").item()
     assert by_constant == pytest.approx(other / fold - 1, rel=1e-12)

@@ -235,7 +235,8 @@ def _on_shaker(fit: ContactFit, frequency: float, parameters: Shaker) -> xr.Data
     fold = float(restitution_branch.saddle_node(n, r))
     doubling = float(restitution_branch.period_doubling(n, r))
     amplitude = fold + parameters.position * (doubling - fold)
-    slowest, fastest = fit.points.speeds.min(), fit.points.speeds.max()
+    slowest = fit.points.speeds.min()
+    fastest = fit.points.speeds.max()
     ratio = delta = np.nan
     by_duration = np.full(len(COMPARED), np.nan)
     if best.has_stiffness:
@@ -258,7 +259,8 @@ def _by_duration(
 ) -> tuple[float, np.ndarray, float]:
     """ϖ, the errors by the error law and its small parameter δ."""
     motion = Table(frequency=frequency, acceleration=STANDARD_GRAVITY).motion
-    r, time = float(best.restitution_at(speed)), float(best.duration_at(speed))
+    r = float(best.restitution_at(speed))
+    time = float(best.duration_at(speed))
     duration = time / motion.time
     unit = SpringDamper(1.0, float(damping_ratio(r)))
     impact = speed * motion.time / motion.length

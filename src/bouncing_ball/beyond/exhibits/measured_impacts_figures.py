@@ -74,7 +74,8 @@ def _panel(axes: Axes, one: xr.Dataset) -> None:
     axes.set_xticks([], minor=True)
     axes.set_xlim(float(one.curve_speed[0]), float(one.curve_speed[-1]))
     # The scale is that of the points; the worst law may leave the panel.
-    low, high = float(one.experiment_restitution.min()), float(one.experiment_restitution.max())
+    low = float(one.experiment_restitution.min())
+    high = float(one.experiment_restitution.max())
     room = 0.7 * (high - low)
     axes.set_ylim(low - room, high + room)
 

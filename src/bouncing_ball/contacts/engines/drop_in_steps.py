@@ -51,8 +51,10 @@ def drop_in_steps(
     (True, True)
     """
     m, stiffness, damping = contact
-    h, g = time_step, gravity
-    k, c = stiffness / m, damping / m
+    h = time_step
+    g = gravity
+    k = stiffness / m
+    c = damping / m
     implicit = scheme is not Scheme.SEMI_IMPLICIT
     if scheme is Scheme.COMPENSATED:
         k, c = compensated(k, c, h)

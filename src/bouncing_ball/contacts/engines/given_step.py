@@ -94,7 +94,8 @@ class AtStep:
     @property
     def span(self) -> str:
         """The r at this step: from the least to the greatest, or one number if they are alike."""
-        least, most = f"{self.least:.4g}", f"{self.most:.4g}"
+        least = f"{self.least:.4g}"
+        most = f"{self.most:.4g}"
         return least if least == most else f"{least} to {most}"
 
     @property
@@ -131,7 +132,8 @@ def spread(impacts: Callable[[np.ndarray], np.ndarray]) -> Spread:
     place = np.linspace(1e-9, 1.0, _SAMPLES)
     value = impacts(place)
     found = [np.stack([place, value])]
-    low, high = found[0][:, :-1], found[0][:, 1:]
+    low = found[0][:, :-1]
+    high = found[0][:, 1:]
     for _ in range(_ROUNDS):
         middle = (low[0] + high[0]) / 2
         between = np.stack([middle, impacts(middle)])
@@ -140,10 +142,8 @@ def spread(impacts: Callable[[np.ndarray], np.ndarray]) -> Spread:
         bent = np.abs(between[1] - (low[1] + high[1]) / 2) > size
         if not 0 < np.count_nonzero(bent) < _MOST_PARTS:
             break
-        low, high = (
-            np.concatenate([low[:, bent], between[:, bent]], axis=1),
-            np.concatenate([between[:, bent], high[:, bent]], axis=1),
-        )
+        low = np.concatenate([low[:, bent], between[:, bent]], axis=1)
+        high = np.concatenate([between[:, bent], high[:, bent]], axis=1)
     place, value = np.concatenate(found, axis=1)
     order = np.argsort(place, kind="stable")
     mean = np.trapezoid(value[order], place[order]) / np.ptp(place)

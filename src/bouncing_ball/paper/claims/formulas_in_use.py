@@ -186,7 +186,9 @@ def _contact_orbits(rng, samples) -> Rows:
     fold = n_t.saddle_node(SpringDamperModel(SpringDamper(omega, zeta)), n)
     # A compliant contact with strong damping may have no saddle-node, or no period doubling.
     there = np.isfinite(fold.amplitude)
-    omega, zeta, n = omega[there], zeta[there], n[there]
+    omega = omega[there]
+    zeta = zeta[there]
+    n = n[there]
     contact = SpringDamper(omega, zeta)
     model = SpringDamperModel(contact)
     node = n_t.saddle_node(model, n)

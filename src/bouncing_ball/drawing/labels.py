@@ -7,7 +7,6 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.text import Annotation
-from scipy.optimize import isotonic_regression
 
 from bouncing_ball.datasets import CASE
 from bouncing_ball.drawing.style import GUIDE
@@ -118,6 +117,9 @@ def names_at_the_right(axes: Axes, ends: Sequence[tuple[str, float, str]]) -> No
     Each name is as near to its line as the height of the others and of the panel allows, so that
     this comes after the layout of the panel.
     """
+    # Only few figures need it, and its import takes longer than drawing one of them.
+    from scipy.optimize import isotonic_regression
+
     places = axes.transData.transform([(0.0, height) for _, height, _ in ends])[:, 1]
     places *= _POINTS_PER_INCH / axes.figure.dpi
     order = np.argsort(places)

@@ -318,6 +318,10 @@ def test_an_engine_does_with_a_contact_at_a_step_what_the_answer_says(name, stif
     expected = by_scheme(at, physical, Release(found.release))
     assert measured == pytest.approx(expected, abs=2e-3)
     assert at.least - 2e-3 <= measured.min() and measured.max() <= at.most + 2e-3
-    # The settings are those of a contact that the step resolves.
-    promised = in_engine(name, found.snippet, at.time_step, 0.5, at.stiffest_contact_time)
+    # The settings are those of the contact asked for, and the softer ones of a contact that the
+    # step resolves.
+    asked = in_engine(name, found.snippet, at.time_step, 0.5, at.steps * at.time_step)
+    assert at.least - 2e-3 <= asked.min() and asked.max() <= at.most + 2e-3
+    resolved = found.softer or found
+    promised = in_engine(name, resolved.snippet, at.time_step, 0.5, at.stiffest_contact_time)
     assert np.abs(promised - 0.75).max() <= 0.0101

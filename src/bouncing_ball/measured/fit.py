@@ -346,7 +346,9 @@ def _polished(derivative: Callable[[float], float], theta: float) -> float:
         step = value * (now - before) / (value - old)
         if not abs(now - step - theta) < _NEXT:
             return theta
-        now, before, old = now - step, now, value
+        before = now
+        now = now - step
+        old = value
     return now
 
 

@@ -47,7 +47,16 @@ class Legs:
     def unknown(cls, shape: tuple[int, ...]) -> "Legs":
         """Legs of which nothing is known."""
         none = np.full(shape, np.nan)
-        return cls(np.full((*shape, 2), np.nan), none, none, none, None, None, None, None)
+        return cls(
+            residual=np.full((*shape, 2), np.nan),
+            duration=none,
+            velocity=none,
+            acceleration=none,
+            dynamics=None,
+            impact=None,
+            departure=None,
+            landing=None,
+        )
 
     def first(self) -> "Legs":
         """The legs of the first of several points along a first axis."""

@@ -29,9 +29,9 @@ from bouncing_ball.errors import ModelError
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.laws.hertzian import Tsuji
 from bouncing_ball.models.laws.model import LawModel
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.law_at_orbit import law_at_orbit
-from bouncing_ball.periodic.stability import Side
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.one_impact.law_at_orbit import law_at_orbit
+from bouncing_ball.periodic.orbits.stability import Side
 
 ROOT = Path(__file__).parents[1]
 CONTACT = spring_damper(restitution=0.85, frequency_ratio=10.0)

@@ -7,7 +7,7 @@ from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.one_impact import n_t
 
 MASS, TABLE, R, AMPLITUDE = 0.5, 2 * np.pi * 20, 0.75, 0.8  # kg, rad/s, r, acceleration in g
 zeta = float(damping_ratio(R, Release.FORCE))

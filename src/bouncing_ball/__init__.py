@@ -81,10 +81,10 @@ if TYPE_CHECKING:
     from bouncing_ball.models.rigid import RestitutionModel as RestitutionModel
     from bouncing_ball.models.spring_damper import SpringDamper as SpringDamper
     from bouncing_ball.models.spring_damper_model import SpringDamperModel as SpringDamperModel
+    from bouncing_ball.periodic.branches.follow import curve as curve
+    from bouncing_ball.periodic.branches.follow import follow as follow
+    from bouncing_ball.periodic.branches.follow import switch as switch
     from bouncing_ball.periodic.branches_of_ball import branch as branch
-    from bouncing_ball.periodic.follow import curve as curve
-    from bouncing_ball.periodic.follow import follow as follow
-    from bouncing_ball.periodic.follow import switch as switch
     from bouncing_ball.periodic.orbits_of_ball import limits as limits
     from bouncing_ball.periodic.orbits_of_ball import orbit as orbit
     from bouncing_ball.periodic.orbits_of_ball import orbits as orbits
@@ -109,12 +109,12 @@ _MODULES = {
     "choose_contact": "contacts.choose",
     "contact_law": "contacts.law_balls",
     "corrected": "models.makers",
-    "curve": "periodic.follow",
+    "curve": "periodic.branches.follow",
     "describe_contact": "contacts.describe",
     "drop": "models.over_time",
     "error_thresholds": "accuracy.error_thresholds",
     "fit_contact": "measured.fit",
-    "follow": "periodic.follow",
+    "follow": "periodic.branches.follow",
     "history": "models.over_time",
     "limits": "periodic.orbits_of_ball",
     "lyapunov_exponent": "long_run.motion_of",
@@ -128,7 +128,7 @@ _MODULES = {
     "rigid": "models.makers",
     "simulate": "models.over_time",
     "spring_damper": "models.makers",
-    "switch": "periodic.follow",
+    "switch": "periodic.branches.follow",
     "write_contact": "contacts.write",
 }
 

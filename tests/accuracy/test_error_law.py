@@ -20,7 +20,7 @@ from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic import restitution_branch as restitution_orbit
+from bouncing_ball.periodic.one_impact import restitution_branch as restitution_orbit
 
 RELEASES = list(Release)
 

@@ -15,7 +15,7 @@ from bouncing_ball.accuracy.errors import (
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.one_impact import n_t
 
 
 def test_each_quantity_is_one_of_orbits_or_of_limits():

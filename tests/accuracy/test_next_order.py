@@ -7,8 +7,8 @@ from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic import corrected_branch as corrected_branch
-from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.one_impact import corrected_branch as corrected_branch
+from bouncing_ball.periodic.one_impact import n_t
 
 
 def constants(contact):

@@ -17,8 +17,8 @@ from bouncing_ball.models.laws.hertzian import HuntCrossley, tsuji_damping
 from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.orbit import OBSERVABLES
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.orbits.orbit import OBSERVABLES
 
 ORBIT = ("orbit", "--n", "1", "--restitution", "0.85", "--amplitude", "1.0")
 FORCE = ("--frequency-ratio", "10", "--release", "force")

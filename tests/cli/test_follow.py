@@ -9,7 +9,7 @@ import bouncing_ball
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic import observables
+from bouncing_ball.periodic.branches import observables
 
 RIGID = bouncing_ball.rigid(restitution=0.5)
 FOLLOW = ("follow", "--restitution", "0.5", "--amplitude", "1.4", "--to", "1.8")

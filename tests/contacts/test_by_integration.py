@@ -14,7 +14,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from bouncing_ball import Contact, NoOrbitError, Question, Table, assess_contact
-from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.one_impact import n_t
 
 G = 9.80665
 PRECISE = {"rtol": 1e-11, "atol": 1e-14, "method": "DOP853"}

@@ -21,7 +21,7 @@ from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.one_impact import n_t
 
 pytestmark = pytest.mark.usefixtures("short_runs")
 

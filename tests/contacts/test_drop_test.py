@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 from bouncing_ball.contacts.drop_test import rebound
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.damping import Release
-from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.one_impact import n_t
 
 G = 9.80665
 PRECISE = {"rtol": 1e-11, "atol": 1e-15, "method": "DOP853"}

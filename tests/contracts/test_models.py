@@ -26,15 +26,15 @@ from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.corrector import NewtonSettings, newton
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.closed_forms import closed_form, nearest
-from bouncing_ball.periodic.following import orbits_along
-from bouncing_ball.periodic.legs import time_to_section
-from bouncing_ball.periodic.orbit import OBSERVABLES, Orbit
-from bouncing_ball.periodic.paper_unknowns import PaperUnknowns
-from bouncing_ball.periodic.special import bifurcations as events_of
-from bouncing_ball.periodic.stability import Bifurcation, Side
-from bouncing_ball.periodic.start import bifurcation, orbit_at, orbits_at
+from bouncing_ball.periodic.branches.following import orbits_along
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.one_impact.closed_forms import closed_form, nearest
+from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns
+from bouncing_ball.periodic.one_impact.start import bifurcation, orbit_at, orbits_at
+from bouncing_ball.periodic.orbits.legs import time_to_section
+from bouncing_ball.periodic.orbits.orbit import OBSERVABLES, Orbit
+from bouncing_ball.periodic.orbits.special import bifurcations as events_of
+from bouncing_ball.periodic.orbits.stability import Bifurcation, Side
 
 EPS = np.finfo(float).eps
 COMPLIANT = SpringDamper.from_restitution(0.85, 4.0)

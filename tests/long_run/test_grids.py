@@ -7,7 +7,7 @@ import pytest
 
 import bouncing_ball as bb
 from bouncing_ball.cli.main import main
-from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.one_impact import n_t
 
 R = bb.rigid(restitution=0.5)
 STIFF = bb.spring_damper(restitution=0.5, frequency_ratio=100.0)

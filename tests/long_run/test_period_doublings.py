@@ -11,7 +11,7 @@ from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.one_impact import n_t
 
 R = 0.5
 RATIOS = np.array([20.0, 40.0, 80.0, 160.0])

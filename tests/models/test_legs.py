@@ -12,7 +12,7 @@ from bouncing_ball.models.restitution import RestitutionDynamics
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.one_impact import n_t
 
 CONTACT = SpringDamper.from_restitution(0.6, 30.0, Release.FORCE)
 MODELS = [RestitutionModel(0.6), SpringDamperModel(CONTACT), CorrectedModel.of_contact(CONTACT)]

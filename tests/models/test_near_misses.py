@@ -7,7 +7,7 @@ from bouncing_ball.models.damping import Release
 from bouncing_ball.models.flight import Flight, land, table
 from bouncing_ball.models.linear_contact import LinearContactDynamics
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.spring_damper_branch import orbits_on_branch
+from bouncing_ball.periodic.one_impact.spring_damper_branch import orbits_on_branch
 
 # A gap function is known to about four units in the last place of its terms,
 # which are of order 10 here.

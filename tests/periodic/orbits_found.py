@@ -7,9 +7,9 @@ from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.balls import Balls
-from bouncing_ball.periodic.simulation import simulated
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.orbits.balls import Balls
+from bouncing_ball.periodic.orbits.simulation import simulated
 
 
 def balls(name, amplitude, restitution=0.5, frequency_ratio=10.0, stiffness=500.0):

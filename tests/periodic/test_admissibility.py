@@ -10,14 +10,18 @@ from bouncing_ball.models.damping import Release
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.numerics.events import domain_limits
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.following import orbits_along
-from bouncing_ball.periodic.orbit import Orbit
-from bouncing_ball.periodic.paper_unknowns import PaperUnknowns
-from bouncing_ball.periodic.simulation import is_admissible
-from bouncing_ball.periodic.spring_damper_bifurcations import orbit_at
-from bouncing_ball.periodic.spring_damper_branch import branch_point, orbits_of, orbits_on_branch
-from bouncing_ball.periodic.stability import Side
+from bouncing_ball.periodic.branches.following import orbits_along
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns
+from bouncing_ball.periodic.one_impact.spring_damper_bifurcations import orbit_at
+from bouncing_ball.periodic.one_impact.spring_damper_branch import (
+    branch_point,
+    orbits_of,
+    orbits_on_branch,
+)
+from bouncing_ball.periodic.orbits.orbit import Orbit
+from bouncing_ball.periodic.orbits.simulation import is_admissible
+from bouncing_ball.periodic.orbits.stability import Side
 
 SHARES = np.linspace(0, 1, 2001)[1:-1, np.newaxis]
 

@@ -6,9 +6,9 @@ import pytest
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.spring_damper_branch import branch_point
-from bouncing_ball.periodic.stability import Bifurcation
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.one_impact.spring_damper_branch import branch_point
+from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 EPS = np.finfo(float).eps
 SIZES = [

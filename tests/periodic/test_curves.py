@@ -12,11 +12,11 @@ from bouncing_ball.long_run.cascade_of_flights import openings
 from bouncing_ball.long_run.orbit_of_motion import of_motion
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic import restitution_branch as formulas
-from bouncing_ball.periodic.curves import Degenerate, curve
-from bouncing_ball.periodic.following import STEPS, Range, follow
-from bouncing_ball.periodic.special import Special, flight_margin
+from bouncing_ball.periodic.branches.curves import Degenerate, curve
+from bouncing_ball.periodic.branches.following import STEPS, Range, follow
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.one_impact import restitution_branch as formulas
+from bouncing_ball.periodic.orbits.special import Special, flight_margin
 
 
 def special(name, kind, to, amplitude=1.3):

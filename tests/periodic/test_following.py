@@ -15,15 +15,15 @@ from bouncing_ball.models.flight import Flight, table
 from bouncing_ball.numerics.corrector import newton, plane
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import domain_limits
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.balls import Balls
-from bouncing_ball.periodic.branch import whole_branch
-from bouncing_ball.periodic.following import follow
-from bouncing_ball.periodic.orbit import orbit_at
-from bouncing_ball.periodic.problem import twice
-from bouncing_ball.periodic.simulation import is_admissible
-from bouncing_ball.periodic.special import Special, turns_apart
-from bouncing_ball.periodic.switching import switch
+from bouncing_ball.periodic.branches.following import follow
+from bouncing_ball.periodic.branches.switching import switch
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.one_impact.whole_branch import whole_branch
+from bouncing_ball.periodic.orbits.balls import Balls
+from bouncing_ball.periodic.orbits.orbit import orbit_at
+from bouncing_ball.periodic.orbits.problem import twice
+from bouncing_ball.periodic.orbits.simulation import is_admissible
+from bouncing_ball.periodic.orbits.special import Special, turns_apart
 
 CLOSED = ["restitution", "spring-damper", "force release", "corrected"]
 

@@ -9,10 +9,10 @@ from scipy.optimize import brentq
 
 from bouncing_ball.models.flight import table
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.following import STEPS, follow
-from bouncing_ball.periodic.orbit import orbit_at
-from bouncing_ball.periodic.special import Special
+from bouncing_ball.periodic.branches.following import STEPS, follow
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.orbits.orbit import orbit_at
+from bouncing_ball.periodic.orbits.special import Special
 
 # The first orbit with the additional impact has this closing speed, and is looked for nearby.
 SLOW = 3e-3

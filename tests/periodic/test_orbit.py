@@ -11,9 +11,9 @@ from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.corrector import solve
-from bouncing_ball.periodic.orbit import Orbit
-from bouncing_ball.periodic.spring_damper_bifurcations import orbit_at
-from bouncing_ball.periodic.spring_damper_branch import branch_point, orbits_of
+from bouncing_ball.periodic.one_impact.spring_damper_bifurcations import orbit_at
+from bouncing_ball.periodic.one_impact.spring_damper_branch import branch_point, orbits_of
+from bouncing_ball.periodic.orbits.orbit import Orbit
 
 
 def test_the_greatest_height_of_a_ball_released_downwards_is_in_contact():

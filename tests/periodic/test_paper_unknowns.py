@@ -12,12 +12,12 @@ from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.continuation import StepControl, continue_branch
 from bouncing_ball.numerics.events import parameter_bound
-from bouncing_ball.periodic.following import orbits_along
-from bouncing_ball.periodic.orbit import Orbit
-from bouncing_ball.periodic.paper_unknowns import PaperUnknowns
-from bouncing_ball.periodic.special import bifurcations, ends_of_contact, with_ends
-from bouncing_ball.periodic.spring_damper_bifurcations import orbit_at
-from bouncing_ball.periodic.spring_damper_branch import branch_point, orbits_of
+from bouncing_ball.periodic.branches.following import orbits_along
+from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns
+from bouncing_ball.periodic.one_impact.spring_damper_bifurcations import orbit_at
+from bouncing_ball.periodic.one_impact.spring_damper_branch import branch_point, orbits_of
+from bouncing_ball.periodic.orbits.orbit import Orbit
+from bouncing_ball.periodic.orbits.special import bifurcations, ends_of_contact, with_ends
 
 releases = st.sampled_from(list(Release))
 

@@ -5,10 +5,10 @@ import pytest
 import shooting
 from orbits_found import FOUND, balls, found_orbit, known_orbit
 
-from bouncing_ball.periodic.following import corrected
-from bouncing_ball.periodic.problem import twice
-from bouncing_ball.periodic.simulation import is_admissible
-from bouncing_ball.periodic.stability import Bifurcation
+from bouncing_ball.periodic.branches.following import corrected
+from bouncing_ball.periodic.orbits.problem import twice
+from bouncing_ball.periodic.orbits.simulation import is_admissible
+from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 CLOSED = ["restitution", "spring-damper", "force release", "corrected"]
 ALL = [*CLOSED, "tsuji"]

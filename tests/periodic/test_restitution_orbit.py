@@ -7,9 +7,8 @@ from hypothesis import strategies as st
 
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.orbit import Orbit
-from bouncing_ball.periodic.restitution_branch import (
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.one_impact.restitution_branch import (
     ImpactMap,
     branch,
     period_doubling,
@@ -17,6 +16,7 @@ from bouncing_ball.periodic.restitution_branch import (
     phase,
     saddle_node,
 )
+from bouncing_ball.periodic.orbits.orbit import Orbit
 
 EPS = np.finfo(float).eps
 

@@ -9,9 +9,9 @@ from sixty_digits import Exact
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic import spring_damper_bifurcations as bifurcations
-from bouncing_ball.periodic.spring_damper_branch import branch_point
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.one_impact import spring_damper_bifurcations as bifurcations
+from bouncing_ball.periodic.one_impact.spring_damper_branch import branch_point
 
 EPS = np.finfo(float).eps
 

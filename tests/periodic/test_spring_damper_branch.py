@@ -10,8 +10,12 @@ from bouncing_ball.models.damping import Release
 from bouncing_ball.models.oscillator import responses
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.paper_unknowns import PaperUnknowns
-from bouncing_ball.periodic.spring_damper_branch import branch_point, nearest_excess, orbits_of
+from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns
+from bouncing_ball.periodic.one_impact.spring_damper_branch import (
+    branch_point,
+    nearest_excess,
+    orbits_of,
+)
 
 EPS = np.finfo(float).eps
 

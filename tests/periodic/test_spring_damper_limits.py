@@ -8,10 +8,14 @@ from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.spring_damper_bifurcations import orbit_at, orbits_at, saddle_node
-from bouncing_ball.periodic.spring_damper_branch import branch_point, orbits_of
-from bouncing_ball.periodic.stability import Bifurcation, Side, is_stable
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.one_impact.spring_damper_bifurcations import (
+    orbit_at,
+    orbits_at,
+    saddle_node,
+)
+from bouncing_ball.periodic.one_impact.spring_damper_branch import branch_point, orbits_of
+from bouncing_ball.periodic.orbits.stability import Bifurcation, Side, is_stable
 
 EPS = np.finfo(float).eps
 

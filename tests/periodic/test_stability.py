@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bouncing_ball.periodic.stability import is_stable, multipliers
+from bouncing_ball.periodic.orbits.stability import is_stable, multipliers
 
 EPS = np.finfo(float).eps
 # Rounded, to keep subnormal numbers away.

@@ -6,11 +6,11 @@ from scipy.optimize import brentq
 
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.branch import whole_branch
-from bouncing_ball.periodic.spring_damper_branch import orbits_on_branch
-from bouncing_ball.periodic.stability import Bifurcation, Side
-from bouncing_ball.periodic.start import continued, orbit_at
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.one_impact.spring_damper_branch import orbits_on_branch
+from bouncing_ball.periodic.one_impact.start import continued, orbit_at
+from bouncing_ball.periodic.one_impact.whole_branch import whole_branch
+from bouncing_ball.periodic.orbits.stability import Bifurcation, Side
 
 # The branch of the compliant contact has saddle-nodes at Λ = 0.188 and 1.176 and a second stable
 # side; that of the other one ends at Λ = 2.004, where the ball no longer leaves the table.
@@ -21,13 +21,13 @@ SHORT = SpringDamperModel(SpringDamper.from_restitution(0.65, 3.0))
 @pytest.fixture
 def along_the_branch(monkeypatch):
     """Newton's method finds no orbit at Λ itself, nor beside the fold: the branch is followed."""
-    module = "bouncing_ball.periodic.start"
+    module = "bouncing_ball.periodic.one_impact.start"
     monkeypatch.setattr(f"{module}._beside_fold", lambda _, fold, *__: np.full_like(fold, np.nan))
 
     def found(model, amplitude, side):
         # The signs of the sides are exchanged in the first guess, which is then refused.
         other = Side.UNSTABLE if side is Side.STABLE else Side.STABLE
-        phase = "bouncing_ball.periodic.corrected_branch.instant_phase"
+        phase = "bouncing_ball.periodic.one_impact.corrected_branch.instant_phase"
         original = orbit_at.__globals__["corrected"].instant_phase
         with monkeypatch.context() as patch:
             seen = []

@@ -19,9 +19,9 @@ from orbits_found import balls
 
 from bouncing_ball.errors import ParameterError
 from bouncing_ball.long_run.orbit_of_motion import of_motion
-from bouncing_ball.periodic.curves import curve
-from bouncing_ball.periodic.following import follow
-from bouncing_ball.periodic.special import Special
+from bouncing_ball.periodic.branches.curves import curve
+from bouncing_ball.periodic.branches.following import follow
+from bouncing_ball.periodic.orbits.special import Special
 
 # The zeros of w - w* after j and j + 3 bounces are then equal to rounding.
 SETTLED = 1e-17

@@ -7,12 +7,12 @@ from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic import restitution_branch as restitution
-from bouncing_ball.periodic.n_t import Absence
-from bouncing_ball.periodic.paper_unknowns import PaperUnknowns
-from bouncing_ball.periodic.spring_damper_bifurcations import orbit_at
-from bouncing_ball.periodic.stability import Side
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.one_impact import restitution_branch as restitution
+from bouncing_ball.periodic.one_impact.n_t import Absence
+from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns
+from bouncing_ball.periodic.one_impact.spring_damper_bifurcations import orbit_at
+from bouncing_ball.periodic.orbits.stability import Side
 
 # For each of two rules and two sides.
 SIZES = [1_000, pytest.param(25_000, marks=pytest.mark.long)]

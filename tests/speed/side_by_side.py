@@ -26,12 +26,12 @@ from bouncing_ball.models.linear_contact import LinearContactDynamics
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.corrector import newton, plane
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.balls import LAMBDA, Balls
-from bouncing_ball.periodic.curves import CurveProblem, condition_of, curve
-from bouncing_ball.periodic.following import Range, follow
-from bouncing_ball.periodic.orbit import Orbit
-from bouncing_ball.periodic.special import Special
+from bouncing_ball.periodic.branches.curves import CurveProblem, condition_of, curve
+from bouncing_ball.periodic.branches.following import Range, follow
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls
+from bouncing_ball.periodic.orbits.orbit import Orbit
+from bouncing_ball.periodic.orbits.special import Special
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "speed.md"
 R = 0.5

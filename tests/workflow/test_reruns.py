@@ -46,7 +46,7 @@ def test_a_commit_runs_nothing_again_and_a_change_what_it_decides(complete):
 
 
 def test_no_file_time_hides_a_change_of_the_code(complete):
-    equation_7 = "src/bouncing_ball/periodic/restitution_branch.py"
+    equation_7 = "src/bouncing_ball/periodic/one_impact/restitution_branch.py"
     formula = "np.asarray(n) * np.pi * (1 - r) / (1 + r)"
     complete.rewrite(equation_7, f"return {formula}", f"return 1.001 * {formula}")
     os.utime(complete.path / equation_7, (0, 0))

@@ -25,7 +25,7 @@ from bouncing_ball.models.damping import Release
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic.orbit import Orbit
+from bouncing_ball.periodic.orbits.orbit import Orbit
 
 SIMPLE = ("restitution", "corrected")
 """The simple models, which are compared with the exact model."""
@@ -82,7 +82,7 @@ def orbit_errors(orbit: Orbit) -> np.ndarray:
     Examples
     --------
     >>> from bouncing_ball.models.spring_damper import SpringDamper
-    >>> from bouncing_ball.periodic.spring_damper_bifurcations import orbit_at
+    >>> from bouncing_ball.periodic.one_impact.spring_damper_bifurcations import orbit_at
     >>> orbit_errors(orbit_at(SpringDamper(100.0, 0.1), 1, 1.0)).round(4)[:, 0].tolist()
     [-0.0083, -0.0]
     """

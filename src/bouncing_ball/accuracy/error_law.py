@@ -1,6 +1,6 @@
 r"""The error of the restitution model, to first order in the contact duration.
 
-The corrected model (:mod:`bouncing_ball.periodic.corrected_branch`) differs from the
+The corrected model (:mod:`bouncing_ball.periodic.one_impact.corrected_branch`) differs from the
 exact model in the second order, and from the restitution model in the first order, through
 the delay t_c and the load sensitivity σ. The first-order error of the
 restitution model is therefore the derivative of the closed forms along (t_c, σ, D) at 0.
@@ -55,7 +55,7 @@ from bouncing_ball.models.damping import Release
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic import restitution_branch as restitution_orbit
+from bouncing_ball.periodic.one_impact import restitution_branch as restitution_orbit
 
 VALID_BELOW = 0.3
 """δ below which the law is considered useful: the remainder is then less than 0.6 times the scale,

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.models.model import Model
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.stability import Bifurcation
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 
 class Quantity(StrEnum):

@@ -25,12 +25,12 @@ from bouncing_ball.datasets.arguments import (
 from bouncing_ball.datasets.files import PICTURES, require_writable
 from bouncing_ball.errors import ParameterError, Range
 from bouncing_ball.long_run.orbit_of_motion import orbit_of_motion
-from bouncing_ball.periodic import follow as library
 from bouncing_ball.periodic import orbits_of_ball as periodic
-from bouncing_ball.periodic.curves import Degenerate
-from bouncing_ball.periodic.labelled import FollowedBranch
+from bouncing_ball.periodic.branches import follow as library
+from bouncing_ball.periodic.branches.curves import Degenerate
+from bouncing_ball.periodic.branches.labelled import FollowedBranch
 from bouncing_ball.periodic.orbit import Orbit
-from bouncing_ball.periodic.special import MEANINGS, Special
+from bouncing_ball.periodic.orbits.special import MEANINGS, Special
 
 _DOUBLINGS = Range(0, 8, "[]", whole=True)
 _NAME = (

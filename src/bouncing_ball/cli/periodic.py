@@ -23,9 +23,9 @@ from bouncing_ball.models.makers import spring_damper
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic import orbits_of_ball as library
-from bouncing_ball.periodic.orbit import OBSERVABLES, Orbit
-from bouncing_ball.periodic.stability import Bifurcation
-from bouncing_ball.periodic.start import restitution_speed
+from bouncing_ball.periodic.one_impact.start import restitution_speed
+from bouncing_ball.periodic.orbits.orbit import OBSERVABLES, Orbit
+from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 Answer = dict[str, Any]
 SideOrAll = Literal["stable", "unstable", "all"]

@@ -19,7 +19,7 @@ from bouncing_ball.contacts.verdict import judged_choice
 from bouncing_ball.errors import NoOrbitError, ParameterError
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.one_impact import n_t
 
 
 @dataclass(frozen=True)

@@ -25,9 +25,9 @@ from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.orbit import Orbit
-from bouncing_ball.periodic.stability import Bifurcation
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.orbits.orbit import Orbit
+from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 ErrorsByQuantity = dict[str, float | None]
 """Relative errors by quantity, (q - q_SD)/q_SD with the value q_SD of the contact; None where one

@@ -35,9 +35,9 @@ from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.law_of_impact import law_of_impact, reference
 from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.makers import corrected, flattened
-from bouncing_ball.periodic.law_at_orbit import law_at_orbit
-from bouncing_ball.periodic.restitution_branch import rigid_speed
-from bouncing_ball.periodic.stability import Side
+from bouncing_ball.periodic.one_impact.law_at_orbit import law_at_orbit
+from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
+from bouncing_ball.periodic.orbits.stability import Side
 
 if TYPE_CHECKING:
     from bouncing_ball.datasets.labelled import Grid

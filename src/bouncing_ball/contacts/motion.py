@@ -40,7 +40,7 @@ from bouncing_ball.long_run.sampled_means import (
 )
 from bouncing_ball.models.sequence import ImpactSequence
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.one_impact import n_t
 
 # Relative change of an orbit's impact velocity for a start beside the orbit.
 _BESIDE = 1e-3

@@ -13,7 +13,7 @@ from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.hertzian import Tsuji
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.one_impact import n_t
 
 
 def remarks(case: ResolvedContact) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ from bouncing_ball.accuracy.thresholds import RATIOS, ThresholdStatus
 from bouncing_ball.contacts.assess import Assessment
 from bouncing_ball.contacts.families import against_contact
 from bouncing_ball.models.damping import Release, damping_ratio
-from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.one_impact import n_t
 
 # Number of restitution coefficients of the chart, enough for smooth lines, and the smallest
 # coefficient, because an underdamped contact that only pushes has r > e⁻².

@@ -29,8 +29,8 @@ from bouncing_ball.models.laws.law_of_impact import law_of_impact
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.restitution_branch import rigid_speed
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
 
 # What a contact of a law is not given by, because its parameters follow from a free impact.
 _NOT_OF_A_LAW = ("stiffness", "damping", "damping_ratio", "reduced_modulus", "youngs_modulus")

@@ -25,7 +25,7 @@ from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.restitution_branch import rigid_speed
+from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
 
 # Restitution coefficients that differ by less are taken for equal, because a contact law is fitted
 # to a free impact, and its signature interpolated, to 1e-12.

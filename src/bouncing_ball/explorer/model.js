@@ -92,7 +92,7 @@ function ownRestitution(contact) {
 }
 
 // The n-T orbit whose contact lasts (θ₀ + ε)/ϖ_d: branch_point of
-// periodic.spring_damper_branch.
+// periodic.one_impact.spring_damper_branch.
 function branchPoint(eps, contact, n) {
   const {omega, zeta, sine} = contact;
   const root = Math.sqrt((1 - zeta) * (1 + zeta)), perAngle = 1 / (omega * root);
@@ -154,7 +154,7 @@ function traceOf({omega, zeta, sine}, flight, [u, x, y], sinD, cosD, at, push) {
   return columns[0][0] + columns[1][1];
 }
 
-// ---- Roots, as bouncing_ball.periodic.spring_damper_bifurcations finds them.
+// ---- Roots, as bouncing_ball.periodic.one_impact.spring_damper_bifurcations finds them.
 // Chandrupatla's method, to four units in the last place of the root.
 function rootOf(f, a, b, fa = f(a), fb = f(b)) {
   if (fa === 0) return a;

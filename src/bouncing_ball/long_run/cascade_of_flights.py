@@ -37,9 +37,9 @@ from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.corrector import NewtonSettings, newton
-from bouncing_ball.periodic.balls import LAMBDA, Balls
-from bouncing_ball.periodic.problem import PeriodicOrbits
-from bouncing_ball.periodic.release import release_condition
+from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls
+from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
+from bouncing_ball.periodic.orbits.release import release_condition
 
 # Number of samples of an oscillation, among which its first maximum is bracketed.
 _FINE = 400

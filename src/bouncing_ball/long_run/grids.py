@@ -16,7 +16,7 @@ from bouncing_ball.long_run.basins import basins as basins_of
 from bouncing_ball.long_run.basins import fastest
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.motions import Motions
-from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.one_impact import n_t
 
 VARIABLES = {
     "digits_lost": Variable(

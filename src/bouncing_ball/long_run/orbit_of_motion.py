@@ -16,10 +16,10 @@ from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.models.ball import Ball, a_single_ball
 from bouncing_ball.models.flight import table
 from bouncing_ball.models.model import Model
-from bouncing_ball.periodic.balls import LAMBDA, Balls
-from bouncing_ball.periodic.following import corrected
-from bouncing_ball.periodic.orbit import Orbit, orbit_at
-from bouncing_ball.periodic.simulation import simulated
+from bouncing_ball.periodic.branches.following import corrected
+from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls
+from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_at
+from bouncing_ball.periodic.orbits.simulation import simulated
 
 
 def orbit_of_motion(

@@ -1,7 +1,7 @@
 """Cascades of period doublings of the n-T orbits, for every model.
 
 An orbit with 2ᵏ impacts repeats after 2ᵏ n periods of the table. At its period doubling the orbit
-of twice the period branches off (:mod:`bouncing_ball.periodic.switching`). Newton's method
+of twice the period branches off (:mod:`bouncing_ball.periodic.branches.switching`). Newton's method
 finds the doubling of the new orbit from a point on its branch; many cascades are computed together.
 """
 
@@ -12,11 +12,11 @@ import numpy as np
 from bouncing_ball.errors import require
 from bouncing_ball.numerics.corrector import NewtonSettings, newton
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.periodic.balls import LAMBDA
-from bouncing_ball.periodic.orbit import Orbit
-from bouncing_ball.periodic.problem import PeriodicOrbits
-from bouncing_ball.periodic.stability import Bifurcation
-from bouncing_ball.periodic.switching import ahead, twice
+from bouncing_ball.periodic.branches.switching import ahead, twice
+from bouncing_ball.periodic.orbits.balls import LAMBDA
+from bouncing_ball.periodic.orbits.orbit import Orbit
+from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
+from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 FEIGENBAUM = 4.669201609102990
 """Limit of the ratio of successive distances between period doublings of a dissipative map

@@ -29,7 +29,7 @@ from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError, requi
 from bouncing_ball.measured.curves import CURVES, Curve, curve_named
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
 from bouncing_ball.numerics.arrays import as_numbers
-from bouncing_ball.periodic.restitution_branch import rigid_speed
+from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
 
 # The probability of the intervals.
 LEVEL = 0.95

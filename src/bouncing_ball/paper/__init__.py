@@ -4,40 +4,40 @@
 as they are checked. The library computes with its equations in these functions and classes of
 ``bouncing_ball``, and :mod:`.claims.formulas_in_use` compares each of them with the printed form:
 
-======== =========================== ==========================================================
-Eqs.     what                        where
-======== =========================== ==========================================================
-1, 3, 4  flight                      ``models.flight.Flight``
-2        impact                      ``models.restitution.RestitutionDynamics.depart``
-5        from impact to impact       ``models.restitution.RestitutionDynamics``
-6        phase of the n-T orbit      ``periodic.restitution_branch.phase``
-7        its saddle-node             ``periodic.restitution_branch.saddle_node``
-8        its period doubling         ``periodic.restitution_branch.period_doubling``
-9        rest on the table           ``models.sticking.lift_off_phase``
-..       its largest amplitude Λ_CR  ``models.permanent_contact.RESTITUTION_THRESHOLD``
-10, 11   force of the contact        ``models.spring_damper.SpringDamper.force``
-12, 13   motion in contact           ``models.spring_damper.SpringDamper.flow``
-14, 15   flight after it             ``periodic.orbit.Orbit.flight_path``
-16       damping from restitution    ``models.damping.damping_ratio``
-..       its inverse                 ``models.damping.restitution_coefficient``
-17       apparent restitution        ``periodic.orbit.Orbit.apparent_restitution``
-18-20    period of the n-T orbit     ``periodic.orbit.Orbit.flight_time``
-21, 22   start of the contact        ``models.spring_damper.SpringDamper.flow``
-23       end of the contact          ``models.linear_contact.LinearContactDynamics.depart``
-24-26    return to the start         ``periodic.problem.PeriodicOrbits``
-..       all, in unknowns of paper   ``periodic.paper_unknowns.PaperUnknowns``
-..       solved at a given duration  ``periodic.spring_damper_branch.branch_point``
-..       their saddle-node           ``periodic.spring_damper_bifurcations.saddle_node``
-..       their period doubling       ``periodic.spring_damper_bifurcations.period_doubling``
-27       bouncing-off velocity       ``periodic.orbit.Orbit.bounce_velocity``
-28-31    only as printed             ``paper.claims.as_printed.steady_displacement``
-32, 33   permanent contact, Λ_SD     ``models.permanent_contact.permanent_contact_threshold``
-34, 35   the inverse of Λ_SD         ``models.permanent_contact.permanent_contact_frequency_ratios``
-36       the smallest Λ_SD           ``models.permanent_contact.permanent_contact_minimum``
-37, 38   errors                      ``accuracy.errors.relative_errors``
-..       of the greatest height      ``periodic.orbit.Orbit.max_height``
-..       their thresholds, ϖ_h, ϖ_PC ``accuracy.thresholds.restitution_thresholds``
-======== =========================== ==========================================================
+======= ========================= ==================================================================
+Eqs.    what                      where
+======= ========================= ==================================================================
+1, 3, 4 flight                    ``models.flight.Flight``
+2       impact                    ``models.restitution.RestitutionDynamics.depart``
+5       from impact to impact     ``models.restitution.RestitutionDynamics``
+6       phase of the n-T orbit    ``periodic.one_impact.restitution_branch.phase``
+7       its saddle-node           ``periodic.one_impact.restitution_branch.saddle_node``
+8       its period doubling       ``periodic.one_impact.restitution_branch.period_doubling``
+9       rest on the table         ``models.sticking.lift_off_phase``
+..      its largest Λ, Λ_CR       ``models.permanent_contact.RESTITUTION_THRESHOLD``
+10, 11  force of the contact      ``models.spring_damper.SpringDamper.force``
+12, 13  motion in contact         ``models.spring_damper.SpringDamper.flow``
+14, 15  flight after it           ``periodic.orbits.orbit.Orbit.flight_path``
+16      damping from restitution  ``models.damping.damping_ratio``
+..      its inverse               ``models.damping.restitution_coefficient``
+17      apparent restitution      ``periodic.orbits.orbit.Orbit.apparent_restitution``
+18-20   period of the n-T orbit   ``periodic.orbits.orbit.Orbit.flight_time``
+21, 22  start of contact          ``models.spring_damper.SpringDamper.flow``
+23      end of the contact        ``models.linear_contact.LinearContactDynamics.depart``
+24-26   return to the start       ``periodic.orbits.problem.PeriodicOrbits``
+..      all, in unknowns of paper ``periodic.one_impact.paper_unknowns.PaperUnknowns``
+..      at a given duration       ``periodic.one_impact.spring_damper_branch.branch_point``
+..      their saddle-node         ``periodic.one_impact.spring_damper_bifurcations.saddle_node``
+..      their period doubling     ``periodic.one_impact.spring_damper_bifurcations.period_doubling``
+27      bouncing-off velocity     ``periodic.orbits.orbit.Orbit.bounce_velocity``
+28-31   only as printed           ``paper.claims.as_printed.steady_displacement``
+32, 33  permanent contact, Λ_SD   ``models.permanent_contact.permanent_contact_threshold``
+34, 35  the inverse of Λ_SD       ``models.permanent_contact.permanent_contact_frequency_ratios``
+36      the smallest Λ_SD         ``models.permanent_contact.permanent_contact_minimum``
+37, 38  errors                    ``accuracy.errors.relative_errors``
+..      of the greatest height    ``periodic.orbits.orbit.Orbit.max_height``
+..      thresholds ϖ_h, ϖ_PC      ``accuracy.thresholds.restitution_thresholds``
+======= ========================= ==================================================================
 
 The library does not compute with Eqs. 28-31, the motion in permanent contact, because it needs only
 the threshold that follows from them (Eqs. 32 and 33). The row of these equations leads to the

@@ -19,10 +19,10 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.ball import Ball, a_ball
 from bouncing_ball.models.model import Model
 from bouncing_ball.numerics.continuation import ContinuationError
-from bouncing_ball.periodic.branch import LARGEST_STEP, whole_branch
-from bouncing_ball.periodic.following import Followed
-from bouncing_ball.periodic.labelled import FollowedBranch
-from bouncing_ball.periodic.observables import VARIABLES, joined, n_t_columns, no_branch
+from bouncing_ball.periodic.branches.following import Followed
+from bouncing_ball.periodic.branches.labelled import FollowedBranch
+from bouncing_ball.periodic.branches.observables import VARIABLES, joined, n_t_columns, no_branch
+from bouncing_ball.periodic.one_impact.whole_branch import LARGEST_STEP, whole_branch
 from bouncing_ball.periodic.places import by_place
 
 # The longest step along a branch is this fraction of the largest Λ, if that is large: a branch has

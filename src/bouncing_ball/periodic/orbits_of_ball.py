@@ -22,9 +22,9 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.ball import Ball, a_ball, a_known_ball, a_single_ball
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.orbit import OBSERVABLES, Orbit
-from bouncing_ball.periodic.stability import Bifurcation, Side
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.orbits.orbit import OBSERVABLES, Orbit
+from bouncing_ball.periodic.orbits.stability import Bifurcation, Side
 
 if TYPE_CHECKING:
     from bouncing_ball.drawing.result import Result

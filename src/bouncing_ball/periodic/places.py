@@ -12,7 +12,7 @@ from bouncing_ball.datasets.variables import describe
 from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.ball import Ball
-from bouncing_ball.periodic.observables import VARIABLES
+from bouncing_ball.periodic.branches.observables import VARIABLES
 
 
 def labelled(

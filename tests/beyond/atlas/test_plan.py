@@ -3,7 +3,7 @@ import pytest
 
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.one_impact import n_t
 
 
 def test_every_node_is_in_its_tile_and_within_the_stable_range(small, every_node):

@@ -17,8 +17,8 @@ from bouncing_ball.beyond.atlas.summary import (
 )
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic import restitution_branch as restitution_orbit
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.one_impact import restitution_branch as restitution_orbit
 
 
 def error(plan, row, r, place, kind, ratio=100.0):

@@ -5,9 +5,9 @@ import pytest
 
 from bouncing_ball.beyond.atlas.walk import REACHED, extrapolated, stiff_start, walk
 from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic import spring_damper_bifurcations as bifurcations
-from bouncing_ball.periodic.spring_damper_branch import branch_point
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.one_impact import spring_damper_bifurcations as bifurcations
+from bouncing_ball.periodic.one_impact.spring_damper_branch import branch_point
 
 COMPARED = [3.0, 10.0, 100.0, 1e4]
 

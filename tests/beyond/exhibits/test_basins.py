@@ -6,7 +6,7 @@ import pytest
 from bouncing_ball.beyond.exhibits.basins import MOTIONS, Basins, basins
 from bouncing_ball.beyond.exhibits.motion_samples import three_models
 from bouncing_ball.models.damping import Release
-from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.pipeline.configuration import typed
 
 CASE = {"restitution": 0.5, "frequency_ratio": 1e5, "amplitude": 1.3}

@@ -5,7 +5,7 @@ import numpy as np
 from bouncing_ball.beyond.exhibits.explorer_orbits import reference_orbits
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic.orbit import Orbit
+from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.pipeline.configuration import typed
 
 GIVEN = {"frequency_ratio": {"min": 1.0, "max": 1e4, "samples": 40}, "seed": 31}

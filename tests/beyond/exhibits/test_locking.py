@@ -9,7 +9,7 @@ from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.motions import Kind, Motions
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.pipeline.configuration import typed
 from bouncing_ball.pipeline.diff.datasets import compare_datasets
 

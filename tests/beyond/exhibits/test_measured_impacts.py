@@ -17,7 +17,7 @@ from bouncing_ball.measured.curves import CURVES, Curve
 from bouncing_ball.measured.experiment import experiment
 from bouncing_ball.measured.verdicts import judge
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.pipeline.configuration import typed
 
 MEASURED = {"experiments": ["croquet", "plastic_ball", "superball"], "samples": 5}

@@ -6,7 +6,7 @@ import xarray as xr
 from bouncing_ball.beyond.exhibits.motion_samples import three_models
 from bouncing_ball.beyond.exhibits.orbit_diagram import orbit_diagrams
 from bouncing_ball.models.damping import Release
-from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.pipeline.configuration import typed
 
 

@@ -7,8 +7,8 @@ from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.beyond.exhibits.release_rules import release_rules
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.spring_damper_bifurcations import saddle_node
-from bouncing_ball.periodic.spring_damper_branch import branch_point
+from bouncing_ball.periodic.one_impact.spring_damper_bifurcations import saddle_node
+from bouncing_ball.periodic.one_impact.spring_damper_branch import branch_point
 from bouncing_ball.pipeline.configuration import typed
 
 PARAMETERS = {

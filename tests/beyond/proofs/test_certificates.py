@@ -25,8 +25,8 @@ from bouncing_ball.beyond.proofs.problem import Problem
 from bouncing_ball.beyond.proofs.return_map import ReturnMap, flip_coefficient, return_map
 from bouncing_ball.beyond.proofs.series import Series
 from bouncing_ball.models.damping import Release
-from bouncing_ball.periodic import spring_damper_bifurcations as double
-from bouncing_ball.periodic.stability import Side
+from bouncing_ball.periodic.one_impact import spring_damper_bifurcations as double
+from bouncing_ball.periodic.orbits.stability import Side
 
 TABLE_1 = [(ratio, n) for ratio in (10_000, 10, 2) for n in (1, 2, 3)]
 

@@ -40,8 +40,8 @@ from bouncing_ball.models.damping import Release, damping_ratio, restitution_coe
 from bouncing_ball.models.laws.collocation import contacts
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.restitution_branch import rigid_speed
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
 from bouncing_ball.pipeline.configuration import read_yaml
 from bouncing_ball.pipeline.provenance import CONFIGURATION, gather
 

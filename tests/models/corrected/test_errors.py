@@ -14,7 +14,7 @@ from bouncing_ball.accuracy.errors import Quantity, modulus, relative_errors
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.one_impact import n_t
 
 RATIOS = np.geomspace(1.0, 1e4, 41)
 FOUND, ALWAYS, _ = ThresholdStatus

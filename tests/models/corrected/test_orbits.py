@@ -9,9 +9,9 @@ from bouncing_ball.models.laws.hertzian import Tsuji
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.orbit import OBSERVABLES
-from bouncing_ball.periodic.stability import Side
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.orbits.orbit import OBSERVABLES
+from bouncing_ball.periodic.orbits.stability import Side
 
 RELEASES = list(Release)
 COMPARED = (*OBSERVABLES[1:], "bounce_height")

@@ -12,7 +12,7 @@ from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.one_impact import n_t
 
 R, LAM = 0.7, 1.3
 NAMES = ("displacement", "force", "hunt-crossley", "tsuji", "kuwabara-kono")

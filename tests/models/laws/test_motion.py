@@ -14,8 +14,8 @@ from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.resumption import resumption
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.spring_damper_bifurcations import orbit_at
-from bouncing_ball.periodic.stability import Side
+from bouncing_ball.periodic.one_impact.spring_damper_bifurcations import orbit_at
+from bouncing_ball.periodic.orbits.stability import Side
 
 CASES = [
     # n, r, ϖ, Λ

@@ -17,10 +17,10 @@ from bouncing_ball.paper.claims.forensics import (
     weightless_orbits,
 )
 from bouncing_ball.paper.claims.tables import forensics as rows
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic import restitution_branch as restitution_orbit
-from bouncing_ball.periodic.orbit import Orbit
-from bouncing_ball.periodic.spring_damper_branch import orbits_on_branch
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.one_impact import restitution_branch as restitution_orbit
+from bouncing_ball.periodic.one_impact.spring_damper_branch import orbits_on_branch
+from bouncing_ball.periodic.orbits.orbit import Orbit
 
 ZETA = float(damping_ratio(0.85))
 WEIGHTLESS, HIGH_BOUNCE = "no gravity in contact", "high-bounce stability"

@@ -38,12 +38,12 @@ class Edit(NamedTuple):
     row: str
 
 
-RIGID = "periodic/restitution_branch.py"
-BRANCH = "periodic/spring_damper_branch.py"
-ENDS = "periodic/spring_damper_bifurcations.py"
+RIGID = "periodic/one_impact/restitution_branch.py"
+BRANCH = "periodic/one_impact/spring_damper_branch.py"
+ENDS = "periodic/one_impact/spring_damper_bifurcations.py"
 LINEAR = "models/linear_contact.py"
 PERMANENT = "models/permanent_contact.py"
-ORBIT = "periodic/orbit.py"
+ORBIT = "periodic/orbits/orbit.py"
 EDITS = [
     Edit("models/flight.py", "(self.velocity - _HALF * time)", "(self.velocity - time)", "Eq. 4"),
     Edit("models/flight.py", "slowing = y * sine + x * versine", "slowing = y * sine", "Eq. 5"),
@@ -106,13 +106,16 @@ EDITS = [
         "Eqs. 21-26",
     ),
     Edit(
-        "periodic/problem.py",
+        "periodic/orbits/problem.py",
         "height = speed * landing.late",
         "height = speed + landing.late",
         "Eqs. 21-26",
     ),
     Edit(
-        "periodic/paper_unknowns.py", "inner[..., 1] -= lam", "inner[..., 1] += lam", "Eqs. 21-26"
+        "periodic/one_impact/paper_unknowns.py",
+        "inner[..., 1] -= lam",
+        "inner[..., 1] += lam",
+        "Eqs. 21-26",
     ),
     Edit(
         ORBIT,

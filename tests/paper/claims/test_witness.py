@@ -18,8 +18,8 @@ from bouncing_ball.paper.claims.witness import (
     witness,
 )
 from bouncing_ball.paper.exhibits.continuation_of_orbits import Domains, orbit_branches
-from bouncing_ball.periodic import closed_forms
-from bouncing_ball.periodic.paper_unknowns import PaperUnknowns
+from bouncing_ball.periodic.one_impact import closed_forms
+from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns
 
 
 @pytest.fixture(scope="module")

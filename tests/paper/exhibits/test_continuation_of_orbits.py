@@ -18,9 +18,12 @@ from bouncing_ball.paper.exhibits.continuation_of_orbits import (
     stability_ranges,
 )
 from bouncing_ball.paper.exhibits.continuation_of_orbits_figures import domains
-from bouncing_ball.periodic.orbit import Orbit
-from bouncing_ball.periodic.spring_damper_bifurcations import period_doubling, saddle_node
-from bouncing_ball.periodic.spring_damper_branch import branch_point
+from bouncing_ball.periodic.one_impact.spring_damper_bifurcations import (
+    period_doubling,
+    saddle_node,
+)
+from bouncing_ball.periodic.one_impact.spring_damper_branch import branch_point
+from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.pipeline.configuration import typed
 
 # As the configuration gives them.

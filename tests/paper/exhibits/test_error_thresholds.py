@@ -12,8 +12,8 @@ from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.exhibits.error_thresholds import error_thresholds, height_error
 from bouncing_ball.paper.exhibits.permanent_contact import permanent_contact_error
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.spring_damper_bifurcations import orbit_at
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.one_impact.spring_damper_bifurcations import orbit_at
 from bouncing_ball.pipeline.configuration import typed
 
 PARAMETERS = {

@@ -10,7 +10,7 @@ from bouncing_ball.paper.exhibits.lowest_period_doubling import (
     lowest_along_ratio,
     lowest_period_doublings,
 )
-from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.pipeline.configuration import typed
 
 PARAMETERS = {

@@ -9,7 +9,7 @@ from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.exhibits.time_histories import both_histories, contact_history
-from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.pipeline.configuration import typed
 
 # As the configuration gives them.

@@ -31,7 +31,7 @@ from bouncing_ball.datasets.parameters import (
 )
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic import restitution_branch as restitution_orbit
+from bouncing_ball.periodic.one_impact import restitution_branch as restitution_orbit
 
 # Lower bounds of r: a linear contact with the force release has r > e⁻².
 _LOWEST = {Release.DISPLACEMENT: 0.0, Release.FORCE: float(np.exp(-2))}

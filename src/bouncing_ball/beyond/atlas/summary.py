@@ -34,8 +34,8 @@ from bouncing_ball.beyond.atlas.plan import Nodes, Plan
 from bouncing_ball.beyond.atlas.shards import VARIABLES as OF_SHARDS
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.models.model import Model
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic import restitution_branch as restitution_orbit
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.one_impact import restitution_branch as restitution_orbit
 
 VARIABLES = {
     "needed": Variable("ϖ from which the error of all nodes of a tile is tolerated", symbol="ϖ"),

@@ -1,10 +1,10 @@
 r"""Orbits at given Λ along ϖ, by extrapolation along the branch instead of root finding.
 
-On the branch of :mod:`bouncing_ball.periodic.spring_damper_branch` the product t = ϖε is almost
-constant along ϖ, and (X, Y) is almost a straight line along ε. The walk therefore starts at the
-stiffest contact and goes down. For stiff contacts only the load a = 1 - Y delays the release, by
-``(1 + r) a/(r v ϖ²)`` for both rules (:mod:`bouncing_ball.models.laws.signature`), with
-``v = 2nπ/(1 + r)``. Expressed as an angle of the oscillation of the contact, this is ::
+On the branch of :mod:`bouncing_ball.periodic.one_impact.spring_damper_branch` the product t = ϖε is
+almost constant along ϖ, and (X, Y) is almost a straight line along ε. The walk therefore starts at
+the stiffest contact and goes down. For stiff contacts only the load a = 1 - Y delays the release,
+by ``(1 + r) a/(r v ϖ²)`` for both rules (:mod:`bouncing_ball.models.laws.signature`), with ``v =
+2nπ/(1 + r)``. Expressed as an angle of the oscillation of the contact, this is ::
 
     t = √(1 - ζ²) (1 + r)² (1 - Y)/(2nπ r)
 
@@ -14,11 +14,12 @@ and of the two solutions d of ::
 
     (X + X′d)² + (Y + Y′d)² = Λ²
 
-the smaller belongs to the stable side. This takes two evaluations of the branch for each
-orbit, whereas a bracketing root finder takes hundreds. Every result of the walk is an orbit
-of the closed form; only its Λ differs slightly from the requested Λ, by a known
-difference. Where the difference exceeds :data:`REACHED`, the orbit is computed by
-:func:`bouncing_ball.periodic.spring_damper_bifurcations.orbit_at`, which is authoritative.
+the smaller belongs to the stable side. This takes two evaluations of the branch for each orbit,
+whereas a bracketing root finder takes hundreds. Every result of the walk is an orbit of the closed
+form; only its Λ differs slightly from the requested Λ, by a known difference. Where the difference
+exceeds :data:`REACHED`, the orbit is computed by
+:func:`bouncing_ball.periodic.one_impact.spring_damper_bifurcations.orbit_at`, which is
+authoritative.
 """
 
 from collections.abc import Iterator
@@ -30,11 +31,15 @@ import numpy as np
 from bouncing_ball.beyond.atlas.plan import Nodes
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic import restitution_branch as restitution_orbit
-from bouncing_ball.periodic import spring_damper_bifurcations as bifurcations
-from bouncing_ball.periodic.orbit import Orbit
-from bouncing_ball.periodic.spring_damper_branch import BranchPoint, branch_point, orbits_of
-from bouncing_ball.periodic.stability import is_stable
+from bouncing_ball.periodic.one_impact import restitution_branch as restitution_orbit
+from bouncing_ball.periodic.one_impact import spring_damper_bifurcations as bifurcations
+from bouncing_ball.periodic.one_impact.spring_damper_branch import (
+    BranchPoint,
+    branch_point,
+    orbits_of,
+)
+from bouncing_ball.periodic.orbits.orbit import Orbit
+from bouncing_ball.periodic.orbits.stability import is_stable
 
 REACHED = 1e-6
 """Largest relative difference between the Λ of an orbit and the requested Λ. Errors of models are

@@ -27,7 +27,7 @@ from bouncing_ball.long_run.period_doublings import MOST, cascade
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.one_impact import n_t
 
 VARIABLES = {
     "flights": Variable("flights of the orbit in a period", symbol="k"),

@@ -43,10 +43,10 @@ from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.exhibits.orbit_parameters import OrbitParameters, OrbitsAlongRatio
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.law_at_orbit import orbit_of_law
-from bouncing_ball.periodic.orbit import Orbit
-from bouncing_ball.periodic.restitution_branch import rigid_speed
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.one_impact.law_at_orbit import orbit_of_law
+from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
+from bouncing_ball.periodic.orbits.orbit import Orbit
 
 VARIABLES = {
     "law": Variable("law of the contact"),

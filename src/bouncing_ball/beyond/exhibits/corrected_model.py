@@ -26,7 +26,7 @@ from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.exhibits.orbit_parameters import OrbitErrors
 from bouncing_ball.paper.exhibits.time_histories import ContactHistory
-from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.one_impact import n_t
 
 VARIABLES = {
     "coefficient": Variable("relative error times the frequency ratio, to first order", symbol="K"),

@@ -24,8 +24,8 @@ from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.orbit import Orbit
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.orbits.orbit import Orbit
 
 VARIABLES = {
     "engine": Variable("physics engine"),

@@ -18,8 +18,8 @@ from bouncing_ball.models.model import Model
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.orbit import OBSERVABLES
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.orbits.orbit import OBSERVABLES
 
 VARIABLES = {
     "end_speed": Variable("speed of the ball towards the table at that impact", symbol="-δ′"),

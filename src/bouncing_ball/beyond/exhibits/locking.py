@@ -19,7 +19,7 @@ from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.motions import Kind, Motions
 from bouncing_ball.models.damping import Release
-from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.one_impact import n_t
 
 VARIABLES = {
     "kind_nodes": Variable("nodes at which the ball of a model ends on a motion of this group"),

@@ -32,7 +32,7 @@ from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic import restitution_branch
+from bouncing_ball.periodic.one_impact import restitution_branch
 
 # Ten times the largest change when a fit starts elsewhere, see tests/beyond/exhibits.
 _FITTED = 1e-10

@@ -40,7 +40,7 @@ from bouncing_ball.datasets.parameters import (
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic.stability import Bifurcation
+from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 VARIABLES = {
     "certificate": Variable("what is certified"),

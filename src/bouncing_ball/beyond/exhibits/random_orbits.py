@@ -7,7 +7,7 @@ import numpy as np
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.one_impact import n_t
 
 
 def random_orbits(

@@ -32,8 +32,8 @@ from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.exhibits.error_thresholds import ErrorsAlongRatio
 from bouncing_ball.paper.exhibits.errors_along_ratio import errors_along_ratio
 from bouncing_ball.paper.exhibits.lowest_period_doubling import lowest_along_ratio
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.stability import Bifurcation
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 VARIABLES = {
     "bifurcation_amplitude": Variable("excitation amplitude of the bifurcation", symbol="Λ"),

@@ -28,8 +28,8 @@ from bouncing_ball.beyond.proofs.problem import Problem, working_bits
 from bouncing_ball.beyond.proofs.return_map import ReturnMap, flip_coefficient, return_map
 from bouncing_ball.beyond.proofs.series import Series
 from bouncing_ball.models.spring_damper import SpringDamper
-from bouncing_ball.periodic import spring_damper_bifurcations as double
-from bouncing_ball.periodic.stability import Side
+from bouncing_ball.periodic.one_impact import spring_damper_bifurcations as double
+from bouncing_ball.periodic.orbits.stability import Side
 
 # Precision of the proofs that a function keeps its sign, which need no digits.
 _COARSE = 80

@@ -7,7 +7,7 @@ Y = Λ sin ψ at the phase ψ of the instant, their orbits satisfy ::
     (1 + r) X - σ Y = s,    s = nπ (1 - r) - σ,    Λ_SN = s/√((1 + r)² + σ²)
 
 and the period doubling lies where this line meets a second one
-(:mod:`bouncing_ball.periodic.corrected_branch`). Everything is a closed formula.
+(:mod:`bouncing_ball.periodic.one_impact.corrected_branch`). Everything is a closed formula.
 """
 
 from dataclasses import dataclass

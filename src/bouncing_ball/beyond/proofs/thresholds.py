@@ -28,7 +28,7 @@ from bouncing_ball.beyond.proofs.newton import certified_box
 from bouncing_ball.beyond.proofs.problem import Problem, damping_of, working_bits
 from bouncing_ball.beyond.proofs.series import Series, angle
 from bouncing_ball.beyond.proofs.simple_models import SimpleModel
-from bouncing_ball.periodic import spring_damper_bifurcations as double
+from bouncing_ball.periodic.one_impact import spring_damper_bifurcations as double
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import xarray as xr
 from bouncing_ball.paper.claims import as_printed as printed
 from bouncing_ball.paper.claims.verdict import largest
 from bouncing_ball.paper.exhibits.printed_table1 import PERMANENT_CONTACT
-from bouncing_ball.periodic.stability import Bifurcation
+from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 Data = Mapping[str, xr.Dataset]
 BOUNDS = tuple(map(str, Bifurcation))

@@ -21,10 +21,10 @@ from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.claims import as_printed
 from bouncing_ball.paper.exhibits.printed_table1 import AXES, LAST_DIGIT, RESTITUTION, printed_table
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.orbit import Orbit
-from bouncing_ball.periodic.spring_damper_branch import orbits_on_branch
-from bouncing_ball.periodic.stability import Bifurcation
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.one_impact.spring_damper_branch import orbits_on_branch
+from bouncing_ball.periodic.orbits.orbit import Orbit
+from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 VARIABLES = {
     "rows": Variable("rows of the table that are compared", equation="Table 1"),

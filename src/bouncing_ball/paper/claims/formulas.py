@@ -27,9 +27,9 @@ from bouncing_ball.models.sticking import lift_off_phase
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.paper.claims import as_printed as printed
 from bouncing_ball.paper.claims.formulas_in_use import InUse, forms_in_use, largest
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.orbit import Orbit
-from bouncing_ball.periodic.stability import Bifurcation
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.orbits.orbit import Orbit
+from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 VARIABLES = {
     "formula": Variable("printed formula"),

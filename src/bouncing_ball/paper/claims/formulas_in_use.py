@@ -23,11 +23,11 @@ from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.models.sticking import lift_off_phase
 from bouncing_ball.paper.claims import as_printed as printed
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic import restitution_branch as rigid
-from bouncing_ball.periodic.paper_unknowns import PaperUnknowns
-from bouncing_ball.periodic.restitution_branch import ImpactMap
-from bouncing_ball.periodic.stability import Bifurcation
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.one_impact import restitution_branch as rigid
+from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns
+from bouncing_ball.periodic.one_impact.restitution_branch import ImpactMap
+from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 # A grid on which the threshold of an undamped contact, ϖ = 10 for 1 %, is found.
 _RATIOS = np.geomspace(1.0, 1e3, 31)
@@ -129,7 +129,7 @@ def _restitution_orbits(rng, r) -> Rows:
     holmes = rigid.period_doubling(n, r, ImpactMap.HOLMES)
     return {
         "Eq. 6": _used(
-            "periodic.restitution_branch.phase",
+            "periodic.one_impact.restitution_branch.phase",
             defects=(
                 rigid.phase(n, r, lam) - phase,
                 orbit.phase - phase,
@@ -137,15 +137,15 @@ def _restitution_orbits(rng, r) -> Rows:
             ),
         ),
         "Eq. 7": _used(
-            "periodic.restitution_branch.saddle_node",
+            "periodic.one_impact.restitution_branch.saddle_node",
             defects=(rigid.saddle_node(n, r) - fold, bifurcation - fold),
         ),
         "Eq. 8, Holmes' map": _used(
-            "periodic.restitution_branch.period_doubling",
+            "periodic.one_impact.restitution_branch.period_doubling",
             defects=(holmes - printed.period_doubling(n, r),),
         ),
         "Eq. 8, corrected": _used(
-            "periodic.restitution_branch.period_doubling",
+            "periodic.one_impact.restitution_branch.period_doubling",
             defects=(rigid.period_doubling(n, r) - corrected, doubling - corrected),
         ),
     }
@@ -224,23 +224,23 @@ def _contact_orbits(rng, samples) -> Rows:
     doubling_test = Bifurcation.PERIOD_DOUBLING.test(*doubling.trace_and_determinant())
     return {
         "Eqs. 12-13": _used("models.spring_damper.SpringDamper.flow", defects=(flow,)),
-        "Eqs. 14-15": _used("periodic.orbit.Orbit.flight_path", defects=(flown,)),
+        "Eqs. 14-15": _used("periodic.orbits.orbit.Orbit.flight_path", defects=(flown,)),
         "Eq. 17": _used(
-            "periodic.orbit.Orbit.apparent_restitution",
+            "periodic.orbits.orbit.Orbit.apparent_restitution",
             defects=(orbit.apparent_restitution - apparent,),
         ),
         "Eqs. 18-20": _used(
-            "periodic.orbit.Orbit.flight_time",
+            "periodic.orbits.orbit.Orbit.flight_time",
             defects=(orbit.flight_time - printed.flight_time(n, end),),
         ),
         "Eqs. 21-26": _used(
             "models.spring_damper.SpringDamper.flow",
             "models.linear_contact.LinearContactDynamics.depart",
-            "periodic.problem.PeriodicOrbits",
-            "periodic.paper_unknowns.PaperUnknowns",
-            "periodic.spring_damper_branch.branch_point",
-            "periodic.spring_damper_bifurcations.saddle_node",
-            "periodic.spring_damper_bifurcations.period_doubling",
+            "periodic.orbits.problem.PeriodicOrbits",
+            "periodic.one_impact.paper_unknowns.PaperUnknowns",
+            "periodic.one_impact.spring_damper_branch.branch_point",
+            "periodic.one_impact.spring_damper_bifurcations.saddle_node",
+            "periodic.one_impact.spring_damper_bifurcations.period_doubling",
             defects=(
                 height - level,
                 ended - end,
@@ -250,7 +250,7 @@ def _contact_orbits(rng, samples) -> Rows:
             ),
         ),
         "Eq. 27": _used(
-            "periodic.orbit.Orbit.bounce_velocity",
+            "periodic.orbits.orbit.Orbit.bounce_velocity",
             defects=(bounce - printed.bounce_velocity(impact, n, end),),
         ),
     }
@@ -318,7 +318,7 @@ def _errors(rng, samples) -> Rows:
     )
     return {
         "Eqs. 37-38": _used(
-            "periodic.orbit.Orbit.max_height",
+            "periodic.orbits.orbit.Orbit.max_height",
             "accuracy.errors.relative_errors",
             "accuracy.thresholds.restitution_thresholds",
             defects=(

@@ -17,10 +17,10 @@ from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, null_vector, plane
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.periodic import closed_forms
-from bouncing_ball.periodic.orbit import Orbit
-from bouncing_ball.periodic.paper_unknowns import PaperUnknowns
-from bouncing_ball.periodic.stability import Bifurcation
+from bouncing_ball.periodic.one_impact import closed_forms
+from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns
+from bouncing_ball.periodic.orbits.orbit import Orbit
+from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 VARIABLES = {
     "artifact": Variable("figure or table whose orbits are compared"),

@@ -18,8 +18,8 @@ from bouncing_ball.paper.exhibits.orbit_parameters import (
     require_any_orbit,
     require_orbit,
 )
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.observables import OBSERVED, columns
+from bouncing_ball.periodic.branches.observables import OBSERVED, columns
+from bouncing_ball.periodic.one_impact import n_t
 
 VARIABLES = {
     "labelled": Variable("whether the figure marks this frequency ratio"),

@@ -22,13 +22,20 @@ from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.continuation import Branch, ContinuationError
 from bouncing_ball.paper.exhibits.orbit_parameters import BranchEnd, BranchPoints
 from bouncing_ball.paper.exhibits.printed_table1 import printed_table
-from bouncing_ball.periodic import n_t, observables
-from bouncing_ball.periodic import restitution_branch as restitution_orbits
-from bouncing_ball.periodic.branch import whole_branch
-from bouncing_ball.periodic.following import Followed, orbits_along
-from bouncing_ball.periodic.observables import PLACE, columns, joined, n_t_columns, no_branch
-from bouncing_ball.periodic.orbit import Orbit
-from bouncing_ball.periodic.stability import Bifurcation
+from bouncing_ball.periodic.branches import observables
+from bouncing_ball.periodic.branches.following import Followed, orbits_along
+from bouncing_ball.periodic.branches.observables import (
+    PLACE,
+    columns,
+    joined,
+    n_t_columns,
+    no_branch,
+)
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.one_impact import restitution_branch as restitution_orbits
+from bouncing_ball.periodic.one_impact.whole_branch import whole_branch
+from bouncing_ball.periodic.orbits.orbit import Orbit
+from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 VARIABLES = {
     "absence": Variable("why there is no stable range"),
@@ -86,7 +93,7 @@ def followed(
     Raises
     ------
     NoOrbitError, ContinuationError
-        As :func:`~bouncing_ball.periodic.branch.whole_branch`.
+        As :func:`~bouncing_ball.periodic.one_impact.whole_branch.whole_branch`.
     """
     model = SpringDamperModel(SpringDamper.from_restitution(given.restitution, ratio, release))
     return whole_branch(model, n, given.amplitude_max, continuation.largest_step)
@@ -263,7 +270,8 @@ def _stability_range(
     Raises
     ------
     NoOrbitError, ContinuationError
-        As :func:`~bouncing_ball.periodic.branch.whole_branch` and :func:`first_limits`.
+        As :func:`~bouncing_ball.periodic.one_impact.whole_branch.whole_branch` and
+        :func:`first_limits`.
     """
     model = SpringDamperModel(SpringDamper.from_restitution(given.restitution, ratio, release))
     branch = whole_branch(

@@ -18,7 +18,7 @@ from bouncing_ball.paper.exhibits.orbit_parameters import (
     OrbitsAlongRatio,
     require_any_orbit,
 )
-from bouncing_ball.periodic import n_t
+from bouncing_ball.periodic.one_impact import n_t
 
 VARIABLES = {
     "restitution_max_height": Variable(

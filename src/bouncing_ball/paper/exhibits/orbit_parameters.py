@@ -22,7 +22,7 @@ from bouncing_ball.datasets.parameters import (
     number,
 )
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.periodic.restitution_branch import saddle_node
+from bouncing_ball.periodic.one_impact.restitution_branch import saddle_node
 
 
 def require_orbit(amplitude: float, n: int, restitution: float) -> float:

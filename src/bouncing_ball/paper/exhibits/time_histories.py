@@ -11,8 +11,8 @@ from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.exhibits.orbit_parameters import OrbitParameters
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.orbit import Orbit
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.orbits.orbit import Orbit
 
 VARIABLES = {
     "table_phase": Variable("phase of the table, whose height is Λ sin τ", symbol="τ", units="rad"),

@@ -1,8 +1,8 @@
 """The branch of n-T orbits of a model, followed from one end to the other.
 
 The branch is a solution curve of the equations of n-T orbits in the unknowns of the paper
-(:mod:`bouncing_ball.periodic.paper_unknowns`), with Λ as the parameter. It is followed to both
-sides from an orbit in the stable range, until the orbits end or Λ leaves a window.
+(:mod:`bouncing_ball.periodic.one_impact.paper_unknowns`), with Λ as the parameter. It is followed
+to both sides from an orbit in the stable range, until the orbits end or Λ leaves a window.
 """
 
 from collections.abc import Collection
@@ -18,13 +18,13 @@ from bouncing_ball.numerics.continuation import (
     continue_both_ways,
 )
 from bouncing_ball.numerics.events import Event
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.balls import LAMBDA
-from bouncing_ball.periodic.following import Followed, Range, limits_of
-from bouncing_ball.periodic.orbit import Orbit
-from bouncing_ball.periodic.paper_unknowns import PaperUnknowns
-from bouncing_ball.periodic.special import ends_of_contact, passed_by, with_ends
-from bouncing_ball.periodic.stability import Bifurcation
+from bouncing_ball.periodic.branches.following import Followed, Range, limits_of
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns
+from bouncing_ball.periodic.orbits.balls import LAMBDA
+from bouncing_ball.periodic.orbits.orbit import Orbit
+from bouncing_ball.periodic.orbits.special import ends_of_contact, passed_by, with_ends
+from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 LARGEST_STEP = 0.1
 """Default of the largest step in arclength."""

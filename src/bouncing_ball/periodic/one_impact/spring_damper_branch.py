@@ -49,7 +49,7 @@ from bouncing_ball.models.oscillator import responses
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.arrays import blocks, pick
-from bouncing_ball.periodic.orbit import Orbit
+from bouncing_ball.periodic.orbits.orbit import Orbit
 
 # Number of points computed at the same time, so that the intermediate arrays stay in the cache.
 _BLOCK = 8192

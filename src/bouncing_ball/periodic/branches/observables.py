@@ -13,9 +13,9 @@ import xarray as xr
 
 from bouncing_ball.datasets.variables import Variable
 from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.periodic.balls import Balls
-from bouncing_ball.periodic.following import Orbits, orbits_along
-from bouncing_ball.periodic.orbit import Orbit
+from bouncing_ball.periodic.branches.following import Orbits, orbits_along
+from bouncing_ball.periodic.orbits.balls import Balls
+from bouncing_ball.periodic.orbits.orbit import Orbit
 
 VARIABLES = {
     "special": Variable("special point of the branch, in order of arclength"),

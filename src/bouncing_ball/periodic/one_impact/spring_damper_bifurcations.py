@@ -1,8 +1,8 @@
 """Saddle-node, period doubling and orbits at a given Λ, on the explicit branch.
 
 These are roots of functions of one variable, the excess angle ε, along the branch of
-:mod:`bouncing_ball.periodic.spring_damper_branch`, computed for arrays of contacts at the same
-time. A scan brackets the first root next to the fold, and Chandrupatla's method
+:mod:`bouncing_ball.periodic.one_impact.spring_damper_branch`, computed for arrays of contacts at
+the same time. A scan brackets the first root next to the fold, and Chandrupatla's method
 (:func:`scipy.optimize.elementwise.find_root`) reduces the bracket to the last digit.
 
 The branch comes from Λ → ∞ at short contacts. From there Λ falls as the contact
@@ -19,9 +19,13 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.numerics.arrays import blocks
-from bouncing_ball.periodic.orbit import Orbit, check_index
-from bouncing_ball.periodic.spring_damper_branch import BranchPoint, branch_point, orbits_on_branch
-from bouncing_ball.periodic.stability import Bifurcation, Side
+from bouncing_ball.periodic.one_impact.spring_damper_branch import (
+    BranchPoint,
+    branch_point,
+    orbits_on_branch,
+)
+from bouncing_ball.periodic.orbits.orbit import Orbit, check_index
+from bouncing_ball.periodic.orbits.stability import Bifurcation, Side
 
 # Points of the scan on each side of ε = 0, spaced geometrically from this small
 # part of 1/ϖ, the scale of the fold, to the ends of the possible range.
@@ -202,8 +206,8 @@ def saddle_node(contact: SpringDamper, n: ArrayLike) -> np.ndarray:
     Returns
     -------
     ndarray
-        ε for :func:`~bouncing_ball.periodic.spring_damper_branch.branch_point`, of the shape to
-        which the contact and n broadcast. NaN where the branch has no fold.
+        ε for :func:`~bouncing_ball.periodic.one_impact.spring_damper_branch.branch_point`, of the
+        shape to which the contact and n broadcast. NaN where the branch has no fold.
 
     Raises
     ------

@@ -13,11 +13,11 @@ from bouncing_ball.datasets.variables import SHARED, Variable, describe
 from bouncing_ball.drawing.result import MADE_BY, Result
 from bouncing_ball.errors import ModelError
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.periodic import observables
-from bouncing_ball.periodic.following import Orbits
-from bouncing_ball.periodic.orbit import Orbit
-from bouncing_ball.periodic.problem import PeriodicOrbits
-from bouncing_ball.periodic.special import Special
+from bouncing_ball.periodic.branches import observables
+from bouncing_ball.periodic.branches.following import Orbits
+from bouncing_ball.periodic.orbits.orbit import Orbit
+from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
+from bouncing_ball.periodic.orbits.special import Special
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -9,10 +9,10 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.periodic.balls import Balls
-from bouncing_ball.periodic.legs import lag_of, time_to_section, without_force
-from bouncing_ball.periodic.problem import PeriodicOrbits
-from bouncing_ball.periodic.special import sticking
+from bouncing_ball.periodic.orbits.balls import Balls
+from bouncing_ball.periodic.orbits.legs import lag_of, time_to_section, without_force
+from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
+from bouncing_ball.periodic.orbits.special import sticking
 
 # Relative to its length, and to the speeds of its impacts, a leg of the simulation differs from
 # that of the orbit by less than this if both are the same; another landing or release differs by

@@ -28,11 +28,11 @@ from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.continuation import Branch, End
 from bouncing_ball.numerics.corrector import Problem
 from bouncing_ball.numerics.events import Event, SpecialPoint
-from bouncing_ball.periodic.legs import Legs
-from bouncing_ball.periodic.lost_release import lost_release, rise_of_release
-from bouncing_ball.periodic.problem import PeriodicOrbits
-from bouncing_ball.periodic.release import release_condition, release_margin
-from bouncing_ball.periodic.stability import Bifurcation
+from bouncing_ball.periodic.orbits.legs import Legs
+from bouncing_ball.periodic.orbits.lost_release import lost_release, rise_of_release
+from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
+from bouncing_ball.periodic.orbits.release import release_condition, release_margin
+from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 # A time is bisected until a minimum is known to 2⁻²⁶ of an interval of at most π; its height then
 # has an error of the order of the square.
@@ -49,7 +49,7 @@ _FAR = 1.0
 
 class Coordinates(Problem, Protocol):
     """The equations of orbits in some unknowns y: those of
-    :class:`~bouncing_ball.periodic.problem.PeriodicOrbits`, or those of the paper.
+    :class:`~bouncing_ball.periodic.orbits.problem.PeriodicOrbits`, or those of the paper.
     """
 
     @property
@@ -187,8 +187,8 @@ def loss_of_release(orbits: PeriodicOrbits) -> Event:
 
     Where it vanishes, a flight disappears. The release then is a double zero and its time is not a
     smooth function of the state, so that the place is the end of a branch, which is located by
-    :mod:`~bouncing_ball.periodic.lost_release`. An impact that grazes also has a slow release, but
-    their ratio tends to 1.
+    :mod:`~bouncing_ball.periodic.orbits.lost_release`. An impact that grazes also has a slow
+    release, but their ratio tends to 1.
     """
 
     def share(y: np.ndarray) -> np.ndarray:
@@ -314,7 +314,7 @@ def with_ends(problem: Coordinates, branch: Branch) -> Branch:
 
     Where the ball no longer leaves the table, the time of the release is not a smooth function of
     the state, so that a branch approaches this end up to the shortest step. The special point is
-    found by :mod:`~bouncing_ball.periodic.lost_release`, or else it is the last point.
+    found by :mod:`~bouncing_ball.periodic.orbits.lost_release`, or else it is the last point.
     """
     ends = ends_of_contact(problem.orbits)
     start, first = _end_near(problem, branch.start, branch.points[0], ends)

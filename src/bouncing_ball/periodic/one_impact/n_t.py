@@ -1,8 +1,8 @@
 """The n-T orbits of any model: one impact in n periods of the table.
 
 They follow from the closed form of the model's branch if there is one
-(:mod:`~bouncing_ball.periodic.closed_forms`), and otherwise from a search that starts from the
-corrected model (:mod:`~bouncing_ball.periodic.start`).
+(:mod:`~bouncing_ball.periodic.one_impact.closed_forms`), and otherwise from a search that starts
+from the corrected model (:mod:`~bouncing_ball.periodic.one_impact.start`).
 """
 
 from enum import StrEnum
@@ -12,10 +12,10 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.model import Model
-from bouncing_ball.periodic import start
-from bouncing_ball.periodic.closed_forms import closed_form
-from bouncing_ball.periodic.orbit import Orbit
-from bouncing_ball.periodic.stability import Bifurcation, Side
+from bouncing_ball.periodic.one_impact import start
+from bouncing_ball.periodic.one_impact.closed_forms import closed_form
+from bouncing_ball.periodic.orbits.orbit import Orbit
+from bouncing_ball.periodic.orbits.stability import Bifurcation, Side
 
 
 class Absence(StrEnum):

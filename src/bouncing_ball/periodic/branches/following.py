@@ -21,11 +21,11 @@ from bouncing_ball.numerics.continuation import (
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, tangent
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import Event, SpecialPoint
-from bouncing_ball.periodic.balls import LAMBDA
-from bouncing_ball.periodic.lost_release import lost_release
-from bouncing_ball.periodic.orbit import Orbit, orbit_at
-from bouncing_ball.periodic.problem import PeriodicOrbits, twice
-from bouncing_ball.periodic.special import (
+from bouncing_ball.periodic.orbits.balls import LAMBDA
+from bouncing_ball.periodic.orbits.lost_release import lost_release
+from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_at
+from bouncing_ball.periodic.orbits.problem import PeriodicOrbits, twice
+from bouncing_ball.periodic.orbits.special import (
     MEANINGS,
     Coordinates,
     Special,
@@ -34,7 +34,7 @@ from bouncing_ball.periodic.special import (
     loss_of_release,
     turns_apart,
 )
-from bouncing_ball.periodic.stability import Bifurcation
+from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 STEPS = StepControl(initial=0.01, smallest=1e-9, largest=0.1, max_angle=0.15)
 """Steps in arclength, over the phases, the velocities and arsinh of the parameter."""

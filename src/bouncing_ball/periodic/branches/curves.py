@@ -28,19 +28,26 @@ from bouncing_ball.numerics.continuation import (
 )
 from bouncing_ball.numerics.corrector import Condition, NewtonSettings, corrected, null_vector
 from bouncing_ball.numerics.events import Event, SpecialPoint, locate, vanishing
-from bouncing_ball.periodic.balls import LAMBDA
-from bouncing_ball.periodic.following import PATIENT, STEPS, Orbits, Range, explained, limits_of
-from bouncing_ball.periodic.orbit import Orbit, orbit_at
-from bouncing_ball.periodic.problem import PeriodicOrbits
-from bouncing_ball.periodic.release import release_condition
-from bouncing_ball.periodic.special import (
+from bouncing_ball.periodic.branches.following import (
+    PATIENT,
+    STEPS,
+    Orbits,
+    Range,
+    explained,
+    limits_of,
+)
+from bouncing_ball.periodic.orbits.balls import LAMBDA
+from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_at
+from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
+from bouncing_ball.periodic.orbits.release import release_condition
+from bouncing_ball.periodic.orbits.special import (
     Special,
     events,
     flight_margin,
     impact_margin,
     loss_of_release,
 )
-from bouncing_ball.periodic.stability import Bifurcation
+from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 CURVE_STEPS = replace(STEPS, creep=1e-3)
 """Steps of a curve, which ends where its points accumulate, for example at a release without speed,

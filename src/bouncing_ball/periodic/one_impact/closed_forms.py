@@ -3,7 +3,7 @@
 The branch of each of these models is a curve that is known as a formula: Λ cos φ = Λ_SN for the
 restitution model, a line as well for the corrected model of a linear contact, and the explicit
 branch of the spring-damper model. They are a second route beside the equations of
-:mod:`~bouncing_ball.periodic.problem`, and they are the starts of branches.
+:mod:`~bouncing_ball.periodic.orbits.problem`, and they are the starts of branches.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic import corrected_branch as lines
-from bouncing_ball.periodic import restitution_branch as formulas
-from bouncing_ball.periodic import spring_damper_bifurcations as bifurcations
-from bouncing_ball.periodic.orbit import Orbit, check_index, in_order
-from bouncing_ball.periodic.spring_damper_branch import nearest_excess, orbits_on_branch
-from bouncing_ball.periodic.stability import Side
+from bouncing_ball.periodic.one_impact import corrected_branch as lines
+from bouncing_ball.periodic.one_impact import restitution_branch as formulas
+from bouncing_ball.periodic.one_impact import spring_damper_bifurcations as bifurcations
+from bouncing_ball.periodic.one_impact.spring_damper_branch import nearest_excess, orbits_on_branch
+from bouncing_ball.periodic.orbits.orbit import Orbit, check_index, in_order
+from bouncing_ball.periodic.orbits.stability import Side
 
 # Bound of the rounding error of a Λ that is exactly 0, in units in the last place of z′_i; the
 # largest error found for ϖ = 0.6…10⁶ and n = 1…100, under both rules, was 3.9 units.
@@ -81,7 +81,7 @@ class RestitutionLine:
 
 @dataclass(frozen=True)
 class SpringDamperBranch:
-    """The explicit branch of :mod:`~bouncing_ball.periodic.spring_damper_branch`."""
+    """The explicit branch of :mod:`~bouncing_ball.periodic.one_impact.spring_damper_branch`."""
 
     model: SpringDamperModel
 
@@ -120,8 +120,8 @@ class SpringDamperBranch:
 
 @dataclass(frozen=True)
 class CorrectedLine:
-    """The line of :mod:`~bouncing_ball.periodic.corrected_branch`, for a signature that does not
-    depend on the speed.
+    """The line of :mod:`~bouncing_ball.periodic.one_impact.corrected_branch`, for a signature that
+    does not depend on the speed.
     """
 
     model: CorrectedModel

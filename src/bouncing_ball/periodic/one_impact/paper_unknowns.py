@@ -3,8 +3,8 @@
 Of the paper's six unknowns φ, z′_i, τ_b, z′_b, A and B, three are eliminated, all linearly: A and B
 by the start of contact (Eqs. 21-22) and z′_b by the periodicity (Eq. 27). The remaining ones are
 scaled to order one, ``y = (φ, z′_i, ϖ τ_b, Λ)``; an impact that is an instant has no τ_b. The
-equations are those of :mod:`~bouncing_ball.periodic.problem` with one impact, whose unknowns are
-``(φ, δ′, D, arsinh Λ)``: only the length of a step along a branch depends on this choice.
+equations are those of :mod:`~bouncing_ball.periodic.orbits.problem` with one impact, whose unknowns
+are ``(φ, δ′, D, arsinh Λ)``: only the length of a step along a branch depends on this choice.
 """
 
 from dataclasses import dataclass, replace
@@ -15,9 +15,9 @@ import numpy as np
 
 from bouncing_ball.numerics.corrector import Condition
 from bouncing_ball.numerics.events import Event
-from bouncing_ball.periodic.balls import LAMBDA
-from bouncing_ball.periodic.orbit import Orbit
-from bouncing_ball.periodic.problem import PeriodicOrbits
+from bouncing_ball.periodic.orbits.balls import LAMBDA
+from bouncing_ball.periodic.orbits.orbit import Orbit
+from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
 
 
 @dataclass(frozen=True)

@@ -10,11 +10,11 @@ from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
 from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.numerics.corrector import NewtonSettings, solve
-from bouncing_ball.periodic import n_t
-from bouncing_ball.periodic.balls import Balls
-from bouncing_ball.periodic.orbit import Orbit, orbit_at
-from bouncing_ball.periodic.restitution_branch import rigid_speed
-from bouncing_ball.periodic.stability import Side
+from bouncing_ball.periodic.one_impact import n_t
+from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
+from bouncing_ball.periodic.orbits.balls import Balls
+from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_at
+from bouncing_ball.periodic.orbits.stability import Side
 
 # The largest number of rounds that compute the law and the orbit in turn. At given r and D the
 # speed hardly depends on the law, and after a secant step less than a hundredth of the last step

@@ -23,8 +23,8 @@ import numpy as np
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.flight import Flight, table
 from bouncing_ball.numerics.corrector import NewtonSettings, solve
-from bouncing_ball.periodic.legs import Legs
-from bouncing_ball.periodic.problem import PeriodicOrbits
+from bouncing_ball.periodic.orbits.legs import Legs
+from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
 
 # The Jacobian is a central difference; its error only affects the number of steps.
 _DIFFERENCE = 6e-6

@@ -21,11 +21,11 @@ from bouncing_ball.models.dynamics import Dynamics, Impact
 from bouncing_ball.models.model import Model
 from bouncing_ball.numerics.arrays import Batch, as_numbers, blocks, in_words
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.periodic import stability
-from bouncing_ball.periodic.balls import LAMBDA, Balls
-from bouncing_ball.periodic.legs import Legs, lag_of, time_to_section, without_force
-from bouncing_ball.periodic.problem import PeriodicOrbits
-from bouncing_ball.periodic.simulation import is_admissible
+from bouncing_ball.periodic.orbits import stability
+from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls
+from bouncing_ball.periodic.orbits.legs import Legs, lag_of, time_to_section, without_force
+from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
+from bouncing_ball.periodic.orbits.simulation import is_admissible
 
 OBSERVABLES = (
     "amplitude",

@@ -52,10 +52,10 @@ from bouncing_ball.models.flight import table
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import Event
-from bouncing_ball.periodic.balls import LAMBDA, Balls, dynamics_inside
-from bouncing_ball.periodic.legs import Legs, lag_of, landed, without_force
-from bouncing_ball.periodic.products import matrices_of, product_of, shifted_determinant
-from bouncing_ball.periodic.stability import Bifurcation
+from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls, dynamics_inside
+from bouncing_ball.periodic.orbits.legs import Legs, lag_of, landed, without_force
+from bouncing_ball.periodic.orbits.products import matrices_of, product_of, shifted_determinant
+from bouncing_ball.periodic.orbits.stability import Bifurcation
 
 # Step of the central differences, near the optimum ε^(1/3).
 _DIFFERENCE = 6e-6

@@ -18,13 +18,13 @@ from bouncing_ball.models.model import Model
 from bouncing_ball.numerics.continuation import ContinuationError, StepControl, continue_branch
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane, solve, tangent
 from bouncing_ball.numerics.events import Event, SpecialPoint, parameter_bound
-from bouncing_ball.periodic import corrected_branch as corrected
-from bouncing_ball.periodic.balls import LAMBDA
-from bouncing_ball.periodic.orbit import Orbit, check_index, in_order
-from bouncing_ball.periodic.orbit import orbit_at as orbit_of_point
-from bouncing_ball.periodic.problem import PeriodicOrbits
-from bouncing_ball.periodic.special import bifurcations, ends_of_contact, with_ends
-from bouncing_ball.periodic.stability import Bifurcation, Side
+from bouncing_ball.periodic.one_impact import corrected_branch as corrected
+from bouncing_ball.periodic.orbits.balls import LAMBDA
+from bouncing_ball.periodic.orbits.orbit import Orbit, check_index, in_order
+from bouncing_ball.periodic.orbits.orbit import orbit_at as orbit_of_point
+from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
+from bouncing_ball.periodic.orbits.special import bifurcations, ends_of_contact, with_ends
+from bouncing_ball.periodic.orbits.stability import Bifurcation, Side
 
 # The largest number of Newton steps for the impact speed. They end after a step below a
 # thousandth of the speed: the remaining error is of the order of the square of this step, and

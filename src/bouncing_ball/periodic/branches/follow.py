@@ -17,12 +17,12 @@ from bouncing_ball.datasets.arguments import (
     chosen,
 )
 from bouncing_ball.errors import NoOrbitError, ParameterError
-from bouncing_ball.periodic import curves, following, switching
-from bouncing_ball.periodic.balls import LAMBDA, Balls
-from bouncing_ball.periodic.following import Range
-from bouncing_ball.periodic.labelled import FollowedBranch, SpecialCurve, labelled
-from bouncing_ball.periodic.orbit import Orbit
-from bouncing_ball.periodic.special import MEANINGS, Special
+from bouncing_ball.periodic.branches import curves, following, switching
+from bouncing_ball.periodic.branches.following import Range
+from bouncing_ball.periodic.branches.labelled import FollowedBranch, SpecialCurve, labelled
+from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls
+from bouncing_ball.periodic.orbits.orbit import Orbit
+from bouncing_ball.periodic.orbits.special import MEANINGS, Special
 
 BRANCH, CURVE = 500, 500
 """Default of the largest number of points of a branch, and of a curve in each direction."""

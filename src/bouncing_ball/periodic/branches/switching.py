@@ -12,11 +12,11 @@ import numpy as np
 
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.corrector import Correction, newton, plane, tangent
-from bouncing_ball.periodic.balls import LAMBDA
-from bouncing_ball.periodic.following import PATIENT, corrected
-from bouncing_ball.periodic.orbit import Orbit, orbit_at
-from bouncing_ball.periodic.problem import PeriodicOrbits, twice
-from bouncing_ball.periodic.stability import Bifurcation, is_stable
+from bouncing_ball.periodic.branches.following import PATIENT, corrected
+from bouncing_ball.periodic.orbits.balls import LAMBDA
+from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_at
+from bouncing_ball.periodic.orbits.problem import PeriodicOrbits, twice
+from bouncing_ball.periodic.orbits.stability import Bifurcation, is_stable
 
 ASIDE = 0.02
 """The distance of the first doubled orbit from the old one, in y."""

@@ -10,8 +10,8 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from bouncing_ball.periodic.legs import Legs
-from bouncing_ball.periodic.problem import PeriodicOrbits
+from bouncing_ball.periodic.orbits.legs import Legs
+from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
 
 # Samples of a contact: evenly, and in geometric progression from this fraction of the duration on,
 # because the oscillations after an impact decay.

@@ -1,0 +1,15 @@
+"""What a periodic orbit is, for any model: its equations, its stability, its special cases.
+
+In reading order:
+
+``balls``         balls whose parameters are known by name, so that any of them can vary
+``legs``          one leg of an orbit: a contact, and the flight after it
+``products``      the monodromy of an orbit as a product of the matrices of its legs
+``stability``     the linear stability of a fixed point of a planar map
+``problem``       the equations of an orbit with k impacts in m periods of the table
+``release``       the grazing of a release
+``lost_release``  where a contact no longer opens
+``special``       all special orbits, as events on a branch
+``simulation``    from a simulated ball to an orbit, and whether a ball follows an orbit
+``orbit``         an orbit of any model, or an array of orbits
+"""

@@ -29,7 +29,7 @@ from bouncing_ball.periodic import orbits_of_ball as periodic
 from bouncing_ball.periodic.branches import follow as library
 from bouncing_ball.periodic.branches.curves import Degenerate
 from bouncing_ball.periodic.branches.labelled import FollowedBranch
-from bouncing_ball.periodic.orbit import Orbit
+from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.special import MEANINGS, Special
 
 _DOUBLINGS = Range(0, 8, "[]", whole=True)

@@ -9,7 +9,7 @@ from bouncing_ball.contacts.verdict import aside, judged_by_motion
 from bouncing_ball.errors import ModelError
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.means import means as means_of
-from bouncing_ball.long_run.sampled_means import Starts, follow, start
+from bouncing_ball.long_run.sampled_means import Starts, advance, start
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
@@ -22,8 +22,8 @@ UNIT = {"mass": 1.0, "angular_frequency": 1.0, "gravity": 1.0, "restitution": 0.
 )
 def test_an_elastic_ball_has_the_energy_that_the_table_gives_it(law):
     dynamics, first = start(law, 1.7, Starts(np.array([0.4]), np.array([-4.0])))
-    first, _ = follow(dynamics, first, 3)
-    last, sums = follow(dynamics, first, 36)
+    first, _ = advance(dynamics, first, 3)
+    last, sums = advance(dynamics, first, 36)
     energy = [
         (each.velocity + 1.7 * np.cos(each.phase)) ** 2 / 2 + 1.7 * np.sin(each.phase)
         for each in (first, last)
@@ -37,7 +37,7 @@ def test_an_instant_takes_its_impulse_times_the_speed_of_the_table():
     impulse = -1.6 * found.relative_velocity[:-1]
     work = np.sum(impulse * 2.3 * np.cos(found.phase[:-1]))
     once = Starts(np.array([0.4]), np.array([-4.0]))
-    _, sums = follow(*start(RestitutionModel(0.6), 2.3, once), 59)
+    _, sums = advance(*start(RestitutionModel(0.6), 2.3, once), 59)
     assert sums[2] == pytest.approx(work, rel=1e-12)
 
 
@@ -268,8 +268,8 @@ def test_beside_a_lap_that_rounding_errors_decide_on_the_interval_is_that_of_the
     random = np.random.default_rng(3)
     starts = Starts(random.uniform(-3, 3, 300), random.uniform(-20, -5, 300))
     dynamics, first = start(model, 4.0, starts)
-    first, _ = follow(dynamics, first, 200)
-    _, (time, height, _) = follow(dynamics, first, 800)
+    first, _ = advance(dynamics, first, 200)
+    _, (time, height, _) = advance(dynamics, first, 800)
     length = 9.80665 / (2 * np.pi * 50) ** 2
     assert abs(simple.value - length * height.sum() / time.sum()) < simple.half_width
 

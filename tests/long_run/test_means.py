@@ -6,7 +6,7 @@ import pytest
 from bouncing_ball.beyond.exhibits.motion_samples import three_models
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.means import means
-from bouncing_ball.long_run.sampled_means import Starts, follow, start
+from bouncing_ball.long_run.sampled_means import Starts, advance, start
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.hertzian import LinearHuntCrossley
@@ -33,7 +33,7 @@ def test_height_and_power_are_those_of_quadrature(r, amplitude, ratio, release, 
         found, of = found_and_means(model, amplitude)
         monkeypatch.setattr(SpringDamper, "over_contact", ContactLaw.over_contact)
         last = Starts(np.array([found.end_phase]), np.array([found.end_velocity]))
-        _, (time, *sums) = follow(*start(model, amplitude, last), int(found.impacts) or 100)
+        _, (time, *sums) = advance(*start(model, amplitude, last), int(found.impacts) or 100)
         wanted = np.ravel(sums / time)
         assert [float(x) for x in of[1:3]] == pytest.approx(wanted, rel=1e-10)
         monkeypatch.undo()

@@ -7,7 +7,7 @@ from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.sampled_means import (
     Estimate,
     Starts,
-    follow,
+    advance,
     quantile,
     sample_sizes,
     sections,
@@ -56,8 +56,8 @@ def test_the_error_of_a_mean_is_the_scatter_of_means_about_that_of_a_long_run(mo
     assert np.all(np.abs(ratio - 1) < 4 / 8)
     whole = Estimate.of(sums)
     dynamics, impact = start(model, LAMBDA, starts)
-    impact, _ = follow(dynamics, impact, 200)
-    long = Estimate.of(follow(dynamics, impact, 200)[1])
+    impact, _ = advance(dynamics, impact, 200)
+    long = Estimate.of(advance(dynamics, impact, 200)[1])
     assert np.all(np.abs(whole.mean - long.mean) < 4 * np.hypot(whole.error, long.error))
     # The mean of the ratios of the heights is off.
     time, height, _ = sums
@@ -89,8 +89,8 @@ def test_balls_that_stick_do_not_follow_one_another():
     """All of them have stuck after a hundred impacts, and then have left in one state."""
     model = RestitutionModel(0.5)
     dynamics, impact = start(model, LAMBDA, impacts_of_locked(model).beside(50, LAMBDA, 1e-3))
-    together, _ = follow(dynamics, impact, 300)
-    alone, _ = follow(dynamics, impact, 300, 1e-9 * np.arange(50) / 50)
+    together, _ = advance(dynamics, impact, 300)
+    alone, _ = advance(dynamics, impact, 300, 1e-9 * np.arange(50) / 50)
     assert np.unique(together.velocity).size < 50
     assert np.unique(alone.velocity).size == 50
 
@@ -98,7 +98,7 @@ def test_balls_that_stick_do_not_follow_one_another():
 def test_sections_cover_all_impacts_of_a_ball():
     model = MODELS[0]
     once = impacts_of(model).first()
-    _, whole = follow(*start(model, LAMBDA, once), 90)
+    _, whole = advance(*start(model, LAMBDA, once), 90)
     parts = sections(*start(model, LAMBDA, once), 90)
     assert parts.shape == (3, 10)
     assert parts.sum(axis=1) == pytest.approx(whole[:, 0], rel=1e-12)

@@ -12,8 +12,8 @@ from bouncing_ball.long_run.cascade_of_flights import openings
 from bouncing_ball.long_run.orbit_of_motion import of_motion
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
-from bouncing_ball.periodic.branches.curves import Degenerate, curve
-from bouncing_ball.periodic.branches.following import STEPS, Range, follow
+from bouncing_ball.periodic.branches.curves import Degenerate, curve_through
+from bouncing_ball.periodic.branches.following import STEPS, Range, branch_from
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact import restitution_branch as formulas
 from bouncing_ball.periodic.orbits.special import Special, flight_margin
@@ -21,12 +21,12 @@ from bouncing_ball.periodic.orbits.special import Special, flight_margin
 
 def special(name, kind, to, amplitude=1.3):
     orbit = n_t.orbit(balls(name, amplitude).model, 1, amplitude)
-    return follow(orbit, to=to).first(kind)
+    return branch_from(orbit, to=to).first(kind)
 
 
 def curve_of(start, across, **settings):
     """The curve along Λ and a second parameter."""
-    return curve(start, Special(start.kind), "amplitude", across, **settings)
+    return curve_through(start, Special(start.kind), "amplitude", across, **settings)
 
 
 @pytest.mark.parametrize(("kind", "to", "formula"), [
@@ -62,7 +62,7 @@ def test_the_curve_of_doublings_ends_at_a_1_to_2_resonance_without_dissipation()
 def test_without_dissipation_a_curve_of_saddle_nodes_ends_at_a_1_to_1_resonance():
     """With det M = r^{2k}, a saddle-node has the multipliers 1 and r^{2k}, both 1 at r = 1 only."""
     case = next(x for x in FOUND if x[:2] == ("restitution", 3))
-    fold = follow(found_orbit(case), to=0.5).first(Special.SADDLE_NODE)
+    fold = branch_from(found_orbit(case), to=0.5).first(Special.SADDLE_NODE)
     found = curve_of(fold, "restitution", across_window=Range(0.2, 1.0))
     trace, determinant = found.problem.trace_and_determinant(found.branch.points)
     r = found.problem.values(found.branch.points)["restitution"]
@@ -103,15 +103,15 @@ def test_grazing_orbits_are_a_curve():
 def test_a_period_doubling_starts_no_curve_of_saddle_nodes(refusal):
     start = special("restitution", Special.PERIOD_DOUBLING, 2.0)
     with refusal(NoOrbitError, "the start is no saddle-node; Newton's method leads to another"):
-        curve(start, Special.SADDLE_NODE, "amplitude", "restitution")
+        curve_through(start, Special.SADDLE_NODE, "amplitude", "restitution")
 
 
 def test_a_curve_of_an_unknown_kind_or_parameter_is_refused(refusal):
     start = special("restitution", Special.PERIOD_DOUBLING, 2.0)
     with refusal(ModelError, "these orbits have no 'stiffness': one of restitution, amplitude"):
-        curve(start, Special.PERIOD_DOUBLING, "amplitude", "stiffness")
+        curve_through(start, Special.PERIOD_DOUBLING, "amplitude", "stiffness")
     with refusal(ModelError, "'period halving' is not one of"):
-        curve(start, Special.PERIOD_HALVING, "amplitude", "restitution")
+        curve_through(start, Special.PERIOD_HALVING, "amplitude", "restitution")
 
 
 def test_the_cascade_of_flights_is_the_curve_on_which_a_long_contact_opens():
@@ -127,7 +127,7 @@ def test_the_cascade_of_flights_is_the_curve_on_which_a_long_contact_opens():
         orbit = of_motion(balls("spring-damper", lam, 0.85, ratio).model, lam, phase, velocity)
         assert orbit.impacts == k + 1
         steps = replace(STEPS, initial=1e-3)
-        found = follow(orbit, to=held + 80 / ratio**2, control=steps)
+        found = branch_from(orbit, to=held + 80 / ratio**2, control=steps)
         opening = found.first(Special.GRAZING_RELEASE)
         assert opening.amplitude == pytest.approx(known.amplitude[0, k, 0], abs=1e-12)
         largest = abs(opening.multipliers()[0])

@@ -15,7 +15,7 @@ from bouncing_ball.models.flight import Flight, table
 from bouncing_ball.numerics.corrector import newton, plane
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import domain_limits
-from bouncing_ball.periodic.branches.following import follow
+from bouncing_ball.periodic.branches.following import branch_from
 from bouncing_ball.periodic.branches.switching import switch
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.whole_branch import whole_branch
@@ -35,8 +35,8 @@ def start(name, amplitude=1.3):
 @pytest.mark.parametrize("name", CLOSED)
 def test_the_bifurcations_of_one_impact_are_those_of_the_closed_form(name):
     model = start(name).model
-    down = follow(start(name), to=0.1).first(Special.SADDLE_NODE)
-    up = follow(start(name), to=2.0).first(Special.PERIOD_DOUBLING)
+    down = branch_from(start(name), to=0.1).first(Special.SADDLE_NODE)
+    up = branch_from(start(name), to=2.0).first(Special.PERIOD_DOUBLING)
     assert down.amplitude == pytest.approx(n_t.saddle_node(model, 1).amplitude, abs=1e-12)
     assert up.amplitude == pytest.approx(n_t.period_doubling(model, 1).amplitude, abs=1e-12)
 
@@ -46,7 +46,7 @@ def test_the_bifurcations_of_one_impact_are_those_of_the_closed_form(name):
     ("force release", "restitution", 0.7), ("corrected", "frequency_ratio", 100.0),
 ])  # fmt: skip
 def test_a_branch_along_any_parameter_is_the_closed_form_at_each_point(name, along, to):
-    found = follow(start(name), along, to)
+    found = branch_from(start(name), along, to)
     assert str(found.branch.end) == f"{along.replace('_', ' ')} = {to:g} is reached"
     for each in list(found)[::4]:
         orbit = n_t.orbit(each.model, 1, 1.3)
@@ -55,7 +55,7 @@ def test_a_branch_along_any_parameter_is_the_closed_form_at_each_point(name, alo
 
 
 def test_a_grazing_flight_is_where_the_lowest_point_of_the_flight_is_on_the_table():
-    found = follow(start("restitution", amplitude=2.0), to=0.9)
+    found = branch_from(start("restitution", amplitude=2.0), to=0.9)
     grazing = found.first(Special.GRAZING_FLIGHT)
     lam = grazing.amplitude
     x, y = table(np.array(grazing.phase), lam)
@@ -78,7 +78,7 @@ def test_grazing_orbits_are_those_that_bisection_finds(name):
     assert np.abs(np.subtract(located, expected)).max() < 1e-12
     ours = []
     for to in (5.9, 0.05):
-        found = follow(start(name), to=to)
+        found = branch_from(start(name), to=to)
         ours += [each.amplitude for each in found.special if each.kind == Special.GRAZING_FLIGHT]
     assert expected.size and all(np.abs(np.array(ours) - x).min() < 1e-12 for x in expected
                                  if 0.1 < x < 2.5)  # fmt: skip
@@ -89,12 +89,12 @@ def test_generations_of_doubled_orbits_attract_balls_and_end_where_they_began(na
     orbit = start(name)
     before = 0.0
     for generation in range(4):
-        doubling = follow(orbit, to=2.2).first(Special.PERIOD_DOUBLING)
+        doubling = branch_from(orbit, to=2.2).first(Special.PERIOD_DOUBLING)
         lam = doubling.amplitude
         assert doubling.impacts == 2**generation and lam > before
         assert doubling.multipliers()[0] == pytest.approx(-1, abs=1e-9)
         orbit = switch(doubling, aside=0.02 / 2.2**generation)
-        back = follow(orbit, to=0.5)
+        back = branch_from(orbit, to=0.5)
         halving = back.first(Special.PERIOD_HALVING)
         assert halving.amplitude == pytest.approx(lam, abs=1e-12)
         before = lam
@@ -106,7 +106,7 @@ def test_generations_of_doubled_orbits_attract_balls_and_end_where_they_began(na
 def test_a_motion_starts_the_continuation_of_the_orbit_on_which_it_ends():
     orbit = of_motion(balls("restitution", 1.6).model, 1.6, 1.0, -3.0)
     assert (orbit.impacts, orbit.periods) == (2, 2)
-    doubling = follow(orbit, to=1.8).first(Special.PERIOD_DOUBLING)
+    doubling = branch_from(orbit, to=1.8).first(Special.PERIOD_DOUBLING)
     assert doubling.amplitude == pytest.approx(1.667130660770, abs=1e-11)
 
 
@@ -116,7 +116,7 @@ def test_a_chaotic_motion_is_on_no_orbit(refusal):
 
 
 def test_a_contact_law_is_followed_along_its_stiffness():
-    found = follow(start("tsuji", amplitude=1.0), "stiffness", 800.0)
+    found = branch_from(start("tsuji", amplitude=1.0), "stiffness", 800.0)
     assert str(found.branch.end) == "stiffness = 800 is reached"
     last = list(found)[-1]
     assert n_t.orbit(last.model, 1, 1.0).phase == pytest.approx(last.phase, abs=1e-11)
@@ -125,7 +125,7 @@ def test_a_contact_law_is_followed_along_its_stiffness():
 def test_a_locked_orbit_is_followed_until_it_no_longer_sticks_or_an_impact_grazes():
     orbit = of_motion(balls("restitution", 2.5).model, 2.5, 1.0, -3.0)
     assert legs_of(orbit).departure.sticks.sum() == 1
-    found = follow(orbit, to=2.50002)
+    found = branch_from(orbit, to=2.50002)
     assert len(found) > 3 and np.all(is_admissible(found.problem, found.branch.points))
     m = found.problem.monodromy(found.branch.points[-1])
     assert max(map(abs, m)) == 0.0
@@ -140,7 +140,7 @@ def test_a_locked_orbit_of_a_stiff_contact_is_followed_along_the_stiffness(
     orbit = bouncing_ball.orbit_of_motion(ball, amplitude=amplitude, phase=1.0, velocity=-3.0)
     assert (orbit.impacts, orbit.periods) == (impacts, periods)
     assert legs_of(orbit).departure.sticks.sum() == 1
-    found = follow(orbit, "frequency_ratio", 110.0, most=20)
+    found = branch_from(orbit, "frequency_ratio", 110.0, most=20)
     orbits = [each for each in found if each.is_admissible()]
     assert len(orbits) > 5
     ratios = [each.parameters["frequency_ratio"] for each in orbits]
@@ -170,7 +170,7 @@ def test_a_contact_that_resumes_is_followed_until_the_ball_no_longer_rises():
     assert orbit.resumes.tolist() == [False, True]
     simulated = orbit.model.simulate(orbit.amplitude, *case[-2:], 4)
     assert abs(legs_of(orbit).impact.displacement[1] - simulated.displacement[3]) < 1e-12
-    found = follow(orbit, "frequency_ratio", 20.0)
+    found = branch_from(orbit, "frequency_ratio", 20.0)
     end = found.first(Special.GRAZING_IMPACT)
     assert abs(end.relative_impact_velocity[1]) < 1e-12 and end.defect() < 1e-12
     before = list(found)[:-1]
@@ -239,12 +239,12 @@ def test_two_hundred_random_orbits_are_followed_without_a_jump(name):
         if orbit.impacts > 12 or np.any(sticks & (name == "restitution")):
             continue
         count += 1
-        there = follow(orbit, most=20)
+        there = branch_from(orbit, most=20)
         special += bool(there.special)
         # The last point may be a special orbit that ends the branch.
         last = orbit_at(there.problem, there.branch.points[-2])
         rises = there.branch.tangents[-2, -1] > 0
-        back = follow(last, increasing=not rises, most=120)
+        back = branch_from(last, increasing=not rises, most=120)
         # The phases of the last orbit are between -π and π; those of the branch may have left it.
         start = orbit.point(there.problem)
         phases, _ = there.problem.states(there.branch.points[-2])
@@ -257,7 +257,7 @@ def test_two_hundred_random_orbits_are_followed_without_a_jump(name):
 @pytest.mark.parametrize("case", FOUND[:2])
 def test_a_branch_gives_its_orbits_one_by_one(case):
     impacts = case[1]
-    found = follow(found_orbit(case), to=1.36)
+    found = branch_from(found_orbit(case), to=1.36)
     orbits = list(found)
     assert len(orbits) == len(found) and all(each.defect() < 1e-11 for each in orbits)
     assert orbits[0].impacts == impacts and f"impacts               {impacts}" in repr(orbits[0])
@@ -317,7 +317,7 @@ def test_several_branches_have_no_orbits(refusal):
 def test_a_branch_with_an_even_number_of_impacts_passes_a_difference_of_half_a_turn():
     """Its doubling, and stable orbits beyond it, which simulated balls follow."""
     orbit = of_motion(balls("restitution", 1.6).model, 1.6, 1.0, -3.0)
-    found = follow(orbit, "restitution", 1.0)
+    found = branch_from(orbit, "restitution", 1.0)
     assert str(found.branch.end) == "restitution = 1 is reached"
     doublings = [each for each in found.special if each.kind == Special.PERIOD_DOUBLING]
     # Located by a code with 40 digits.

@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 
 from bouncing_ball.models.flight import table
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
-from bouncing_ball.periodic.branches.following import STEPS, follow
+from bouncing_ball.periodic.branches.following import STEPS, branch_from
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.orbits.orbit import orbit_at
 from bouncing_ball.periodic.orbits.special import Special
@@ -76,7 +76,7 @@ def test_an_impact_grazes_where_bisection_finds_the_grazing_flight(restitution):
     assert slow.is_admissible()
     # The orbit with two impacts exists above or below, which depends on r.
     increasing = slow.amplitude < amplitude
-    found = follow(slow, increasing=increasing, control=replace(STEPS, initial=1e-4))
+    found = branch_from(slow, increasing=increasing, control=replace(STEPS, initial=1e-4))
     grazing = found.first(Special.GRAZING_IMPACT)
     assert grazing.amplitude == pytest.approx(amplitude, abs=1e-12)
     assert abs(grazing.relative_impact_velocity.max()) < 1e-12
@@ -86,7 +86,7 @@ def test_an_impact_grazes_where_bisection_finds_the_grazing_flight(restitution):
 def test_an_impact_of_a_compliant_contact_disappears_with_its_contact():
     """Its contact becomes an instant, whose equations hold beyond the grazing as well."""
     model = balls("spring-damper", 2.0).model
-    grazing = follow(n_t.orbit(model, 1, 2.0), to=0.9).first(Special.GRAZING_FLIGHT)
+    grazing = branch_from(n_t.orbit(model, 1, 2.0), to=0.9).first(Special.GRAZING_FLIGHT)
     amplitude = grazing.amplitude
     orbit = n_t.orbit(model, 1, amplitude, "unstable")
     legs = legs_of(grazing)
@@ -94,7 +94,7 @@ def test_an_impact_of_a_compliant_contact_disappears_with_its_contact():
     leaving = float(legs.departure.flight.velocity[0])
     assert abs(touching(orbit, amplitude, duration, leaving)[1]) < 1e-12
     slow = with_a_slow_impact(orbit, amplitude, duration, leaving)
-    found = follow(slow, increasing=False, control=replace(STEPS, initial=1e-4))
+    found = branch_from(slow, increasing=False, control=replace(STEPS, initial=1e-4))
     assert str(found.branch.end).startswith("grazing of an impact")
     ended = found.first(Special.GRAZING_IMPACT)
     assert ended.amplitude == pytest.approx(amplitude, abs=1e-12)

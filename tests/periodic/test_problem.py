@@ -5,7 +5,7 @@ import pytest
 import shooting
 from orbits_found import FOUND, balls, found_orbit, known_orbit
 
-from bouncing_ball.periodic.branches.following import corrected
+from bouncing_ball.periodic.branches.following import point_near
 from bouncing_ball.periodic.orbits.problem import twice
 from bouncing_ball.periodic.orbits.simulation import is_admissible
 from bouncing_ball.periodic.orbits.stability import Bifurcation
@@ -39,7 +39,7 @@ def test_newtons_method_comes_back_to_the_closed_form(name):
     _, problem, y = known_orbit(name, 1.3)
     moved = y.copy()
     moved[:2] += [1e-3, -2e-3]
-    assert np.abs(corrected(problem, moved) - y).max() < 1e-12
+    assert np.abs(point_near(problem, moved) - y).max() < 1e-12
 
 
 @pytest.mark.parametrize("name", ALL)

@@ -10,7 +10,7 @@ from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.restitution_branch import (
     ImpactMap,
-    branch,
+    branch_points,
     period_doubling,
     period_doubling_lift,
     phase,
@@ -97,7 +97,7 @@ def test_the_bifurcations_for_one_half_are_those_worked_out_by_hand():
 
 @pytest.mark.parametrize(("n", "r", "top"), [(1, 0.85, 2.0), (5, 0.85, 1.4), (2, 1.0, 1.5)])
 def test_the_branch_has_equal_steps_of_the_lift_at_a_constant_cosine(n, r, top):
-    amplitude, angle = branch(n, r, top, 41)
+    amplitude, angle = branch_points(n, r, top, 41)
     assert amplitude[[0, -1]] == pytest.approx([top, top], rel=10 * EPS)
     # Every point solves Λ cos φ = Λ_SN, at equal steps of Λ sin φ.
     node = float(saddle_node(n, r))
@@ -110,7 +110,7 @@ def test_the_branch_has_equal_steps_of_the_lift_at_a_constant_cosine(n, r, top):
 
 def test_a_branch_that_ends_below_the_saddle_node_is_refused(refusal):
     with refusal(NoOrbitError, "no 2-T orbit at Λ = 0.5", "saddle-node at Λ = 0.509447"):
-        branch(2, 0.85, 0.5, 7)
+        branch_points(2, 0.85, 0.5, 7)
 
 
 @pytest.mark.parametrize("r", [0.0, 1.01, np.nan])

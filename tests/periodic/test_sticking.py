@@ -19,8 +19,8 @@ from orbits_found import balls
 
 from bouncing_ball.errors import ParameterError
 from bouncing_ball.long_run.orbit_of_motion import of_motion
-from bouncing_ball.periodic.branches.curves import curve
-from bouncing_ball.periodic.branches.following import follow
+from bouncing_ball.periodic.branches.curves import curve_through
+from bouncing_ball.periodic.branches.following import branch_from
 from bouncing_ball.periodic.orbits.special import Special
 
 # The zeros of w - w* after j and j + 3 bounces are then equal to rounding.
@@ -74,7 +74,7 @@ def late(lam, r, flights, more):
 
 def ended(along, amplitude, restitution, to):
     orbit = of_motion(balls("restitution", amplitude, restitution).model, amplitude, 1.0, -5.0)
-    found = follow(orbit, along, to)
+    found = branch_from(orbit, along, to)
     assert str(found.branch.end).startswith("end of sticking")
     return found.first(Special.STICKING)
 
@@ -130,4 +130,4 @@ def test_a_simulated_ball_rests_in_its_first_turn_before_the_end_and_not_beyond_
 def test_there_is_no_smooth_function_whose_zero_is_a_curve(refusal):
     orbit = ended(*CASES[0])
     with refusal(ParameterError, "'end of sticking' is not one of"):
-        curve(orbit, Special.STICKING, "amplitude", "restitution")
+        curve_through(orbit, Special.STICKING, "amplitude", "restitution")

@@ -26,8 +26,8 @@ from bouncing_ball.models.linear_contact import LinearContactDynamics
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.corrector import newton, plane
-from bouncing_ball.periodic.branches.curves import CurveProblem, condition_of, curve
-from bouncing_ball.periodic.branches.following import Range, follow
+from bouncing_ball.periodic.branches.curves import CurveProblem, condition_of, curve_through
+from bouncing_ball.periodic.branches.following import Range, branch_from
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls
 from bouncing_ball.periodic.orbits.orbit import Orbit
@@ -165,7 +165,7 @@ def branch_row(impacts: int, amplitude: float, to: float) -> Row:
     """A branch of the restitution model along Λ, with its bifurcations."""
     ball = bouncing_ball.rigid(restitution=R)
     start = bouncing_ball.orbit_of_motion(ball, amplitude=amplitude, phase=1.0, velocity=-3.0)
-    ours, found = timed(lambda: follow(start, to=to))
+    ours, found = timed(lambda: branch_from(start, to=to))
     error = np.abs(found.problem.residual(found.branch.points)).max()
     task = (
         f"branch of orbits with {impacts} impact{'s' if impacts > 1 else ''}, {len(found)} points"
@@ -185,10 +185,12 @@ def curve_row() -> Row:
     """The period doublings of the orbits with two impacts in (r, Λ)."""
     ball = bouncing_ball.rigid(restitution=R)
     start = bouncing_ball.orbit_of_motion(ball, amplitude=1.6, phase=1.0, velocity=-3.0)
-    special = follow(start, to=1.8).first(Special.PERIOD_DOUBLING)
+    special = branch_from(start, to=1.8).first(Special.PERIOD_DOUBLING)
     window = Range(R, 0.8)
     kind = Special.PERIOD_DOUBLING
-    ours, found = timed(lambda: curve(special, kind, LAMBDA, "restitution", across_window=window))
+    ours, found = timed(
+        lambda: curve_through(special, kind, LAMBDA, "restitution", across_window=window)
+    )
     values = found.problem.values(found.branch.points)
     last = found.branch.points[values["restitution"].argmax()]
     error = np.abs(found.problem.residual(last)).max()

@@ -31,7 +31,7 @@ from bouncing_ball.long_run.sampled_means import (
     Estimate,
     SampleSize,
     Starts,
-    follow,
+    advance,
     quantile,
     sample_sizes,
     sections,
@@ -419,7 +419,7 @@ def _sums(
         return sums_at(samples, starts, model, lam, _before(case, sampling.before))
     if end.is_unresolved:
         return repeat(sections(*start(model, lam, impacts.first()), impacts.phase.size))
-    _, once = follow(*start(model, lam, impacts.last()), end.kind.impacts)
+    _, once = advance(*start(model, lam, impacts.last()), end.kind.impacts)
     return repeat(once)
 
 

@@ -70,7 +70,7 @@ def cascade(orbit: Orbit, doublings: int) -> Cascade:
     Examples
     --------
     >>> from bouncing_ball.models.rigid import RestitutionModel
-    >>> from bouncing_ball.periodic import n_t
+    >>> from bouncing_ball.periodic.one_impact import n_t
     >>> found = cascade(n_t.period_doubling(RestitutionModel(0.5), 1), 4)
     >>> found.amplitude.round(6).tolist(), found.ratios().round(2).tolist()
     ([1.526824, 1.667131, 1.696781, 1.703181], [4.73, 4.63])

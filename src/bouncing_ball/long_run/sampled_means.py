@@ -133,10 +133,10 @@ def sums_at(
             dynamics, impact = start(model, amplitude, part)
             number = np.arange(begun + 1, look.balls + 1)
             apart = dynamics.forgets * _APART * number / samples[-1].balls
-            impact, _ = follow(dynamics, impact, before, apart)
+            impact, _ = advance(dynamics, impact, before, apart)
             sums = np.zeros((3, look.balls - begun))
             done = 0
-        impact, more = follow(dynamics, impact, look.impacts - done, apart)
+        impact, more = advance(dynamics, impact, look.impacts - done, apart)
         sums = sums + more
         done = look.impacts
         yield np.concatenate([finished, sums], axis=1)
@@ -148,7 +148,7 @@ def start(model: HasDynamics, amplitude: float, starts: Starts) -> tuple[Dynamic
     return dynamics, dynamics.start(phase, relative)
 
 
-def follow(
+def advance(
     dynamics: Dynamics, impact: Impact, impacts: int, apart: np.ndarray | float = 0.0
 ) -> tuple[Impact, np.ndarray]:
     """Follow balls through a number of further impacts.
@@ -168,7 +168,7 @@ def follow(
 
     >>> from bouncing_ball.models.rigid import RestitutionModel
     >>> once = Starts(np.zeros(1), np.full(1, -2.0))
-    >>> _, (time, height, work) = follow(*start(RestitutionModel(1.0), 0.0, once), 5)
+    >>> _, (time, height, work) = advance(*start(RestitutionModel(1.0), 0.0, once), 5)
     >>> (height / time).round(12).tolist(), work.tolist()
     ([1.333333333333], [0.0])
     """
@@ -202,7 +202,7 @@ def sections(dynamics: Dynamics, impact: Impact, impacts: int) -> np.ndarray:
     edges = np.linspace(0, impacts, number + 1, dtype=int)
     found = []
     for length in np.diff(edges).tolist():
-        impact, sums = follow(dynamics, impact, length)
+        impact, sums = advance(dynamics, impact, length)
         found.append(sums)
     return np.concatenate(found, axis=1)
 

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bouncing_ball.pipeline.diff.budgets import ARTIFACTS, PICTURES, budget_of
-from bouncing_ball.pipeline.diff.datasets import compare_datasets, curve, pointwise, span
+from bouncing_ball.pipeline.diff.datasets import compare_datasets, curve_distance, pointwise, span
 from bouncing_ball.pipeline.diff.outcome import Outcome
 
 
@@ -180,7 +180,7 @@ NUMBERS = st.lists(
 def test_nothing_has_drifted_from_itself(values):
     x = np.linspace(0, 1, len(values))
     assert not pointwise(values, values, span(values)).any()
-    assert not curve(x, values, x, values).any()
+    assert not curve_distance(x, values, x, values).any()
 
 
 @given(NUMBERS, st.integers(0, 11), st.floats(1e-6, 1e3))
@@ -198,14 +198,14 @@ def test_a_curve_with_another_gap_is_another_curve():
     y = [0.0, 0.0, 0.0]
     gap = [0.0, np.nan, 0.0]
     for other in ((x, gap), (gap, y)):
-        assert curve(x, y, *other)[1] == curve(*other, x, y)[1] == np.inf
+        assert curve_distance(x, y, *other)[1] == curve_distance(*other, x, y)[1] == np.inf
 
 
 @given(st.floats(-3, 3), st.floats(-0.4, 0.4))
 def test_a_curve_moved_across_is_off_by_its_distance(slope, shift):
     # y = sx moved up by d is d/√(1 + s²) away from itself, less than two samples on.
     x = np.linspace(0, 10, 101)
-    found = curve(x, slope * x, x, slope * x + shift)
+    found = curve_distance(x, slope * x, x, slope * x + shift)
     away = abs(shift) / np.hypot(1, slope)
     assert found[50] == pytest.approx(away, rel=1e-9, abs=1e-12)
 
@@ -214,4 +214,4 @@ def test_a_curve_moved_across_is_off_by_its_distance(slope, shift):
 def test_along_a_straight_curve_three_samples_are_within_reach(shift):
     # Sample k is compared with the chords from sample k - 3 to k + 3.
     x = np.arange(12.0)
-    assert curve(x, 0 * x, x + shift, 0 * x)[6] == max(abs(shift) - 3, 0)
+    assert curve_distance(x, 0 * x, x + shift, 0 * x)[6] == max(abs(shift) - 3, 0)

@@ -169,7 +169,7 @@ def both_domains(
     one = dict(parameters) | {"frequency_ratio": (parameters.frequency_ratio,)}
     contact = _branches(Domains(**one), release, continuation)
     model = RestitutionModel(r)
-    rigid = Orbit.of(model, n, *restitution_orbits.branch(n, r, top, parameters.points))
+    rigid = Orbit.of(model, n, *restitution_orbits.branch_points(n, r, top, parameters.points))
     along = columns(rigid, "amplitude", "phase")
     fold = n_t.saddle_node(model, n)
     doubling = n_t.period_doubling(model, n)

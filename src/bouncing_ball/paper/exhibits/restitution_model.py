@@ -57,7 +57,7 @@ def restitution_orbits(parameters: FamilyBranches) -> xr.Dataset:
     r = parameters.restitution
     top = parameters.amplitude_max
     fold = orbits.saddle_node(n, r)
-    amplitude, phase = orbits.branch(n, r, top, parameters.points)
+    amplitude, phase = orbits.branch_points(n, r, top, parameters.points)
     model = RestitutionModel(r)
     shown = Orbit.of(model, n[:, np.newaxis], amplitude, phase)
     grazing = np.array([_grazing(model, family, top) for family in parameters.n])

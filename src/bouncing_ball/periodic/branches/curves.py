@@ -129,7 +129,7 @@ class Curve(Orbits):
     kinds = Degenerate
 
 
-def curve(
+def curve_through(
     start: Orbit,
     kind: Special,
     along: str,

@@ -144,7 +144,7 @@ def follow(
         start = switching.halved(orbit)
     elif orbit.kind == Special.SADDLE_NODE:
         towards = _to_stable_side(orbit, name, value)
-    found = following.follow(start, name, value, towards=towards, most=most)
+    found = following.branch_from(start, name, value, towards=towards, most=most)
     return FollowedBranch.of_orbits(labelled(found), "follow", found)
 
 
@@ -208,7 +208,7 @@ def _curve(orbit: Orbit, names: tuple[str, ...], ranges: Any, most: int) -> Spec
     first, second = names
     values = Balls(orbit.model, orbit.amplitude).values
     windows = [_window(name, ranges.get(name), float(values[name])) for name in names]
-    found = curves.curve(
+    found = curves.curve_through(
         orbit,
         Special(orbit.kind),
         first,

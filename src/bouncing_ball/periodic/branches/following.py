@@ -164,7 +164,7 @@ class Followed(Orbits):
     kinds = Special
 
 
-def corrected(problem: PeriodicOrbits, guess: np.ndarray) -> np.ndarray:
+def point_near(problem: PeriodicOrbits, guess: np.ndarray) -> np.ndarray:
     """The point of the orbit at the parameters of an approximate one.
 
     Raises
@@ -215,7 +215,7 @@ def limit(name: str, bound: float, sign: float, column: int) -> Event:
     return Event(_BOUND, lambda y: sign * (y[..., column] - at), True, reason)
 
 
-def follow(
+def branch_from(
     start: Orbit,
     along: str = LAMBDA,
     to: float | None = None,
@@ -253,7 +253,7 @@ def follow(
         If the balls have no such parameter.
     """
     orbits = start.problem(along)
-    here = corrected(orbits, start.point(orbits))
+    here = point_near(orbits, start.point(orbits))
     if increasing is None:
         increasing = to is None or bool(to > orbits.values(here)[along])
     if towards is None:

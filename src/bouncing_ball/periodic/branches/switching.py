@@ -12,7 +12,7 @@ import numpy as np
 
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.corrector import Correction, newton, plane, tangent
-from bouncing_ball.periodic.branches.following import PATIENT, corrected
+from bouncing_ball.periodic.branches.following import PATIENT, point_near
 from bouncing_ball.periodic.orbits.balls import LAMBDA
 from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_at
 from bouncing_ball.periodic.orbits.problem import PeriodicOrbits, twice
@@ -158,7 +158,7 @@ def sides(fold: Orbit, along: str) -> Sides:
         If there is no orbit near the saddle-node.
     """
     orbits = fold.problem(along)
-    here = corrected(orbits, fold.point(orbits))
+    here = point_near(orbits, fold.point(orbits))
     axis = np.eye(here.size)[-1]
     # The direction of a branch whose parameter increases at the start, and the opposite one.
     leaves = tangent(orbits.jacobian(here), axis)

@@ -153,7 +153,7 @@ def phase(
     return np.arctan2(lift if stable_side else -lift, fold)
 
 
-def branch(
+def branch_points(
     n: ArrayLike, restitution: ArrayLike, amplitude_max: float, points: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """Λ and φ along the branch up to ``amplitude_max``, each of shape (..., points).
@@ -168,7 +168,7 @@ def branch(
 
     Examples
     --------
-    >>> amplitude, angle = branch(1, 0.5, 2.0, 3)
+    >>> amplitude, angle = branch_points(1, 0.5, 2.0, 3)
     >>> amplitude.round(4).tolist(), angle.round(4).tolist()
     ([2.0, 1.0472, 2.0], [-1.0197, 0.0, 1.0197])
     """

@@ -187,7 +187,7 @@ def orbit_at(model: Model, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Or
     The restitution model, whose orbits have a closed form:
 
     >>> from bouncing_ball.models.rigid import RestitutionModel
-    >>> from bouncing_ball.periodic import n_t
+    >>> from bouncing_ball.periodic.one_impact import n_t
     >>> model = RestitutionModel(0.5)
     >>> found = orbit_at(model, [1, 2], 2.5, Side.STABLE)
     >>> bool(np.all(found.distance(n_t.orbit(model, [1, 2], 2.5)) < 1e-12))

@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.pipeline.diff.budgets import IGNORED, Budget, budget_of
 from bouncing_ball.pipeline.diff.cause import parameter_changes
-from bouncing_ball.pipeline.diff.outcome import Outcome, Row
+from bouncing_ball.pipeline.diff.outcome import Finding, Outcome
 from bouncing_ball.pipeline.provenance import parameters_of
 
 # Number of samples by which a point may slide along a curve.
@@ -100,7 +100,7 @@ def _to_polyline(x, y, line_x, line_y) -> np.ndarray:
     return nearest
 
 
-def curve(x: ArrayLike, y: ArrayLike, new_x: ArrayLike, new_y: ArrayLike) -> np.ndarray:
+def curve_distance(x: ArrayLike, y: ArrayLike, new_x: ArrayLike, new_y: ArrayLike) -> np.ndarray:
     """Distance between two sampled curves, at each sample, along the last axis.
 
     All coordinates are divided by their scales. The result is the larger of two distances: of the
@@ -116,9 +116,9 @@ def curve(x: ArrayLike, y: ArrayLike, new_x: ArrayLike, new_y: ArrayLike) -> np.
     --------
     A straight line whose inner sample is moved along the line, and then off the line:
 
-    >>> curve([0, 1, 2], [0, 0, 0], [0.0, 1.5, 2.0], [0, 0, 0]).tolist()
+    >>> curve_distance([0, 1, 2], [0, 0, 0], [0.0, 1.5, 2.0], [0, 0, 0]).tolist()
     [0.0, 0.0, 0.0]
-    >>> curve([0, 1, 2], [0, 0, 0], [0, 1, 2], [0.0, 0.25, 0.0]).max().item()
+    >>> curve_distance([0, 1, 2], [0, 0, 0], [0, 1, 2], [0.0, 0.25, 0.0]).max().item()
     0.25
     """
     x, y, new_x, new_y = (np.asarray(part, dtype=float) for part in (x, y, new_x, new_y))
@@ -155,7 +155,7 @@ def _form(data: xr.Dataset, name: str) -> str | None:
     return ", ".join([kind, *sizes]) + role
 
 
-def _attribute_rows(name: str, record: Mapping[Any, Any], new: Mapping[Any, Any]) -> list[Row]:
+def _attribute_rows(name: str, record: Mapping[Any, Any], new: Mapping[Any, Any]) -> list[Finding]:
     """The attributes of a variable that differ, such as its units."""
     found = []
     for attribute in sorted((record.keys() | new.keys()) - {*_NOT_COMPARED}):
@@ -164,11 +164,11 @@ def _attribute_rows(name: str, record: Mapping[Any, Any], new: Mapping[Any, Any]
             for side in (record, new)
         )
         if old_text != new_text:
-            found.append(Row(f"{attribute} of {name}", Outcome.STRUCTURE, old_text, new_text))
+            found.append(Finding(f"{attribute} of {name}", Outcome.STRUCTURE, old_text, new_text))
     return found
 
 
-def structure_rows(record: xr.Dataset, new: xr.Dataset) -> list[Row]:
+def structure_rows(record: xr.Dataset, new: xr.Dataset) -> list[Finding]:
     """A row for each variable of another type or size, and for each attribute that differs.
 
     Examples
@@ -183,7 +183,7 @@ def structure_rows(record: xr.Dataset, new: xr.Dataset) -> list[Row]:
         old_form = _form(record, name)
         new_form = _form(new, name)
         if old_form != new_form:
-            found.append(Row(name, Outcome.STRUCTURE, old_form, new_form))
+            found.append(Finding(name, Outcome.STRUCTURE, old_form, new_form))
         if old_form is not None and new_form is not None:
             found += _attribute_rows(name, record[name].attrs, new[name].attrs)
     return found
@@ -217,7 +217,7 @@ def _curve_drift(name: str, record: xr.Dataset, new: xr.Dataset, over: str) -> n
     y = record[name].values
     new_y = new[name].values
     scaled = (x / span(x), y / span(y), new_x / span(x), new_y / span(y))
-    distance = curve(*(np.moveaxis(values, axis, -1) for values in scaled))
+    distance = curve_distance(*(np.moveaxis(values, axis, -1) for values in scaled))
     return np.moveaxis(distance, -1, axis)
 
 
@@ -305,13 +305,13 @@ def _word_changes(old: xr.DataArray, now: xr.DataArray, unmoved: np.ndarray) -> 
     return tuple(found)
 
 
-def _variable_row(artifact: str, name: str, record: xr.Dataset, new: xr.Dataset) -> Row:
+def _variable_row(artifact: str, name: str, record: xr.Dataset, new: xr.Dataset) -> Finding:
     """The largest move of a variable over its budget, and the number of entries that moved."""
     old = record[name]
     now = new[name]
     unmoved = same(old.values, now.values)
     if unmoved.all():
-        return Row(name, Outcome.IDENTICAL, entries=old.size)
+        return Finding(name, Outcome.IDENTICAL, entries=old.size)
     share = shares(name, record, new, budget_of(artifact, name, now.attrs))
     # Among the entries that moved, because several may have the same share.
     order = np.where((share > 0) | ~unmoved, share, -1.0)
@@ -323,7 +323,7 @@ def _variable_row(artifact: str, name: str, record: xr.Dataset, new: xr.Dataset)
         change = relative_change(float(old.values[place]), float(now.values[place]), span(old))
     elif old.dtype.kind in "OSUT" and old.ndim:
         changes = _word_changes(old, now, unmoved)
-    return Row(
+    return Finding(
         name,
         Outcome.DRIFTED if beyond else Outcome.WITHIN,
         record=str(old.values[place]),
@@ -339,14 +339,14 @@ def _variable_row(artifact: str, name: str, record: xr.Dataset, new: xr.Dataset)
     )
 
 
-def _secondary(row: Row) -> Row:
+def _secondary(row: Finding) -> Finding:
     """A row of two datasets with other parameters: the difference has no share of a budget."""
     if row.outcome is Outcome.IDENTICAL:
         return row
     return replace(row, outcome=Outcome.PARAMETERS, share=0.0, beyond=0)
 
 
-def compare_datasets(artifact: str, record: xr.Dataset, new: xr.Dataset) -> list[Row]:
+def compare_datasets(artifact: str, record: xr.Dataset, new: xr.Dataset) -> list[Finding]:
     """A row for each parameter and each part of the structure that differs, and for each variable.
 
     Examples
@@ -364,7 +364,7 @@ def compare_datasets(artifact: str, record: xr.Dataset, new: xr.Dataset) -> list
     """
     changes = parameter_changes(parameters_of(record.attrs), parameters_of(new.attrs))
     parameters = [
-        Row(f"parameter {change.name}", Outcome.PARAMETERS, change.record, change.new)
+        Finding(f"parameter {change.name}", Outcome.PARAMETERS, change.record, change.new)
         for change in changes
     ]
     structure = structure_rows(record, new)

@@ -39,7 +39,7 @@ from bouncing_ball.pipeline.diff.cause import (
     own_causes,
 )
 from bouncing_ball.pipeline.diff.datasets import compare_datasets
-from bouncing_ball.pipeline.diff.outcome import Outcome, Row, Whole, worst
+from bouncing_ball.pipeline.diff.outcome import Finding, Outcome, Whole, worst
 from bouncing_ball.pipeline.diff.texts import compare_texts, words_of
 
 
@@ -73,7 +73,7 @@ def read_picture(path: Path) -> np.ndarray:
 
 def compare_pictures(
     record: np.ndarray, new: np.ndarray, budget: float = budgets.PICTURE
-) -> list[Row]:
+) -> list[Finding]:
     """The difference of two pictures of :func:`read_picture`: no row if all pixels are identical.
 
     Examples
@@ -84,14 +84,14 @@ def compare_pictures(
     """
     if record.shape != new.shape:
         old_size, new_size = (f"{shape[1]} × {shape[0]}" for shape in (record.shape, new.shape))
-        return [Row("size in pixels", Outcome.STRUCTURE, old_size, new_size)]
+        return [Finding("size in pixels", Outcome.STRUCTURE, old_size, new_size)]
     changed = (new != record).any(axis=-1)
     if not changed.any():
         return []
     share = float(np.sqrt(np.mean((new - record).astype(float) ** 2))) / budget
     outcome = Outcome.WITHIN if share <= 1 else Outcome.DRIFTED
     return [
-        Row("pixels", outcome, share=share, note=f"{100 * changed.mean():.2g} % of all changed")
+        Finding("pixels", outcome, share=share, note=f"{100 * changed.mean():.2g} % of all changed")
     ]
 
 
@@ -99,20 +99,20 @@ def _content(path: Path) -> bytes | None:
     return path.read_bytes() if path.exists() else None
 
 
-def _rows(old: Path, now: Path, data: Outcome | None) -> list[Row]:
+def _rows(old: Path, now: Path, data: Outcome | None) -> list[Finding]:
     """The rows of a file, see :func:`judge`; the library that reads it may raise an error."""
     record = _content(old)
     new = _content(now)
     if record == new:
         return []
     if record is None:
-        return [Row("", Outcome.EXTRA)]
+        return [Finding("", Outcome.EXTRA)]
     if new is None:
-        return [Row("", Outcome.MISSING)]
+        return [Finding("", Outcome.MISSING)]
     if old.suffix == DATASET:
         return compare_datasets(old.stem, read_dataset(old), read_dataset(now))
     if old.suffix in PICTURES and (note := redrawn(record, new)):
-        return [Row("", Outcome.WITHIN, note=note)]
+        return [Finding("", Outcome.WITHIN, note=note)]
     if old.suffix == ".png":
         budget = budgets.PICTURES.get(old.stem, budgets.PICTURE)
         rows = compare_pictures(read_picture(old), read_picture(now), budget)
@@ -168,20 +168,20 @@ def judge(file: str, compared: Compared, data: Outcome | None) -> Whole:
     shown = old.suffix == ".png"
     if file in compared.not_made:
         before = _content(old) if shown else None
-        return Whole(file, (Row("", Outcome.NOT_MADE),), (before, None))
+        return Whole(file, (Finding("", Outcome.NOT_MADE),), (before, None))
     # Warnings of the libraries about a damaged file become one line.
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         try:
             rows = _rows(old, now, data)
             if _is_stale(file, compared.new):
-                rows.append(Row("", Outcome.STALE, note="made by older code"))
+                rows.append(Finding("", Outcome.STALE, note="made by older code"))
             pictures = (_content(old), _content(now)) if shown else (None, None)
             return Whole(file, tuple(rows), pictures)
         # On a damaged file the libraries raise errors of many types.
         except Exception as error:
             why = " ".join(str(error).split()) or type(error).__name__
-            return Whole(file, (Row("", Outcome.UNREADABLE, note=why),))
+            return Whole(file, (Finding("", Outcome.UNREADABLE, note=why),))
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from difflib import SequenceMatcher
 from itertools import zip_longest
 from pathlib import Path
 
-from bouncing_ball.pipeline.diff.outcome import Outcome, Row
+from bouncing_ball.pipeline.diff.outcome import Finding, Outcome
 
 # A printed number with its sign and exponent.
 _NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d{1,4})?")
@@ -56,7 +56,7 @@ def _line_outcome(old: str | None, new: str | None, data: Outcome | None) -> Out
     return Outcome.WITHIN if may_be_rounding(old, new) else Outcome.DRIFTED
 
 
-def compare_texts(record: str, new: str, data: Outcome | None) -> list[Row]:
+def compare_texts(record: str, new: str, data: Outcome | None) -> list[Finding]:
     """All lines that differ, each with its outcome.
 
     If the data have drifted within their budget, the last digit of a printed number may change by
@@ -90,7 +90,7 @@ def compare_texts(record: str, new: str, data: Outcome | None) -> list[Row]:
         pairs = zip_longest(old_lines[first:last], new_lines[new_first:new_last])
         for number, (old, now) in enumerate(pairs, start=first + 1):
             if old != now:
-                found.append(Row(f"line {number}", _line_outcome(old, now, data), old, now))
+                found.append(Finding(f"line {number}", _line_outcome(old, now, data), old, now))
     return found
 
 

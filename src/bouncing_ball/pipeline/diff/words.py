@@ -4,7 +4,7 @@ import math
 from contextlib import suppress
 
 from bouncing_ball.pipeline.artifacts import DATASET
-from bouncing_ball.pipeline.diff.outcome import Outcome, Row, Whole
+from bouncing_ball.pipeline.diff.outcome import Finding, Outcome, Whole
 
 # More changes of words than these are counted.
 _NAMED = 6
@@ -39,16 +39,16 @@ def percent(change: float) -> str:
     return f"{float(two):+.0f} %" if "e+" in two else f"{two} %"
 
 
-def numbers(row: Row) -> str:
+def numbers(row: Finding) -> str:
     """Both contents of a row; of numbers the digits that differ, and one more.
 
     Examples
     --------
-    >>> numbers(Row("phase", Outcome.DRIFTED, "0.8403156852330397", "0.8395002457896041"))
+    >>> numbers(Finding("phase", Outcome.DRIFTED, "0.8403156852330397", "0.8395002457896041"))
     '0.84032 → 0.83950'
-    >>> numbers(Row("orbits", Outcome.DRIFTED, "1204", "1187"))
+    >>> numbers(Finding("orbits", Outcome.DRIFTED, "1204", "1187"))
     '1204 → 1187'
-    >>> numbers(Row("phase", Outcome.DRIFTED, "0.15487439262148725", "nan"))
+    >>> numbers(Finding("phase", Outcome.DRIFTED, "0.15487439262148725", "nan"))
     '0.15487 → nan'
     """
     record = str(row.record)
@@ -69,7 +69,7 @@ def numbers(row: Row) -> str:
     return " → ".join(f"{float(text):#.{digits}g}".removesuffix(".") for text in (record, new))
 
 
-def _told(row: Row) -> str:
+def _told(row: Finding) -> str:
     """One variable in words."""
     if row.changes:
         named = "; ".join(row.changes[:_NAMED])
@@ -81,7 +81,7 @@ def _told(row: Row) -> str:
     return f"{f'{change} in ' if change else ''}{row.title or row.name}{place}: {numbers(row)}"
 
 
-def _telling(rows: list[Row]) -> Row:
+def _telling(rows: list[Finding]) -> Finding:
     """The variable that says most: words before single numbers, and these before curves."""
     order = [
         (not row.changes, row.entries > 1, not math.isnan(row.change), -abs(row.change))
@@ -90,7 +90,7 @@ def _telling(rows: list[Row]) -> Row:
     return rows[order.index(min(order))]
 
 
-def telling_row(artifact: Whole) -> Row | None:
+def telling_row(artifact: Whole) -> Finding | None:
     """The variable of an artifact's dataset that says most about its drift."""
     for file in artifact.parts:
         if file.name.endswith(DATASET):
@@ -99,7 +99,7 @@ def telling_row(artifact: Whole) -> Row | None:
     return None
 
 
-def _large(artifact: Whole) -> list[Row]:
+def _large(artifact: Whole) -> list[Finding]:
     """The variables with a large relative change that an absolute budget allows."""
     rows = [row for file in artifact.parts if file.name.endswith(DATASET) for row in file.parts]
     return [
@@ -118,7 +118,7 @@ def headline(comparison: Whole) -> list[str]:
 
     Examples
     --------
-    >>> row = Row("level", Outcome.DRIFTED, "82.2", "83.0", entries=1, title="threshold",
+    >>> row = Finding("level", Outcome.DRIFTED, "82.2", "83.0", entries=1, title="threshold",
     ...     change=0.00973)
     >>> fig14 = Whole("fig14", (Whole("figures/fig14.nc", (row,)),), cause="numbers moved")
     >>> headline(Whole("", (fig14,)))

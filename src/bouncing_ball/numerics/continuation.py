@@ -534,9 +534,9 @@ def continue_both_ways(
     return _branch(found)
 
 
-# Number of rounds that equalise the chords between resampled points. Each round gains two to
-# four digits, and the rounding of the corrector is reached after five or six rounds.
-_EQUALISING_ROUNDS = 8
+# Number of rounds that equalise the chords between resampled points. Each round starts from the
+# points of the round before.
+_EQUALISING_ROUNDS = 10
 
 
 def _interpolated(wanted: np.ndarray, arc: np.ndarray, rows: np.ndarray) -> np.ndarray:
@@ -549,7 +549,7 @@ def resample(problem: Problem, branch: Branch, count: int) -> np.ndarray:
 
     Linear interpolation between the points of the branch and between their tangents is the
     predictor, and Newton's method in the plane normal to the tangent is the corrector; the first
-    and last points are those of the branch. The chords between neighbours are made equal, so that
+    and last points are those of the branch. The same is done again with the new points. The chords between neighbours are made equal, so that
     the result depends on the branch and on ``count``, but not on the step control.
 
     Raises
@@ -561,19 +561,21 @@ def resample(problem: Problem, branch: Branch, count: int) -> np.ndarray:
     arc = branch.arclength
     if len(arc) < 2:
         raise ContinuationError(f"a branch of one point has no length: {branch.end}")
-    wanted = np.linspace(0.0, arc[-1], count)
+    points = branch.points
+    along = branch.tangents
     for _ in range(_EQUALISING_ROUNDS):
-        guess = _interpolated(wanted, arc, branch.points)
-        along = _interpolated(wanted, arc, branch.tangents)
+        wanted = np.linspace(0.0, arc[-1], count)
+        guess = _interpolated(wanted, arc, points)
+        along = _interpolated(wanted, arc, along)
         found = newton(problem, guess, plane(along, guess))
         if not np.all(found.converged):
             residual = found.residual.max()
             raise ContinuationError(
                 f"resampling to {count} points failed with residual {residual:.1e}"
             )
-        chords = np.linalg.norm(np.diff(found.point, axis=0), axis=1)
+        points = found.point
+        chords = np.linalg.norm(np.diff(points, axis=0), axis=1)
         if np.ptp(chords) <= NewtonSettings().tolerance * chords.mean():
             break
-        reached = np.concatenate([[0.0], np.cumsum(chords)])
-        wanted = np.interp(np.linspace(0.0, reached[-1], count), reached, wanted)
-    return found.point
+        arc = np.concatenate([[0.0], np.cumsum(chords)])
+    return points

@@ -549,8 +549,9 @@ def resample(problem: Problem, branch: Branch, count: int) -> np.ndarray:
 
     Linear interpolation between the points of the branch and between their tangents is the
     predictor, and Newton's method in the plane normal to the tangent is the corrector; the first
-    and last points are those of the branch. The same is done again with the new points. The chords between neighbours are made equal, so that
-    the result depends on the branch and on ``count``, but not on the step control.
+    and last points are those of the branch. The same is done again with the new points, until the
+    chords between neighbours are equal, so that the result depends on the branch and on ``count``,
+    but not on the step control.
 
     Raises
     ------

@@ -1,12 +1,12 @@
 """Predictor-corrector continuation of branches, with events.
 
 A step starts from a state: a point y of the branch, its tangent t with the derivatives t′ and t″
-along the branch, and the values of the test functions. The predictor is
-``y + h t + h² t′/2 + h³ t″/6``, and Newton's method in the plane normal to t is the corrector; t′
-and t″ follow from the tangents at the last three points. Events within the step are then located, and :class:`StepControl` chooses the next h. A
-step is repeated with half its length if the corrector fails, if the tangent turns too much, or if
-an event cannot be located. The branch ends at a terminal event, where no step is short enough, or
-after a given number of points.
+along the branch, and the values of the test functions. The predictor is ``y + h t + h² t′/2 + h³
+t″/6``, and Newton's method in the plane normal to t is the corrector; t′ and t″ follow from the
+tangents at the last three points. Events within the step are then located, and :class:`StepControl`
+chooses the next h. A step is repeated with half its length if the corrector fails, if the tangent
+turns too much, or if an event cannot be located. The branch ends at a terminal event, where no step
+is short enough, or after a given number of points.
 
 Several branches are followed side by side: their next points are corrected together, because an
 evaluation of the equations costs hardly more for ten points than for one. Each branch has steps of

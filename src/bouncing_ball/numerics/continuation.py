@@ -1,12 +1,12 @@
 """Predictor-corrector continuation of branches, with events.
 
-A step starts from a state: a point y of the branch, its tangent t with the derivatives t′ and t″
-along the branch, and the values of the test functions. The predictor is ``y + h t + h² t′/2 + h³
-t″/6``, and Newton's method in the plane normal to t is the corrector; t′ and t″ follow from the
-tangents at the last three points. Events within the step are then located, and :class:`StepControl`
-chooses the next h. A step is repeated with half its length if the corrector fails, if the tangent
-turns too much, or if an event cannot be located. The branch ends at a terminal event, where no step
-is short enough, or after a given number of points.
+A step starts from a state: a point y of the branch, its tangent t with the derivative t′ along the
+branch, and the values of the test functions. The predictor is ``y + h t + h² t′/2``, and Newton's
+method in the plane normal to t is the corrector; t′ is the difference of the tangents over the last
+step. Events within the step are then located, and :class:`StepControl` chooses the next h. A
+step is repeated with half its length if the corrector fails, if the tangent turns too much, or if
+an event cannot be located. The branch ends at a terminal event, where no step is short enough, or
+after a given number of points.
 
 Several branches are followed side by side: their next points are corrected together, because an
 evaluation of the equations costs hardly more for ten points than for one. Each branch has steps of
@@ -187,33 +187,14 @@ its index."""
 
 
 class _State(NamedTuple):
-    """A point of a branch, its unit tangent, the values of the test functions at the point, and the
-    step to it: its length, and the mean derivative t′ of the tangent.
-
-    ``bend`` is the derivative t″ of the tangent, 0 before the second step.
+    """A point of a branch, its unit tangent and the derivative of the tangent along the branch, and
+    the values of the test functions at the point.
     """
 
     point: np.ndarray
     tangent: np.ndarray
+    curvature: np.ndarray
     values: np.ndarray
-    length: float
-    mean: np.ndarray
-    bend: np.ndarray
-
-    def ahead(self, length: float) -> np.ndarray:
-        """The point after a further step, by extrapolation of the tangents."""
-        curvature = self.mean + self.length / 2 * self.bend
-        turn = curvature + length / 3 * self.bend
-        return self.point + length * (self.tangent + length / 2 * turn)
-
-    def reach(self, point: np.ndarray, tangent: np.ndarray, values: np.ndarray) -> "_State":
-        """The state after a step to a point."""
-        length = float(np.linalg.norm(point - self.point))
-        mean = (tangent - self.tangent) / length
-        bend = np.zeros_like(point)
-        if self.length:
-            bend = (mean - self.mean) * 2 / (length + self.length)
-        return _State(point, tangent, values, length, mean, bend)
 
 
 class _Attempt(NamedTuple):
@@ -288,7 +269,9 @@ class _Followed:
         if not attempt.angle <= max_angle:
             why = f"the tangent turns by more than {max_angle} rad"
             raise _Rejected(why, kind=EndKind.CORNER)
-        reached = state.reach(attempt.point, attempt.tangent, attempt.values)
+        moved = np.linalg.norm(attempt.point - state.point)
+        curvature = (attempt.tangent - state.tangent) / moved
+        reached = _State(attempt.point, attempt.tangent, curvature, attempt.values)
         problem, events = tested
         changed = changes_of_sign(events, state.values, attempt.values)
         if not changed:
@@ -307,7 +290,7 @@ class _Followed:
         # At the end of its domain the derivative may be undefined; the branch keeps its direction.
         defined = np.all(np.isfinite(matrix))
         ahead = tangent(matrix, attempt.tangent) if defined else attempt.tangent
-        return state.reach(point, ahead, np.empty(0)), _end_at(passage.terminal)
+        return _State(point, ahead, curvature, np.empty(0)), _end_at(passage.terminal)
 
     def branch(self) -> Branch:
         """The branch; without an end it is left unfinished."""
@@ -352,18 +335,19 @@ def _first_state(tested: Tested, start: np.ndarray, towards: np.ndarray) -> _Sta
                 f"the start {np.array2string(point, precision=4)} lies beyond the end of the "
                 f"branch: {_end_at(event)}"
             )
-    still = np.zeros_like(point)
-    return _State(point, along, values, length=0.0, mean=still, bend=still)
+    return _State(point, along, np.zeros_like(point), values)
 
 
 def _attempts(
-    tested: Tested, states: Sequence[_State], lengths: Sequence[float], max_angle: float
+    tested: Tested, states: Sequence[_State], lengths: np.ndarray, max_angle: float
 ) -> list[_Attempt]:
     """Predict and correct the next point of each branch."""
     problem, events = tested
     point = np.array([state.point for state in states])
     along = np.array([state.tangent for state in states])
-    predicted = np.array([each.ahead(h) for each, h in zip(states, lengths, strict=True)])
+    curvature = np.array([state.curvature for state in states])
+    length = lengths[:, np.newaxis]
+    predicted = point + length * (along + length / 2 * curvature)
     found = newton(problem, predicted, plane(along, predicted))
     # A branch whose corrector failed stays where it is.
     reached = np.where(found.converged[:, np.newaxis], found.point, point)
@@ -420,7 +404,7 @@ def continue_branches(
             tested = rows_of(np.array(going))
             before = going
         states = [ways[k].states[-1] for k in going]
-        lengths = [ways[k].length for k in going]
+        lengths = np.array([ways[k].length for k in going])
         attempts = _attempts(tested, states, lengths, control.max_angle)
         for k, attempt in zip(going, attempts, strict=True):
             ways[k].advance(attempt, one(k), control)

@@ -261,7 +261,9 @@ def branch_from(
     limits = limits_of(along, range_ahead(orbits, here, to), orbits.equations)
     near = min(_NEAR, float(turns_apart(orbits, here)) / 2)
     with np.errstate(all="ignore"):
-        branch = _followed(orbits, here, limits, near, towards, control, most)
+        branch = _followed(
+            orbits, here, limits, near=near, towards=towards, control=control, most=most
+        )
         for _ in range(_TRIES):
             if branch.end.event != _HALVES:
                 break
@@ -273,7 +275,10 @@ def branch_from(
             left = most - len(branch.points) + 1
             last = branch.points[-1]
             ahead = branch.tangents[-1]
-            branch = _joined(branch, _followed(orbits, last, limits, near, ahead, control, left))
+            further = _followed(
+                orbits, last, limits, near=near, towards=ahead, control=control, most=left
+            )
+            branch = _joined(branch, further)
         tests = [*events(orbits), loss_of_release(orbits)]
         whole = replace(branch, end=explained(branch, tests, limits))
         return Followed(orbits, _with_lost_release(orbits, whole))
@@ -306,6 +311,7 @@ def _followed(
     orbits: PeriodicOrbits,
     start: np.ndarray,
     limits: list[Event],
+    *,
     near: float,
     towards: np.ndarray,
     control: StepControl,

@@ -80,31 +80,26 @@ def quantities(kind: SIParameter) -> st.SearchStrategy:
     return st.just(kind.example) | number | text
 
 
-def of(allowed: Declared) -> st.SearchStrategy:
-    """Values that are allowed, now and then a list of numbers, and mistakes."""
-    if isinstance(allowed, tuple) and not isinstance(allowed, Range | SIParameter):
-        right: st.SearchStrategy = st.sampled_from(allowed)
-    elif isinstance(allowed, SIParameter):
-        right = quantities(allowed)
-    else:
-        number = numbers(allowed)
-        several = st.lists(number, min_size=1, max_size=3)
-        right = sometimes(20).flatmap(lambda rare: several if rare else number)
-    return sometimes(25).flatmap(lambda rare: ODD if rare else right)
-
-
-def some(draw: Draw, declared: Mapping[str, Declared], *needed: str, **given: Any) -> dict:
-    """A random part of the arguments that are declared, those that are needed, and those given."""
-    optional = [name for name in declared if name not in given and name not in needed]
-    drawn = [name for name in optional if draw(sometimes(3))]
-    return {name: draw(of(declared[name])) for name in (*needed, *drawn)} | given
+def allowed_by(declared: Declared) -> st.SearchStrategy:
+    """Values that a declaration allows."""
+    if isinstance(declared, Range):
+        return numbers(declared)
+    if isinstance(declared, SIParameter):
+        return quantities(declared)
+    return st.sampled_from(declared)
 
 
 class Calls:
-    """Calls of public functions with random arguments; ``said`` is their text."""
+    """Calls of public functions with random arguments; ``said`` is their text.
+
+    One in four has mistakes, and another one arrays.
+    """
 
     def __init__(self, draw: Draw) -> None:
         self.draw = draw
+        self.with_mistakes, self.with_arrays = draw(
+            st.sampled_from([(False, False), (False, False), (False, True), (True, False)])
+        )
         self.said: list[str] = []
         self.spoken = io.StringIO()
 
@@ -116,9 +111,24 @@ class Calls:
         with self._watched():
             return getattr(bb, name)(*args, **given)
 
+    def value(self, declared: Declared) -> Any:
+        """A value of an argument, an array or a mistake."""
+        right = allowed_by(declared)
+        if self.with_mistakes and self.draw(sometimes(6)):
+            return self.draw(ODD)
+        if self.with_arrays and isinstance(declared, Range) and self.draw(sometimes(3)):
+            return self.draw(st.lists(right, min_size=1, max_size=3))
+        return self.draw(right)
+
+    def some(self, declared: Mapping[str, Declared], *needed: str, **given: Any) -> dict[str, Any]:
+        """A random part of the declared arguments, those that are needed, and those given."""
+        optional = [name for name in declared if name not in given and name not in needed]
+        drawn = [name for name in optional if self.draw(sometimes(3))]
+        return {name: self.value(declared[name]) for name in (*needed, *drawn)} | given
+
     def random(self, name: str, *args: Any, needed: tuple[str, ...] = (), **given: Any) -> Any:
         """The answer of a public function for a random part of its declared arguments."""
-        return self.call(name, *args, **some(self.draw, arguments(name), *needed, **given))
+        return self.call(name, *args, **self.some(arguments(name), *needed, **given))
 
     @contextlib.contextmanager
     def _watched(self) -> Iterator[None]:
@@ -141,8 +151,10 @@ class Calls:
 
     def ball(self) -> Any:
         """A ball made by one of the four functions."""
-        makers = (self.rigid, self.spring, self.on_law, self.corrected, lambda: self.draw(ODD))
-        return self.draw(st.sampled_from(makers * 4 + makers[:4] * 12))()
+        if self.with_mistakes and self.draw(sometimes(20)):
+            return self.draw(ODD)
+        makers = (self.rigid, self.spring, self.on_law, self.corrected)
+        return self.draw(st.sampled_from(makers))()
 
     def rigid(self) -> Any:
         return self.random("rigid", needed=("restitution",))
@@ -153,19 +165,19 @@ class Calls:
         of_loss = {name: allowed[name] for name in LOSSES}
         loss = self.draw(st.sampled_from(LOSSES))
         others = {name: allowed[name] for name in allowed.keys() - of_loss.keys()}
-        given = some(self.draw, others, "frequency_ratio")
-        return self.call("spring_damper", **given, **{loss: self.draw(of(of_loss[loss]))})
+        given = self.some(others, "frequency_ratio")
+        return self.call("spring_damper", **given, **{loss: self.value(of_loss[loss])})
 
     def on_law(self) -> Any:
         """A ball on a law with its parameters, or with a free impact."""
         law = self.draw(st.sampled_from(sorted(LAWS)))
         if self.draw(st.booleans()):
-            loss = self.draw(of(arguments("rigid")["restitution"]))
+            loss = self.value(arguments("rigid")["restitution"])
             allowed = {k: v for k, v in arguments("contact_law").items() if k != "release"}
-            given = some(self.draw, allowed, "duration", restitution=loss)
+            given = self.some(allowed, "duration", restitution=loss)
             return self.call("contact_law", law, **given)
         names = LAWS[law].parameter_names()
-        fields = {name: self.draw(of(OF_LAWS.get(name, FINITE))) for name in names}
+        fields = {name: self.value(OF_LAWS.get(name, FINITE)) for name in names}
         return self.call("contact_law", law, **fields)
 
     def corrected(self) -> Any:

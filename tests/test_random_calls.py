@@ -14,7 +14,7 @@ import pytest
 from declared_arguments import arguments, declared_by
 from hypothesis import given, note, settings
 from hypothesis import strategies as st
-from random_arguments import ODD, Calls, TimeOver, numbers, of, some, sometimes
+from random_arguments import Calls, TimeOver, numbers, sometimes
 
 import bouncing_ball as bb
 from bouncing_ball.accuracy.errors import OF_IMPACTS, Quantity
@@ -45,7 +45,7 @@ def orbit(calls: Calls) -> Any:
 
 
 def error_thresholds(calls: Calls) -> Any:
-    names = st.lists(st.sampled_from(OF_IMPACTS).map(str) | ODD, min_size=1, max_size=2)
+    names = st.lists(st.sampled_from(OF_IMPACTS).map(str), min_size=1, max_size=2)
     more = {"quantities": calls.draw(names)} if calls.draw(st.booleans()) else {}
     return calls.random("error_thresholds", calls.rigid(), needed=("amplitude",), **more)
 
@@ -57,19 +57,19 @@ def branch_of_an_orbit(calls: Calls) -> Any:
     ends = calls.draw(st.sampled_from([orbit, partial(CALLS["orbit_of_motion"])]))
     start = ends(calls)
     model = getattr(start, "model", None)
-    names = ["amplitude", *(model.numbers() if model else ())]
+    names = ["amplitude", *(() if model is None else model.numbers())]
     more: dict[str, Any] = {}
     if calls.draw(st.booleans()):
-        more["along"] = calls.draw(st.sampled_from(names) | ODD)
+        more["along"] = calls.draw(st.sampled_from(names))
     if calls.draw(st.booleans()):
-        more["to"] = calls.draw(of(FINITE))
+        more["to"] = calls.value(FINITE)
     return calls.random("follow", start, **more)
 
 
 def special(calls: Calls, kind: str) -> Any:
     """A special orbit of a branch; without one the call is refused."""
     found = branch_of_an_orbit(calls)
-    if calls.draw(sometimes(20)):
+    if calls.with_mistakes and calls.draw(sometimes(6)):
         return next(iter(found.states()))
     try:
         return found.first(kind)
@@ -95,7 +95,7 @@ def follow(calls: Calls) -> Any:
         return branch_of_an_orbit(calls)
     start = special(calls, calls.draw(st.sampled_from(list(map(str, Special)))))
     if way == 1:
-        return calls.random("follow", start, to=calls.draw(of(FINITE)))
+        return calls.random("follow", start, to=calls.value(FINITE))
     ranges = {"amplitude": limits_of(calls)} if calls.draw(st.booleans()) else {}
     along = "amplitude", across(calls, start)
     return calls.random("follow", start, along=along, ranges=ranges)
@@ -119,20 +119,22 @@ def curve(calls: Calls) -> Any:
 def made(calls: Calls, kind: str, names: list[str], **given: Any) -> Any:
     """An object of a class of contacts with values of these fields."""
     allowed = declared_by(getattr(bb, kind))
-    return calls.call(kind, **{name: calls.draw(of(allowed[name])) for name in names}, **given)
+    return calls.call(kind, **{name: calls.value(allowed[name]) for name in names}, **given)
 
 
 def table(calls: Calls) -> Any:
-    """One frequency and one amplitude, and now and then gravity or one too many."""
+    """One frequency and one amplitude, now and then gravity, and by mistake one too many."""
     fields = list(declared_by(bb.Table))
     chosen = [calls.draw(st.sampled_from(part)) for part in (fields[:3], fields[3:5])]
-    more = [name for name in fields if name not in chosen and calls.draw(sometimes(6))]
-    return made(calls, "Table", chosen + more)
+    more = ["gravity"] if calls.draw(sometimes(3)) else []
+    more += [name for name in fields if calls.with_mistakes and calls.draw(sometimes(6))]
+    return made(calls, "Table", [*{*chosen, *more}])
 
 
 def contact(calls: Calls, *, is_stiff: bool) -> Any:
     """A ball with one loss, its companions, and a stiffness unless it is to be chosen."""
-    loss = calls.draw(st.sampled_from(LOSSY))
+    # The damping needs the stiffness.
+    loss = calls.draw(st.sampled_from(LOSSY if is_stiff else LOSSY[1:]))
     names = ["mass", loss, *(["drop_height"] if loss == "rebound_height" else [])]
     if is_stiff:
         stiff = calls.draw(st.sampled_from(STIFF))
@@ -147,7 +149,7 @@ def question(calls: Calls) -> Any:
     allowed = declared_by(bb.Question)
     names = st.sampled_from(list(map(str, Quantity)))
     more = {"quantity": calls.draw(names)} if calls.draw(st.booleans()) else {}
-    return calls.call("Question", **some(calls.draw, allowed), **more)
+    return calls.call("Question", **calls.some(allowed), **more)
 
 
 def describe_contact(calls: Calls) -> Any:
@@ -172,8 +174,8 @@ def choose_contact(calls: Calls) -> Any:
 
 
 def write_contact(calls: Calls) -> Any:
-    of_setup = some(calls.draw, declared_by(bb.EngineSetup))
-    engine = calls.draw(st.sampled_from(sorted(ENGINES)) | ODD)
+    of_setup = calls.some(declared_by(bb.EngineSetup))
+    engine = calls.draw(st.sampled_from(sorted(ENGINES)))
     setup = calls.call("EngineSetup", **{**of_setup, "engine": engine})
     there = table(calls) if calls.draw(st.booleans()) else None
     return calls.call("write_contact", contact(calls, is_stiff=True), setup, there)
@@ -181,18 +183,12 @@ def write_contact(calls: Calls) -> Any:
 
 def fit_contact(calls: Calls) -> Any:
     count = calls.draw(st.sampled_from([1, 2, 3, 8]))
-    columns = [
-        calls.draw(st.lists(of(allowed), min_size=count, max_size=count))
-        for allowed in (POSITIVE, RESTITUTION)
-    ]
-    more = {
-        "durations": of(POSITIVE),
-        "uncertainties": of(POSITIVE),
-        "mass": of(declared_by(bb.Contact)["mass"]),
-        "laws": st.lists(st.sampled_from(sorted(CURVES)) | ODD, min_size=1, max_size=2),
-    }
-    chosen = {k: calls.draw(x) for k, x in more.items() if calls.draw(sometimes(3))}
-    return calls.call("fit_contact", *columns, **chosen)
+    columns = [[calls.value(allowed) for _ in range(count)] for allowed in (POSITIVE, RESTITUTION)]
+    mass = declared_by(bb.Contact)["mass"]
+    declared = {"durations": POSITIVE, "uncertainties": POSITIVE, "mass": mass}
+    laws = st.lists(st.sampled_from(sorted(CURVES)), min_size=1, max_size=2)
+    more = {"laws": calls.draw(laws)} if calls.draw(sometimes(3)) else {}
+    return calls.call("fit_contact", *columns, **calls.some(declared), **more)
 
 
 CALLS: dict[str, Callable[[Calls], Any]] = {

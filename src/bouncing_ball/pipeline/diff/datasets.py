@@ -301,7 +301,7 @@ def _word_changes(old: xr.DataArray, now: xr.DataArray, unmoved: np.ndarray) -> 
         index = tuple(int(k) for k in place)
         where = ", ".join(_labels(old, index).values())
         contents = [str(side.values[index]) or "nothing" for side in (old, now)]
-        found.append(f"{where} {' → '.join(contents)}")
+        found.append(f"{where}: {' → '.join(contents)}")
     return tuple(found)
 
 

@@ -60,14 +60,15 @@ def _used(*functions: str, defects: tuple) -> InUse:
 
 
 def largest(*defects) -> float:
-    """The largest modulus among the entries of all defects, NaN if one of them is NaN.
+    """The largest modulus among the entries of all defects, NaN if one of them is NaN or has none.
 
     Examples
     --------
-    >>> largest([0.5, -2.0], 1.0), largest([0.5], float("nan"))
-    (2.0, nan)
+    >>> largest([0.5, -2.0], 1.0), largest([0.5], float("nan")), largest([0.5], [])
+    (2.0, nan, nan)
     """
-    return float(np.max([np.max(np.abs(x)) for x in defects]))
+    moduli = [np.abs(x) for x in defects]
+    return float(np.max([np.max(x) if np.size(x) else np.nan for x in moduli]))
 
 
 def forms_in_use(rng: np.random.Generator, samples: int) -> Mapping[str, InUse]:

@@ -20,9 +20,7 @@ SHORT = SpringDamperModel(SpringDamper.from_restitution(0.65, 3.0))
 
 @pytest.fixture
 def along_the_branch(monkeypatch):
-    """Newton's method finds no orbit at Λ itself, nor beside the fold: the branch is followed."""
-    module = "bouncing_ball.periodic.one_impact.start"
-    monkeypatch.setattr(f"{module}._beside_fold", lambda _, fold, *__: np.full_like(fold, np.nan))
+    """Newton's method finds no orbit on this side: the branch is followed from its fold."""
 
     def found(model, amplitude, side):
         # The signs of the sides are exchanged in the first guess, which is then refused.

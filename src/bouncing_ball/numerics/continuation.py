@@ -1,18 +1,23 @@
-"""Predictor-corrector continuation of a branch, with events.
+"""Predictor-corrector continuation of branches, with events.
 
-A step starts from a state: a point y of the branch, its tangent t with the derivative t′ along the
-branch, and the values of the test functions. The predictor is ``y + h t + h² t′/2``, and Newton's
-method in the plane normal to t is the corrector; t′ is the difference of the tangents over the last
-step. Events within the step are then located, and :class:`StepControl` chooses the next h. A
-step is repeated with half its length if the corrector fails, if the tangent turns too much, or if
-an event cannot be located. The branch ends at a terminal event, where no step is short enough, or
-after a given number of points.
+A step starts from a state: a point y of the branch, its tangent t with the derivatives t′ and t″
+along the branch, and the values of the test functions. The predictor is ``y + h t + h² t′/2 + h³
+t″/6``, and Newton's method in the plane normal to t is the corrector; t′ and t″ follow from the
+tangents at the last three points. Events within the step are then located, and :class:`StepControl`
+chooses the next h. A step is repeated with half its length if the corrector fails, if the tangent
+turns too much, or if an event cannot be located. The branch ends at a terminal event, where no step
+is short enough, or after a given number of points.
+
+Several branches are followed side by side: their next points are corrected together, because an
+evaluation of the equations costs hardly more for ten points than for one. Each branch has steps of
+its own and ends on its own, so that it is the same as if it were followed alone.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from enum import Enum, auto
-from typing import NamedTuple
+from functools import cache
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -169,28 +174,59 @@ def solve_at(problem: Problem, guess: np.ndarray) -> np.ndarray:
     return point
 
 
+class Tested(NamedTuple):
+    """The equations of one or several branches, and the events on them."""
+
+    problem: Problem
+    events: Sequence[Event]
+
+
+RowsOf = Callable[[Any], Tested]
+"""The equations of some of several branches, by an array of their indices, or of one of them, by
+its index."""
+
+
 class _State(NamedTuple):
-    """A point of a branch, its unit tangent and the derivative of the tangent along the branch, and
-    the values of the test functions at the point.
+    """A point of a branch, its unit tangent, the values of the test functions at the point, and the
+    step to it: its length, and the mean derivative t′ of the tangent.
+
+    ``bend`` is the derivative t″ of the tangent, 0 before the second step.
     """
 
     point: np.ndarray
     tangent: np.ndarray
-    curvature: np.ndarray
-    values: list[float]
+    values: np.ndarray
+    length: float
+    mean: np.ndarray
+    bend: np.ndarray
+
+    def ahead(self, length: float) -> np.ndarray:
+        """The point after a further step, by extrapolation of the tangents."""
+        curvature = self.mean + self.length / 2 * self.bend
+        turn = curvature + length / 3 * self.bend
+        return self.point + length * (self.tangent + length / 2 * turn)
+
+    def reach(self, point: np.ndarray, tangent: np.ndarray, values: np.ndarray) -> "_State":
+        """The state after a step to a point."""
+        length = float(np.linalg.norm(point - self.point))
+        mean = (tangent - self.tangent) / length
+        bend = np.zeros_like(point)
+        if self.length:
+            bend = (mean - self.mean) * 2 / (length + self.length)
+        return _State(point, tangent, values, length, mean, bend)
 
 
-class _Step(NamedTuple):
-    """An accepted step.
+class _Attempt(NamedTuple):
+    """The corrected next point of a branch, with the tangent and the values of the test functions.
 
-    ``reached`` is the state after the step, ``special`` holds the events on the way, and ``end`` is
-    the end of the branch if the last of these events is terminal. ``iterations`` is the number of
-    iterations of the corrector, and ``angle`` the angle by which the tangent turns.
+    ``angle`` is the angle by which the tangent turns, NaN if the Jacobian is not defined.
     """
 
-    reached: _State
-    special: tuple[SpecialPoint, ...]
-    end: End | None
+    point: np.ndarray
+    tangent: np.ndarray
+    values: np.ndarray
+    converged: bool
+    residual: float
     iterations: int
     angle: float
 
@@ -209,77 +245,84 @@ class _Rejected(Exception):
         self.kind = kind
 
 
-def _values(events: Sequence[Event], point: np.ndarray) -> list[float]:
-    return [float(event.function(point)) for event in events]
+@dataclass
+class _Followed:
+    """A branch that is being followed: its states, its events, the next step, and its end."""
+
+    states: list[_State]
+    length: float
+    special: list[SpecialPoint] = field(default_factory=list)
+    end: End | None = None
+
+    def advance(self, attempt: _Attempt, tested: Tested, control: StepControl) -> None:
+        """Accept the next point, or repeat the step with half its length, or end the branch."""
+        try:
+            reached, end = self._step(attempt, tested, control.max_angle)
+        except _Rejected as rejected:
+            if self.length / 2 < control.smallest:
+                sentence = f"step too small ({self.length:.1e}): {rejected.why}"
+                self.end = End(sentence, rejected.finished, rejected.kind)
+            self.length /= 2
+            return
+        self.states.append(reached)
+        self.end = end or _creeping(self.states, control.creep)
+        self.length = control.after(self.length, attempt.iterations, attempt.angle)
+
+    def _step(
+        self, attempt: _Attempt, tested: Tested, max_angle: float
+    ) -> tuple[_State, End | None]:
+        """The next state with the events on the way to it, and the end of the branch if the last of
+        them is terminal.
+
+        Raises
+        ------
+        _Rejected
+            If the corrector failed, the tangent turns by more than ``max_angle``, or an event
+            cannot be located.
+        """
+        state = self.states[-1]
+        if not attempt.converged:
+            raise _Rejected(f"the corrector fails with residual {attempt.residual:.1e}")
+        if np.isnan(attempt.angle):
+            raise _Rejected("the Jacobian is not defined there")
+        if not attempt.angle <= max_angle:
+            why = f"the tangent turns by more than {max_angle} rad"
+            raise _Rejected(why, kind=EndKind.CORNER)
+        reached = state.reach(attempt.point, attempt.tangent, attempt.values)
+        problem, events = tested
+        changed = changes_of_sign(events, state.values, attempt.values)
+        if not changed:
+            return reached, None
+        passage = locate_all(problem, changed, state.point, attempt.point)
+        if passage.missed is not None:
+            # The step may have left the domain in which the test function is defined.
+            event = passage.missed
+            why = f"{event.name} announced near {state.point} could not be located"
+            raise _Rejected(event.reason or why, event.terminal)
+        self.special.extend(passage.special)
+        if passage.terminal is None:
+            return reached, None
+        point = passage.special[-1].point
+        matrix = problem.jacobian(point)
+        # At the end of its domain the derivative may be undefined; the branch keeps its direction.
+        defined = np.all(np.isfinite(matrix))
+        ahead = tangent(matrix, attempt.tangent) if defined else attempt.tangent
+        return state.reach(point, ahead, np.empty(0)), _end_at(passage.terminal)
+
+    def branch(self) -> Branch:
+        """The branch; without an end it is left unfinished."""
+        sentence = f"reached the limit of {len(self.states)} points"
+        return Branch(
+            points=np.array([state.point for state in self.states]),
+            tangents=np.array([state.tangent for state in self.states]),
+            special=tuple(self.special),
+            start=STARTED,
+            end=self.end or End(sentence, finished=False, kind=EndKind.POINTS),
+        )
 
 
 def _end_at(event: Event) -> End:
     return End(event.reason or event.name, event=event.name)
-
-
-def _first_state(
-    problem: Problem, start: np.ndarray, towards: np.ndarray, events: Sequence[Event]
-) -> _State:
-    """The corrected start, with the tangent that is at most at a right angle to ``towards``."""
-    point = solve_at(problem, np.asarray(start, dtype=float))
-    along = tangent(problem.jacobian(point), towards)
-    if not np.all(np.isfinite(along)):
-        raise ContinuationError(
-            f"the start {np.array2string(point, precision=4)} has no direction: the derivatives of "
-            "the equations are not defined there"
-        )
-    state = _State(point, along, np.zeros_like(point), _values(events, point))
-    for event, value in zip(events, state.values, strict=True):
-        if event.terminal and value < 0:
-            raise ContinuationError(
-                f"the start {np.array2string(point, precision=4)} lies beyond the end of the "
-                f"branch: {_end_at(event)}"
-            )
-    return state
-
-
-def _step(
-    problem: Problem, events: Sequence[Event], state: _State, length: float, max_angle: float
-) -> _Step:
-    """Predict and correct the next point, and locate the events on the way to it.
-
-    Raises
-    ------
-    _Rejected
-        If the corrector fails, the tangent turns by more than ``max_angle``, or an event cannot be
-        located.
-    """
-    predicted = state.point + length * (state.tangent + length / 2 * state.curvature)
-    corrected = newton(problem, predicted, plane(state.tangent, predicted))
-    if not corrected.converged:
-        raise _Rejected(f"the corrector fails with residual {corrected.residual:.1e}")
-    point = corrected.point
-    matrix = problem.jacobian(point)
-    if not np.all(np.isfinite(matrix)):
-        raise _Rejected("the Jacobian is not defined there")
-    ahead = tangent(matrix, state.tangent)
-    angle = float(np.arccos(np.clip(ahead @ state.tangent, -1.0, 1.0)))
-    if not angle <= max_angle:
-        raise _Rejected(f"the tangent turns by more than {max_angle} rad", kind=EndKind.CORNER)
-    curvature = (ahead - state.tangent) / np.linalg.norm(point - state.point)
-    reached = _State(point, ahead, curvature, _values(events, point))
-    changed = changes_of_sign(events, state.values, reached.values)
-    passage = locate_all(problem, changed, state.point, point)
-    if passage.missed is not None:
-        # The step may have left the domain in which the test function is defined.
-        event = passage.missed
-        why = f"{event.name} announced near {state.point} could not be located"
-        raise _Rejected(event.reason or why, event.terminal)
-    end = None
-    if passage.terminal is not None:
-        end = _end_at(passage.terminal)
-        point = passage.special[-1].point
-        matrix = problem.jacobian(point)
-        # At the end of its domain the derivative may be undefined; the branch keeps its direction.
-        if np.all(np.isfinite(matrix)):
-            ahead = tangent(matrix, ahead)
-        reached = _State(point, ahead, curvature, [])
-    return _Step(reached, passage.special, end, corrected.iterations, angle)
 
 
 def _creeping(states: Sequence[_State], creep: float) -> End | None:
@@ -290,6 +333,105 @@ def _creeping(states: Sequence[_State], creep: float) -> End | None:
     if way >= creep:
         return None
     return End(f"step too small: {_CREEPING} steps lead {way:.1e}", kind=EndKind.SHORTEST_STEP)
+
+
+def _first_state(tested: Tested, start: np.ndarray, towards: np.ndarray) -> _State:
+    """The corrected start, with the tangent that is at most at a right angle to ``towards``."""
+    problem, events = tested
+    point = solve_at(problem, np.asarray(start, dtype=float))
+    along = tangent(problem.jacobian(point), towards)
+    if not np.all(np.isfinite(along)):
+        raise ContinuationError(
+            f"the start {np.array2string(point, precision=4)} has no direction: the derivatives of "
+            "the equations are not defined there"
+        )
+    values = np.array([float(event.function(point)) for event in events])
+    for event, value in zip(events, values, strict=True):
+        if event.terminal and value < 0:
+            raise ContinuationError(
+                f"the start {np.array2string(point, precision=4)} lies beyond the end of the "
+                f"branch: {_end_at(event)}"
+            )
+    still = np.zeros_like(point)
+    return _State(point, along, values, length=0.0, mean=still, bend=still)
+
+
+def _attempts(
+    tested: Tested, states: Sequence[_State], lengths: Sequence[float], max_angle: float
+) -> list[_Attempt]:
+    """Predict and correct the next point of each branch."""
+    problem, events = tested
+    point = np.array([state.point for state in states])
+    along = np.array([state.tangent for state in states])
+    predicted = np.array([each.ahead(h) for each, h in zip(states, lengths, strict=True)])
+    found = newton(problem, predicted, plane(along, predicted))
+    # A branch whose corrector failed stays where it is.
+    reached = np.where(found.converged[:, np.newaxis], found.point, point)
+    ahead = tangent(problem.jacobian(reached), along)
+    angle = np.arccos(np.clip(np.sum(ahead * along, axis=-1), -1.0, 1.0))
+    values = np.full((len(states), len(events)), np.nan)
+    if np.any(found.converged & (angle <= max_angle)):
+        for k, event in enumerate(events):
+            values[:, k] = event.function(reached)
+    columns = found.converged, found.residual, found.iterations, angle
+    rows = zip(reached, ahead, values, *(column.tolist() for column in columns), strict=True)
+    return [_Attempt(*row) for row in rows]
+
+
+def continue_branches(
+    rows_of: RowsOf,
+    starts: Sequence[np.ndarray],
+    towards: Sequence[np.ndarray],
+    control: StepControl = StepControl(),
+    max_points: int = 2000,
+) -> list[Branch | ContinuationError]:
+    """Follow several branches side by side, each from a start in one direction.
+
+    Parameters
+    ----------
+    rows_of : callable
+        The equations and the events of the branches with some indices, whose unknowns have the
+        shape (indices, N + 1), and of the branch with one index, whose unknowns have the shape
+        (N + 1,).
+    starts, towards : sequence of ndarray, shape (N + 1,)
+        A solution of each problem, or an approximation to it, and a direction with which the first
+        step makes at most a right angle.
+    control : StepControl
+    max_points : int
+        Number of points after which a branch is left unfinished.
+
+    Returns
+    -------
+    list of Branch or ContinuationError
+        The error in place of a branch if there is no solution near its start, if the start lies
+        outside the domain, or if the Jacobian is not defined there.
+    """
+    one = cache(rows_of)
+    ways: dict[int, _Followed] = {}
+    errors: dict[int, ContinuationError] = {}
+    for k, (start, ahead) in enumerate(zip(starts, towards, strict=True)):
+        try:
+            ways[k] = _Followed([_first_state(one(k), start, ahead)], control.initial)
+        except ContinuationError as error:
+            errors[k] = error
+    before: list[int] = []
+    while going := [k for k, way in ways.items() if not way.end and len(way.states) < max_points]:
+        if going != before:
+            tested = rows_of(np.array(going))
+            before = going
+        states = [ways[k].states[-1] for k in going]
+        lengths = [ways[k].length for k in going]
+        attempts = _attempts(tested, states, lengths, control.max_angle)
+        for k, attempt in zip(going, attempts, strict=True):
+            ways[k].advance(attempt, one(k), control)
+    return [errors[k] if k in errors else ways[k].branch() for k in range(len(starts))]
+
+
+def _branch(found: Branch | ContinuationError) -> Branch:
+    """A branch, unless it is an error, which is raised."""
+    if isinstance(found, ContinuationError):
+        raise found
+    return found
 
 
 def continue_branch(
@@ -349,49 +491,68 @@ def continue_branch(
     """
     if towards is None:
         towards = np.eye(np.size(start))[-1] * (1.0 if increasing else -1.0)
-    state = _first_state(problem, start, towards, events)
-    states = [state]
-    special: list[SpecialPoint] = []
-    length = control.initial
-    end: End | None = None
-    while end is None and len(states) < max_points:
-        try:
-            step = _step(problem, events, state, length, control.max_angle)
-        except _Rejected as rejected:
-            if length / 2 < control.smallest:
-                sentence = f"step too small ({length:.1e}): {rejected.why}"
-                end = End(sentence, rejected.finished, rejected.kind)
-            length /= 2
-            continue
-        state = step.reached
-        states.append(state)
-        special.extend(step.special)
-        end = step.end or _creeping(states, control.creep)
-        length = control.after(length, step.iterations, step.angle)
-    if end is None:
-        sentence = f"reached the limit of {max_points} points"
-        end = End(sentence, finished=False, kind=EndKind.POINTS)
-    points = np.array([state.point for state in states])
-    tangents = np.array([state.tangent for state in states])
-    return Branch(points, tangents, tuple(special), STARTED, end)
+    tested = Tested(problem, events)
+    (found,) = continue_branches(lambda _: tested, [start], [towards], control, max_points)
+    return _branch(found)
 
 
-def continue_both_ways(problem: Problem, start: np.ndarray, **options) -> Branch:
-    """Follow the branch through ``start`` in both directions, as one branch.
+def continue_all_both_ways(
+    rows_of: RowsOf,
+    starts: Sequence[np.ndarray],
+    control: StepControl = StepControl(),
+    max_points: int = 2000,
+) -> list[Branch | ContinuationError]:
+    """Follow several branches through their starts in both directions, each as one branch.
 
-    The branch is oriented such that the parameter increases at ``start``. Options and errors are
-    those of :func:`continue_branch`, except ``increasing``.
+    A branch is oriented such that the parameter increases at its start. Arguments and results are
+    those of :func:`continue_branches`.
     """
-    back = continue_branch(problem, start, increasing=False, **options)
-    ahead = continue_branch(problem, start, increasing=True, **options)
+    up = [np.eye(np.size(start))[-1] for start in starts]
+    halves = continue_branches(
+        lambda which: rows_of(which % len(starts)),
+        [*starts, *starts],
+        [*(-each for each in up), *up],
+        control,
+        max_points,
+    )
+    pairs = zip(halves[: len(starts)], halves[len(starts) :], strict=True)
+    return [_whole(back, ahead) for back, ahead in pairs]
+
+
+def _whole(
+    back: Branch | ContinuationError, ahead: Branch | ContinuationError
+) -> Branch | ContinuationError:
+    """A branch from its two halves, which have the same start."""
+    if isinstance(back, ContinuationError):
+        return back
+    if isinstance(ahead, ContinuationError):
+        return ahead
     points = np.concatenate([back.points[::-1], ahead.points[1:]])
     tangents = np.concatenate([-back.tangents[::-1], ahead.tangents[1:]])
     return Branch(points, tangents, back.special[::-1] + ahead.special, back.end, ahead.end)
 
 
-# Number of rounds that equalise the chords between resampled points. Each round gains two to
-# four digits, and the rounding of the corrector is reached after five or six rounds.
-_EQUALISING_ROUNDS = 8
+def continue_both_ways(
+    problem: Problem,
+    start: np.ndarray,
+    *,
+    events: Sequence[Event] = (),
+    control: StepControl = StepControl(),
+    max_points: int = 2000,
+) -> Branch:
+    """Follow the branch through ``start`` in both directions, as one branch.
+
+    The branch is oriented such that the parameter increases at ``start``. Arguments and errors are
+    those of :func:`continue_branch`.
+    """
+    tested = Tested(problem, events)
+    (found,) = continue_all_both_ways(lambda _: tested, [start], control, max_points)
+    return _branch(found)
+
+
+# Number of rounds that equalise the chords between resampled points. Each round starts from the
+# points of the round before.
+_EQUALISING_ROUNDS = 10
 
 
 def _interpolated(wanted: np.ndarray, arc: np.ndarray, rows: np.ndarray) -> np.ndarray:
@@ -404,8 +565,9 @@ def resample(problem: Problem, branch: Branch, count: int) -> np.ndarray:
 
     Linear interpolation between the points of the branch and between their tangents is the
     predictor, and Newton's method in the plane normal to the tangent is the corrector; the first
-    and last points are those of the branch. The chords between neighbours are made equal, so that
-    the result depends on the branch and on ``count``, but not on the step control.
+    and last points are those of the branch. The same is done again with the new points, until the
+    chords between neighbours are equal, so that the result depends on the branch and on ``count``,
+    but not on the step control.
 
     Raises
     ------
@@ -416,19 +578,21 @@ def resample(problem: Problem, branch: Branch, count: int) -> np.ndarray:
     arc = branch.arclength
     if len(arc) < 2:
         raise ContinuationError(f"a branch of one point has no length: {branch.end}")
-    wanted = np.linspace(0.0, arc[-1], count)
+    points = branch.points
+    along = branch.tangents
     for _ in range(_EQUALISING_ROUNDS):
-        guess = _interpolated(wanted, arc, branch.points)
-        along = _interpolated(wanted, arc, branch.tangents)
+        wanted = np.linspace(0.0, arc[-1], count)
+        guess = _interpolated(wanted, arc, points)
+        along = _interpolated(wanted, arc, along)
         found = newton(problem, guess, plane(along, guess))
         if not np.all(found.converged):
             residual = found.residual.max()
             raise ContinuationError(
                 f"resampling to {count} points failed with residual {residual:.1e}"
             )
-        chords = np.linalg.norm(np.diff(found.point, axis=0), axis=1)
+        points = found.point
+        chords = np.linalg.norm(np.diff(points, axis=0), axis=1)
         if np.ptp(chords) <= NewtonSettings().tolerance * chords.mean():
             break
-        reached = np.concatenate([[0.0], np.cumsum(chords)])
-        wanted = np.interp(np.linspace(0.0, reached[-1], count), reached, wanted)
-    return found.point
+        arc = np.concatenate([[0.0], np.cumsum(chords)])
+    return points

@@ -38,15 +38,14 @@ class Problem(Protocol):
 class Correction(NamedTuple):
     """Outcome of Newton iterations from one or many guesses.
 
-    ``point`` has the shape of the guesses. ``converged``, ``residual`` (the largest modulus of an
-    equation at the last iteration) and ``step`` (the norm of the last Newton step relative to
-    1 + |y|) have the shape of its leading axes. ``iterations`` is the number of iterations until
-    all guesses had converged or failed.
+    ``point`` has the shape of the guesses. ``converged``, ``iterations``, ``residual`` (the largest
+    modulus of an equation at the last iteration) and ``step`` (the norm of the last Newton step
+    relative to 1 + |y|) have the shape of its leading axes.
     """
 
     point: np.ndarray
     converged: np.ndarray
-    iterations: int
+    iterations: np.ndarray
     residual: np.ndarray
     step: np.ndarray
 
@@ -123,9 +122,11 @@ def solve(
     going = np.ones(shape, dtype=bool)
     residual = np.full(shape, np.inf)
     size = np.full(shape, np.inf)
-    iteration = 0
-    while iteration < settings.max_iterations and np.any(going):
-        iteration += 1
+    iterations = np.zeros(shape, dtype=int)
+    for _ in range(settings.max_iterations):
+        if not going.any():
+            break
+        iterations = iterations + going
         values, matrix = equations(y)
         residual = np.where(going, np.abs(values).max(axis=-1), residual)
         going &= np.isfinite(residual) & np.isfinite(matrix).all(axis=(-2, -1))
@@ -143,7 +144,7 @@ def solve(
         last = (size <= settings.tolerance) | _next_is_rounding(before, size)
         converged |= going & last
         going &= ~converged
-    return Correction(y, converged, iteration, residual, size)
+    return Correction(y, converged, iterations, residual, size)
 
 
 def _norm(vector: np.ndarray) -> np.ndarray:
@@ -184,7 +185,7 @@ def failure(problem: Problem, found: Correction) -> str:
     Next to a bifurcation rounding moves the last step, although the equations are satisfied. Such a
     point is a solution if the Jacobian is defined there.
     """
-    after = f"after {found.iterations} Newton iterations"
+    after = f"after {int(found.iterations)} Newton iterations"
     if found.converged:
         return ""
     if not np.all(np.isfinite(problem.jacobian(found.point))):

@@ -126,12 +126,10 @@ def locate(
     return SpecialPoint(event.name, found.point)
 
 
-def changes_of_sign(
-    events: Sequence[Event], before: Sequence[float], after: Sequence[float]
-) -> list[Event]:
+def changes_of_sign(events: Sequence[Event], before: np.ndarray, after: np.ndarray) -> list[Event]:
     """The events whose test functions differ in sign before and after a step."""
-    values = zip(events, before, after, strict=True)
-    return [event for event, first, last in values if (first >= 0) != (last >= 0)]
+    changed = (before >= 0) != (after >= 0)
+    return [event for event, here in zip(events, changed, strict=True) if here]
 
 
 class Passage(NamedTuple):

@@ -10,7 +10,7 @@ from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.exhibits.continuation_of_orbits import (
-    Branches,
+    Domains,
     both_domains,
     first_limits,
     followed,
@@ -18,6 +18,7 @@ from bouncing_ball.paper.exhibits.continuation_of_orbits import (
     stability_ranges,
 )
 from bouncing_ball.paper.exhibits.continuation_of_orbits_figures import domains
+from bouncing_ball.periodic.branches.following import Followed
 from bouncing_ball.periodic.one_impact.spring_damper_bifurcations import (
     period_doubling,
     saddle_node,
@@ -48,8 +49,11 @@ def follow(continuation_settings):
     """The equations and the branch of n-T orbits up to ``top``."""
 
     def along(n, r, omega, top):
-        given = Branches(n=n, restitution=r, amplitude_max=top, points=11)
-        return followed(n, omega, given, Release.DISPLACEMENT, continuation_settings)
+        given = Domains(n=n, restitution=r, frequency_ratio=[omega], amplitude_max=top, points=11)
+        (found,) = followed(given, Release.DISPLACEMENT, continuation_settings)
+        if not isinstance(found, Followed):
+            raise found
+        return found
 
     return along
 

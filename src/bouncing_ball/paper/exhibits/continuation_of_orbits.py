@@ -33,7 +33,7 @@ from bouncing_ball.periodic.branches.observables import (
 )
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact import restitution_branch as restitution_orbits
-from bouncing_ball.periodic.one_impact.whole_branch import whole_branch
+from bouncing_ball.periodic.one_impact.whole_branch import NoBranch, whole_branches
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
@@ -86,28 +86,29 @@ class Ranges(Parameters):
 
 
 def followed(
-    n: int, ratio: float, given: Branches, release: Release, continuation: Continuation
-) -> Followed:
-    """The orbits on one contact, from the unstable to the stable side.
-
-    Raises
-    ------
-    NoOrbitError, ContinuationError
-        As :func:`~bouncing_ball.periodic.one_impact.whole_branch.whole_branch`.
+    parameters: Domains, release: Release, continuation: Continuation
+) -> list[Followed | NoBranch]:
+    """The orbits on each contact, from the unstable to the stable side; errors in place of those
+    that cannot be followed.
     """
-    model = SpringDamperModel(SpringDamper.from_restitution(given.restitution, ratio, release))
-    return whole_branch(model, n, given.amplitude_max, continuation.largest_step)
+    ratios = np.array(parameters.frequency_ratio)
+    contacts = SpringDamper.from_restitution(parameters.restitution, ratios, release)
+    return whole_branches(
+        SpringDamperModel(contacts),
+        np.full(ratios.size, parameters.n),
+        parameters.amplitude_max,
+        continuation.largest_step,
+    )
 
 
-def _branch(
-    ratio: float, parameters: Branches, release: Release, continuation: Continuation
-) -> xr.Dataset:
+def _branch(ratio: float, points: int, branch: Followed | NoBranch) -> xr.Dataset:
     """The branch of one contact; NaN, with the reason, where it cannot be followed."""
     try:
-        branch = followed(parameters.n, ratio, parameters, release, continuation)
-        found = n_t_columns(branch.resampled(parameters.points))
+        if not isinstance(branch, Followed):
+            raise branch
+        found = n_t_columns(branch.resampled(points))
     except (NoOrbitError, ContinuationError) as error:
-        found = no_branch(parameters.points, error)
+        found = no_branch(points, error)
     return found.assign_coords(frequency_ratio=ratio)
 
 
@@ -135,11 +136,12 @@ def orbit_branches(parameters: Domains, release: Release, continuation: Continua
 
 def _branches(parameters: Domains, release: Release, continuation: Continuation) -> xr.Dataset:
     """The dataset of :func:`orbit_branches`, also if no branch can be followed."""
-    ratios = parameters.frequency_ratio
-    rows = [_branch(ratio, parameters, release, continuation) for ratio in ratios]
+    branches = followed(parameters, release, continuation)
+    pairs = zip(parameters.frequency_ratio, branches, strict=True)
+    rows = [_branch(ratio, parameters.points, branch) for ratio, branch in pairs]
     zeta = float(damping_ratio(parameters.restitution))
-    branches = joined(rows, "frequency_ratio").assign(damping_ratio=zeta)
-    return describe(branches, variables=_VARIABLES)
+    data = joined(rows, "frequency_ratio").assign(damping_ratio=zeta)
+    return describe(data, variables=_VARIABLES)
 
 
 class BothDomains(Branches):
@@ -223,17 +225,21 @@ def stability_ranges(
     families = np.array(parameters.n)
     ratios = np.array(parameters.frequency_ratio)
     shape = (ratios.size, families.size)
+    contacts = SpringDamper.from_restitution(
+        parameters.restitution, np.repeat(ratios, families.size), release
+    )
+    branches = whole_branches(
+        SpringDamperModel(contacts),
+        np.tile(families, ratios.size),
+        parameters.amplitude_max,
+        continuation.largest_step,
+        ends=list(Bifurcation),
+    )
     found = np.full((*shape, len(Bifurcation), len(PLACE)), np.nan)
     absence = np.full(shape, "", dtype=object)
-    for at in np.ndindex(shape):
+    for at, branch in zip(np.ndindex(shape), branches, strict=True):
         try:
-            found[at] = _stability_range(
-                parameters.n[at[1]],
-                parameters.frequency_ratio[at[0]],
-                parameters,
-                release,
-                continuation,
-            )
+            found[at] = _stability_range(branch)
         except (NoOrbitError, ContinuationError) as error:
             absence[at] = str(error)
     maps = list(restitution_orbits.ImpactMap)
@@ -262,21 +268,16 @@ def stability_ranges(
     return describe(dataset, variables=_VARIABLES)
 
 
-def _stability_range(
-    n: int, ratio: float, given: Ranges, release: Release, continuation: Continuation
-) -> np.ndarray:
+def _stability_range(branch: Followed | NoBranch) -> np.ndarray:
     """Λ, φ and τ_b of both ends of a stability range, shape (bound, 3).
 
     Raises
     ------
     NoOrbitError, ContinuationError
-        As :func:`~bouncing_ball.periodic.one_impact.whole_branch.whole_branch` and
-        :func:`first_limits`.
+        If the branch is such an error, or as of :func:`first_limits`.
     """
-    model = SpringDamperModel(SpringDamper.from_restitution(given.restitution, ratio, release))
-    branch = whole_branch(
-        model, n, given.amplitude_max, continuation.largest_step, ends=list(Bifurcation)
-    )
+    if not isinstance(branch, Followed):
+        raise branch
     limits = orbits_along(branch.problem, first_limits(branch.branch))
     return np.stack([getattr(limits, name) for name in PLACE], axis=-1)
 

@@ -78,13 +78,50 @@ def is_back(sequence: ImpactSequence, impacts: np.ndarray) -> np.ndarray:
     return np.maximum(np.abs(turn), np.abs(change)) <= _ROUNDING
 
 
+def _stickings(model: RestitutionModel, amplitude: np.ndarray, path: np.ndarray) -> np.ndarray:
+    """After how many of the impacts on their paths the balls stick, shape (balls,)."""
+    _, phase, velocity = path
+    known = np.isfinite(phase)
+    of_ball = np.broadcast_to(amplitude, known.shape)
+    once = model.simulate(of_ball[known], phase[known], velocity[known], 1)
+    sticks = np.zeros(known.shape, dtype=bool)
+    sticks[known] = once.contact_duration[0] > 0
+    return sticks.sum(axis=0)
+
+
+def _settling(found: Motions) -> np.ndarray:
+    """Impacts after which a deviation of a ball from its repeating motion is a rounding error.
+
+    It shrinks as exp(λ t) in t periods of the table, where λ is the exponent of the motion.
+    """
+    periods = np.log(_ROUNDING) / found.exponent
+    return found.followed + found.impacts * np.ceil(periods / found.periods + 1).astype(int)
+
+
+def _repeating(
+    model: RestitutionModel,
+    found: Motions,
+    start: tuple[np.ndarray, float, np.ndarray],
+    most: int,
+) -> np.ndarray:
+    """Which balls are back in their states up to rounding, within a number of impacts."""
+    returns = np.flatnonzero(found.impacts > 0)
+    repeats = np.zeros(found.impacts.size, dtype=bool)
+    if returns.size:
+        amplitude, phase, velocity = start
+        impacts = min(int(_settling(found[returns]).max()), most)
+        sequence = model.simulate(amplitude[returns], phase, velocity[returns], impacts + 1)
+        repeats[returns] = is_back(sequence, found.impacts[returns])
+    return repeats
+
+
 def kinds_of_motion(parameters: BallsAlike) -> xr.Dataset:
     """Whether the motion of each ball repeats, and how fast its neighbours separate from it.
 
     The dataset has, over ``amplitude``, ``impacts`` and ``periods`` of the table until the motion
-    repeats up to rounding, 0 if it does not; ``stickings``, after how many impacts the ball sticks;
-    and ``lyapunov_exponent`` with its standard error ``lyapunov_error``, per period of the table,
-    NaN for a motion that repeats or sticks.
+    repeats up to rounding, 0 if it does not; ``stickings``, after how many impacts the ball sticks
+    before its motion is known; and ``lyapunov_exponent`` with its standard error
+    ``lyapunov_error``, per period of the table, NaN for a motion that repeats or sticks.
 
     Raises
     ------
@@ -95,11 +132,11 @@ def kinds_of_motion(parameters: BallsAlike) -> xr.Dataset:
     model = RestitutionModel(parameters.restitution)
     velocity = amplitude * np.cos(parameters.phase) - parameters.impact_speed
     start = amplitude, parameters.phase, velocity
-    found = final_motions(model, *start, impacts=parameters.impacts)
+    path = np.full((3, parameters.impacts, amplitude.size), np.nan)
+    found = final_motions(model, *start, impacts=parameters.impacts, path=path)
     _require_bouncing(found, amplitude)
-    sequence = model.simulate(*start, parameters.impacts + 1)
-    stickings = np.sum(sequence.contact_duration[:-1] > 0, axis=0)
-    repeats = (found.impacts > 0) & is_back(sequence, found.impacts)
+    stickings = _stickings(model, amplitude, path)
+    repeats = _repeating(model, found, start, parameters.impacts)
     wanders = (found.impacts == 0) & (stickings == 0)
     return described(
         {

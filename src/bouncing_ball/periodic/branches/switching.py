@@ -106,7 +106,7 @@ def switch(doubling: Orbit, along: str = LAMBDA, aside: float = ASIDE) -> Orbit:
     if not found.converged:
         raise NoOrbitError(
             f"no orbit of twice the period was found beside the period doubling: residual "
-            f"{float(found.residual):.1e} after {found.iterations} Newton iterations"
+            f"{float(found.residual):.1e} after {int(found.iterations)} Newton iterations"
         )
     _, at = twice(orbits, here)
     away = float(np.linalg.norm(found.point - at))

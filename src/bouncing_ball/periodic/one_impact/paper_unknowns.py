@@ -9,10 +9,11 @@ are ``(φ, δ′, D, arsinh Λ)``: only the length of a step along a branch depe
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
+from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.corrector import Condition
 from bouncing_ball.numerics.events import Event
 from bouncing_ball.periodic.orbits.balls import LAMBDA
@@ -50,6 +51,10 @@ class PaperUnknowns:
     def of(cls, orbit: Orbit) -> "PaperUnknowns":
         """The equations of given n-T orbits."""
         return cls(orbit.problem(LAMBDA), orbit.model.dynamics(1.0).clock)
+
+    def take(self, which: Any) -> Self:
+        """The equations of some orbits of a row."""
+        return replace(self, orbits=self.orbits.take(which), clock=pick(self.clock, which))
 
     def inner(self, y: np.ndarray) -> np.ndarray:
         """The unknowns (φ, δ′, D, arsinh Λ) of y."""

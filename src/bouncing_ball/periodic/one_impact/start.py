@@ -15,9 +15,16 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.model import Model
-from bouncing_ball.numerics.continuation import ContinuationError, StepControl, continue_branch
-from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane, solve, tangent
+from bouncing_ball.numerics.continuation import (
+    ContinuationError,
+    StepControl,
+    Tested,
+    continue_branch,
+    continue_branches,
+)
+from bouncing_ball.numerics.corrector import NewtonSettings, newton, solve, tangent
 from bouncing_ball.numerics.events import Event, SpecialPoint, parameter_bound
+from bouncing_ball.periodic.branches.following import limit
 from bouncing_ball.periodic.one_impact import corrected_branch as corrected
 from bouncing_ball.periodic.orbits.balls import LAMBDA
 from bouncing_ball.periodic.orbits.orbit import Orbit, check_index, in_order
@@ -45,10 +52,6 @@ _FARTHER = 4.0
 # A fold below this Λ belongs to a nearly elastic contact; the steps along a branch are too long
 # to resolve it.
 _LOWEST = 1e-4
-# The parabola of a fold is measured at the first length along the branch. It is used up to the
-# second number times the rise of Λ at that length.
-_BESIDE = 1e-2
-_PARABOLA = 4.0
 _HERE = "this amplitude"
 
 
@@ -211,53 +214,36 @@ def orbit_at(model: Model, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Or
         index = int(search.n[k])
         if model.shape or index not in folds:
             folds[index] = bifurcation(one, index, Bifurcation.SADDLE_NODE)
-        y[k] = _on_branch(one, folds[index], float(lam[k]), side)
+        y[k] = _on_branch(folds[index], float(lam[k]), side)
     return _orbits(problem, y, shape)[0]
 
 
-def _on_branch(model: Model, fold: Orbit, amplitude: float, side: Side) -> np.ndarray | float:
-    """The point at Λ on one side of the fold, on the part of the branch next to it, or NaN."""
+def _on_branch(fold: Orbit, amplitude: float, side: Side) -> np.ndarray | float:
+    """The first point at Λ on one side of the fold, or NaN.
+
+    The branch is followed from the fold to both sides, each up to Λ, because one step across the
+    fold may pass both orbits at Λ where they are close to each other.
+    """
     if not amplitude >= fold.amplitude:
         return np.nan
     problem = fold.problem(LAMBDA)
-    y = _beside_fold(problem, fold.point(problem), float(np.arcsinh(amplitude)), side)
-    if np.all(np.isfinite(y)):
-        return y
-    found = continued(model, fold.n, amplitude, farther=_ABOVE)
-    names = [special.name for special in found]
-    if Bifurcation.SADDLE_NODE not in names:
-        return np.nan
-    # The branch runs from the stable side, on which it crosses Λ once, across the fold.
-    at = names.index(Bifurcation.SADDLE_NODE)
-    beside = found[:at] if side is Side.STABLE else found[at:]
-    return next((special.point for special in beside if special.name == _HERE), np.nan)
-
-
-def _beside_fold(
-    problem: PeriodicOrbits, fold: np.ndarray, coordinate: float, side: Side
-) -> np.ndarray:
-    """The point at a coordinate p of Λ on one side of a fold, by the parabola p - p_SN ~ s².
-
-    It is NaN far from the fold.
-
-    The parabola is needed because one step of the continuation may pass both orbits at Λ where
-    they are close to each other.
-    """
-    along = tangent(problem.jacobian(fold), np.ones_like(fold))
-    beside = fold + _BESIDE * along
-    step = newton(problem, beside, plane(along, beside), _SETTINGS).point - fold
-    y = np.full_like(fold, np.nan)
-    if not (step[-1] > 0 and coordinate - fold[-1] < _PARABOLA * step[-1]):
-        return y
-    share = np.sqrt((coordinate - fold[-1]) / step[-1])
-    guesses = fold + share * np.outer([1, -1], step)
-    guesses[:, -1] = coordinate
-    for guess in guesses:
-        found = newton(problem, guess, plane(np.eye(fold.size)[-1], guess), _EXTENDED)
-        test = Bifurcation.SADDLE_NODE.test(*problem.trace_and_determinant(found.point))
-        if found.converged and (test > 0) == (side is Side.STABLE):
-            y = found.point
-    return y
+    start = fold.point(problem)
+    ahead = tangent(problem.jacobian(start), np.ones_like(start))
+    events = [
+        *ends_of_contact(problem),
+        limit(LAMBDA, amplitude, sign=-1.0, column=problem.equations),
+        limit(LAMBDA, _LOWEST, sign=1.0, column=problem.equations),
+    ]
+    tested = Tested(problem, events)
+    branches = continue_branches(lambda _: tested, [start, start], [ahead, -ahead], _STEPS, _POINTS)
+    for branch in branches:
+        if isinstance(branch, ContinuationError) or len(branch.points) < 2:
+            continue
+        test = Bifurcation.SADDLE_NODE.test(*problem.trace_and_determinant(branch.points[1]))
+        here = abs(branch.points[-1, -1] - np.arcsinh(amplitude)) <= _EXTENDED.tolerance
+        if here and (test > 0) == (side is Side.STABLE):
+            return branch.points[-1]
+    return np.nan
 
 
 def continued(

@@ -7,15 +7,19 @@ to both sides from an orbit in the stable range, until the orbits end or Λ leav
 
 from collections.abc import Collection
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.model import Model
 from bouncing_ball.numerics.continuation import (
+    Branch,
     ContinuationError,
     StepControl,
-    continue_both_ways,
+    Tested,
+    continue_all_both_ways,
 )
 from bouncing_ball.numerics.events import Event
 from bouncing_ball.periodic.branches.following import Followed, Range, limits_of
@@ -34,6 +38,9 @@ _BEYOND_DOUBLING = 1.4
 _LOWEST = 1e-4
 # Number of Λ at which an orbit to start from is searched.
 _STARTS = 16
+
+NoBranch = NoOrbitError | ContinuationError
+"""Why there is no branch, as an error that is a value."""
 
 
 def whole_branch(
@@ -81,27 +88,98 @@ def whole_branch(
     >>> str(found.branch.end)
     'amplitude = 1.2 is reached'
     """
+    top = amplitude_max or _default_top(model, n)
+    (found,) = whole_branches(model, [n], top, largest_step, ends)
+    if isinstance(found, Followed):
+        return found
+    raise found
+
+
+def whole_branches(
+    model: Model,
+    n: ArrayLike,
+    amplitude_max: float,
+    largest_step: float = LARGEST_STEP,
+    ends: Collection[Bifurcation] = (),
+) -> list[Followed | NoBranch]:
+    """The branches of a row of models, side by side, each as of :func:`whole_branch`.
+
+    Parameters
+    ----------
+    model : Model
+        A row of models, or a single model for all families.
+    n : array_like of int, shape (branches,)
+        Index of the family of each branch.
+    amplitude_max : float
+        Λ at which all branches end.
+    largest_step, ends
+        As for :func:`whole_branch`.
+
+    Returns
+    -------
+    list of Followed
+        With the error of :func:`whole_branch` in place of a branch that cannot be followed.
+
+    Examples
+    --------
+    >>> from bouncing_ball.models.rigid import RestitutionModel
+    >>> found = whole_branches(RestitutionModel(0.85), [1, 2], 1.2)
+    >>> [round(each.first("saddle-node").amplitude, 4) for each in found]
+    [0.2547, 0.5094]
+    """
+    top = amplitude_max
+    family = np.array(n)
+    fold = np.atleast_1d(n_t.saddle_node(model, family).amplitude)
+    doubling = np.atleast_1d(n_t.period_doubling(model, family).amplitude)
+    low = np.where(fold > 0, fold, 0.0)
+    found: dict[int, Followed | NoBranch] = {}
+    for k in np.flatnonzero(low >= top).tolist():
+        why = f"{_none(model.take(k), family[k], top)}: the branch begins at Λ = {low[k]:.6g}"
+        found[k] = NoOrbitError(why)
+    rows = np.flatnonzero(low < top)
+    starts = _starts(model.take(rows), family[rows], low[rows], doubling[rows], top)
+    for k in rows[~starts.exists].tolist():
+        why = f"{_none(model.take(k), family[k], top)} was found to start from"
+        found[k] = NoOrbitError(why)
+    rows = rows[starts.exists]
+    branches = _followed(starts[starts.exists], top, largest_step, ends)
+    found |= dict(zip(rows.tolist(), branches, strict=True))
+    return [found[k] for k in range(family.size)]
+
+
+def _followed(
+    starts: Orbit, top: float, largest_step: float, ends: Collection[Bifurcation]
+) -> list[Followed | NoBranch]:
+    """The branches through a row of orbits."""
+    if not starts.size:
+        return []
+    problem = PaperUnknowns.of(starts)
+
+    def rows_of(which: Any) -> Tested:
+        part = problem.take(which)
+        return Tested(part, _events(part, top, ends))
+
+    points = list(problem.point(starts))
+    control = StepControl(largest=largest_step)
+    branches = continue_all_both_ways(rows_of, points, control)
+    return [_checked(problem.take(k), branch) for k, branch in enumerate(branches)]
+
+
+def _checked(problem: PaperUnknowns, branch: Branch | ContinuationError) -> Followed | NoBranch:
+    """A branch with its ends of contact, or an error if it is not followed to its ends."""
+    if isinstance(branch, ContinuationError):
+        return branch
+    for end in (branch.start, branch.end):
+        if not end.finished:
+            return ContinuationError(f"the branch is not followed to its end: {end}")
+    return Followed(problem, with_ends(problem, branch))
+
+
+def _default_top(model: Model, n: int) -> float:
+    """The largest Λ if none is given; without a period doubling it follows from the fold."""
     fold = n_t.saddle_node(model, n).amplitude
     doubling = n_t.period_doubling(model, n).amplitude
     low = fold if fold > 0 else 0.0
-    top = amplitude_max or _default_top(low, doubling)
-    if low >= top:
-        raise NoOrbitError(f"{_none(model, n, top)}: the branch begins at Λ = {low:.6g}")
-    stable = min(doubling, top)
-    middle = (low + (stable if stable > low else top)) / 2
-    start = _start(model, n, middle, low, top)
-    problem = PaperUnknowns.of(start)
-    events = _events(problem, top, ends)
-    control = StepControl(largest=largest_step)
-    found = continue_both_ways(problem, problem.point(start), events=events, control=control)
-    for end in (found.start, found.end):
-        if not end.finished:
-            raise ContinuationError(f"the branch is not followed to its end: {end}")
-    return Followed(problem, with_ends(problem, found))
-
-
-def _default_top(low: float, doubling: float) -> float:
-    """The largest Λ if none is given; without a period doubling it follows from the fold."""
     return _BEYOND_DOUBLING * (doubling if doubling > low else max(2 * low, 1.0))
 
 
@@ -109,14 +187,22 @@ def _none(model: Model, n: int, top: float) -> str:
     return f"no {n}-T orbit up to Λ = {top:g} for {model.label}"
 
 
-def _start(model: Model, n: int, middle: float, low: float, top: float) -> Orbit:
-    """The orbit at Λ = ``middle``, or at the nearest of several Λ that has one."""
-    others = np.linspace(low, top, _STARTS + 1)[1:]
-    nearest_first = others[np.argsort(np.abs(others - middle))]
-    orbits = n_t.orbit(model, n, np.append(middle, nearest_first))
-    if not np.any(orbits.exists):
-        raise NoOrbitError(f"{_none(model, n, top)} was found to start from")
-    return orbits[int(np.argmax(orbits.exists))]
+def _starts(
+    model: Model, n: np.ndarray, low: np.ndarray, doubling: np.ndarray, top: float
+) -> Orbit:
+    """The orbit of each family in the middle of its stable range, or at the nearest of several Λ
+    that has one, of the shape of n.
+    """
+    stable = np.minimum(doubling, top)
+    middle = (low + np.where(stable > low, stable, top)) / 2
+    others = np.linspace(low, top, _STARTS + 1, axis=-1)[:, 1:]
+    nearest_first = np.argsort(np.abs(others - middle[:, np.newaxis]), axis=-1)
+    others = np.take_along_axis(others, nearest_first, axis=-1)
+    amplitude = np.concatenate([middle[:, np.newaxis], others], axis=-1)
+    of_rows = model[:, np.newaxis] if model.shape else model
+    orbits = n_t.orbit(of_rows, n[:, np.newaxis], amplitude)
+    first = np.argmax(orbits.exists, axis=-1)
+    return orbits[np.arange(n.size), first]
 
 
 def _events(problem: PaperUnknowns, top: float, ends: Collection[Bifurcation]) -> list[Event]:

@@ -40,6 +40,7 @@ equations.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any, NamedTuple, Self
@@ -198,11 +199,16 @@ class PeriodicOrbits:
     def dynamics(self, y: np.ndarray) -> tuple[Dynamics | None, np.ndarray]:
         """The dynamics of the legs in a row, and which legs are inside the ranges."""
         leading = y.shape[:-1]
-        row = self.balls if self._one_ball else self.balls.row(leading, self.impacts)
+        row = self.balls if self._one_ball else self._row(leading)
         if not self.along:
             return row.dynamics(), np.ones(math.prod(leading) * self.impacts, dtype=bool)
         varied = {name: np.repeat(x.ravel(), self.impacts) for name, x in self.values(y).items()}
         return dynamics_inside(row, varied, self.along)
+
+    @cached_property
+    def _row(self) -> Callable[[tuple[int, ...]], Balls]:
+        """The balls of the legs in a row, for a leading shape of y."""
+        return lru_cache(maxsize=_KEPT)(lambda leading: self.balls.row(leading, self.impacts))
 
     @cached_property
     def _one_ball(self) -> bool:

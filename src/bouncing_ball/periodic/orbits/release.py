@@ -15,11 +15,12 @@ from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
 
 # Samples of a contact: evenly, and in geometric progression from this fraction of the duration on,
 # because the oscillations after an impact decay.
-_EVEN, _GEOMETRIC, _FIRST = 160, 160, 1e-6
+_SAMPLES_OF_CONTACT = np.union1d(np.linspace(0, 1, 160)[1:], np.geomspace(1e-6, 1, 160))
 # Each of these rounds of this many samples narrows the bracket of a maximum to a hundredth. The
 # parabola through the last three samples, 1e-4 of the first bracket apart, has an error of the
 # fourth order of this distance.
 _ROUNDS, _SAMPLES = 2, 201
+_SHARES = np.linspace(0, 1, _SAMPLES)[:, np.newaxis]
 # The height where there is no maximum, and thus no event near.
 _FAR = -1.0
 
@@ -101,19 +102,19 @@ def _tops(legs: Legs, shape: tuple[int, ...]) -> _Tops:
 
 def _highest(contacts: _Contacts) -> _Tops:
     """The largest local maximum within each contact of a row, all of finite duration."""
-    evenly = np.linspace(0, 1, _EVEN)[1:]
-    densely = np.geomspace(_FIRST, 1, _GEOMETRIC)
-    share = np.union1d(evenly, densely)
+    share = _SAMPLES_OF_CONTACT
     value = contacts.height(share[:, np.newaxis] * contacts.duration)
     inner = value[1:-1]
     is_top = (inner > value[:-2]) & (inner >= value[2:])
-    top = np.where(is_top, inner, -np.inf).argmax(axis=0)
     found = is_top.any(axis=0)
+    if not found.any():
+        return _Tops(np.full(found.shape, _FAR), np.full(found.shape, np.nan))
+    top = np.where(is_top, inner, -np.inf).argmax(axis=0)
     left = share[top] * contacts.duration
     right = share[top + 2] * contacts.duration
     rows = np.arange(top.size)
     for _ in range(_ROUNDS):
-        time = left + (right - left) * np.linspace(0, 1, _SAMPLES)[:, np.newaxis]
+        time = left + (right - left) * _SHARES
         value = contacts.height(time)
         best = np.clip(value.argmax(axis=0), 1, _SAMPLES - 2)
         left = time[best - 1, rows]

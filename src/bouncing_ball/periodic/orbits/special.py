@@ -198,11 +198,11 @@ def loss_of_release(orbits: PeriodicOrbits) -> Event:
         _, closing = orbits.states(y)
         velocity = _at_point(legs, rise_of_release(legs))
         # The bounces before a rest on the table become arbitrarily slow.
-        rests = legs.dynamics.forgets and np.any(_at_point(legs, legs.departure.sticks))
+        rests = legs.dynamics.forgets & _at_point(legs, legs.departure.sticks).any(axis=-1)
         approach = np.where(orbits.resuming, closing, -closing)
         with np.errstate(divide="ignore", invalid="ignore"):
             lowest = (velocity / approach).min(axis=-1)
-        return np.full(lowest.shape, _FAR) if rests else lowest
+        return np.where(rests, _FAR, lowest)
 
     return Event(Special.RELEASE_LOST, share, terminal=True, reason=_reason(Special.RELEASE_LOST))
 

@@ -1,0 +1,39 @@
+"""Whole branches of n-T orbits, one at a time and several side by side."""
+
+import numpy as np
+import pytest
+
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.damping import Release
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.numerics.continuation import ContinuationError
+from bouncing_ball.periodic.branches.following import Followed
+from bouncing_ball.periodic.one_impact.whole_branch import whole_branch, whole_branches
+
+CASES = [(1, 1e4), (2, 10.0), (1, 2.0), (3, 2.0), (1, 1.0), (2, 0.9)]
+TOP = 1.4
+
+
+@pytest.mark.parametrize("release", list(Release))
+def test_a_branch_is_the_same_alone_and_beside_others(release):
+    n, ratios = (np.array(column) for column in zip(*CASES, strict=True))
+    contacts = SpringDamper.from_restitution(0.7, ratios, release)
+    together = whole_branches(SpringDamperModel(contacts), n, TOP)
+    for k, beside in enumerate(together):
+        alone = SpringDamperModel(contacts[k])
+        if not isinstance(beside, Followed):
+            with pytest.raises((NoOrbitError, ContinuationError)) as error:
+                whole_branch(alone, int(n[k]), TOP)
+            assert str(error.value) == str(beside)
+            continue
+        found = whole_branch(alone, int(n[k]), TOP)
+        assert np.array_equal(beside.branch.points, found.branch.points)
+        assert np.array_equal(beside.branch.tangents, found.branch.tangents)
+        pairs = zip(beside.branch.special, found.branch.special, strict=True)
+        assert all(one.name == other.name for one, other in pairs)
+        pairs = zip(beside.branch.special, found.branch.special, strict=True)
+        assert all(np.array_equal(one.point, other.point) for one, other in pairs)
+        assert (beside.branch.start, beside.branch.end) == (found.branch.start, found.branch.end)
+    assert any(isinstance(each, Followed) for each in together)
+    assert not all(isinstance(each, Followed) for each in together)

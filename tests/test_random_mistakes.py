@@ -15,11 +15,10 @@ import shlex
 import string
 import typing
 from pathlib import Path
-from types import UnionType
 
 import numpy as np
 import pytest
-import xarray as xr
+from declared_arguments import arguments
 from declared_artifacts import ARTIFACTS
 from hypothesis import given
 from hypothesis import strategies as st
@@ -32,7 +31,6 @@ from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.quantities import quantities
 from bouncing_ball.contacts.question import EngineSetup, Question
 from bouncing_ball.contacts.table import Table
-from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import ModelError, Range
 from bouncing_ball.models.makers import LOSSES
 from bouncing_ball.pipeline.configuration import ConfigurationError, check, place, read_yaml
@@ -142,7 +140,7 @@ CALLS = {
     "contact_law": {"law": "tsuji", "restitution": 0.85, "duration": 0.1},
     "simulate": {"ball": BALL, "amplitude": 1.0}, "history": {"ball": BALL, "amplitude": 1.0},
     "drop": {"ball": BALL, "height": 1.0}, "orbit": {"ball": BALL, "amplitude": 1.0},
-    "limits": {"ball": BALL},
+    "orbits": {"ball": BALL, "amplitude": 1.0}, "limits": {"ball": BALL},
     "branch": {"ball": BALL}, "error_thresholds": {"ball": BALL, "amplitude": 1.0},
     "motion_of": {"ball": BALL, "amplitude": 1.0},
     "lyapunov_exponent": {"ball": BALL, "amplitude": 1.0},
@@ -153,28 +151,12 @@ CALLS = {
 """Arguments of calls that are right."""
 
 
-def declared(hint: typing.Any) -> Range | tuple[str, ...] | None:
-    """The range or the names of an argument with this annotation."""
-    origin = typing.get_origin(hint)
-    if origin is typing.Literal:
-        return typing.get_args(hint)
-    if origin is typing.Annotated:
-        return next((each for each in hint.__metadata__ if isinstance(each, Range)), None)
-    if origin in (typing.Union, UnionType):
-        return next(filter(None, map(declared, typing.get_args(hint))), None)
-    return None
-
-
-# What is imported for type checkers only.
-LATER = {"DataArray": xr.DataArray, "Dataset": xr.Dataset, "xr": xr, "Result": Result}
 GIVEN = [
     (call, name, allowed)
     for call in CALLS
-    for name, hint in typing.get_type_hints(
-        getattr(bb, call), localns=LATER, include_extras=True
-    ).items()
+    for name, allowed in arguments(call).items()
     # A release is for the parameters of one law only.
-    if (allowed := declared(hint)) and (call, name) != ("contact_law", "release")
+    if (call, name) != ("contact_law", "release")
 ]
 
 

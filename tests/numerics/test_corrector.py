@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.numerics.corrector import NewtonSettings, failure, newton, plane, tangent
+from bouncing_ball.numerics.corrector import NewtonSettings, failure, newton, plane, solve, tangent
 
 EPS = np.finfo(float).eps
 
@@ -68,6 +68,18 @@ def test_no_step_is_longer_than_the_longest():
     # Newton's own step, of (9 - 1)/6, is what convergence is judged by.
     assert found.point == pytest.approx(np.array([2.9, 0.0]), abs=4 * EPS)
     assert found.step == pytest.approx(8 / 6 / 3.9, rel=1e-14)
+
+
+def test_a_step_too_long_for_its_square_stops_the_iteration_at_the_guess():
+    # A slope of 10⁻²⁰⁰: the step to the root of 10⁻²⁰⁰ x - 1 is finite, and its square is not.
+    slope = np.array([[1e-200], [1.0]])
+
+    def lines(y):
+        return slope * y - 1, slope[..., np.newaxis]
+
+    found = solve(lines, np.full((2, 1), 2.0))
+    assert found.converged.tolist() == [False, True]
+    assert found.point.ravel().tolist() == [2.0, 1.0]
 
 
 def test_a_singular_matrix_stops_the_iteration_at_the_guess():

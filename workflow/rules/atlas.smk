@@ -64,6 +64,7 @@ rule atlas:
         charts=expand("results/atlas/{chart}.png", chart=CHARTS),
     params:
         title="The atlas in short",
+        drawing=ARTIFACTS["ext_atlas"].drawn_by,
         parameters=ATLAS,
     log:
         "results/logs/atlas/charts.log",

@@ -48,8 +48,6 @@ SHARED = {
     # Axes of datasets, and parameters.
     "n": Variable("index of the family of periodic orbits", symbol="n", equation="Eq. 6"),
     "case": Variable("parameter set"),
-    "case_restitution": Variable("restitution coefficient of a case", symbol="r"),
-    "case_amplitude": Variable("amplitude of a case", symbol="Λ"),
     "frequency_ratio": Variable(
         "frequency ratio of contact and table", symbol="ϖ", equation="Eq. 11"
     ),

@@ -11,8 +11,10 @@ from bouncing_ball.datasets.arguments import (
     FOLLOWED,
     POSITIVE,
     SAMPLES,
+    Amplitude,
     AmplitudeAxis,
     FollowedImpacts,
+    Positive,
     SampleCount,
     StartAxis,
     checked,
@@ -182,9 +184,9 @@ def orbit_diagram(
 def basins(
     ball: Ball,
     *,
-    amplitude: float,
+    amplitude: Amplitude,
     starts: SampleCount = 200,
-    velocity_max: float | None = None,
+    velocity_max: Positive | None = None,
     impacts: FollowedImpacts = 2000,
 ) -> Result:
     """The motions on which balls end that start from a grid of first impacts, and their shares.

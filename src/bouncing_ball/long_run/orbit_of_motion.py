@@ -8,7 +8,9 @@ from bouncing_ball.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
     FOLLOWED,
     START,
+    AmplitudeOfOrbit,
     FollowedImpacts,
+    Start,
     checked_number,
 )
 from bouncing_ball.errors import NoOrbitError
@@ -25,9 +27,9 @@ from bouncing_ball.periodic.orbits.simulation import simulated
 def orbit_of_motion(
     ball: Ball,
     *,
-    amplitude: float,
-    phase: float = 0.0,
-    velocity: float = -math.pi,
+    amplitude: AmplitudeOfOrbit,
+    phase: Start = 0.0,
+    velocity: Start = -math.pi,
     impacts: FollowedImpacts = 4000,
 ) -> Orbit:
     """The periodic orbit on which a ball ends, as a start for :func:`follow`.

@@ -135,8 +135,9 @@ def solve(
             matrix = np.where(going[..., np.newaxis, np.newaxis], matrix, np.eye(y.shape[-1]))
         change = _solve_linear(matrix, values)
         length = _norm(change)
-        share = np.minimum(1.0, settings.longest / np.maximum(length, _TINY))
         going &= np.isfinite(length)
+        known = np.where(going, length, 0.0)
+        share = np.minimum(1.0, settings.longest / np.maximum(known, _TINY))
         y = np.where(going[..., np.newaxis], y - share[..., np.newaxis] * change, y)
         before = size
         size = np.where(going, length / (1 + _norm(y)), size)
@@ -147,8 +148,9 @@ def solve(
 
 
 def _norm(vector: np.ndarray) -> np.ndarray:
-    """The Euclidean norm along the last axis."""
-    return np.sqrt((vector * vector).sum(axis=-1))
+    """The Euclidean norm along the last axis, infinite where a square overflows."""
+    with np.errstate(over="ignore"):
+        return np.sqrt((vector * vector).sum(axis=-1))
 
 
 def _next_is_rounding(before: np.ndarray, size: np.ndarray) -> np.ndarray:

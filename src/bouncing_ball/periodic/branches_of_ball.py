@@ -10,6 +10,7 @@ from bouncing_ball.datasets.arguments import (
     POSITIVE,
     FamilyAxis,
     Points,
+    Positive,
     checked,
     checked_number,
 )
@@ -31,7 +32,7 @@ _STRIDE = 2e-3
 
 
 def branch(
-    ball: Ball, n: FamilyAxis = 1, *, amplitude_max: float | None = None, points: Points = 300
+    ball: Ball, n: FamilyAxis = 1, *, amplitude_max: Positive | None = None, points: Points = 300
 ) -> FollowedBranch:
     """The branch of n-T orbits over the amplitude Λ, on both sides of its saddle-node.
 

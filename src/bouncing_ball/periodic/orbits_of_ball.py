@@ -10,7 +10,9 @@ import numpy as np
 from bouncing_ball.datasets.arguments import (
     AMPLITUDE_OF_ORBIT,
     FAMILY,
+    AmplitudeOfOrbit,
     AmplitudeOfOrbitAxis,
+    Family,
     FamilyAxis,
     SideName,
     checked,
@@ -104,7 +106,7 @@ release='displacement')
     return n_t.require_orbit(model, family, lam, branch_side)
 
 
-def orbits(ball: Ball, n: int = 1, *, amplitude: float) -> list[Orbit]:
+def orbits(ball: Ball, n: Family = 1, *, amplitude: AmplitudeOfOrbit) -> list[Orbit]:
     """All n-T orbits at one excitation amplitude Λ, in order of contact duration.
 
     Parameters

@@ -98,6 +98,8 @@ EDITS = [
     ),
     Edit(LINEAR, "self.a = self.start + (_ONE /", "self.a = self.start - (_ONE /", "Eqs. 21-26"),
     Edit(BRANCH, "right=end.g + flight,", "right=end.g + 0.9 * flight,", "Eqs. 21-26"),
+    # No contact of the sample has a saddle-node then.
+    Edit(BRANCH, "(x * d_x + y * d_y) / (u", "(x * d_x - y * d_y) / (u", "Eqs. 21-26"),
     Edit(ENDS, "return point.saddle_node", "return point.saddle_node - 0.01", "Eqs. 21-26"),
     Edit(
         ENDS,

@@ -306,7 +306,7 @@ def test_words_that_changed_are_counted_and_named(pair):
     )
     for folder, content in ((pair.record, record), (pair.new, new)):
         write_dataset(content.assign_attrs(data.attrs), folder / "figures" / "claims.nc")
-    assert headline(pair.compare()) == ["claims: 1 changed in verdict: b, c close → contradicted"]
+    assert headline(pair.compare()) == ["claims: 1 changed in verdict: b, c: close → contradicted"]
 
 
 def test_a_large_relative_change_does_not_hide_in_an_absolute_budget(pair):
@@ -367,3 +367,20 @@ def test_the_reports_name_the_worst_first_with_its_cause_and_place(pair):
     assert "<mark>*contradicted*</mark>" in page and "frequency_ratio = 2.51189" in page
     assert page.index('id="fig05"') < page.index('id="paper"') < page.index('id="fig01"')
     assert compare_folders(pair.record, pair.new, ["fig08"]).outcome is Outcome.IDENTICAL
+
+
+def test_the_page_names_first_the_code_that_most_of_what_differs_has_in_common(pair):
+    changes = {"fig05": "a.py b.py", "fig08": "a.py c.py", "fig09": "b.py c.py"}
+    for name, files in changes.items():
+        for folder, digest in ((pair.record, "1f0e"), (pair.new, "2a2a")):
+            code = "\n".join(f"{digest} {file}" for file in files.split())
+            data = pair.dataset(name).assign_attrs(provenance_code=code)
+            if folder == pair.new and name != "fig09":
+                data.phase.values[1, 40] += 1e-3
+            write_dataset(data, folder / "figures" / f"{name}.nc")
+    first, *_ = headline(pair.compare())
+    assert first.startswith("changed code (") and first.endswith(
+        "a.py (2, 0), b.py (1, 1), c.py (1, 1)"
+    )
+    page = to_html(pair.compare())
+    assert page.index(first) < page.index('id="fig05"')

@@ -39,7 +39,6 @@ VARIABLES = {
     "uncertain_share_high": Variable(
         "upper limit of the confidence interval of the share that changes its motion"
     ),
-    "case_ratio": Variable("frequency ratio of a case", symbol="ϖ"),
 }
 MOTIONS = ("permanent contact", "1-T orbit", "other orbits", "locked", "no repetition")
 """The motions on which a ball may end. An orbit is called locked if one of its contacts lasts
@@ -131,7 +130,7 @@ def basins(parameters: Basins, release: Release, found: Found = None) -> xr.Data
     model, motion) is the share that ends on a motion, ``uncertain_share`` (case, model, shift) is
     the share that ends on another motion if φ changes by the shift, and ``uncertainty_exponent``
     (case, model) is the exponent of this share. Each has limits, ``_low`` and ``_high``.
-    ``case_restitution``, ``case_ratio`` and ``case_amplitude`` are over the case.
+    ``restitution``, ``frequency_ratio`` and ``amplitude`` are coordinates of the case.
     """
     r, lam, ratio = columns(parameters.cases)
     phase, speed = parameters.grid()
@@ -158,11 +157,11 @@ def basins(parameters: Basins, release: Release, found: Found = None) -> xr.Data
         {
             "destination": ((*dims, "start_speed", "start_phase"), image),
             **with_limits(estimates),
-            "case_restitution": ("case", r),
-            "case_ratio": ("case", ratio),
-            "case_amplitude": ("case", lam),
         },
         coords={
+            "restitution": ("case", r),
+            "frequency_ratio": ("case", ratio),
+            "amplitude": ("case", lam),
             "model": list(MODELS),
             "motion": list(MOTIONS),
             "shift": shifts,

@@ -35,9 +35,9 @@ def basins(data: xr.Dataset) -> Figure:
         axes.set_title(rf"{models[model]}; $\alpha={alpha}$ ({low} to {high})", fontsize=8)
     for row, case in zip(rows, data.case.values, strict=True):
         place = data.sel(case=case)
-        r = number(float(place.case_restitution))
-        ratio = number(float(place.case_ratio))
-        lam = number(float(place.case_amplitude))
+        r = number(float(place.restitution))
+        ratio = number(float(place.frequency_ratio))
+        lam = number(float(place.amplitude))
         name = rf"$r={r}$, $\varpi={ratio}$, $\Lambda={lam}$"
         row[0].set_ylabel(f"{name}\nspeed of impact $-\\delta′$")
     for axes in rows[-1]:

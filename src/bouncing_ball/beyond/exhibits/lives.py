@@ -175,7 +175,7 @@ def transients(parameters: Transients, release: Release, found: Found = None) ->
     that ends on an orbit without sticking is left out. If some balls lock, those that are chaotic
     to the end are taken to be on another attractor and left out of the mean life;
     ``chaotic_share`` (case, life_ratio) is their share of all. The restitution model has ϖ = ∞.
-    ``case_restitution`` and ``case_amplitude`` are over the case.
+    ``restitution`` and ``amplitude`` are coordinates of the case.
     """
     found = found or lives(parameters, release)
     r, lam = columns(parameters.cases)
@@ -205,9 +205,12 @@ def transients(parameters: Transients, release: Release, found: Found = None) ->
             **with_limits(
                 {"mean_life": (dims, mean_lives), "chaotic_share": (dims, chaotic_shares)}
             ),
-            "case_restitution": ("case", r),
-            "case_amplitude": ("case", lam),
         },
-        coords={"life_ratio": [*parameters.frequency_ratio, np.inf], "life": times},
+        coords={
+            "restitution": ("case", r),
+            "amplitude": ("case", lam),
+            "life_ratio": [*parameters.frequency_ratio, np.inf],
+            "life": times,
+        },
         variables=VARIABLES,
     )

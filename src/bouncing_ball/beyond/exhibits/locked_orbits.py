@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 from scipy.stats import norm, spearmanr
 
+from bouncing_ball.beyond.exhibits.lives import VARIABLES as OF_LIVES
 from bouncing_ball.beyond.exhibits.motion_samples import (
     ParameterPlane,
     share_with_limits,
@@ -22,13 +23,15 @@ from bouncing_ball.datasets.parameters import (
     number,
 )
 from bouncing_ball.datasets.shards import Arrays, Found, Part
-from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.datasets.variables import Variable, describe, described
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.lift_off import Lap, laps
 from bouncing_ball.long_run.motions import Kind
 from bouncing_ball.models.damping import Release
 
 VARIABLES = {
+    "case_restitution": Variable("restitution coefficient of a case of transients", symbol="r"),
+    "case_amplitude": Variable("amplitude of a case of transients", symbol="Λ"),
     "node": Variable("place in the plane of amplitude and restitution coefficient"),
     "sensitivity": Variable(
         "derivative of the phase at which chattering ends by 1/ϖ, its magnitude", symbol="S"
@@ -220,12 +223,12 @@ def locked_orbits(
 ) -> xr.Dataset:
     """The places at which a contact has the locked orbit of the restitution model, and predictors.
 
-    The places are uniformly distributed in Λ and r. Over ``node`` the dataset has ``restitution``
-    and ``amplitude``, and ``periods``, ``sensitivity`` S, ``peak`` P and ``wait`` w of
-    :func:`bouncing_ball.long_run.lift_off.laps`, which are 0 or NaN where the ball is not
-    found to stick again; such places are left out of all shares. ``needed_ratio`` is the smallest
-    of the given ϖ above which the contact locks with the same period after a rest on the table; it
-    is infinite if the contact does not do so at the largest ϖ.
+    The places are uniformly distributed in Λ and r. Over ``node``, with the coordinates
+    ``restitution`` and ``amplitude``, the dataset has ``periods``, ``sensitivity`` S, ``peak`` P
+    and ``wait`` w of :func:`bouncing_ball.long_run.lift_off.laps`, which are 0 or NaN where the
+    ball is not found to stick again; such places are left out of all shares. ``needed_ratio`` is
+    the smallest of the given ϖ above which the contact locks with the same period after a rest on
+    the table; it is infinite if the contact does not do so at the largest ϖ.
     ``same`` (frequency_ratio) is the share of places with the same period, and
     ``same_by_prediction`` (predicted) this share in ranges of ϖ/max(S/w, P), for all ϖ together.
     ``needed_over_scale`` (scale, quantile) has quantiles of the smallest ϖ over a scale, at the
@@ -239,7 +242,8 @@ def locked_orbits(
     ``jump_share`` (shift) is the share of places next to a discontinuity, at which the period
     changes, or is not found, if Λ changes by the shift, and ``uncertainty_exponent`` its exponent.
     Each has a lower and an upper limit, ``_low`` and ``_high``. The variables of
-    :func:`bouncing_ball.beyond.exhibits.lives.transients`, ``ext_lives``, are added.
+    :func:`bouncing_ball.beyond.exhibits.lives.transients`, ``ext_lives``, are added; the
+    coordinates of its cases are ``case_restitution`` and ``case_amplitude`` here.
     """
     found = found or returns_at_places(parameters, release)
     level = parameters.confidence
@@ -262,8 +266,6 @@ def locked_orbits(
     gains = [correlation_gain(x[known], period[known], needed[known], level) for x in scales]
     over_scales = [needed[known] / scale[known] for scale in scales]
     nodes = {
-        "restitution": r,
-        "amplitude": lam,
         "periods": period,
         "sensitivity": back.sensitivity,
         "peak": back.peak,
@@ -289,6 +291,8 @@ def locked_orbits(
         | with_limits(estimates)
         | {"needed_over_scale": (("scale", "quantile"), np.array(quantiles))},
         coords={
+            "restitution": ("node", r),
+            "amplitude": ("node", lam),
             "scale": list(SCALES),
             "quantile": list(_QUANTILES),
             "frequency_ratio": ratios,
@@ -298,7 +302,8 @@ def locked_orbits(
         },
         variables=VARIABLES,
     )
-    return orbits.merge(data["ext_lives"])
+    lives = data["ext_lives"].rename(restitution="case_restitution", amplitude="case_amplitude")
+    return describe(orbits.merge(lives), VARIABLES | OF_LIVES)
 
 
 def _needed_ratio(ratios: np.ndarray, same: np.ndarray) -> np.ndarray:

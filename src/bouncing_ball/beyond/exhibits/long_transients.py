@@ -140,9 +140,9 @@ def long_transients(parameters: LongTransients, found: Found = None) -> xr.Datas
     with as many digits as needed: ``resolved_share`` is the share that is known to have stuck twice
     within ``resolved_impacts``, and ``double_share`` the share of the same balls by doubles. Each
     has a lower and an upper limit, ``_low`` and ``_high``. Over ``sample``, the nodes of this
-    sample, there are ``restitution``, ``amplitude``, and the results with many digits:
-    ``lap_impacts`` until the ball has stuck twice, the ``lap_periods`` of the locked orbit and the
-    ``lap_digits`` lost in it.
+    sample, with the coordinates ``restitution`` and ``amplitude``, there are the results with many
+    digits: ``lap_impacts`` until the ball has stuck twice, the ``lap_periods`` of the locked orbit
+    and the ``lap_digits`` lost in it.
     """
     found = found or transients_at_nodes(parameters)
     level = parameters.confidence
@@ -172,13 +172,15 @@ def long_transients(parameters: LongTransients, found: Found = None) -> xr.Datas
             "band_nodes": ("band", nodes),
             "band_low": ("band", lows),
             "band_high": ("band", highs),
-            "restitution": ("sample", r[sample]),
-            "amplitude": ("sample", lam[sample]),
             "lap_impacts": ("sample", of_sample),
             "lap_periods": ("sample", found["lap_periods"][sample]),
             "lap_digits": ("sample", found["lap_digits"][sample]),
         },
-        coords={"followed": list(parameters.followed)},
+        coords={
+            "followed": list(parameters.followed),
+            "restitution": ("sample", r[sample]),
+            "amplitude": ("sample", lam[sample]),
+        },
         variables=VARIABLES | {"followed": OF_GRIDS["followed"]},
     )
 

@@ -36,7 +36,7 @@ VARIABLES = {
     "compared_with": Variable("what the formula is compared with"),
     "used": Variable("functions of the package that compute with the formula"),
     "disagreement_in_use": Variable(
-        "largest disagreement of the form in use with the printed one, 0 if it is not used",
+        "largest disagreement of the form in use with the printed one",
         budget=1.0,
         scale="budget",
     ),

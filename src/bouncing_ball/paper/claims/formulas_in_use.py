@@ -32,6 +32,16 @@ from bouncing_ball.periodic.orbits.stability import Bifurcation
 # A grid on which the threshold of an undamped contact, ϖ = 10 for 1 %, is found.
 _RATIOS = np.geomspace(1.0, 1e3, 31)
 _TOLERANCE = 0.01
+# The functions that solve Eqs. 21-26, from the contact to the bifurcations of its orbits.
+_OF_ORBITS = (
+    "models.spring_damper.SpringDamper.flow",
+    "models.linear_contact.LinearContactDynamics.depart",
+    "periodic.orbits.problem.PeriodicOrbits",
+    "periodic.one_impact.paper_unknowns.PaperUnknowns",
+    "periodic.one_impact.spring_damper_branch.branch_point",
+    "periodic.one_impact.spring_damper_bifurcations.saddle_node",
+    "periodic.one_impact.spring_damper_bifurcations.period_doubling",
+)
 
 
 class InUse(NamedTuple):
@@ -50,14 +60,15 @@ def _used(*functions: str, defects: tuple) -> InUse:
 
 
 def largest(*defects) -> float:
-    """The largest modulus among the entries of all defects, NaN if one of them is NaN.
+    """The largest modulus among the entries of all defects, NaN if one of them is NaN or has none.
 
     Examples
     --------
-    >>> largest([0.5, -2.0], 1.0), largest([0.5], float("nan"))
-    (2.0, nan)
+    >>> largest([0.5, -2.0], 1.0), largest([0.5], float("nan")), largest([0.5], [])
+    (2.0, nan, nan)
     """
-    return float(np.max([np.max(np.abs(x)) for x in defects]))
+    moduli = [np.abs(x) for x in defects]
+    return float(np.max([np.max(x) if np.size(x) else np.nan for x in moduli]))
 
 
 def forms_in_use(rng: np.random.Generator, samples: int) -> Mapping[str, InUse]:
@@ -234,13 +245,7 @@ def _contact_orbits(rng, samples) -> Rows:
             defects=(orbit.flight_time - printed.flight_time(n, end),),
         ),
         "Eqs. 21-26": _used(
-            "models.spring_damper.SpringDamper.flow",
-            "models.linear_contact.LinearContactDynamics.depart",
-            "periodic.orbits.problem.PeriodicOrbits",
-            "periodic.one_impact.paper_unknowns.PaperUnknowns",
-            "periodic.one_impact.spring_damper_branch.branch_point",
-            "periodic.one_impact.spring_damper_bifurcations.saddle_node",
-            "periodic.one_impact.spring_damper_bifurcations.period_doubling",
+            *_OF_ORBITS,
             defects=(
                 height - level,
                 ended - end,

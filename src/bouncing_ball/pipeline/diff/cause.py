@@ -126,6 +126,19 @@ def origin_of(path: Path) -> Origin:
     )
 
 
+def code_changes(record: Origin, new: Origin) -> tuple[str, ...]:
+    """The files of code that made an artifact and that differ; empty if they are not recorded.
+
+    Examples
+    --------
+    >>> code_changes(Origin({}, "1f0e a.py", {}, ()), Origin({}, "2a2a a.py", {}, ()))
+    ('a.py',)
+    """
+    if not record.code or not new.code:
+        return ()
+    return tuple(changed_files(record.code, new.code))
+
+
 def own_causes(record: Origin, new: Origin) -> list[str]:
     """The causes that lie in the making of an artifact itself, the most important one first.
 
@@ -142,7 +155,7 @@ def own_causes(record: Origin, new: Origin) -> list[str]:
         values = [f"{change.name} {change.record} → {change.new}" for change in changes]
         causes.append(f"{subject} changed, {', '.join(values)}")
     if record.code and new.code and record.code != new.code:
-        files = changed_files(record.code, new.code)
+        files = code_changes(record, new)
         causes.append(f"other code, {_some(files)}" if files else "other code")
     for name in _LIBRARIES:
         old_version = record.versions.get(name)

@@ -295,13 +295,22 @@ def relative_change(record: float, new: float, scale: float) -> float:
 
 
 def _word_changes(old: xr.DataArray, now: xr.DataArray, unmoved: np.ndarray) -> tuple[str, ...]:
-    """Each entry of a variable of words that changed: its place, and both contents."""
+    """Each entry of a variable of words that changed: its place, and both contents.
+
+    Examples
+    --------
+    >>> old, now = (xr.DataArray(words, {"t": [1, 2]}) for words in (["a", "b"], ["a", "c"]))
+    >>> _word_changes(old, now, np.array([True, False]))
+    ('2: b → c',)
+    """
+    is_axis = old.name in old.dims
     found = []
     for place in zip(*np.nonzero(~unmoved), strict=True):
         index = tuple(int(k) for k in place)
-        where = ", ".join(_labels(old, index).values())
+        # The labels of an axis are their own places.
+        where = "" if is_axis else f"{', '.join(_labels(old, index).values())}: "
         contents = [str(side.values[index]) or "nothing" for side in (old, now)]
-        found.append(f"{where} {' → '.join(contents)}")
+        found.append(where + " → ".join(contents))
     return tuple(found)
 
 

@@ -34,6 +34,7 @@ from bouncing_ball.pipeline.diff import budgets
 from bouncing_ball.pipeline.diff.cause import (
     UNKNOWN_ORIGIN,
     Origin,
+    code_changes,
     made_from,
     origin_of,
     own_causes,
@@ -247,18 +248,23 @@ def _ordered(names: Collection[str], judged: dict[str, _Judged]) -> list[str]:
     return sorted(names, key=lambda name: (judged[name].outcome is not Outcome.PARAMETERS, name))
 
 
-def _cause(whole: Whole, judged: _Judged, roots: Sequence[str], compared: Compared) -> str:
-    """Why an artifact differs from the record."""
-    for file in whole.parts:
-        if file.name in compared.not_made:
-            return f"not made, {compared.not_made[file.name]}"
-    record = judged.record
-    new = judged.new
+def _origins(whole: Whole, judged: _Judged, compared: Compared) -> tuple[Origin, Origin]:
+    """How both versions of what differs were made: of the dataset, or of the picture alone."""
     pictures = [file.name for file in whole.moved if file.name.endswith(".png")]
     if judged.outcome is Outcome.IDENTICAL and pictures:
         # Drawn by other code from the same data.
         record, new = (origin_of(folder / pictures[0]) for folder in compared.folders)
-    causes = own_causes(record, new)
+        return record, new
+    return judged.record, judged.new
+
+
+def _cause(
+    whole: Whole, judged: _Judged, origins: tuple[Origin, Origin], roots: Sequence[str], why: str
+) -> str:
+    """Why an artifact differs from the record; ``why`` is not empty if it was not made."""
+    if why:
+        return f"not made, {why}"
+    causes = own_causes(*origins)
     if roots:
         causes.append(made_from(roots))
     match whole.outcome:
@@ -310,9 +316,13 @@ def compare_folders(
         outcome = worst(judged[source].outcome for source in made_of)
         others = [judge(file, compared, outcome) for file in artifact.others]
         whole = Whole(name, tuple([data, *others] if data else others))
+        origins = _origins(whole, judged[name], compared)
+        whole = replace(whole, code=code_changes(*origins))
         if whole.outcome is not Outcome.IDENTICAL:
             roots = _ordered(_roots(name, judged, artifacts), judged)
-            whole = replace(whole, cause=_cause(whole, judged[name], roots, compared))
+            reasons = [compared.not_made.get(file.name, "") for file in whole.parts]
+            why = next(filter(None, reasons), "")
+            whole = replace(whole, cause=_cause(whole, judged[name], origins, roots, why))
         found.append(whole)
     found.sort(key=lambda whole: (-whole.outcome.rank, -whole.share, whole.name))
     return Whole("", tuple(found))

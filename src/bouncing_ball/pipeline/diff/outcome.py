@@ -114,12 +114,15 @@ class Whole:
         For a PNG file the bytes in the record and the new bytes.
     cause : str
         For an artifact that is not identical, why it differs.
+    code : tuple of str
+        For an artifact, the files of code that made it and that have changed since the record.
     """
 
     name: str
     parts: tuple[Any, ...] = ()
     pictures: tuple[bytes | None, bytes | None] = (None, None)
     cause: str = ""
+    code: tuple[str, ...] = ()
 
     @property
     def outcome(self) -> Outcome:

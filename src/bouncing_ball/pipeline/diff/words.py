@@ -1,6 +1,7 @@
 """What moved, in words: a line for each artifact, that of the largest change first."""
 
 import math
+from collections import Counter
 from contextlib import suppress
 
 from bouncing_ball.pipeline.artifacts import DATASET
@@ -8,6 +9,9 @@ from bouncing_ball.pipeline.diff.outcome import Finding, Outcome, Whole
 
 # More changes of words than these are counted.
 _NAMED = 6
+# Files of code that are named, and how the line with them begins.
+_SUSPECTS = 4
+_CODE = "changed code (artifacts made by it that differ, and that do not)"
 # Of a value that is within an absolute budget, a relative change above this is named nevertheless,
 # unless the change itself is below the second number: it is rounding.
 _LARGE = 1.0
@@ -111,8 +115,33 @@ def _large(artifact: Whole) -> list[Finding]:
     ]
 
 
+def changed_code(comparison: Whole) -> str:
+    """The files of code that changed since the record, where the cause of the differences may be.
+
+    A file comes the earlier, the more of the artifacts that differ it has made, and the fewer
+    others. The line is empty if no artifact differs, or if no file has changed.
+
+    Examples
+    --------
+    >>> moved = (Finding("level", Outcome.DRIFTED),)
+    >>> fig14 = Whole("fig14", (Whole("figures/fig14.nc", moved),), code=("a.py", "b.py"))
+    >>> changed_code(Whole("", (fig14, Whole("fig15", code=("a.py",)))))
+    'changed code (artifacts made by it that differ, and that do not): b.py (1, 0), a.py (1, 1)'
+    """
+    differ: Counter[str] = Counter()
+    agree: Counter[str] = Counter()
+    for artifact in comparison.parts:
+        counted = agree if artifact.outcome.agrees else differ
+        counted.update(artifact.code)
+    order = sorted(differ, key=lambda file: (-differ[file], agree[file], file))
+    named = [f"{file} ({differ[file]}, {agree[file]})" for file in order[:_SUSPECTS]]
+    more = len(order) - _SUSPECTS
+    rest = f" and {more} more" if more > 0 else ""
+    return f"{_CODE}: {', '.join(named)}{rest}" if named else ""
+
+
 def headline(comparison: Whole) -> list[str]:
-    """A line for each change from the record: the artifacts, what moved, and by how much.
+    """The code that changed, and a line for each change from the record: what moved, how much.
 
     Artifacts with the same change share a line.
 
@@ -141,7 +170,9 @@ def headline(comparison: Whole) -> list[str]:
         # Words first, then what became NaN, then the largest change.
         kind = 0 if row is None or row.changes else 2 - math.isnan(change)
         tell(artifact.name, told, (-artifact.outcome.rank, kind, -size))
-    return [
+    lines = [
         f"{', '.join(sorted(names))}: {told}"
         for told, (_, names) in sorted(found.items(), key=lambda each: each[1][0])
     ]
+    code = changed_code(comparison)
+    return [code, *lines] if code else lines

@@ -26,14 +26,19 @@ from bouncing_ball.models.damping import Release
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
-from bouncing_ball.models.laws.signature import Signature
+from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
+from bouncing_ball.periodic.one_impact.start import restitution_speed
 
 # What a contact of a law is not given by, because its parameters follow from a free impact.
 _NOT_OF_A_LAW = ("stiffness", "damping", "damping_ratio", "reduced_modulus", "youngs_modulus")
+
+# The last Newton step for the impact speed of an orbit, relative to this speed. The error is of the
+# order of its square.
+_LAST_STEP = 1e-8
 
 
 def resolve(
@@ -228,13 +233,9 @@ def with_law(case: ResolvedContact, law: ContactLaw, asked: Sequence[int]) -> Re
     if case.impact_speed is not None:
         at = case.impact_speed * case.table.time / case.table.length
         return _with_impact(case, law.signature(at))
-    signature = Signature(law)
-    r = np.ones(len(asked))
-    # A contraction: where r falls like 1/v at most, each step at least halves the error.
-    for _ in range(np.finfo(float).nmant):
-        r = signature(rigid_speed(asked, r)).restitution
-    n = meant(asked, r, case.table.amplitude)
-    return _with_impact(case, law.signature(float(rigid_speed(n, r[asked.index(n)]))))
+    speed, impact = restitution_speed(asked, LawModel(law), _LAST_STEP)
+    n = meant(asked, impact.restitution, case.table.amplitude)
+    return _with_impact(case, law.signature(float(speed[asked.index(n)])))
 
 
 def _with_impact(case: ResolvedContact, impact: Instant) -> ResolvedContact:

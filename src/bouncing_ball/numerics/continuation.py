@@ -174,14 +174,14 @@ def solve_at(problem: Problem, guess: np.ndarray) -> np.ndarray:
     return point
 
 
-class Tested(NamedTuple):
+class WithEvents(NamedTuple):
     """The equations of one or several branches, and the events on them."""
 
     problem: Problem
     events: Sequence[Event]
 
 
-RowsOf = Callable[[Any], Tested]
+RowsOf = Callable[[Any], WithEvents]
 """The equations of some of several branches, by an array of their indices, or of one of them, by
 its index."""
 
@@ -235,7 +235,7 @@ class _Followed:
     special: list[SpecialPoint] = field(default_factory=list)
     end: End | None = None
 
-    def advance(self, attempt: _Attempt, tested: Tested, control: StepControl) -> None:
+    def advance(self, attempt: _Attempt, tested: WithEvents, control: StepControl) -> None:
         """Accept the next point, or repeat the step with half its length, or end the branch."""
         try:
             reached, end = self._step(attempt, tested, control.max_angle)
@@ -250,7 +250,7 @@ class _Followed:
         self.length = control.after(self.length, attempt.iterations, attempt.angle)
 
     def _step(
-        self, attempt: _Attempt, tested: Tested, max_angle: float
+        self, attempt: _Attempt, tested: WithEvents, max_angle: float
     ) -> tuple[_State, End | None]:
         """The next state with the events on the way to it, and the end of the branch if the last of
         them is terminal.
@@ -318,7 +318,7 @@ def _creeping(states: Sequence[_State], creep: float) -> End | None:
     return End(f"step too small: {_CREEPING} steps lead {way:.1e}", kind=EndKind.SHORTEST_STEP)
 
 
-def _first_state(tested: Tested, start: np.ndarray, towards: np.ndarray) -> _State:
+def _first_state(tested: WithEvents, start: np.ndarray, towards: np.ndarray) -> _State:
     """The corrected start, with the tangent that is at most at a right angle to ``towards``."""
     problem, events = tested
     point = solve_at(problem, np.asarray(start, dtype=float))
@@ -339,7 +339,7 @@ def _first_state(tested: Tested, start: np.ndarray, towards: np.ndarray) -> _Sta
 
 
 def _attempts(
-    tested: Tested, states: Sequence[_State], lengths: np.ndarray, max_angle: float
+    tested: WithEvents, states: Sequence[_State], lengths: np.ndarray, max_angle: float
 ) -> list[_Attempt]:
     """Predict and correct the next point of each branch."""
     problem, events = tested
@@ -475,7 +475,7 @@ def continue_branch(
     """
     if towards is None:
         towards = np.eye(np.size(start))[-1] * (1.0 if increasing else -1.0)
-    tested = Tested(problem, events)
+    tested = WithEvents(problem, events)
     (found,) = continue_branches(lambda _: tested, [start], [towards], control, max_points)
     return _branch(found)
 
@@ -529,7 +529,7 @@ def continue_both_ways(
     The branch is oriented such that the parameter increases at ``start``. Arguments and errors are
     those of :func:`continue_branch`.
     """
-    tested = Tested(problem, events)
+    tested = WithEvents(problem, events)
     (found,) = continue_all_both_ways(lambda _: tested, [start], control, max_points)
     return _branch(found)
 

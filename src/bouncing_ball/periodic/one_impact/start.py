@@ -18,7 +18,7 @@ from bouncing_ball.models.model import Model
 from bouncing_ball.numerics.continuation import (
     ContinuationError,
     StepControl,
-    Tested,
+    WithEvents,
     continue_branch,
     continue_branches,
 )
@@ -33,11 +33,8 @@ from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
 from bouncing_ball.periodic.orbits.special import bifurcations, ends_of_contact, with_ends
 from bouncing_ball.periodic.orbits.stability import Bifurcation, Side
 
-# The largest number of Newton steps for the impact speed. They end after a step below a
-# thousandth of the speed: the remaining error is of the order of the square of this step, and
-# the start of a search needs three digits.
+# The largest number of Newton steps for the impact speed.
 _ROUNDS = 6
-_ENOUGH = 1e-3
 # Newton steps in each of several rounds; orbits that have converged are left out of the next
 # round. The length of a step is limited because the first step may be long next to the fold.
 _SETTINGS = NewtonSettings(max_iterations=5, longest=0.5)
@@ -55,14 +52,25 @@ _LOWEST = 1e-4
 _HERE = "this amplitude"
 
 
-def restitution_speed(n: ArrayLike, model: Model) -> tuple[np.ndarray, Instant]:
+def restitution_speed(
+    n: ArrayLike, model: Model, last_step: float = 1e-3
+) -> tuple[np.ndarray, Instant]:
     """v = 2πn/(1 + r(v)), the impact speed of the restitution model's n-T orbits, by Newton's
     method.
+
+    Parameters
+    ----------
+    n : array_like of int
+    model : Model
+    last_step : float
+        The method ends after a step below this part of the speed; the start of a search needs
+        three digits.
 
     Returns
     -------
     speed : ndarray
-        Has the broadcast shape of n and the model; its relative error is of order 10⁻⁶.
+        Has the broadcast shape of n and the model; its relative error is of the order of the square
+        of the last step.
     instant : Instant
         The signature of the model's impact at the iterate of the speed before the last.
 
@@ -81,7 +89,7 @@ def restitution_speed(n: ArrayLike, model: Model) -> tuple[np.ndarray, Instant]:
         slope = 1 + instant.restitution + instant.d_restitution * speed
         step = (period - (1 + instant.restitution) * speed) / slope
         speed = speed + step
-        if not np.any(np.abs(step) > _ENOUGH * speed):
+        if not np.any(np.abs(step) > last_step * speed):
             break
     return speed, instant
 
@@ -234,7 +242,7 @@ def _on_branch(fold: Orbit, amplitude: float, side: Side) -> np.ndarray | float:
         limit(LAMBDA, amplitude, sign=-1.0, column=problem.equations),
         limit(LAMBDA, _LOWEST, sign=1.0, column=problem.equations),
     ]
-    tested = Tested(problem, events)
+    tested = WithEvents(problem, events)
     branches = continue_branches(lambda _: tested, [start, start], [ahead, -ahead], _STEPS, _POINTS)
     for branch in branches:
         if isinstance(branch, ContinuationError) or len(branch.points) < 2:

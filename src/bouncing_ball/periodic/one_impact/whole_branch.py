@@ -18,7 +18,7 @@ from bouncing_ball.numerics.continuation import (
     Branch,
     ContinuationError,
     StepControl,
-    Tested,
+    WithEvents,
     continue_all_both_ways,
 )
 from bouncing_ball.numerics.events import Event
@@ -155,9 +155,9 @@ def _followed(
         return []
     problem = PaperUnknowns.of(starts)
 
-    def rows_of(which: Any) -> Tested:
+    def rows_of(which: Any) -> WithEvents:
         part = problem.take(which)
-        return Tested(part, _events(part, top, ends))
+        return WithEvents(part, _events(part, top, ends))
 
     points = list(problem.point(starts))
     control = StepControl(largest=largest_step)

@@ -80,7 +80,8 @@ def _told(row: Finding) -> str:
         more = len(row.changes) - _NAMED
         rest = f"; and {more} more" if more > 0 else ""
         return f"{len(row.changes)} changed in {row.name}: {named}{rest}"
-    place = f" at {row.at}" if row.at else ""
+    others = f" and {row.beyond - 1} more" if row.beyond > 1 else ""
+    place = f" at {row.at}{others}" if row.at else ""
     change = percent(row.change)
     return f"{f'{change} in ' if change else ''}{row.title or row.name}{place}: {numbers(row)}"
 

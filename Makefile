@@ -86,7 +86,7 @@ setup-engines: $(SETUP)
 	for engine in $$($(BIN)/python -c '$(ENGINES)'); do \
 	    $(PIP) --only-binary :all: "$$engine" || missing="$$missing $$engine"; done; \
 	echo "Engines without a wheel for this machine:$${missing:- none}."; \
-	echo "Engines that have no wheel anywhere: liggghts mercurydpm rapier jolt physx."
+	echo "Engines of which no wheel was found: liggghts, mercurydpm, rapier, jolt; not tried: physx."
 
 # Run the snippets of `design --engine` in the installed engines, in about ten minutes.
 # The dataset is results/config/engines.nc; `make accept ONLY=engines` accepts it.

@@ -82,13 +82,17 @@ test-long: $(SETUP)
 # The physics engines of the extra that have a wheel for this machine; the lock does not have them.
 ENGINES = import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"]["engines"])
 setup-engines: $(SETUP)
+	@missing=""; \
 	for engine in $$($(BIN)/python -c '$(ENGINES)'); do \
-	    $(PIP) --only-binary :all: "$$engine" || echo "No wheel of $$engine."; done
+	    $(PIP) --only-binary :all: "$$engine" || missing="$$missing $$engine"; done; \
+	echo "Engines without a wheel for this machine:$${missing:- none}."; \
+	echo "Engines of which no wheel was found: liggghts, mercurydpm, rapier, jolt; not tried: physx."
 
 # Run the snippets of `design --engine` in the installed engines, in about ten minutes.
 # The dataset is results/config/engines.nc; `make accept ONLY=engines` accepts it.
 test-engines: $(SETUP)
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -m engines tests/contacts/engines
+	$(BIN)/python docs/bounces/threads.py
 
 # The site from the docs, the docstrings, the article and the explorer: results/site/index.html.
 docs: $(SETUP) $(VENV)/.docs

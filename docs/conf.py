@@ -73,6 +73,7 @@ PARTS = {
         "docs/periodic-orbits",
         "docs/design",
         "docs/engines",
+        "docs/bounces",
         "docs/contact-laws",
         "docs/measured",
         "docs/atlas",

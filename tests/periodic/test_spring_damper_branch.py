@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball.models.damping import Release
+from bouncing_ball.models.damping import LINEAR, Release
 from bouncing_ball.models.oscillator import responses
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.spring_damper import SpringDamper
@@ -50,7 +50,7 @@ def test_every_point_satisfies_the_papers_equations(log_omega, zeta, n, release,
     assert np.all(np.abs(scaled_residual(orbit, point, contact)) < 1e-13)
 
 
-@pytest.mark.parametrize("release", list(Release))
+@pytest.mark.parametrize("release", LINEAR)
 @pytest.mark.parametrize("zeta", [0.0, 0.0517, 0.4, 0.9])
 @pytest.mark.parametrize("omega", [0.7, 1.0, 2.0, 10.0, 1e4, 1e6])
 def test_the_derivatives_are_the_slopes_of_the_branch(release, zeta, omega):
@@ -78,7 +78,7 @@ def test_the_free_contact_ends_at_the_free_angle_and_not_before(zeta):
     # The free contact, thrown against the table with velocity -1: δ = -g.
     omega = 3.0
     omega_d = omega * np.sqrt(1 - zeta**2)
-    for release in Release:
+    for release in LINEAR:
         angle = float(SpringDamper(omega, zeta, release).free_angle)
         g = responses(angle / omega_d, omega, zeta).impulse
         defect = g.value if release is Release.DISPLACEMENT else 2 * zeta * g.rate + omega * g.value

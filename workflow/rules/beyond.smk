@@ -10,6 +10,15 @@ stage(
     engines=dict(title="Orbits that physics engines ran", accepted="config/engines.nc"),
 )
 stage(
+    "beyond.exhibits.bounces",
+    ext_bounces=dict(
+        title="The bounce that physics engines give where r is a number that the user sets",
+        drawing="bounces",
+        table="ext_bounces",
+        accepted="config/ext_bounces.nc",
+    ),
+)
+stage(
     "beyond.atlas",
     figures="beyond.atlas.figures",
     ext_atlas=dict(

@@ -28,7 +28,7 @@ from bouncing_ball.datasets.variables import described
 from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import ParameterError
 from bouncing_ball.models.ball import Ball, a_known_ball
-from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball.models.rigid import RestitutionModel
 
 
@@ -89,7 +89,7 @@ def error_thresholds(
     family = checked("n", n, FAMILY)
     lam = checked("amplitude", amplitude, AMPLITUDE_OF_ORBIT)
     level = checked("tolerance", tolerance, TOLERANCE)
-    rule = Release.of(chosen("release", release, [str(each) for each in Release]))
+    rule = Release.of(chosen("release", release, [str(each) for each in LINEAR]))
     asked = _names(quantities)
     grid = Grid(n=family, amplitude=lam, tolerance=level, **ball.parameters)
     found = _on_grid(grid, asked, rule)

@@ -14,7 +14,12 @@ from bouncing_ball.cli.options import (
     add_optional_number,
     meanings,
 )
-from bouncing_ball.datasets.arguments import AMPLITUDE_OF_ORBIT, FAMILY, FREQUENCY_RATIO
+from bouncing_ball.datasets.arguments import (
+    AMPLITUDE_OF_ORBIT,
+    FAMILY,
+    FREQUENCY_RATIO,
+    ReleaseName,
+)
 from bouncing_ball.errors import NoOrbitError, ParameterError, count, extra
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
@@ -242,7 +247,6 @@ def permanent_contact(**contact: Any) -> Answer:
     return {"threshold_amplitude": float(threshold), **law_values(ball.impact_law)}
 
 
-def _ball(*, release: str | None, **contact: Any) -> SpringDamperModel:
+def _ball(*, release: ReleaseName | None, **contact: Any) -> SpringDamperModel:
     """The ball on the contact that the options of :func:`.add_contact` describe."""
-    rule = Release.DISPLACEMENT if release is None else Release(release)
-    return spring_damper(release=rule.value, **contact)
+    return spring_damper(release=release or "displacement", **contact)

@@ -27,7 +27,7 @@ from bouncing_ball.contacts.verdict import (
     judged_choice,
 )
 from bouncing_ball.errors import ModelError, NoOrbitError, require
-from bouncing_ball.models.damping import Release
+from bouncing_ball.models.damping import LINEAR
 
 STEPS = 50
 """Time steps in one contact, for the rule of the largest time step."""
@@ -237,7 +237,7 @@ def assess(case: ResolvedContact, question: Question, choice: Choice | None = No
     one = _judged(found, choice, None if question.n is not None else ends)
     is_rare = question.n is None and _stays(one) and ends.of_orbit(one.n) < FEW
     if choice is None:
-        need = needed(question.quantity, question.tolerance, contact, one.n, amplitude)
+        need = needed(question.quantity, question.tolerance, case.linear, one.n, amplitude)
     else:
         need = choice.needed
     signature = case.instant(one.n)
@@ -251,7 +251,7 @@ def assess(case: ResolvedContact, question: Question, choice: Choice | None = No
         time_step=LargestTimeStep(case.contact_time / STEPS, STEP_RULE),
         static_deflection=case.static_deflection,
         restitution={
-            str(rule): float(replace(contact, release=rule).restitution) for rule in Release
+            str(rule): float(replace(contact, release=rule).restitution) for rule in LINEAR
         },
         measured_restitution=float(contact.restitution),
         slowed_speed=case.slowed_speed,

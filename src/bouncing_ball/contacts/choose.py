@@ -107,6 +107,11 @@ def choose(
     law_type(plain)
     # A radius alone is a Hertz contact whose modulus is missing.
     reduced_modulus(plain)
+    if not plain.rule.is_linear:
+        raise ParameterError(
+            f"no contact is chosen with the release {plain.rule}, whose thresholds are not known: "
+            "give {stiffness}"
+        )
 
     def stiffness(zeta: float) -> tuple[float, tuple[SpringDamper, Needed]]:
         unit = SpringDamper(1.0, zeta, plain.rule)

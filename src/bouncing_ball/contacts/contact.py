@@ -81,7 +81,8 @@ class Contact:
         Height of the rebound in a drop test, above the table at rest.
     release
         Where a contact ends: "displacement" at the table's level, the default without an engine,
-        or "force" where the contact force vanishes.
+        or "force" where the contact force vanishes; both are the same under "approach", where the
+        damper acts while the ball approaches only.
     law
         Name of a contact law, such as hunt-crossley, in place of the linear one. It has the given
         restitution coefficient and contact time at the impact speed of the orbit.
@@ -123,7 +124,7 @@ class Contact:
     measured_restitution: Loss = None
     drop_height: DropHeight = None
     rebound_height: ReboundHeight = None
-    release: Literal["displacement", "force"] | str | None = None
+    release: Literal["displacement", "force", "approach"] | str | None = None
     law: str | None = None
     from_engine: str | None = None
     solref: str | Sequence[float] | None = None

@@ -11,8 +11,11 @@ With the static deflection s = g/ω² and ω_d = ω√(1 - ζ²) it is ::
 
 The contact ends where x = 0, or where the force ω² x + 2ζω x′ vanishes. If the ball is then at the
 penetration x_e with the upward speed u, it rises to the height u²/(2g) - x_e above the table's
-level. The restitution coefficient of a free impact, without gravity, is larger than √(h′/h), the
-more so the slower the impact and the softer the contact.
+level. If the damper acts on approach only, energy is conserved from the greatest penetration P on,
+and the ball rises to ω² P²/(2g) - P.
+
+The restitution coefficient of a free impact, without gravity, is larger than √(h′/h), the more so
+the slower the impact and the more compliant the contact.
 """
 
 import math
@@ -79,6 +82,12 @@ def rebound(
         sine = math.sin(angle)
         depth = sink + shrunk * (x_cosine * cosine + x_sine * sine)
         return depth, shrunk * (v_cosine * cosine + v_sine * sine)
+
+    if not release.is_linear:
+        turn = math.atan2(v_cosine, -v_sine) % math.pi
+        deepest, _ = state(turn)
+        rise = (omega * deepest) ** 2 / (2 * gravity) - deepest
+        return rise if rise > 0 else None
 
     # The contact holds while x + lag x′ > 0. This function oscillates about `sink`, and falls to
     # its first minimum, where it is lowest.

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from numpy.typing import ArrayLike
 
@@ -112,7 +112,7 @@ def contact_law(
     speed: PositiveAxis | None = None,
     restitution: float | None = None,
     duration: PositiveAxis | None = None,
-    release: ReleaseName | None = None,
+    release: ReleaseName | Literal["approach"] | None = None,
     **parameters: Axis,
 ) -> Ball:
     """A ball on a contact of another law than the linear spring and damper.
@@ -134,7 +134,8 @@ def contact_law(
         Duration D of a free impact. With the restitution coefficient it replaces the
         parameters of the contact law.
     release : str, optional
-        Where a contact of the linear law ends, "displacement" or "force"; other laws determine it.
+        Where a contact of the linear law ends, "displacement" or "force", or "approach" if its
+        damper acts on approach only; other laws determine it.
     **parameters : float or array
         The parameters of the law.
 

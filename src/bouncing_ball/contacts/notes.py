@@ -12,6 +12,7 @@ from bouncing_ball.contacts.texts import shown
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.hertzian import Tsuji
+from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import n_t
 
@@ -80,6 +81,11 @@ def _notes_on_law(law: ContactLaw, case: ResolvedContact, family: ComparedOrbit)
         law.frequency_ratio, case.contact.frequency_ratio
     ):
         return [_cost_of(law, case, family)]
+    if isinstance(law, SpringDamper):
+        return [
+            "the damper acts on approach only; the ϖ that is needed, and the motions of balls with "
+            "other starts, are those of a linear contact with the same r and duration"
+        ]
     hertz = isinstance(law, Tsuji)
     name = "Hertz contact with Tsuji's damping" if hertz else f"{law.name} contact"
     found = [

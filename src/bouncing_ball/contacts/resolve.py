@@ -133,10 +133,12 @@ def _spring_damper(contact: Contact, table: TableMotion) -> ResolvedContact:
     else:
         omega = omega_of_time(contact.contact_time, rule)
     zeta = loss(contact, omega, table.gravity)
+    spring = SpringDamper(omega(zeta) / table.angular_frequency, zeta, rule)
     return ResolvedContact(
         contact.mass,
         table,
-        SpringDamper(omega(zeta) / table.angular_frequency, zeta, rule),
+        spring,
+        None if rule.is_linear else spring,
         given_stiffness=contact.stiffness,
         given_damping=contact.damping,
     )

@@ -52,7 +52,8 @@ class ResolvedContact:
         ϖ, ζ and the release rule.
     law : ContactLaw, optional
         A nonlinear contact law. ``contact`` is then the linear contact with the same restitution
-        coefficient and duration as this law has at the impact speed of the orbit.
+        coefficient and duration as this law has at the impact speed of the orbit. A contact whose
+        damper acts on approach only is its own law.
     given_stiffness, given_damping : float, optional
         k and c if they were given, because mω² and 2ζmω differ from them by rounding.
     given : Contact
@@ -150,14 +151,21 @@ class ResolvedContact:
         return None if found is None else found * unit
 
     @property
+    def linear(self) -> SpringDamper:
+        """The linear contact with the r and the duration of the exact one."""
+        return self.contact.linear
+
+    @property
     def needs_speed(self) -> bool:
         """Whether the contact was given by an engine's parameters whose r depends on the speed."""
         return self.given.engine is not None and self.given.engine.needs_speed
 
     @property
     def law_in_si(self) -> dict[str, Any] | None:
-        """The name of a contact law and its parameters in SI units; None for a linear contact."""
-        if self.law is None:
+        """The name of a contact law and its parameters in SI units; None for a spring and damper,
+        whose k and c are known.
+        """
+        if self.law is None or isinstance(self.law, SpringDamper):
             return None
         numbers = self.law.in_si(self.mass, self.table.length, self.table.time)
         return {"name": self.law.name, **numbers}

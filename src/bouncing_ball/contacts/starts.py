@@ -95,7 +95,7 @@ def ends_of_starts(case: ResolvedContact) -> Ends:
     ({'permanent contact': 1.0}, 'Of 144 balls with other starts, 100 % end at rest on the table.')
     """
     lam = case.table.amplitude
-    found = basins(SpringDamperModel(case.contact), lam, _STARTS, impacts=_IMPACTS)
+    found = basins(SpringDamperModel(case.linear), lam, _STARTS, impacts=_IMPACTS)
     order = np.argsort(-found.share, kind="stable")
     row, column = np.argwhere(found.which == order[0])[0]
     phase = float(found.phase[column])

@@ -184,7 +184,10 @@ def softer(
     ball = Physical(case.mass, at.stiffest, at.stiffest_damping)
     ratio = ball.angular_frequency * case.table.time
     spring = SpringDamper(ratio, ball.damping_ratio, case.contact.release)
-    own = replace(case, contact=spring, given_stiffness=ball.stiffness, given_damping=ball.damping)
+    law = None if spring.release.is_linear else spring
+    own = replace(
+        case, contact=spring, law=law, given_stiffness=ball.stiffness, given_damping=ball.damping
+    )
     return Softer(
         contact=describe(own),
         dropped=None if speed is None else drop_at_rest(own, speed),

@@ -10,6 +10,8 @@ from bouncing_ball.contacts.engines.choice import ENGINES
 from bouncing_ball.contacts.engines.engine import Engine, Physical
 from bouncing_ball.models.damping import Release, damping_ratio
 
+# The engines that the page knows: those with a linear contact and one pair of numbers.
+_SHOWN = ("generic", "mujoco", "lammps", "liggghts", "pybullet", "drake", "mercurydpm")
 # m, k, r and the error of r that the time step may cause: from light to heavy and elastic balls.
 _CASES = (
     (0.5, 1e5, 0.75, 1e-3),
@@ -32,14 +34,15 @@ def _case(engine: Engine, release: Release, *case: float) -> dict[str, Any]:
 
 
 def as_json() -> str:
-    """The engines by name, and the settings of four contacts under each release of each engine."""
-    pairs = [(engine, rule) for engine in ENGINES.values() for rule in engine.releases]
+    """The engines of the page by name, and the settings of four contacts under each release."""
+    shown = [ENGINES[name] for name in _SHOWN]
+    pairs = [(engine, rule) for engine in shown for rule in engine.releases]
     engines = {
         engine.name: {
             "scheme": str(engine.scheme),
             "snippets": {str(rule): engine.template(rule) for rule in engine.releases},
         }
-        for engine in ENGINES.values()
+        for engine in shown
     }
     cases = [_case(engine, rule, *case) for engine, rule in pairs for case in _CASES]
     # Without "<" no text can open or close a tag of the page.

@@ -10,9 +10,16 @@ multiplied by ``r = exp(-π ζ / √(1 - ζ²))`` (Nagurka and Huang). If instea
 contact ends where its force vanishes, at the angle π - 2 arcsin ζ, the
 speed is multiplied by ``exp(-ζ (π - 2 arcsin ζ) / √(1 - ζ²))`` (Schwager and
 Pöschel, Granular Matter 9, 2007).
+
+A damper that acts on approach only is one of these contacts up to the greatest penetration, at the
+angle arccos ζ, and then the spring alone, for a quarter of its period. The first part multiplies
+the speed ω p by ``exp(-ζ arccos ζ / √(1 - ζ²))``, which is the root of the r of the force release,
+because π - 2 arcsin ζ = 2 arccos ζ; the second part conserves it.
 """
 
+from collections.abc import Callable
 from enum import StrEnum
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -29,6 +36,8 @@ class Release(StrEnum):
     """The ball is back at the table's level, δ = 0 (Eq. 23, the paper's)."""
     FORCE = "force"
     """The contact force vanishes, 2ζϖ δ′ + ϖ² δ = 0, so that it never pulls the ball."""
+    APPROACH = "approach"
+    """The damper acts while the ball approaches only: the force vanishes where δ = 0."""
 
     @classmethod
     def of(cls, rule: str) -> "Release":
@@ -46,8 +55,32 @@ class Release(StrEnum):
         """
         return one_of("release", rule, {str(each): each for each in cls})
 
+    @property
+    def at_surface(self) -> bool:
+        """Whether the contact ends at the table's level, κ = 0."""
+        return self is not Release.FORCE
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether the contact is linear from its start to its end."""
+        return self is not Release.APPROACH
+
+    @classmethod
+    def __get_pydantic_core_schema__(cls, source: Any, handler: Callable[[Any], Any]) -> Any:
+        # A parameter of a study is the release of a linear contact, of which it has closed forms.
+        schema = handler(source)
+        linear = schema | {"members": [rule for rule in schema["members"] if rule.is_linear]}
+        check = {"type": "no-info", "function": cls._linear}
+        return {"type": "function-after", "schema": linear, "function": check}
+
+    @staticmethod
+    def _linear(rule: "Release") -> "Release":
+        if not rule.is_linear:
+            raise ValueError(f"must be one of {', '.join(LINEAR)}")
+        return rule
+
     def sine(self, damping_ratio: ArrayLike) -> np.ndarray:
-        """``sin α = κϖ/2``: 0 for the displacement release, ζ for the force release.
+        """``sin α = κϖ/2``: ζ for the force release, 0 at the table's level.
 
         Examples
         --------
@@ -55,19 +88,44 @@ class Release(StrEnum):
         (0.0, 0.3)
         """
         zeta = np.asarray(damping_ratio, dtype=float)
-        return zeta if self is Release.FORCE else np.zeros_like(zeta)
+        return np.zeros_like(zeta) if self.at_surface else zeta
+
+    def damped_angle(self, damping_ratio: ArrayLike) -> np.ndarray:
+        """The angle ϖ_d s during which the damper of a free contact with ζ < 1 acts.
+
+        It is π - 2α, and arccos ζ for a damper that acts on approach only.
+
+        Examples
+        --------
+        >>> angles = [float(rule.damped_angle(0.5)) for rule in Release]
+        >>> [round(angle / np.pi, 12) for angle in angles]
+        [1.0, 0.666666666667, 0.333333333333]
+        """
+        # This form, 2 arccos, keeps its digits as ζ → 1, where π - 2 arcsin would lose them.
+        sine = self.sine(damping_ratio) if self.is_linear else np.asarray(damping_ratio, float)
+        half = arctangent(np.sqrt((1 - sine) * (1 + sine)), sine)
+        return 2 * half if self.is_linear else half
 
     def free_angle(self, damping_ratio: ArrayLike) -> np.ndarray:
-        """π - 2α: the angle ϖ_d s at which a free contact with ζ < 1 ends.
+        """The angle ϖ_d s at which a free contact with ζ < 1 ends.
+
+        It is π - 2α. After a damped approach the spring alone takes a quarter of its period, to
+        the angle arccos ζ + (π/2)√(1 - ζ²).
 
         Examples
         --------
         >>> float(Release.DISPLACEMENT.free_angle(0.5)) == np.pi
         True
         """
-        # This form, 2 arccos, keeps its digits as ζ → 1, where π - 2 arcsin would lose them.
-        sine = self.sine(damping_ratio)
-        return 2 * arctangent(np.sqrt((1 - sine) * (1 + sine)), sine)
+        damped = self.damped_angle(damping_ratio)
+        if self.is_linear:
+            return damped
+        zeta = np.asarray(damping_ratio, dtype=float)
+        return damped + np.pi / 2 * np.sqrt((1 - zeta) * (1 + zeta))
+
+
+LINEAR = tuple(rule for rule in Release if rule.is_linear)
+"""The release rules of contacts that are linear from their start to their end."""
 
 
 def check_positive(value: ArrayLike, name: str) -> np.ndarray:
@@ -143,20 +201,22 @@ def damping_ratio(restitution: ArrayLike, release: str = Release.DISPLACEMENT) -
     """Damping ratio ζ of a free contact with the restitution coefficient r.
 
     ``ζ = -ln r / √(π² + ln² r)`` (Eq. 16) for the displacement release. For the
-    force release ζ = cos β with ``2β cot β = -ln r``.
+    force release ζ = cos β with ``2β cot β = -ln r``, and for a damper that acts on approach only
+    ``β cot β = -ln r``.
 
     Parameters
     ----------
     restitution : array_like
-        r in (0, 1] for the displacement release, in (e⁻², 1] for the force release.
+        r in (0, 1] for the displacement release, in (e⁻², 1] for the force release and in
+        (e⁻¹, 1] for a damper that acts on approach only.
     release : Release or str
         The condition that ends the contact in which r is measured.
 
     Raises
     ------
     ModelError
-        If any r lies outside its range, or the release is unknown. The lower bounds 0 and e⁻²
-        are the limits for ζ → 1.
+        If any r lies outside its range, or the release is unknown. The lower bounds are the
+        limits for ζ → 1.
 
     Examples
     --------
@@ -167,9 +227,13 @@ def damping_ratio(restitution: ArrayLike, release: str = Release.DISPLACEMENT) -
     """
     r = check_restitution(restitution)
     decrement = -logarithm(r) + 0.0  # + 0.0 turns -0 into 0 at r = 1
-    if Release.of(release) is Release.DISPLACEMENT:
+    rule = Release.of(release)
+    if rule is Release.DISPLACEMENT:
         return decrement / np.sqrt(np.pi * np.pi + decrement * decrement)
-    allowed = "in (e⁻², 1], the range of the force release with ζ < 1"
+    # The decrement of the force release, of which half an impact on approach has half.
+    lowest = "e⁻²" if rule is Release.FORCE else "e⁻¹"
+    decrement = decrement if rule is Release.FORCE else 2 * decrement
+    allowed = f"in ({lowest}, 1], the range of the {rule} release with ζ < 1"
     require(decrement < 2, r, "restitution coefficient r", allowed)
     # cos(π/2) gives the rounding of π/2, which is below the rounding of r = 1.
     return np.where(decrement > 0, _cosine(_half_angle(decrement)), 0.0)
@@ -202,7 +266,8 @@ def restitution_coefficient(damping: ArrayLike, release: str = Release.DISPLACEM
     """Restitution coefficient of a free, underdamped linear contact.
 
     ``r = exp(-(π - 2α) ζ/√(1 - ζ²))``, the inverse of :func:`damping_ratio`. For the
-    force release r is greater, because the contact ends before its force pulls the ball.
+    force release r is greater, because the contact ends before its force pulls the ball. If the
+    damper acts on approach only, ``r = exp(-ζ arccos ζ/√(1 - ζ²))``, the root of that.
 
     Parameters
     ----------
@@ -220,9 +285,11 @@ def restitution_coefficient(damping: ArrayLike, release: str = Release.DISPLACEM
     --------
     >>> float(restitution_coefficient(0.0))
     1.0
+    >>> [round(float(restitution_coefficient(z, "approach")), 4) for z in (0.1, 0.2, 0.3)]
+    [0.8626, 0.7561, 0.6715]
     """
     allowed = "in [0, 1): an overdamped contact has no restitution coefficient"
     zeta = as_numbers(damping, "damping ratio ζ", allowed)
     require((zeta >= 0) & (zeta < 1), zeta, "damping ratio ζ", allowed)
-    angle = Release.of(release).free_angle(zeta)
+    angle = Release.of(release).damped_angle(zeta)
     return exponential(-angle * zeta / np.sqrt((1 - zeta) * (1 + zeta)))

@@ -27,7 +27,7 @@ from bouncing_ball.datasets.arguments import (
 from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.models.ball import Ball, a_ball
 from bouncing_ball.models.corrected.model import CorrectedModel
-from bouncing_ball.models.damping import Release
+from bouncing_ball.models.damping import LINEAR, Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
@@ -98,7 +98,7 @@ def spring_damper(
     >>> spring_damper(frequency_ratio=10.0, damping_ratio=0.1).contact
     SpringDamper(frequency_ratio=10, damping_ratio=0.1, release='displacement')
     """
-    chosen("release", release, [str(each) for each in Release])
+    chosen("release", release, [str(each) for each in LINEAR])
     loss = the_loss(restitution, damping_ratio, measured_restitution)
     value = {
         "restitution": restitution,

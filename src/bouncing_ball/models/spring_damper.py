@@ -6,6 +6,13 @@ outside (:mod:`bouncing_ball.models.instant`) is the same at every speed, with �
 :mod:`bouncing_ball.models.damping`::
 
     t_c = r (D + κ)/(1 + r),    σ = (1 - r)(D + κ) - 2ζ (1 + r)/ϖ
+
+If the damper acts on approach only, the force has a kink where p′ = 0, and the contacts are also
+computed by collocation, which ends a panel there. A load a adds ``a (1 - 2ζr)/ϖ²`` to the greatest
+penetration P, because ``P = r v/ϖ`` and the load is balanced at a/ϖ², and takes a/ϖ from the speed
+ϖP on the way up. Together the ball leaves with 2ζ r a/ϖ less, so that ::
+
+    t_c = r D/(1 + r),    σ = (1 - r) D - 2ζ r/ϖ
 """
 
 from __future__ import annotations
@@ -72,9 +79,54 @@ class SpringDamper(OscillatorLaw):
         object.__setattr__(self, "release", Release.of(self.release))
 
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """The force over the weight, ϖ² p + 2ζϖ p′."""
+        """The force over the weight, ϖ² p + 2ζϖ p′; without p′ < 0 if the damper acts on approach.
+
+        Examples
+        --------
+        >>> [float(SpringDamper(2.0, 0.25, rule).force(1.0, -3.0)) for rule in Release]
+        [1.0, 1.0, 4.0]
+        """
         omega = self.frequency_ratio
+        if not self.release.is_linear:
+            rate = np.where(np.real(rate) > 0, rate, 0.0)
         return omega * (omega * penetration + 2 * self.damping_ratio * rate)
+
+    @property
+    def has_kink(self) -> bool:
+        """Whether the damper acts on approach only, so that the force has a kink at p′ = 0."""
+        return not self.release.is_linear
+
+    def kink(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """p′, or 1 without damping, because the force is then smooth."""
+        return np.where(np.equal(self.damping_ratio, 0), 1.0, rate)
+
+    @cached_property
+    def has_closed_form(self) -> bool:
+        """Whether the motion in contact has a closed form: see :class:`.OscillatorLaw`; a damper
+        that acts on approach only has none for the whole contact.
+        """
+        return self.release.is_linear and super().has_closed_form
+
+    @property
+    def linear(self) -> SpringDamper:
+        """A linear contact with the r and the duration of this one's free impact: itself, unless
+        its damper acts on approach only.
+
+        Raises
+        ------
+        ModelError
+            If ζ ≥ 1.
+
+        Examples
+        --------
+        >>> contact = SpringDamper(2.0, 0.1, "approach").linear
+        >>> contact.release, round(float(contact.restitution), 4)
+        (<Release.DISPLACEMENT: 'displacement'>, 0.8626)
+        """
+        if self.release.is_linear:
+            return self
+        unit = SpringDamper.from_restitution(self.restitution, 1.0)
+        return SpringDamper(unit.free_duration / self.free_duration, unit.damping_ratio)
 
     @classmethod
     def from_restitution(
@@ -129,7 +181,7 @@ class SpringDamper(OscillatorLaw):
 
     @cached_property
     def release_sine(self) -> np.ndarray:
-        """sin α = κϖ/2: 0 for the displacement release, ζ for the force release."""
+        """sin α = κϖ/2: ζ for the force release, 0 at the table's level."""
         return self.release.sine(self.damping_ratio)
 
     @cached_property
@@ -150,7 +202,7 @@ class SpringDamper(OscillatorLaw):
 
     @property
     def free_angle(self) -> np.ndarray:
-        """π - 2α: the angle ϖ_d s at which a free contact, without load, ends.
+        """The angle ϖ_d s at which a free contact, without load, ends: π - 2α if it is linear.
 
         Raises
         ------
@@ -162,7 +214,7 @@ class SpringDamper(OscillatorLaw):
 
     @property
     def free_duration(self) -> np.ndarray:
-        """Duration (π - 2α)/ϖ_d of the free contact.
+        """Duration of the free contact: (π - 2α)/ϖ_d if it is linear.
 
         Raises
         ------
@@ -180,6 +232,8 @@ class SpringDamper(OscillatorLaw):
         amplitude: ArrayLike,
     ) -> ContactFlow:
         """The relative state of the ball a time s after (δ₀, δ′₀), in contact (Eqs. 12-13).
+
+        If the damper acts on approach only, this is the motion up to the greatest penetration.
 
         Parameters
         ----------
@@ -204,6 +258,8 @@ class SpringDamper(OscillatorLaw):
 
     def during(self, span: ContactSpan, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """δ and δ′ at times 0 ≤ s ≤ D after the starts of contacts, one time for each contact."""
+        if not self.release.is_linear:
+            return super().during(span, time)
         start = span.displacement, span.velocity, span.phase
         flow = self.flow(time, *start, span.amplitude)
         return flow.displacement, flow.velocity
@@ -226,8 +282,10 @@ class SpringDamper(OscillatorLaw):
         return linear_flow.integrals(*numbers, duration, table(phase, amplitude), gap, rate)
 
     def dynamics(self, amplitude: ArrayLike) -> Dynamics:
-        """Contacts in closed form if all of them are underdamped, otherwise by collocation."""
-        if np.all(np.asarray(self.damping_ratio) < 1):
+        """Contacts in closed form if all of them are linear and underdamped, otherwise by
+        collocation.
+        """
+        if self.release.is_linear and np.all(np.asarray(self.damping_ratio) < 1):
             return LinearContactDynamics.of(self, amplitude)
         return super().dynamics(amplitude)
 
@@ -253,16 +311,21 @@ class SpringDamper(OscillatorLaw):
         # The time at which the flight after the contact rises through δ = 0.
         through = duration + self.lag
         loss = 2 * np.asarray(self.damping_ratio) / self.frequency_ratio
+        slowed = (1 + r) if self.release.is_linear else r
         return Instant(
             delay=r * through / (1 + r),
             restitution=r + 0 * duration,
-            load=(1 - r) * through - loss * (1 + r),
+            load=(1 - r) * through - loss * slowed,
             duration=duration,
         )
 
     @property
-    def permanent_contact(self) -> np.ndarray:
-        """Λ_SD or Λ_F, depending on the release (Eq. 33)."""
+    def permanent_contact(self) -> np.ndarray | None:
+        """Λ_SD or Λ_F, depending on the release (Eq. 33); None if the damper acts on approach only,
+        because the steady contact is then no sinusoid.
+        """
+        if not self.release.is_linear:
+            return None
         return permanent_contact_threshold(self.frequency_ratio, self.damping_ratio, self.release)
 
     @classmethod

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ParameterError
+from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.linear_contact import LinearContactDynamics
 from bouncing_ball.models.model import Model
@@ -23,7 +23,12 @@ class SpringDamperModel(Model):
     Parameters
     ----------
     contact : SpringDamper
-        ϖ, ζ < 1 and the release rule.
+        ϖ, ζ < 1 and the release rule of a linear contact.
+
+    Raises
+    ------
+    ModelError
+        If the contact is not linear: it is then a law of :class:`.LawModel`.
 
     Examples
     --------
@@ -41,6 +46,12 @@ class SpringDamperModel(Model):
     def __post_init__(self) -> None:
         if not isinstance(self.contact, SpringDamper):
             raise ParameterError("contact = {} is not a SpringDamper", repr(self.contact))
+        if not self.contact.release.is_linear:
+            raise ModelError(
+                f"a contact with the release {self.contact.release} is not linear: make its ball "
+                f'with contact_law("linear", frequency_ratio=…, damping_ratio=…, '
+                f'release="{self.contact.release}")'
+            )
 
     @property
     def label(self) -> str:

@@ -14,7 +14,7 @@ from bouncing_ball.contacts.engines.choice import ENGINES, engine_named
 from bouncing_ball.contacts.engines.engine import ERROR, Physical
 from bouncing_ball.contacts.engines.scheme import Scheme, error_in_steps
 from bouncing_ball.errors import ModelError
-from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.damping import LINEAR, Release, damping_ratio
 
 CONTACT = Physical(mass=0.02, stiffness=3e5, damping=7.0)
 BOTH = [(name, release) for name, engine in ENGINES.items() for release in engine.releases]
@@ -31,6 +31,9 @@ def per_mass(restitution, release=Release.DISPLACEMENT):
 @hypothesis.settings(max_examples=20)
 def test_the_parameters_of_a_contact_are_read_back_as_this_contact(name, mass, stiffness, r):
     engine = ENGINES[name]
+    # Damping on approach leaves e⁻¹, and some engines have no contact without damping.
+    hypothesis.assume(r > 0.37 or engine.releases != (Release.APPROACH,))
+    hypothesis.assume(r < 1 or name not in ("newton-mujoco", "genesis"))
     assert engine.name == name and repr(engine) == f"{type(engine).__name__}()"
     made, _, settings, *_ = answered(mass=mass, stiffness=stiffness, restitution=r, engine=name)
     parameters = dict(settings.parameters)
@@ -56,8 +59,9 @@ def test_the_restitution_is_met_under_the_engines_release(name, release):
     assert (found.name, found.release, found.error) == (name, release, ERROR)
     zeta = per_mass(0.75, release).damping_ratio
     assert error_in_steps(ENGINES[name].scheme, zeta, release, found.steps) <= ERROR
-    duration = np.pi - 2 * np.arcsin(zeta if release == "force" else 0.0)
-    time = duration / np.sqrt(1 - zeta**2) / 1e3
+    half = np.arccos(zeta if release != "displacement" else 0.0) / np.sqrt(1 - zeta**2)
+    # After a damped approach the spring alone takes a quarter of its period.
+    time = (half + (np.pi / 2 if release == "approach" else half)) / 1e3
     assert found.time_step * found.steps == pytest.approx(time, rel=1e-12)
 
 
@@ -78,7 +82,7 @@ def test_a_text_with_places_for_numbers_is_the_snippet(name, release):
     values = engine.numbers(engine.for_step(CONTACT, step)) | CONTACT._asdict()
     values["time_step"] = step
     texts = {key: repr(value) for key, value in values.items()}
-    texts |= {str(rule): f"{CONTACT.restitution(rule):.4f}" for rule in Release}
+    texts |= {str(rule): f"{CONTACT.restitution(rule):.4f}" for rule in LINEAR}
     text = re.sub(r"@([\w.]+)@", lambda found: texts[found[1]], engine.template(release))
     assert text == engine.snippet(CONTACT, release, step)
 
@@ -87,7 +91,7 @@ def test_the_release_is_written_where_there_are_two():
     words = {"lammps": "limit_damping", "liggghts": "limitForce on", "generic": "max(0.0"}
     assert ENGINES["liggghts"].settings(CONTACT, "force").snippet.endswith("0.0 limitForce on")
     for name, word in words.items():
-        for release in Release:
+        for release in ENGINES[name].releases:
             assert (word in ENGINES[name].settings(CONTACT, release).snippet) is (
                 release is Release.FORCE
             )

@@ -12,7 +12,7 @@ from bouncing_ball.accuracy.corrected_errors import (
 )
 from bouncing_ball.accuracy.errors import Quantity, modulus, relative_errors
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
-from bouncing_ball.models.damping import Release
+from bouncing_ball.models.damping import LINEAR
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic.one_impact import n_t
 
@@ -20,7 +20,7 @@ RATIOS = np.geomspace(1.0, 1e4, 41)
 FOUND, ALWAYS, _ = ThresholdStatus
 
 
-@pytest.mark.parametrize("release", list(Release))
+@pytest.mark.parametrize("release", LINEAR)
 def test_the_thresholds_of_contacts_are_those_of_a_fine_scan(release):
     zeta = np.array([0.136, 0.05])
     n = np.array([1, 2])
@@ -61,7 +61,7 @@ def test_the_thresholds_of_contacts_are_those_of_a_fine_scan(release):
         assert (low <= zero <= high) if turns.size else np.isnan(zero)
 
 
-@pytest.mark.parametrize("release", list(Release))
+@pytest.mark.parametrize("release", LINEAR)
 def test_errors_are_those_of_the_models_one_by_one(release):
     contact = SpringDamper(np.array([[3.0], [30.0]]), np.array([0.05, 0.2]), release)
     n = np.array([1, 2])

@@ -13,7 +13,7 @@ from bouncing_ball.beyond.exhibits.random_orbits import random_orbits
 from bouncing_ball.datasets.parameters import Parameters, Seed, Span
 from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball.long_run.destination import final_motions
-from bouncing_ball.models.damping import Release, restitution_coefficient
+from bouncing_ball.models.damping import LINEAR, Release, restitution_coefficient
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
@@ -80,8 +80,8 @@ def reference_orbits(parameters: References) -> xr.Dataset:
     infinitely many impacts is included in the time.
     """
     omega = parameters.frequency_ratio.grid()
-    parts = [_under(rule, omega, parameters.seed + k) for k, rule in enumerate(Release)]
-    orbits = xr.concat(parts, dim="release").assign_coords(release=[str(rule) for rule in Release])
+    parts = [_under(rule, omega, parameters.seed + k) for k, rule in enumerate(LINEAR)]
+    orbits = xr.concat(parts, dim="release").assign_coords(release=[str(rule) for rule in LINEAR])
     return describe(orbits.merge(_followed()), variables=VARIABLES)
 
 

@@ -25,7 +25,7 @@ from bouncing_ball.datasets.parameters import (
     Tolerance,
 )
 from bouncing_ball.datasets.variables import Variable, describe, described
-from bouncing_ball.models.damping import Release, damping_ratio, restitution_coefficient
+from bouncing_ball.models.damping import LINEAR, Release, damping_ratio, restitution_coefficient
 from bouncing_ball.models.oscillator import responses
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
@@ -124,7 +124,7 @@ def release_rules(parameters: ReleaseRules) -> xr.Dataset:
     release rule with an r of the restitution model; and the numbers ``damping_ratio`` and
     ``force_restitution``. NaN where there is none.
     """
-    dataset = xr.concat([_bifurcations(parameters, rule) for rule in Release], "release")
+    dataset = xr.concat([_bifurcations(parameters, rule) for rule in LINEAR], "release")
     dataset["damping_ratio"] = float(damping_ratio(parameters.restitution))
     return describe(dataset.merge(_thresholds(parameters.thresholds)), variables=VARIABLES)
 
@@ -146,9 +146,9 @@ def free_impacts(parameters: FreeImpacts) -> xr.Dataset:
     ends that contact, and ``end_restitution``, over ``release``.
     """
     zeta = np.linspace(0.0, damping_ratio(parameters.restitution_min), parameters.samples)
-    along = [SpringDamper(1.0, zeta, rule) for rule in Release]
+    along = [SpringDamper(1.0, zeta, rule) for rule in LINEAR]
     shown_zeta = float(damping_ratio(parameters.restitution))
-    shown = [SpringDamper(1.0, shown_zeta, rule) for rule in Release]
+    shown = [SpringDamper(1.0, shown_zeta, rule) for rule in LINEAR]
     paper_release = SpringDamper(1.0, shown_zeta, Release.DISPLACEMENT)
     time = np.linspace(0.0, float(paper_release.free_duration), parameters.samples)
     penetration, rate = responses(time, 1.0, shown_zeta).impulse
@@ -161,6 +161,6 @@ def free_impacts(parameters: FreeImpacts) -> xr.Dataset:
             "contact_end": ("release", [float(contact.free_duration) for contact in shown]),
             "end_restitution": ("release", [float(contact.restitution) for contact in shown]),
         },
-        coords={"release": [str(rule) for rule in Release], "damping_ratio": zeta, "time": time},
+        coords={"release": [str(rule) for rule in LINEAR], "damping_ratio": zeta, "time": time},
         variables=VARIABLES,
     )

@@ -2,7 +2,9 @@
 
 from bouncing_ball.contacts.engines.drake import Drake
 from bouncing_ball.contacts.engines.engine import Engine
+from bouncing_ball.contacts.engines.genesis import Genesis
 from bouncing_ball.contacts.engines.mujoco import MuJoCo
+from bouncing_ball.contacts.engines.newton import NewtonMuJoCo, NewtonSemiImplicit
 from bouncing_ball.contacts.engines.proportional import (
     Generic,
     Lammps,
@@ -22,6 +24,9 @@ ENGINES: dict[str, Engine] = {
         PyBullet(),
         Drake(),
         MercuryDPM(),
+        NewtonSemiImplicit(),
+        NewtonMuJoCo(),
+        Genesis(),
     )
 }
 """The engines by name."""

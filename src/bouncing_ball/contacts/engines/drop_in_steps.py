@@ -71,9 +71,10 @@ def drop_in_steps(
         if not inside.any():
             break
         free = v - g * h
-        grip = k * (x + h * free) + c * free if implicit else k * x + c * v
+        lossy = v if release.is_linear else np.minimum(v, 0.0)
+        grip = k * (x + h * free) + c * free if implicit else k * x + c * lossy
         after = (free - h * k * x) / (1 + h * c + h * h * k) if implicit else free - h * grip
-        pushes = (grip < 0) | (release is Release.DISPLACEMENT)
+        pushes = (grip < 0) | release.at_surface
         after = np.where(pushes, after, free)
         v = np.where(inside, after, v)
         x = np.where(inside, x + h * after, x)

@@ -90,6 +90,24 @@ def impedance(solimp: str | Sequence[float] = ()) -> list[float]:
     return [at_surface, deep, width, midpoint, power]
 
 
+def time_constant(engine: str, contact: Physical) -> float:
+    """T = 2m/c in s of a contact, for engines that know no other form of its damping.
+
+    Raises
+    ------
+    ModelError
+        If the contact has no damping.
+
+    Examples
+    --------
+    >>> time_constant("genesis", Physical(mass=2.0, stiffness=200.0, damping=4.0))
+    1.0
+    """
+    if contact.damping == 0:
+        raise ModelError(f"{engine} has no contact without damping: its time constant is 2 m/c")
+    return 2 * contact.mass / contact.damping
+
+
 class MuJoCo(Engine):
     """Contacts by the direct form of ``solref``, with the smallest impedance.
 

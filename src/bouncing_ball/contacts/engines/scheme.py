@@ -13,8 +13,9 @@ implement their contacts differently, but each contact is equivalent to one of t
   ``cfm`` and ``erp``.
 
 A ball is in contact during a step if x < 0 before this step. A contact with the force release only
-pushes. Because r depends on the instant within a step at which the ball meets the wall, it is
-computed for many such instants.
+pushes, and a damper that acts on approach only is left out of the steps that begin with v ≥ 0.
+Because r depends on the instant within a step at which the ball meets the wall, it is computed for
+many such instants.
 
 The compensation follows from the rates μ of a contact ``x″ = -c x′ - k x``, ``μ² + c μ + k = 0``:
 its motion is a sum of ``exp(μt)``. Implicit Euler with a step h multiplies each part by
@@ -112,11 +113,12 @@ class FreeImpact(NamedTuple):
 
 
 def free_impact(damping_ratio: float, release: Release) -> FreeImpact:
-    """The exact free impact, whose restitution is exp(-ζT).
+    """The exact free impact, whose restitution is exp(-ζT) if the damper acts all the time T.
 
     For ζ < 1, T = (π - 2α)/√(1 - ζ²) (:mod:`bouncing_ball.models.damping`). With the force
     release the ball rebounds for ζ ≥ 1 as well, after T = 2 arcosh ζ/√(ζ² - 1), which is 2 at
-    ζ = 1.
+    ζ = 1. A damper that acts on approach only acts for half of that time, and the spring alone for
+    π/2.
 
     Raises
     ------
@@ -136,6 +138,9 @@ def free_impact(damping_ratio: float, release: Release) -> FreeImpact:
         return FreeImpact(float(duration), r)
     root = np.sqrt((zeta - 1) * (zeta + 1))
     duration = 2 * np.arcsinh(root) / root if root > 0 else 2.0
+    if not release.is_linear:
+        half = duration / 2
+        return FreeImpact(float(half + np.pi / 2), float(np.exp(-zeta * half)))
     return FreeImpact(float(duration), float(np.exp(-zeta * duration)))
 
 
@@ -225,29 +230,45 @@ def impacts_in_steps(
     True
     """
     zeta = float(damping_ratio)
+    if not release.is_linear and scheme is not Scheme.SEMI_IMPLICIT:
+        raise ModelError(f"no scheme is known for {scheme} with the release {release}")
     matrix, lag = _step(scheme, 2 * zeta, step)
     start = np.asarray(fraction, dtype=float).ravel()
     grip = np.array([1.0, lag if release is Release.FORCE else 0.0])
     state = np.stack([-step * start, -np.ones_like(start)])
     steps = free_impact(zeta, release).duration / step
-    if steps < FEWEST:
-        found = _step_by_step(matrix, grip, state, step)
+    few = steps < FEWEST
+    further = 2 * round(steps)
+    if not release.is_linear:
+        spring, _ = _step(scheme, 0.0, step)
+        if not few:
+            state = _by_powers(matrix, _APPROACH, state, further)
+            state = np.where(_APPROACH @ state < -_TIE, _STUCK, state)
+        matrix = matrix if few else spring
+    if few:
+        away = matrix if release.is_linear else spring
+        found = _step_by_step(matrix, away, grip, state, step)
     else:
-        found = _by_powers(matrix, grip, state, 2 * round(steps))
+        state = _by_powers(matrix, grip, state, further)
+        # At a jump of the number of steps, rounding decides whether the last one ends the contact.
+        found = np.where(grip @ state < -_TIE, -1.0, state[1])
     return found.reshape(np.shape(fraction))
 
 
+# The ball approaches while this times (x, v) is negative; and a state of a ball that stays.
+_APPROACH = np.array([0.0, 1.0])
+_STUCK = np.array([[-1.0], [-1.0]])
+
+
 def _by_powers(matrix: np.ndarray, grip: np.ndarray, state: np.ndarray, further: int) -> np.ndarray:
-    """Velocities at the end of contacts that end once within so many further steps."""
+    """States at the end of motions that end once within so many further steps, where grip ≥ 0."""
     # The number of steps is halved by a power of the matrix.
     while further > 1:
         half = further // 2
         later = np.linalg.matrix_power(matrix, half) @ state
         state = np.where(grip @ later < 0, later, state)
         further -= half
-    state = matrix @ state
-    # At a jump of the number of steps, rounding decides whether the last one ends the contact.
-    return np.where(grip @ state < -_TIE, -1.0, state[1])
+    return matrix @ state
 
 
 # A ball that has not left within so many coarse steps does not leave.
@@ -255,15 +276,19 @@ _PATIENCE = 200
 
 
 def _step_by_step(
-    matrix: np.ndarray, grip: np.ndarray, state: np.ndarray, step: float
+    matrix: np.ndarray, away: np.ndarray, grip: np.ndarray, state: np.ndarray, step: float
 ) -> np.ndarray:
-    """Velocities at the end of contacts of few steps, in which the force may stop and act again."""
+    """Velocities at the end of contacts of few steps, in which the force may stop and act again.
+
+    The matrices are those of a step that begins with v < 0, and of one with v ≥ 0.
+    """
     free = np.array([[1.0, step], [0.0, 1.0]])
     for _ in range(_PATIENCE):
         inside = state[0] < 0
         if not inside.any():
             break
-        pushed = np.where(grip @ state < 0, matrix @ state, free @ state)
+        moved = np.where(state[1] < 0, matrix @ state, away @ state)
+        pushed = np.where(grip @ state < 0, moved, free @ state)
         state = np.where(inside, pushed, state)
     return np.where(state[0] < 0, -1.0, state[1])
 

@@ -99,7 +99,7 @@ class ForceLaw(Batch, ABC):
         """κ of a contact that ends where p + κ p′ = 0; None if its end has no such form, so that
         the grip must be evaluated.
         """
-        return 0.0 if self.release is Release.DISPLACEMENT else None
+        return 0.0 if self.release.at_surface else None
 
     feels_load: ClassVar[bool] = False
     """Whether the contact force depends on the load through :meth:`loaded_force`.

@@ -13,7 +13,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.force_law import ForceLaw
 from bouncing_ball.models.laws.linearised import at_end, at_release
 from bouncing_ball.models.laws.panel import (
@@ -278,7 +277,7 @@ class _March:
             for x in (self.balls.root, self.balls.rate, self.balls.time)
         )
         depth = np.maximum(root, 0.0) ** self.law.root
-        if self.until is None and self.law.release is Release.DISPLACEMENT:
+        if self.until is None and self.law.release.at_surface:
             depth *= 0
         self.integrals[~self.done] = np.nan
         return ContactEnds(

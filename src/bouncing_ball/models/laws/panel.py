@@ -19,7 +19,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.force_law import ForceLaw
 
 NODES = 12
@@ -166,7 +165,7 @@ def load_of(start: Start, time: np.ndarray) -> np.ndarray:
 
 def grip_of(law: ForceLaw, m: int, root: Any, rate: Any, load: Any) -> Any:
     """The function that vanishes at the release: the grip, or q if the grip is a power of q."""
-    if law.release is Release.DISPLACEMENT:
+    if law.release.at_surface:
         return root
     grip = law.loaded_grip(root**m, rate, load)
     return grip if law.lag is None else np.where(law.lag == 0, root, grip)

@@ -40,7 +40,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError
-from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.force_law import ForceLaw
 from bouncing_ball.models.laws.scales import depth, rest
 
@@ -115,7 +114,7 @@ def _touching(law: ForceLaw, at_surface: bool) -> float:
     steady = _Steady(law, rest(law))
     if steady.unit < _STIFF:
         return np.nan
-    at_surface |= law.release is Release.DISPLACEMENT
+    at_surface |= law.release.at_surface
 
     def ends(first: np.ndarray, last: np.ndarray, z: np.ndarray) -> np.ndarray:
         touch = first if at_surface else steady.release(first, z)

@@ -1,0 +1,63 @@
+"""The restitution that engines have beside the one asked for (ext_bounces)."""
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from bouncing_ball.datasets.selection import each
+from bouncing_ball.drawing.canvas import WIDE, canvas, legend_below
+from bouncing_ball.drawing.tables import Columns, TextTable, table, text, value
+
+_MARKERS = "os^xD+v*"
+
+
+def bounces(data: xr.Dataset) -> Figure:
+    """Draw the r that engines have minus the one asked for, over r (ext_bounces).
+
+    There is a column for each time step and a row for each height of the drop. A bar spans the
+    instants within a step at which a ball meets the ground.
+    """
+    steps = data.sizes["time_step"]
+    rows = data.sizes["drop_height"]
+    figure, slots = canvas(
+        WIDE, 1.0 + 1.9 * rows, rows=rows, columns=steps, sharex=True, sharey=True
+    )
+    many = data.sizes["engine"]
+    for row, at_height in zip(slots, each(data, "drop_height"), strict=True):
+        for axes, part in zip(row, each(at_height, "time_step"), strict=True):
+            axes.axhline(0.0, color="black", linewidth=0.6)
+            for k, one in enumerate(each(part, "engine")):
+                mean = one.got_mean - one.asked
+                low = one.got_mean - one.got_least
+                high = one.got_most - one.got_mean
+                aside = one.asked + 0.012 * (k - (many - 1) / 2)
+                axes.errorbar(
+                    aside, mean, yerr=[low, high], fmt=_MARKERS[k], color=f"C{k}",
+                    markersize=3.5, markerfacecolor="none", elinewidth=0.8,
+                    label=str(one.engine.item()),
+                )  # fmt: skip
+            step = 1 / part.time_step.item()
+            axes.set(title=f"step 1/{step:.0f} s, drop {part.drop_height.item():g} m", ylim=_RANGE)
+    for axes in slots[-1]:
+        axes.set(xlabel="$r$ asked for")
+    for row in slots:
+        row[0].set(ylabel="$r$ got minus $r$ asked for")
+    legend_below(figure, ncols=many)
+    return figure
+
+
+# Bars beyond this range are cut off; the table has them.
+_RANGE = (-0.2, 0.2)
+
+
+def ext_bounces(data: xr.Dataset) -> TextTable:
+    """The r that engines have, for each engine, step, drop and r asked for."""
+    columns: Columns = {
+        "engine": text("engine"),
+        "time step in s": value("time_step", ".5f"),
+        "drop in m": value("drop_height", "g"),
+        "r asked for": value("asked", "g"),
+        "mean": value("got_mean", ".4f"),
+        "least": value("got_least", ".4f"),
+        "greatest": value("got_most", ".4f"),
+    }
+    return table(each(data, "engine", "time_step", "drop_height", "asked"), columns)

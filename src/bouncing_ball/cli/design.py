@@ -25,6 +25,7 @@ from bouncing_ball.contacts.table import Table, TableMotion
 from bouncing_ball.contacts.units import doubts, in_si
 from bouncing_ball.contacts.write import (
     at_given_step,
+    at_own_step,
     dropped_at_step,
     resolve_for,
     settings,
@@ -116,8 +117,11 @@ def answer(given: Mapping[str, Any]) -> DesignAnswer:
     dropped = drop_at_rest(found.case, si["speed"]) if "speed" in si else None
     at_step = None if engine is None else engine.at_step
     other = None if engine is None else softer(found.case, engine, question, si.get("speed"))
+    error = si.get("restitution_error", ERROR)
     if "time_step" in si and engine is None:
-        at_step = at_given_step(contact, si["time_step"], si.get("restitution_error", ERROR))
+        at_step = at_given_step(contact, si["time_step"], error)
+    elif engine is None:
+        at_step = at_own_step(contact, error)
     read |= _quantities_of(contact) | _quantities_of(question)
     return DesignAnswer(
         found=found,

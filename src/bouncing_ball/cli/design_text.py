@@ -22,6 +22,8 @@ from bouncing_ball.contacts.texts import percent, shown, signed
 from bouncing_ball.contacts.write import Softer
 
 _SIMPLE = "error law", "corrected"
+# The row that has a range if parameters contain a time step.
+_FREE = "restitution of a free impact"
 # The row that an engine's time step takes the place of.
 _STEP = "largest time step"
 # More digits than a user types.
@@ -76,7 +78,11 @@ def reason(found: Assessment, hint: str) -> str:
 def numbers(given: DesignAnswer) -> list[tuple[str, str]]:
     """The numbers of the contact and of a drop, by name."""
     dropped = [] if given.dropped is None else rows.texts(given.dropped)
-    return rows.texts(given.found) + dropped
+    found = rows.texts(given.found)
+    at = given.at_step
+    if at is not None and at.is_of_parameters and not at.is_within:
+        found = [(name, f"{at.span} at this step" if name == _FREE else x) for name, x in found]
+    return found + dropped
 
 
 def _line(name: str, *columns: str) -> str:
@@ -276,9 +282,8 @@ def _at_small_steps(at: AtStep | None) -> list[str]:
     """What the verdict on a table is about, if the engine's time step changes the contact."""
     if at is None or at.is_within:
         return []
-    about = (
-        f"the contact with small time steps, and at {shown(at.time_step, 's')} its r is {at.span}"
-    )
+    what = "whose positions these steps have" if at.is_of_parameters else "with small time steps"
+    about = f"the contact {what}, and at {shown(at.time_step, 's')} its r is {at.span}"
     return [f"Note: motion, verdict and orbits are those of {about}."]
 
 
@@ -349,7 +354,18 @@ def _description(given: DesignAnswer, found: Description) -> list[str]:
         *_law_lines(found),
         *(f"Note: {note}." for note in found.notes),
         *_drop_remarks(given),
+        *_of_parameters(given.at_step),
         *_engine_lines(given),
+    ]
+
+
+def _of_parameters(at: AtStep | None) -> list[str]:
+    """What k, c and a drop are about, if the parameters contain a time step."""
+    if at is None or not at.is_of_parameters or at.is_within:
+        return []
+    return [
+        "Note: all numbers but r are those of the contact whose positions these steps have; r "
+        "depends on where in a step the ball meets the table."
     ]
 
 

@@ -26,6 +26,7 @@ from bouncing_ball.contacts.table import Table, TableMotion
 from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.models.spring_damper import SpringDamper
 
+_STEP = "time_step"
 _OF_A_LAW = (
     "{time_step} is given for a spring and a damper: the r of this contact depends on the speed"
 )
@@ -234,7 +235,25 @@ def at_given_step(contact: Contact, time_step: float, error: float) -> AtStep:
     if engine.needs_speed:
         raise ParameterError(_OF_A_LAW)
     parameters = contact.engine_parameters
-    if "time_step" in parameters:
+    if _STEP in parameters:
         raise ParameterError("{time_step} and {parameters} time_step give the same: give one")
     plain = contact.by_stiffness_and_loss()
     return engine.at_step_of(parameters, plain.mass, time_step, error, plain.release)
+
+
+def at_own_step(contact: Contact, error: float) -> AtStep | None:
+    """What an engine does with parameters that contain its time step; None without such a step.
+
+    Raises
+    ------
+    ModelError
+        If the parameters of this engine contain no time step.
+    """
+    engine = contact.engine
+    if engine is None or _STEP not in contact.engine_parameters:
+        return None
+    plain = contact.by_stiffness_and_loss()
+    parameters = dict(contact.engine_parameters)
+    step = parameters.pop(_STEP)
+    found = engine.at_step_of(parameters, plain.mass, step, error, plain.release)
+    return replace(found, is_of_parameters=True)

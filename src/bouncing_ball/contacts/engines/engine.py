@@ -346,9 +346,10 @@ class Engine(ABC):
         """The mass in kg, after a check of it and of the names of all parameters."""
         if unknown := set(parameters) - set(self.names):
             names = " and ".join(self.names)
-            raise ModelError(
-                f"{self.name} has no {sorted(unknown)[0]!r}: its parameters are {names}"
-            )
+            first = sorted(unknown)[0]
+            if first == "time_step":
+                names += ", and the step of any engine is given by --time-step or time_step"
+            raise ModelError(f"{self.name} has no {first!r}: its parameters are {names}")
         if mass is None:
             raise ModelError(
                 f"the mass is missing: the parameters of {self.name} do not contain it"

@@ -207,13 +207,16 @@ function endOf(...start) {
     : {...found, kind: "goes on", periods: 0, impacts: 0};
 }
 
-function followed(model, amplitude, phase, velocity, grain, most = MOST_IMPACTS) {
+// A ball that comes near a `known` stable orbit is on it.
+function followed(model, amplitude, phase, velocity, grain, most = MOST_IMPACTS, known = null) {
   let k = 0, mark = null, turn = 0, almost = 0, lift = null, stuck = false, top = -Infinity;
   const last = stepsTaken + MOST_WORK, seen = [], end = (kind, periods, impacts, more) => ({kind, periods, impacts, top, seen, ...more});
   for (const {time, at, u, left} of impactsOf(model, amplitude, phase, velocity, grain)) {
     if (left.lost || stepsTaken > last) return end("goes on", 0, 0);
     if (left.stays) return end("stays", 1, 0, {since: time + left.settling});
     seen.push(reduced(at));
+    if (known && Math.max(Math.abs(reduced(at - known.at)), Math.abs(u - known.u) / (1 + amplitude)) < ON_ORBIT)
+      return end("repeats", known.periods, 1);
     const thrown = Math.max(left.v + left.x, 0);
     top = Math.max(top, left.y + (left.d ?? 0) + thrown * thrown / 2);
     if (!model.contact && left.sticks) {

@@ -178,6 +178,8 @@ def _many(engine: EngineSettings) -> list[str]:
     if engine.steps < _MANY:
         return []
     instead = f"{option('restitution_error')} {ERROR:g} takes fewer"
+    if engine.at_step is not None:
+        instead = f"a longer {option('time_step')} takes fewer"
     return [f"Note: {engine.steps} steps in a contact are more than simulations have: {instead}."]
 
 

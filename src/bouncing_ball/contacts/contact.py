@@ -1,5 +1,6 @@
 """An engineer's contact: a ball and its contact with a table, as a user gives them."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
@@ -32,6 +33,30 @@ LOSSY = ("damping", "damping_ratio", "restitution", "measured_restitution", "reb
 """Parameters that determine its loss; the height of a rebound needs that of the drop, too."""
 # Parameters of MuJoCo that are lists; each of them is a separate argument.
 _OF_MUJOCO = ("solref", "solimp")
+
+
+def _numbers_by_name(given: Mapping[Any, Any]) -> dict[str, float]:
+    """Parameters of an engine as plain numbers; those that are None are left out.
+
+    Raises
+    ------
+    ModelError
+        If a name is no text, or a value no number.
+    """
+    found = {}
+    for name, value in given.items():
+        if not isinstance(name, str):
+            raise ParameterError("{parameters} has the name {}, which is not a text", repr(name))
+        if value is None:
+            continue
+        try:
+            found[name] = math.nan if isinstance(value, bool) else float(value)
+        except (TypeError, ValueError):
+            found[name] = math.nan
+        if not math.isfinite(found[name]):
+            why = "is not a number: give it in the unit of the engine, such as 1e5"
+            raise ParameterError(f"{{parameters}} {name} = {{}} {why}", repr(value))
+    return found
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -136,6 +161,10 @@ class Contact:
         if named is not None and not isinstance(named, Mapping):
             why = "is not a mapping from names to numbers, such as dict(kn=1e5)"
             raise ParameterError(f"{{parameters}} = {{}} {why}", repr(named))
+        if named is not None:
+            object.__setattr__(self, "parameters", _numbers_by_name(named))
+        if self.from_engine is not None and not isinstance(self.from_engine, str):
+            raise ParameterError("{from_engine} = {} is not a name", repr(self.from_engine))
         if self.from_engine is None and self.engine_parameters:
             first = next(iter(self.engine_parameters))
             what = f"{{{first}}}" if first in _OF_MUJOCO else f"{{parameters}} {first}"

@@ -187,7 +187,7 @@ def test_the_badge_is_red_if_a_number_or_a_text_differs_from_the_package(seen):
     right, wrong, tampered = (seen["badges"][name] for name in ("right", "wrong", "tampered"))
     assert right["kind"] == "good" and float(right["worst"]) < BOUND / 20
     assert "100 orbits and 8 balls of the Python package, commit c0ffeec0ff" in right["text"]
-    assert "and 40 settings of engines, computed again here" in right["text"]
+    assert "and 44 settings of engines, computed again here" in right["text"]
     pasted = seen["badges"]["pasted"]
     assert pasted["kind"] == "bad" and "Infinity (settings of lammps)" in pasted["text"]
     assert wrong["kind"] == "bad" and float(wrong["worst"]) > BOUND

@@ -25,6 +25,7 @@ from bouncing_ball.contacts.quantities import (
 )
 from bouncing_ball.errors import ParameterError
 from bouncing_ball.models.damping import Release
+from bouncing_ball.models.laws.hertzian import Tsuji
 from bouncing_ball.models.spring_damper import SpringDamper
 
 STIFF = ("stiffness", "contact_time", "reduced_modulus", "youngs_modulus")
@@ -277,7 +278,8 @@ class Contact:
         engine = engine_named(name)
         law = self.law
         rule = str(engine.release(self.release))
-        if self.reduced_modulus is not None or self.youngs_modulus is not None:
+        is_hertz = self.reduced_modulus is not None or self.youngs_modulus is not None
+        if is_hertz and Tsuji.name not in engine.laws:
             raise ParameterError(f"a Hertz contact is not written for {name}: give {{stiffness}}")
         if law not in (None, SpringDamper.name, *engine.laws, *engine.laws.values()):
             raise ParameterError(f"{{law}} {law} is not written for {name}: leave {{law}} out")

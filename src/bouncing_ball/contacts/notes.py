@@ -15,7 +15,6 @@ from bouncing_ball.models.laws.hertzian import Tsuji
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import n_t
 
-
 # Shakers reach some hundred times gravity.
 _MOST = 500.0
 

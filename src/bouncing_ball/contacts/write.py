@@ -132,7 +132,7 @@ def settings(case: ResolvedContact, setup: EngineSetup) -> EngineSettings:
     if law is not None:
         if setup.time_step is not None:
             raise ParameterError(_OF_A_LAW)
-        engine = engine.with_law(law)
+        engine = engine.with_law({**law, "radius": case.given.radius})
     release = str(case.contact.release)
     error = setup.restitution_error
     return engine.settings(case.physical, release, error, setup.time_step)

@@ -2,6 +2,7 @@
 
 from bouncing_ball.contacts.engines.drake import Drake
 from bouncing_ball.contacts.engines.engine import Engine
+from bouncing_ball.contacts.engines.gazebo import Gazebo
 from bouncing_ball.contacts.engines.mujoco import MuJoCo
 from bouncing_ball.contacts.engines.proportional import (
     Generic,
@@ -22,6 +23,7 @@ ENGINES: dict[str, Engine] = {
         PyBullet(),
         Drake(),
         MercuryDPM(),
+        Gazebo(),
     )
 }
 """The engines by name."""

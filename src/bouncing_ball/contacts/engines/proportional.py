@@ -11,9 +11,15 @@
 """
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, ClassVar
 
-from bouncing_ball.contacts.engines.engine import EngineParameters, Physical, Proportional
+from bouncing_ball.contacts.engines.engine import (
+    Engine,
+    EngineParameters,
+    Physical,
+    Proportional,
+)
+from bouncing_ball.contacts.engines.hertz_granular import LAWS, HertzLammps, HertzLiggghts
 from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.models.damping import Release
 
@@ -67,6 +73,10 @@ class Lammps(Proportional):
     names = ("kn", "gamma_n")
     releases = (Release.DISPLACEMENT, Release.FORCE)
     scheme = Scheme.SEMI_IMPLICIT
+    laws: ClassVar[dict[str, str]] = LAWS
+
+    def with_law(self, law_in_si: Mapping[str, Any]) -> Engine:
+        return HertzLammps(law_in_si)
 
     def factors(self, mass: float) -> tuple[float, float]:
         return 1.0, 1 / mass
@@ -84,6 +94,9 @@ class Liggghts(Lammps):
 
     name = "liggghts"
     names = ("kn", "gamman")
+
+    def with_law(self, law_in_si: Mapping[str, Any]) -> Engine:
+        return HertzLiggghts(law_in_si)
 
 
 class MercuryDPM(Proportional):

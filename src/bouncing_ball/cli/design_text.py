@@ -235,6 +235,7 @@ def _alternatives(engine: EngineSettings, other: Softer | None) -> list[str]:
         found += _pasted(engine.retuned)
     return [
         *found,
+        *filter(None, [engine.instant]),
         f"A softer contact has this r within {at.allowed:g} at this step. Its numbers are:",
         "",
         *(_line(*row) for row in rows.texts(other.contact)),

@@ -339,6 +339,14 @@ def _reason(
 def judged_choice(case: ResolvedContact, needed: Needed, n: int) -> Judgement:
     """The verdict on the most compliant contact within the tolerance."""
     tolerance = percent(needed.tolerance)
+    if case.law is not None:
+        sentence = (
+            f"A simulation needs a {case.law.name} contact whose free impact, at the speed of the "
+            f"{n}-T orbit, takes {shown(case.contact_time, 's')} or less: the restitution model "
+            f"then predicts {_subject(needed.quantity, n)} within {tolerance}."
+        )
+        why = f"the error of this contact is {tolerance}, and near it grows with the duration"
+        return Judgement(True, sentence, why)
     sentence = (
         f"A simulation needs a contact of at least {shown(case.stiffness, 'N/m')}, with a contact "
         f"time of {shown(case.contact_time, 's')} or less and a damping of "

@@ -27,6 +27,7 @@ from bouncing_ball.contacts.write import (
     at_given_step,
     at_own_step,
     dropped_at_step,
+    looser,
     resolve_for,
     settings,
     settings_on_table,
@@ -103,7 +104,8 @@ def answer(given: Mapping[str, Any]) -> DesignAnswer:
     read = {**given, **si}
     setup = None if given.get("engine") is None else EngineSetup(**_of(EngineSetup, read))
     has_table = any(given.get(name) is not None for name in ("n", *_OF_TABLE))
-    if has_table or not (setup or contact.is_stiff):
+    # With a speed an impact is meant, whose stiffness may be missing.
+    if has_table or not (setup or contact.is_stiff or "speed" in si):
         table = Table(**_of(Table, read))
         read |= _quantities_of(table)
         # An acceleration in m/s², with or without its unit, may have been meant in g.
@@ -132,6 +134,7 @@ def answer(given: Mapping[str, Any]) -> DesignAnswer:
         hint=hint,
         dropped_at_step=dropped_at_step(found.case, engine, si.get("speed")),
         softer=other,
+        looser=looser(found.case, at_step),
         doubts=doubts(given, KINDS),
     )
 
@@ -215,7 +218,7 @@ def document(given: DesignAnswer) -> dict[str, Any]:
     if isinstance(given.found, Assessment):
         found["reason"] = reason(given.found, given.hint)
     # What was not asked for has no key.
-    for name in ("dropped", "engine", "at_step", "dropped_at_step", "softer"):
+    for name in ("dropped", "engine", "at_step", "dropped_at_step", "softer", "looser"):
         more = getattr(given, name)
         if more is not None:
             found[name] = rows.document(more)

@@ -19,7 +19,7 @@ from bouncing_ball.contacts.quantities import quantities
 from bouncing_ball.contacts.question import EngineSetup, Question
 from bouncing_ball.contacts.table import Table
 from bouncing_ball.contacts.texts import percent, shown, signed
-from bouncing_ball.contacts.write import Softer
+from bouncing_ball.contacts.write import Looser, Softer
 
 _SIMPLE = "error law", "corrected"
 # The row that has a range if parameters contain a time step.
@@ -46,9 +46,9 @@ class DesignAnswer(NamedTuple):
     ``found`` is the assessment of a contact on a table, or the description of one without a table.
     ``dropped``, ``engine`` and ``at_step`` are None if nothing was asked about them, and so are the
     rises of a drop at the engine's time step, and the softer contact that this step resolves if it
-    does not resolve the one asked for. ``doubts`` are sentences on numbers that may have been meant
-    in another unit. ``hint`` is
-    what may have been meant if no model has an orbit, and ``whole`` tells whether all numbers of
+    does not resolve the one asked for, also for a larger error. ``doubts`` are sentences on numbers
+    that may have been meant in another unit. ``hint`` is what may have been meant if no model has
+    an orbit, and ``whole`` tells whether all numbers of
     each family are printed.
     """
 
@@ -61,6 +61,7 @@ class DesignAnswer(NamedTuple):
     whole: bool = True
     dropped_at_step: Rise | None = None
     softer: Softer | None = None
+    looser: Looser | None = None
     doubts: tuple[str, ...] = ()
 
 
@@ -142,7 +143,9 @@ def _engine_lines(given: DesignAnswer) -> list[str]:
     at = given.at_step
     engine = given.engine
     if engine is None:
-        return [] if at is None else [*_step_lines(at), *_alternatives_at(at)]
+        if at is None:
+            return []
+        return [*_step_lines(at), *_alternatives_at(at), *_looser(given.looser)]
     speed = given.found.slowed_speed
     slowed = "" if speed is None else f" of a fast impact, 1 % less at {shown(speed, 'm/s')}"
     expected = [
@@ -166,7 +169,7 @@ def _engine_lines(given: DesignAnswer) -> list[str]:
         *_many(engine),
         *(_line(words, shown(x, unit)) for words, x, unit in expected if x is not None),
         *_rise(given.dropped_at_step),
-        *_alternatives(engine, given.softer),
+        *_alternatives(engine, given.softer, given.looser),
     ]
 
 
@@ -224,7 +227,17 @@ def _alternatives_at(at: AtStep) -> list[str]:
     ]
 
 
-def _alternatives(engine: EngineSettings, other: Softer | None) -> list[str]:
+def _looser(found: Looser | None) -> list[str]:
+    """The stiffest contact for a larger error."""
+    if found is None:
+        return []
+    return [
+        f"Within {found.error:g} of r it may have {shown(found.stiffness, 'N/m')}, with a damping "
+        f"of {shown(found.damping, 'N s/m')}: {option('restitution_error')} {found.error:g}."
+    ]
+
+
+def _alternatives(engine: EngineSettings, other: Softer | None, wider: Looser | None) -> list[str]:
     """The retuned and the softer contact, if the given step does not resolve the one asked for."""
     at = engine.at_step
     if at is None or other is None or engine.softer is None:
@@ -244,6 +257,7 @@ def _alternatives(engine: EngineSettings, other: Softer | None) -> list[str]:
         *([] if other.dropped is None else (f"Note: {one}." for one in other.dropped.remarks)),
         *([other.verdict] if other.verdict else []),
         *_pasted(engine.softer),
+        *_looser(wider),
     ]
 
 

@@ -257,3 +257,39 @@ def at_own_step(contact: Contact, error: float) -> AtStep | None:
     step = parameters.pop(_STEP)
     found = engine.at_step_of(parameters, plain.mass, step, error, plain.release)
     return replace(found, is_of_parameters=True)
+
+
+LOOSE = 0.01
+"""An error of r with which a contact may be stiffer by one or two orders than with 0.001."""
+
+
+@dataclass(frozen=True)
+class Looser:
+    """The stiffest contact whose r is within a larger error at a given time step, in SI units."""
+
+    error: float
+    stiffness: float
+    damping: float
+
+
+def looser(case: ResolvedContact, at: AtStep | None) -> Looser | None:
+    """The contact with a larger error; None if the step resolves the given one, or for that error.
+
+    Examples
+    --------
+    >>> from bouncing_ball.contacts.resolve import resolve
+    >>> contact = Contact(mass=1.0, stiffness=1e6, restitution=0.75)
+    >>> case = resolve(contact, TableMotion.at_rest(), written="generic")
+    >>> at = settings(case, EngineSetup(engine="generic", time_step="2 ms")).at_step
+    >>> looser(case, at).stiffness > 20 * at.stiffest
+    True
+    """
+    if at is None or at.is_within or at.allowed >= LOOSE:
+        return None
+    exact = Physical(case.mass, at.stiffest, at.stiffest_damping)
+    scheme = engine_named(at.engine).scheme
+    release = case.contact.release
+    found, _ = stiffest_contact(
+        scheme, case.mass, exact.damping_ratio, release, at.time_step, LOOSE
+    )
+    return Looser(LOOSE, found.stiffness, found.damping)

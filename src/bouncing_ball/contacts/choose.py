@@ -149,7 +149,8 @@ def _of_law(
 
     The error grows about as the duration: the secant method in logarithms needs a few steps.
     """
-    linear = choose(replace(contact.with_measured_restitution(), law=None), table, question)
+    measured = contact.with_measured_restitution()
+    linear = choose(replace(measured, law=None, radius=None), table, question)
     n = linear.n
     quantity = question.quantity
 
@@ -175,7 +176,8 @@ def _of_law(
         # The last step is one to the side on which the error is within the tolerance.
         if -_CLOSE <= value <= 0:
             break
-        before, value_before = place, value
+        before = place
+        value_before = value
         place = before - (value + _CLOSE / 2) / slope
         value = surplus(place)
         if place != before and value != value_before:

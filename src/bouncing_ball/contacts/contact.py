@@ -36,19 +36,23 @@ LOSSY = ("damping", "damping_ratio", "restitution", "measured_restitution", "reb
 _OF_MUJOCO = ("solref", "solimp")
 
 
-def _numbers_by_name(given: Mapping[Any, Any]) -> dict[str, float]:
-    """Parameters of an engine as plain numbers; those that are None are left out.
+def _numbers_by_name(given: Mapping[Any, Any]) -> dict[str, Any]:
+    """Parameters of an engine as plain numbers; those that are None are left out, and the lists of
+    MuJoCo stay as they are.
 
     Raises
     ------
     ModelError
         If a name is no text, or a value no number.
     """
-    found = {}
+    found: dict[str, Any] = {}
     for name, value in given.items():
         if not isinstance(name, str):
             raise ParameterError("{parameters} has the name {}, which is not a text", repr(name))
         if value is None:
+            continue
+        if name in _OF_MUJOCO:
+            found[name] = value
             continue
         try:
             found[name] = math.nan if isinstance(value, bool) else float(value)

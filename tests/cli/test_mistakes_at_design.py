@@ -2,7 +2,7 @@
 
 There is one mistake for each way of refusing; ``tests/test_random_mistakes.py`` draws many. In the
 table each mistake is followed by the beginning of its answer. ``BALL`` and ``TABLE`` stand
-for a contact that is given, and for a table.
+for a contact that is given, and for a table, ``CROSSLEY`` and ``BULLET`` for parameters of engines.
 """
 
 import shlex
@@ -11,6 +11,10 @@ import pytest
 
 BALL = '--mass "20 g" --stiffness 1e6 --restitution 0.8'
 TABLE = '--frequency "50 Hz" --acceleration "0.8 g"'
+CROSSLEY = "--mass 1 --from drake --set point_contact_stiffness=1e5"
+CROSSLEY += " --set hunt_crossley_dissipation=1"
+BULLET = "--mass 1 --from pybullet --set contactStiffness=1e5 --set contactDamping=1"
+SHORT = {"BALL": BALL, "TABLE": TABLE, "CROSSLEY": CROSSLEY, "BULLET": BULLET}
 MISTAKES = """
 --mass 20
     the frequency of the table is missing: give --frequency, such as 50 Hz
@@ -104,6 +108,46 @@ mass="20 g" --frequency "50 Hz"
     --stiffness = 1 000 000 N/m has separated thousands: write '1000000 N/m'
 BALL TABLE --tolerance "1 %%"
     --tolerance = 1 %% has an unknown unit: write it as '1 %'
+--mass -1 --stiffness 1e6 --restitution 0.8
+    --mass = -1 kg is not a positive number
+--mass "20 g" --stiffness 1e6 --restitution 1.5
+    --restitution = 1.5 is not a number in (0, 1]
+--mass "20 g" --law hunt-crossley --restitution 0.8 --speed "1 m/s"
+    --law hunt-crossley needs --contact-time, the duration of a free impact
+--mass "20 g" --law hunt-crossley --restitution 0.8 --contact-time "1 ms"
+    --law needs a table, such as --frequency and --acceleration, or --speed of an impact: r depends
+--mass "20 g" --law tsuji --restitution 0.8 --contact-time "1 ms" --speed "1 m/s" --engine lammps
+    --radius of the sphere is missing: lammps multiplies the stiffness of Hertz by its root
+--mass "20 g" --law tsuji --restitution 0.8 --contact-time "1 ms" --speed "1 m/s" --engine drake
+    --law tsuji is not written for drake: leave --law out
+--mass "20 g" --radius "5 mm" --reduced-modulus "1 GPa" --restitution 0.8 TABLE --engine mujoco
+    a Hertz contact is not written for mujoco: give --stiffness
+--mass "20 g" --from pybullet --set restitution=0.9
+    restitution of pybullet has no stiffness: if ball and table have it, r = 0.81 at any time step
+--mass "20 g" --from lammps --set kn=1e5 --set gamma_n=1 --set time_step=1e-3
+    lammps has no 'time_step': its parameters are kn and gamma_n, and the step of any engine is
+CROSSLEY --set time_step=1e-3
+    time_step is not allowed with hunt_crossley_dissipation, whose contact is that of small time
+BULLET --set time_step=1e-3 --time-step "1 ms"
+    --time-step and --set time_step give the same: give one
+CROSSLEY --speed 1 --time-step "1 ms"
+    --time-step is given for a spring and a damper: the r of this contact depends on the speed
+--mass "20 g" --from mujoco --solref "1000 10"
+    solref = '1000 10' is a time constant of 1000 s, which no simulation has: -k/m and -c/m are
+BALL --engine lammps --time-step 5
+    a contact of 0.000445 s takes 8.91e-05 time steps of 5 s, which is not between 0.001 and 1e+08
+--mass "20 g" --stiffness 1e-9 --restitution 0.8
+    a contact of 14.09 ks is longer than any that is simulated, up to 1000 s: check the mass
+--mass "20 g" --restitution 0.8 TABLE --tolerance 1e-9
+    no contact up to ϖ = 1e+06 has its greatest height predicted within 1e-07 % by the restitution
+--mass "20 g" --drop-height 1 --rebound-height 70 --stiffness 1e6
+    --rebound-height 70 m is above --drop-height 1 m
+BALL TABLE --balls 1e3
+    argument --balls: '1e3' is not a whole number from 1 to 100000: did you mean 1000?
+--mass "20 g" --from lammps --set kn=1e5 --set gamma_n=80 --stiffness 5
+    --stiffness is not allowed with --from
+--mass "20 g" --law kuwabara-kono --contact-time "1 ms" --restitution 0.001 --speed 1
+    restitution coefficient r = 0.001 is too small: no kuwabara-kono contact with it was found
 --mass "20 g" --from mujoco --solref "[-10000, -20]"
     solref = '[-10000, -20]' is not 2 numbers: write it plainly, '-10000 -20'
 """.strip().splitlines()
@@ -112,7 +156,44 @@ ROWS = [(typed, says.strip()) for typed, says in zip(MISTAKES[::2], MISTAKES[1::
 
 @pytest.mark.parametrize(("typed", "says"), ROWS)
 def test_a_mistake_is_answered_by_one_line(refused, typed, says):
-    typed = typed.replace("BALL", BALL).replace("TABLE", TABLE)
+    for name, options in SHORT.items():
+        typed = typed.replace(name, options)
     status, line = refused("design", *shlex.split(typed))
     assert line.startswith(f"bouncing-ball: {says}")
-    assert status == (1 if "no 1-T orbit" in line else 2)
+    is_without_answer = "no 1-T orbit" in line or "no contact up to" in line
+    assert status == (1 if is_without_answer else 2)
+
+
+UNUSUAL = """
+--mass "20 g" --contact-time 7 --restitution 0.8
+    contact time 7 was read as 7 s: write a unit, such as '50 us', if another one was meant
+--mass "20 g" --radius 5 --stiffness 1e6 --restitution 0.8
+    radius 5 was read as 5 m: write a unit, such as '5 mm', if another one was meant
+BALL --frequency 50 --table-amplitude 0.1 --n 1
+    table amplitude 0.1 was read as 0.1 m: write a unit, such as '0.1 mm', if another one was
+BALL --period 50 --acceleration "0.8 g"
+    period 50 was read as 50 s: write a unit, such as '20 ms', if another one was meant
+BALL --speed 1000
+    speed 1000 was read as 1000 m/s: write a unit, such as '1 m/s', if another one was meant
+--mass 20000 --stiffness 1e6 --restitution 0.8
+    mass 20000 was read as 20000 kg: write a unit, such as '20 g', if another one was meant
+BALL --frequency "50 Hz" --table-amplitude "100 mm" --n 1
+    the table accelerates with Λ = 1006 times gravity, which no shaker reaches: check its frequency
+--mass "20 g" --stiffness 10 --restitution 0.8 --radius "5 mm"
+    at rest the ball sinks in by 19.61 mm, 392 % of its radius: its centre passes the table, where
+BALL --engine lammps --restitution-error 1e-9
+    297484440 steps in a contact are more than simulations have: --restitution-error 0.001 takes
+BALL --engine lammps --time-step "1 ns"
+    445407 steps in a contact are more than simulations have: a longer --time-step takes fewer
+--mass "20 g" --stiffness 50 --restitution 0.5 --speed "0.1 m/s"
+    gravity rules this contact: the ball does not rebound, it rests 3.923 mm deep
+""".strip().splitlines()
+DOUBTS = [(typed, says.strip()) for typed, says in zip(UNUSUAL[::2], UNUSUAL[1::2], strict=True)]
+
+
+@pytest.mark.usefixtures("short_runs")
+@pytest.mark.parametrize(("typed", "says"), DOUBTS)
+def test_what_is_unusual_is_answered_with_a_note(said, typed, says):
+    for name, options in SHORT.items():
+        typed = typed.replace(name, options)
+    assert f"Note: {says}" in said("design", *shlex.split(typed))

@@ -363,7 +363,6 @@ def test_no_orbit_or_no_contact(change, says, refusal):
         (HERTZ | {"stiffness": None, "release": "force"}, "has the displacement release only"),
         ({"tolerance": 1}, "did you mean 1 %?"),
         ({"law": "hunt-crossley"}, "stiffness is not allowed with law hunt-crossley"),
-        (LAW, "law hunt-crossley needs contact_time"),
         ({"stiffness": None, "contact_time": 2.8e6}, "a contact of 2.8 Ms is longer than any"),
         (LAW | {"contact_time": 3e-4, "release": "force"}, "release is not allowed with law"),
     ],

@@ -1,5 +1,7 @@
 """What a ball does in the end: labels, statistics and the verdict on them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from asked_contacts import assessed
@@ -231,6 +233,47 @@ def test_a_change_of_a_thousandth_that_decides_leaves_no_percentage():
     assert abs(one.value - two.value) < 0.1 * abs(two.value - nominal.value)
 
 
+def with_changes(error, **heights):
+    """Means of a law with an error of its own, and with errors of the linear contact."""
+    both = {"a": Mean(1.0, 0.01), "b": Mean(1 + error, 0.01)}
+    changes = {name.replace("_", " "): {"height": Mean(x, 0.001)} for name, x in heights.items()}
+    return FinalMotion("chaotic", 0, 0, restitution_kind="chaotic", mean_height=both,
+                       mean_power=both, mean_error={"height": Mean(error, 0.001)}, balls=256,
+                       changes=changes)  # fmt: skip
+
+
+def test_for_a_law_the_changes_of_the_linear_contact_are_added_to_its_own_error():
+    """The linear contact changes from -4 % to 2 %, and the law so from 3 % to 9 %."""
+    found = with_changes(0.03, no_change=-0.04, r=0.02)
+    assert judged_by_motion(found, 0.01, 1).verdict.startswith("The restitution model is not good")
+    decided = judged_by_motion(found, 0.05, 1)
+    assert "at 5 % is decided by changes of 0.1 % in r, k or g" in decided.verdict
+    assert "with the changes of the linear contact with this r and duration" in decided.verdict
+    assert "-4 % ± 0.1 % with no change, +2 % ± 0.1 % with r" in decided.reason
+    # Without a linear contact in its place they are errors of the contact itself.
+    own = with_changes(0.03, r=0.02)
+    assert "of the linear contact" not in judged_by_motion(own, 0.025, 1).verdict
+    unknown = replace(found, changes=None)
+    assert (
+        "what changes of 0.1 % in r, k and g do is not known"
+        in judged_by_motion(unknown, 0.05, 1).reason
+    )
+
+
+@pytest.mark.long
+def test_a_chaotic_mean_of_a_law_has_its_changes():
+    given = {"mass": "50 g", "frequency": "25 Hz", "acceleration": "2 g", "n": 1}
+    found = assessed(**given, law="tsuji", contact_time="0.7 ms", restitution=0.7)
+    changes = found.motion.changes
+    assert [*changes] == ["no change", "r -0.1 %", "r +0.1 %", "k +0.1 %", "g +0.1 %"]
+    linear = assessed(**given, contact_time="0.7 ms", restitution=0.7)
+    base = changes["no change"]["height"]
+    same = linear.motion.mean_error["height"]
+    # The same contact by samples of different sizes.
+    assert abs(base.value - same.value) < 1.5 * (base.half_width + same.half_width)
+    assert "is decided by changes of 0.1 % in r, k or g" in found.verdict
+
+
 def test_the_headline_is_about_the_motion_on_which_most_balls_end():
     """The 5-T orbit is stable, and attracts less than one start in a hundred."""
     given = {"mass": "50 g", "frequency": "25 Hz", "acceleration": "2 g", "stiffness": 1e6}
@@ -241,7 +284,7 @@ def test_the_headline_is_about_the_motion_on_which_most_balls_end():
     assert "of the starts end on the stable 5-T" in found.reason or "no start ends" in found.reason
     # The family that is asked for is judged.
     of_five = assessed(**given, restitution=0.8, n=5)
-    assert of_five.headline.startswith("The 5-T orbit is stable")
+    assert of_five.headline.startswith("The 5-T orbit is stable: a ball on it stays on it, but ")
     assert of_five.starts == found.starts
 
 

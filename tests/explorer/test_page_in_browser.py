@@ -98,6 +98,13 @@ FAULTY = {
 }  # fmt: skip
 
 
+# A contact on whose 5-T orbit no ball ends, a contact under each release, and a tolerance of 5 %.
+COUNTED = [
+    "tab=design&m=50&f=25&acc=2&k=1e6&r=0.8&n=5",
+    "tab=design&m=500&f=20&acc=0.8&k=1e5&r=0.75&n=1&engine=mujoco",
+    "tab=design&m=20&f=50&acc=0.8&k=1e7&r=0.85&n=1&t=5",
+]
+
 # MuJoCo's default impedance, which depends on the depth, and one that does not.
 NONLINEAR = [
     "given=mujoco&one=-1e5 -20",
@@ -129,6 +136,7 @@ def seen(browse, tmp_path_factory):
     script = OBSERVER.replace("STATES", json.dumps(list(states())))
     script = script.replace("GIVEN", json.dumps(list(physical_states())))
     script = script.replace("NONLINEAR", json.dumps([f"#tab=design&{one}" for one in NONLINEAR]))
+    script = script.replace("COUNTED", json.dumps([f"#{one}" for one in COUNTED]))
     script = script.replace("FAULTY", json.dumps([f"#tab=design&{one}" for one in FAULTY]))
     observer.write_text(script, encoding="utf-8")
     text = browse(folder, observer, "--virtual-time-budget=30000", "--dump-dom")
@@ -179,7 +187,7 @@ def test_the_badge_is_red_if_a_number_or_a_text_differs_from_the_package(seen):
     right, wrong, tampered = (seen["badges"][name] for name in ("right", "wrong", "tampered"))
     assert right["kind"] == "good" and float(right["worst"]) < BOUND / 20
     assert "100 orbits and 8 balls of the Python package, commit c0ffeec0ff" in right["text"]
-    assert "and 40 settings of engines, computed again here" in right["text"]
+    assert "and 44 settings of engines, computed again here" in right["text"]
     pasted = seen["badges"]["pasted"]
     assert pasted["kind"] == "bad" and "Infinity (settings of lammps)" in pasted["text"]
     assert wrong["kind"] == "bad" and float(wrong["worst"]) > BOUND
@@ -309,6 +317,22 @@ def test_the_physical_tab_says_what_the_command_prints(case, seen, answered, sho
         settings = said["engine"]
         assert f"in {settings['steps']} steps of {settings['scheme']}" in state["says"]
         assert state["snippet"] == settings["snippet"]
+
+
+def test_each_verdict_has_the_shares_of_starts_beside_it(seen, answered):
+    few, some, wide = seen["counted"]
+    for state in (few, some, wide):
+        said = answered(state["command"])
+        assert state["share"] == said["starts"].get(f"orbit {said['n']}/1", 0.0)
+        assert state["starts"].startswith("Of 144 balls with other starts, ")
+    # A verdict on an orbit that few balls reach is not the headline.
+    assert few["share"] == 0 and few["good"] == "false"
+    headline = "Most balls end otherwise than on the stable 5-T orbit: no start ends on it."
+    assert few["verdict"] == headline
+    assert "Of the orbit alone: The restitution model is good enough: " in few["starts"]
+    assert some["good"] == "false" and "on the 1-T orbit" in some["starts"]
+    assert wide["good"] == "true" and "+1.2 %, within 5 %." in wide["verdict"]
+    assert '--tolerance "5 %"' in wide["command"]
 
 
 def test_bad_input_is_refused_in_the_words_of_the_command(seen, refused):

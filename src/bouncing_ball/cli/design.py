@@ -25,7 +25,9 @@ from bouncing_ball.contacts.table import Table, TableMotion
 from bouncing_ball.contacts.units import doubts, in_si
 from bouncing_ball.contacts.write import (
     at_given_step,
+    at_own_step,
     dropped_at_step,
+    looser,
     resolve_for,
     settings,
     settings_on_table,
@@ -102,7 +104,8 @@ def answer(given: Mapping[str, Any]) -> DesignAnswer:
     read = {**given, **si}
     setup = None if given.get("engine") is None else EngineSetup(**_of(EngineSetup, read))
     has_table = any(given.get(name) is not None for name in ("n", *_OF_TABLE))
-    if has_table or not (setup or contact.is_stiff):
+    # With a speed an impact is meant, whose stiffness may be missing.
+    if has_table or not (setup or contact.is_stiff or "speed" in si):
         table = Table(**_of(Table, read))
         read |= _quantities_of(table)
         # An acceleration in m/s², with or without its unit, may have been meant in g.
@@ -116,8 +119,11 @@ def answer(given: Mapping[str, Any]) -> DesignAnswer:
     dropped = drop_at_rest(found.case, si["speed"]) if "speed" in si else None
     at_step = None if engine is None else engine.at_step
     other = None if engine is None else softer(found.case, engine, question, si.get("speed"))
+    error = si.get("restitution_error", ERROR)
     if "time_step" in si and engine is None:
-        at_step = at_given_step(contact, si["time_step"], si.get("restitution_error", ERROR))
+        at_step = at_given_step(contact, si["time_step"], error)
+    elif engine is None:
+        at_step = at_own_step(contact, error)
     read |= _quantities_of(contact) | _quantities_of(question)
     return DesignAnswer(
         found=found,
@@ -128,6 +134,7 @@ def answer(given: Mapping[str, Any]) -> DesignAnswer:
         hint=hint,
         dropped_at_step=dropped_at_step(found.case, engine, si.get("speed")),
         softer=other,
+        looser=looser(found.case, at_step),
         doubts=doubts(given, KINDS),
     )
 
@@ -211,7 +218,7 @@ def document(given: DesignAnswer) -> dict[str, Any]:
     if isinstance(given.found, Assessment):
         found["reason"] = reason(given.found, given.hint)
     # What was not asked for has no key.
-    for name in ("dropped", "engine", "at_step", "dropped_at_step", "softer"):
+    for name in ("dropped", "engine", "at_step", "dropped_at_step", "softer", "looser"):
         more = getattr(given, name)
         if more is not None:
             found[name] = rows.document(more)

@@ -19,9 +19,11 @@ from bouncing_ball.contacts.quantities import quantities
 from bouncing_ball.contacts.question import EngineSetup, Question
 from bouncing_ball.contacts.table import Table
 from bouncing_ball.contacts.texts import percent, shown, signed
-from bouncing_ball.contacts.write import Softer
+from bouncing_ball.contacts.write import Looser, Softer
 
 _SIMPLE = "error law", "corrected"
+# The row that has a range if parameters contain a time step.
+_FREE = "restitution of a free impact"
 # The row that an engine's time step takes the place of.
 _STEP = "largest time step"
 # More digits than a user types.
@@ -44,9 +46,9 @@ class DesignAnswer(NamedTuple):
     ``found`` is the assessment of a contact on a table, or the description of one without a table.
     ``dropped``, ``engine`` and ``at_step`` are None if nothing was asked about them, and so are the
     rises of a drop at the engine's time step, and the softer contact that this step resolves if it
-    does not resolve the one asked for. ``doubts`` are sentences on numbers that may have been meant
-    in another unit. ``hint`` is
-    what may have been meant if no model has an orbit, and ``whole`` tells whether all numbers of
+    does not resolve the one asked for, also for a larger error. ``doubts`` are sentences on numbers
+    that may have been meant in another unit. ``hint`` is what may have been meant if no model has
+    an orbit, and ``whole`` tells whether all numbers of
     each family are printed.
     """
 
@@ -59,6 +61,7 @@ class DesignAnswer(NamedTuple):
     whole: bool = True
     dropped_at_step: Rise | None = None
     softer: Softer | None = None
+    looser: Looser | None = None
     doubts: tuple[str, ...] = ()
 
 
@@ -76,7 +79,11 @@ def reason(found: Assessment, hint: str) -> str:
 def numbers(given: DesignAnswer) -> list[tuple[str, str]]:
     """The numbers of the contact and of a drop, by name."""
     dropped = [] if given.dropped is None else rows.texts(given.dropped)
-    return rows.texts(given.found) + dropped
+    found = rows.texts(given.found)
+    at = given.at_step
+    if at is not None and at.is_of_parameters and not at.is_within:
+        found = [(name, f"{at.span} at this step" if name == _FREE else x) for name, x in found]
+    return found + dropped
 
 
 def _line(name: str, *columns: str) -> str:
@@ -136,7 +143,9 @@ def _engine_lines(given: DesignAnswer) -> list[str]:
     at = given.at_step
     engine = given.engine
     if engine is None:
-        return [] if at is None else [*_step_lines(at), *_alternatives_at(at)]
+        if at is None:
+            return []
+        return [*_step_lines(at), *_alternatives_at(at), *_looser(given.looser)]
     speed = given.found.slowed_speed
     slowed = "" if speed is None else f" of a fast impact, 1 % less at {shown(speed, 'm/s')}"
     expected = [
@@ -160,7 +169,7 @@ def _engine_lines(given: DesignAnswer) -> list[str]:
         *_many(engine),
         *(_line(words, shown(x, unit)) for words, x, unit in expected if x is not None),
         *_rise(given.dropped_at_step),
-        *_alternatives(engine, given.softer),
+        *_alternatives(engine, given.softer, given.looser),
     ]
 
 
@@ -172,6 +181,8 @@ def _many(engine: EngineSettings) -> list[str]:
     if engine.steps < _MANY:
         return []
     instead = f"{option('restitution_error')} {ERROR:g} takes fewer"
+    if engine.at_step is not None:
+        instead = f"a longer {option('time_step')} takes fewer"
     return [f"Note: {engine.steps} steps in a contact are more than simulations have: {instead}."]
 
 
@@ -216,7 +227,17 @@ def _alternatives_at(at: AtStep) -> list[str]:
     ]
 
 
-def _alternatives(engine: EngineSettings, other: Softer | None) -> list[str]:
+def _looser(found: Looser | None) -> list[str]:
+    """The stiffest contact for a larger error."""
+    if found is None:
+        return []
+    return [
+        f"Within {found.error:g} of r it may have {shown(found.stiffness, 'N/m')}, with a damping "
+        f"of {shown(found.damping, 'N s/m')}: {option('restitution_error')} {found.error:g}."
+    ]
+
+
+def _alternatives(engine: EngineSettings, other: Softer | None, wider: Looser | None) -> list[str]:
     """The retuned and the softer contact, if the given step does not resolve the one asked for."""
     at = engine.at_step
     if at is None or other is None or engine.softer is None:
@@ -227,6 +248,7 @@ def _alternatives(engine: EngineSettings, other: Softer | None) -> list[str]:
         found += _pasted(engine.retuned)
     return [
         *found,
+        *filter(None, [engine.instant]),
         f"A softer contact has this r within {at.allowed:g} at this step. Its numbers are:",
         "",
         *(_line(*row) for row in rows.texts(other.contact)),
@@ -235,6 +257,7 @@ def _alternatives(engine: EngineSettings, other: Softer | None) -> list[str]:
         *([] if other.dropped is None else (f"Note: {one}." for one in other.dropped.remarks)),
         *([other.verdict] if other.verdict else []),
         *_pasted(engine.softer),
+        *_looser(wider),
     ]
 
 
@@ -276,9 +299,8 @@ def _at_small_steps(at: AtStep | None) -> list[str]:
     """What the verdict on a table is about, if the engine's time step changes the contact."""
     if at is None or at.is_within:
         return []
-    about = (
-        f"the contact with small time steps, and at {shown(at.time_step, 's')} its r is {at.span}"
-    )
+    what = "whose positions these steps have" if at.is_of_parameters else "with small time steps"
+    about = f"the contact {what}, and at {shown(at.time_step, 's')} its r is {at.span}"
     return [f"Note: motion, verdict and orbits are those of {about}."]
 
 
@@ -349,7 +371,18 @@ def _description(given: DesignAnswer, found: Description) -> list[str]:
         *_law_lines(found),
         *(f"Note: {note}." for note in found.notes),
         *_drop_remarks(given),
+        *_of_parameters(given.at_step),
         *_engine_lines(given),
+    ]
+
+
+def _of_parameters(at: AtStep | None) -> list[str]:
+    """What k, c and a drop are about, if the parameters contain a time step."""
+    if at is None or not at.is_of_parameters or at.is_within:
+        return []
+    return [
+        "Note: all numbers but r are those of the contact whose positions these steps have; r "
+        "depends on where in a step the ball meets the table."
     ]
 
 

@@ -152,7 +152,7 @@ class Assessment:
     @property
     def headline(self) -> str:
         """The motion of the ball, in one sentence."""
-        return headline(self.motion, self.judged)
+        return headline(self.motion, self.judged, self.ends.of_orbit(self.n))
 
     @property
     def starts(self) -> dict[str, float]:

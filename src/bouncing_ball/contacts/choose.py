@@ -1,17 +1,19 @@
 """The second question: how stiff must a contact be for a restitution coefficient to be enough?"""
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 
 from bouncing_ball.accuracy.errors import OF_ORBITS, QUANTITIES, Quantity
 from bouncing_ball.accuracy.thresholds import RATIOS, ThresholdStatus
 from bouncing_ball.contacts.contact import Contact
-from bouncing_ball.contacts.families import Needed, needed
+from bouncing_ball.contacts.families import Needed, families, needed
 from bouncing_ball.contacts.hertz import reduced_modulus
 from bouncing_ball.contacts.loss import of_loss
+from bouncing_ball.contacts.named_laws import law_named
 from bouncing_ball.contacts.notes import remarks
 from bouncing_ball.contacts.quantities import check_kind
 from bouncing_ball.contacts.question import Question
-from bouncing_ball.contacts.resolve import law_type, meant
+from bouncing_ball.contacts.resolve import law_type, meant, resolve
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.table import Table, TableMotion
 from bouncing_ball.contacts.texts import percent
@@ -103,8 +105,10 @@ def choose(
     plain = contact.by_stiffness_and_loss(written)
     if plain.is_stiff:
         raise ParameterError("a contact with a stiffness is not chosen: leave its stiffness out")
-    # A law is fitted to a free impact, so that it is never chosen.
-    law_type(plain)
+    if plain.law is not None and law_named(str(plain.law)) is not SpringDamper:
+        return _of_law(contact, table, question, written)
+    # The linear contact by its name, or a law that does not exist.
+    law_type(replace(plain, law=None))
     # A radius alone is a Hertz contact whose modulus is missing.
     reduced_modulus(plain)
     if not plain.rule.is_linear:
@@ -133,6 +137,70 @@ def choose(
         measured_restitution=r,
         n=meant(question.families, r, table.amplitude),
         needed=need,
+        case=case,
+    )
+
+
+# Steps of the search for the duration of a law, and how closely it is found.
+_STEPS = 20
+_CLOSE = 1e-4
+
+
+def _of_law(
+    contact: Contact, table: TableMotion, question: Question, written: str | None
+) -> Choice:
+    """The contact of a law whose free impact, at the speed of the orbit, is the longest one near
+    that of the linear contact for which the restitution model is within the tolerance.
+
+    The error grows about as the duration: the secant method in logarithms needs a few steps.
+    """
+    measured = contact.with_measured_restitution()
+    linear = choose(replace(measured, law=None, radius=None), table, question)
+    n = linear.n
+    quantity = question.quantity
+
+    def case_of(logarithm: float) -> ResolvedContact:
+        one = replace(contact, contact_time=math.exp(logarithm))
+        return resolve(one, table, [n], written)
+
+    def surplus(logarithm: float) -> float:
+        """ln |e/ε|, or that of a large error where the contact has no orbit."""
+        try:
+            (found,) = families(case_of(logarithm), [n])
+        except NoOrbitError:
+            return math.log(2)
+        error = found.errors[quantity]
+        if error is None:
+            return math.log(2)
+        return math.log(max(abs(error), 1e-12) / question.tolerance)
+
+    place = math.log(linear.contact_time)
+    value = surplus(place)
+    slope = 1.0
+    for _ in range(_STEPS):
+        # The last step is one to the side on which the error is within the tolerance.
+        if -_CLOSE <= value <= 0:
+            break
+        before = place
+        value_before = value
+        place = before - (value + _CLOSE / 2) / slope
+        value = surplus(place)
+        if place != before and value != value_before:
+            slope = min(max((value - value_before) / (place - before), 0.2), 5.0)
+    else:
+        raise NoOrbitError(
+            f"no {contact.law} contact was found whose {QUANTITIES[Quantity(quantity)]} crosses "
+            f"{percent(question.tolerance)}: give {{contact_time}}"
+        )
+    case = replace(case_of(place), given=contact)
+    return replace(
+        linear,
+        stiffness=case.stiffness,
+        damping=case.damping,
+        frequency_ratio=float(case.contact.frequency_ratio),
+        damping_ratio=float(case.contact.damping_ratio),
+        contact_time=case.contact_time,
+        measured_restitution=float(case.contact.restitution),
         case=case,
     )
 

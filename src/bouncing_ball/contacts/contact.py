@@ -1,5 +1,6 @@
 """An engineer's contact: a ball and its contact with a table, as a user gives them."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
@@ -24,6 +25,7 @@ from bouncing_ball.contacts.quantities import (
 )
 from bouncing_ball.errors import ParameterError
 from bouncing_ball.models.damping import Release
+from bouncing_ball.models.laws.hertzian import Tsuji
 from bouncing_ball.models.spring_damper import SpringDamper
 
 STIFF = ("stiffness", "contact_time", "reduced_modulus", "youngs_modulus")
@@ -32,6 +34,34 @@ LOSSY = ("damping", "damping_ratio", "restitution", "measured_restitution", "reb
 """Parameters that determine its loss; the height of a rebound needs that of the drop, too."""
 # Parameters of MuJoCo that are lists; each of them is a separate argument.
 _OF_MUJOCO = ("solref", "solimp")
+
+
+def _numbers_by_name(given: Mapping[Any, Any]) -> dict[str, Any]:
+    """Parameters of an engine as plain numbers; those that are None are left out, and the lists of
+    MuJoCo stay as they are.
+
+    Raises
+    ------
+    ModelError
+        If a name is no text, or a value no number.
+    """
+    found: dict[str, Any] = {}
+    for name, value in given.items():
+        if not isinstance(name, str):
+            raise ParameterError("{parameters} has the name {}, which is not a text", repr(name))
+        if value is None:
+            continue
+        if name in _OF_MUJOCO:
+            found[name] = value
+            continue
+        try:
+            found[name] = math.nan if isinstance(value, bool) else float(value)
+        except (TypeError, ValueError):
+            found[name] = math.nan
+        if not math.isfinite(found[name]):
+            why = "is not a number: give it in the unit of the engine, such as 1e5"
+            raise ParameterError(f"{{parameters}} {name} = {{}} {why}", repr(value))
+    return found
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -137,6 +167,10 @@ class Contact:
         if named is not None and not isinstance(named, Mapping):
             why = "is not a mapping from names to numbers, such as dict(kn=1e5)"
             raise ParameterError(f"{{parameters}} = {{}} {why}", repr(named))
+        if named is not None:
+            object.__setattr__(self, "parameters", _numbers_by_name(named))
+        if self.from_engine is not None and not isinstance(self.from_engine, str):
+            raise ParameterError("{from_engine} = {} is not a name", repr(self.from_engine))
         if self.from_engine is None and self.engine_parameters:
             first = next(iter(self.engine_parameters))
             what = f"{{{first}}}" if first in _OF_MUJOCO else f"{{parameters}} {first}"
@@ -249,7 +283,8 @@ class Contact:
         engine = engine_named(name)
         law = self.law
         rule = str(engine.release(self.release))
-        if self.reduced_modulus is not None or self.youngs_modulus is not None:
+        is_hertz = self.reduced_modulus is not None or self.youngs_modulus is not None
+        if is_hertz and Tsuji.name not in engine.laws:
             raise ParameterError(f"a Hertz contact is not written for {name}: give {{stiffness}}")
         if law not in (None, SpringDamper.name, *engine.laws, *engine.laws.values()):
             raise ParameterError(f"{{law}} {law} is not written for {name}: leave {{law}} out")

@@ -73,7 +73,9 @@ class FinalMotion:
     laid on the table, because no model has an orbit on which a ball can arrive, and ``is_common``
     whether it is the motion on which most balls end, because few end on the orbit. ``changes`` has
     the relative errors of the means if r, k or g change by a thousandth; "r -0.1 %" and the like
-    are the names of these changes. They are known for a linear contact.
+    are the names of these changes. For a contact law they are those of the linear contact with its
+    r and duration, also without a change, because its own would take minutes; they are None if that
+    contact has another kind of motion.
 
     The mean height is the mean over time of the height of the ball above the middle of the table,
     and the mean power that of the contact force times the velocity of the table.
@@ -322,9 +324,8 @@ def _compared(
         size = np.abs(error)
         if np.all(size + margin <= tolerance) or np.any(size - margin > tolerance):
             break
-    changes = None
-    if case.law is None and any(end.is_sampled for end in ends.values()):
-        changes = _changes(case, ends, sampling, first)
+    sampled = any(end.is_sampled for end in ends.values())
+    changes = _changes(case, ends, first) if sampled and not _are_unlike(ends) else None
     table = case.table
     watt = case.mass * table.gravity**2 / table.angular_frequency
     means = dict(zip(ends, (exact, simple), strict=True))
@@ -339,40 +340,59 @@ def _compared(
     }
 
 
+def _are_unlike(ends: Mapping[str, _End]) -> bool:
+    """Whether one of the motions is periodic and the other is not, so that no mean decides."""
+    kinds = {end.kind.kind for end in ends.values()}
+    periodic = {str(Kind.ORBIT), str(Kind.SUBHARMONIC)}
+    return len(kinds) > 1 and bool(kinds & periodic) and str(Kind.UNDECIDED) not in kinds
+
+
+NO_CHANGE = "no change"
+"""The name of the linear contact in place of a law, among the changes."""
+
+
 def _changed(case: ResolvedContact) -> dict[str, ResolvedContact]:
-    """The case with r, k or g changed by a thousandth, the others as they are."""
+    """The case with r, k or g changed by a thousandth, the others as they are; in place of a law
+    the linear contact, also without a change.
+    """
+    linear = replace(case, law=None)
     contact = case.contact
     r = float(contact.restitution)
     ratio = float(contact.frequency_ratio)
 
     def with_r(restitution: float) -> ResolvedContact:
         changed = SpringDamper.from_restitution(restitution, ratio, contact.release, measured=True)
-        return replace(case, contact=changed)
+        return replace(linear, contact=changed)
 
     stiffer = replace(contact, frequency_ratio=ratio * math.sqrt(1 + _CHANGE))
     heavier = replace(case.table, gravity=case.table.gravity * (1 + _CHANGE))
-    found = {"r -0.1 %": with_r(r * (1 - _CHANGE))}
+    found = {} if case.law is None else {NO_CHANGE: linear}
+    found["r -0.1 %"] = with_r(r * (1 - _CHANGE))
     if r * (1 + _CHANGE) <= 1:
         found["r +0.1 %"] = with_r(r * (1 + _CHANGE))
-    found["k +0.1 %"] = replace(case, contact=stiffer)
-    found["g +0.1 %"] = replace(case, table=heavier)
+    found["k +0.1 %"] = replace(linear, contact=stiffer)
+    found["g +0.1 %"] = replace(linear, table=heavier)
     return found
 
 
 def _changes(
-    case: ResolvedContact, ends: Mapping[str, _End], sampling: Sampling, first: _Start
+    case: ResolvedContact, ends: Mapping[str, _End], first: _Start
 ) -> dict[str, dict[str, Mean]] | None:
     """The errors of the means in the changed cases, of the motions on which a ball with the same
-    start ends there, from smaller samples; None if a ball rests.
+    start ends there, from smaller samples; None if a ball rests, or if the linear contact in place
+    of a law has another kind of motion.
     """
-    balls = min(_BALLS_OF_CHANGE, sampling.usual)
-    small = sampling._replace(unit=balls, usual=balls, impacts=sampling.impacts[-2:][:1])
+    balls = _BALLS_OF_CHANGE
+    small = _SAMPLES._replace(unit=balls, usual=balls, impacts=_SAMPLES.impacts[-2:][:1])
+    kinds = [end.kind.kind for end in ends.values()]
     found = {}
     for name, changed in _changed(case).items():
         lam = changed.table.amplitude
         # A ball beside a table that moves less would rise from it.
         start = first._replace(velocity=min(first.velocity, lam * math.cos(first.phase)))
-        there = {model: _end(changed, model, start) for model in ends}
+        there = {model: _end(changed, model, start) for model in list(changed.models)[:2]}
+        if name == NO_CHANGE and [end.kind.kind for end in there.values()] != kinds:
+            return None
         if not all(end.impacts.phase.size for end in there.values()):
             return None
         samples = _sample_sizes(small, balls, there.values())

@@ -16,6 +16,9 @@ from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import n_t
 
+# Shakers reach some hundred times gravity.
+_MOST = 500.0
+
 
 def remarks(case: ResolvedContact) -> tuple[str, ...]:
     """Sentences on how a contact was read: from the parameters of an engine, or a drop test."""
@@ -105,6 +108,11 @@ def notes(case: ResolvedContact, family: ComparedOrbit, motion: FinalMotion) -> 
     contact = case.contact
     orbit = f"{family.n}-T orbit"
     found = [] if case.law is None else _notes_on_law(case.law, case, family)
+    if case.table.amplitude > _MOST:
+        found.append(
+            f"the table accelerates with Λ = {case.table.amplitude:.4g} times gravity, which no "
+            "shaker reaches: check its frequency and its amplitude"
+        )
     if math.isnan(case.permanent_contact):
         found.append(
             "no threshold of permanent contact was found, because the contact is weakly damped"

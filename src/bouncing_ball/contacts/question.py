@@ -70,7 +70,8 @@ class EngineSetup:
     ----------
     engine
         Physics engine for which the contact is written: generic, mujoco, lammps, liggghts,
-        pybullet, drake or mercurydpm. The contact then ends as in this engine.
+        pybullet, drake, mercurydpm or gazebo. The
+        contact then ends as in this engine.
     restitution_error
         Largest error of the restitution coefficient that the engine's time step may cause.
     time_step

@@ -259,6 +259,7 @@ _MOST_BARE = {
     "contact_time": 0.5,
     "radius": 0.5,
     "table_amplitude": 0.02,
+    "period": 10.0,
     "time_step": 0.1,
     "mass": 1e3,
     "drop_height": 100.0,

@@ -7,9 +7,10 @@ from typing import NamedTuple
 from bouncing_ball.accuracy.errors import QUANTITIES, Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.contacts.families import NO_ORBIT, ComparedOrbit, Needed, prediction_error
-from bouncing_ball.contacts.motion import FinalMotion, Mean
+from bouncing_ball.contacts.motion import NO_CHANGE, FinalMotion, Mean
 from bouncing_ball.contacts.question import MOST_BALLS
 from bouncing_ball.contacts.resolved import ResolvedContact
+from bouncing_ball.contacts.starts import FEW
 from bouncing_ball.contacts.texts import in_place_of, percent, shown, signed
 from bouncing_ball.long_run.motions import Kind
 from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
@@ -151,11 +152,16 @@ def judged_by_motion(
     most = max(abs(error.value) + error.half_width for error in errors)
     why = f"{about}; means over time are compared, of the height above the table's middle and of "
     why += "the power that the table transfers; ± is of sampling alone"
+    if motion.changes is None and Kind.CHAOTIC in (exact, simple):
+        why += "; what changes of 0.1 % in r, k and g do is not known"
     if motion.changes:
         why += f"; {_said_of(motion.changes)}"
         if decided := _by_change(motion, tolerance):
             return decided._replace(reason=why)
     return _within(least, most, tolerance, found, why, _larger_sample(motion, tolerance))
+
+
+_OF_LINEAR = "of the linear contact with this r and duration"
 
 
 def _said_of(changes: Mapping[str, Mapping[str, Mean]]) -> str:
@@ -165,7 +171,8 @@ def _said_of(changes: Mapping[str, Mapping[str, Mean]]) -> str:
         f"{100 * one.value:+.2g} % ± {100 * one.half_width:.2g} % with {name}"
         for name, one in heights.items()
     ]
-    return f"from smaller samples the mean height is off by {', '.join(parts)}"
+    of = f"{_OF_LINEAR}, " if NO_CHANGE in changes else ""
+    return f"{of}from smaller samples the mean height is off by {', '.join(parts)}"
 
 
 # Five samples of one mean have intervals so much wider that do not meet in one of a hundred cases.
@@ -176,7 +183,7 @@ def _by_change(motion: FinalMotion, tolerance: float) -> Judgement | None:
     """The verdict if a change of a thousandth decides about the error; otherwise None."""
     assert motion.mean_error is not None and motion.changes is not None
     for name, error in motion.mean_error.items():
-        found = [error, *(of[name] for of in motion.changes.values())]
+        found = [error, *_with_changes(error, {k: of[name] for k, of in motion.changes.items()})]
         lows = [one.value - _WIDER * one.half_width for one in found]
         highs = [one.value + _WIDER * one.half_width for one in found]
         if max(lows) <= min(highs):
@@ -190,12 +197,28 @@ def _by_change(motion: FinalMotion, tolerance: float) -> Judgement | None:
         )
         if apart or max(lows) > 0 > min(highs):
             ends = f"{100 * min(lows):+.2g} % to {100 * max(highs):+.2g} %"
+            of = f" with the changes {_OF_LINEAR}" if NO_CHANGE in motion.changes else ""
             sentence = (
                 f"Whether the restitution model is good enough at {percent(tolerance)} is decided "
-                f"by changes of 0.1 % in r, k or g: its mean {name} is off by {ends}."
+                f"by changes of 0.1 % in r, k or g: its mean {name} is off by {ends}{of}."
             )
             return Judgement(False, sentence, "")
     return None
+
+
+def _with_changes(error: Mean, changes: Mapping[str, Mean]) -> list[Mean]:
+    """The errors with small changes: for a law its own, changed as that of the linear contact."""
+    base = changes.get(NO_CHANGE)
+    if base is None:
+        return list(changes.values())
+    return [
+        Mean(
+            error.value + one.value - base.value,
+            math.hypot(error.half_width, one.half_width, base.half_width),
+        )
+        for name, one in changes.items()
+        if name != NO_CHANGE
+    ]
 
 
 def _larger_sample(motion: FinalMotion, tolerance: float) -> str:
@@ -316,6 +339,14 @@ def _reason(
 def judged_choice(case: ResolvedContact, needed: Needed, n: int) -> Judgement:
     """The verdict on the most compliant contact within the tolerance."""
     tolerance = percent(needed.tolerance)
+    if case.law is not None:
+        sentence = (
+            f"A simulation needs a {case.law.name} contact whose free impact, at the speed of the "
+            f"{n}-T orbit, takes {shown(case.contact_time, 's')} or less: the restitution model "
+            f"then predicts {_subject(needed.quantity, n)} within {tolerance}."
+        )
+        why = f"the error of this contact is {tolerance}, and near it grows with the duration"
+        return Judgement(True, sentence, why)
     sentence = (
         f"A simulation needs a contact of at least {shown(case.stiffness, 'N/m')}, with a contact "
         f"time of {shown(case.contact_time, 's')} or less and a damping of "
@@ -344,11 +375,17 @@ def _common(motion: FinalMotion) -> str:
     return does
 
 
-def headline(motion: FinalMotion, family: ComparedOrbit) -> str:
-    """The motion of the ball, in one sentence."""
+def headline(motion: FinalMotion, family: ComparedOrbit, share: float = 1.0) -> str:
+    """The motion of the ball, in one sentence; ``share`` is that of the starts on a stable orbit.
+
+    An orbit that few balls reach is the headline only if its family was asked for.
+    """
     orbit = f"{family.n}-T orbit"
     if motion.kind == Kind.ORBIT and motion.restitution_kind is None:
         said = f"The {orbit} is stable: a ball on it stays on it."
+        if share < FEW:
+            ends = f"only {shown(share, '%')} of the starts end" if share else "no start ends"
+            said = f"{said[:-1]}, but {ends} on it."
         if motion.laid is None:
             return said
         return f"{said} A ball laid on the table {_LAID[motion.laid]}."

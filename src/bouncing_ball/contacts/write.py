@@ -26,6 +26,7 @@ from bouncing_ball.contacts.table import Table, TableMotion
 from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.models.spring_damper import SpringDamper
 
+_STEP = "time_step"
 _OF_A_LAW = (
     "{time_step} is given for a spring and a damper: the r of this contact depends on the speed"
 )
@@ -131,7 +132,7 @@ def settings(case: ResolvedContact, setup: EngineSetup) -> EngineSettings:
     if law is not None:
         if setup.time_step is not None:
             raise ParameterError(_OF_A_LAW)
-        engine = engine.with_law(law)
+        engine = engine.with_law({**law, "radius": case.given.radius})
     release = str(case.contact.release)
     error = setup.restitution_error
     return engine.settings(case.physical, release, error, setup.time_step)
@@ -237,7 +238,61 @@ def at_given_step(contact: Contact, time_step: float, error: float) -> AtStep:
     if engine.needs_speed:
         raise ParameterError(_OF_A_LAW)
     parameters = contact.engine_parameters
-    if "time_step" in parameters:
+    if _STEP in parameters:
         raise ParameterError("{time_step} and {parameters} time_step give the same: give one")
     plain = contact.by_stiffness_and_loss()
     return engine.at_step_of(parameters, plain.mass, time_step, error, plain.release)
+
+
+def at_own_step(contact: Contact, error: float) -> AtStep | None:
+    """What an engine does with parameters that contain its time step; None without such a step.
+
+    Raises
+    ------
+    ModelError
+        If the parameters of this engine contain no time step.
+    """
+    engine = contact.engine
+    if engine is None or _STEP not in contact.engine_parameters:
+        return None
+    plain = contact.by_stiffness_and_loss()
+    parameters = dict(contact.engine_parameters)
+    step = parameters.pop(_STEP)
+    found = engine.at_step_of(parameters, plain.mass, step, error, plain.release)
+    return replace(found, is_of_parameters=True)
+
+
+LOOSE = 0.01
+"""An error of r with which a contact may be stiffer by one or two orders than with 0.001."""
+
+
+@dataclass(frozen=True)
+class Looser:
+    """The stiffest contact whose r is within a larger error at a given time step, in SI units."""
+
+    error: float
+    stiffness: float
+    damping: float
+
+
+def looser(case: ResolvedContact, at: AtStep | None) -> Looser | None:
+    """The contact with a larger error; None if the step resolves the given one, or for that error.
+
+    Examples
+    --------
+    >>> from bouncing_ball.contacts.resolve import resolve
+    >>> contact = Contact(mass=1.0, stiffness=1e6, restitution=0.75)
+    >>> case = resolve(contact, TableMotion.at_rest(), written="generic")
+    >>> at = settings(case, EngineSetup(engine="generic", time_step="2 ms")).at_step
+    >>> looser(case, at).stiffness > 20 * at.stiffest
+    True
+    """
+    if at is None or at.is_within or at.allowed >= LOOSE:
+        return None
+    exact = Physical(case.mass, at.stiffest, at.stiffest_damping)
+    scheme = engine_named(at.engine).scheme
+    release = case.contact.release
+    found, _ = stiffest_contact(
+        scheme, case.mass, exact.damping_ratio, release, at.time_step, LOOSE
+    )
+    return Looser(LOOSE, found.stiffness, found.damping)

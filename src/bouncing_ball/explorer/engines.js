@@ -13,6 +13,7 @@ const ENGINE_NUMBERS = {
   pybullet: (m, k, c) => ({contactStiffness: 2 * k, contactDamping: 0.5 * c}),
   drake: (m, k, c) => ({point_contact_stiffness: 2 * k, relaxation_time: c / k / 2}),
   mercurydpm: (m, k, c) => ({stiffness: k, dissipation: c}),
+  gazebo: (m, k, c) => ({kp: 2 * k, kd: 0.5 * c}),
 };
 
 const COMPENSATED = "compensated implicit Euler";
@@ -95,10 +96,12 @@ const ENGINE_NAMES = {
   generic: ["stiffness", "damping"], mujoco: ["solref", "solimp"], lammps: ["kn", "gamma_n"],
   liggghts: ["kn", "gamman"], pybullet: ["contactStiffness", "contactDamping", "time_step"],
   drake: ["point_contact_stiffness", "relaxation_time", "time_step"], mercurydpm: ["stiffness", "dissipation"],
+  gazebo: ["kp", "kd", "time_step"],
 };
 const ENGINE_READS = {
   generic: (m, a, b) => [a, b], lammps: (m, a, b) => [a, b / (1 / m)], liggghts: (m, a, b) => [a, b / (1 / m)],
   pybullet: (m, a, b) => [a / 2, b / 0.5], drake: (m, a, b) => [a / 2, a * b], mercurydpm: (m, a, b) => [a, b],
+  gazebo: (m, a, b) => [a / 2, b / 0.5],
 };
 
 // Up to this impedance MuJoCo's contact is taken for a spring and a damper.
@@ -157,7 +160,7 @@ function readEngine(engine, mass, [one, two, three]) {
 
 // ---- The case of the physical tab.
 // Engines whose scheme is compensated, so that their parameters belong to a time step.
-const STEPPED = ["pybullet", "drake"];
+const STEPPED = ["pybullet", "drake", "gazebo"];
 // The contact in SI units, its dimensionless groups, and remarks.
 function caseOf(state) {
   const found = anyCaseOf(state), duration = freeAngle(found.contact) / dampedFrequency(found.contact) * found.time;

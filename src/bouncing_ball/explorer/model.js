@@ -270,17 +270,18 @@ function described(n, amplitude, phase, duration, impact, trace, determinant, mo
   };
 }
 
+// The motion a time s after the contact's start at δ = d, which is 0 unless a contact resumes.
 function contactState(contact, point, s) {
-  const {omega, zeta} = contact, root = Math.sqrt((1 - zeta) * (1 + zeta));
-  const angle = omega * root * s;
+  const {omega, zeta} = contact, {d = 0} = point, root = Math.sqrt((1 - zeta) * (1 + zeta));
+  const angle = omega * root * s, loss = 2 * zeta * omega;
   const at = responses(s, Math.sin(angle), Math.cos(angle), Math.sin(s), Math.cos(s),
     Math.exp(-zeta * omega * s), omega, zeta, root);
-  const gap = point.u * at.g - at.gravity + point.x * at.p + point.y * at.q;
-  const speed = point.u * at.rate - at.g + point.x * at.q + point.y * (at.g - at.p);
+  const gap = point.u * at.g - at.gravity + point.x * at.p + point.y * at.q + d * (at.rate + loss * at.g);
+  const speed = point.u * at.rate - at.g + point.x * at.q + point.y * (at.g - at.p) - d * omega * omega * at.g;
   const table = point.x * Math.sin(s) + point.y * Math.cos(s);
   return {gap, speed, height: gap + table,
     velocity: speed + point.x * Math.cos(s) - point.y * Math.sin(s),
-    force: -(2 * zeta * omega * speed + omega * omega * gap),
+    force: -(loss * speed + omega * omega * gap),
     grip: -gap - 2 * contact.sine / omega * speed};
 }
 

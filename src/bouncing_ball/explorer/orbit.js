@@ -8,7 +8,6 @@ const SIZES = [8, 5.5, 3.5];
 // What a ball does that starts beside an unstable orbit, as far as the page follows contacts.
 const BESIDE = 1e-3;
 function insteadOf({amplitude, phase, impact_velocity}, {contact}) {
-  if (contact.release === "force") return "bouncing-ball design says what the ball does instead";
   const end = endOf({contact}, amplitude, phase, impact_velocity * (1 + BESIDE));
   return `one that starts beside it ${SAID[end.kind](end)}`;
 }

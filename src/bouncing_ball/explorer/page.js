@@ -12,13 +12,21 @@ for (const [id, names] of [["engines-from", ENGINES], ["engine", ENGINES]])
   $(id).append(...Object.keys(names).map(name => new Option(name)));
 // A state without an answer: why, and nothing of the answer before it.
 function refuse(text) {
+  clearTimeout(counting);
+  count = () => {};
   $("refused").textContent = text;
   document.body.toggleAttribute("data-refused", true);
-  for (const id of ["verdict", "command", "snippet"]) $(id).textContent = "";
+  for (const id of ["verdict", "starts", "command", "snippet"]) $(id).textContent = "";
   play(false);
 }
 
+// The balls with other starts are followed a moment, in ms, after the rest is shown.
+const PATIENCE = 200;
+let counting = 0, count = () => {};
+
 function show(hash) {
+  clearTimeout(counting);
+  count = () => {};
   const {state, refused} = parse(hash), why = impossible(state);
   current = state;
   for (const [name, value] of Object.entries(state)) setControl(name, value);
@@ -29,6 +37,7 @@ function show(hash) {
     $(`panel-${tab}`).hidden = !on;
   }
   const onStage = state.tab === "stage";
+  $("starts").hidden = onStage;
   $("sides").hidden = state.tab === "design";
   $("design-answer").hidden = state.tab !== "design";
   for (const id of ["contact-choice", "orbit-key", "orbit-views"]) $(id).hidden = onStage;
@@ -57,10 +66,18 @@ function show(hash) {
     if (!(error instanceof Refused)) throw error;
     return refuse(error.message);
   }
-  const found = answer(question);
-  const [good, sentence] = verdictOf(found, question);
-  $("verdict").textContent = sentence;
-  $("verdict").dataset.good = good;
+  const found = answer(question), verdict = verdictOf(found, question);
+  [$("verdict").dataset.good, $("verdict").textContent] = verdict;
+  $("starts").textContent = "Following balls with other starts …";
+  count = () => {
+    const ends = endsOfStarts(found.contact, question.amplitude, found.orbits[0]);
+    [$("verdict").dataset.good, $("verdict").textContent, $("starts").textContent] =
+      withStarts(verdict, ends, question.n);
+    $("starts").dataset.share = ends.share;
+    count = () => {};
+  };
+  // A slider that is dragged waits for no balls.
+  counting = setTimeout(() => count(), PATIENCE);
   fillTables(found, question);
   if (state.tab === "design") {
     const one = question.physical;
@@ -153,6 +170,6 @@ function check() {
   $("badge").dataset.worst = String(worst);
 }
 
-window.explorer = Object.freeze({show, parse, answer, check, scenes: SCENES, stage: () => stage, place});
+window.explorer = Object.freeze({show, parse, answer, check, count: () => count(), scenes: SCENES, stage: () => stage, place});
 show(location.hash);
 check();

@@ -1,5 +1,6 @@
-// One ball from impact to impact, with a restitution coefficient or a spring-damper contact that
-// ends at δ = 0: bouncing_ball.models in plain JavaScript. δ is the height above the table.
+// One ball from impact to impact, with a restitution coefficient or a spring-damper contact:
+// bouncing_ball.models in plain JavaScript. δ is the height above the table. A contact that ends by
+// its force leaves the ball below the table's level, where it may resume.
 "use strict";
 
 const TURN = 2 * Math.PI;
@@ -52,24 +53,48 @@ function firstZero(at, start, skip = time => time) {
 }
 
 // ---- Free flight from the table: δ and its derivatives after a time (models.flight).
-function flightAt({v, x, y}, s) {
+function flightAt({v, x, y, d = 0}, s) {
   const sine = Math.sin(s), half = Math.sin(s / 2), versine = 2 * half * half;
   return {
-    gap: s * (v - s / 2) + y * versine + x * (s - sine), speed: v - s + y * sine + x * versine,
+    gap: d + s * (v - s / 2) + y * versine + x * (s - sine), speed: v - s + y * sine + x * versine,
     pull: y + x * sine - y * versine - 1, push: x - y * sine - x * versine,
   };
 }
 
-// Time and speed of the landing.
-function land(left, amplitude) {
-  const {v, x, y} = left, gravity = 1 + amplitude;
+// Where a ball that was released by its force falls back before it is above the table's level: then
+// the contact resumes (models.resumption). Otherwise a time at which it is not below that level.
+function resumes(left, amplitude, lag) {
+  const {v, d} = left, gravity = 1 + amplitude, square = v * v + 2 * gravity * d;
+  if (square > 0 && v >= 0 && Math.sqrt(square) >= lag * gravity)
+    return {time: (v + Math.sqrt(square)) / gravity, back: false};
+  let reached = 0;
+  const forcing = amplitude * Math.hypot(1, lag);
+  const at = s => {
+    const {gap, speed, pull, push} = flightAt(left, s), ended = gap >= 0;
+    if (ended) reached = s;
+    // At the release δ + κ δ′ = 0 but for rounding; this zero is not the one that is searched for.
+    return {y: s === 0 ? 0 : -(gap + lag * speed), v: -(speed + lag * pull), a: -(pull + lag * push),
+      j: -(push - lag * (1 + pull)), most: [1 + forcing, forcing, forcing], ended};
+  };
+  const time = firstZero(at, 0);
+  return Number.isFinite(time) && flightAt(left, time).gap < 0 ? {time, back: true}
+    : {time: Number.isFinite(time) ? time : reached, back: false};
+}
+
+// Time, place and speed of the landing, or of the resumption of a contact.
+function land(left, amplitude, lag = 0) {
+  const {v, x, y, d = 0} = left, gravity = 1 + amplitude;
   // The ball cannot land while it is above the highest point of the table.
-  const thrown = v + x, root = Math.sqrt(Math.max(thrown * thrown + 2 * (y - amplitude), 0));
+  const thrown = v + x, root = Math.sqrt(Math.max(thrown * thrown + 2 * (y + d - amplitude), 0));
   const skip = s => s >= thrown - root && s < thrown + root ? thrown + root : s;
   // It is in the air at least as long as against the strongest gravity, or, from rest on a table
   // that recedes, as the first terms of its series are positive.
   let sure = 2 * v / gravity;
-  if (v === 0 && y >= 1) {
+  if (d < 0) {
+    const {time, back} = resumes(left, amplitude, lag), {gap, speed} = flightAt(left, time);
+    if (back) return {hang: time, d: gap, u: speed};
+    sure = time;
+  } else if (v === 0 && y >= 1) {
     const lift = y - 1, top = Math.max(amplitude, 1);
     const steep = Math.min(lift / Math.max(Math.abs(x), 1e-300), Math.sqrt(3 * lift / top));
     sure = Math.max(steep, 4 * x / top);
@@ -79,7 +104,7 @@ function land(left, amplitude) {
     return {y: -gap, v: -speed, a: -pull, j: -push, most: [gravity, amplitude, amplitude]};
   };
   const hang = firstZero(at, skip(sure), skip);
-  return {hang, u: Math.min(flightAt(left, hang).speed, 0)};
+  return {hang, d: 0, u: Math.min(flightAt(left, hang).speed, 0)};
 }
 
 // ---- An impact with a restitution coefficient (models.restitution). Infinitely many ever smaller
@@ -104,49 +129,57 @@ function departByRestitution(r, amplitude, phase, u) {
     duration: settling + (wait > TURN - 1e-9 ? 0 : wait)};
 }
 
-// ---- A contact: δ < 0 until it first rises through 0 (models.linear_contact). Where transient and
-// response together stay below 1/ϖ², it does so no more.
-function departByContact(contact, amplitude, phase, u) {
-  const {omega, zeta} = contact, stiffness = omega * omega, loss = 2 * zeta * omega;
-  const [x, y] = tableAt(phase, amplitude), point = {u, x, y};
+// ---- A contact, until y = δ + κ δ′ first rises through 0, κ = 0 if it ends at the table's level
+// (models.linear_contact). Where transient and response together stay below 1/ϖ², it does so no more.
+const lagOf = contact => 2 * contact.sine / contact.omega;
+
+function departByContact(contact, amplitude, phase, u, d = 0) {
+  const {omega, zeta} = contact, stiffness = omega * omega, loss = 2 * zeta * omega, lag = lagOf(contact);
+  const [x, y] = tableAt(phase, amplitude), point = {u, x, y, d};
   const damped = dampedFrequency(contact), detuning = (omega - 1) * (omega + 1);
   const gamma = detuning * detuning + loss * loss, level = 1 / stiffness;
-  const sine = (detuning * x + loss * y) / gamma, cosine = (detuning * y - loss * x) / gamma;
-  const a = level - cosine, b = (u - sine + loss / 2 * a) / damped;
-  const envelope = Math.hypot(a, b), steady = amplitude / Math.sqrt(gamma);
+  const along = (detuning + lag * loss) / gamma, across = (lag * detuning - loss) / gamma;
+  const sine = along * x - across * y, cosine = along * y + across * x;
+  const start = d + lag * u, rate = u + lag * (y - 1 - loss * u - stiffness * d);
+  const a = start + (level - cosine), b = (rate - sine + loss / 2 * a) / damped;
+  const envelope = Math.hypot(a, b), steady = amplitude * Math.hypot(along, across);
   const at = s => {
     const {gap, speed} = contactState(contact, point, s);
     const [tx, ty] = tableAt(phase + s, amplitude);
     const pull = ty - 1 - loss * speed - stiffness * gap, push = tx - loss * pull - stiffness * speed;
+    const jerk = -ty - loss * push - stiffness * pull;
     const free = envelope * Math.exp(-loss / 2 * s), bound = stiffness * free;
-    return {y: gap, v: speed, a: pull, j: push, ended: free + (steady - level) <= 2e-15 * level,
+    return {y: s === 0 && d < 0 ? 0 : gap + lag * speed, v: speed + lag * pull, a: pull + lag * push,
+      j: push + lag * jerk, ended: free + (steady - level) <= 2e-15 * level,
       most: [bound + steady, omega * bound + steady, stiffness * bound + steady]};
   };
   const duration = firstZero(at, 0), stays = !Number.isFinite(duration), end = phase + duration;
   if (stays)
     return {point, duration: Infinity, settling: 0, sticks: true, stays, lost: Number.isNaN(duration)};
-  const [leftX, leftY] = tableAt(end, amplitude);
-  return {point, phase: end, v: Math.max(contactState(contact, point, duration).speed, 0),
-    x: leftX, y: leftY, duration, settling: 0, sticks: duration * damped > TURN, stays};
+  const [leftX, leftY] = tableAt(end, amplitude), {speed} = contactState(contact, point, duration);
+  const v = lag > 0 ? speed : Math.max(speed, 0);
+  return {point, phase: end, v, d: -lag * v, x: leftX, y: leftY, duration, settling: 0,
+    sticks: duration * damped > TURN, stays};
 }
 
 // All impacts of a ball, from the first one on, until it stays on the table: when and at which
 // phase, δ′ before it, how the ball leaves and how long it then flies. `model` is {r} or {contact}.
 // Speeds are wrong by the part `grain` of themselves, to see what rounding errors would do.
 function* impactsOf(model, amplitude, phase, velocity, grain = 0) {
-  let time = 0, u = Math.min(velocity - amplitude * Math.cos(phase), 0);
+  let time = 0, u = Math.min(velocity - amplitude * Math.cos(phase), 0), d = 0;
   for (let k = 0; ; k++) {
-    const left = model.contact ? departByContact(model.contact, amplitude, phase, u)
+    const left = model.contact ? departByContact(model.contact, amplitude, phase, u, d)
       : departByRestitution(model.r, amplitude, phase, u);
     if (left.stays) {
       yield {time, at: phase, u, left, hang: Infinity};
       return;
     }
-    const landed = land(left, amplitude);
+    const landed = land(left, amplitude, model.contact ? lagOf(model.contact) : 0);
     yield {time, at: phase, u, left, hang: landed.hang};
     time += left.duration + landed.hang;
     phase = reduced(left.phase + landed.hang);
     u = landed.u * (1 + (k % 2 ? grain : -grain));
+    d = landed.d;
   }
 }
 
@@ -174,15 +207,18 @@ function endOf(...start) {
     : {...found, kind: "goes on", periods: 0, impacts: 0};
 }
 
-function followed(model, amplitude, phase, velocity, grain) {
+// A ball that comes near a `known` stable orbit is on it.
+function followed(model, amplitude, phase, velocity, grain, most = MOST_IMPACTS, known = null) {
   let k = 0, mark = null, turn = 0, almost = 0, lift = null, stuck = false, top = -Infinity;
   const last = stepsTaken + MOST_WORK, seen = [], end = (kind, periods, impacts, more) => ({kind, periods, impacts, top, seen, ...more});
   for (const {time, at, u, left} of impactsOf(model, amplitude, phase, velocity, grain)) {
     if (left.lost || stepsTaken > last) return end("goes on", 0, 0);
     if (left.stays) return end("stays", 1, 0, {since: time + left.settling});
     seen.push(reduced(at));
+    if (known && Math.max(Math.abs(reduced(at - known.at)), Math.abs(u - known.u) / (1 + amplitude)) < ON_ORBIT)
+      return end("repeats", known.periods, 1);
     const thrown = Math.max(left.v + left.x, 0);
-    top = Math.max(top, left.y + thrown * thrown / 2);
+    top = Math.max(top, left.y + (left.d ?? 0) + thrown * thrown / 2);
     if (!model.contact && left.sticks) {
       const now = time + left.duration;
       if (lift) return end("sticks", Math.round((now - lift.now) / TURN), k - lift.k);
@@ -197,7 +233,7 @@ function followed(model, amplitude, phase, velocity, grain) {
       [turn, mark, stuck, almost] = [0, {k, at, u, time}, false, 0];
     else if (away < NEAR && periods) almost ||= count;
     stuck ||= left.sticks;
-    if (++k === MOST_IMPACTS) return end("goes on", 0, 0);
+    if (++k === most) return end("goes on", 0, 0);
   }
 }
 

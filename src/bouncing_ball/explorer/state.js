@@ -120,7 +120,7 @@ function impossible(state) {
 // The numbers, or the texts, by which the contact of the physical tab is given.
 const givenBy = given => given in ENGINES ? TEXTS.slice(0, ENGINE_NAMES[given].length) : ["k", "r"];
 const TABS = {
-  orbit: () => ["r", "w", "a", "n", "release", "side"],
+  orbit: ({t}) => ["r", "w", "a", "n", "release", "side", ...(t === DEFAULTS.t ? [] : ["t"])],
   design: ({engine, given, t}) => ["tab", "m", "f", "acc", ...givenBy(given), "n", "release",
     ...(t === DEFAULTS.t ? [] : ["t"]), ...(given === "stiffness" ? [] : ["given"]), ...(engine === "none" ? [] : ["engine", "e"])],
   stage: ({model}) => ["tab", "model", "r", ...(model === "restitution" ? [] : ["w"]), "a", "phi",
@@ -132,9 +132,9 @@ const hashOf = state => "#" + TABS[state.tab](state).map(
 // What the model is asked: of the physical tab, its dimensionless groups.
 function asked(state) {
   const {r, n, release, side} = state;
-  // The tolerance is given in percent, on the physical tab.
+  // The tolerance is given in percent.
   if (state.tab === "orbit")
-    return {r, n, release, side, omega: state.w, amplitude: state.a, tolerance: DEFAULTS.t / 100};
+    return {r, n, release, side, omega: state.w, amplitude: state.a, tolerance: state.t / 100};
   const one = caseOf(state);
   // `bouncing-ball design` asks for the orbit that is stable next to the saddle-node.
   return {n, side: "stable", amplitude: state.acc, contact: one.contact, physical: one,

@@ -125,7 +125,12 @@ def test_the_release_is_written_where_there_are_two():
         ("generic", {"stiffness": 1.0, "time_step": 1.0}, 1.0, "generic has no 'time_step'"),
         ("drake", {"time_step": 0.0}, 1.0, "time_step = 0.0 is not a positive number of s"),
         ("drake", {"hunt_crossley_dissipation": 1.0}, 1.0, "point_contact_stiffness is missing"),
-        ("drake", {"hunt_crossley_dissipation": 1.0, "time_step": 1}, 1.0, "has no 'time_step'"),
+        (
+            "drake",
+            {"hunt_crossley_dissipation": 1.0, "time_step": 1},
+            1.0,
+            "time_step is not allowed with hunt",
+        ),
     ],
 )
 def test_parameters_that_cannot_be_read_are_refused_in_one_line(

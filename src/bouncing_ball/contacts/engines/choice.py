@@ -2,6 +2,7 @@
 
 from bouncing_ball.contacts.engines.drake import Drake
 from bouncing_ball.contacts.engines.engine import Engine
+from bouncing_ball.contacts.engines.gazebo import Gazebo
 from bouncing_ball.contacts.engines.genesis import Genesis
 from bouncing_ball.contacts.engines.mujoco import MuJoCo
 from bouncing_ball.contacts.engines.newton import NewtonMuJoCo, NewtonSemiImplicit
@@ -27,6 +28,7 @@ ENGINES: dict[str, Engine] = {
         NewtonSemiImplicit(),
         NewtonMuJoCo(),
         Genesis(),
+        Gazebo(),
     )
 }
 """The engines by name."""

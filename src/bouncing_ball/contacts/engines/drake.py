@@ -15,6 +15,7 @@ from bouncing_ball.contacts.engines.engine import (
     written,
 )
 from bouncing_ball.contacts.engines.scheme import Scheme
+from bouncing_ball.errors import ModelError
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.hertzian import LinearHuntCrossley
 
@@ -82,6 +83,14 @@ class HuntCrossleyDrake(Drake):
 
     def __init__(self, law_in_si: Mapping[str, Any] | None = None):
         self._law_in_si = law_in_si or {}
+
+    def contact(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
+        if "time_step" in parameters:
+            raise ModelError(
+                "time_step is not allowed with hunt_crossley_dissipation, whose contact is that of "
+                "small time steps: leave it out, or give relaxation_time"
+            )
+        return super().contact(parameters, mass)
 
     def parameters(self, contact: Physical) -> EngineParameters:
         values = (written(2 * self._law_in_si["stiffness"]), written(self._law_in_si["damping"]))

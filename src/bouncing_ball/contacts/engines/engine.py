@@ -45,7 +45,8 @@ class EngineSettings:
     that is given, None if the time step follows from the contact. If the given step does not keep
     the r of the contact within the error, ``retuned`` has the settings of the same stiffness with
     the damping that restores the mean r, None if no damping does, and ``softer`` those of the
-    stiffest contact with the same ζ that the step resolves.
+    stiffest contact with the same ζ that the step resolves. ``instant`` then says how the engine
+    has this r without a contact that lasts, if it can.
     """
 
     name: str
@@ -62,6 +63,7 @@ class EngineSettings:
     contact_duration: float | None = None
     penetration: float | None = None
     at_step: AtStep | None = None
+    instant: str = ""
     retuned: "EngineSettings | None" = None
     softer: "EngineSettings | None" = None
 
@@ -207,6 +209,13 @@ class Engine(ABC):
         limit = "k, c and r are those in the limit of small time steps, which damp less"
         return (f"{limit}; with the parameter time_step, in s, they are those of this step",)
 
+    def instant(self, restitution: float) -> str:
+        """How the engine has an r at any time step, in impacts that are instants; empty if unknown.
+
+        Such impacts have no stiffness, and no depth at rest.
+        """
+        return ""
+
     def release(self, asked: str | None = None) -> Release:
         """The release with this name, or the engine's default.
 
@@ -280,7 +289,7 @@ class Engine(ABC):
             again = self._at(other, rule, again)
         soft = Physical(*map(written, (contact.mass, at.stiffest, at.stiffest_damping)))
         softer = self._at(soft, rule, self.at_step(soft, rule, time_step, error))
-        return replace(found, retuned=again, softer=softer)
+        return replace(found, instant=self.instant(at.restitution), retuned=again, softer=softer)
 
     def _at(self, contact: Physical, release: Release, at: AtStep) -> EngineSettings:
         """The settings of a contact at a time step that is given."""
@@ -346,9 +355,10 @@ class Engine(ABC):
         """The mass in kg, after a check of it and of the names of all parameters."""
         if unknown := set(parameters) - set(self.names):
             names = " and ".join(self.names)
-            raise ModelError(
-                f"{self.name} has no {sorted(unknown)[0]!r}: its parameters are {names}"
-            )
+            first = sorted(unknown)[0]
+            if first == "time_step":
+                names += ", and the step of any engine is given by --time-step or time_step"
+            raise ModelError(f"{self.name} has no {first!r}: its parameters are {names}")
         if mass is None:
             raise ModelError(
                 f"the mass is missing: the parameters of {self.name} do not contain it"

@@ -70,7 +70,8 @@ class AtStep:
     grow. With the damping ``retuned`` in N s/m and the same stiffness the mean is ``restitution``;
     it is None if no damping achieves that, or if the contact is within the error as it is. The
     stiffest contact with the same r is within the error allowed. ``remarks`` are sentences on how
-    the engine changes the contact at this step.
+    the engine changes the contact at this step, and ``is_of_parameters`` tells whether parameters
+    that contain the step were given.
     """
 
     engine: str
@@ -90,6 +91,7 @@ class AtStep:
     mean: float = math.nan
     retuned: float | None = None
     remarks: tuple[str, ...] = ()
+    is_of_parameters: bool = False
 
     @property
     def span(self) -> str:
@@ -288,7 +290,12 @@ def at_step(
     off = found.error(r)
     stable = is_stable(scheme, zeta, step)
     within = stable and off <= error
-    ratio = None if within else retuned(scheme, zeta, release, step, r)
+    # A compensated scheme is told the contact that was asked for, with another damping.
+    tuned = wanted if scheme is Scheme.COMPENSATED else contact
+    omega = tuned.angular_frequency
+    ratio = None
+    if not within:
+        ratio = retuned(scheme, tuned.damping_ratio, release, omega * time_step, r)
     same = wanted.damping_ratio
     most, fewest = stiffest_contact(scheme, contact.mass, same, release, time_step, error)
     return AtStep(
@@ -307,5 +314,5 @@ def at_step(
         stiffest_contact_time=fewest * time_step,
         stiffest_steps=fewest,
         mean=found.mean,
-        retuned=None if ratio is None else 2 * ratio * contact.mass * contact.angular_frequency,
+        retuned=None if ratio is None else 2 * ratio * contact.mass * omega,
     )

@@ -10,11 +10,19 @@
 * *PyBullet*: a spring and a damper on each of the two bodies, which form one constraint.
 """
 
+import math
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, ClassVar
 
-from bouncing_ball.contacts.engines.engine import EngineParameters, Physical, Proportional
+from bouncing_ball.contacts.engines.engine import (
+    Engine,
+    EngineParameters,
+    Physical,
+    Proportional,
+)
+from bouncing_ball.contacts.engines.hertz_granular import LAWS, HertzLammps, HertzLiggghts
 from bouncing_ball.contacts.engines.scheme import Scheme
+from bouncing_ball.errors import ModelError
 from bouncing_ball.models.damping import Release
 
 
@@ -67,6 +75,10 @@ class Lammps(Proportional):
     names = ("kn", "gamma_n")
     releases = (Release.DISPLACEMENT, Release.FORCE)
     scheme = Scheme.SEMI_IMPLICIT
+    laws: ClassVar[dict[str, str]] = LAWS
+
+    def with_law(self, law_in_si: Mapping[str, Any]) -> Engine:
+        return HertzLammps(law_in_si)
 
     def factors(self, mass: float) -> tuple[float, float]:
         return 1.0, 1 / mass
@@ -84,6 +96,9 @@ class Liggghts(Lammps):
 
     name = "liggghts"
     names = ("kn", "gamman")
+
+    def with_law(self, law_in_si: Mapping[str, Any]) -> Engine:
+        return HertzLiggghts(law_in_si)
 
 
 class MercuryDPM(Proportional):
@@ -110,6 +125,11 @@ class PyBullet(Proportional):
     sizes: the damper then acts from the surface on, so that r is ``exp(-ζωh)`` times the value
     without such contacts. The text to paste allows none, and no slop.
 
+    ``restitution`` is another kind of contact: an instant with the product of both bodies' values.
+    With contacts ahead the ball is stopped at the surface instead, so that r is 0; below
+    ``restitutionVelocityThreshold`` it is 0 as well; and ``contactERP`` adds up to its own value
+    to r, as it pushes the ball out of the table.
+
     Examples
     --------
     >>> from bouncing_ball.contacts.engines.engine import Physical
@@ -124,6 +144,25 @@ class PyBullet(Proportional):
     names = ("contactStiffness", "contactDamping")
     releases = (Release.FORCE,)
     scheme = Scheme.COMPENSATED
+
+    def reader(self, parameters: Mapping[str, Any]) -> Engine:
+        if "restitution" in parameters:
+            both = float(parameters["restitution"]) ** 2
+            raise ModelError(
+                "restitution of pybullet has no stiffness: if ball and table have it, "
+                f"r = {both:.4g} at any time step, with contactProcessingThreshold=0, contactERP=0 "
+                "and "
+                "restitutionVelocityThreshold=0, and 0 without the first of these"
+            )
+        return self
+
+    def instant(self, restitution: float) -> str:
+        each = f"restitution={math.sqrt(restitution):.6g}"
+        return (
+            f"Without a spring, {each} of ball and table alike has r = {restitution:.4g} at any "
+            "time step, with contactProcessingThreshold=0, contactERP=0 and "
+            "restitutionVelocityThreshold=0."
+        )
 
     def factors(self, mass: float) -> tuple[float, float]:
         return 2.0, 0.5

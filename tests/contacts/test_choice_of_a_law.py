@@ -1,0 +1,44 @@
+"""The contact that is chosen for a law that is not linear."""
+
+import pytest
+from asked_contacts import answered, assessed
+
+from bouncing_ball import Contact, Question, Table, choose_contact
+from bouncing_ball.errors import NoOrbitError
+
+TABLE = {"frequency": "50 Hz", "acceleration": "0.8 g"}
+BALL = {"mass": "20 g", "restitution": 0.8}
+
+
+@pytest.mark.usefixtures("short_runs")
+@pytest.mark.parametrize(
+    ("law", "tolerance"), [("hunt-crossley", 0.01), ("tsuji", 0.05), ("kuwabara-kono", 0.02)]
+)
+def test_the_error_of_the_chosen_law_is_the_tolerance(law, tolerance):
+    table = Table(**TABLE)
+    found = choose_contact(table, Contact(**BALL, law=law), Question(tolerance=tolerance))
+    assert found.case.law.name == law and found.n == 1
+    assert found.measured_restitution == pytest.approx(0.8, rel=1e-9)
+    # The assessment of this contact, and of one that lasts 1 % longer, which computes it anew.
+    for longer, good in ((1.0, True), (1.01, False)):
+        time = longer * found.contact_time
+        again = assessed(**BALL, **TABLE, law=law, contact_time=time, n=1, tolerance=tolerance)
+        off = abs(again.judged.errors["max_height"])
+        assert (off <= tolerance) is good is again.is_good_enough
+        # The error grows about as the duration.
+        assert off == pytest.approx(tolerance * longer, rel=5e-3)
+
+
+@pytest.mark.usefixtures("short_runs")
+def test_the_answer_names_the_duration_and_writes_the_law_for_an_engine(said):
+    options = [f"--{name}={value}" for name, value in (BALL | TABLE).items()]
+    text = said("design", *options, "--law=hunt-crossley", "--tolerance=5 %")
+    assert "A simulation needs a hunt-crossley contact whose free impact, at the speed of" in text
+    given = BALL | TABLE | {"law": "tsuji", "tolerance": 0.05, "radius": "5 mm"}
+    engine = answered(**given, engine="lammps").engine
+    assert engine.parameters["coeff_restitution"] == pytest.approx(0.8)
+
+
+def test_a_tolerance_that_no_contact_meets_is_refused(refusal):
+    with refusal(NoOrbitError, "no contact up to ϖ = 1e+06 has its greatest height predicted"):
+        choose_contact(Table(**TABLE), Contact(**BALL, law="tsuji"), Question(tolerance=1e-9))

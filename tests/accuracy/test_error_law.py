@@ -15,14 +15,14 @@ from bouncing_ball.accuracy.error_law import (
 from bouncing_ball.accuracy.errors import OF_IMPACTS, Quantity
 from bouncing_ball.beyond.exhibits.random_orbits import random_orbits
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.models.damping import Release, damping_ratio, restitution_coefficient
+from bouncing_ball.models.damping import LINEAR, Release, damping_ratio, restitution_coefficient
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic.one_impact import restitution_branch as restitution_orbit
 
-RELEASES = list(Release)
+RELEASES = LINEAR
 
 
 def array(law):

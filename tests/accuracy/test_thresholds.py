@@ -10,7 +10,7 @@ from bouncing_ball.accuracy.thresholds import (
     restitution_thresholds,
     thresholds,
 )
-from bouncing_ball.models.damping import Release
+from bouncing_ball.models.damping import LINEAR
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
@@ -69,7 +69,7 @@ def test_where_there_is_no_error_it_is_not_within_the_tolerance(absent):
     assert status == [NEVER] and np.isnan(ratio)
 
 
-@pytest.mark.parametrize("release", list(Release))
+@pytest.mark.parametrize("release", LINEAR)
 def test_the_thresholds_of_the_restitution_model_are_those_of_a_fine_scan(release):
     zeta = np.array([0.136, 0.05])
     restitution = np.array([0.65, 0.85])

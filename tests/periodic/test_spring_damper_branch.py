@@ -19,7 +19,7 @@ from bouncing_ball.periodic.one_impact.spring_damper_branch import (
 
 EPS = np.finfo(float).eps
 
-releases = st.sampled_from(list(Release))
+releases = st.sampled_from(LINEAR)
 # log ϖ, ζ, n, and the excess angle in units of the fold's scale, 1/ϖ.
 log_ratios = st.floats(np.log(0.5), np.log(1e6))
 dampings = st.one_of(st.just(0.0), st.floats(0, 0.9))

@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from bouncing_ball.errors import ModelError, NoOrbitError
-from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import n_t
@@ -19,10 +19,10 @@ from bouncing_ball.periodic.orbits.stability import Bifurcation, Side, is_stable
 
 EPS = np.finfo(float).eps
 
-every_release = pytest.mark.parametrize("release", list(Release))
+every_release = pytest.mark.parametrize("release", LINEAR)
 
 
-@pytest.fixture(scope="module", params=list(Release))
+@pytest.fixture(scope="module", params=LINEAR)
 def drawn(request):
     """Random contacts, the corners of their range among them; n, r and shares for Λ."""
     rng = np.random.default_rng(11)

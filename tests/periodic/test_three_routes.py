@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
@@ -43,7 +43,7 @@ def side(request):
 
 @pytest.fixture(scope="module", params=SIZES)
 def drawn(request, rule, side):
-    seed = [list(Release).index(rule), list(Side).index(side)]
+    seed = [LINEAR.index(rule), list(Side).index(side)]
     zeta, n, omega, lam = sample(seed, request.param)
     contact = SpringDamper(omega, zeta, rule)
     return contact, n, lam, side, orbit_at(contact, n, lam, side)

@@ -46,7 +46,7 @@ rule paper:
             files=[*TEMPLATES, f"{ARTICLE}/references.yaml", f"{ARTICLE}/numbered.csl"],
         ),
         atlas=here("config/atlas.nc"),
-        data=[each.dataset for each in ARTIFACTS.values() if each.study],
+        data=[each.dataset for each in ARTIFACTS.values() if each.study or each.table],
         tables=[f"results/{each.place}.md" for each in ARTIFACTS.values() if each.table],
     output:
         paper="results/paper.md",

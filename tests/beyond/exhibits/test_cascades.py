@@ -5,7 +5,7 @@ import pytest
 
 from bouncing_ball.accuracy.error_law import coefficients
 from bouncing_ball.beyond.exhibits.cascades import cascades
-from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball.pipeline.configuration import typed
 
 R = [0.5, 0.85]
@@ -15,7 +15,7 @@ MEASURED = {"frequency": 9.80665**0.5 / (2 * np.pi), "amplitudes": [0.5]}
 CONFIG = {"n": 1, "restitution": R, "frequency_ratio": STIFF, "doublings": 3, "measured": MEASURED}
 
 
-@pytest.fixture(scope="module", params=list(Release))
+@pytest.fixture(scope="module", params=LINEAR)
 def study(request):
     return request.param, typed(cascades)(CONFIG, request.param)
 

@@ -6,13 +6,13 @@ import pytest
 from bouncing_ball.accuracy.corrected_errors import errors
 from bouncing_ball.beyond.exhibits import corrected_model as study
 from bouncing_ball.beyond.exhibits.random_orbits import random_orbits
-from bouncing_ball.models.damping import Release, damping_ratio
+from bouncing_ball.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.pipeline.configuration import typed
 
 SPAN = {"min": 1.0, "max": 1e4, "samples": 41}
 ORBIT = {"n": 1, "restitution": 0.65, "amplitude": 1.0}
-RELEASES = list(Release)
+RELEASES = LINEAR
 
 
 @pytest.fixture(scope="module", params=RELEASES)

@@ -81,7 +81,7 @@ def random_problems(seed, count):
     for _ in range(count):
         ratio = Fraction(round(1e4 * 10 ** random.uniform(0, 5)), 10_000)
         restitution = Fraction(int(random.integers(50, 990)), 1000)
-        rule = list(Release)[int(random.integers(2))]
+        rule = LINEAR[int(random.integers(2))]
         yield Problem(ratio, restitution=restitution, n=int(random.integers(1, 6)), release=rule)
 
 

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from bouncing_ball.models.corrected.model import CorrectedModel
-from bouncing_ball.models.damping import Release
+from bouncing_ball.models.damping import LINEAR
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.models.spring_damper import SpringDamper
 
-RELEASES = list(Release)
+RELEASES = LINEAR
 BALLS = 400
 
 

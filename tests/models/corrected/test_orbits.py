@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.models.corrected.model import CorrectedModel
-from bouncing_ball.models.damping import Release
+from bouncing_ball.models.damping import LINEAR, Release
 from bouncing_ball.models.laws.hertzian import Tsuji
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.spring_damper import SpringDamper
@@ -13,7 +13,7 @@ from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.orbits.orbit import OBSERVABLES
 from bouncing_ball.periodic.orbits.stability import Side
 
-RELEASES = list(Release)
+RELEASES = LINEAR
 COMPARED = (*OBSERVABLES[1:], "bounce_height")
 
 

@@ -150,7 +150,7 @@ def _follow(
         balls = joined(balls, new) if alive else new
         for leg in dynamics.take(balls.lane).legs(impact, differentiate=True):
             if path is not None:
-                record(path.reshape(3, impacts, -1), balls, leg.impact)
+                record(path.reshape(3, impacts, -1), balls, leg.impact, dynamics.setting)
             done = _departing(leg, balls, found)
             balls = _without(done, leg, leg.impact, balls, found)
             if balls.lane.size:
@@ -170,7 +170,7 @@ def _without(done: np.ndarray, leg: Leg, impact: Impact, balls: Tracked, found: 
     if not done.any():
         return balls
     (going,) = (~done).nonzero()
-    store_ends(found, balls, impact, going)
+    store_ends(found, balls, impact, going, leg.dynamics.setting)
     (balls,) = leg.keep(going, balls)
     return balls
 
@@ -184,7 +184,10 @@ def _departing(leg: Leg, balls: Tracked, found: Motions) -> np.ndarray:
     if done.any():
         stays = departure.status == Status.PERMANENT_CONTACT
         store(found, balls, stays, kind=Kind.PERMANENT_CONTACT, periods=1, exponent_error=0.0)
-        store(found, balls, done & ~stays, kind=Kind.UNDECIDED, reason=Reason.NO_RELEASE)
+        aloft = departure.status == Status.ALOFT
+        store(found, balls, aloft, kind=Kind.ALOFT, periods=1, exponent_error=0.0)
+        lost = done & ~stays & ~aloft
+        store(found, balls, lost, kind=Kind.UNDECIDED, reason=Reason.NO_RELEASE)
     if leg.dynamics.forgets:
         sticks = ~done & departure.sticks
         if sticks.any():

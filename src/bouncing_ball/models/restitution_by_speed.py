@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.models.instant import Instant, rigid_instant
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.restitution import RestitutionDynamics
+from bouncing_ball.models.setting import PAPER, Setting
 from bouncing_ball.numerics.arrays import Batch
 
 # The imaginary step relative to the speed; its square is lost in rounding.
@@ -66,7 +67,7 @@ class RestitutionLawDynamics(RestitutionDynamics):
     """
 
     @classmethod
-    def of(cls, law: RestitutionLaw, amplitude: ArrayLike) -> Self:
+    def of(cls, law: RestitutionLaw, amplitude: ArrayLike, setting: Setting = PAPER) -> Self:
         """The dynamics of a law r(v) at Λ.
 
         Raises
@@ -74,7 +75,7 @@ class RestitutionLawDynamics(RestitutionDynamics):
         ModelError
             If Λ is outside its range.
         """
-        return super(RestitutionDynamics, cls).of(law, amplitude)
+        return super(RestitutionDynamics, cls).of(law, amplitude, setting)
 
     def rebound(self, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """r and d(r v)/dv at impact speeds v > 0."""

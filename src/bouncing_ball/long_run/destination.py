@@ -61,6 +61,9 @@ _BLOCK = 1 << 16
 # Number of bytes that are allocated once at the start.
 _KEPT = 1 << 24
 _BOUNCING = np.array(Status.BOUNCING)
+# The part of a period by which two times of the same lift-off may differ, far above rounding errors
+# and far below the distance of two lift-offs.
+_SAME_LIFT_OFF = 1e-6
 
 
 def final_motions(
@@ -204,7 +207,11 @@ def _sticking_again(
     time of the present lift-off is ``time``.
     """
     sticking = balls.sticking
-    again = sticks & (sticking.impact >= 0)
+    # A table of several harmonics may have several lift-offs in one period. Only the same one
+    # repeats the motion; if they alternate, the return to a mark shows it.
+    turns = (time - sticking.time) / (2 * np.pi)
+    same = np.abs(turns - np.rint(turns)) < _SAME_LIFT_OFF
+    again = sticks & (sticking.impact >= 0) & same
     resolved = again & ~balls.stretch.lost()
     store(
         found,

@@ -31,7 +31,7 @@ from bouncing_ball.datasets.arguments import (
 )
 from bouncing_ball.errors import ModelError, require
 from bouncing_ball.models.ball import Ball, a_ball
-from bouncing_ball.models.flight import Flight, land, table
+from bouncing_ball.models.flight import land
 from bouncing_ball.models.history import motion_at
 from bouncing_ball.models.sequence import ImpactSequence, Status
 from bouncing_ball.models.setting import PAPER, Setting

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.models.instant import Instant, rigid_instant
+from bouncing_ball.models.laws.analytic import compare
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.restitution import RestitutionDynamics
 from bouncing_ball.models.setting import PAPER, Setting
@@ -17,6 +18,8 @@ from bouncing_ball.numerics.arrays import Batch
 
 # The imaginary step relative to the speed; its square is lost in rounding.
 _IMAGINARY = 1e-20
+# The speeds at which r(v) is examined.
+_SPEEDS = 0.937 * np.geomspace(1e-3, 30.0, 12)
 
 
 class RestitutionLaw(Batch, ABC):
@@ -61,6 +64,16 @@ class RestitutionLaw(Batch, ABC):
         return RestitutionLawDynamics.of(self, amplitude)
 
 
+def require_analytic_restitution(law: RestitutionLaw) -> None:
+    """Raise :class:`ModelError` if the slope of a law by an imaginary step is not that by a
+    difference; a law with a :meth:`RestitutionLaw.slope` of its own is not examined.
+    """
+    if type(law).slope is not RestitutionLaw.slope:
+        return
+    one = law.flat(law.shape).take(0)
+    compare(f"r(v) of {type(law).__name__}", "v", one.restitution, _SPEEDS)
+
+
 class RestitutionLawDynamics(RestitutionDynamics):
     """Impacts and flights with a restitution coefficient r(v); ``law`` is the
     :class:`RestitutionLaw`.
@@ -91,6 +104,11 @@ class RestitutionLawModel(Model):
     law : RestitutionLaw
         The law r(v).
 
+    Raises
+    ------
+    ModelError
+        If the derivative of r by an imaginary step is not that by a difference.
+
     Examples
     --------
     >>> from dataclasses import dataclass
@@ -108,6 +126,9 @@ class RestitutionLawModel(Model):
     law: RestitutionLaw
 
     name: ClassVar[str] = "restitution-law"
+
+    def __post_init__(self) -> None:
+        require_analytic_restitution(self.law)
 
     def dynamics(self, amplitude: ArrayLike) -> RestitutionLawDynamics:
         """The impacts and flights of these balls on a table of amplitude Λ."""

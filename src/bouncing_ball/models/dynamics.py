@@ -180,8 +180,8 @@ class Dynamics(Batch, ABC):
 
     @abstractmethod
     def contraction(self, impact: Impact, departure: Departure) -> np.ndarray:
-        """The factor by which the contacts multiply areas of the phase plane. Free flights keep them,
-        and others multiply them by :meth:`.Setting.contraction`.
+        """The factor by which the contacts multiply areas of the phase plane. Free flights keep
+        them, and others multiply them by :meth:`.Setting.contraction`.
 
         The determinant of the monodromy of a periodic orbit is the product of these factors.
         Without dissipation it is exactly 1, whereas the rounding errors of the entries of the

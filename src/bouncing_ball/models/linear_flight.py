@@ -8,7 +8,7 @@ G and H ::
     A = b - q (δ_b + W) - l W′
 
 This form loses no digits in a short flight. The derivative of order j ≥ 1 of p obeys the equation
-without load, whose energy ``(p^{(j+1)})² + q (p^{(j)})²`` never rises. From any time on therefore ::
+without load, whose energy ``(p^{(j+1)})² + q (p^{(j)})²`` never rises. From any time on ::
 
     |δ^{(j)}| ≤ √((p^{(j)})² + q (p^{(j-1)})²) + Λ Σ k^j |C_k|,    j = 2, 3, …
 
@@ -155,7 +155,7 @@ class LinearFlight(Motion):
 
     @property
     def may_miss(self) -> bool:
-        """Whether a flight may never end: on a spring whose mass at rest does not reach the stop."""
+        """Whether a flight may never end: a mass that rests at a distance from its stop."""
         return bool(np.any(np.asarray(self.stiffness) > 0) and np.any(np.asarray(self.load) > 0))
 
     def _never_lands(self, free: tuple[np.ndarray, ...]) -> np.ndarray | None:
@@ -292,11 +292,11 @@ class Pressure(Motion):
         cosine = 1 - versine
         real = flight.real * cosine - flight.imag * sine
         imag = flight.imag * cosine + flight.real * sine
-        l = np.asarray(flight.loss)[..., np.newaxis]
+        loss = np.asarray(flight.loss)[..., np.newaxis]
         q = np.asarray(flight.stiffness)[..., np.newaxis]
         # Each harmonic of -(W″ + l W′ + q W) is the imaginary part of -(q - k² + ilk) E_k.
         push = k**2 - q
-        turn = l * k
+        turn = loss * k
         of_imag = push * imag - turn * real
         of_real = push * real + turn * imag
         size = np.hypot(push, turn) * flight.size

@@ -67,9 +67,14 @@ def rigid(
     --------
     >>> rigid(restitution=0.85)
     RestitutionModel(restitution=0.85)
-    >>> rigid(restitution=0.85, flight=Drag(0.1))
-    RestitutionModel(restitution=0.85, setting=OtherSetting(form=Waveform(sine=[1.0], \
-cosine=[0.0]), suspension=Drag(drag=0.1)))
+
+    A ball that falls through air, and a mass on a spring that hits a stop:
+
+    >>> from bouncing_ball import Drag, Spring
+    >>> in_air = rigid(restitution=0.85, flight=Drag(0.1))
+    >>> oscillator = rigid(restitution=0.85, flight=Spring(0.5, 0.05, gap=1.0))
+    >>> dict(oscillator.parameters)["gap"]
+    1.0
     """
     r = checked("restitution", restitution, RESTITUTION)
     flat = flattened({"restitution": r})

@@ -17,9 +17,9 @@ change of g. Then ::
 
     T = T₀ (1 - g′ T₀/(3g) + ...),    T₀ = 2v/(g (1 - r))
 
-A drag l subtracts ``l T₀/6`` from the bracket. This sum replaces the bounces once Λ T₀ and T₀ are below 10⁻⁵ g, where the next term is below
-10⁻¹⁵. The ball then rests on the table until it lifts off
-(:mod:`bouncing_ball.models.sticking`).
+A drag l subtracts ``l T₀/6`` from the bracket. This sum replaces the bounces once Λ T₀ and T₀ are
+below 10⁻⁵ g, where the next term is below 10⁻¹⁵. The ball then rests on the table until it lifts
+off (:mod:`bouncing_ball.models.sticking`).
 """
 
 from dataclasses import dataclass

@@ -103,6 +103,8 @@ class RestitutionLawModel(Model):
     ----------
     law : RestitutionLaw
         The law r(v).
+    setting : Setting, optional
+        The motion of the table and what moves the ball in flight, by default those of the paper.
 
     Raises
     ------
@@ -124,6 +126,7 @@ class RestitutionLawModel(Model):
     """
 
     law: RestitutionLaw
+    setting: Setting = PAPER
 
     name: ClassVar[str] = "restitution-law"
 
@@ -132,7 +135,7 @@ class RestitutionLawModel(Model):
 
     def dynamics(self, amplitude: ArrayLike) -> RestitutionLawDynamics:
         """The impacts and flights of these balls on a table of amplitude Λ."""
-        return self.law.dynamics(amplitude)
+        return RestitutionLawDynamics.of(self.law, amplitude, self.setting)
 
     def signature(self, speed: ArrayLike) -> Instant:
         """The restitution r(v), without delay, load sensitivity and duration."""

@@ -191,8 +191,8 @@ class OtherSetting(Setting):
         """``|k² - q - ilk|``, the load of each harmonic of W over its size."""
         k = self.form.orders
         q = np.asarray(self.suspension.stiffness, dtype=float)[..., np.newaxis]
-        l = np.asarray(self.suspension.loss, dtype=float)[..., np.newaxis]
-        return np.hypot(k * k - q, l * k)
+        loss = np.asarray(self.suspension.loss, dtype=float)[..., np.newaxis]
+        return np.hypot(k * k - q, loss * k)
 
     def flight(
         self,
@@ -239,8 +239,14 @@ class OtherSetting(Setting):
             top = int(np.argmax(free.value))
             best = free.value[top] - free.rate[top] ** 2 / (2 * free.second[top])
             load = float(np.asarray(on.load))
-            found.append(max(-load, 0.0) / (best - load))
+            found.append(max(-load, 0.0) / float(best - load))
         return np.reshape(found, self.shape)
+
+
+def require_paper(setting: Setting, what: str) -> None:
+    """Raise :class:`ParameterError` in another setting than that of the paper."""
+    if not setting.is_paper:
+        raise ParameterError(f"{what} are known for a table that moves as a sine, with free flight")
 
 
 def setting_of(waveform: Waveform | None, suspension: Suspension | None) -> Setting:

@@ -221,23 +221,23 @@ def responses(time: np.ndarray, loss: Any, stiffness: Any) -> FreeResponses:
     >>> bool(abs(fall.impulse - (1 - np.exp(-6)) / 2) < 1e-15)
     True
     """
-    s, l, q = np.broadcast_arrays(
+    s, loss, q = np.broadcast_arrays(
         np.asarray(time, dtype=float), np.asarray(loss, float), np.asarray(stiffness, float)
     )
-    if not l.any() and not q.any():
+    if not loss.any() and not q.any():
         half = s * s / 2
         return FreeResponses(s, np.ones(s.shape), half, half * s / 3)
-    short = s * np.maximum(np.sqrt(q), l) < _SHORT
+    short = s * np.maximum(np.sqrt(q), loss) < _SHORT
     if short.all():
-        return _series(s, l, q)
-    known = _closed_form(s, l, q)
+        return _series(s, loss, q)
+    known = _closed_form(s, loss, q)
     if not short.any():
         return known
-    small = _series(np.where(short, s, 0.0), l, q)
+    small = _series(np.where(short, s, 0.0), loss, q)
     return FreeResponses(*(np.where(short, a, b) for a, b in zip(small, known, strict=True)))
 
 
-def _series(s: np.ndarray, l: np.ndarray, q: np.ndarray) -> FreeResponses:
+def _series(s: np.ndarray, loss: np.ndarray, q: np.ndarray) -> FreeResponses:
     """Power series of the responses, from G″ = 1 - l G′ - q G."""
     before = np.zeros(s.shape)
     term = np.full(s.shape, 0.5)
@@ -247,17 +247,17 @@ def _series(s: np.ndarray, l: np.ndarray, q: np.ndarray) -> FreeResponses:
     power = s
     for n in range(1, _TERMS):
         # The coefficient of s^(n + 2) of G.
-        before, term = term, -(l * (n + 1) * term + q * before) / ((n + 1) * (n + 2))
+        before, term = term, -(loss * (n + 1) * term + q * before) / ((n + 1) * (n + 2))
         power = power * s
         impulse = impulse + (n + 2) * term * power
         of_step = term * power * s
         step = step + of_step
         ramp = ramp + of_step * s / (n + 3)
-    return FreeResponses(impulse, 1 - l * impulse - q * step, step, ramp)
+    return FreeResponses(impulse, 1 - loss * impulse - q * step, step, ramp)
 
 
-def _closed_form(s: np.ndarray, l: np.ndarray, q: np.ndarray) -> FreeResponses:
-    half = l / 2
+def _closed_form(s: np.ndarray, loss: np.ndarray, q: np.ndarray) -> FreeResponses:
+    half = loss / 2
     damped = np.sqrt(np.maximum(q - half * half, 0.0))
     springs = q > 0
     frequency = np.where(springs, damped, 1.0)
@@ -265,9 +265,9 @@ def _closed_form(s: np.ndarray, l: np.ndarray, q: np.ndarray) -> FreeResponses:
     decay = exponential(-half * s)
     swing = decay * sine / frequency
     with np.errstate(divide="ignore", invalid="ignore"):
-        dragged = (1 - exponential(-l * s)) / l
+        dragged = (1 - exponential(-loss * s)) / loss
         impulse = np.where(springs, swing, dragged)
-        impulse_rate = np.where(springs, decay * cosine - half * swing, exponential(-l * s))
-        step = np.where(springs, (1 - impulse_rate - l * impulse) / q, (s - impulse) / l)
-        ramp = np.where(springs, (s - impulse - l * step) / q, 0.0)
+        impulse_rate = np.where(springs, decay * cosine - half * swing, exponential(-loss * s))
+        step = np.where(springs, (1 - impulse_rate - loss * impulse) / q, (s - impulse) / loss)
+        ramp = np.where(springs, (s - impulse - loss * step) / q, 0.0)
     return FreeResponses(impulse, impulse_rate, step, ramp)

@@ -78,7 +78,8 @@ np.where(x > 0, x, -x)
             exact = np.imag(function(at + 1j * small)) / small
         except TypeError as error:
             raise ModelError(
-                f"{what} refuses complex numbers, by which it is differentiated ({error}): {_REMEDY}"
+                f"{what} refuses complex numbers, by which it is differentiated "
+                f"({error}): {_REMEDY}"
             ) from None
         change = (function(at + step) - function(at - step)) / (2 * step)
         allowed = _APART * np.abs(change) + _ROUNDING * value / np.abs(at)

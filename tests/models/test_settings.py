@@ -170,9 +170,7 @@ def test_chattering_with_drag_ends_where_many_bounces_do():
 
 def _first_landing(phase, velocity, flight):
     """The time and the speed of a short flight from the table, by Newton's method."""
-    path = LinearFlight(
-        np.zeros(1), np.array([velocity]), np.array([phase]), 0.3, SINE, flight
-    )
+    path = LinearFlight(np.zeros(1), np.array([velocity]), np.array([phase]), 0.3, SINE, flight)
     time = -2 * velocity / path.gap(np.zeros(1))[2]
     for _ in range(4):
         gap, rate, _, _ = path.gap(time)

@@ -43,10 +43,8 @@ class Exact:
         def forced(t, order):
             found = mpf(0)
             for k, amplitude in enumerate(self.sine, 1):
-                turn = mp.expj(k * t) * mp.mpc(0, k) ** order
-                found += mp.im(
-                    lam * amplitude * k**2 * turn / mp.mpc(nu**2 - k**2, 2 * a * k)
-                )
+                turn = mp.exp(mp.mpc(0, k * t)) * mp.mpc(0, k) ** order
+                found += mp.im(lam * amplitude * k**2 * turn / mp.mpc(nu**2 - k**2, 2 * a * k))
             return found
 
         start = -sigma - forced(phase, 0)

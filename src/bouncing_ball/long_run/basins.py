@@ -42,7 +42,8 @@ def fastest(model: Any, amplitude: Any) -> np.ndarray:
     """A speed above which every impact slows the ball, (1 + r) max(Λ, 1)/(1 - r), 1 - r ≥ 0.05.
 
     An impact changes the absolute speed v of the ball to r v + (1 + r) Λ at most, which is less
-    than v above this value. For a table of several harmonics Λ stands for its greatest speed. r is that of a free impact with the speed 2π.
+    than v above this value. For a table of several harmonics Λ stands for its greatest speed. r is
+    that of a free impact with the speed 2π.
 
     Examples
     --------

@@ -19,8 +19,8 @@ from numpy.typing import ArrayLike
 from bouncing_ball.long_run.motions import Motions
 from bouncing_ball.models.dynamics import Departure, Dynamics, HasDynamics, Impact, Leg
 from bouncing_ball.models.flight import table
-from bouncing_ball.models.setting import require_paper
 from bouncing_ball.models.sequence import Status
+from bouncing_ball.models.setting import require_paper
 
 
 def _change(values: np.ndarray) -> np.ndarray:

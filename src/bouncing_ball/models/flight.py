@@ -138,7 +138,6 @@ class Flight(Motion):
         by_jerk = 4 * x / top
         return np.where(rests, np.maximum(by_lift, by_jerk), time)
 
-
     def lowest(self, time: np.ndarray) -> np.ndarray:
         """The smallest local minimum of δ within each flight of this duration, 1 if there is none.
 

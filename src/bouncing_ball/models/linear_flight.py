@@ -310,5 +310,3 @@ class Pressure(Motion):
             fourth_bound=(k**4 * size).sum(axis=-1),
             ended=time > 2 * np.pi + _ROUNDING,
         )
-
-

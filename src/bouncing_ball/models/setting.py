@@ -246,7 +246,10 @@ class OtherSetting(Setting):
 def require_paper(setting: Setting, what: str) -> None:
     """Raise :class:`ParameterError` in another setting than that of the paper."""
     if not setting.is_paper:
-        raise ParameterError(f"{what} are known for a table that moves as a sine, with free flight")
+        raise ParameterError(
+            f"{what} are known for a table that moves as a sine, with free flight: use "
+            "follow(orbit(…)) for another table or flight"
+        )
 
 
 def setting_of(waveform: Waveform | None, suspension: Suspension | None) -> Setting:
@@ -255,5 +258,3 @@ def setting_of(waveform: Waveform | None, suspension: Suspension | None) -> Sett
         return PAPER
     form = SINE if waveform is None else waveform
     return OtherSetting(form, Drag(0.0) if suspension is None else suspension)
-
-

@@ -74,9 +74,7 @@ def stay(
     )
 
 
-def lifted(
-    departure: Departure, amplitude: np.ndarray, setting: Setting = PAPER
-) -> Departure:
+def lifted(departure: Departure, amplitude: np.ndarray, setting: Setting = PAPER) -> Departure:
     """The departures with those marked as sticking that leave by lift-off, a state that does not
     depend on their earlier motion.
     """

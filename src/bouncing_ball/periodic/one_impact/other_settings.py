@@ -1,4 +1,4 @@
-r"""The n-T orbits of the restitution model on a table of several harmonics, with drag or on a spring.
+r"""The n-T orbits of the restitution model on another table, with drag or on a spring.
 
 With δ = p - W of :mod:`bouncing_ball.models.suspension` and T = 2πn, a flight that returns to the
 height W(φ) after the time T leaves with ``p′ = (q W - b) G/g`` and arrives with
@@ -8,11 +8,12 @@ height W(φ) after the time T leaves with ``p′ = (q W - b) G/g`` and arrives w
     (q W - b) C = (1 + r) W′,     C = G/g - r (g - G g′/g)
 
 With W = Λ U this is one equation for the phase, ``P(φ) = q C U - (1 + r) U′ = b C/Λ``, whose zeros
-over one period are bracketed and found. For gravity alone it is w′ = nπ (1 - r)/(1 + r) (Eq. 6).
+over one period are bracketed and found. The extrema of P are saddle-nodes. For gravity alone it is
+w′ = nπ (1 - r)/(1 + r) (Eq. 6).
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,9 +21,8 @@ from scipy.optimize import brentq
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.models.setting import OtherSetting
 from bouncing_ball.models.suspension import responses
-from bouncing_ball.models.waveform import turned
+from bouncing_ball.models.waveform import Waveform, turned
 from bouncing_ball.periodic.orbits.orbit import Orbit, check_index
 from bouncing_ball.periodic.orbits.stability import Bifurcation, Side
 
@@ -72,8 +72,18 @@ class OtherOrbits:
         return found
 
     def saddle_node(self, n: ArrayLike) -> Orbit:
-        """Raise an error: the saddle-nodes are found by :func:`bouncing_ball.follow`."""
-        raise ModelError(_NO_LIMITS)
+        """The orbits at the lowest Λ at which n-T orbits exist, a saddle-node; NaN for a spring
+        without load, whose orbits exist at every Λ.
+        """
+        check_index(n)
+        shape = np.broadcast_shapes(np.shape(n), self.model.shape)
+        index = np.broadcast_to(n, shape)
+        models = self.model.flat(shape)
+        values = np.full((3, *shape), np.nan)
+        for k, place in enumerate(np.ndindex(shape)):
+            values[(slice(None), *place)] = _lowest(models.take(k), int(index[place]))
+        lam, phase, velocity = values
+        return Orbit.of(self.model, index, lam, phase, 0.0, velocity)
 
     def period_doubling(self, n: ArrayLike) -> Orbit:
         """Raise an error: period doublings are found by :func:`bouncing_ball.follow`."""
@@ -81,49 +91,100 @@ class OtherOrbits:
 
 
 _NO_LIMITS = (
-    "limits and branch are those of a table that moves as a sine, with free flight: use "
-    "follow(orbit(…)) for another table or flight"
+    "the period doublings of limits are those of a table that moves as a sine, with free flight: "
+    "use follow(orbit(…)) for another table or flight"
 )
 
 
-def _orbits_of(model: RestitutionModel, n: int, amplitude: float) -> Orbit | None:
-    """All n-T orbits of a single model at one Λ in order of their phases, None if there are none."""
-    setting: Any = model.setting
-    assert isinstance(setting, OtherSetting)
-    waveform = setting.form
-    on = setting.suspension
-    time = np.asarray(2 * np.pi * n)
-    at = responses(time, on.loss, on.stiffness)
-    r = float(model.restitution)
-    rise = float(at.step / at.impulse)
-    fall = float(at.impulse) - rise * float(at.impulse_rate)
-    both = rise - r * fall
-    orders = waveform.orders
-    coefficients = np.ravel(on.coefficients(waveform))
-    q = float(on.stiffness)
-    level = float(on.load) * both
+class _Family(NamedTuple):
+    """The equation of the n-T orbits of one ball: its table, q, b, and C and g - G g′/g.
 
-    def virtual(phase: Any) -> tuple[Any, Any]:
-        whole = amplitude * turned(coefficients, orders, phase)
-        return whole.imag.sum(axis=-1), (orders * whole.real).sum(axis=-1)
+    ``coefficients`` are the harmonics of U, and ``waveform`` is the table's shape u.
+    """
+
+    waveform: Waveform
+    coefficients: np.ndarray
+    restitution: float
+    stiffness: float
+    load: float
+    both: float
+    fall: float
+
+    @classmethod
+    def of(cls, model: RestitutionModel, n: int) -> Self:
+        """The equation of the n-T orbits of a single model."""
+        setting: Any = model.setting
+        on = setting.suspension
+        at = responses(np.asarray(2 * np.pi * n), on.loss, on.stiffness)
+        rise = float(at.step / at.impulse)
+        fall = float(at.impulse) - rise * float(at.impulse_rate)
+        r = float(model.restitution)
+        return cls(
+            waveform=setting.form,
+            coefficients=np.ravel(on.coefficients(setting.form)),
+            restitution=r,
+            stiffness=float(on.stiffness),
+            load=float(on.load),
+            both=rise - r * fall,
+            fall=fall,
+        )
+
+    def unit(self, phase: Any, order: int = 0) -> Any:
+        """U or a derivative of it."""
+        k = self.waveform.orders
+        whole = turned(self.coefficients, k, phase)
+        return np.imag((1j * k) ** order * whole).sum(axis=-1)
+
+    def side(self, phase: Any, order: int = 0) -> Any:
+        """P or a derivative of it."""
+        pull = self.stiffness * self.both * self.unit(phase, order)
+        return pull - (1 + self.restitution) * self.unit(phase, order + 1)
+
+    def samples(self) -> np.ndarray:
+        """Phases over one period, so dense that no zero of P is between two of them."""
+        return np.linspace(-np.pi, np.pi, _SAMPLES * int(self.waveform.orders[-1]) + 1)
+
+    def arriving(self, amplitude: Any, phase: Any) -> tuple[Any, Any]:
+        """The relative velocity and that of the ball before the impact."""
+        height = amplitude * self.unit(phase)
+        speed = amplitude * self.unit(phase, 1)
+        relative = -(self.stiffness * height - self.load) * self.fall - speed
+        return relative, relative + amplitude * self.waveform.velocity(phase)
+
+
+def _lowest(model: RestitutionModel, n: int) -> tuple[float, float, float]:
+    """Λ, φ and z′_i of the saddle-node at the lowest Λ; NaN if there is none."""
+    family = _Family.of(model, n)
+    level = family.load * family.both
+    if not level:
+        return np.nan, np.nan, np.nan
+    sample = family.samples()
+    top = int(np.argmax(family.side(sample) / level))
+    step = sample[1] - sample[0]
+    phase = brentq(lambda x: family.side(x, 1), sample[top] - step, sample[top] + step, xtol=1e-15)
+    highest = float(family.side(phase)) / level
+    if not highest > 0:
+        return np.nan, np.nan, np.nan
+    _, velocity = family.arriving(1 / highest, phase)
+    return 1 / highest, phase, float(velocity)
+
+
+def _orbits_of(model: RestitutionModel, n: int, amplitude: float) -> Orbit | None:
+    """All n-T orbits of a single model at one Λ in order of phase, None if there are none."""
+    family = _Family.of(model, n)
+    level = family.load * family.both
 
     def equation(phase: Any) -> Any:
-        height, velocity = virtual(phase)
-        return q * both * height - (1 + r) * velocity - level
+        return amplitude * family.side(phase) - level
 
-    sample = np.linspace(-np.pi, np.pi, _SAMPLES * int(orders[-1]) + 1)
+    sample = family.samples()
     value = equation(sample)
     turns = np.flatnonzero((value[:-1] < 0) != (value[1:] < 0))
     found = [brentq(equation, sample[k], sample[k + 1], xtol=1e-15) for k in turns]
-    if not found:
-        return None
     phase = np.array(found)
-    height, velocity = virtual(phase)
-    arriving = -(q * height - float(on.load)) * fall
-    relative = arriving - velocity
+    relative, absolute = family.arriving(amplitude, phase)
     lands = relative < 0
-    if not lands.any():
+    if not np.any(lands):
         return None
-    phase = phase[lands]
-    absolute = relative[lands] + amplitude * waveform.velocity(phase)
-    return Orbit.of(model, n, np.full(phase.shape, amplitude), phase, 0.0, absolute)
+    lam = np.full(int(np.sum(lands)), amplitude)
+    return Orbit.of(model, n, lam, phase[lands], 0.0, absolute[lands])

@@ -277,9 +277,7 @@ class PeriodicOrbits:
         _, end_velocity = dynamics.section(landing.near)
         _, landing_velocity = dynamics.section(landing.after)
         flown = landing.passed_near - departure.duration
-        acceleration = dynamics.setting.arriving(
-            departure.flight, flown, phase, dynamics.amplitude
-        )
+        acceleration = dynamics.setting.arriving(departure.flight, flown, phase, dynamics.amplitude)
         speed = end_velocity + lag * acceleration
         height = speed * landing.late
         faster = (landing_velocity - velocity) - acceleration * landing.late

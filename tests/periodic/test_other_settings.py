@@ -53,7 +53,7 @@ def test_bifurcations_in_forty_digits(case):
     kinds = set()
     for to in (0.2 * amplitude, 3 * amplitude):
         branch = bouncing_ball.follow(one, to=to)
-        for special in branch.special_states():
+        for _, special in branch.special_states():
             if special.kind not in ("saddle-node", "period doubling"):
                 continue
             state = mpf(special.phase), mpf(special.relative_impact_velocity)

@@ -164,8 +164,8 @@ def test_basins_and_diagrams_are_those_of_the_motions():
         if one.is_stable() and one.is_admissible():
             seen = diagram.impact_phase[k].values
             assert np.nanmin(np.abs(seen - one.phase)) < 1e-6
-    masses = rigid(restitution=0.8, flight=Spring(0.35, 0.02, 1.0))
-    over = bouncing_ball.orbit_diagram(masses, amplitudes=[0.5, 1.5], starts=2, impacts=200)
+    masses = rigid(restitution=0.8, flight=Spring(1.6, 0.05, 0.7))
+    over = bouncing_ball.orbit_diagram(masses, amplitudes=[0.2, 1.6], starts=2, impacts=200)
     assert set(over.kind[0].values.tolist()) == {"aloft"}
     assert "aloft" not in over.kind[1].values.tolist()
 

@@ -81,6 +81,9 @@ if TYPE_CHECKING:
     from bouncing_ball.models.rigid import RestitutionModel as RestitutionModel
     from bouncing_ball.models.spring_damper import SpringDamper as SpringDamper
     from bouncing_ball.models.spring_damper_model import SpringDamperModel as SpringDamperModel
+    from bouncing_ball.models.suspension import Drag as Drag
+    from bouncing_ball.models.suspension import Spring as Spring
+    from bouncing_ball.models.waveform import Waveform as Waveform
     from bouncing_ball.periodic.branches.follow import curve as curve
     from bouncing_ball.periodic.branches.follow import follow as follow
     from bouncing_ball.periodic.branches.follow import switch as switch
@@ -95,14 +98,17 @@ __version__ = "0.1.0"
 # The public names and the modules in which they are defined.
 _MODULES = {
     "Contact": "contacts.contact",
+    "Drag": "models.suspension",
     "EngineSetup": "contacts.question",
     "ModelError": "errors",
     "NoOrbitError": "errors",
     "Question": "contacts.question",
     "RestitutionModel": "models.rigid",
+    "Spring": "models.suspension",
     "SpringDamper": "models.spring_damper",
     "SpringDamperModel": "models.spring_damper_model",
     "Table": "contacts.table",
+    "Waveform": "models.waveform",
     "assess_contact": "contacts.assess",
     "basins": "long_run.motion_of",
     "branch": "periodic.branches_of_ball",

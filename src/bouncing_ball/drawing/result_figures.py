@@ -17,10 +17,10 @@ from bouncing_ball.drawing.canvas import WIDE, WIDTH, canvas, coloured, legend_b
 from bouncing_ball.drawing.labels import QUANTITIES, in_a_row, symbol, title
 from bouncing_ball.drawing.style import COLOURS, LINES, TABLE, Look
 
-KINDS = ("orbit", "subharmonic", "locked", "permanent contact", "chaotic", "undecided")
+KINDS = ("orbit", "subharmonic", "locked", "permanent contact", "chaotic", "undecided", "aloft")
 """The kinds of motion in the order of their colours."""
 # Motions that do not repeat have pale colours, because they fill their bands.
-_HUES = dict(zip(KINDS, (*COLOURS[:4], "#9a9a9a", "#d9b8d9"), strict=True))
+_HUES = dict(zip(KINDS, (*COLOURS[:4], "#9a9a9a", "#d9b8d9", "#000000"), strict=True))
 # Basins are areas, coloured in order of their shares with light and dark colours in turn.
 _AREAS = ("#3F96CC", "#000000", "#E8B04A", "#AA3A00", "#B7DDF2", "#5B5B5B", "#F4E3B5", "#D9D9D9")
 

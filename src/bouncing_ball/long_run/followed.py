@@ -9,7 +9,7 @@ from bouncing_ball.long_run.lyapunov import Stretching
 from bouncing_ball.long_run.motions import Kind, Motions, Reason
 from bouncing_ball.long_run.recurrence import Mark
 from bouncing_ball.models.dynamics import Impact
-from bouncing_ball.models.flight import table
+from bouncing_ball.models.setting import Setting
 
 # The reasons as an array, so that a ball can hold the index of one.
 REASONS = np.array(list(Reason))
@@ -101,7 +101,9 @@ def store(found: Motions, balls: Tracked, which: np.ndarray, **values: ArrayLike
     )
 
 
-def store_ends(found: Motions, balls: Tracked, impact: Impact, going: np.ndarray) -> None:
+def store_ends(
+    found: Motions, balls: Tracked, impact: Impact, going: np.ndarray, setting: Setting
+) -> None:
     """Store the last impacts of all balls except those that continue."""
     last = np.delete(np.arange(balls.lane.size), going)
     lane = balls.lane[last]
@@ -112,16 +114,18 @@ def store_ends(found: Motions, balls: Tracked, impact: Impact, going: np.ndarray
     phase = np.where(unresolved, balls.sticking.phase[last], phase)
     relative = np.where(unresolved, balls.sticking.velocity[last], relative)
     phase[found.kind[lane] == Kind.PERMANENT_CONTACT] = np.nan
-    velocity = absolute_velocity(phase, relative, balls.amplitude[last])
+    velocity = absolute_velocity(phase, relative, balls.amplitude[last], setting)
     found.fill(lane, end_phase=phase, end_velocity=velocity)
 
 
-def record(path: np.ndarray, balls: Tracked, impact: Impact) -> None:
+def record(path: np.ndarray, balls: Tracked, impact: Impact, setting: Setting) -> None:
     """Store time, φ and z′ of the impacts in the path, shape (3, impacts, balls)."""
-    velocity = absolute_velocity(impact.phase, impact.velocity, balls.amplitude)
+    velocity = absolute_velocity(impact.phase, impact.velocity, balls.amplitude, setting)
     path[:, balls.seen, balls.lane] = balls.time, impact.phase, velocity
 
 
-def absolute_velocity(phase: np.ndarray, relative: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
+def absolute_velocity(
+    phase: np.ndarray, relative: np.ndarray, amplitude: np.ndarray, setting: Setting
+) -> np.ndarray:
     """z′ of balls with δ′ at phases of the table; NaN where the phase is NaN."""
-    return relative + table(phase, amplitude)[0]
+    return relative + setting.level(phase, amplitude)[0]

@@ -25,6 +25,8 @@ class Kind(StrEnum):
     oscillations. The period is 0 if the ball sticks again and again, but after a number of impacts
     that rounding errors decide."""
     PERMANENT_CONTACT = "permanent contact"
+    ALOFT = "aloft"
+    """A mass on a spring swings with the table and never reaches its stop again."""
     CHAOTIC = "chaotic"
     """The motion has not repeated as long as it was followed, nor stuck to the table in a way that
     makes it repeat, and neighbouring motions separate from it at an exponential rate. If it is

@@ -16,7 +16,6 @@ from bouncing_ball.datasets.arguments import (
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.models.ball import Ball, a_single_ball
-from bouncing_ball.models.flight import table
 from bouncing_ball.models.model import Model
 from bouncing_ball.periodic.branches.following import point_near
 from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls
@@ -115,7 +114,8 @@ def of_impact(balls: Balls, phase: float, velocity: float, impacts: int) -> Orbi
         If there is no such orbit.
     """
     dynamics = balls.dynamics()
-    relative = velocity - float(table(np.asarray(phase), dynamics.amplitude)[0])
+    level = dynamics.setting.level(np.asarray(phase), dynamics.amplitude)
+    relative = velocity - float(level[0])
     row, (start, before), _ = dynamics.in_a_row([phase], [relative])
     theta, closing = row.section(row.start(start, before))
     problem, guess = simulated(balls, float(theta[0]), float(closing[0]), impacts, (LAMBDA,))

@@ -3,6 +3,8 @@
 The modules in reading order:
 
 ``flight``                    free flight and the landing that ends it
+``waveform``, ``suspension``  tables of several harmonics, drag and springs
+``linear_flight``, ``setting``     flights over them, and where a ball bounces
 ``contact``, ``deviations``   the interface of a contact, and how small deviations of a ball grow
 ``sequence``, ``dynamics``    simulated impacts, and the simulation by contacts and flights
 ``restitution``, ``sticking``      impacts with a restitution coefficient, and rest on the table

@@ -15,8 +15,9 @@ from numpy.typing import ArrayLike
 from bouncing_ball.errors import ModelError, require
 from bouncing_ball.models.contact import FiniteContact
 from bouncing_ball.models.deviations import Deviation, Jacobian
-from bouncing_ball.models.flight import Flight, land, table
+from bouncing_ball.models.flight import land
 from bouncing_ball.models.sequence import RECORDED, Cycle, ImpactSequence, Status
+from bouncing_ball.models.setting import PAPER, Setting
 from bouncing_ball.numerics.arrays import BLOCK, Batch, as_numbers, blocks, pick
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.first_zero import Zero
@@ -26,7 +27,7 @@ _ROUNDING = 8 * np.finfo(float).eps
 
 
 class Level(NamedTuple):
-    """Λ cos φ and Λ sin φ, the table's velocity and height."""
+    """The table's velocity w′ and height w, in the paper Λ cos φ and Λ sin φ."""
 
     x: np.ndarray
     y: np.ndarray
@@ -64,7 +65,7 @@ class Departure(NamedTuple):
 
     phase: np.ndarray
     duration: np.ndarray
-    flight: Flight
+    flight: Any
     status: np.ndarray
     settling: np.ndarray | float = 0.0
     aloft: np.ndarray | float = 0.0
@@ -83,6 +84,7 @@ class Dynamics(Batch, ABC):
 
     law: Any
     amplitude: np.ndarray
+    setting: Setting = PAPER
 
     block: ClassVar[int] = BLOCK
     forgets: ClassVar[bool] = False
@@ -91,8 +93,8 @@ class Dynamics(Batch, ABC):
     """Whether :meth:`depart_after` can continue a contact beyond its first end."""
 
     @classmethod
-    def of(cls, law: Any, amplitude: ArrayLike) -> Self:
-        """The dynamics of a law at Λ.
+    def of(cls, law: Any, amplitude: ArrayLike, setting: Setting = PAPER) -> Self:
+        """The dynamics of a law at Λ, in the setting of the paper or in another one.
 
         Raises
         ------
@@ -103,7 +105,7 @@ class Dynamics(Batch, ABC):
         allowed = "finite and ≥ 0"
         lam = as_numbers(amplitude, name, allowed)
         require((lam >= 0) & np.isfinite(lam), lam, name, allowed)
-        return cls(law, lam)
+        return cls(law, lam, setting)
 
     @property
     def contact(self) -> FiniteContact | None:
@@ -116,11 +118,11 @@ class Dynamics(Batch, ABC):
 
     def with_table(self, impact: Impact) -> Impact:
         """The impacts with the state of the table, which is used several times."""
-        return impact._replace(level=Level(*table(impact.phase, self.amplitude)))
+        return impact._replace(level=Level(*self.setting.level(impact.phase, self.amplitude)))
 
     def table_at(self, impact: Impact) -> tuple[np.ndarray, np.ndarray]:
-        """Λ cos φ and Λ sin φ at impacts."""
-        return impact.level or table(impact.phase, self.amplitude)
+        """w′ and w at impacts, in the paper Λ cos φ and Λ sin φ."""
+        return impact.level or self.setting.level(impact.phase, self.amplitude)
 
     def at_section(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
         """The impacts with these states, in the coordinates of :meth:`section`."""
@@ -178,7 +180,8 @@ class Dynamics(Batch, ABC):
 
     @abstractmethod
     def contraction(self, impact: Impact, departure: Departure) -> np.ndarray:
-        """The factor by which the contacts multiply areas of the phase plane; flights keep them.
+        """The factor by which the contacts multiply areas of the phase plane. Free flights keep
+        them, and others multiply them by :meth:`.Setting.contraction`.
 
         The determinant of the monodromy of a periodic orbit is the product of these factors.
         Without dissipation it is exactly 1, whereas the rounding errors of the entries of the
@@ -199,8 +202,10 @@ class Dynamics(Batch, ABC):
         ModelError
             If a flight is too long for floating-point numbers.
         """
-        landing = land(departure.flight, departure.flight.earliest_landing())
-        return self.arrive(departure, landing)
+        start = departure.flight.earliest_landing()
+        if departure.flight.may_miss:
+            start = np.maximum(start, departure.aloft)
+        return self.arrive(departure, land(departure.flight, start))
 
     def arrive(self, departure: Departure, landing: Zero) -> tuple[Impact, np.ndarray]:
         """The next impact after a landing, and the time from the last impact to it."""
@@ -232,11 +237,10 @@ class Dynamics(Batch, ABC):
 
         The flight ends where δ + κ δ′ = 0, with κ = ``lag``.
         """
-        flight = departure.flight
-        start = flight.x, flight.y
         end = self.table_at(after)
         time = passed - departure.duration
-        columns = (each.flown(start, end, time, after.velocity, lag) for each in released)
+        carried = departure.flight.carried
+        columns = (carried(each, end, time, after.velocity, lag) for each in released)
         return Jacobian.of_columns(*columns)
 
     def in_a_row(self, *states: ArrayLike) -> tuple[Self, list[np.ndarray], tuple[int, ...]]:
@@ -286,9 +290,10 @@ class Dynamics(Batch, ABC):
         flat, (start, before), shape = self.in_a_row(phase, velocity)
         if not np.all(np.isfinite(start) & np.isfinite(before)):
             raise ModelError("the phase and the velocity of the impact must be finite")
-        of_table = table(start, flat.amplitude)[0]
+        of_table = flat.setting.level(start, flat.amplitude)[0]
         relative = before - of_table
-        rises = ~(relative <= _ROUNDING * (np.abs(before) + flat.amplitude))
+        fastest = flat.amplitude * flat.setting.waveform.fastest
+        rises = ~(relative <= _ROUNDING * (np.abs(before) + fastest))
         if np.any(rises):
             k = int(np.argmax(rises))
             raise ModelError(
@@ -329,6 +334,7 @@ class Dynamics(Batch, ABC):
         return ImpactSequence(
             amplitude=np.broadcast_to(self.amplitude, shape),
             contact=self.contact,
+            setting=self.setting,
             status=status.reshape(shape),
             **{name: values.reshape(impacts, *shape) for name, values in rows.items()},
         )

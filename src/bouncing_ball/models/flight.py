@@ -10,6 +10,8 @@ This form loses no digits in a short flight. The ball cannot land while it is
 above the table's highest point, z > Λ, and the search skips this part.
 """
 
+from typing import Any
+
 import numpy as np
 
 from bouncing_ball.errors import ModelError
@@ -21,6 +23,11 @@ _ZERO = np.array(0.0)
 _HALF = np.array(0.5)
 _ONE = np.array(1.0)
 _TWO = np.array(2.0)
+# A time is bisected until a minimum is known to 2⁻²⁶ of an interval of at most π; its height then
+# has an error of the order of the square.
+_BISECTIONS = 26
+# The height where there is no minimum.
+_FAR = 1.0
 
 
 def table(phase: np.ndarray, amplitude: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
@@ -87,6 +94,19 @@ class Flight(Motion):
             fourth_bound=lam,
         )
 
+    @property
+    def may_miss(self) -> bool:
+        """Whether a flight may never end; a ball that falls freely always lands."""
+        return False
+
+    def carried(
+        self, by: Any, end: tuple, time: np.ndarray, velocity: np.ndarray, lag: np.ndarray | float
+    ) -> Any:
+        """The deviation at the event that ends the flight, of a deviation at its start: see
+        :meth:`.Deviation.flown`.
+        """
+        return by.flown((self.x, self.y), end, time, velocity, lag)
+
     def skip(self, time: np.ndarray, steps: int = 0) -> np.ndarray:
         """The end of the time in which z > Λ, or the time itself if it is not within this time."""
         return np.where((time >= self.above) & (time < self.below), self.below, time)
@@ -117,6 +137,47 @@ class Flight(Motion):
         by_lift = np.minimum(lift / np.maximum(np.abs(x), 1e-300), np.sqrt(3 * lift / top))
         by_jerk = 4 * x / top
         return np.where(rests, np.maximum(by_lift, by_jerk), time)
+
+    def lowest(self, time: np.ndarray) -> np.ndarray:
+        """The smallest local minimum of δ within each flight of this duration, 1 if there is none.
+
+        A minimum is unique in each interval in which Λ sin τ > 1, because δ″ = Λ sin τ - 1 is
+        positive there and nowhere else. All minima are therefore found.
+        """
+        lowest = np.full(time.shape, _FAR)
+        amplitude = np.broadcast_to(self.amplitude, time.shape)
+        may = np.flatnonzero((amplitude > 1) & np.isfinite(time))
+        if not may.size:
+            return lowest
+        part = self.take(may)
+        longest = time[may]
+        opening = np.arcsin(1 / amplitude[may])
+        start = np.arctan2(part.y, part.x)
+        # The first interval with Λ sin τ > 1 that ends after the start of the flight.
+        low = opening - start
+        width = np.pi - 2 * opening
+        low = low - 2 * np.pi * np.floor((low + width) / (2 * np.pi))
+        while np.any(low < longest):
+            left = np.clip(low, 0.0, longest)
+            right = np.clip(low + width, 0.0, longest)
+            falls = part.gap(left)[1] < 0
+            rises = part.gap(right)[1] > 0
+            turns = np.flatnonzero(falls & rises)
+            if turns.size:
+                bottom = part.take(turns)._bottom(left[turns], right[turns])
+                lowest[may[turns]] = np.minimum(lowest[may[turns]], bottom)
+            low = low + 2 * np.pi
+        return lowest
+
+    def _bottom(self, left: np.ndarray, right: np.ndarray) -> np.ndarray:
+        """The minimum of δ between times at which δ falls and rises."""
+        for _ in range(_BISECTIONS):
+            middle = (left + right) / 2
+            falls = self.gap(middle)[1] < 0
+            left = np.where(falls, middle, left)
+            right = np.where(falls, right, middle)
+        gap, rate, second, _ = self.gap(left)
+        return gap - rate * rate / (2 * second)
 
 
 class Rise(Motion):
@@ -181,7 +242,7 @@ def emerge(flight: Flight) -> tuple[np.ndarray, np.ndarray]:
     return time, rising
 
 
-def land(flight: Flight, start: np.ndarray) -> Zero:
+def land(flight: Any, start: np.ndarray) -> Zero:
     """The first landing; ``start`` is a time before which there is certainly none.
 
     The ``rate`` of the result is minus the relative impact velocity.
@@ -202,6 +263,6 @@ def land(flight: Flight, start: np.ndarray) -> Zero:
     ([6.0], [3.0])
     """
     landing = first_zero(flight, flight.skip(start))
-    if landing.undecided.any():
+    if landing.undecided.any() or landing.ended.any():
         raise ModelError("a landing was not found: the flight is out of floating-point range")
     return landing

@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.models.contact import ContactSpan
-from bouncing_ball.models.flight import Flight, table
 from bouncing_ball.models.sequence import ImpactSequence, Status
 
 
@@ -60,15 +59,16 @@ def motion_at(sequence: ImpactSequence, time: ArrayLike) -> History:
     # The end of the last flight is not known.
     flying = (since > duration) & ((row < last) | (sequence.status != Status.BOUNCING))
     left = sequence.phase[row] + np.where(flying, duration, 0.0)
-    x, y = table(left, lam)
+    setting = sequence.setting
+    level = setting.level(left, lam)
     displacement = sequence.release_displacement[row]
     velocity = sequence.relative_bounce_velocity[row]
-    flight = Flight(displacement, velocity, x, y, lam)
+    flight = setting.flight(displacement, velocity, left, level, lam)
     gap, speed, _, _ = flight.gap(np.where(flying, since - duration, 0.0))
     gap = np.where(flying, gap, np.nan)
     speed = np.where(flying, speed, np.nan)
     gap[touching], speed[touching] = _in_contact(sequence, row[touching], since[touching])
-    w_rate, w = table(sequence.phase[row] + since, lam)
+    w_rate, w = setting.level(sequence.phase[row] + since, lam)
     return History(
         time=t, height=gap + w, velocity=speed + w_rate, table=w, gap=gap, touching=touching
     )

@@ -9,6 +9,7 @@ arrays make several balls.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import fields
 from typing import Any
 
 from bouncing_ball.datasets.arguments import (
@@ -30,20 +31,32 @@ from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import LINEAR, Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.rigid import RestitutionModel
+from bouncing_ball.models.setting import setting_of
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.models.suspension import Suspension
+from bouncing_ball.models.waveform import Waveform
 
 LOSSES = ("restitution", "damping_ratio", "measured_restitution")
 """The parameters that determine the loss of an impact; exactly one of them is needed."""
 
 
-def rigid(*, restitution: RestitutionAxis) -> RestitutionModel:
+def rigid(
+    *,
+    restitution: RestitutionAxis,
+    table: Waveform | None = None,
+    flight: Suspension | None = None,
+) -> RestitutionModel:
     """A ball of the restitution model, whose impacts are instants (Eqs. 1-9).
 
     Parameters
     ----------
     restitution : float or array
         Restitution coefficient r in (0, 1].
+    table : Waveform, optional
+        The shape of a table with several harmonics, in place of the sine.
+    flight : Drag or Spring, optional
+        What moves the ball between its impacts, in place of gravity alone.
 
     Raises
     ------
@@ -54,10 +67,37 @@ def rigid(*, restitution: RestitutionAxis) -> RestitutionModel:
     --------
     >>> rigid(restitution=0.85)
     RestitutionModel(restitution=0.85)
+
+    A ball that falls through air, and a mass on a spring that hits a stop:
+
+    >>> from bouncing_ball import Drag, Spring
+    >>> in_air = rigid(restitution=0.85, flight=Drag(0.1))
+    >>> oscillator = rigid(restitution=0.85, flight=Spring(0.5, 0.05, gap=1.0))
+    >>> dict(oscillator.parameters)["gap"]
+    1.0
     """
     r = checked("restitution", restitution, RESTITUTION)
     flat = flattened({"restitution": r})
-    return RestitutionModel(flat["restitution"]).labelled({"restitution": r})
+    setting = setting_of(table, flight)
+    given = {"restitution": r} | _single_numbers(flight)
+    return RestitutionModel(flat["restitution"], setting).labelled(given)
+
+
+def _single_numbers(flight: Suspension | None) -> dict[str, float]:
+    """The parameters of what moves the ball, which must be single numbers.
+
+    Raises
+    ------
+    ParameterError
+        If one of them is an array.
+    """
+    if flight is None:
+        return {}
+    found = {field.name: getattr(flight, field.name) for field in fields(flight)}
+    for name, value in found.items():
+        if is_array(value):
+            raise ParameterError(f"{{{name}}} must be a single number here")
+    return {name: float(value) for name, value in found.items()}
 
 
 def spring_damper(

@@ -29,12 +29,17 @@ from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
 from bouncing_ball.models.sequence import Cycle, ImpactSequence
+from bouncing_ball.models.setting import PAPER, Setting
+from bouncing_ball.models.suspension import DRAG, SPRING_DAMPING, SPRING_FREQUENCY
 from bouncing_ball.numerics.arrays import Batch
 
 RANGES: Mapping[str, Range] = {
     "frequency_ratio": FREQUENCY_RATIO,
     "restitution": RESTITUTION,
     "damping_ratio": Range(0, 1, "[)"),
+    "drag": DRAG,
+    "spring_frequency": SPRING_FREQUENCY,
+    "spring_damping": SPRING_DAMPING,
 }
 """The ranges of the parameters of models that have one; other parameters are finite numbers."""
 
@@ -42,17 +47,22 @@ RANGES: Mapping[str, Range] = {
 class Model(Batch, Ball, ABC):
     """A law of the impact, for one ball or for a row of balls.
 
-    A subclass is a frozen dataclass with one field, which holds the law. ``name`` is the name of
-    the model in messages.
+    A subclass is a frozen dataclass whose first field holds the law; a field ``setting`` says where
+    its balls bounce, if this may be elsewhere than in the paper. ``name`` is the name of the model
+    in messages.
     """
 
     name: ClassVar[str]
 
     @property
     def impact_law(self) -> Any:
-        """The law of the impact, which is the only field of the model."""
-        (law,) = (getattr(self, field.name) for field in fields(self))
-        return law
+        """The law of the impact, which is the first field of the model."""
+        return getattr(self, fields(self)[0].name)
+
+    @property
+    def place(self) -> Setting:
+        """How the table moves, and what moves the ball in flight."""
+        return getattr(self, "setting", PAPER)
 
     @property
     def label(self) -> str:

@@ -17,9 +17,9 @@ change of g. Then ::
 
     T = T₀ (1 - g′ T₀/(3g) + ...),    T₀ = 2v/(g (1 - r))
 
-This sum replaces the bounces once Λ T₀ and T₀ are below 10⁻⁵ g, where the next term is below
-10⁻¹⁵. The ball then rests on the table until it lifts off
-(:mod:`bouncing_ball.models.sticking`).
+A drag l subtracts ``l T₀/6`` from the bracket. This sum replaces the bounces once Λ T₀ and T₀ are
+below 10⁻⁵ g, where the next term is below 10⁻¹⁵. The ball then rests on the table until it lifts
+off (:mod:`bouncing_ball.models.sticking`).
 """
 
 from dataclasses import dataclass
@@ -31,8 +31,10 @@ from numpy.typing import ArrayLike
 from bouncing_ball.models.damping import check_restitution
 from bouncing_ball.models.deviations import Deviation, Jacobian
 from bouncing_ball.models.dynamics import Departure, Dynamics, Impact
-from bouncing_ball.models.flight import Flight
-from bouncing_ball.models.sticking import lift_off_phase, lifted, pressed, stay
+from bouncing_ball.models.sequence import Status
+from bouncing_ball.models.setting import PAPER, Setting
+from bouncing_ball.models.sticking import lifted, pressed, stay
+from bouncing_ball.numerics.first_zero import first_zero
 
 # Bound of Λ T₀/g and T₀/g below which chattering is summed up.
 _CHATTER = 1e-5
@@ -48,12 +50,13 @@ def chattering(
     restitution: np.ndarray,
     x: np.ndarray,
     y: np.ndarray,
-    amplitude: np.ndarray,
+    strength: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Which balls come to rest on the table after an impact, and the time T of their chattering.
 
-    ``velocity`` is δ′ just after the impact, and ``x``, ``y`` are Λ cos τ and Λ sin τ. T is 0 for
-    balls that do not come to rest, because their bounces are not summed up.
+    ``velocity`` is δ′ just after the impact, and ``x``, ``y`` are -g′ and 1 - g, in the paper
+    Λ cos τ and Λ sin τ; ``strength`` is that of :meth:`.Setting.strength`, in the paper Λ. T is 0
+    for balls that do not come to rest, because their bounces are not summed up.
 
     Examples
     --------
@@ -65,7 +68,7 @@ def chattering(
     ([True, False, False], [4e-06, 0.0, 0.0])
     """
     # T₀ > 2v/g, and g ≤ 1 + Λ: above this speed no ball of any r has a short T₀.
-    load = _ONE + amplitude
+    load = _ONE + strength
     if (velocity > _CHATTER * load * load).all():
         return np.zeros(x.shape, dtype=bool), np.zeros(x.shape)
     gravity = 1 - y
@@ -74,13 +77,26 @@ def chattering(
     loss = gravity * (1 - restitution)
     usable = down & (loss > 0)
     first = np.where(usable, 2 * velocity, 0.0) / np.where(usable, loss, 1.0)
-    limit = np.maximum(_CHATTER * gravity / np.maximum(amplitude, 1.0), _INSTANT)
+    limit = np.maximum(_CHATTER * gravity / np.maximum(strength, 1.0), _INSTANT)
     short = usable & (first <= limit)
     sticks = short | (down & (velocity == 0))
     if not sticks.any():
         return sticks, np.zeros_like(x)
     correction = np.where(short, x * first, 0.0) / np.where(short, 3 * gravity, 1.0)
     return sticks, np.where(sticks, first * (1 + correction), 0.0)
+
+
+def _aloft(departure: Departure) -> Departure:
+    """The departures with the flights marked that never end, and the ends of the others."""
+    flying = np.flatnonzero(departure.status == Status.BOUNCING)
+    part = departure.flight.take(flying)
+    found = first_zero(part, part.earliest_landing())
+    status = departure.status.copy()
+    status[flying[found.ended]] = Status.ALOFT
+    status[flying[found.undecided]] = Status.UNDECIDED
+    aloft = np.zeros(status.shape)
+    aloft[flying] = found.time
+    return departure._replace(status=status, aloft=aloft)
 
 
 @dataclass(frozen=True, repr=False)
@@ -106,7 +122,7 @@ class RestitutionDynamics(Dynamics):
     continues: ClassVar[bool] = True
 
     @classmethod
-    def of(cls, law: Any, amplitude: ArrayLike) -> Self:
+    def of(cls, law: Any, amplitude: ArrayLike, setting: Setting = PAPER) -> Self:
         """The dynamics of restitution coefficients r at Λ.
 
         Raises
@@ -114,7 +130,7 @@ class RestitutionDynamics(Dynamics):
         ModelError
             If r or Λ is outside its range.
         """
-        return super().of(check_restitution(law), amplitude)
+        return super().of(check_restitution(law), amplitude, setting)
 
     def rebound(self, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """r and d(r v)/dv at impact speeds v > 0; for a constant r both are r."""
@@ -128,11 +144,16 @@ class RestitutionDynamics(Dynamics):
         """The flight after each impact (Eq. 2), or the rest on the table after chattering."""
         r, _ = self._rebound_of(impact)
         velocity = -r * impact.velocity
-        x, y = self.table_at(impact)
-        sticks, settling = chattering(velocity, r, x, y, self.amplitude)
-        flight = Flight(np.zeros(x.shape), velocity, x, y, self.amplitude)
+        level = self.table_at(impact)
+        setting = self.setting
+        x, y = setting.at_rest(impact.phase, level, self.amplitude)
+        sticks, settling = chattering(velocity, r, x, y, setting.strength(self.amplitude))
+        none = np.zeros(x.shape)
+        flight = setting.flight(none, velocity, impact.phase, level, self.amplitude)
         departure = self._left(impact, flight, sticks, settling)
-        return lifted(departure, self.amplitude) if differentiate else departure
+        if departure.flight.may_miss:
+            departure = _aloft(departure)
+        return lifted(departure, self.amplitude, setting) if differentiate else departure
 
     def depart_after(self, impact: Impact, duration: np.ndarray) -> Departure:
         """The rest on the table up to the lift-off where the duration is positive, otherwise the
@@ -141,11 +162,13 @@ class RestitutionDynamics(Dynamics):
         The bounces before the rest are left out, also if they would last beyond the lift-off
         (:meth:`settles`): the state at the lift-off does not depend on them.
         """
-        x, y = self.table_at(impact)
+        level = self.table_at(impact)
         r, _ = self._rebound_of(impact)
-        flight = Flight(np.zeros(x.shape), -r * impact.velocity, x, y, self.amplitude)
-        rests = self._left(impact, flight, duration > 0, np.zeros(x.shape))
-        return lifted(rests, self.amplitude)
+        none = np.zeros(impact.phase.shape)
+        velocity = -r * impact.velocity
+        flight = self.setting.flight(none, velocity, impact.phase, level, self.amplitude)
+        rests = self._left(impact, flight, duration > 0, none)
+        return lifted(rests, self.amplitude, self.setting)
 
     def settles(self, impact: Impact) -> np.ndarray:
         """Whether the bounces after each impact end before the next lift-off, so that the ball
@@ -155,7 +178,8 @@ class RestitutionDynamics(Dynamics):
         """
         settled = np.zeros(impact.phase.shape, dtype=bool)
         balls = np.arange(settled.size)
-        left = np.mod(lift_off_phase(self.amplitude) - impact.phase, 2 * np.pi)
+        lift = self.setting.lift_off(impact.phase, self.amplitude)
+        left = np.where(lift.never, np.nan, np.mod(lift.phase - impact.phase, 2 * np.pi))
         for leg in self.legs(impact, differentiate=True):
             sticks = leg.departure.sticks
             settled[balls[sticks]] = True
@@ -166,7 +190,7 @@ class RestitutionDynamics(Dynamics):
         return settled
 
     def _left(
-        self, impact: Impact, flight: Flight, sticks: np.ndarray, settling: np.ndarray
+        self, impact: Impact, flight: Any, sticks: np.ndarray, settling: np.ndarray
     ) -> Departure:
         """The flights after the impacts, or after the rest of the balls that stick."""
         departure = Departure(
@@ -176,7 +200,7 @@ class RestitutionDynamics(Dynamics):
             status=np.zeros(settling.shape),
             settling=settling,
         )
-        return stay(departure, sticks, self.amplitude)
+        return stay(departure, sticks, self.amplitude, self.setting)
 
     def jacobian(
         self, impact: Impact, departure: Departure, after: Impact, passed: np.ndarray

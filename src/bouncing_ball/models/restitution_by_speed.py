@@ -10,12 +10,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.models.instant import Instant, rigid_instant
+from bouncing_ball.models.laws.analytic import compare
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.restitution import RestitutionDynamics
+from bouncing_ball.models.setting import PAPER, Setting
 from bouncing_ball.numerics.arrays import Batch
 
 # The imaginary step relative to the speed; its square is lost in rounding.
 _IMAGINARY = 1e-20
+# The speeds at which r(v) is examined.
+_SPEEDS = 0.937 * np.geomspace(1e-3, 30.0, 12)
 
 
 class RestitutionLaw(Batch, ABC):
@@ -60,13 +64,23 @@ class RestitutionLaw(Batch, ABC):
         return RestitutionLawDynamics.of(self, amplitude)
 
 
+def require_analytic_restitution(law: RestitutionLaw) -> None:
+    """Raise :class:`ModelError` if the slope of a law by an imaginary step is not that by a
+    difference; a law with a :meth:`RestitutionLaw.slope` of its own is not examined.
+    """
+    if type(law).slope is not RestitutionLaw.slope:
+        return
+    one = law.flat(law.shape).take(0)
+    compare(f"r(v) of {type(law).__name__}", "v", one.restitution, _SPEEDS)
+
+
 class RestitutionLawDynamics(RestitutionDynamics):
     """Impacts and flights with a restitution coefficient r(v); ``law`` is the
     :class:`RestitutionLaw`.
     """
 
     @classmethod
-    def of(cls, law: RestitutionLaw, amplitude: ArrayLike) -> Self:
+    def of(cls, law: RestitutionLaw, amplitude: ArrayLike, setting: Setting = PAPER) -> Self:
         """The dynamics of a law r(v) at Λ.
 
         Raises
@@ -74,7 +88,7 @@ class RestitutionLawDynamics(RestitutionDynamics):
         ModelError
             If Λ is outside its range.
         """
-        return super(RestitutionDynamics, cls).of(law, amplitude)
+        return super(RestitutionDynamics, cls).of(law, amplitude, setting)
 
     def rebound(self, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """r and d(r v)/dv at impact speeds v > 0."""
@@ -89,6 +103,13 @@ class RestitutionLawModel(Model):
     ----------
     law : RestitutionLaw
         The law r(v).
+    setting : Setting, optional
+        The motion of the table and what moves the ball in flight, by default those of the paper.
+
+    Raises
+    ------
+    ModelError
+        If the derivative of r by an imaginary step is not that by a difference.
 
     Examples
     --------
@@ -105,12 +126,16 @@ class RestitutionLawModel(Model):
     """
 
     law: RestitutionLaw
+    setting: Setting = PAPER
 
     name: ClassVar[str] = "restitution-law"
 
+    def __post_init__(self) -> None:
+        require_analytic_restitution(self.law)
+
     def dynamics(self, amplitude: ArrayLike) -> RestitutionLawDynamics:
         """The impacts and flights of these balls on a table of amplitude Λ."""
-        return self.law.dynamics(amplitude)
+        return RestitutionLawDynamics.of(self.law, amplitude, self.setting)
 
     def signature(self, speed: ArrayLike) -> Instant:
         """The restitution r(v), without delay, load sensitivity and duration."""

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.models.dynamics import Departure
-from bouncing_ball.models.flight import Flight, table
 from bouncing_ball.models.sequence import Status
+from bouncing_ball.models.setting import PAPER, Setting, lift_off_velocity
 from bouncing_ball.numerics.arrays import pick
-from bouncing_ball.numerics.elementary import arctangent, reduce_angle
+from bouncing_ball.numerics.elementary import arctangent
 
 
 def lift_off_phase(amplitude: ArrayLike) -> np.ndarray:
@@ -24,13 +24,8 @@ def lift_off_phase(amplitude: ArrayLike) -> np.ndarray:
     True
     """
     lam = np.asarray(amplitude, dtype=float)
-    cosine = _lift_off_velocity(np.maximum(lam, 1.0))
+    cosine = lift_off_velocity(np.maximum(lam, 1.0))
     return np.where(lam > 1, arctangent(1.0, cosine), np.nan)
-
-
-def _lift_off_velocity(amplitude: np.ndarray) -> np.ndarray:
-    """The table's velocity √(Λ² - 1) at lift-off, for Λ ≥ 1."""
-    return np.sqrt((amplitude - 1) * (amplitude + 1))
 
 
 def pressed(x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -44,41 +39,42 @@ def pressed(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return (y < 1) | ((y == 1) & (x <= 0))
 
 
-def stay(departure: Departure, rests: np.ndarray, amplitude: np.ndarray) -> Departure:
+def stay(
+    departure: Departure, rests: np.ndarray, amplitude: np.ndarray, setting: Setting = PAPER
+) -> Departure:
     """The departures after the balls marked by ``rests`` have rested on the table.
 
     These balls rest on the table from the phase of the given departure on until they lift off.
     """
     if not rests.any():
         return departure
-    x, y = table(departure.phase, amplitude)
-    held = pressed(x, y)
-    forever = rests & (amplitude <= 1)
-    # At lift-off Λ sin τ = 1 exactly. For Λ ≤ 1 the values have no meaning and are not used.
-    velocity = _lift_off_velocity(np.maximum(amplitude, 1.0))
-    lift = arctangent(1.0, velocity)
-    wait = np.where(held, np.mod(reduce_angle(lift - departure.phase), 2 * np.pi), 0.0)
-    # Rounding must not postpone a lift-off at the present phase by a full turn.
-    wait = np.where(wait > 2 * np.pi - 1e-9, 0.0, wait)
-    rest = np.where(forever, np.inf, wait)
-    level = np.where(forever, np.nan, 0.0)
+    x, y = setting.level(departure.phase, amplitude)
+    held = pressed(*setting.at_rest(departure.phase, (x, y), amplitude))
+    lift = setting.lift_off(departure.phase, amplitude)
+    forever = rests & lift.never
+    velocity, top = setting.lifted_level(lift, amplitude)
+    rest = np.where(forever, np.inf, np.where(held, lift.wait, 0.0))
+    none = np.where(forever, np.nan, 0.0)
     before = departure.flight
-    flight = Flight(
-        displacement=np.where(rests, level, before.displacement),
-        velocity=np.where(rests, level, before.velocity),
-        x=np.where(rests, np.where(held, velocity, x), before.x),
-        y=np.where(rests, np.where(held, 1.0, y), before.y),
-        amplitude=amplitude,
+    phase = np.where(rests & held, lift.phase, departure.phase)
+    # The table's state where the ball leaves; that of a ball that stays for ever is not used.
+    level = (
+        np.where(rests, np.where(held, velocity, x), before.x),
+        np.where(rests, np.where(held, top, y), before.y),
+    )
+    displacement = np.where(rests, none, before.displacement)
+    flight = setting.flight(
+        displacement, np.where(rests, none, before.velocity), phase, level, amplitude
     )
     return departure._replace(
-        phase=np.where(rests & held, lift, departure.phase),
+        phase=phase,
         duration=departure.duration + np.where(rests, rest, 0.0),
         flight=flight,
         status=np.where(forever, Status.PERMANENT_CONTACT, Status.BOUNCING),
     )
 
 
-def lifted(departure: Departure, amplitude: np.ndarray) -> Departure:
+def lifted(departure: Departure, amplitude: np.ndarray, setting: Setting = PAPER) -> Departure:
     """The departures with those marked as sticking that leave by lift-off, a state that does not
     depend on their earlier motion.
     """
@@ -87,5 +83,6 @@ def lifted(departure: Departure, amplitude: np.ndarray) -> Departure:
     sticks = at_rest
     if not balls.size:
         return departure._replace(sticks=sticks)
-    sticks[balls] = departure.phase[balls] == lift_off_phase(pick(amplitude, balls))
+    there = departure.phase[balls]
+    sticks[balls] = setting.take(balls).lifts_at(there, pick(amplitude, balls))
     return departure._replace(sticks=sticks)

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.instant import Instant
+from bouncing_ball.models.laws.analytic import require_analytic
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.permanent_contact import permanent_contact
 from bouncing_ball.models.laws.signature import Signature
@@ -27,6 +28,11 @@ class LawModel(Model):
     law : ContactLaw
         One law, or an array of laws.
 
+    Raises
+    ------
+    ModelError
+        If the derivatives of the force by imaginary steps are not those by differences.
+
     Examples
     --------
     >>> from bouncing_ball.models.laws.hertzian import Tsuji, tsuji_damping
@@ -37,6 +43,9 @@ class LawModel(Model):
     law: ContactLaw
 
     name: ClassVar[str] = "contact-law"
+
+    def __post_init__(self) -> None:
+        require_analytic(self.law)
 
     @cached_property
     def parameters(self) -> Mapping[str, Any]:

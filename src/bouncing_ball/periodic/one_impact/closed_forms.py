@@ -24,6 +24,7 @@ from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import corrected_branch as lines
 from bouncing_ball.periodic.one_impact import restitution_branch as formulas
 from bouncing_ball.periodic.one_impact import spring_damper_bifurcations as bifurcations
+from bouncing_ball.periodic.one_impact.other_settings import OtherOrbits
 from bouncing_ball.periodic.one_impact.spring_damper_branch import nearest_excess, orbits_on_branch
 from bouncing_ball.periodic.orbits.orbit import Orbit, check_index, in_order
 from bouncing_ball.periodic.orbits.stability import Side
@@ -188,7 +189,7 @@ def closed_form(model: Model) -> ClosedForm | None:
 
 @closed_form.register
 def _(model: RestitutionModel) -> ClosedForm | None:
-    return RestitutionLine(model)
+    return RestitutionLine(model) if model.setting.is_paper else OtherOrbits(model)
 
 
 @closed_form.register

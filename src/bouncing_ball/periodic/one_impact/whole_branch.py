@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.model import Model
+from bouncing_ball.models.setting import require_paper
 from bouncing_ball.numerics.continuation import (
     Branch,
     ContinuationError,
@@ -36,6 +37,7 @@ LARGEST_STEP = 0.1
 _BEYOND_DOUBLING = 1.4
 # Smallest Λ of a branch: a fold below it belongs to an elastic contact.
 _LOWEST = 1e-4
+_WHOLE = "whole branches of n-T orbits"
 # Number of Λ at which an orbit to start from is searched.
 _STARTS = 16
 
@@ -88,6 +90,7 @@ def whole_branch(
     >>> str(found.branch.end)
     'amplitude = 1.2 is reached'
     """
+    require_paper(model.place, _WHOLE)
     top = amplitude_max or _default_top(model, n)
     (found,) = whole_branches(model, [n], top, largest_step, ends)
     if isinstance(found, Followed):
@@ -127,6 +130,7 @@ def whole_branches(
     >>> [round(each.first("saddle-node").amplitude, 4) for each in found]
     [0.2547, 0.5094]
     """
+    require_paper(model.place, _WHOLE)
     top = amplitude_max
     family = np.array(n)
     fold = np.atleast_1d(n_t.saddle_node(model, family).amplitude)

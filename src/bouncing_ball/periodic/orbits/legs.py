@@ -93,6 +93,8 @@ class Legs:
             return self.duration
         with np.errstate(all="ignore"):
             factor = self.dynamics.contraction(self.impact, self.departure)
+            flown = self.landing.passed - self.departure.duration
+            factor = factor * self.dynamics.setting.contraction(flown)
         return np.reshape(factor, self.duration.shape)
 
     @cached_property

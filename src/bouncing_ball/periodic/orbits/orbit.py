@@ -289,8 +289,29 @@ class Orbit(Batch):
 
     @property
     def _bounces(self) -> np.ndarray:
-        # In flight the velocity falls by the flight time.
-        return np.roll(self.velocities, -1, axis=-1) + self._flights
+        if self.model.place.is_paper:
+            # In flight the velocity falls by the flight time.
+            return np.roll(self.velocities, -1, axis=-1) + self._flights
+        _, rate = self._flight_motion(np.zeros(self.phases.shape))
+        return rate + self._table_velocity(self.phases + self.durations)
+
+    def _table_velocity(self, phase: np.ndarray) -> np.ndarray:
+        """w′ at phases of the impacts, shape (..., k)."""
+        return self._lam * self.model.place.waveform.velocity(phase)
+
+    def _table_height(self, phase: np.ndarray) -> np.ndarray:
+        """w at phases of the impacts, shape (..., k)."""
+        return self._lam * self.model.place.waveform.height(phase)
+
+    def _flight_motion(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """δ and δ′ at times since the releases, shape (..., k), NaN where there is no orbit."""
+        shape = (*self.shape, self.impacts)
+        departure = self._legs.departure
+        if departure is None:
+            return np.full(shape, np.nan), np.full(shape, np.nan)
+        with np.errstate(invalid="ignore"):
+            gap, rate, _, _ = departure.flight.gap(np.broadcast_to(time, shape).ravel())
+        return gap.reshape(shape), rate.reshape(shape)
 
     @property
     def flight_time(self) -> Any:
@@ -309,11 +330,11 @@ class Orbit(Batch):
 
     @property
     def _closing(self) -> np.ndarray:
-        return self.velocities - self._lam * np.cos(self.phases)
+        return self.velocities - self._table_velocity(self.phases)
 
     @property
     def _leaving(self) -> np.ndarray:
-        return self._bounces - self._lam * np.cos(self.phases + self.durations)
+        return self._bounces - self._table_velocity(self.phases + self.durations)
 
     @property
     def relative_impact_velocity(self) -> Any:
@@ -425,7 +446,10 @@ class Orbit(Batch):
     @property
     def _heights(self) -> np.ndarray:
         """Absolute heights at release, which follow from the flights to the next impacts."""
-        landing = self._lam * np.sin(np.roll(self.phases, -1, axis=-1))
+        if not self.model.place.is_paper:
+            gap, _ = self._flight_motion(np.zeros(self.phases.shape))
+            return gap + self._table_height(self.phases + self.durations)
+        landing = self._table_height(np.roll(self.phases, -1, axis=-1))
         landing = landing + self._of_existing(Orbit._landing_gap, self.impacts)
         mean_velocity = (self._bounces + np.roll(self.velocities, -1, axis=-1)) / 2
         return landing - mean_velocity * self._flights
@@ -443,8 +467,11 @@ class Orbit(Batch):
         below the table and thus below Λ. Otherwise the table may lift the ball higher during a long
         contact.
         """
-        rising = np.maximum(self._bounces, 0.0)
-        apex = np.max(self._heights + rising * rising / 2, axis=-1)
+        if self.model.place.is_paper:
+            rising = np.maximum(self._bounces, 0.0)
+            apex = np.max(self._heights + rising * rising / 2, axis=-1)
+        else:
+            apex = self._flight_top()
         top = np.array(np.broadcast_to(apex, self.shape))
         lasting = np.any(self.durations > 0, axis=-1)
         low = np.flatnonzero((top < self.amplitude) & lasting)
@@ -455,13 +482,33 @@ class Orbit(Batch):
         return self._single(top)
 
     def _contact_top(self) -> np.ndarray:
-        """Greatest height in contact, from samples that are refined around the highest sample."""
+        """Greatest height in contact."""
+
+        def height(since: np.ndarray) -> np.ndarray:
+            gap, _ = self._in_contact(since)
+            return gap + self._table_height(self.phases + since)
+
+        return self._top(height, self.durations)
+
+    def _flight_top(self) -> np.ndarray:
+        """Greatest height in flight."""
+
+        def height(since: np.ndarray) -> np.ndarray:
+            left = self.phases + self.durations
+            gap = [self._flight_motion(each)[0] for each in since]
+            return np.array(gap) + self._table_height(left + since)
+
+        return self._top(height, self._flights)
+
+    def _top(self, height_at: Callable[[np.ndarray], np.ndarray], lasts: np.ndarray) -> np.ndarray:
+        """The greatest height within parts of the orbit of these durations, from samples that are
+        refined around the highest sample.
+        """
         steps = np.arange(_SAMPLES).reshape(-1, *(1,) * (len(self.shape) + 1))
-        low = 0.0 * self.durations
-        step = self.durations / (_SAMPLES - 1)
+        low = 0.0 * lasts
+        step = lasts / (_SAMPLES - 1)
         for _ in range(_REFINEMENTS):
-            gap, _ = self._in_contact(low + step * steps)
-            height = gap + self._lam * np.sin(self.phases + low + step * steps)
+            height = height_at(low + step * steps)
             highest = np.argmax(np.where(np.isnan(height), -np.inf, height), axis=0)
             # Refine from one step before the highest sample to one step after it, in the contact.
             low = low + step * np.clip(highest - 1, 0, _SAMPLES - 3)
@@ -499,17 +546,34 @@ class Orbit(Batch):
         """Height z and velocity z′ at times 0 ≤ s ≤ τ_b in the contact of one impact."""
         displacement, velocity = self.contact_motion(time, impact)
         phase = self.phases[..., impact] + np.asarray(time)
-        height = displacement + self.amplitude * np.sin(phase)
-        return height, velocity + self.amplitude * np.cos(phase)
+        waveform = self.model.place.waveform
+        height = displacement + self.amplitude * waveform.height(phase)
+        return height, velocity + self.amplitude * waveform.velocity(phase)
 
     def flight_path(self, time: ArrayLike, impact: int = 0) -> tuple[np.ndarray, np.ndarray]:
         """Height and velocity in the flight after one impact, from which the time is counted
         (Eqs. 14-15).
         """
         s = np.asarray(time) - self.durations[..., impact]
+        if not self.model.place.is_paper:
+            return self._other_flight_path(s, impact)
         bounce = self._bounces[..., impact]
         velocity = bounce - s
         return self._heights[..., impact] + (bounce + velocity) / 2 * s, velocity
+
+    def _other_flight_path(self, since: np.ndarray, impact: int) -> tuple[np.ndarray, np.ndarray]:
+        """Height and velocity at times since one release, in another setting than the paper's."""
+        shape = np.broadcast_shapes(since.shape, self.shape)
+        each = np.broadcast_to(since, shape).reshape(-1, self.size)
+        legs = self._legs
+        number = np.arange(self.size) * self.impacts + impact
+        _, departure = legs.dynamics.kept(number, legs.departure)
+        found = np.array([departure.flight.gap(row)[:2] for row in each])
+        gap, rate = np.moveaxis(found, 1, 0).reshape(2, *shape)
+        waveform = self.model.place.waveform
+        phase = self.phases[..., impact] + self.durations[..., impact] + since
+        height = gap + self.amplitude * waveform.height(phase)
+        return height, rate + self.amplitude * waveform.velocity(phase)
 
     def path(self, time: ArrayLike) -> tuple[Any, Any]:
         """Absolute height and velocity at any time since the first impact, with period 2πm.
@@ -653,7 +717,9 @@ def orbit_at(problem: PeriodicOrbits, y: np.ndarray, kind: str = "") -> Orbit:
         started = theta - time_to_section(dynamics, impact).reshape(theta.shape)
         phase = reduce_angle(started)
         whole = np.round((started - phase) / (2 * np.pi))
-        velocity = impact.velocity.reshape(v.shape) + lam[..., np.newaxis] * np.cos(phase)
+        waveform = problem.balls.model.place.waveform
+        of_table = lam[..., np.newaxis] * waveform.velocity(phase)
+        velocity = impact.velocity.reshape(v.shape) + of_table
     shift = np.nan_to_num(np.roll(whole, -1, axis=-1) - whole).astype(int)
     balls = problem.at(y)
     return Orbit(

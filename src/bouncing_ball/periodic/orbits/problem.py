@@ -49,7 +49,6 @@ import numpy as np
 
 from bouncing_ball.models.deviations import Jacobian
 from bouncing_ball.models.dynamics import Dynamics, Impact
-from bouncing_ball.models.flight import table
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import Event
@@ -277,7 +276,8 @@ class PeriodicOrbits:
         phase, velocity = (x[..., self._next].ravel() for x in self.states(y))
         _, end_velocity = dynamics.section(landing.near)
         _, landing_velocity = dynamics.section(landing.after)
-        acceleration = table(reduce_angle(phase), dynamics.amplitude)[1] - 1
+        flown = landing.passed_near - departure.duration
+        acceleration = dynamics.setting.arriving(departure.flight, flown, phase, dynamics.amplitude)
         speed = end_velocity + lag * acceleration
         height = speed * landing.late
         faster = (landing_velocity - velocity) - acceleration * landing.late

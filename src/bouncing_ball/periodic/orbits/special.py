@@ -23,7 +23,6 @@ from typing import Protocol
 import numpy as np
 
 from bouncing_ball import datasets
-from bouncing_ball.models.flight import Flight
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.continuation import Branch, End
 from bouncing_ball.numerics.corrector import Problem
@@ -34,9 +33,6 @@ from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
 from bouncing_ball.periodic.orbits.release import release_condition, release_margin
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
-# A time is bisected until a minimum is known to 2⁻²⁶ of an interval of at most π; its height then
-# has an error of the order of the square.
-_BISECTIONS = 26
 # Rounding errors of 1e-16 are divided by the impact speed and by the flight time where both vanish:
 # the margin limits each of them to about 1e-12.
 _MARGIN = 1e-4
@@ -107,47 +103,8 @@ def flight_margin(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
     flight = legs.departure.flight
     duration = np.where(np.isfinite(legs.duration.ravel()), legs.departure.duration, np.nan)
     with np.errstate(all="ignore"):
-        lowest = _lowest(flight, legs.landing.passed - duration)
+        lowest = flight.lowest(legs.landing.passed - duration)
     return lowest.reshape(legs.duration.shape).min(axis=-1)
-
-
-def _lowest(flight: Flight, time: np.ndarray) -> np.ndarray:
-    """The smallest local minimum of δ within each flight of this duration, 1 if there is none."""
-    lowest = np.full(time.shape, _FAR)
-    amplitude = np.broadcast_to(flight.amplitude, time.shape)
-    may = np.flatnonzero((amplitude > 1) & np.isfinite(time))
-    if not may.size:
-        return lowest
-    part = pick(flight, may)
-    longest = time[may]
-    opening = np.arcsin(1 / amplitude[may])
-    start = np.arctan2(part.y, part.x)
-    # The first interval with Λ sin τ > 1 that ends after the start of the flight.
-    low = opening - start
-    width = np.pi - 2 * opening
-    low = low - 2 * np.pi * np.floor((low + width) / (2 * np.pi))
-    while np.any(low < longest):
-        left = np.clip(low, 0.0, longest)
-        right = np.clip(low + width, 0.0, longest)
-        falls = part.gap(left)[1] < 0
-        rises = part.gap(right)[1] > 0
-        turns = np.flatnonzero(falls & rises)
-        if turns.size:
-            bottom = _bottom(pick(part, turns), left[turns], right[turns])
-            lowest[may[turns]] = np.minimum(lowest[may[turns]], bottom)
-        low = low + 2 * np.pi
-    return lowest
-
-
-def _bottom(flight: Flight, left: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """The minimum of δ between times at which δ falls and rises."""
-    for _ in range(_BISECTIONS):
-        middle = (left + right) / 2
-        falls = flight.gap(middle)[1] < 0
-        left = np.where(falls, middle, left)
-        right = np.where(falls, right, middle)
-    gap, rate, second, _ = flight.gap(left)
-    return gap - rate * rate / (2 * second)
 
 
 def impact_margin(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:

@@ -8,10 +8,12 @@ from bouncing_ball.drawing.canvas import WIDE, canvas, legend_below
 from bouncing_ball.drawing.tables import Columns, TextTable, table, text, value
 
 _MARKERS = "os^xD+v*"
+# Bars beyond this range are cut off; the table has them.
+_RANGE = (-0.2, 0.2)
 
 
 def bounces(data: xr.Dataset) -> Figure:
-    """Draw the r that engines have minus the one asked for, over r (ext_bounces).
+    """Draw the r that engines have minus the one asked for, against r (ext_bounces).
 
     There is a column for each time step and a row for each height of the drop. A bar spans the
     instants within a step at which a ball meets the ground.
@@ -33,7 +35,7 @@ def bounces(data: xr.Dataset) -> Figure:
                 axes.errorbar(
                     aside, mean, yerr=[low, high], fmt=_MARKERS[k], color=f"C{k}",
                     markersize=3.5, markerfacecolor="none", elinewidth=0.8,
-                    label=str(one.engine.item()),
+                    label=str(one.engine.item()).replace("_", ", "),
                 )  # fmt: skip
             step = 1 / part.time_step.item()
             axes.set(title=f"step 1/{step:.0f} s, drop {part.drop_height.item():g} m", ylim=_RANGE)
@@ -41,12 +43,8 @@ def bounces(data: xr.Dataset) -> Figure:
         axes.set(xlabel="$r$ asked for")
     for row in slots:
         row[0].set(ylabel="$r$ got minus $r$ asked for")
-    legend_below(figure, ncols=many)
+    legend_below(figure, ncols=many // 2)
     return figure
-
-
-# Bars beyond this range are cut off; the table has them.
-_RANGE = (-0.2, 0.2)
 
 
 def ext_bounces(data: xr.Dataset) -> TextTable:

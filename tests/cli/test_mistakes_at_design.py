@@ -47,7 +47,7 @@ MISTAKES = """
 --mass "20 g" --frequency "50 Hz" --amplitude "1 mm" --stiffness 1e6 --restitution 0.8
     unrecognized arguments: --amplitude 1 mm; did you mean --table-amplitude?
 BALL TABLE --release Force
-    argument --release: invalid choice: 'Force' (choose from 'displacement', 'force'); did you
+    argument --release: invalid choice: 'Force' (choose from 'displacement', 'force', 'approach');
 BALL TABLE --law Hertz
     --law Hertz has no damper: Hertz's spring with a damper is --law tsuji, or give --radius and
 --mass "20 g" TABLE --contact-time "1 ms" --restitution 0.8 --law Tsuji

@@ -10,7 +10,9 @@ from bouncing_ball.pipeline.diff.budgets import ARTIFACTS, budget_of
 
 # Measured impacts have units; everything else is dimensionless.
 IN_SI = dict.fromkeys(("measured_speed", "curve_speed", "shaker_speed"), "m s-1") | {
-    "shaker_frequency": "Hz"
+    "shaker_frequency": "Hz",
+    "time_step": "s",
+    "drop_height": "m",
 }
 
 

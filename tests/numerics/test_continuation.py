@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from bounds_of_branches import parameter_bound
 
 from bouncing_ball.numerics.continuation import (
     STARTED,
@@ -13,7 +14,7 @@ from bouncing_ball.numerics.continuation import (
     resample,
     solve_at,
 )
-from bouncing_ball.numerics.events import Event, parameter_bound
+from bouncing_ball.numerics.events import Event
 
 # Newton's last step is below 1e-12 and converges quadratically, so points are
 # exact to a few roundings; 1e-12 has a wide margin.

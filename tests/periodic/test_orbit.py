@@ -1,5 +1,6 @@
 """Observables of orbits, their distances and derivatives."""
 
+from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
@@ -54,9 +55,10 @@ def test_the_highest_point_of_a_contact_is_found_next_to_its_ends(top):
         shape=(),
         durations=np.array([1.0]),
         phases=np.zeros(1),
-        _lam=np.zeros(1),
+        _table_height=np.zeros_like,
         _in_contact=lambda time: (-((time - top) ** 2), None),
     )
+    contact._top = partial(Orbit._top, contact)
     assert abs(Orbit._contact_top(contact)) < 1e-13
 
 

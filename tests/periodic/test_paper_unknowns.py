@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from bounds_of_branches import parameter_bound
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.optimize import brentq
@@ -11,7 +12,6 @@ from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.continuation import StepControl, continue_branch
-from bouncing_ball.numerics.events import parameter_bound
 from bouncing_ball.periodic.branches.following import orbits_along
 from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns
 from bouncing_ball.periodic.one_impact.spring_damper_bifurcations import orbit_at

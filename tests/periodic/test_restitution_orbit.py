@@ -17,6 +17,7 @@ from bouncing_ball.periodic.one_impact.restitution_branch import (
     saddle_node,
 )
 from bouncing_ball.periodic.orbits.orbit import Orbit
+from bouncing_ball.periodic.orbits.stability import Side
 
 EPS = np.finfo(float).eps
 
@@ -50,7 +51,7 @@ def holmes_map_jacobian(phase, velocity, amplitude, r):
 @given(families, coefficients, excesses, sides)
 def test_the_orbits_are_fixed_points_of_both_maps(n, r, excess, stable):
     lam = float(saddle_node(n, r)) + excess
-    phi = float(phase(n, r, lam, stable))
+    phi = float(phase(n, r, lam, Side.STABLE if stable else Side.UNSTABLE))
     v = n * np.pi
     s = 2 * np.pi * n
     assert (phi >= 0) if stable else (phi <= 0)

@@ -65,7 +65,7 @@ def test_a_side_that_does_not_reach_an_amplitude_has_no_orbit_there():
 )
 def test_a_branch_is_followed_up_to_a_multiple_of_the_amplitude(amplitude, farther, most):
     special = continued(SHORT, 1, amplitude, farther=farther)
-    assert special[-1].name == "parameter bound"
+    assert special[-1].name == "bound"
     assert float(np.sinh(special[-1].point[-1])) == pytest.approx(most, rel=1e-12)
 
 

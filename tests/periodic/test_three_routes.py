@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.models.damping import LINEAR, Release, damping_ratio
+from bouncing_ball.models.damping import LINEAR, damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
@@ -31,7 +31,7 @@ def sample(seed, size):
     return damping_ratio(r), n, omega, amplitude
 
 
-@pytest.fixture(scope="module", params=Release)
+@pytest.fixture(scope="module", params=LINEAR)
 def rule(request):
     return request.param
 

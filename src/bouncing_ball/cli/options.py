@@ -112,8 +112,8 @@ def meanings(call: Callable) -> dict[str, str]:
     Examples
     --------
     >>> from bouncing_ball.models.makers import rigid
-    >>> meanings(rigid)
-    {'restitution': 'Restitution coefficient r in (0, 1].'}
+    >>> meanings(rigid)["restitution"]
+    'Restitution coefficient r in (0, 1].'
     """
     found: dict[str, str] = {}
     section = re.search(

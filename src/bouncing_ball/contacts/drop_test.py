@@ -105,7 +105,8 @@ def rebound(
 
     if grip(lowest) >= 0 or grip(highest) <= 0:
         return None
-    end = float(brentq(grip, highest, lowest, xtol=1e-15, rtol=1e-15))
+    # Without damping the end is nearly a double zero, next to `lowest`.
+    end = float(brentq(grip, highest, lowest, xtol=1e-15, rtol=1e-15, maxiter=1000))
     depth, rate = state(end)
     if rate >= 0:
         return None

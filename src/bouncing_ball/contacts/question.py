@@ -69,9 +69,8 @@ class EngineSetup:
     Parameters
     ----------
     engine
-        Physics engine for which the contact is written: generic, mujoco, lammps, liggghts,
-        pybullet, drake, mercurydpm or gazebo. The
-        contact then ends as in this engine.
+        Name of the physics engine for which the contact is written, such as mujoco or lammps; the
+        contact then ends as in this engine. A wrong name is answered with the list of all.
     restitution_error
         Largest error of the restitution coefficient that the engine's time step may cause.
     time_step

@@ -6,7 +6,7 @@ until the ball touches the level of the table. There the contact opens: above th
 one more flight. The new flight begins with zero length and changes the return map as the power 3/2
 of Λ - Λ_k, so that the multipliers are continuous there and the orbit can be followed further.
 Opening k, where flight k + 1 begins, is at ``E_k = ϖ² (Λ_k - Λ_SD)``. It is the grazing of a
-release of the orbit with k impacts in one period (:mod:`bouncing_ball.orbits`), and is
+release of the orbit with k impacts in one period (:mod:`bouncing_ball.periodic`), and is
 found with its equations, from the limit of stiff contacts on.
 
 For a stiff contact E_k has a limit. The ball leaves near the top of the table. Let s = ϖτ be the

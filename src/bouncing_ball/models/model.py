@@ -23,6 +23,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.datasets.arguments import chosen
 from bouncing_ball.errors import FREQUENCY_RATIO, RESTITUTION, Range
 from bouncing_ball.models.ball import Ball
 from bouncing_ball.models.dynamics import Dynamics
@@ -133,7 +134,7 @@ class Model(Batch, Ball, ABC):
         Raises
         ------
         ModelError
-            If no law has these parameters.
+            If the model has no such parameter, or if no law has these values.
 
         Examples
         --------
@@ -141,6 +142,9 @@ class Model(Batch, Ball, ABC):
         >>> RestitutionModel(0.5).varied({"restitution": 0.75})
         RestitutionModel(restitution=0.75)
         """
+        known = list(self.numbers())
+        for name in values:
+            chosen("parameter", name, known)
         return _with_numbers(self, {**values, **self.implied(values)})
 
 

@@ -46,7 +46,9 @@ class RestitutionModel(Model):
     name: ClassVar[str] = "restitution"
 
     def __post_init__(self):
-        check_restitution(self.restitution)
+        given = check_restitution(self.restitution)
+        if np.ndim(self.restitution):
+            object.__setattr__(self, "restitution", given)
 
     @property
     def label(self) -> str:

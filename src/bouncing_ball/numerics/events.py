@@ -64,19 +64,6 @@ class SpecialPoint(NamedTuple):
     point: np.ndarray
 
 
-def parameter_bound(bound: float, upper: bool, reason: str) -> Event:
-    """Terminal event at which the parameter, the last entry of y, reaches a bound.
-
-    Examples
-    --------
-    >>> event = parameter_bound(2.0, upper=True, reason="p = 2")
-    >>> event.terminal, float(event.function(np.array([0.0, 1.5])))
-    (True, 0.5)
-    """
-    sign = -1.0 if upper else 1.0
-    return Event("parameter bound", lambda y: sign * (y[..., -1] - bound), True, reason)
-
-
 def vanishing(function: Callable[[np.ndarray], np.ndarray]) -> Condition:
     """The condition that a test function vanishes, with its gradient by central differences.
 

@@ -22,9 +22,9 @@ Eqs.    what                      where
 ..      its inverse               ``models.damping.restitution_coefficient``
 17      apparent restitution      ``periodic.orbits.orbit.Orbit.apparent_restitution``
 18-20   period of the n-T orbit   ``periodic.orbits.orbit.Orbit.flight_time``
-21, 22  start of contact          ``models.spring_damper.SpringDamper.flow``
+21, 22  start of contact          ``models.dynamics.Dynamics.start``
 23      end of the contact        ``models.linear_contact.LinearContactDynamics.depart``
-24-26   return to the start       ``periodic.orbits.problem.PeriodicOrbits``
+24-26   return to the start       ``periodic.orbits.problem.PeriodicOrbits.residual``
 ..      all, in unknowns of paper ``periodic.one_impact.paper_unknowns.PaperUnknowns``
 ..      at a given duration       ``periodic.one_impact.spring_damper_branch.branch_point``
 ..      their saddle-node         ``periodic.one_impact.spring_damper_bifurcations.saddle_node``

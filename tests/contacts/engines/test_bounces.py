@@ -15,7 +15,7 @@ import pytest
 import xarray as xr
 from bounce_runs import BOUNCE, MODULES, PACKAGES, G, rebounds
 
-from bouncing_ball.beyond.exhibits.bounces import VARIABLES
+from bouncing_ball.beyond.exhibits.bounces import ALL_VARIABLES, DRAWING, TITLE
 from bouncing_ball.datasets.files import read_dataset, write_dataset
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.pipeline.configuration import read_yaml
@@ -70,7 +70,8 @@ def record():
     )  # fmt: skip
     origin = gather("make test-engines", [], ROOT, read_yaml(ROOT / CONFIGURATION))
     target = ROOT / "results" / "config" / "ext_bounces.nc"
-    write_dataset(describe(data, VARIABLES).assign_attrs(origin), target)
+    drawn = {"title": TITLE, "drawing": DRAWING}
+    write_dataset(describe(data, ALL_VARIABLES).assign_attrs(drawn, **origin), target)
 
 
 @pytest.mark.engines

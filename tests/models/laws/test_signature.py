@@ -5,13 +5,13 @@ import pytest
 
 from bouncing_ball.contacts.engines.impedance import Impedance
 from bouncing_ball.errors import ModelError
-from bouncing_ball.models.damping import Release
+from bouncing_ball.models.damping import LINEAR
 from bouncing_ball.models.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball.models.laws.hertzian import HuntCrossley, KuwabaraKono, LinearHuntCrossley, Tsuji
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.spring_damper import SpringDamper
 
-RELEASES = list(Release)
+RELEASES = LINEAR
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
 
 

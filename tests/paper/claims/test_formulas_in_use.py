@@ -49,8 +49,8 @@ EDITS = [
     Edit("models/flight.py", "slowing = y * sine + x * versine", "slowing = y * sine", "Eq. 5"),
     Edit(
         "models/restitution.py",
-        "velocity = -r * impact.velocity\n        x, y",
-        "velocity = -0.9 * r * impact.velocity\n        x, y",
+        "velocity = -r * impact.velocity\n        level",
+        "velocity = -0.9 * r * impact.velocity\n        level",
         "Eq. 2",
     ),
     Edit(RIGID, "np.sqrt((lam - fold) * (lam + fold))", "np.sqrt(lam * lam + fold)", "Eq. 6"),

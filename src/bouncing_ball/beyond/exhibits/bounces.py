@@ -5,11 +5,10 @@ dropped with gravity, and r is √(h′/h) of its first rebound, over balls that
 different instants within a time step.
 """
 
+from bouncing_ball.beyond.exhibits import engine_steps
 from bouncing_ball.datasets.variables import Variable
 
 VARIABLES = {
-    "engine": Variable("physics engine"),
-    "engine_version": Variable("version of an engine that ran"),
     "asked": Variable("restitution coefficient that was set", symbol="r"),
     "time_step": Variable("time step", units="s"),
     "drop_height": Variable("height of the drop", units="m"),
@@ -17,3 +16,7 @@ VARIABLES = {
     "got_least": Variable("√(h′/h) of the first rebound, least over instants within a step"),
     "got_most": Variable("√(h′/h) of the first rebound, greatest over instants within a step"),
 }
+# Engines and their versions are declared where their steps are.
+ALL_VARIABLES = VARIABLES | engine_steps.VARIABLES
+DRAWING = "bouncing_ball.beyond.exhibits.bounces_figures:bounces"
+TITLE = "The bounce that physics engines give where r is a number that the user sets"

@@ -34,9 +34,9 @@ _RATIOS = np.geomspace(1.0, 1e3, 31)
 _TOLERANCE = 0.01
 # The functions that solve Eqs. 21-26, from the contact to the bifurcations of its orbits.
 _OF_ORBITS = (
-    "models.spring_damper.SpringDamper.flow",
+    "models.dynamics.Dynamics.start",
     "models.linear_contact.LinearContactDynamics.depart",
-    "periodic.orbits.problem.PeriodicOrbits",
+    "periodic.orbits.problem.PeriodicOrbits.residual",
     "periodic.one_impact.paper_unknowns.PaperUnknowns",
     "periodic.one_impact.spring_damper_branch.branch_point",
     "periodic.one_impact.spring_damper_bifurcations.saddle_node",

@@ -36,7 +36,7 @@ from bouncing_ball.periodic.branches.following import (
     explained,
     limits_of,
 )
-from bouncing_ball.periodic.orbits.balls import LAMBDA
+from bouncing_ball.periodic.orbits.balls import LAMBDA, LOWEST
 from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_at
 from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
 from bouncing_ball.periodic.orbits.release import release_condition
@@ -53,9 +53,6 @@ CURVE_STEPS = replace(STEPS, creep=1e-3)
 """Steps of a curve, which ends where its points accumulate, for example at a release without speed,
 where the equations have no derivatives.
 """
-# The smallest Λ of a curve: at Λ = 0, where the saddle-nodes of elastic contacts are, no phase is
-# defined.
-_LOWEST = 1e-4
 # A point on a resonance has multipliers that differ from it by less than this. Next to a double
 # multiplier the multipliers differ by the square root of rounding.
 _RESONANT = 1e-6
@@ -206,7 +203,7 @@ def _limits(orbits: PeriodicOrbits, windows: dict[str, Range | None]) -> list[Ev
     for j, (name, window) in enumerate(windows.items()):
         low, high = orbits.balls.bounds(name)
         if name == LAMBDA:
-            low = _LOWEST
+            low = LOWEST
         if window is not None:
             low = max(low, window.low)
             high = min(high, window.high)

@@ -62,7 +62,7 @@ class RestitutionLine:
         lam = np.asarray(amplitude, dtype=float)
         fold = formulas.saddle_node(n, r)
         exists = lam >= fold
-        phase = formulas.phase(n, r, np.where(exists, lam, fold), side is Side.STABLE)
+        phase = formulas.phase(n, r, np.where(exists, lam, fold), side)
         return Orbit.of(self.model, n, lam, np.where(exists, phase, np.nan))
 
     def orbits(self, n: int, amplitude: float) -> Orbit:

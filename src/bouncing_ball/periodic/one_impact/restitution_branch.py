@@ -21,9 +21,11 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.datasets.arguments import chosen
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.damping import check_restitution
 from bouncing_ball.periodic.orbits.orbit import check_index
+from bouncing_ball.periodic.orbits.stability import Side
 
 
 class ImpactMap(StrEnum):
@@ -86,7 +88,7 @@ def period_doubling_lift(
     Raises
     ------
     ModelError
-        Unless 0 < r ≤ 1.
+        Unless 0 < r ≤ 1, or if there is no such map.
 
     Examples
     --------
@@ -95,7 +97,7 @@ def period_doubling_lift(
     """
     check_family(1, restitution)
     r = np.asarray(restitution, dtype=float)
-    if impact_map is ImpactMap.HOLMES:
+    if chosen("impact_map", impact_map, list(ImpactMap)) == ImpactMap.HOLMES:
         return np.ones_like(r)
     return 2 * (1 + r * r) / (1 + r) ** 2
 
@@ -124,7 +126,7 @@ def period_doubling(
 
 
 def phase(
-    n: ArrayLike, restitution: ArrayLike, amplitude: ArrayLike, stable_side: bool = True
+    n: ArrayLike, restitution: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE
 ) -> np.ndarray:
     """Phase φ of the impact (Eq. 6), in [-π/2, π/2].
 
@@ -150,7 +152,7 @@ def phase(
             f"no {family}-T orbit at Λ = {at:g}: below the saddle-node at Λ = {least:.6g}"
         )
     lift = np.sqrt((lam - fold) * (lam + fold))
-    return np.arctan2(lift if stable_side else -lift, fold)
+    return np.arctan2(lift if Side(side) is Side.STABLE else -lift, fold)
 
 
 def branch_points(

@@ -23,10 +23,10 @@ from bouncing_ball.numerics.continuation import (
     continue_branches,
 )
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, solve, tangent
-from bouncing_ball.numerics.events import Event, SpecialPoint, parameter_bound
-from bouncing_ball.periodic.branches.following import limit
+from bouncing_ball.numerics.events import Event, SpecialPoint
+from bouncing_ball.periodic.branches.following import Range, limit, limits_of
 from bouncing_ball.periodic.one_impact import corrected_branch as corrected
-from bouncing_ball.periodic.orbits.balls import LAMBDA
+from bouncing_ball.periodic.orbits.balls import LAMBDA, LOWEST
 from bouncing_ball.periodic.orbits.orbit import Orbit, check_index, in_order
 from bouncing_ball.periodic.orbits.orbit import orbit_at as orbit_of_point
 from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
@@ -46,9 +46,6 @@ _ABOVE = 1.3
 _STEPS = StepControl(initial=0.05, smallest=1e-3, largest=0.4, max_angle=0.25)
 _POINTS = 300
 _FARTHER = 4.0
-# A fold below this Λ belongs to a nearly elastic contact; the steps along a branch are too long
-# to resolve it.
-_LOWEST = 1e-4
 _HERE = "this amplitude"
 
 
@@ -240,7 +237,7 @@ def _on_branch(fold: Orbit, amplitude: float, side: Side) -> np.ndarray | float:
     events = [
         *ends_of_contact(problem),
         limit(LAMBDA, amplitude, sign=-1.0, column=problem.equations),
-        limit(LAMBDA, _LOWEST, sign=1.0, column=problem.equations),
+        limit(LAMBDA, LOWEST, sign=1.0, column=problem.equations),
     ]
     tested = WithEvents(problem, events)
     branches = continue_branches(lambda _: tested, [start, start], [ahead, -ahead], _STEPS, _POINTS)
@@ -289,8 +286,7 @@ def continued(
         *bifurcations(problem),
         *ends_of_contact(problem),
         Event(_HERE, lambda y: y[..., -1] - here),
-        parameter_bound(float(np.arcsinh(most)), upper=True, reason=f"Λ = {most:g}"),
-        parameter_bound(float(np.arcsinh(_LOWEST)), upper=False, reason=f"Λ = {_LOWEST:g}"),
+        *limits_of(LAMBDA, Range(LOWEST, most), problem.equations),
     )
     try:
         branch = continue_branch(
@@ -350,7 +346,7 @@ def bifurcation(model: Model, n: ArrayLike, kind: Bifurcation) -> Orbit:
         lam, psi = corrected.period_doubling(index, search.instant)
     problem, guess = search.guess(lam, psi)
     found = newton(problem, guess, lambda y: problem.bifurcation(kind, y), _EXTENDED)
-    low = (lam < _LOWEST) & (kind is Bifurcation.SADDLE_NODE)
+    low = (lam < LOWEST) & (kind is Bifurcation.SADDLE_NODE)
     # Where Newton's method diverged Λ may overflow.
     with np.errstate(over="ignore"):
         reached = np.sinh(found.point[:, -1])

@@ -26,7 +26,7 @@ from bouncing_ball.numerics.events import Event
 from bouncing_ball.periodic.branches.following import Followed, Range, limits_of
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns
-from bouncing_ball.periodic.orbits.balls import LAMBDA
+from bouncing_ball.periodic.orbits.balls import LAMBDA, LOWEST
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.special import ends_of_contact, passed_by, with_ends
 from bouncing_ball.periodic.orbits.stability import Bifurcation
@@ -35,8 +35,6 @@ LARGEST_STEP = 0.1
 """Default of the largest step in arclength."""
 # By default a branch ends at this multiple of the Λ of its period doubling.
 _BEYOND_DOUBLING = 1.4
-# Smallest Λ of a branch: a fold below it belongs to an elastic contact.
-_LOWEST = 1e-4
 _WHOLE = "whole branches of n-T orbits"
 # Number of Λ at which an orbit to start from is searched.
 _STARTS = 16
@@ -217,7 +215,7 @@ def _events(problem: PaperUnknowns, top: float, ends: Collection[Bifurcation]) -
     of_orbits = [
         *passed_by(orbits),
         *ends_of_contact(orbits),
-        *limits_of(LAMBDA, Range(_LOWEST, top), orbits.equations),
+        *limits_of(LAMBDA, Range(LOWEST, top), orbits.equations),
     ]
     return [
         replace(problem.event(event), terminal=event.terminal or event.name in ends)

@@ -13,6 +13,9 @@ from bouncing_ball.numerics.arrays import pick
 
 LAMBDA = "amplitude"
 """The name of Λ, the parameter that all balls have."""
+LOWEST = 1e-4
+"""The smallest Λ of a branch or a curve: a fold below it belongs to a nearly elastic contact, and
+the steps along a branch are too long to resolve it."""
 # A branch stays away from an end of a range that is not in the range by this number.
 _INSIDE = 1e-9
 _RANGES = {LAMBDA: AMPLITUDE._replace(or_zero=False), **RANGES}

@@ -524,7 +524,7 @@ class Orbit(Batch):
         return displacement, velocity
 
     def contact_motion(self, time: ArrayLike, impact: int = 0) -> tuple[np.ndarray, np.ndarray]:
-        """δ and δ′ at times 0 ≤ s ≤ τ_b in the contact of one impact.
+        """δ and δ′ at times 0 ≤ s ≤ τ_b in the contact of one impact, NaN at other times.
 
         The results have the shape to which the times and the orbits broadcast.
         """
@@ -539,7 +539,10 @@ class Orbit(Batch):
             number = np.arange(row.size) * self.impacts + impact
             dynamics, start, departure = legs.dynamics.kept(number, legs.impact, legs.departure)
             found[..., which] = dynamics.within(start, departure, each[:, which])
-        displacement, velocity = found.reshape(2, *shape)
+        # A time may be the duration up to rounding.
+        last = self.durations[..., impact] * (1 + 8 * _EPS)
+        inside = (s >= 0) & (s <= last)
+        displacement, velocity = np.where(inside, found.reshape(2, *shape), np.nan)
         return displacement, velocity
 
     def contact_path(self, time: ArrayLike, impact: int = 0) -> tuple[np.ndarray, np.ndarray]:

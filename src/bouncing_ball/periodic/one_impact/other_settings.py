@@ -17,7 +17,6 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.rigid import RestitutionModel
@@ -154,6 +153,9 @@ class _Family(NamedTuple):
 
 def _lowest(model: RestitutionModel, n: int) -> tuple[float, float, float]:
     """Λ, φ and z′_i of the saddle-node at the lowest Λ; NaN if there is none."""
+    # scipy takes long to import, and only other settings need it here.
+    from scipy.optimize import brentq
+
     family = _Family.of(model, n)
     level = family.load * family.both
     if not level:
@@ -180,6 +182,8 @@ def _orbits_of(model: RestitutionModel, n: int, amplitude: float) -> Orbit | Non
     sample = family.samples()
     value = equation(sample)
     turns = np.flatnonzero((value[:-1] < 0) != (value[1:] < 0))
+    from scipy.optimize import brentq
+
     found = [brentq(equation, sample[k], sample[k + 1], xtol=1e-15) for k in turns]
     phase = np.array(found)
     relative, absolute = family.arriving(amplitude, phase)

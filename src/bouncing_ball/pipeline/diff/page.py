@@ -12,7 +12,7 @@ from urllib.parse import quote
 
 from bouncing_ball.pipeline.artifacts import DATASET
 from bouncing_ball.pipeline.diff.outcome import Finding, Outcome, Whole
-from bouncing_ball.pipeline.diff.words import headline, numbers, percent
+from bouncing_ball.pipeline.diff.words import headline, moved_by, numbers
 
 _SENTENCES = (
     "The new artifacts agree with the record.",
@@ -112,7 +112,7 @@ def note(file: Whole) -> str:
     first, *others = rows
     place = f" at {first.at}" if first.at else ""
     if first.entries:
-        change = f" ({found})" if (found := percent(first.change)) else ""
+        change = f" ({found})" if (found := moved_by(first)) else ""
         both = numbers(first) + change
     else:
         both = _change(first) or first.note
@@ -256,7 +256,7 @@ def to_html(comparison: Whole) -> str:
         told_files=told_files,
         shown_pictures=_shown_pictures,
         numbers=numbers,
-        percent=percent,
+        moved_by=moved_by,
         marked=marked,
         note=note,
         anchor=quote,

@@ -43,6 +43,27 @@ def percent(change: float) -> str:
     return f"{float(two):+.0f} %" if "e+" in two else f"{two} %"
 
 
+def moved_by(row: Finding) -> str:
+    """The change of a number in words; of one that was almost nothing, as a part of its range.
+
+    Examples
+    --------
+    >>> moved_by(Finding("level", Outcome.DRIFTED, "2.0", "1.5", change=-0.25))
+    '-25 %'
+    >>> moved_by(Finding("level", Outcome.DRIFTED, "2e-14", "5.6", change=0.52))
+    '+52 % of the range'
+    """
+    change = percent(row.change)
+    if not change:
+        return ""
+    record = float(row.record or 0)
+    moved = abs(float(row.new or 0) - record)
+    # A number below a thousandth of the range of its variable is compared with this range.
+    if moved < 2 * abs(row.change * record):
+        return change
+    return f"{100 * row.change:+.2g} % of the range" if row.change <= _FACTOR else ""
+
+
 def numbers(row: Finding) -> str:
     """Both contents of a row; of numbers the digits that differ, and one more.
 
@@ -82,7 +103,7 @@ def _told(row: Finding) -> str:
         return f"{len(row.changes)} changed in {row.name}: {named}{rest}"
     others = f" and {row.beyond - 1} more" if row.beyond > 1 else ""
     place = f" at {row.at}{others}" if row.at else ""
-    change = percent(row.change)
+    change = moved_by(row)
     return f"{f'{change} in ' if change else ''}{row.title or row.name}{place}: {numbers(row)}"
 
 

@@ -56,7 +56,9 @@ def hard(restitution: str, height: str, gravity: str, count: int) -> Iterator[Bo
     ['0.250000000000000', '0.0625000000000000']
     """
     ctx.prec = _BITS
-    r, h, g = arb(restitution), arb(height), arb(gravity)
+    r = arb(restitution)
+    h = arb(height)
+    g = arb(gravity)
     time = (2 * h / g).sqrt()
     for _ in range(count):
         speed = (2 * g * h).sqrt()
@@ -76,10 +78,14 @@ class _Contact:
     speed: Any
 
     def state(self, time: Any) -> tuple[Any, Any]:
-        a, w, s, v = self.decay, self.damped, self.sink, self.speed
+        a = self.decay
+        w = self.damped
+        s = self.sink
+        v = self.speed
         b = (v - a * s) / w
         shrunk = (-a * time).exp()
-        sine, cosine = (w * time).sin(), (w * time).cos()
+        sine = (w * time).sin()
+        cosine = (w * time).cos()
         x = s + shrunk * (b * sine - s * cosine)
         rate = shrunk * ((b * w + a * s) * cosine + (w * s - a * b) * sine)
         return x, rate
@@ -115,7 +121,8 @@ def spring_damper(
     ctx.prec = _BITS
     rule = Release.of(release)
     m, k, c = (arb(x) for x in contact)
-    h, g = arb(height), arb(gravity)
+    h = arb(height)
+    g = arb(gravity)
     omega = (k / m).sqrt()
     decay = c / (2 * m)
     damped = (omega * omega - decay * decay).sqrt()
@@ -142,7 +149,10 @@ def spring_damper(
 
 def _after_approach(motion: _Contact, omega: Any, sink: Any) -> tuple[Any, Any]:
     """Duration of a contact with a damped approach, and the speed at its end."""
-    a, w, s, v = motion.decay, motion.damped, motion.sink, motion.speed
+    a = motion.decay
+    w = motion.damped
+    s = motion.sink
+    v = motion.speed
     b = (v - a * s) / w
     # x′ vanishes first where tan(ω_d t) = (b ω_d + a s)/(a b - ω_d s), in (0, π).
     turn = arb.atan2(b * w + a * s, a * b - w * s) / w
@@ -221,7 +231,8 @@ def written(ball: Any, digits: int = DIGITS) -> str:
     width = Decimal(ball.rad().str(5, radius=False)) * 2 + abs(middle) * Decimal(10) ** (
         -2 * digits
     )
-    low, high = rounded.plus(middle - width), rounded.plus(middle + width)
+    low = rounded.plus(middle - width)
+    high = rounded.plus(middle + width)
     # A number with few digits, such as 1/4, is not between two numbers of so many digits.
     near = rounded.plus(middle)
     if abs(middle - near) > width and low != high:

@@ -98,7 +98,8 @@ def newton(restitution, time_step, drops):
     builder.add_ground_plane(cfg=material)
     model = builder.finalize(device="cpu")
     solver = newton.solvers.SolverXPBD(model, enable_restitution=True)
-    before, after = model.state(), model.state()
+    before = model.state()
+    after = model.state()
     pipeline = newton.CollisionPipeline(model)
     contacts = pipeline.contacts()
     heights = []

@@ -131,7 +131,8 @@ def _dropped(engine, restitution):
     builder.add_ground_plane(cfg=material)
     model = builder.finalize(device="cpu")
     solver = newton.solvers.SolverXPBD(model, enable_restitution=True)
-    now, then = model.state(), model.state()
+    now = model.state()
+    then = model.state()
     pipeline = newton.CollisionPipeline(model)
     contacts = pipeline.contacts()
     heights = []

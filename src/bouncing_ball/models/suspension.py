@@ -247,7 +247,9 @@ def _series(s: np.ndarray, loss: np.ndarray, q: np.ndarray) -> FreeResponses:
     power = s
     for n in range(1, _TERMS):
         # The coefficient of s^(n + 2) of G.
-        before, term = term, -(loss * (n + 1) * term + q * before) / ((n + 1) * (n + 2))
+        following = -(loss * (n + 1) * term + q * before) / ((n + 1) * (n + 2))
+        before = term
+        term = following
         power = power * s
         impulse = impulse + (n + 2) * term * power
         of_step = term * power * s

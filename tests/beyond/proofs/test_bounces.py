@@ -34,7 +34,8 @@ def integrated(rule, k, c, height):
 
     end.terminal = turn.terminal = True
     end.direction = turn.direction = -1
-    time, state = 0.0, [0.0, math.sqrt(2 * G * height)]
+    time = 0.0
+    state = [0.0, math.sqrt(2 * G * height)]
     for event in (turn, end):
         run = solve_ivp(
             lambda _, s: [s[1], G - force(*s)], (0, 1), state, events=event,

@@ -16,7 +16,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize.elementwise import find_root
 
 from bouncing_ball.accuracy.errors import (
     OF_IMPACTS,
@@ -97,6 +96,9 @@ def last_crossing(function: Numbered, ratios: np.ndarray, scanned: np.ndarray) -
     last = turns.shape[1] - 1 - np.argmax(turns[which, ::-1], axis=1)
     found = np.full(len(scanned), np.nan)
     if which.size:
+        # This module of scipy is not loaded on first use, and its import takes a third of a second.
+        from scipy.optimize.elementwise import find_root
+
         bracket = (np.log(ratios[last]), np.log(ratios[last + 1]))
         with np.errstate(invalid="ignore"):  # from an interpolation that find_root rejects
             root = find_root(

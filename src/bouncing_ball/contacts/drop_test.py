@@ -21,7 +21,7 @@ the slower the impact and the more compliant the contact.
 import math
 from collections.abc import Callable
 
-from scipy.optimize import brentq
+import scipy
 
 from bouncing_ball.errors import ParameterError
 from bouncing_ball.models.damping import Release
@@ -106,7 +106,7 @@ def rebound(
     if grip(lowest) >= 0 or grip(highest) <= 0:
         return None
     # Without damping the end is nearly a double zero, next to `lowest`.
-    end = float(brentq(grip, highest, lowest, xtol=1e-15, rtol=1e-15, maxiter=1000))
+    end = float(scipy.optimize.brentq(grip, highest, lowest, xtol=1e-15, rtol=1e-15, maxiter=1000))
     depth, rate = state(end)
     if rate >= 0:
         return None
@@ -157,7 +157,7 @@ def fitted_damping_ratio(
         )
     if surplus(0.0) < 0:
         return 0.0
-    return float(brentq(surplus, 0.0, _MOST, xtol=1e-16, rtol=1e-14))
+    return float(scipy.optimize.brentq(surplus, 0.0, _MOST, xtol=1e-16, rtol=1e-14))
 
 
 def slowed_speed(
@@ -189,6 +189,6 @@ def slowed_speed(
     for _ in range(_HALVES):
         slow = fast - math.log(2)
         if surplus(slow) < 0 <= surplus(fast):
-            return math.exp(brentq(surplus, slow, fast, xtol=1e-12))
+            return math.exp(scipy.optimize.brentq(surplus, slow, fast, xtol=1e-12))
         fast = slow
     return None

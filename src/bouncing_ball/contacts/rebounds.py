@@ -7,8 +7,7 @@ ball takes that never leaves again, is one integration up to its turn.
 import math
 
 import numpy as np
-from scipy.integrate import solve_ivp
-from scipy.optimize import brentq
+import scipy
 
 from bouncing_ball.contacts.drop_test import SLOWED
 from bouncing_ball.errors import ModelError
@@ -74,7 +73,7 @@ def compression(law: ContactLaw, speed: float) -> tuple[float, float]:
 
     turn.terminal = True  # type: ignore[attr-defined]
     turn.direction = -1  # type: ignore[attr-defined]
-    run = solve_ivp(
+    run = scipy.integrate.solve_ivp(
         motion, (0.0, _PATIENCE), [0.0, speed / rate], method="DOP853", events=turn,
         rtol=_TOLERANCE, atol=_TOLERANCE, dense_output=True,
     )  # fmt: skip
@@ -117,6 +116,6 @@ def slowed(law: ContactLaw, fast: float) -> float | None:
             return None
         lower = upper - math.log(2)
         if surplus(lower) < 0:
-            return math.exp(brentq(surplus, lower, upper, xtol=1e-10))
+            return math.exp(scipy.optimize.brentq(surplus, lower, upper, xtol=1e-10))
         upper = lower
     return None

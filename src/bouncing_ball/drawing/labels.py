@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+import scipy
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.text import Annotation
@@ -117,15 +118,15 @@ def names_at_the_right(axes: Axes, ends: Sequence[tuple[str, float, str]]) -> No
     Each name is as near to its line as the height of the others and of the panel allows, so that
     this comes after the layout of the panel.
     """
-    # Only few figures need it, and its import takes longer than drawing one of them.
-    from scipy.optimize import isotonic_regression
 
     places = axes.transData.transform([(0.0, height) for _, height, _ in ends])[:, 1]
     places *= _POINTS_PER_INCH / axes.figure.dpi
     order = np.argsort(places)
     steps = _LINE_HEIGHT * np.arange(len(ends))
     low, high = axes.get_window_extent().intervaly * _POINTS_PER_INCH / axes.figure.dpi
-    spread = isotonic_regression(places[order] - steps).x.clip(low, max(low, high - steps[-1]))
+    spread = scipy.optimize.isotonic_regression(places[order] - steps).x.clip(
+        low, max(low, high - steps[-1])
+    )
     spread += steps
     moved = np.empty_like(places)
     moved[order] = spread - places[order]

@@ -27,8 +27,8 @@ from functools import lru_cache
 from typing import Any, NamedTuple, Self
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 from bouncing_ball.errors import require
 from bouncing_ball.long_run.destination import final_motions
@@ -102,14 +102,14 @@ class _StiffContact:
         if not turns.size:
             return None
         before = turns[0]
-        return brentq(self.rate, time[before], time[before + 1], xtol=1e-14)
+        return scipy.optimize.brentq(self.rate, time[before], time[before + 1], xtol=1e-14)
 
     def end(self, top: float) -> float:
         """The time at which x returns to 0, before the first maximum at the time ``top``."""
         time = self._samples()
         rising = time[np.argmax(self.rate(time) > 0)]
-        bottom = brentq(self.rate, 0.0, rising)
-        return brentq(self.height, bottom, top, xtol=1e-14)
+        bottom = scipy.optimize.brentq(self.rate, 0.0, rising)
+        return scipy.optimize.brentq(self.height, bottom, top, xtol=1e-14)
 
     def _samples(self) -> np.ndarray:
         return np.linspace(0, 3 * np.pi / self.root.imag, _FINE)
@@ -177,7 +177,7 @@ def _stiff_openings(zeta: float, most: int) -> list[np.ndarray]:
         while highest(high) < 0:
             low = high
             high = _STEP * high
-        excess = brentq(highest, low, high, xtol=1e-13)
+        excess = scipy.optimize.brentq(highest, low, high, xtol=1e-13)
         found.append(_landings(excess, zeta, len(found) + 1)[-1][1])
         high = excess * (1 + _ABOVE)
     return found

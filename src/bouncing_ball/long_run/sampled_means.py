@@ -34,7 +34,7 @@ from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import stdtrit
+import scipy
 
 from bouncing_ball.long_run.means import over_leg
 from bouncing_ball.models.dynamics import Dynamics, HasDynamics, Impact
@@ -249,4 +249,4 @@ def quantile(level: float, freedom: float) -> float:
     >>> round(quantile(0.05, 100), 3), round(quantile(0.05, math.inf), 3)
     (1.984, 1.96)
     """
-    return float(stdtrit(freedom, 1 - level / 2))
+    return float(scipy.special.stdtrit(freedom, 1 - level / 2))

@@ -18,8 +18,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy import optimize, stats
 
 from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.quantities import STANDARD_GRAVITY, quantities
@@ -298,7 +298,7 @@ def fit_law(curve: Curve, points: Points) -> LawFit:
         return -(whiten @ curve.slope(float(theta[0]), ratio))[:, np.newaxis]
 
     start = curve.parameter(float(np.median(points.restitutions)))
-    found = optimize.least_squares(residuals, [start], jac=jacobian)
+    found = scipy.optimize.least_squares(residuals, [start], jac=jacobian)
     theta = float(found.x[0])
     if not curve.is_constant:
         theta = _polished(lambda x: float(jacobian([x])[:, 0] @ residuals([x])), theta)
@@ -328,7 +328,7 @@ def fit_law(curve: Curve, points: Points) -> LawFit:
         interval=interval,
         rms=float(np.sqrt(np.mean(plain**2))),
         chi_square=square if is_known else np.nan,
-        p_value=float(stats.chi2.sf(square, freedom)) if is_known and freedom else np.nan,
+        p_value=float(scipy.stats.chi2.sf(square, freedom)) if is_known and freedom else np.nan,
         criterion=_criterion(square, points.size, is_known),
         left_out=_left_out(plain, slope, points),
     )
@@ -356,8 +356,8 @@ def _quantile(is_known: bool, freedom: int) -> float:
     """The quantile of the two-sided interval."""
     share = 0.5 + LEVEL / 2
     if is_known:
-        return stats.norm.ppf(share)
-    return stats.t.ppf(share, freedom) if freedom else np.nan
+        return scipy.stats.norm.ppf(share)
+    return scipy.stats.t.ppf(share, freedom) if freedom else np.nan
 
 
 def _criterion(square: float, size: int, is_known: bool) -> float:

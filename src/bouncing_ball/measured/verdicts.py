@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from scipy import stats
+import scipy
 
 from bouncing_ball.measured.curves import Curve
 from bouncing_ball.measured.fit import ContactFit, Points, fit_law
@@ -81,8 +81,8 @@ def noise(points: Points) -> tuple[float, float]:
 def _tail(statistic: float, first: float, second: float) -> float:
     """P(F > x), or P(χ²/f > x) if the variance is known."""
     if np.isinf(second):
-        return float(stats.chi2.sf(statistic * first, first))
-    return float(stats.f.sf(statistic, first, second))
+        return float(scipy.stats.chi2.sf(statistic * first, first))
+    return float(scipy.stats.f.sf(statistic, first, second))
 
 
 def left_out(curve: Curve, points: Points) -> float:

@@ -3,9 +3,9 @@ period doublings by the contact, with the errors of both simple models.
 """
 
 import numpy as np
+import scipy
 import xarray as xr
 from matplotlib.figure import Figure
-from scipy.interpolate import PchipInterpolator
 
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.drawing.canvas import WIDE, canvas, coloured, legend_below, logarithmic
@@ -89,5 +89,5 @@ def _between(ratio: np.ndarray, error: np.ndarray) -> tuple[np.ndarray, np.ndarr
     known = np.isfinite(error)
     place = np.log(ratio[known])
     fine = np.linspace(place[0], place[-1], _FINE)
-    curve = PchipInterpolator(place, ratio[known] * error[known])(fine)
+    curve = scipy.interpolate.PchipInterpolator(place, ratio[known] * error[known])(fine)
     return with_zeros(np.exp(fine), curve / np.exp(fine))

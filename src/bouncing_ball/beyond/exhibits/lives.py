@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from typing import Annotated, Any
 
 import numpy as np
+import scipy
 import xarray as xr
-from scipy.stats import CensoredData, chi2, ecdf
 
 from bouncing_ball.beyond.exhibits.motion_samples import (
     Confidence,
@@ -111,10 +111,10 @@ def mean_life(time: np.ndarray, ends: np.ndarray, confidence: float) -> tuple[fl
     """
     total = time.sum()
     count = ends.sum()
-    low = 2 * total / chi2.ppf((1 + confidence) / 2, 2 * count + 2)
+    low = 2 * total / scipy.stats.chi2.ppf((1 + confidence) / 2, 2 * count + 2)
     if not count:
         return np.inf, low, np.inf
-    high = 2 * total / chi2.ppf((1 - confidence) / 2, 2 * count)
+    high = 2 * total / scipy.stats.chi2.ppf((1 - confidence) / 2, 2 * count)
     return total / count, low, high
 
 
@@ -192,8 +192,10 @@ def transients(parameters: Transients, release: Release, found: Found = None) ->
     mean_lives = np.empty((*shape, 3))
     chaotic_shares = np.empty((*shape, 3))
     for k in np.ndindex(shape):
-        lives_so_far = CensoredData.right_censored(time[k][may_lock[k]], ~locks[k][may_lock[k]])
-        survival[k] = ecdf(lives_so_far).sf.evaluate(times)
+        lives_so_far = scipy.stats.CensoredData.right_censored(
+            time[k][may_lock[k]], ~locks[k][may_lock[k]]
+        )
+        survival[k] = scipy.stats.ecdf(lives_so_far).sf.evaluate(times)
         mean_lives[k] = mean_life(
             time[k][transient[k]], locks[k][transient[k]], parameters.confidence
         )

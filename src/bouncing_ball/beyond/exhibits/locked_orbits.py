@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import Annotated
 
 import numpy as np
+import scipy
 import xarray as xr
-from scipy.stats import norm, spearmanr
 
 from bouncing_ball.beyond.exhibits.lives import VARIABLES as OF_LIVES
 from bouncing_ball.beyond.exhibits.motion_samples import (
@@ -143,8 +143,8 @@ def correlation(one: np.ndarray, other: np.ndarray, confidence: float) -> np.nda
     """
     if not _rank(one, other):
         return np.full(3, np.nan)
-    rho = spearmanr(one, other).statistic
-    width = norm.ppf((1 + confidence) / 2) * np.sqrt((1 + rho**2 / 2) / (one.size - 3))
+    rho = scipy.stats.spearmanr(one, other).statistic
+    width = scipy.stats.norm.ppf((1 + confidence) / 2) * np.sqrt((1 + rho**2 / 2) / (one.size - 3))
     low, high = np.tanh(np.arctanh(rho) + width * np.array([-1, 1]))
     return np.array([rho, low, high])
 
@@ -181,13 +181,15 @@ def correlation_gain(
         return np.full(3, np.nan)
 
     def gain(kept: np.ndarray) -> float:
-        ranked = (spearmanr(x[kept], found[kept]).statistic for x in (predictor, baseline))
+        ranked = (
+            scipy.stats.spearmanr(x[kept], found[kept]).statistic for x in (predictor, baseline)
+        )
         return next(ranked) - next(ranked)
 
     everywhere = np.arange(found.size)
     without_one = np.array([gain(np.delete(everywhere, k)) for k in everywhere])
     error = np.sqrt((found.size - 1) * without_one.var())
-    width = norm.ppf((1 + confidence) / 2) * error
+    width = scipy.stats.norm.ppf((1 + confidence) / 2) * error
     return gain(everywhere) + width * np.array([0, -1, 1])
 
 

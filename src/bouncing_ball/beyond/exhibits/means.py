@@ -3,8 +3,8 @@
 from typing import Annotated
 
 import numpy as np
+import scipy
 import xarray as xr
-from scipy.stats import t as student
 
 from bouncing_ball.beyond.exhibits.motion_samples import SIMPLE, ParameterPlane, share, three_models
 from bouncing_ball.datasets.parameters import Seed, Tolerance, number
@@ -92,7 +92,7 @@ def _errors(simple: np.ndarray, contact: np.ndarray, confidence: float) -> np.nd
     with the same start along the last axis.
     """
     balls = contact.shape[-1]
-    width = student.ppf((1 + confidence) / 2, balls - 1) / np.sqrt(balls)
+    width = scipy.stats.t.ppf((1 + confidence) / 2, balls - 1) / np.sqrt(balls)
     with np.errstate(invalid="ignore"):
         difference = contact - simple
         scale = np.abs(simple.mean(axis=-1))

@@ -14,8 +14,8 @@ and J. A. Yorke, 1983).
 from typing import Annotated, NamedTuple
 
 import numpy as np
+import scipy
 from pydantic import Field
-from scipy.stats import binomtest
 
 from bouncing_ball.accuracy.corrected_errors import SIMPLE, exact_and_simple_models
 from bouncing_ball.datasets.parameters import (
@@ -160,7 +160,7 @@ def share(chosen: np.ndarray, confidence: float) -> tuple[float, float, float, f
     """
     if not chosen.size:
         return 0, np.nan, np.nan, np.nan
-    tested = binomtest(int(chosen.sum()), chosen.size)
+    tested = scipy.stats.binomtest(int(chosen.sum()), chosen.size)
     low, high = tested.proportion_ci(confidence, "wilson")
     return chosen.size, tested.statistic, low, high
 

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from decimal import Context, Decimal
 from typing import Any
 
-from scipy.optimize import brentq
+import scipy
 
 from bouncing_ball.errors import ModelError, extra
 from bouncing_ball.models.damping import Release
@@ -175,7 +175,9 @@ def _first_zero(motion: _Contact, lag: Any, omega: Any, gravity: Any) -> Any:
     first = 0.3 * half
     if not (grip(arb(first))[0] > 0 > grip(arb(last))[0]):
         raise ModelError("the ball does not leave the table")
-    middle = float(brentq(lambda t: float(grip(arb(t))[0].mid()), first, last, xtol=1e-16))
+    middle = float(
+        scipy.optimize.brentq(lambda t: float(grip(arb(t))[0].mid()), first, last, xtol=1e-16)
+    )
     wide = arb(middle, _WIDTH * half)
     centre = wide.mid()
     slope = grip(wide)[1]

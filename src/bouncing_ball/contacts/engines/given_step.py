@@ -23,7 +23,7 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from bouncing_ball.contacts.engines.physical import Physical
 from bouncing_ball.contacts.engines.scheme import (
@@ -184,7 +184,9 @@ def retuned(
     over = [surplus(ratio) for ratio in stable]
     for k in range(len(stable) - 1):
         if over[k] >= 0 > over[k + 1]:
-            return float(brentq(surplus, stable[k], stable[k + 1], xtol=_FINE, rtol=_FINE))
+            return float(
+                scipy.optimize.brentq(surplus, stable[k], stable[k + 1], xtol=_FINE, rtol=_FINE)
+            )
     return None
 
 

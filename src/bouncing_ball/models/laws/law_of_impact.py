@@ -9,6 +9,7 @@ from functools import lru_cache
 from typing import TypeVar
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError, require
@@ -51,7 +52,6 @@ def reference(kind: type[ContactLaw], restitution: float) -> tuple[float, float]
 
 
 def _search(kind: type[ContactLaw], restitution: float) -> float:
-    from scipy.optimize import brentq
 
     def surplus(group):
         return np.log(_free(kind, group)[0] / restitution)
@@ -65,7 +65,7 @@ def _search(kind: type[ContactLaw], restitution: float) -> float:
             f"restitution coefficient r = {restitution:g} is too small: no {kind.name} contact "
             "with it was found; damped so strongly, the ball hardly leaves"
         ) from None
-    return brentq(surplus, 0.0, enough, xtol=_SETTLED, rtol=4 * np.finfo(float).eps)
+    return scipy.optimize.brentq(surplus, 0.0, enough, xtol=_SETTLED, rtol=4 * np.finfo(float).eps)
 
 
 def law_of_impact(

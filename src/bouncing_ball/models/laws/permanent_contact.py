@@ -37,6 +37,7 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError
@@ -108,8 +109,6 @@ def _touching(law: ForceLaw, at_surface: bool) -> float:
     """Λ of the steady contact that just reaches its release, or that touches the surface; NaN if
     none was found.
     """
-    # Imported here because it takes a third of a second, and most laws have a closed form.
-    from scipy.integrate import solve_bvp, solve_ivp
 
     steady = _Steady(law, rest(law))
     if steady.unit < _STIFF:
@@ -122,8 +121,12 @@ def _touching(law: ForceLaw, at_surface: bool) -> float:
 
     late = steady.unit**0.375
     z = np.array([np.pi / 2 + late, 1 - late * late / 2])
-    run = solve_ivp(steady.rates, (0, _PERIOD), np.zeros(2), args=(z,), rtol=_FIRST, atol=_FIRST)
-    found = solve_bvp(steady.rates, ends, run.t, run.y, z, tol=_TOLERANCE, max_nodes=_MOST)
+    run = scipy.integrate.solve_ivp(
+        steady.rates, (0, _PERIOD), np.zeros(2), args=(z,), rtol=_FIRST, atol=_FIRST
+    )
+    found = scipy.integrate.solve_bvp(
+        steady.rates, ends, run.t, run.y, z, tol=_TOLERANCE, max_nodes=_MOST
+    )
     if not steady.is_held(found, found.p):
         return np.nan
     # The same motion, shifted by half a period, is the solution with -Λ.
@@ -132,14 +135,13 @@ def _touching(law: ForceLaw, at_surface: bool) -> float:
 
 def _holds(law: ForceLaw, amplitude: float) -> bool:
     """Whether the steady contact at Λ that is next to a slow motion never releases the ball."""
-    from scipy.integrate import solve_bvp
 
     steady = _Steady(law, rest(law))
     z = np.array([np.pi / 2, amplitude])
     time = np.linspace(0.0, _PERIOD, _GRID)
     load = np.maximum(1 - amplitude * np.cos(time), _SLACK)
     slow = np.array([depth(law, 0 * time, 0.0, load) / steady.unit, 0 * time])
-    found = solve_bvp(
+    found = scipy.integrate.solve_bvp(
         lambda t, y: steady.rates(t, y, z),
         lambda first, last: last - first,
         time,

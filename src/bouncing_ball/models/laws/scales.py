@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.laws.force_law import ForceLaw
@@ -78,12 +79,11 @@ def rest(law: ForceLaw) -> float:
     if not law.feels_load:
         return deepest
     # The load adds to the force, so that the ball at rest lies less deep.
-    from scipy.optimize import brentq
 
     def surplus(p: float) -> float:
         return law.loaded_force(p * weight, 0 * weight, 1.0)[0] - 1
 
-    return brentq(surplus, 0.0, 2 * deepest)
+    return scipy.optimize.brentq(surplus, 0.0, 2 * deepest)
 
 
 def scales(law: ForceLaw, speed: np.ndarray, load: np.ndarray) -> Scales:

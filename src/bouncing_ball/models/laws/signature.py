@@ -59,7 +59,6 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
-from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError
@@ -120,13 +119,13 @@ def _panel(law: ForceLaw | type[ForceLaw], number: int, width: float) -> np.ndar
     Of a law, panels divide ln v; of a kind of laws, they divide the logarithm of the group, and the
     numbers are in units of the scales.
     """
-    x = chebyshev.chebpts1(_NODES)
+    x = np.polynomial.chebyshev.chebpts1(_NODES)
     at = np.exp((number + (x + 1) / 2) * width)
     if isinstance(law, type):
         instant = computed(law.of_scales(at, 1.0, 1.0), 1.0)
     else:
         instant = computed(law, at)
-    return chebyshev.chebfit(x, np.stack(instant[:4], axis=1), _NODES - 1)
+    return np.polynomial.chebyshev.chebfit(x, np.stack(instant[:4], axis=1), _NODES - 1)
 
 
 def _interpolated(
@@ -143,8 +142,10 @@ def _interpolated(
         coefficients = _panel(law, int(panel), width)
         here = number == panel
         x = 2 * (log[here] - panel) - 1
-        values[:, here] = chebyshev.chebval(x, coefficients)
-        slopes[:, here] = chebyshev.chebval(x, chebyshev.chebder(coefficients)) * (2 / width)
+        values[:, here] = np.polynomial.chebyshev.chebval(x, coefficients)
+        slopes[:, here] = np.polynomial.chebyshev.chebval(
+            x, np.polynomial.chebyshev.chebder(coefficients)
+        ) * (2 / width)
     return values, slopes
 
 

@@ -11,7 +11,6 @@ from functools import partial
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
-from scipy.optimize.elementwise import find_minimum, find_root
 
 from bouncing_ball.datasets.rounding import levels
 from bouncing_ball.datasets.variables import Variable, describe
@@ -147,6 +146,8 @@ def altered_ends(
     linearised : callable
         The monodromy of these orbits, shape (..., 2, 2).
     """
+    # This module of scipy is not loaded on first use, and its import takes a third of a second.
+    from scipy.optimize.elementwise import find_minimum, find_root
 
     def amplitude(excess, which):
         return orbit_at(excess, contact[which], n[which]).amplitude

@@ -6,7 +6,6 @@ paper says that it rises (Figs. 8 and 9, Table 1).
 
 import numpy as np
 import xarray as xr
-from scipy.optimize.elementwise import find_minimum
 
 from bouncing_ball.datasets.parameters import Family, LossyRestitution, Many, Parameters, Span
 from bouncing_ball.datasets.variables import described
@@ -46,6 +45,8 @@ def lowest_along_ratio(
     ndarray
         NaN for a family whose period doubling is lowest at an end of the grid.
     """
+    # This module of scipy is not loaded on first use, and its import takes a third of a second.
+    from scipy.optimize.elementwise import find_minimum
 
     def doubling(log_ratio: np.ndarray, n: np.ndarray) -> np.ndarray:
         model = SpringDamperModel(SpringDamper(np.exp(log_ratio), zeta, release))

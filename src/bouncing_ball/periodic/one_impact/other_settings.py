@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple, Self
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError
@@ -154,8 +155,6 @@ class _Family(NamedTuple):
 
 def _lowest(model: RestitutionModel, n: int) -> tuple[float, float, float]:
     """Λ, φ and z′_i of the saddle-node at the lowest Λ; NaN if there is none."""
-    # scipy takes long to import, and only other settings need it here.
-    from scipy.optimize import brentq
 
     family = _Family.of(model, n)
     level = family.load * family.both
@@ -164,7 +163,9 @@ def _lowest(model: RestitutionModel, n: int) -> tuple[float, float, float]:
     sample = family.samples()
     top = int(np.argmax(family.side(sample) / level))
     step = sample[1] - sample[0]
-    phase = brentq(lambda x: family.side(x, 1), sample[top] - step, sample[top] + step, xtol=1e-15)
+    phase = scipy.optimize.brentq(
+        lambda x: family.side(x, 1), sample[top] - step, sample[top] + step, xtol=1e-15
+    )
     highest = float(family.side(phase)) / level
     if not highest > 0:
         return np.nan, np.nan, np.nan
@@ -183,9 +184,8 @@ def _orbits_of(model: RestitutionModel, n: int, amplitude: float) -> Orbit | Non
     sample = family.samples()
     value = equation(sample)
     turns = np.flatnonzero((value[:-1] < 0) != (value[1:] < 0))
-    from scipy.optimize import brentq
 
-    found = [brentq(equation, sample[k], sample[k + 1], xtol=1e-15) for k in turns]
+    found = [scipy.optimize.brentq(equation, sample[k], sample[k + 1], xtol=1e-15) for k in turns]
     phase = np.array(found)
     relative, absolute = family.arriving(amplitude, phase)
     lands = relative < 0

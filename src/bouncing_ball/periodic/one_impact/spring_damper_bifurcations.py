@@ -102,7 +102,7 @@ class _Curves(NamedTuple):
         ``interval`` holds the index of the interval for each contact, and ``more`` further
         arguments of the function. The root is NaN where ``found`` is False.
         """
-        # scipy.optimize takes a third of a second to import, and most calls need no bifurcation.
+        # This module of scipy is not loaded on first use, and its import takes a third of a second.
         from scipy.optimize.elementwise import find_root
 
         def at_excess(excess, which, *more):

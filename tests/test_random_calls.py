@@ -101,18 +101,6 @@ def follow(calls: Calls) -> Any:
     return calls.random("follow", start, along=along, ranges=ranges)
 
 
-def switch(calls: Calls) -> Any:
-    return calls.call("switch", special(calls, str(Special.PERIOD_DOUBLING)))
-
-
-def curve(calls: Calls) -> Any:
-    kind = calls.draw(st.sampled_from(list(map(str, Special))))
-    start = special(calls, kind)
-    names = [name for name in ("along_range", "across_range") if calls.draw(st.booleans())]
-    ranges = {name: limits_of(calls) for name in names}
-    return calls.random("curve", start, kind=kind, across=across(calls, start), **ranges)
-
-
 # Contacts of engineers.
 
 
@@ -194,7 +182,7 @@ def fit_contact(calls: Calls) -> Any:
 CALLS: dict[str, Callable[[Calls], Any]] = {
     each.__name__: each
     for each in (
-        orbit, error_thresholds, follow, switch, curve, describe_contact, assess_contact,
+        orbit, error_thresholds, follow, describe_contact, assess_contact,
         choose_contact, write_contact, fit_contact,
     )
 } | {

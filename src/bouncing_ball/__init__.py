@@ -84,9 +84,7 @@ if TYPE_CHECKING:
     from bouncing_ball.models.suspension import Drag as Drag
     from bouncing_ball.models.suspension import Spring as Spring
     from bouncing_ball.models.waveform import Waveform as Waveform
-    from bouncing_ball.periodic.branches.follow import curve as curve
     from bouncing_ball.periodic.branches.follow import follow as follow
-    from bouncing_ball.periodic.branches.follow import switch as switch
     from bouncing_ball.periodic.branches_of_ball import branch as branch
     from bouncing_ball.periodic.orbits_of_ball import limits as limits
     from bouncing_ball.periodic.orbits_of_ball import orbit as orbit
@@ -115,7 +113,6 @@ _MODULES = {
     "choose_contact": "contacts.choose",
     "contact_law": "contacts.law_balls",
     "corrected": "models.makers",
-    "curve": "periodic.branches.follow",
     "describe_contact": "contacts.describe",
     "drop": "models.over_time",
     "error_thresholds": "accuracy.error_thresholds",
@@ -134,7 +131,6 @@ _MODULES = {
     "rigid": "models.makers",
     "simulate": "models.over_time",
     "spring_damper": "models.makers",
-    "switch": "periodic.branches.follow",
     "write_contact": "contacts.write",
 }
 

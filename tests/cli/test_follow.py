@@ -78,8 +78,8 @@ def test_results_are_labelled_and_drawn_and_iterated(tmp_path, described):
     assert np.allclose([each.parameters["amplitude"] for each in states], found.amplitude)
     found.plot(tmp_path / "branch.png")
     doubling = found.first("period doubling")
-    curve = bouncing_ball.curve(doubling, kind="period doubling", across="restitution",
-                                across_range=(0.4, 0.6))  # fmt: skip
+    ranges = {"restitution": (0.4, 0.6)}
+    curve = bouncing_ball.follow(doubling, along=("amplitude", "restitution"), ranges=ranges)
     described(curve)
     curve.plot(tmp_path / "curve.png")
     assert {path.name for path in tmp_path.iterdir()} == {"branch.png", "curve.png"}
@@ -88,8 +88,6 @@ def test_results_are_labelled_and_drawn_and_iterated(tmp_path, described):
 def test_mistakes_in_python_are_one_line(refusal):
     one = bouncing_ball.orbit(RIGID, amplitude=1.4)
     found = bouncing_ball.follow(one, to=1.5)
-    with refusal(NoOrbitError, "switch needs a period doubling of a branch, not an ordinary orbit"):
-        bouncing_ball.switch(one)
     with refusal(ModelError, "follow needs an orbit of bouncing_ball, not float"):
         bouncing_ball.follow(1.4)
     with refusal(ModelError, "kind = 'fold' is not one of saddle-node"):
@@ -98,12 +96,12 @@ def test_mistakes_in_python_are_one_line(refusal):
         found.first("saddle-node")
     start = next(found.states())
     with refusal(ModelError, "along = ('amplitude', 'amplitude') is not one parameter or two dif"):
-        bouncing_ball.curve(start, kind="saddle-node", across="amplitude")
+        bouncing_ball.follow(start, along=("amplitude", "amplitude"))
     outside = "the range 0.6 to 0.9 does not contain restitution = 0.5, at which the curve starts"
     with refusal(ModelError, outside):
-        bouncing_ball.curve(
-            start, kind="saddle-node", across="restitution", across_range=(0.6, 0.9)
-        )
+        special = replace(start, kind="saddle-node")
+        ranges = {"restitution": (0.6, 0.9)}
+        bouncing_ball.follow(special, along=("amplitude", "restitution"), ranges=ranges)
     with refusal(NoOrbitError, "an ordinary orbit has no curve in two parameters"):
         bouncing_ball.follow(start, along=("amplitude", "restitution"))
     with refusal(ModelError, "to is the end of a branch: a curve in two parameters has ranges"):
@@ -151,15 +149,9 @@ def test_a_special_orbit_is_followed_as_its_kind_says():
     doubling = bouncing_ball.follow(one, to=1.8).first("period doubling")
     doubled = bouncing_ball.follow(doubling, to=1.8)
     assert (doubled.attrs["impacts"], doubled.attrs["periods"]) == (2, 2)
-    first = bouncing_ball.switch(doubling)
-    by_switch = bouncing_ball.follow(first, to=1.8)
-    np.testing.assert_array_equal(doubled.phase, by_switch.phase)
     ranges = {"restitution": (0.4, 0.6)}
     curve = bouncing_ball.follow(doubling, along=("amplitude", "restitution"), ranges=ranges)
     assert curve.attrs["curve_kind"] == "period doubling"
-    short = bouncing_ball.curve(doubling, kind="period doubling", across="restitution",
-                                across_range=(0.4, 0.6))  # fmt: skip
-    np.testing.assert_array_equal(curve.amplitude, short.amplitude)
     # From a saddle-node the branch on which it lies is followed, along the parameter it came from.
     fold = bouncing_ball.follow(one, to=0.5).first("saddle-node")
     again = bouncing_ball.follow(fold)

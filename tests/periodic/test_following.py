@@ -20,7 +20,7 @@ from bouncing_ball.periodic.branches.switching import switch
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.whole_branch import whole_branch
 from bouncing_ball.periodic.orbits.balls import Balls
-from bouncing_ball.periodic.orbits.orbit import orbit_at
+from bouncing_ball.periodic.orbits.orbit import orbit_of_point
 from bouncing_ball.periodic.orbits.problem import twice
 from bouncing_ball.periodic.orbits.simulation import is_admissible
 from bouncing_ball.periodic.orbits.special import Special, turns_apart
@@ -196,7 +196,8 @@ def test_restitution_and_damping_ratio_are_one_parameter(refusal):
     assert abs(back.phase[-1, 0] - found.phase[-1, 0]) < 1e-13
     assert {"restitution", "damping_ratio"}.isdisjoint(found.attrs)
     with refusal(ParameterError, "damping_ratio follows from restitution: both cannot vary"):
-        bouncing_ball.curve(last, kind="saddle-node", across="damping_ratio")
+        fold = replace(last, kind="saddle-node")
+        bouncing_ball.follow(fold, along=("restitution", "damping_ratio"))
 
 
 def passes_through(found, y):
@@ -242,7 +243,7 @@ def test_two_hundred_random_orbits_are_followed_without_a_jump(name):
         there = branch_from(orbit, most=20)
         special += bool(there.special)
         # The last point may be a special orbit that ends the branch.
-        last = orbit_at(there.problem, there.branch.points[-2])
+        last = orbit_of_point(there.problem, there.branch.points[-2])
         rises = there.branch.tangents[-2, -1] > 0
         back = branch_from(last, increasing=not rises, most=120)
         # The phases of the last orbit are between -π and π; those of the branch may have left it.
@@ -368,6 +369,6 @@ def test_a_point_that_is_no_period_doubling_is_not_switched(refusal):
     unstable = bouncing_ball.orbit(ball, amplitude=2.0, side="unstable")
     for point in (fold, unstable):
         with refusal(NoOrbitError, "the orbit is no period doubling: det(M + 1) = "):
-            bouncing_ball.switch(replace(point, kind="period doubling"))
+            bouncing_ball.follow(replace(point, kind="period doubling"))
         with refusal(NoOrbitError, "the orbit is no period doubling: det(M + 1) = "):
             switch(point)

@@ -11,7 +11,7 @@ from bouncing_ball.models.flight import table
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
 from bouncing_ball.periodic.branches.following import STEPS, branch_from
 from bouncing_ball.periodic.one_impact import n_t
-from bouncing_ball.periodic.orbits.orbit import orbit_at
+from bouncing_ball.periodic.orbits.orbit import orbit_of_point
 from bouncing_ball.periodic.orbits.special import Special
 
 # The first orbit with the additional impact has this closing speed, and is looked for nearby.
@@ -56,7 +56,7 @@ def with_a_slow_impact(orbit, amplitude, duration, leaving):
     )
     found = newton(whole, guess, plane(np.eye(guess.size)[3], guess), NEARBY)
     assert found.converged
-    return orbit_at(whole, found.point)
+    return orbit_of_point(whole, found.point)
 
 
 @pytest.mark.parametrize("restitution", [0.3, 0.5, 0.7])

@@ -21,7 +21,7 @@ from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.law_at_orbit import law_at_orbit
 from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
 from bouncing_ball.periodic.one_impact.spring_damper_bifurcations import orbits_at as by_formula
-from bouncing_ball.periodic.one_impact.start import orbits_at as by_branch
+from bouncing_ball.periodic.one_impact.start import orbits as by_branch
 from bouncing_ball.periodic.one_impact.start import restitution_speed
 from bouncing_ball.periodic.orbits.stability import Side
 

@@ -161,7 +161,9 @@ def curve_options(parser: Parser) -> None:
     add_number(parser, "high", FINITE, "Largest value of the second parameter.")
     add_number(parser, "along_low", FINITE, "Smallest value of the first parameter on the curve.")
     add_number(parser, "along_high", FINITE, "Largest value of the first parameter on the curve.")
-    add_number(parser, "points", POINTS, meanings(library.curve)["points"], default=library.CURVE)
+    add_number(
+        parser, "points", POINTS, meanings(library.follow)["points"], default=library.MOST_POINTS
+    )
     add_ball(parser)
 
 
@@ -198,16 +200,13 @@ def curve(
     special = found.first(words)
     start = None if name in special.along else special.model.numbers().get(name)
     first = along.replace("-", "_")
-    traced = library.curve(
-        special,
-        kind=words,
-        across=name,
-        along_range=_window(
-            along_low, along_high, ("along_low", "along_high"), first, special.parameters[first]
-        ),
-        across_range=_window(low, high, ("low", "high"), name, start),
-        points=points,
-    )
+    at_first = special.parameters[first]
+    windows = {
+        first: _window(along_low, along_high, ("along_low", "along_high"), first, at_first),
+        name: _window(low, high, ("low", "high"), name, start),
+    }
+    ranges = {each: window for each, window in windows.items() if window is not None}
+    traced = library.follow(special, along=(first, name), points=points, ranges=ranges)
     if plot is not None:
         traced.plot(plot)
     ends = [str(reason) for reason in traced.end_reason.values]

@@ -19,7 +19,7 @@ from bouncing_ball.models.ball import Ball, a_single_ball
 from bouncing_ball.models.model import Model
 from bouncing_ball.periodic.branches.following import point_near
 from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls
-from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_at
+from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball.periodic.orbits.simulation import simulated
 
 
@@ -119,4 +119,4 @@ def of_impact(balls: Balls, phase: float, velocity: float, impacts: int) -> Orbi
     row, (start, before), _ = dynamics.in_a_row([phase], [relative])
     theta, closing = row.section(row.start(start, before))
     problem, guess = simulated(balls, float(theta[0]), float(closing[0]), impacts, (LAMBDA,))
-    return orbit_at(problem, point_near(problem, guess))
+    return orbit_of_point(problem, point_near(problem, guess))

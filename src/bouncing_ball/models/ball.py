@@ -58,7 +58,11 @@ class Ball:
         return found | {name: DataArray(found[name], dims="model") for name in arrays}
 
     def labelled(self, parameters: Mapping[str, Any]) -> Self:
-        """The same ball with other parameters as labels: those that were given by a user."""
+        """The same ball with other parameters as labels: those that were given by a user.
+
+        It is equal to the ball without them, because they change no number but only the names of
+        the axes of a result.
+        """
         ball = copy(self)
         vars(ball)["parameters"] = parameters
         return ball

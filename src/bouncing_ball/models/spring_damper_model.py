@@ -28,7 +28,8 @@ class SpringDamperModel(Model):
     Raises
     ------
     ModelError
-        If the contact is not linear: it is then a law of :class:`.LawModel`.
+        If the contact is not linear, or overdamped (ζ ≥ 1): it is then a law of
+        :class:`.LawModel`.
 
     Examples
     --------
@@ -52,6 +53,7 @@ class SpringDamperModel(Model):
                 f'with contact_law("linear", frequency_ratio=…, damping_ratio=…, '
                 f'release="{self.contact.release}")'
             )
+        self.contact.require_underdamped()
 
     @property
     def label(self) -> str:

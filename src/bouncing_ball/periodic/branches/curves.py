@@ -37,7 +37,7 @@ from bouncing_ball.periodic.branches.following import (
     limits_of,
 )
 from bouncing_ball.periodic.orbits.balls import LAMBDA, LOWEST
-from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_at
+from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
 from bouncing_ball.periodic.orbits.release import release_condition
 from bouncing_ball.periodic.orbits.special import (
@@ -166,7 +166,7 @@ def curve_through(
     limits = _limits(orbits, windows)
     first = _corrected(problem, guess)
     if np.linalg.norm(first - guess) > _ANOTHER:
-        places = orbit_at(orbits, first).parameters.items()
+        places = orbit_of_point(orbits, first).parameters.items()
         where = ", ".join(f"{name} = {x:.10g}" for name, x in places)
         raise NoOrbitError(f"the start is no {kind}; Newton's method leads to another at {where}")
     with np.errstate(all="ignore"):

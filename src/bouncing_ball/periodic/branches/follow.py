@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import Any, overload
 
 import numpy as np
@@ -24,7 +23,7 @@ from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.special import MEANINGS, Special
 
-BRANCH, CURVE = 500, 500
+MOST_POINTS = 500
 """Default of the largest number of points of a branch, and of a curve in each direction."""
 # A branch ends at these orbits, because an impact, a flight or a rest disappears there.
 _ENDS = (Special.GRAZING_IMPACT, Special.RELEASE_LOST, Special.STICKING)
@@ -32,7 +31,7 @@ _ENDS = (Special.GRAZING_IMPACT, Special.RELEASE_LOST, Special.STICKING)
 
 @overload
 def follow(
-    orbit: Orbit, *, along: str | None = None, to: float | None = None, points: Points = BRANCH
+    orbit: Orbit, *, along: str | None = None, to: float | None = None, points: Points = MOST_POINTS
 ) -> FollowedBranch: ...
 
 
@@ -41,7 +40,7 @@ def follow(
     orbit: Orbit,
     *,
     along: tuple[str, str],
-    points: Points = BRANCH,
+    points: Points = MOST_POINTS,
     ranges: Mapping[str, Sequence[float]] | None = None,
 ) -> SpecialCurve: ...
 
@@ -51,7 +50,7 @@ def follow(
     *,
     along: str | tuple[str, str] | None = None,
     to: float | None = None,
-    points: Points = BRANCH,
+    points: Points = MOST_POINTS,
     ranges: Mapping[str, Sequence[float]] | None = None,
 ) -> FollowedBranch | SpecialCurve:
     """The branch of a periodic orbit along a parameter, or the curve of a special orbit in two.
@@ -118,7 +117,7 @@ def follow(
     >>> curve.attrs["curve_kind"], curve.sizes["point"]
     ('period doubling', 19)
     """
-    _check_orbit("follow", orbit)
+    _check_orbit(orbit)
     most = checked_number("points", points, POINTS)
     names = _names(orbit, along)
     if len(names) == 2:
@@ -167,14 +166,14 @@ def _to_stable_side(fold: Orbit, name: str, to: float | None) -> np.ndarray:
     return sides.stable
 
 
-def _check_orbit(call: str, orbit: Any) -> None:
+def _check_orbit(orbit: Any) -> None:
     if not isinstance(orbit, Orbit):
         kind = type(orbit).__name__
-        raise ParameterError(f"{call} needs an orbit of bouncing_ball, not {{}}", kind)
+        raise ParameterError("follow needs an orbit of bouncing_ball, not {}", kind)
     if orbit.shape:
-        raise ParameterError(f"{call} needs a single orbit, not {{}}", str(orbit.size))
+        raise ParameterError("follow needs a single orbit, not {}", str(orbit.size))
     if not orbit.exists:
-        raise NoOrbitError(f"{call} needs an orbit, but there is none: its quantities are NaN")
+        raise NoOrbitError("follow needs an orbit, but there is none: its quantities are NaN")
 
 
 def _names(orbit: Orbit, along: Any) -> tuple[str, ...]:
@@ -219,85 +218,6 @@ def _curve(orbit: Orbit, names: tuple[str, ...], ranges: Any, most: int) -> Spec
     )
     data = labelled(found).assign_attrs(curve_kind=str(orbit.kind))
     return SpecialCurve.of_orbits(data, "curve", found)
-
-
-def switch(orbit: Orbit) -> Orbit:
-    """The first orbit of twice the period, on the branch that begins at a period doubling.
-
-    :func:`follow` gives the whole branch.
-
-    Parameters
-    ----------
-    orbit : Orbit
-        A period doubling of a branch, such as ``found.first("period doubling")``.
-
-    Raises
-    ------
-    NoOrbitError
-        If the orbit is no period doubling, or if no orbit of twice the period is found.
-
-    Examples
-    --------
-    >>> import bouncing_ball
-    >>> one = bouncing_ball.orbit(bouncing_ball.rigid(restitution=0.5), amplitude=1.4)
-    >>> two = switch(follow(one, to=1.8).first("period doubling"))
-    >>> two.impacts, two.periods
-    (2, 2)
-    >>> round(float(follow(two, to=1.8).special_amplitude[0]), 6)
-    1.667131
-    """
-    _check_orbit("switch", orbit)
-    if orbit.kind != Special.PERIOD_DOUBLING:
-        found = f"a {orbit.kind}" if orbit.kind else "an ordinary orbit"
-        raise NoOrbitError(f"switch needs a period doubling of a branch, not {found}")
-    return switching.switch(orbit, orbit.along[0])
-
-
-def curve(
-    orbit: Orbit,
-    *,
-    across: str,
-    kind: str | None = None,
-    along_range: Sequence[float] | None = None,
-    across_range: Sequence[float] | None = None,
-    points: Points = CURVE,
-) -> SpecialCurve:
-    """The curve of special orbits in two parameters, through one of them: :func:`follow` with the
-    two parameters ``(orbit.along[0], across)``.
-
-    Parameters
-    ----------
-    orbit : Orbit
-        A special orbit of a branch, such as ``found.first("saddle-node")``. The first parameter is
-        that of the branch.
-    across : str
-        The second parameter.
-    kind : str, optional
-        The kind of the special orbits; by default that of the orbit.
-    along_range, across_range : two floats, optional
-        The ranges of both parameters outside which the curve is not followed.
-    points : int
-        The largest number of points in each direction.
-
-    Examples
-    --------
-    The saddle-nodes of the restitution model are at Λ = π (1 - r)/(1 + r):
-
-    >>> import math
-    >>> import bouncing_ball
-    >>> one = bouncing_ball.orbit(bouncing_ball.rigid(restitution=0.5), amplitude=1.4)
-    >>> fold = follow(one, to=0.5).first("saddle-node")
-    >>> found = curve(fold, across="restitution", across_range=(0.2, 0.8))
-    >>> r = found.restitution
-    >>> bool(abs(found.amplitude - math.pi * (1 - r) / (1 + r)).max() < 1e-12)
-    True
-    """
-    _check_orbit("curve", orbit)
-    along = orbit.along[0]
-    special = replace(orbit, kind=chosen("kind", kind or orbit.kind, [str(x) for x in Special]))
-    given = {along: along_range, across: across_range}
-    ranges = {name: limits for name, limits in given.items() if limits is not None}
-    return follow(special, along=(along, across), points=points, ranges=ranges)
 
 
 def _window(name: str, given: Any, start: float) -> Range | None:

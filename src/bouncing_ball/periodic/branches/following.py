@@ -23,7 +23,7 @@ from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.periodic.orbits.balls import LAMBDA
 from bouncing_ball.periodic.orbits.lost_release import lost_release
-from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_at
+from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball.periodic.orbits.problem import PeriodicOrbits, twice
 from bouncing_ball.periodic.orbits.special import (
     MEANINGS,
@@ -72,7 +72,7 @@ class Range(NamedTuple):
     high: float
 
 
-def _orbits_at(problem: Coordinates, y: np.ndarray, kind: str = "") -> Orbit:
+def _orbits_of(problem: Coordinates, y: np.ndarray, kind: str = "") -> Orbit:
     """The orbits at points y, with phases in [-π, π].
 
     Where a release is lost, which is a double zero, the duration among the unknowns is the one that
@@ -80,7 +80,7 @@ def _orbits_at(problem: Coordinates, y: np.ndarray, kind: str = "") -> Orbit:
     """
     orbits = problem.orbits
     inner = problem.inner(y)
-    found = orbit_at(orbits, inner, kind)
+    found = orbit_of_point(orbits, inner, kind)
     if not orbits.selects:
         return found
     unknown = orbits.durations(inner)
@@ -91,7 +91,7 @@ def _orbits_at(problem: Coordinates, y: np.ndarray, kind: str = "") -> Orbit:
 def orbits_along(problem: Coordinates, y: np.ndarray) -> Orbit:
     """The orbits at points y, with phases that pass ±π continuously along a branch."""
     orbits = problem.orbits
-    found = _orbits_at(problem, y)
+    found = _orbits_of(problem, y)
     phase, _ = orbits.states(problem.inner(y))
     turned = np.round((phase - found.phases) / (2 * np.pi))
     turns = np.broadcast_to(orbits.turns, phase.shape)
@@ -119,7 +119,7 @@ class Orbits:
         return (self._one(y) for y in self.branch.points)
 
     def _one(self, y: np.ndarray, kind: str = "") -> Orbit:
-        return _orbits_at(self.problem, y, kind)
+        return _orbits_of(self.problem, y, kind)
 
     @property
     def special_points(self) -> list[SpecialPoint]:

@@ -14,7 +14,7 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.corrector import Correction, newton, plane, tangent
 from bouncing_ball.periodic.branches.following import PATIENT, point_near
 from bouncing_ball.periodic.orbits.balls import LAMBDA
-from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_at
+from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball.periodic.orbits.problem import PeriodicOrbits, twice
 from bouncing_ball.periodic.orbits.stability import Bifurcation, is_stable
 
@@ -115,7 +115,7 @@ def switch(doubling: Orbit, along: str = LAMBDA, aside: float = ASIDE) -> Orbit:
             f"the orbit of twice the period that was found is {away:.1e} from the period doubling, "
             f"and not about {aside:g}: it is on another branch"
         )
-    return orbit_at(whole, found.point)
+    return orbit_of_point(whole, found.point)
 
 
 def halved(halving: Orbit) -> Orbit:

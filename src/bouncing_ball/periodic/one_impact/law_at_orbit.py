@@ -13,7 +13,7 @@ from bouncing_ball.numerics.corrector import NewtonSettings, solve
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
 from bouncing_ball.periodic.orbits.balls import Balls
-from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_at
+from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball.periodic.orbits.stability import Side
 
 # The largest number of rounds that compute the law and the orbit in turn. At given r and D the
@@ -116,7 +116,7 @@ def orbit_of_law(
         found = solve(problem.equations_at, y, _CLOSE)
         y = np.where(found.converged[..., np.newaxis], found.point, np.nan)
         if np.all((np.abs(missed) <= _SETTLED * speed) & found.converged):
-            return orbit_at(problem, y)
+            return orbit_of_point(problem, y)
     raise NoOrbitError(
         f"no {n}-T orbit at Λ = {amplitude:g} whose impact has r = {restitution:g} and "
         f"D = {float(taken.flat[0]):g} was found for {kind.name}"

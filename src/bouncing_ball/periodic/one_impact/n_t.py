@@ -59,7 +59,7 @@ def orbit(model: Model, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.ST
     """
     form = closed_form(model)
     if form is None:
-        return start.orbit_at(model, n, amplitude, Side(side))
+        return start.orbit(model, n, amplitude, Side(side))
     return form.orbit(n, amplitude, Side(side))
 
 
@@ -75,7 +75,7 @@ def orbits(model: Model, n: int, amplitude: float) -> Orbit:
         If n is not a positive integer.
     """
     form = closed_form(model)
-    return start.orbits_at(model, n, amplitude) if form is None else form.orbits(n, amplitude)
+    return start.orbits(model, n, amplitude) if form is None else form.orbits(n, amplitude)
 
 
 def saddle_node(model: Model, n: ArrayLike) -> Orbit:

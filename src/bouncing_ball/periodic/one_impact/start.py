@@ -27,8 +27,7 @@ from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.periodic.branches.following import Range, limit, limits_of
 from bouncing_ball.periodic.one_impact import corrected_branch as corrected
 from bouncing_ball.periodic.orbits.balls import LAMBDA, LOWEST
-from bouncing_ball.periodic.orbits.orbit import Orbit, check_index, in_order
-from bouncing_ball.periodic.orbits.orbit import orbit_at as orbit_of_point
+from bouncing_ball.periodic.orbits.orbit import Orbit, check_index, in_order, orbit_of_point
 from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
 from bouncing_ball.periodic.orbits.special import bifurcations, ends_of_contact, with_ends
 from bouncing_ball.periodic.orbits.stability import Bifurcation, Side
@@ -169,7 +168,7 @@ def _orbits(
     return Orbit.of(model, n, lam, phase, duration, velocity), test
 
 
-def orbit_at(model: Model, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Orbit:
+def orbit(model: Model, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Orbit:
     """The n-T orbits at Λ on one side of the saddle-node; NaN where no orbit is found.
 
     Parameters
@@ -197,7 +196,7 @@ def orbit_at(model: Model, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Or
     >>> from bouncing_ball.models.rigid import RestitutionModel
     >>> from bouncing_ball.periodic.one_impact import n_t
     >>> model = RestitutionModel(0.5)
-    >>> found = orbit_at(model, [1, 2], 2.5, Side.STABLE)
+    >>> found = orbit(model, [1, 2], 2.5, Side.STABLE)
     >>> bool(np.all(found.distance(n_t.orbit(model, [1, 2], 2.5)) < 1e-12))
     True
     """
@@ -300,7 +299,7 @@ def continued(
     return branch.special if branch.end.finished or len(branch.points) == _POINTS else ()
 
 
-def orbits_at(model: Model, n: int, amplitude: float) -> Orbit:
+def orbits(model: Model, n: int, amplitude: float) -> Orbit:
     """The n-T orbits of a single model at one Λ, in order of contact duration, shape (count,).
 
     These are the orbits on the branch that comes from large Λ on its stable side. If this branch
@@ -320,7 +319,7 @@ def orbits_at(model: Model, n: int, amplitude: float) -> Orbit:
             problem, _ = _Search.of(model, [n])[0].guess(np.array([amplitude]), np.zeros(1))
             found = [orbit_of_point(problem.take(0), y) for y in points]
             return in_order(found, none)
-    return in_order([orbit_at(model, n, amplitude, side) for side in Side], none)
+    return in_order([orbit(model, n, amplitude, side) for side in Side], none)
 
 
 def bifurcation(model: Model, n: ArrayLike, kind: Bifurcation) -> Orbit:

@@ -705,7 +705,7 @@ class Orbit(Batch):
         return self._single(np.maximum(of_impacts, larger))
 
 
-def orbit_at(problem: PeriodicOrbits, y: np.ndarray, kind: str = "") -> Orbit:
+def orbit_of_point(problem: PeriodicOrbits, y: np.ndarray, kind: str = "") -> Orbit:
     """The orbits at points y of a problem, with phases in [-π, π]."""
     dynamics, _ = problem.dynamics(y)
     theta, v = problem.states(y)

@@ -7,5 +7,5 @@ In reading order:
 ``curves``       curves of special orbits in two parameters
 ``observables``  the quantities of orbits, as datasets have them
 ``labelled``     branches and curves as datasets that iterate and draw themselves
-``follow``       ``follow``, ``switch`` and ``curve``, which a user calls
+``follow``       ``follow``, which a user calls
 """

@@ -187,7 +187,8 @@ def test_the_badge_is_red_if_a_number_or_a_text_differs_from_the_package(seen):
     right, wrong, tampered = (seen["badges"][name] for name in ("right", "wrong", "tampered"))
     assert right["kind"] == "good" and float(right["worst"]) < BOUND / 20
     assert "100 orbits and 8 balls of the Python package, commit c0ffeec0ff" in right["text"]
-    assert "and 44 settings of engines, computed again here" in right["text"]
+    settings = len(json.loads(as_json())["cases"])
+    assert f"and {settings} settings of engines, computed again here" in right["text"]
     pasted = seen["badges"]["pasted"]
     assert pasted["kind"] == "bad" and "Infinity (settings of lammps)" in pasted["text"]
     assert wrong["kind"] == "bad" and float(wrong["worst"]) > BOUND
@@ -303,16 +304,22 @@ def test_the_physical_tab_says_what_the_command_prints(case, seen, answered, sho
     for name, found in zip(MODELS, orbit["standing"].values(), strict=True):
         numbers |= {f"{name} {x}": found[x] for x in ("saddle_node", "period_doubling")}
     agree(page, {name: numbers[name] for name in numbers if name not in SAMPLED}, rel=1e-9)
-    agree(page, {name: numbers[name] for name in SAMPLED}, rel=1e-5)
+    # The package integrates the steady contact of a damper on approach, and does not always find
+    # its threshold; the page has it in parts in closed form.
+    missed = {"permanent_contact"} if said["permanent_contact"] is None else set()
+    assert not missed or release is Release.APPROACH
+    agree(page, {name: numbers[name] for name in SAMPLED - missed}, rel=1e-5)
     for kind in ("errors", "corrected_errors"):
-        agree(page, {f"{kind} {x}": y for x, y in orbit[kind].items()}, rel=0, abs=3e-8)
+        found = {f"{kind} {x}": y for x, y in orbit[kind].items() if x not in missed}
+        agree(page, found, rel=0, abs=3e-8)
     if orbit["is_stable"] and orbit["is_admissible"]:
         # The page judges orbits only, and no ball that is laid on the table.
         verdict = said["verdict"].partition("; a ball laid")[0].rstrip(".")
         assert state["verdict"].startswith(verdict)
     else:
         assert "unstable" in state["verdict"] or not orbit["exists"]
-    assert state["notes"] == [f"{note}." for note in said["notes"]]
+    notes = [f"{note}." for note in said["notes"] if not (missed and "no threshold" in note)]
+    assert state["notes"] == notes
     if engine != "none":
         settings = said["engine"]
         assert f"in {settings['steps']} steps of {settings['scheme']}" in state["says"]

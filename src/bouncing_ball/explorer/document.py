@@ -17,7 +17,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 BOUND = 1e-11
 """Difference from Python above which the badge is red: a hundred times the largest seen."""
 
-SCRIPTS = "model engines simulation starts plot state orbit sound stage page".split()
+SCRIPTS = "model approach engines simulation starts plot state orbit sound stage page".split()
 
 
 def references(data: xr.Dataset) -> str:

@@ -8,10 +8,9 @@ from typing import Any
 
 from bouncing_ball.contacts.engines.choice import ENGINES
 from bouncing_ball.contacts.engines.engine import Engine, Physical
+from bouncing_ball.errors import ModelError
 from bouncing_ball.models.damping import Release, damping_ratio
 
-# The engines that the page knows: those with a linear contact and one pair of numbers.
-_SHOWN = ("generic", "mujoco", "lammps", "liggghts", "pybullet", "drake", "mercurydpm")
 # m, k, r and the error of r that the time step may cause: from light to heavy and elastic balls.
 _CASES = (
     (0.5, 1e5, 0.75, 1e-3),
@@ -21,11 +20,15 @@ _CASES = (
 )
 
 
-def _case(engine: Engine, release: Release, *case: float) -> dict[str, Any]:
+def _case(engine: Engine, release: Release, *case: float) -> dict[str, Any] | None:
+    """The settings of a contact; None if the engine has no contact with this r."""
     mass, stiffness, restitution, error = case
-    zeta = float(damping_ratio(restitution, release))
-    contact = Physical(mass, stiffness, 2 * zeta * mass * (stiffness / mass) ** 0.5)
-    found = engine.settings(contact, release, error)
+    try:
+        zeta = float(damping_ratio(restitution, release))
+        contact = Physical(mass, stiffness, 2 * zeta * mass * (stiffness / mass) ** 0.5)
+        found = engine.settings(contact, release, error)
+    except ModelError:
+        return None
     return {
         "state": [engine.name, str(release), *case],
         "values": [found.time_step, found.steps, found.restitution],
@@ -35,15 +38,15 @@ def _case(engine: Engine, release: Release, *case: float) -> dict[str, Any]:
 
 def as_json() -> str:
     """The engines of the page by name, and the settings of four contacts under each release."""
-    shown = [ENGINES[name] for name in _SHOWN]
-    pairs = [(engine, rule) for engine in shown for rule in engine.releases]
+    pairs = [(engine, rule) for engine in ENGINES.values() for rule in engine.releases]
     engines = {
         engine.name: {
             "scheme": str(engine.scheme),
             "snippets": {str(rule): engine.template(rule) for rule in engine.releases},
         }
-        for engine in shown
+        for engine in ENGINES.values()
     }
-    cases = [_case(engine, rule, *case) for engine, rule in pairs for case in _CASES]
+    tried = (_case(engine, rule, *case) for engine, rule in pairs for case in _CASES)
+    cases = [case for case in tried if case is not None]
     # Without "<" no text can open or close a tag of the page.
     return json.dumps({"engines": engines, "cases": cases}, allow_nan=False).replace("<", "\\u003c")

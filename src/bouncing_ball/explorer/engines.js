@@ -13,8 +13,13 @@ const ENGINE_NUMBERS = {
   pybullet: (m, k, c) => ({contactStiffness: 2 * k, contactDamping: 0.5 * c}),
   drake: (m, k, c) => ({point_contact_stiffness: 2 * k, relaxation_time: c / k / 2}),
   mercurydpm: (m, k, c) => ({stiffness: k, dissipation: c}),
+  "newton-semi-implicit": (m, k, c) => ({ke: k, kd: c}),
+  "newton-mujoco": (m, k, c) => ({ke: 1 / m * k, kd: 1 / m * c}),
+  genesis: (m, k, c) => ({timeconst: 2 * m / c, dampratio: c / (2 * m * Math.sqrt(k / m))}),
   gazebo: (m, k, c) => ({kp: 2 * k, kd: 0.5 * c}),
 };
+// Engines that know damping by its time constant only.
+const DAMPED_ONLY = ["newton-mujoco", "genesis"];
 
 const COMPENSATED = "compensated implicit Euler";
 
@@ -47,12 +52,14 @@ function errorInSteps(scheme, contact, steps) {
   const h = freeAngle(contact) / Math.sqrt((1 - zeta) * (1 + zeta)) / steps;
   const [stiff, loss] = scheme === COMPENSATED ? compensated(1, 2 * zeta, h) : [1, 2 * zeta];
   const implicit = scheme !== "semi-implicit Euler", q = 1 + loss * h + stiff * h * h;
+  // A damper that acts on approach only is left out of the steps that begin with v ≥ 0.
+  const lossAt = v => isApproach(contact) && v >= 0 ? 0 : loss;
   const lag = release === "force" ? (implicit ? loss / stiff + h : loss) : 0;
   let worst = 0;
   for (let place = 0; place < 33; place++) {
     let x = -h * (1e-9 + place * (1 - 1e-9) / 32), v = -1;
     for (let k = 0; k < 2 * steps && x + lag * v < 0; k++) {
-      v = implicit ? (v - h * stiff * x) / q : v - h * (x + loss * v);
+      v = implicit ? (v - h * stiff * x) / q : v - h * (x + lossAt(v) * v);
       x += h * v;
     }
     worst = Math.max(worst, Math.abs(v - r));
@@ -96,12 +103,19 @@ const ENGINE_NAMES = {
   generic: ["stiffness", "damping"], mujoco: ["solref", "solimp"], lammps: ["kn", "gamma_n"],
   liggghts: ["kn", "gamman"], pybullet: ["contactStiffness", "contactDamping", "time_step"],
   drake: ["point_contact_stiffness", "relaxation_time", "time_step"], mercurydpm: ["stiffness", "dissipation"],
+  "newton-semi-implicit": ["ke", "kd"], "newton-mujoco": ["ke", "kd"], genesis: ["timeconst", "dampratio"],
   gazebo: ["kp", "kd", "time_step"],
 };
 const ENGINE_READS = {
   generic: (m, a, b) => [a, b], lammps: (m, a, b) => [a, b / (1 / m)], liggghts: (m, a, b) => [a, b / (1 / m)],
   pybullet: (m, a, b) => [a / 2, b / 0.5], drake: (m, a, b) => [a / 2, a * b], mercurydpm: (m, a, b) => [a, b],
+  "newton-semi-implicit": (m, a, b) => [a, b], "newton-mujoco": (m, a, b) => [a / (1 / m), b / (1 / m)],
+  genesis: (m, a, b) => [m / (a * b) ** 2, 2 * m / a],
   gazebo: (m, a, b) => [a / 2, b / 0.5],
+};
+// What a reader should know of the parameters of an engine: Engine.remarks.
+const ENGINE_REMARKS = {
+  "newton-mujoco": ["ke and kd are per unit of mass in SolverMuJoCo: k/m in 1/s^2 and c/m in 1/s"],
 };
 
 // Up to this impedance MuJoCo's contact is taken for a spring and a damper.
@@ -154,6 +168,7 @@ function readEngine(engine, mass, [one, two, three]) {
     return value;
   });
   refuseIf(values[0] === 0, `${names[0]} = 0.0 is not positive`);
+  refuseIf(engine === "genesis" && values[1] === 0, "dampratio = 0 is no contact of genesis: its time constant is 2 m/c");
   const [k, c] = ENGINE_READS[engine](mass, ...values);
   return stepped ? represented(k / mass, c / mass, step).map(x => x * mass) : [k, c];
 }
@@ -166,6 +181,8 @@ function caseOf(state) {
   const found = anyCaseOf(state), duration = freeAngle(found.contact) / dampedFrequency(found.contact) * found.time;
   refuseIf(duration > LONGEST, `a contact of ${prefixed(duration, "s")} is longer than any that is simulated, up to `
     + `${LONGEST} s: check the mass, the stiffness and their units`);
+  const {engine} = state;
+  refuseIf(DAMPED_ONLY.includes(engine) && found.damping === 0, `${engine} has no contact without damping: its time constant is 2 m/c`);
   return found;
 }
 
@@ -174,13 +191,11 @@ function anyCaseOf({given, engine, release, r, one, two, three, m, k, f}) {
   if (given in ENGINE_NAMES) {
     const [stiffness, damping] = readEngine(given, mass, [one, two, three]);
     const omega = Math.sqrt(stiffness / mass), zeta = damping / (2 * mass * omega);
-    const root = Math.sqrt(zeta * zeta - 1), r = Math.exp(-2 * zeta * (root > 0 ? Math.asinh(root) / root : 1));
-    refuseIf(!(zeta < 1), `damping ratio ζ = ${repr(zeta)} is not below 1: a free impact `
-      + `${release === "force" ? `has r = ${r.toFixed(4)}` : "does not end"}, and orbits are computed for less damping only`);
-    const remarks = STEPPED.includes(given) && !three.trim()
+    refuseIf(!(zeta < 1), `damping ratio ζ = ${repr(zeta)} is not below 1: on a vibrating table only underdamped contacts are computed`);
+    const remarks = given in ENGINE_REMARKS ? [...ENGINE_REMARKS[given]] : STEPPED.includes(given) && !three.trim()
       ? ["k, c and r are those in the limit of small time steps, which damp less; with the parameter time_step, in s, "
         + "they are those of this step"] : [];
-    const by = rule => ({omega: omega * time, zeta, release: rule, sine: rule === "force" ? zeta : 0});
+    const by = rule => withDamping(omega * time, zeta, rule);
     const contact = by(release), [own] = releasesOf({tab: "design", engine: given, given});
     if (engine !== "none" && own !== release && zeta > 0) {
       const [before, after] = [own, release].map(rule => ownRestitution(by(rule)).toFixed(4));
@@ -197,7 +212,7 @@ function settingsOf(engines, name, release, {mass, stiffness, damping}, error) {
   const {snippets, scheme} = engines[name];
   const [m, k, c] = [mass, stiffness, damping].map(rounded);
   const omega = Math.sqrt(k / m), zeta = c / (2 * m * omega);
-  const of = rule => ({omega, zeta, release: rule, sine: rule === "force" ? zeta : 0});
+  const of = rule => withDamping(omega, zeta, rule);
   const contact = of(release), steps = stepsFor(scheme, contact, error);
   const time_step = rounded(freeAngle(contact) / dampedFrequency(contact) / steps);
   const written = scheme !== COMPENSATED ? [k, c]
@@ -205,7 +220,7 @@ function settingsOf(engines, name, release, {mass, stiffness, damping}, error) {
   const numbers = ENGINE_NUMBERS[name](m, ...written);
   const texts = Object.fromEntries(
     Object.entries({mass: m, stiffness: k, damping: c, time_step, ...numbers}).map(([key, x]) => [key, repr(x)]));
-  for (const rule of ["displacement", "force"]) texts[rule] = ownRestitution(of(rule)).toFixed(4);
+  for (const rule of CHOICES.release) texts[rule] = ownRestitution(of(rule)).toFixed(4);
   return {scheme, steps, time_step, restitution: ownRestitution(contact),
     snippet: snippets[release].replace(/@([\w.]+)@/g, (_, key) => texts[key])};
 }

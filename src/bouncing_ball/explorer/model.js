@@ -69,11 +69,13 @@ function solver([a, b, c]) {
 // r is that of Eq. 16, or, measured, that of a free impact by the release.
 function contactOf(r, omega, release, measured = false) {
   const decrement = -Math.log(r) + 0;
-  const zeta = measured && release === "force" ? forceDamping(decrement)
-    : decrement / Math.hypot(Math.PI, decrement);
-  return {omega, zeta, release, sine: release === "force" ? zeta : 0};
+  const zeta = !measured || release === "displacement" ? decrement / Math.hypot(Math.PI, decrement)
+    : forceDamping(release === "force" ? decrement : 2 * decrement);
+  return withDamping(omega, zeta, release);
 }
-// ζ = cos β with 2β cot β = -ln r < 2, by Newton's method: damping_ratio of models.damping.
+const withDamping = (omega, zeta, release) => ({omega, zeta, release, sine: release === "force" ? zeta : 0});
+// ζ = cos β with 2β cot β = -ln r < 2, by Newton's method: damping_ratio of models.damping. A damper
+// that acts on approach only has half of this decrement.
 function forceDamping(decrement) {
   if (decrement === 0) return 0;
   let beta = Math.PI / 2 * Math.sqrt(1 - decrement / 2);
@@ -83,17 +85,21 @@ function forceDamping(decrement) {
   }
   return Math.cos(beta);
 }
-const freeAngle = contact => 2 * Math.acos(contact.sine);
+// The angles at which a free contact ends, and during which its damper acts: Release.damped_angle.
+const dampedAngle = contact => isApproach(contact) ? Math.acos(contact.zeta) : 2 * Math.acos(contact.sine);
+const freeAngle = contact => isApproach(contact)
+  ? dampedAngle(contact) + Math.PI / 2 * Math.sqrt((1 - contact.zeta) * (1 + contact.zeta)) : dampedAngle(contact);
 const dampedFrequency = contact =>
   contact.omega * Math.sqrt((1 - contact.zeta) * (1 + contact.zeta));
 function ownRestitution(contact) {
   const z = contact.zeta;
-  return Math.exp(-freeAngle(contact) * z / Math.sqrt((1 - z) * (1 + z)));
+  return Math.exp(-dampedAngle(contact) * z / Math.sqrt((1 - z) * (1 + z)));
 }
 
 // The n-T orbit whose contact lasts (θ₀ + ε)/ϖ_d: branch_point of
 // periodic.one_impact.spring_damper_branch.
 function branchPoint(eps, contact, n) {
+  if (isApproach(contact)) return approachPoint(eps, contact, n);
   const {omega, zeta, sine} = contact;
   const root = Math.sqrt((1 - zeta) * (1 + zeta)), perAngle = 1 / (omega * root);
   const duration = (freeAngle(contact) + eps) * perAngle, flight = 2 * Math.PI * n - duration;
@@ -272,6 +278,10 @@ function described(n, amplitude, phase, duration, impact, trace, determinant, mo
 
 // The motion a time s after the contact's start at δ = d, which is 0 unless a contact resumes.
 function contactState(contact, point, s) {
+  if (point.parts) {
+    const part = partAt(point.parts, s);
+    return contactState(part.contact, part.point, s - part.start);
+  }
   const {omega, zeta} = contact, {d = 0} = point, root = Math.sqrt((1 - zeta) * (1 + zeta));
   const angle = omega * root * s, loss = 2 * zeta * omega;
   const at = responses(s, Math.sin(angle), Math.cos(angle), Math.sin(s), Math.cos(s),
@@ -287,7 +297,7 @@ function contactState(contact, point, s) {
 
 function contactOrbit(point, contact, n) {
   const {amplitude, phase, duration, u, x, trace, determinant} = point;
-  const orbit = described(n, amplitude, phase, duration, u + x, trace, determinant, {});
+  const orbit = described(n, amplitude, phase, duration, u + x, trace, determinant, {parts: point.parts});
   orbit.inContact = s => contactState(contact, point, s).height;
   orbit.state = s => contactState(contact, point, s);
   if (orbit.max_height < amplitude) orbit.max_height = Math.max(orbit.max_height, highest(orbit));
@@ -326,8 +336,8 @@ const restitutionModel = r => ({
 function signatureOf(contact) {
   const r = ownRestitution(contact), duration = freeAngle(contact) / dampedFrequency(contact);
   const through = duration + 2 * contact.sine / contact.omega;
-  const loss = 2 * contact.zeta / contact.omega;
-  return {delay: r * through / (1 + r), r, load: (1 - r) * through - loss * (1 + r), duration};
+  const loss = 2 * contact.zeta / contact.omega, slowed = isApproach(contact) ? r : 1 + r;
+  return {delay: r * through / (1 + r), r, load: (1 - r) * through - loss * slowed, duration};
 }
 
 const correctedModel = ({delay, r, load, duration}) => ({
@@ -404,7 +414,9 @@ function heightAt(orbit, since) {
 }
 
 // Λ up to which the ball stays down: Λ_SD (Eq. 33), or Λ_F.
-function permanentContact({omega, zeta, sine}) {
+function permanentContact(contact) {
+  if (isApproach(contact)) return approachThreshold(contact);
+  const {omega, zeta, sine} = contact;
   const loss = 2 * zeta / omega, lag = 2 * sine / omega;
   return Math.hypot((1 - 1 / omega) * (1 + 1 / omega), loss) / Math.hypot(1, lag);
 }
@@ -419,6 +431,7 @@ function sampledAdmissible(orbit, samples = 600) {
     if (s > end && above && !rises) return false;
     above = s > end && rises;
   }
+  if (orbit.parts && !turnsOnce(orbit.parts, end)) return false;
   for (let k = 1; orbit.state && k < 64; k++)
     if (orbit.state(k * end / 64).grip <= 0) return false;
   return true;

@@ -22,7 +22,8 @@ function endInWords({kind, periods, impacts}) {
 
 // The shares of the starts by the words for their ends, the greatest first. `orbit` is the contact's
 // n-T orbit; balls are only said to end on it if it is stable and admissible.
-function endsOfStarts(contact, amplitude, orbit) {
+function endsOfStarts(exact, amplitude, orbit) {
+  const contact = linearOf(exact);
   const stays = orbit.exists && orbit.is_stable && sampledAdmissible(orbit);
   const known = stays ? {at: orbit.phase, u: orbit.relative_impact_velocity, periods: orbit.n} : null;
   const fast = fastest(contact, amplitude), counts = new Map();
@@ -38,7 +39,7 @@ function endsOfStarts(contact, amplitude, orbit) {
   const named = shares.slice(0, 3).map(([words, share], k) => `${shareOf(share)}${k ? "" : " end"} ${words}`);
   const left = shares.slice(3).reduce((sum, [, share]) => sum + share, 0);
   if (left) named.push(`${shareOf(left)} on others`);
-  return {stays, share: on / all, shares, sentence: `Of ${all} balls with other starts, ${named.join(", ")}.`};
+  return {stays, share: on / all, shares, sentence: `Of ${all} balls ${exact === contact ? "" : "of the linear contact with this r and duration "}with other starts, ${named.join(", ")}.`};
 }
 
 // A share in two digits, as bouncing_ball.contacts.texts writes it.

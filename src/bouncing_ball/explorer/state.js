@@ -25,7 +25,7 @@ const REFERENCES = Object.fromEntries(["references", "engines", "quantities", "s
   name => [name, JSON.parse($(name).textContent)]));
 const {engines: {engines: ENGINES}, quantities: QUANTITIES, scenes: SCENES} = REFERENCES;
 const CHOICES = {
-  tab: ["orbit", "design", "stage"], release: ["displacement", "force"], side: ["stable", "unstable"],
+  tab: ["orbit", "design", "stage"], release: ["displacement", "force", "approach"], side: ["stable", "unstable"],
   engine: ["none", ...Object.keys(ENGINES)], given: ["stiffness", ...Object.keys(ENGINES)],
   model: ["both", "restitution", "spring-damper"], pace: ["1", "4", "16"], view: ["height", "gap"],
 };
@@ -64,7 +64,8 @@ function parse(hash) {
 // parameters are given.
 function releasesOf({tab, engine, given}) {
   const name = engine === "none" ? given : engine;
-  if (tab !== "design") return CHOICES.release;
+  // Of a damper that acts on approach only there are no closed forms in dimensionless numbers.
+  if (tab !== "design") return CHOICES.release.filter(rule => rule !== "approach");
   return CHOICES.release.filter(rule => !(name in ENGINES) || rule in ENGINES[name].snippets);
 }
 function withRelease(state) {
@@ -91,9 +92,14 @@ function didYouMean(name, known) {
   return best >= 0.83 ? `; did you mean ${known[alike.indexOf(best)]}?` : "";
 }
 
+// The limits of r for ζ → 1, where it has one that is not 0.
+const LEAST = {
+  force: [Math.exp(-2), "e⁻²", "which ends by its force"],
+  approach: [Math.exp(-1), "e⁻¹", "whose damper acts on approach only"],
+};
 // Why a state has no answer: an r that no contact of the engine has, or a ball that rises.
 function impossible(state) {
-  const least = Math.exp(-2), {a, r, w, phi, v, dv, dphi} = state;
+  const {a, r, w, phi, v, dv, dphi} = state;
   const physical = state.tab === "design", {engine, given} = state;
   if (physical && !CHOICES.engine.includes(engine))
     return `unknown engine '${engine}': one of ${CHOICES.engine.slice(1).join(", ")}`
@@ -102,9 +108,12 @@ function impossible(state) {
     const name = engine === "none" ? given : engine;
     return `${name} has no ${state.release} release: its contacts end by ${releasesOf(state).join(" and ")}`;
   }
-  if (physical && !(given in ENGINES) && engine !== "none" && state.release === "force" && r <= least)
-    return `r = ${r} is not above e⁻² = ${shown(least, 4)}, the least of an `
-      + `underdamped contact of ${state.engine}, which ends by its force.`;
+  if (state.tab === "orbit" && !releasesOf(state).includes(state.release))
+    return `release = '${state.release}' is not one of ${releasesOf(state).join(", ")}`;
+  const [least, power, ends] = LEAST[state.release] ?? [0];
+  if (physical && !(given in ENGINES) && engine !== "none" && r <= least)
+    return `r = ${r} is not above ${power} = ${shown(least, 4)}, the least of an `
+      + `underdamped contact of ${state.engine}, ${ends}.`;
   if (state.tab !== "stage") return "";
   if (r === 1 && w === 1 && state.model !== "restitution")
     return "r = 1 with ϖ = 1 is the resonance of an undamped contact, which is not followed here.";

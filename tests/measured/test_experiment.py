@@ -95,6 +95,45 @@ def test_a_list_of_intervals_needs_no_heading(tmp_path):
     np.testing.assert_allclose(read(times).restitutions, 0.5, rtol=1e-12)
 
 
+def test_recordings_are_read_apart(tmp_path):
+    head = "# resolution: 1 ms\n"
+    one = "0.8\n0.4\n0.2\n"
+    other = "0.9\n0.3\n"
+    both = "recording,interval [s]\n7,0.8\n7,0.4\n7,0.2\n1,0.9\n1,0.3\n"
+    parts = [read(write(tmp_path, head + text), intervals=True) for text in (one, other)]
+    found = read(write(tmp_path, head + both))
+    for name in ("speeds", "restitutions"):
+        wanted = np.concatenate([getattr(part, name) for part in parts])
+        np.testing.assert_array_equal(getattr(found, name), wanted)
+    # Errors within a recording are correlated, those of two recordings are not.
+    np.testing.assert_array_equal(found.uncertainties[:2, :2], parts[0].uncertainties)
+    assert found.uncertainties[0, 1] < 0
+    assert np.all(found.uncertainties[:2, 2] == 0)
+    times = "recording,time [s]\n7,5.0\n7,5.8\n7,6.2\n1,0\n1,0.9\n1,1.2\n"
+    apart = read(write(tmp_path, times))
+    np.testing.assert_allclose(apart.restitutions, [0.5, 1 / 3], rtol=1e-12)
+
+
+def test_a_golf_ball_that_was_heard_loses_a_tenth_of_its_speed():
+    golf = experiment("golf_ball")
+    assert golf.speeds.size == 5 * 7 and golf.uncertainties is None
+    # The first fall has 845.25 and 759.90 ms. By the series of T and v in s = u/w, e is the ratio
+    # of the intervals times 1 + (s₁² + s₂²)/4, s = gT/(2w) and w² = gℓ, up to terms in s⁴.
+    intervals = np.array([0.84525, 0.75990])
+    first = golf.heard.ratios[0]
+    assert first == pytest.approx(intervals[1] / intervals[0], rel=1e-5)
+    length = 2 * 0.0415 / (1.2 * 0.47 * np.pi * 0.042**2 / 4)
+    squares = STANDARD_GRAVITY * intervals**2 / (4 * length)
+    assert golf.restitutions[0] / first - 1 == pytest.approx(squares.sum() / 4, rel=0.01)
+
+
+@pytest.mark.parametrize(("name", "density"), [("membrane_heavy", 7930), ("membrane_light", 3250)])
+def test_the_balls_on_a_membrane_have_the_mass_of_their_density(name, density):
+    found = experiment(name)
+    assert found.mass == pytest.approx(density * np.pi / 6 * found.diameter**3, rel=1e-3)
+    assert found.durations.shape == found.duration_uncertainties.shape == found.speeds.shape
+
+
 def test_options_stand_in_place_of_the_head(tmp_path):
     path = write(tmp_path, "# mass: 10 g\n# resolution: 1 ms\ninterval [s]\n0.8\n0.4\n0.2\n")
     found = read(path, mass="20 g", contact_time="1 ms")
@@ -106,6 +145,8 @@ HEAD = "speed [m/s],restitution\n"
 HOSTILE = {
     "": "no line with the names of the columns",
     HEAD: "no line of numbers",
+    "recording,interval\n1,0.8\n1,0.4\n2,0.7\n": "1 interval: two are needed",
+    "recording,speed\n1,0.8\n": "line 1: the columns must be",
     HEAD + "1.0,nan\n": "line 2: restitution = 'nan' does not begin with a number",
     HEAD + "1.0,1.2\n": "line 2: restitution = 1.2 is not a number in (0, 1]",
     HEAD + "1.0,85\n": "line 2: restitution = 85 is not a number in (0, 1]",

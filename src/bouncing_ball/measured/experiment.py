@@ -8,11 +8,11 @@ the columns, and one line of numbers for each impact ::
     0.10,0.015
 
 The columns are ``speed`` and ``restitution``, or ``drop_height`` and ``rebound_height``, or
-``interval`` or ``time``, the intervals between the impacts of one bouncing ball or their times.
-``uncertainty``, of the restitution coefficient, ``duration`` and ``duration_uncertainty`` may
-follow. If the mass and the diameter of the ball are known, the drag of the air is removed from
-heights and intervals (:mod:`bouncing_ball.measured.flights`). The files of the package are in SI
-units.
+``interval`` or ``time``, the intervals between the impacts of one bouncing ball or their times; a
+column ``recording`` numbers the recordings if there are several. ``uncertainty``, of the
+restitution coefficient, ``duration`` and ``duration_uncertainty`` may follow. If the mass and the
+diameter of the ball are known, the drag of the air is removed from heights and intervals
+(:mod:`bouncing_ball.measured.flights`). The files of the package are in SI units.
 """
 
 import csv
@@ -26,7 +26,7 @@ import numpy as np
 from bouncing_ball.contacts.units import SIParameter, in_si, number
 from bouncing_ball.errors import ModelError, ParameterError, Range
 from bouncing_ball.measured.fit import ContactFit, fit_contact
-from bouncing_ball.measured.flights import Heard, drag_length, drop_speeds, heard
+from bouncing_ball.measured.flights import Heard, drag_length, drop_speeds, heard, together
 
 DATA = Path(__file__).with_name("data")
 """The folder of the package's experiments."""
@@ -41,6 +41,7 @@ COLUMNS = {
     "rebound_height": SIParameter("m", "70 cm"),
     "interval": SIParameter("s", "0.5 s"),
     "time": SIParameter("s", "0.5 s", Range(-1e40, 1e40, "[]")),
+    "recording": SIParameter("", "1"),
 }
 """The columns of a file, their units and ranges."""
 QUANTITIES = {
@@ -282,6 +283,15 @@ def _cell(path: Path, at: int, name: str, cell: str, factor: float) -> float:
     return value
 
 
+def _recordings(columns: dict[str, np.ndarray]) -> list[np.ndarray]:
+    """The intervals of each recording, in the order of the file."""
+    name = "interval" if "interval" in columns else "time"
+    values = columns[name]
+    numbers = columns.get("recording", np.zeros(values.size))
+    parts = [values[numbers == each] for each in dict.fromkeys(numbers)]
+    return [part if name == "interval" else np.diff(part) for part in parts]
+
+
 def _experiment(
     name: str, texts: dict[str, str], numbers: dict[str, float], columns: dict[str, np.ndarray]
 ) -> Experiment:
@@ -304,12 +314,16 @@ def _experiment(
         without, back = drop_speeds(*heights)
         bias = float(np.max(np.abs(restitutions - back / without)))
     else:
-        times = columns["interval"] if "interval" in columns else np.diff(columns["time"])
-        found = heard(
-            times,
-            resolution=numbers.get("resolution"),
-            length=length,
-            contact_time=numbers.get("contact time", 0.0),
+        found = together(
+            [
+                heard(
+                    intervals,
+                    resolution=numbers.get("resolution"),
+                    length=length,
+                    contact_time=numbers.get("contact time", 0.0),
+                )
+                for intervals in _recordings(columns)
+            ]
         )
         speeds = found.speeds
         restitutions = found.restitutions

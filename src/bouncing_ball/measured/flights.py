@@ -20,10 +20,12 @@ share that of the impact between them.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.linalg import block_diag
 
 from bouncing_ball.contacts.quantities import STANDARD_GRAVITY
 from bouncing_ball.errors import ModelError, require
@@ -173,6 +175,26 @@ def heard(
         ratios=ratio,
         drag_bias=ratio - plain,
         resolution_bias=plain - restitution,
+    )
+
+
+def together(recordings: Sequence[Heard]) -> Heard:
+    """The impacts of several recordings, whose errors are independent.
+
+    Examples
+    --------
+    >>> one = heard([0.8, 0.4, 0.2])
+    >>> together([one, one]).speeds.size
+    4
+    """
+    spreads = [each.covariance for each in recordings if each.covariance is not None]
+    return Heard(
+        speeds=np.concatenate([each.speeds for each in recordings]),
+        restitutions=np.concatenate([each.restitutions for each in recordings]),
+        covariance=block_diag(*spreads) if spreads else None,
+        ratios=np.concatenate([each.ratios for each in recordings]),
+        drag_bias=np.concatenate([each.drag_bias for each in recordings]),
+        resolution_bias=np.concatenate([each.resolution_bias for each in recordings]),
     )
 
 

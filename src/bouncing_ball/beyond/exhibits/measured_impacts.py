@@ -13,6 +13,7 @@ restitution model has then two parts: that by the duration, of the error law
 which it does. Both are signed and relative, as in the error law to the restitution model with r(v).
 """
 
+from dataclasses import replace
 from typing import Annotated
 
 import numpy as np
@@ -26,7 +27,7 @@ from bouncing_ball.datasets.parameters import Family, Many, Parameters, Samples,
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.measured.curves import CONSTANT, CURVES
 from bouncing_ball.measured.experiment import Experiment, experiment
-from bouncing_ball.measured.fit import LEVEL, ContactFit, LawFit
+from bouncing_ball.measured.fit import LEVEL, ContactFit, LawFit, Points
 from bouncing_ball.measured.verdicts import ACCEPTED, REJECTED, Judgement, judge, noise
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
@@ -44,6 +45,9 @@ VARIABLES = {
     "fitted_law": Variable("contact law; restitution is a constant r without a contact"),
     "measured_speed": Variable("measured impact speed", symbol="v", units="m s-1"),
     "experiment_restitution": Variable("measured restitution coefficient", symbol="e"),
+    "measured_uncertainty": Variable(
+        "standard deviation of the restitution coefficient, where the experiment gives one"
+    ),
     "measured_scatter": Variable(
         "standard deviation about the parabola of least squares in ln v", budget=_FITTED
     ),
@@ -126,8 +130,9 @@ def measured_impacts(parameters: Measured) -> xr.Dataset:
     """Every law on every experiment: curves with bands, errors and verdicts.
 
     The dataset has the measured points over (experiment, measured_impact), NaN beyond the last
-    one; the curves and their bands over (experiment, fitted_law, sample) with their speeds over
-    (experiment, sample); and errors, probabilities and verdicts over (experiment, fitted_law).
+    one, with their uncertainties, NaN where the experiment gives none; the curves and their bands
+    over (experiment, fitted_law, sample) with their speeds over (experiment, sample); and errors,
+    probabilities and verdicts over (experiment, fitted_law).
     """
     found = [experiment(name) for name in parameters.experiments]
     longest = max(each.speeds.size for each in found)
@@ -153,6 +158,12 @@ def _padded(values: np.ndarray, size: int) -> np.ndarray:
     return np.concatenate([values, np.full(size - values.size, np.nan)])
 
 
+def _uncertainties(points: Points) -> np.ndarray:
+    if points.covariance is None:
+        return np.full(points.size, np.nan)
+    return np.sqrt(np.diag(points.covariance))
+
+
 def _one(measured: Experiment, fit: ContactFit, longest: int, samples: int) -> xr.Dataset:
     """One experiment."""
     points = fit.points
@@ -170,7 +181,11 @@ def _one(measured: Experiment, fit: ContactFit, longest: int, samples: int) -> x
                 "measured_impact",
                 _padded(points.restitutions[order], longest),
             ),
-            "measured_scatter": float(np.sqrt(noise(points)[0])),
+            "measured_uncertainty": (
+                "measured_impact",
+                _padded(_uncertainties(points)[order], longest),
+            ),
+            "measured_scatter": float(np.sqrt(noise(replace(points, covariance=None))[0])),
             "curve_speed": ("sample", speeds),
             "fitted_restitution": (
                 ("fitted_law", "sample"),

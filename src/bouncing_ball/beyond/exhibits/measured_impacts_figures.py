@@ -27,22 +27,26 @@ _POINTS: Look = {
     "color": COLOURS[0],
 }
 _COLUMNS = 3
+# Ticks of panels whose speeds differ by more and by less than the factor of _WIDE_RANGE.
+_WIDE_RANGE = 5
+_FEW_TICKS = (0.1, 0.2, 0.5, 1, 2, 5)
+_MANY_TICKS = (0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1, 1.5, 2, 3, 5)
 
 
 def measured_impacts(data: xr.Dataset) -> Figure:
     """ext_measured: a panel for each experiment with several speeds."""
     several = data.isel(experiment=np.flatnonzero(data.measured_speed.count("measured_impact") > 1))
     rows = -(-several.sizes["experiment"] // _COLUMNS)
-    figure, axes = canvas(WIDE, 2.2 * rows + 0.5, rows=rows, columns=_COLUMNS, squeeze=False)
-    spare = axes.flat[several.sizes["experiment"] :]
-    for empty in spare:
+    figure, axes = canvas(WIDE, 2.0 * rows + 0.6, rows=rows, columns=_COLUMNS, squeeze=False)
+    count = several.sizes["experiment"]
+    for empty in axes.flat[count:]:
         empty.axis("off")
     for panel, one in zip(axes.flat, each(several, "experiment"), strict=False):
         _panel(panel, one)
     for row in axes:
         row[0].set_ylabel("restitution $e$, $r(v)$")
-    for panel in axes[-1]:
-        panel.set_xlabel("impact speed in m/s")
+    for lowest in axes.flat[max(count - _COLUMNS, 0) : count]:
+        lowest.set_xlabel("impact speed in m/s")
     legend_below(figure, axes.flat[0].get_legend_handles_labels()[0], ncols=2)
     return figure
 
@@ -62,26 +66,25 @@ def _panel(axes: Axes, one: xr.Dataset) -> None:
     axes.errorbar(
         one.measured_speed,
         one.experiment_restitution,
-        yerr=one.measured_scatter.item(),
-        label="measured, with the scatter about a smooth curve",
+        yerr=one.measured_uncertainty.fillna(one.measured_scatter),
+        label="measured, with its uncertainty or the scatter about a smooth curve",
         zorder=4,
         elinewidth=0.7,
         **_POINTS,
     )
     axes.set(xscale="log", title=one.experiment_title.item())
-    ticks = [tick for tick in (0.1, 0.2, 0.5, 1, 1.5, 2, 3, 5) if _shown(tick, one.curve_speed)]
+    slowest = float(one.curve_speed[0])
+    fastest = float(one.curve_speed[-1])
+    places = _FEW_TICKS if fastest > _WIDE_RANGE * slowest else _MANY_TICKS
+    ticks = [tick for tick in places if slowest <= tick <= fastest]
     axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     axes.set_xticks([], minor=True)
-    axes.set_xlim(float(one.curve_speed[0]), float(one.curve_speed[-1]))
+    axes.set_xlim(slowest, fastest)
     # The scale is that of the points; the worst law may leave the panel.
     low = float(one.experiment_restitution.min())
     high = float(one.experiment_restitution.max())
     room = 0.7 * (high - low)
     axes.set_ylim(low - room, high + room)
-
-
-def _shown(tick: float, speed: xr.DataArray) -> bool:
-    return float(speed[0]) <= tick <= float(speed[-1])
 
 
 def ext_measured(data: xr.Dataset) -> TextTable:

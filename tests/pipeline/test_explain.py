@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 from bouncing_ball.datasets.files import write_dataset
 from bouncing_ball.drawing.files import save
 from bouncing_ball.pipeline import provenance as module
-from bouncing_ball.pipeline.provenance import PREFIX, Revision, gather, read_provenance, versions
+from bouncing_ball.pipeline.provenance import PREFIX, Revision, gather, read_provenance
+from bouncing_ball.pipeline.sources import versions
 
 COMMIT = "a" * 40
 OTHER = "b" * 40

@@ -10,6 +10,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from declared_artifacts import ARTIFACTS, STUDIES
 
@@ -112,6 +113,26 @@ def test_a_digest_follows_contents_and_names_and_not_times(tmp_path, monkeypatch
     assert first == digest_of("a.py", "r = 0.85")
     assert first != digest_of("a.py", "r = 0.70")
     assert first != digest_of("b.py", "r = 0.85")
+
+
+def test_a_package_that_shadows_a_module_is_the_one_that_is_read(tmp_path, monkeypatch):
+    monkeypatch.setattr(module, "_ROOT", tmp_path)
+    shadowed = tmp_path / "damping.py"
+    shadowing = tmp_path / "damping" / "__init__.py"
+    shadowing.parent.mkdir()
+    for path in (shadowed, shadowing):
+        path.touch()
+        module.module_file.cache_clear()
+        assert module.module_file("bouncing_ball.damping") == path
+    module.module_file.cache_clear()
+
+
+def test_the_versions_of_the_libraries_stand_below_the_digests_and_are_no_files():
+    files = "1f0e a.py\n2a2a b.py"
+    text = f"{files}\n{module.lines_of_versions()}"
+    assert f"{np.__version__} numpy" in text.splitlines()
+    assert module.without_versions(text) == files
+    assert module.without_versions(files) == files
 
 
 def test_the_file_of_a_digest_is_written_only_when_the_digest_changes(tmp_path):

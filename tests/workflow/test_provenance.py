@@ -5,7 +5,8 @@ import subprocess
 from pathlib import Path
 
 from bouncing_ball.pipeline.artifacts import CARRIERS
-from bouncing_ball.pipeline.provenance import LIBRARIES, explain, read_provenance
+from bouncing_ball.pipeline.provenance import explain, read_provenance
+from bouncing_ball.pipeline.sources import LIBRARIES
 
 
 def test_every_artifact_carries_its_provenance(pristine):

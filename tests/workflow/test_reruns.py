@@ -4,10 +4,13 @@ Which stages depend on a parameter or a module is tested in tests/pipeline/test_
 Here it is tested that Snakemake runs these, and all jobs that depend on them, and no others.
 """
 
+import compileall
 import os
 import shutil
 
-from bouncing_ball.datasets.files import read_dataset
+import numpy as np
+
+from bouncing_ball.datasets.files import read_dataset, write_dataset
 
 
 def test_a_commit_runs_nothing_again_and_a_change_what_it_decides(complete):
@@ -63,6 +66,40 @@ def test_no_file_time_hides_a_change_of_the_code(complete):
     assert float(after.phase) != float(before.phase)
     assert after.attrs["provenance_code"] != before.attrs["provenance_code"]
     assert complete.planned("fig02") == set()
+
+
+def test_no_file_time_hides_a_change_of_a_sample_or_of_the_atlas(complete):
+    for sample, drawn in (("config/ext_means.nc", "ext_means"), ("config/atlas.nc", "ext_atlas")):
+        assert complete.planned(drawn) == set()
+        path = complete.path / sample
+        data = read_dataset(path)
+        name = next(name for name in data.data_vars if data[name].dtype.kind == "f")
+        write_dataset(data.assign({name: data[name] / 2}), path)
+        os.utime(path, (1.5e9, 1.5e9))
+        assert f"Drawing {drawn}" in complete.planned(drawn)
+
+
+def test_another_version_of_a_library_makes_everything_again(complete):
+    for path in complete.path.glob("results/code/*fig02"):
+        text = path.read_text(encoding="utf-8")
+        path.write_text(text.replace(f"{np.__version__} numpy", "1.0 numpy"), encoding="utf-8")
+        os.utime(path, (0, 0))
+    assert complete.planned("fig02") == {"fig02", "Drawing fig02", "fig02 is up to date"}
+
+
+def test_stale_bytecode_is_not_run(fresh):
+    """An edit of the same size with the time of the file before it."""
+    file = "src/bouncing_ball/paper/exhibits/restitution_model.py"
+    path = fresh.path / file
+    compileall.compile_file(path, quiet=2, force=True)
+    before = path.stat()
+    heading = '-> xr.Dataset:\n    """Ball and table'
+    fresh.rewrite(file, heading, heading.replace("Dataset", "Dateset"))
+    os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
+    assert path.stat().st_size == before.st_size
+    done = fresh.run("--cores", "1", "fig02", check=False)
+    assert "xr.Dateset" in (fresh.path / "results/logs/stages/fig02.log").read_text("utf-8")
+    assert done.returncode != 0
 
 
 def test_touch_makes_files_of_any_time_up_to_date(complete):

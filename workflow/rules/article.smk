@@ -44,6 +44,7 @@ rule paper:
             "paper",
             "paper.py",
             files=[*TEMPLATES, f"{ARTICLE}/references.yaml", f"{ARTICLE}/numbered.csl"],
+            data=ACCEPTED,
         ),
         atlas=here("config/atlas.nc"),
         data=[each.dataset for each in ARTIFACTS.values() if each.study or each.table],

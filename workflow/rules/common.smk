@@ -4,7 +4,7 @@ import gc
 import os
 import shlex
 import sys
-from importlib.util import find_spec
+from importlib.util import cache_from_source, find_spec
 from pathlib import Path
 
 # The modules that Snakemake has imported remain in use. Excluding them from garbage collection
@@ -33,11 +33,20 @@ if found.resolve() != HERE.resolve():
 if os.path.lexists("results") and not os.path.isdir("results"):
     sys.exit("results is no folder, but the run writes its files there: move it away")
 
+SCRIPTS = Path(ROOT, "workflow", "scripts")
+
+# Python runs bytecode without reading the source if the size and the time of the source are those
+# of the last compilation, and both may be restored after an edit. The time of the last change that
+# the file system itself keeps cannot: bytecode that is older is removed.
+for path in (*HERE.rglob("*.py"), *SCRIPTS.glob("*.py")):
+    bytecode = Path(cache_from_source(path))
+    if bytecode.is_file() and path.stat().st_ctime_ns > bytecode.stat().st_mtime_ns:
+        bytecode.unlink(missing_ok=True)
+
 from bouncing_ball.pipeline.artifacts import Artifact
 from bouncing_ball.pipeline.configuration import ConfigurationError, arguments
-from bouncing_ball.pipeline.sources import digests, keep_digests, sources
+from bouncing_ball.pipeline.sources import digests, keep_digests, lines_of_versions, sources
 
-SCRIPTS = Path(ROOT, "workflow", "scripts")
 sys.path.append(str(SCRIPTS))
 
 from adapter import function
@@ -56,6 +65,8 @@ def here(path):
 
 # All artifacts by name, as the stages of both sets of studies list them.
 ARTIFACTS = {}
+# The files of the datasets that are accepted by hand.
+ACCEPTED = {here("config/atlas.nc")}
 
 
 # The artifacts of a stage: its module in the package, with the studies, and the module of its
@@ -65,6 +76,7 @@ def stage(module, figures=None, **artifacts):
     for name, given in artifacts.items():
         if accepted := given.get("accepted"):
             given = {**given, "accepted": here(accepted)}
+            ACCEPTED.add(given["accepted"])
         ARTIFACTS[name] = Artifact(
             name=name, module=module, figures=figures or f"{module}_figures", **given
         )
@@ -90,18 +102,20 @@ def shards_of(wildcards):
 
 
 # The one input that stands for the code of a job: a file with the digests of its script, of the
-# named modules, and of all modules and data that these import and read. It is written only if a
-# digest changes, and the job then runs again. `--touch` leaves it as it is, so that a digest that
-# has changed is written by the next run.
-def code(job, script, *modules, files=()):
+# named modules, of all modules and data that these import and read, and of the accepted datasets
+# among its data, which no job makes; and with the versions of the libraries. It is written only if
+# one of these changes, and the job then runs again. `--touch` leaves it as it is, so that a digest
+# that has changed is written by the next run.
+def code(job, script, *modules, files=(), data=()):
     path = Path("results", "code", job)
     if path.exists() and (workflow.touch or not workflow.is_main_process):
         return str(path)
-    read = [Path(file).resolve() for file in (SCRIPTS / "adapter.py", SCRIPTS / script, *files)]
+    accepted = [file for file in data if file in ACCEPTED and os.path.isfile(file)]
+    read = [SCRIPTS / "adapter.py", SCRIPTS / script, *files, *accepted]
+    read = [Path(file).resolve() for file in read]
+    found = sources([f"bouncing_ball.{module}" for module in modules], read)
     try:
-        keep_digests(
-            path, digests(sources([f"bouncing_ball.{module}" for module in modules], read))
-        )
+        keep_digests(path, f"{digests(found)}\n{lines_of_versions()}")
     except OSError as error:
         sys.exit(f"{path} cannot be written: {error.strerror}")
     return str(path)

@@ -18,6 +18,7 @@ for each in ARTIFACTS.values():
                 f"draw_{each.name}",
                 "figure.py",
                 each.figures,
+                data=[each.dataset],
             ),
             data=[each.dataset] if each.dataset else [],
         params:
@@ -55,6 +56,7 @@ for each in ARTIFACTS.values():
                 f"set_{each.name}",
                 "table.py",
                 each.figures,
+                data=[each.dataset],
             ),
             data=each.dataset,
         output:

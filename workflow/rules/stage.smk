@@ -37,6 +37,7 @@ rule study:
             w.artifact,
             "study.py",
             ARTIFACTS[w.artifact].module,
+            data=[ARTIFACTS[name].dataset for name in ARTIFACTS[w.artifact].reads],
         ),
         data=lambda w: [ARTIFACTS[name].dataset for name in ARTIFACTS[w.artifact].reads],
         shards=shards_of,

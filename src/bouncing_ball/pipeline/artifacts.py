@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
 from bouncing_ball.errors import ModelError
+from bouncing_ball.pipeline.sources import without_versions
 
 FOLDERS = ("figures", "figures/beyond")
 """The folders of the artifacts: those of the paper, and all others."""
@@ -219,7 +220,7 @@ def digests_of_code(results: Path, file: str) -> str | None:
     path = PurePosixPath(file)
     job = path.stem if path.suffix == DATASET else f"draw_{path.stem}"
     note = results / "code" / job
-    return note.read_text(encoding="utf-8").strip() if note.is_file() else None
+    return without_versions(note.read_text(encoding="utf-8")) if note.is_file() else None
 
 
 def artifacts_among(paths: Iterable[str]) -> list[str]:

@@ -27,6 +27,7 @@ from bouncing_ball.datasets.files import (
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.configuration import typed
 from bouncing_ball.pipeline.provenance import PREFIX, gather
+from bouncing_ball.pipeline.sources import without_versions
 
 REFERENCE = (
     "Carbonelli, Perret-Liaudet, Rigaud and Feki, Investigation of restitution coefficient "
@@ -176,7 +177,8 @@ def provenance(snakemake: Any) -> dict[str, str]:
     code = snakemake.input.code
     inputs = [str(path) for path in snakemake.input if path != code]
     gathered = gather(str(snakemake.output[0]), inputs, repository, snakemake.config)
-    return gathered | {f"{PREFIX}code": Path(code).read_text(encoding="utf-8")}
+    text = Path(code).read_text(encoding="utf-8")
+    return gathered | {f"{PREFIX}code": without_versions(text)}
 
 
 def recorded(arguments: Mapping[str, Any]) -> dict[str, Any]:

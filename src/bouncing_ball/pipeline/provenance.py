@@ -10,12 +10,9 @@ again.
 
 import json
 import os
-import platform
 import shlex
 import subprocess
 from collections.abc import Iterable, Mapping
-from functools import cache
-from importlib.metadata import version
 from pathlib import Path, PurePosixPath
 from typing import Any, NamedTuple
 
@@ -25,13 +22,15 @@ from bouncing_ball.datasets import DRAWING
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.artifacts import CARRIERS, DATASET, RECORD, TEXTS, carrier_of
 from bouncing_ball.pipeline.configuration import read_yaml
+from bouncing_ball.pipeline.sources import versions
 
 PREFIX = "provenance_"
 """The prefix of the attributes' names."""
 
-LIBRARIES = ("numpy", "scipy", "xarray", "netCDF4", "matplotlib")
 CONFIGURATION = "config/config.yaml"
 
+# Entries of the provenance that are JSON.
+_NESTED = ("configuration", "inputs", "versions")
 _DESCRIPTION = "{http://purl.org/dc/elements/1.1/}description"
 
 
@@ -104,12 +103,6 @@ def changes(config: Mapping[str, Any], written: Mapping[str, Any]) -> dict[str, 
         elif key not in written or value != before:
             found[key] = value
     return found
-
-
-@cache
-def versions() -> dict[str, str]:
-    """Versions of Python and of the libraries that affect the artifacts."""
-    return {"python": platform.python_version(), **{name: version(name) for name in LIBRARIES}}
 
 
 def gather(
@@ -190,15 +183,16 @@ def read_provenance(path: Path) -> dict[str, Any]:
     found = {name.removeprefix(PREFIX): x for name, x in attributes if name.startswith(PREFIX)}
     if not found:
         raise ModelError(f"{path} carries no provenance")
-    return found | {
-        name: json.loads(found[name]) for name in ("configuration", "inputs", "versions")
-    }
+    try:
+        return found | {name: json.loads(found[name]) for name in _NESTED}
+    except (KeyError, TypeError, ValueError):
+        raise ModelError(f"{path}: its provenance is damaged") from None
 
 
 # Git ignores this file, so that it does not mark the next run as dirty.
 _CHANGED = "results/configuration.json"
-# Attributes of a dataset that are no parameters.
-_TEXTUAL = ("title", "references", "history", "Conventions", DRAWING)
+TEXTUAL = ("title", "references", "history", "Conventions", DRAWING)
+"""Attributes of a dataset that are no parameters."""
 
 
 def parameters_of(attributes: Mapping[Any, Any]) -> dict[str, Any]:
@@ -212,7 +206,7 @@ def parameters_of(attributes: Mapping[Any, Any]) -> dict[str, Any]:
     return {
         str(name): np.asarray(value).tolist()
         for name, value in attributes.items()
-        if not str(name).startswith((PREFIX, *_TEXTUAL))
+        if not str(name).startswith((PREFIX, *TEXTUAL))
     }
 
 

@@ -3,15 +3,17 @@
 Snakemake runs a job again when its script changes, but does not see the modules that the script
 imports, and it compares times, which an old file or ``--touch`` makes misleading. Each job
 therefore has one small file as its input, which holds the digests of all modules and data that the
-job uses. The file is written only when a digest changes, and is then newer than what the job has
-made. A dataset and a picture record the same digests, so that a comparison names the files that
-have changed.
+job uses, and the versions of the libraries that compute and draw. The file is written only when one
+of them changes, and is then newer than what the job has made. A dataset and a picture record the
+same digests, so that a comparison names the files that have changed.
 """
 
+import platform
 import re
 from collections.abc import Iterable
 from functools import cache
 from hashlib import sha256
+from importlib.metadata import version
 from pathlib import Path
 
 from bouncing_ball.datasets.files import write_text
@@ -20,12 +22,24 @@ _PACKAGE = "bouncing_ball"
 _ROOT = Path(__file__).resolve().parent.parent
 _REPOSITORY = _ROOT.parent.parent
 
+LIBRARIES = ("numpy", "scipy", "xarray", "netCDF4", "matplotlib", "python-flint")
+"""The libraries that affect the artifacts."""
+
+
+@cache
+def versions() -> dict[str, str]:
+    """Versions of Python and of the libraries that affect the artifacts."""
+    return {"python": platform.python_version(), **{name: version(name) for name in LIBRARIES}}
+
 
 @cache
 def module_file(module: str) -> Path | None:
-    """The file of a module or subpackage of this package; None if it does not exist."""
+    """The file of a module or subpackage of this package; None if it does not exist.
+
+    If a package and a module have the same name, Python imports the package.
+    """
     base = _ROOT.joinpath(*module.split(".")[1:])
-    for candidate in (base.with_suffix(".py"), base / "__init__.py"):
+    for candidate in (base / "__init__.py", base.with_suffix(".py")):
         if candidate.is_file():
             return candidate
     return None
@@ -139,7 +153,11 @@ _DIGITS = 12
 @cache
 def _line_of_file(path: Path) -> str:
     """A digest of the contents of a file, and its name in the package or in the repository."""
-    folder = _ROOT if path.is_relative_to(_ROOT) else _REPOSITORY
+    if path.is_relative_to(_REPOSITORY):
+        folder = _ROOT if path.is_relative_to(_ROOT) else _REPOSITORY
+    else:
+        # A run in another folder has a sample of its own in `config`.
+        folder = path.parent.parent
     name = path.relative_to(folder).as_posix()
     return f"{sha256(path.read_bytes()).hexdigest()[:_DIGITS]} {name}"
 
@@ -150,6 +168,27 @@ def digests(paths: Iterable[Path]) -> str:
     They do not depend on the folder of the repository.
     """
     return "\n".join(map(_line_of_file, paths))
+
+
+def lines_of_versions() -> str:
+    """A line for each of :func:`versions`, in the form of the lines of :func:`digests`.
+
+    The results of a job are made again when a library is replaced.
+    """
+    return "\n".join(f"{number} {name}" for name, number in versions().items())
+
+
+def without_versions(code: str) -> str:
+    """The text of :func:`digests` alone, from one that may have :func:`lines_of_versions` too.
+
+    Examples
+    --------
+    >>> without_versions("1f0e a.py\\n2.3.5 numpy")
+    '1f0e a.py'
+    """
+    names = ("python", *LIBRARIES)
+    lines = code.splitlines()
+    return "\n".join(line for line in lines if line.rpartition(" ")[2] not in names)
 
 
 def changed_files(record: str, new: str) -> list[str]:

@@ -1,12 +1,21 @@
 """Datasets: a known change of each kind gives the outcome it should."""
 
+from hashlib import sha256
+
 import numpy as np
 import pytest
 import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bouncing_ball.pipeline.diff.budgets import ARTIFACTS, PICTURES, budget_of
+from bouncing_ball.pipeline.diff.budgets import (
+    ARTIFACTS,
+    PICTURE,
+    PICTURES,
+    PIXEL,
+    ROUNDING,
+    budget_of,
+)
 from bouncing_ball.pipeline.diff.datasets import compare_datasets, curve_distance, pointwise, span
 from bouncing_ball.pipeline.diff.outcome import Outcome
 
@@ -64,7 +73,8 @@ def test_no_budget_hides_what_a_reader_sees():
     # A tenth of a pixel of a picture of a thousand, but where rounding decides a whole sample.
     # What engines gave is a measurement, and no picture of the run is made of a new one.
     # Where rounding decides about motions there are statistics, with their standard errors.
-    motions = {*PICTURES, "ext_basins", "ext_lives"}
+    samples = {"ext_basins", "ext_diagram", "ext_lives", "ext_locking", "ext_means"}
+    motions = {*PICTURES, *samples}
     statistics = [budget for name in motions for budget in ARTIFACTS[name].values()]
     assert all(budget.share <= 0.3 and budget.size <= 7 for budget in statistics)
     computed = [own for name, own in ARTIFACTS.items() if name not in ("engines", *motions)]
@@ -164,10 +174,30 @@ def test_a_variable_has_one_row_with_its_largest_move():
     assert (row.moved, row.beyond, row.entries) == (2, 2, 3)
 
 
-def test_provenance_and_title_are_not_compared(pair):
+def test_provenance_is_not_compared_and_words_about_the_dataset_are(pair):
     data = pair.dataset("fig05")
-    other = data.assign_attrs(provenance_commit="2a2a", title="Other words")
+    other = data.assign_attrs(provenance_commit="2a2a")
     assert {row.outcome for row in compare_datasets("fig05", data, other)} == {Outcome.IDENTICAL}
+    for name in ("title", "references"):
+        row = compare_datasets("fig05", data, data.assign_attrs({name: "Other words"}))[0]
+        assert (row.name, row.outcome) == (f"{name} of the dataset", Outcome.STRUCTURE)
+        assert row.new == "'Other words'"
+
+
+def test_a_budget_that_is_raised_with_the_change_is_reported():
+    record, new = (
+        xr.Dataset({"x": ("t", [0.0, last], {"budget": budget})})
+        for last, budget in ((1.0, 1e-10), (1.001, 1e-2))
+    )
+    budget, values = compare_datasets("fig", record, new)
+    assert (budget.name, budget.record, budget.new) == ("budget of x", "1e-10", "0.01")
+    assert budget.outcome is Outcome.STRUCTURE and values.outcome is Outcome.WITHIN
+
+
+def test_the_budgets_of_single_artifacts_are_those_that_were_agreed():
+    # They are no attributes of a dataset. Whoever raises one has to say so here as well.
+    table = repr((ROUNDING, PICTURE, PIXEL, PICTURES, ARTIFACTS))
+    assert sha256(table.encode()).hexdigest()[:12] == "dd6106ea4d49"
 
 
 # A gap and both infinities among the samples.

@@ -1,6 +1,7 @@
 """Texts, pictures and folders that differ in known ways, the causes, and the reports."""
 
 import json
+import re
 import shutil
 from itertools import product
 from pathlib import Path
@@ -13,7 +14,7 @@ from PIL.PngImagePlugin import PngInfo
 
 from bouncing_ball.datasets.files import read_dataset, write_dataset
 from bouncing_ball.errors import ModelError
-from bouncing_ball.pipeline.diff.budgets import PICTURE
+from bouncing_ball.pipeline.diff.budgets import PICTURE, PIXEL
 from bouncing_ball.pipeline.diff.folders import compare_folders, compare_pictures
 from bouncing_ball.pipeline.diff.outcome import Outcome
 from bouncing_ball.pipeline.diff.page import note, to_html, to_terminal
@@ -134,6 +135,74 @@ def test_a_picture_may_move_by_one_grey_level_and_keeps_its_size():
         assert (found.outcome, found.share) == (outcome, moved / PICTURE)
     (found,) = compare_pictures(grey, grey[:, :-1])
     assert (found.outcome, found.record, found.new) == (Outcome.STRUCTURE, "50 × 40", "49 × 40")
+
+
+def test_without_a_move_of_its_data_a_picture_keeps_its_pixels(pair):
+    grey = np.full((40, 50, 3), 100, dtype=np.int16)
+    other = grey.copy()
+    for change, outcome in ((1, Outcome.WITHIN), (2, Outcome.DRIFTED)):
+        # One pixel of two thousand, of which the root mean square says nothing.
+        other[7, 7, 1] = grey[7, 7, 1] + change
+        (found,) = compare_pictures(grey, other, None)
+        assert (found.outcome, found.share) == (outcome, change / PIXEL)
+    # In a comparison of folders, with data that did not move and with data that did.
+    path = pair.new / "figures" / "fig08.png"
+    with Image.open(path) as picture:
+        text = picture.text
+        picture.putpixel((100, 100), (0, 255, 0))
+        save_png(path, picture, **text)
+    assert pair.part("figures/fig08.png").outcome is Outcome.DRIFTED
+    data = pair.dataset("fig08")
+    data.phase.values[0, 4] += 1e-14
+    pair.write("fig08", data)
+    assert pair.part("figures/fig08.png").outcome is Outcome.WITHIN
+
+
+def test_a_vector_graphic_is_compared_with_its_curves_and_colours(pair):
+    """Its shortest false agreements: no curve, another colour, a program."""
+    path = pair.new / "figures" / "fig05.svg"
+    text = path.read_text(encoding="utf-8")
+    curve = re.search(r'    <path d="[^"]*" clip-path[^>]*/>\n', text)[0]
+    colour = re.search("stroke: (#[0-9a-f]{6})", curve)[1]
+    changes = {
+        "no curve": (curve, ""),
+        "recoloured": (colour, "#123456"),
+        "a script": ("</svg>", "<script>alert(1)</script></svg>"),
+    }
+    for what, (old, new) in changes.items():
+        path.write_text(text.replace(old, new), encoding="utf-8")
+        assert pair.part("figures/fig05.svg").outcome is Outcome.DRIFTED, what
+    # Of moved data only the words are judged, and this is said.
+    path.write_text(text.replace(colour, "#123456"), encoding="utf-8")
+    data = pair.dataset("fig05")
+    data.phase.values[1, 40] += 1e-15
+    pair.write("fig05", data)
+    part = pair.part("figures/fig05.svg")
+    assert part.outcome is Outcome.WITHIN and "only its words were compared" in note(part)
+
+
+def test_generated_names_and_last_digits_of_a_drawing_may_differ(pair):
+    path = pair.new / "figures" / "fig05.svg"
+    text = path.read_text(encoding="utf-8")
+    name = re.search(r'id="(\w*[0-9a-f]{10})"', text)[1]
+    number = re.search(r"L (\d+\.\d{6})", text)[1]
+    last = f"{float(number) + 1e-6:.6f}"
+    path.write_text(
+        text.replace(name, f"{name[:-10]}0123456789").replace(number, last), encoding="utf-8"
+    )
+    assert pair.artifact("fig05").outcome is Outcome.IDENTICAL
+
+
+@pytest.mark.parametrize("side", ["record", "new"])
+@pytest.mark.parametrize("text", ["{", "[1", "7", "[[1]]"])
+def test_a_damaged_provenance_is_named_and_the_rest_is_compared(pair, side, text):
+    path = getattr(pair, side) / "figures" / "fig05.nc"
+    write_dataset(pair.dataset("fig05").assign_attrs(provenance_versions=text), path)
+    comparison = pair.compare()
+    first, *others = comparison.parts
+    assert first.name == "fig05" and first.outcome is Outcome.UNREADABLE
+    assert note(pair.part("figures/fig05.nc")) == f"{path}: its provenance is damaged"
+    assert {found.outcome for found in others} == {Outcome.IDENTICAL}
 
 
 def test_a_picture_by_another_matplotlib_is_only_reported(pair):

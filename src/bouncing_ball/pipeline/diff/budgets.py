@@ -41,11 +41,17 @@ PICTURE = 1.0
 
 Changing parameters by two units in the last place changes all rounding errors, as another processor
 does, and moves the pixels of a figure by at most 0.092 (Fig. 15). The budget is the next power of
-ten above ten times this value."""
+ten above ten times this value. It is allowed only if the data of the picture moved."""
 
-PICTURES = {"ext_diagram": 60.0, "ext_locking": 40.0, "ext_means": 60.0, "ext_locked": 40.0}
-"""Budgets of pictures of motions about which rounding decides: three times the 19 and 12 grey
-levels by which a change of 1e-15 in the start moves these pictures."""
+PICTURES = {"ext_locked": 40.0}
+"""Budgets of pictures of motions about which rounding decides, if their data moved: three times the
+12 grey levels by which a change of 1e-15 in the start moves the picture."""
+
+PIXEL = 1
+"""The largest change of a pixel, in grey levels, if the data of the picture did not move.
+
+A picture is drawn on a grid of 1/256 of a pixel. A rounding error moves a point to the next place
+of this grid at most, and this changes a pixel by one grey level."""
 
 _FLAGS = ("stable", "admissible", "restitution_stable", "restitution_admissible")
 _ORBIT = (

@@ -112,18 +112,36 @@ class Origin:
 UNKNOWN_ORIGIN = Origin({}, "", {}, ())
 
 
-def origin_of(path: Path) -> Origin:
-    """The origin of a dataset or a picture, unknown if the file cannot be read."""
-    try:
-        attributes = read_attributes(path)
-    except ModelError:
+def require_origin(path: Path) -> Origin:
+    """The origin of a dataset or a picture, unknown if there is no such file.
+
+    Raises
+    ------
+    ModelError
+        If the file cannot be read, or its provenance is damaged.
+    """
+    if not path.exists():
         return UNKNOWN_ORIGIN
+    attributes = read_attributes(path)
+    try:
+        versions = dict(json.loads(attributes.get(f"{PREFIX}versions", "{}")))
+        inputs = [str(name) for name in json.loads(attributes.get(f"{PREFIX}inputs", "[]"))]
+    except (TypeError, ValueError):
+        raise ModelError(f"{path}: its provenance is damaged") from None
     return Origin(
         parameters=parameters_of(attributes) if path.suffix == DATASET else {},
         code=str(attributes.get(f"{PREFIX}code", "")),
-        versions=json.loads(attributes.get(f"{PREFIX}versions", "{}")),
-        inputs=tuple(json.loads(attributes.get(f"{PREFIX}inputs", "[]"))),
+        versions=versions,
+        inputs=tuple(inputs),
     )
+
+
+def origin_of(path: Path) -> Origin:
+    """The origin of a dataset or a picture, unknown if the file cannot be read."""
+    try:
+        return require_origin(path)
+    except ModelError:
+        return UNKNOWN_ORIGIN
 
 
 def code_changes(record: Origin, new: Origin) -> tuple[str, ...]:

@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.pipeline.diff.budgets import IGNORED, Budget, budget_of
 from bouncing_ball.pipeline.diff.cause import parameter_changes
 from bouncing_ball.pipeline.diff.outcome import Finding, Outcome
-from bouncing_ball.pipeline.provenance import parameters_of
+from bouncing_ball.pipeline.provenance import TEXTUAL, parameters_of
 
 # Number of samples by which a point may slide along a curve.
 _REACH = 2
@@ -134,10 +134,6 @@ def _alike(record, new):
     return (np.isfinite(record) & np.isfinite(new)) | same(record, new)
 
 
-# Attributes of variables that do not describe their contents.
-_NOT_COMPARED = ("budget", "scale")
-
-
 def _form(data: xr.Dataset, name: str) -> str | None:
     """Type and sizes of a variable, None if there is none; texts of all lengths have the same type.
 
@@ -156,9 +152,9 @@ def _form(data: xr.Dataset, name: str) -> str | None:
 
 
 def _attribute_rows(name: str, record: Mapping[Any, Any], new: Mapping[Any, Any]) -> list[Finding]:
-    """The attributes of a variable that differ, such as its units."""
+    """The attributes of a variable or a dataset that differ, such as units or a raised budget."""
     found = []
-    for attribute in sorted((record.keys() | new.keys()) - {*_NOT_COMPARED}):
+    for attribute in sorted(record.keys() | new.keys()):
         old_text, new_text = (
             repr(np.asarray(side[attribute]).tolist()) if attribute in side else None
             for side in (record, new)
@@ -171,6 +167,8 @@ def _attribute_rows(name: str, record: Mapping[Any, Any], new: Mapping[Any, Any]
 def structure_rows(record: xr.Dataset, new: xr.Dataset) -> list[Finding]:
     """A row for each variable of another type or size, and for each attribute that differs.
 
+    The parameters and the provenance of the dataset are compared elsewhere.
+
     Examples
     --------
     >>> record, new = (xr.Dataset({"x": ("t", values)}) for values in ([0.0], [0.0, 1.0]))
@@ -178,7 +176,10 @@ def structure_rows(record: xr.Dataset, new: xr.Dataset) -> list[Finding]:
     >>> row.name, row.record, row.new
     ('x', 'float64, t: 1', 'float64, t: 2')
     """
-    found = []
+    texts = (
+        {name: data.attrs[name] for name in TEXTUAL if name in data.attrs} for data in (record, new)
+    )
+    found = _attribute_rows("the dataset", *texts)
     for name in map(str, {**record.variables, **new.variables}):
         old_form = _form(record, name)
         new_form = _form(new, name)

@@ -1,8 +1,9 @@
 """The comparison of two folders of artifacts, with the result for each artifact.
 
 Data are judged by their budgets; texts, tables and the words of SVG files line by line; PNG files
-by their pixels. Every file is judged alone: if a file is damaged, its outcome is that it could not
-be compared, with the reason, and the other files are compared nevertheless.
+by their pixels, and SVG files by all that they draw. A picture may move only if its data did. Every
+file is judged alone: if a file is damaged, its outcome is that it could not be compared, with the
+reason, and the other files are compared nevertheless.
 
 For an artifact that differs, the comparison names the cause
 (:mod:`bouncing_ball.pipeline.diff.cause`). An artifact that is made from others, such as the
@@ -38,10 +39,11 @@ from bouncing_ball.pipeline.diff.cause import (
     made_from,
     origin_of,
     own_causes,
+    require_origin,
 )
 from bouncing_ball.pipeline.diff.datasets import compare_datasets
 from bouncing_ball.pipeline.diff.outcome import Finding, Outcome, Whole, worst
-from bouncing_ball.pipeline.diff.texts import compare_texts, words_of
+from bouncing_ball.pipeline.diff.texts import compare_drawings, compare_texts, words_of
 
 
 def redrawn(record: bytes, new: bytes) -> str:
@@ -73,9 +75,16 @@ def read_picture(path: Path) -> np.ndarray:
 
 
 def compare_pictures(
-    record: np.ndarray, new: np.ndarray, budget: float = budgets.PICTURE
+    record: np.ndarray, new: np.ndarray, budget: float | None = budgets.PICTURE
 ) -> list[Finding]:
     """The difference of two pictures of :func:`read_picture`: no row if all pixels are identical.
+
+    Parameters
+    ----------
+    record, new : ndarray
+    budget : float, optional
+        The root mean square that is allowed, in grey levels; None if the data did not move, so that
+        no pixel may change by more than :data:`~.budgets.PIXEL`.
 
     Examples
     --------
@@ -89,7 +98,11 @@ def compare_pictures(
     changed = (new != record).any(axis=-1)
     if not changed.any():
         return []
-    share = float(np.sqrt(np.mean((new - record).astype(float) ** 2))) / budget
+    difference = (new - record).astype(float)
+    if budget is None:
+        share = float(np.max(np.abs(difference))) / budgets.PIXEL
+    else:
+        share = float(np.sqrt(np.mean(difference**2))) / budget
     outcome = Outcome.WITHIN if share <= 1 else Outcome.DRIFTED
     return [
         Finding("pixels", outcome, share=share, note=f"{100 * changed.mean():.2g} % of all changed")
@@ -115,10 +128,13 @@ def _rows(old: Path, now: Path, data: Outcome | None) -> list[Finding]:
     if old.suffix in PICTURES and (note := redrawn(record, new)):
         return [Finding("", Outcome.WITHIN, note=note)]
     if old.suffix == ".png":
-        budget = budgets.PICTURES.get(old.stem, budgets.PICTURE)
+        of_moved = budgets.PICTURES.get(old.stem, budgets.PICTURE)
+        budget = None if data is Outcome.IDENTICAL else of_moved
         rows = compare_pictures(read_picture(old), read_picture(now), budget)
     else:
         rows = compare_texts(words_of(old, data), words_of(now, data), data)
+        if old.suffix == ".svg":
+            rows = rows or compare_drawings(record.decode(), new.decode(), data)
     if data is Outcome.PARAMETERS and now.name not in TEXTS:
         return [replace(row, outcome=Outcome.PARAMETERS, share=0.0) for row in rows]
     return rows
@@ -175,6 +191,9 @@ def judge(file: str, compared: Compared, data: Outcome | None) -> Whole:
         warnings.simplefilter("ignore")
         try:
             rows = _rows(old, now, data)
+            if file.endswith((DATASET, ".png")):
+                for path in (old, now):
+                    require_origin(path)
             if _is_stale(file, compared.new):
                 rows.append(Finding("", Outcome.STALE, note="made by older code"))
             pictures = (_content(old), _content(now)) if shown else (None, None)

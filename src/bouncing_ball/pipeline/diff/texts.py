@@ -117,3 +117,53 @@ def words_of(path: Path, data: Outcome | None = None) -> str:
             return re.sub(rf'(?<="commit": ")\w+{moved}', "", text)
         case _:
             return text
+
+
+_METADATA = re.compile(r"<metadata>.*?</metadata>", re.DOTALL)
+# A name that matplotlib gives to a path, a clip or a marker; it follows from their contents.
+_GENERATED = re.compile(r'\bid="(\w*[0-9a-f]{10})"')
+_KINDS = re.compile(r"<(\w+)|\s([\w:-]+)=\"")
+
+
+def _drawing(text: str) -> str:
+    """What a vector graphic draws, without its metadata, and with numbers for generated names."""
+    text = _METADATA.sub("", text)
+    names = {name: f"name{k}" for k, name in enumerate(_GENERATED.findall(text))}
+    if not names:
+        return text
+    return re.sub("|".join(names), lambda match: names[match[0]], text)
+
+
+def compare_drawings(record: str, new: str, data: Outcome | None) -> list[Finding]:
+    """A row if two vector graphics draw something else; their words are compared elsewhere.
+
+    If the data are identical, or if there are none, all elements must be, with numbers up to their
+    last digit. If the data moved, only the kinds of elements and attributes are judged, and the row
+    says so.
+
+    Examples
+    --------
+    >>> blue, red = (f'<path d="M 0.25 1.5" style="fill: {x}"/>' for x in ("#00f", "#f00"))
+    >>> for data in (Outcome.IDENTICAL, Outcome.WITHIN):
+    ...     (row,) = compare_drawings(blue, red, data)
+    ...     print(f"{row.name}: {row.outcome} {row.note}".rstrip())
+    drawing: drifted
+    drawing: within budget its data moved, and only its words were compared
+    >>> compare_drawings(blue, blue.replace("0.25", "0.26"), Outcome.IDENTICAL)
+    []
+    """
+    old, now = (_drawing(text) for text in (record, new))
+    if old == now:
+        return []
+    kinds, new_kinds = ({"".join(pair) for pair in _KINDS.findall(text)} for text in (old, now))
+    if kinds != new_kinds:
+        gone = ", ".join(sorted(kinds - new_kinds)) or None
+        come = ", ".join(sorted(new_kinds - kinds)) or None
+        return [Finding("elements", Outcome.DRIFTED, gone, come)]
+    if data not in (Outcome.IDENTICAL, None):
+        said = "its data moved, and only its words were compared"
+        return [Finding("drawing", Outcome.WITHIN, note=said)]
+    for line, new_line in zip_longest(old.split("\n"), now.split("\n")):
+        if line is None or new_line is None or not may_be_rounding(line, new_line):
+            return [Finding("drawing", Outcome.DRIFTED, line, new_line)]
+    return []

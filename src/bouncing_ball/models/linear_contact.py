@@ -30,7 +30,7 @@ from bouncing_ball.models.dynamics import Departure, Impact
 from bouncing_ball.models.flight import Flight, table
 from bouncing_ball.models.laws.contact_law import OscillatorLaw
 from bouncing_ball.models.linear_flow import flow as linear_flow
-from bouncing_ball.models.oscillator import responses
+from bouncing_ball.models.oscillator import table_response
 from bouncing_ball.models.resumption import ResumingDynamics
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.numerics.elementary import (
@@ -43,9 +43,6 @@ from bouncing_ball.numerics.first_zero import Derivatives, Motion, Zero, first_z
 
 # Number of steps after which the expensive bound of :meth:`ContactMotion.skip` is used.
 _PATIENCE = 12
-# Bound of |p(ν)|² s⁴ below which the responses to the table are computed by their integrals: above
-# it the terms of the quotients exceed the result by a factor of 16 at most.
-_DELICATE = np.array(0.25)
 # Bound of the rounding errors of the three terms of the inequality above.
 _ROUNDING = np.array(8 * np.finfo(float).eps)
 # Constants are arrays without an axis, as in :mod:`bouncing_ball.numerics.elementary`.
@@ -329,8 +326,12 @@ class LinearContactDynamics(ResumingDynamics):
         impulse = decay * sine / contact.damped_frequency
         impulse_rate = decay * (_ONE - versine) - half * impulse
         level = impulse_rate + loss * impulse
-        in_phase, quadrature = self._table_response(
-            duration, (_ONE - slow_versine) - level, slow_sine - impulse
+        in_phase, quadrature = table_response(
+            duration,
+            contact.frequency_ratio,
+            contact.damping_ratio,
+            real=(_ONE - slow_versine) - level,
+            imaginary=slow_sine - impulse,
         )
         x, y = self.table_at(impact)
         speed = flight.velocity
@@ -362,27 +363,3 @@ class LinearContactDynamics(ResumingDynamics):
             by_phase.to_event(speed, last, contact.lag),
             by_velocity.to_event(speed, last, contact.lag),
         )
-
-    def _table_response(
-        self, duration: np.ndarray, real: np.ndarray, imaginary: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Q and P at the ends of the contacts, from cos D - g′ - 2ζϖ g and sin D - g there.
-
-        In short or resonant contacts the quotients lose digits, and the values come from
-        :func:`.responses` instead.
-        """
-        detuning = self.law.detuning
-        loss = self.law.loss
-        gamma = self.law.off_resonance
-        square = duration * duration
-        delicate = gamma * square * square < _DELICATE
-        with np.errstate(divide="ignore", invalid="ignore"):
-            in_phase = np.asarray((real * detuning + imaginary * loss) / gamma)
-            quadrature = np.asarray((imaginary * detuning - real * loss) / gamma)
-        if delicate.any():
-            arrays = (duration, self.law.frequency_ratio, self.law.damping_ratio)
-            some = (np.broadcast_to(x, duration.shape)[delicate] for x in arrays)
-            exact = responses(*some).table.value
-            in_phase[delicate] = exact.real
-            quadrature[delicate] = exact.imag
-        return in_phase, quadrature

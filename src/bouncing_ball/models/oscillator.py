@@ -32,6 +32,12 @@ from numpy.typing import ArrayLike
 # Below this |p(ν)| s² the quotient for h is not used: its numerator is about p s²/2, but
 # the terms of the numerator are of order 1, so that they cancel when |p| s² is small.
 _CANCELLATION = 4.0
+# The same bound where the values of the responses are needed and not their derivatives: the terms
+# exceed the result by a factor of 16 at most.
+_OF_VALUES = np.array(0.5)
+_SQUARED = _OF_VALUES * _OF_VALUES
+_TWO = np.array(2.0)
+_ONE = np.array(1.0)
 # Nodes of the integral, to which one node is added for each radian of the table. Where the
 # integral is used the phase of the integrand changes by (1 + ϖ) s ≤ 2s + 2, and these nodes
 # resolve it to rounding.
@@ -153,3 +159,58 @@ def responses(time: ArrayLike, frequency_ratio: ArrayLike, damping_ratio: ArrayL
         gravity=_exponential(0, s, a, q, w, impulse),
         table=_exponential(1j, s, a, q, w, impulse),
     )
+
+
+def table_response(
+    time: np.ndarray,
+    frequency_ratio: np.ndarray | float,
+    damping_ratio: np.ndarray | float,
+    real: np.ndarray,
+    imaginary: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Q = Re h and P = Im h from the numerator of h, which a caller has without cancellation.
+
+    Parameters
+    ----------
+    time, frequency_ratio, damping_ratio : array
+        s, ϖ and ζ.
+    real, imaginary : ndarray
+        cos s - g′ - 2ζϖ g and sin s - g, with the shape of the results.
+    """
+    loss = _TWO * damping_ratio * frequency_ratio
+    detuning = (frequency_ratio - _ONE) * (frequency_ratio + _ONE)
+    gamma = detuning * detuning + loss * loss
+    square = time * time
+    delicate = gamma * square * square < _SQUARED
+    with np.errstate(divide="ignore", invalid="ignore"):
+        in_phase = np.asarray((real * detuning + imaginary * loss) / gamma)
+        quadrature = np.asarray((imaginary * detuning - real * loss) / gamma)
+    if delicate.any():
+        some = _where(delicate, in_phase.shape, time, frequency_ratio, damping_ratio)
+        at = np.broadcast_to(delicate, in_phase.shape)
+        exact = responses(*some).table.value
+        in_phase[at] = exact.real
+        quadrature[at] = exact.imag
+    return in_phase, quadrature
+
+
+def gravity_response(
+    time: np.ndarray,
+    frequency_ratio: np.ndarray | float,
+    damping_ratio: np.ndarray | float,
+    numerator: np.ndarray,
+) -> np.ndarray:
+    """G from its numerator 1 - g′ - 2ζϖ g; the arguments are those of :func:`table_response`."""
+    stiffness = frequency_ratio * frequency_ratio
+    found = np.asarray(numerator / stiffness)
+    delicate = stiffness * time * time < _OF_VALUES
+    if np.any(delicate):
+        some = _where(delicate, found.shape, time, frequency_ratio, damping_ratio)
+        found[np.broadcast_to(delicate, found.shape)] = responses(*some).gravity.value
+    return found
+
+
+def _where(which, shape, *arrays) -> list[np.ndarray]:
+    """The entries of arrays that broadcast to a shape, at some of its places."""
+    at = np.broadcast_to(which, shape)
+    return [np.broadcast_to(x, shape)[at] for x in arrays]

@@ -45,7 +45,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import require
-from bouncing_ball.models.oscillator import responses
+from bouncing_ball.models.oscillator import gravity_response, table_response
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.arrays import blocks, pick
@@ -53,10 +53,6 @@ from bouncing_ball.periodic.orbits.orbit import Orbit
 
 # Number of points computed at the same time, so that the intermediate arrays stay in the cache.
 _BLOCK = 8192
-# Bound of |p(ν)| s² below which the oscillator's integrals replace the quotients. It is lower
-# than there, because only the values of the responses are needed here and not their
-# derivatives: the terms exceed the result by a factor of 16 at most.
-_DELICATE = 0.5
 
 
 class BranchPoint(NamedTuple):
@@ -142,9 +138,10 @@ class _ContactEnd(NamedTuple):
         decay = np.exp(-zeta * omega * duration)
         g = decay * sin_angle / (omega * root)
         dg = decay * (cos_angle - zeta / root * sin_angle)
-        gravity, q, p = _forced_responses(
-            duration, omega, zeta, g=g, dg=dg, sin_d=sin_d, cos_d=cos_d
-        )
+        rest = dg + loss * g
+        contact = duration, omega, zeta
+        gravity = gravity_response(*contact, 1 - rest)
+        q, p = table_response(*contact, cos_d - rest, sin_d - g)
         # From the oscillator's equation, and from h′ = i h + g, so that P′ = Q and Q′ = g - P.
         ddg = -loss * dg - stiffness * g
         dq = g - p
@@ -165,40 +162,6 @@ class _ContactEnd(NamedTuple):
             cos_less_one=cos_less_one,
             decay=decay,
         )
-
-
-def _forced_responses(duration, omega, zeta, *, g, dg, sin_d, cos_d):
-    """G, Q = Re h and P = Im h at time D, from g and g′ and from the sine and cosine of D.
-
-    These are the quotients of :mod:`bouncing_ball.models.oscillator` in real arithmetic. In
-    short or resonant contacts the quotients lose digits, and the values come from that module
-    instead.
-    """
-    stiffness = omega * omega
-    loss = 2 * zeta * omega
-    rest = dg + loss * g
-    detuning = stiffness - 1
-    gamma = detuning * detuning + loss * loss
-    square = duration * duration
-    delicate = np.minimum(gamma * square, stiffness * stiffness * square) * square
-    delicate = delicate < _DELICATE * _DELICATE
-    troubled = np.any(delicate)
-    if troubled:
-        gamma = np.where(delicate, 1.0, gamma)
-    gravity = (1 - rest) / stiffness
-    # h = (e^{iD} - g′ - (i + 2ζϖ) g)/(ϖ² - 1 + 2iζϖ)
-    real = cos_d - rest
-    imaginary = sin_d - g
-    q = (real * detuning + imaginary * loss) / gamma
-    p = (imaginary * detuning - real * loss) / gamma
-    if troubled:
-        arrays = np.broadcast_arrays(duration, omega, zeta, delicate)
-        exact = responses(*(x[delicate] for x in arrays[:3]))
-        gravity, q, p = (np.array(np.broadcast_to(x, delicate.shape)) for x in (gravity, q, p))
-        gravity[delicate] = exact.gravity.value
-        q[delicate] = exact.table.value.real
-        p[delicate] = exact.table.value.imag
-    return gravity, q, p
 
 
 class _Equation(NamedTuple):

@@ -6,9 +6,8 @@ from typing import Annotated
 
 import numpy as np
 
-from bouncing_ball.contacts.drop_test import SLOWED
 from bouncing_ball.contacts.quantities import Speed
-from bouncing_ball.contacts.rebounds import compression, rises
+from bouncing_ball.contacts.rebounds import SLOWED, compression, rises
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.rows import Listed
 from bouncing_ball.contacts.texts import shown

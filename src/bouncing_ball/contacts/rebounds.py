@@ -9,12 +9,13 @@ import math
 import numpy as np
 import scipy
 
-from bouncing_ball.contacts.drop_test import SLOWED
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.scales import rest, scales
 from bouncing_ball.models.sequence import Status
 
+SLOWED = 0.01
+"""How much less a ball bounces than a free impact at the speed of :func:`slowed`."""
 # The tolerance of the integration of the compression: a few hundred roundings.
 _TOLERANCE = 1e-13
 # Times of the scale of a contact after which a ball that has not turned lies on the table.
@@ -101,6 +102,16 @@ def slowed(law: ContactLaw, fast: float) -> float | None:
     """The speed at which gravity lowers r by one part in a hundred; None if it does at no speed.
 
     ``fast`` is a speed at which gravity is not felt. r is that of a free impact of the same speed.
+    Faster impacts have this r more closely, slower ones are below it.
+
+    Examples
+    --------
+    >>> from bouncing_ball.models.spring_damper import SpringDamper
+    >>> contact = SpringDamper(1.0, 0.2)
+    >>> speed = np.array([slowed(contact, 1e5)])
+    >>> share = np.sqrt(2 * rises(contact, speed)) / speed / contact.restitution
+    >>> share.round(9).tolist()
+    [0.99]
     """
 
     def surplus(logarithm: float) -> float:

@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.accuracy.corrected_errors import exact_and_simple_models
 from bouncing_ball.contacts.contact import Contact
-from bouncing_ball.contacts.drop_test import slowed_speed
 from bouncing_ball.contacts.engines.physical import Physical
 from bouncing_ball.contacts.rebounds import slowed
 from bouncing_ball.contacts.table import TableMotion
@@ -32,6 +31,9 @@ from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
 _SAME = 1e-9
 # The loss 1 - r below which a contact law is hardly damped.
 _HARDLY = 1e-6
+# A speed, in units of the contact's own scales, at which gravity changes r by a thousandth of a
+# percent.
+_FAST = 1e5
 _NOTHING = Contact()
 
 
@@ -131,23 +133,24 @@ class ResolvedContact:
 
     @property
     def slowed_speed(self) -> float | None:
-        """The impact speed in m/s at which gravity lowers r by 1 %; None without damping, for
-        ζ ≥ 1, and on a vibrating table for a contact law.
+        """The impact speed in m/s at which gravity lowers r by 1 %, in drops on this contact; None
+        without damping, for ζ ≥ 1, and on a vibrating table for a contact law.
         """
         zeta = float(self.contact.damping_ratio)
-        if self.law is not None:
-            return self._slowed_speed_of_law() if self.table.is_at_rest else None
-        if zeta >= 1:
-            return None
-        r = float(self.contact.restitution)
-        return slowed_speed(self.omega, zeta, r, self.table.gravity, self.contact.release)
-
-    def _slowed_speed_of_law(self) -> float | None:
-        """The same for a contact law: of drops on its own contact."""
-        assert self.law is not None
-        unit = self.table.length / self.table.time
-        # In an impact with this speed gravity changes r by a thousandth of a percent.
-        found = slowed(self.law, 1e5 * rest(self.law) * self.omega * self.table.time)
+        if self.law is None:
+            if not 0 < zeta < 1:
+                return None
+            # In units of 1/ω and g/ω² the contact has ϖ = 1.
+            law: ContactLaw = SpringDamper(1.0, zeta, self.contact.release)
+            fast = _FAST
+            unit = self.table.gravity / self.omega
+        else:
+            if not self.table.is_at_rest:
+                return None
+            law = self.law
+            fast = _FAST * rest(law) * self.omega * self.table.time
+            unit = self.table.length / self.table.time
+        found = slowed(law, fast)
         return None if found is None else found * unit
 
     @property

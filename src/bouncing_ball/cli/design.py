@@ -120,10 +120,11 @@ def answer(given: Mapping[str, Any]) -> DesignAnswer:
     at_step = None if engine is None else engine.at_step
     other = None if engine is None else softer(found.case, engine, question, si.get("speed"))
     error = si.get("restitution_error", ERROR)
+    speed = _impact_speed(found, si.get("speed"))
     if "time_step" in si and engine is None:
-        at_step = at_given_step(contact, si["time_step"], error)
+        at_step = at_given_step(contact, si["time_step"], error, speed)
     elif engine is None:
-        at_step = at_own_step(contact, error)
+        at_step = at_own_step(contact, error, speed)
     read |= _quantities_of(contact) | _quantities_of(question)
     return DesignAnswer(
         found=found,
@@ -137,6 +138,13 @@ def answer(given: Mapping[str, Any]) -> DesignAnswer:
         looser=looser(found.case, at_step),
         doubts=doubts(given, KINDS),
     )
+
+
+def _impact_speed(found: Assessment | Description, speed: float | None) -> float | None:
+    """The speed in m/s of the impacts in question: that of the orbit, or of a drop."""
+    if isinstance(found, Description):
+        return speed
+    return found.judged.impact_speed
 
 
 def _of(kind: Any, given: Mapping[str, Any]) -> dict[str, Any]:

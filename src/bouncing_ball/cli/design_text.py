@@ -210,14 +210,16 @@ def _retuned(at: AtStep) -> str:
     if at.retuned is None:
         return f"No damping of this stiffness has a mean r of {at.restitution:.4g} at this step."
     return (
-        f"With a damping of {shown(at.retuned, 'N s/m')} in place of the given one the mean r is "
-        f"{at.restitution:.4g} at this step"
+        f"With a damping of {shown(at.retuned, at.unit_of_damping)} in place of the given one the "
+        f"mean r is {at.restitution:.4g} at this step"
     )
 
 
 def _alternatives_at(at: AtStep) -> list[str]:
     """What else a given step allows, for parameters that were given."""
     tuned = [] if at.is_within else [_retuned(at).rstrip(".") + "."]
+    if at.stiffest is None:
+        return tuned
     return [
         *tuned,
         f"The stiffest contact with the same r within {at.allowed:g} has "
@@ -300,6 +302,8 @@ def _at_small_steps(at: AtStep | None) -> list[str]:
     if at is None or at.is_within:
         return []
     what = "whose positions these steps have" if at.is_of_parameters else "with small time steps"
+    if at.speed is not None:
+        what = "with small time steps"
     about = f"the contact {what}, and at {shown(at.time_step, 's')} its r is {at.span}"
     return [f"Note: motion, verdict and orbits are those of {about}."]
 
@@ -380,8 +384,11 @@ def _of_parameters(at: AtStep | None) -> list[str]:
     """What k, c and a drop are about, if the parameters contain a time step."""
     if at is None or not at.is_of_parameters or at.is_within:
         return []
+    of = "of the contact whose positions these steps have"
+    if at.speed is not None:
+        of = "of small time steps"
     return [
-        "Note: all numbers but r are those of the contact whose positions these steps have; r "
+        f"Note: all numbers but r are those {of}; r "
         "depends on where in a step the ball meets the table."
     ]
 

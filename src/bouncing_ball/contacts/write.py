@@ -15,7 +15,6 @@ from bouncing_ball.contacts.engines.choice import engine_named
 from bouncing_ball.contacts.engines.drop_in_steps import MOST_STEPS, Rise, drop_in_steps
 from bouncing_ball.contacts.engines.engine import EngineSettings
 from bouncing_ball.contacts.engines.given_step import AtStep, stiffest_contact
-from bouncing_ball.contacts.engines.physical import Physical
 from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.contacts.loss import of_loss
 from bouncing_ball.contacts.quantities import check_kind
@@ -181,8 +180,9 @@ def softer(
     """
     if written.softer is None or written.softer.at_step is None:
         return None
-    at = written.softer.at_step
-    ball = Physical(case.mass, at.stiffest, at.stiffest_damping)
+    ball = written.softer.at_step.softer(case.mass)
+    if ball is None:
+        return None
     ratio = ball.angular_frequency * case.table.time
     spring = SpringDamper(ratio, ball.damping_ratio, case.contact.release)
     law = None if spring.release.is_linear else spring
@@ -221,13 +221,16 @@ def dropped_at_step(
     )
 
 
-def at_given_step(contact: Contact, time_step: float, error: float) -> AtStep:
-    """What the engine whose parameters are given does with them and a time step in s.
+def at_given_step(
+    contact: Contact, time_step: float, error: float, speed: float | None = None
+) -> AtStep:
+    """What the engine whose parameters are given does with them and a time step in s, at an impact
+    speed in m/s if r depends on it.
 
     Raises
     ------
     ModelError
-        If no engine is named, or r depends on the speed.
+        If no engine is named, or r depends on the speed and none is given.
     """
     engine = contact.engine
     if engine is None:
@@ -235,17 +238,17 @@ def at_given_step(contact: Contact, time_step: float, error: float) -> AtStep:
             "{time_step} needs {engine} or {from_engine}, such as generic: "
             "engines step in different ways"
         )
-    if engine.needs_speed:
-        raise ParameterError(_OF_A_LAW)
     parameters = contact.engine_parameters
     if _STEP in parameters:
         raise ParameterError("{time_step} and {parameters} time_step give the same: give one")
     plain = contact.by_stiffness_and_loss()
-    return engine.at_step_of(parameters, plain.mass, time_step, error, plain.release)
+    return engine.at_step_of(parameters, plain.mass, time_step, error, plain.release, speed)
 
 
-def at_own_step(contact: Contact, error: float) -> AtStep | None:
+def at_own_step(contact: Contact, error: float, speed: float | None = None) -> AtStep | None:
     """What an engine does with parameters that contain its time step; None without such a step.
+
+    ``speed`` is the impact speed in m/s on which r may depend.
 
     Raises
     ------
@@ -258,7 +261,7 @@ def at_own_step(contact: Contact, error: float) -> AtStep | None:
     plain = contact.by_stiffness_and_loss()
     parameters = dict(contact.engine_parameters)
     step = parameters.pop(_STEP)
-    found = engine.at_step_of(parameters, plain.mass, step, error, plain.release)
+    found = engine.at_step_of(parameters, plain.mass, step, error, plain.release, speed)
     return replace(found, is_of_parameters=True)
 
 
@@ -289,7 +292,9 @@ def looser(case: ResolvedContact, at: AtStep | None) -> Looser | None:
     """
     if at is None or at.is_within or at.allowed >= LOOSE:
         return None
-    exact = Physical(case.mass, at.stiffest, at.stiffest_damping)
+    exact = at.softer(case.mass)
+    if exact is None:
+        return None
     scheme = engine_named(at.engine).scheme
     release = case.contact.release
     found, _ = stiffest_contact(

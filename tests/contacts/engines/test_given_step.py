@@ -177,7 +177,7 @@ def test_a_time_step_needs_an_engine(refusal):
 
 def test_a_time_step_is_for_a_contact_whose_r_has_no_speed(refusal):
     crossley = {"point_contact_stiffness": 2e5, "hunt_crossley_dissipation": 0.5}
-    with refusal(ModelError, "time_step is given for a spring and a damper"):
+    with refusal(ModelError, "time_step with hunt_crossley_dissipation needs speed of an impact"):
         answered(mass=0.5, from_engine="drake", parameters=crossley, time_step="1 ms")
     table = {"mass": 0.5, "frequency": "20 Hz", "acceleration": "0.8 g", "n": 1}
     law = {"law": "hunt-crossley", "contact_time": "2 ms", "restitution": 0.8}

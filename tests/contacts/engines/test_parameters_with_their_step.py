@@ -61,9 +61,6 @@ def test_the_text_has_the_range_in_place_of_a_number(said):
 
 
 def test_another_contact_has_no_step_among_its_parameters(refusal):
-    crossley = {"point_contact_stiffness": 2e5, "hunt_crossley_dissipation": 0.5}
-    with refusal(ModelError, "time_step is not allowed with hunt_crossley_dissipation"):
-        at_its_step("drake", crossley, 1e-3)
     with refusal(ModelError, "lammps has no 'time_step'", "given by --time-step"):
         at_its_step("lammps", {"kn": 1e5, "gamma_n": 1.0}, 1e-3)
 

@@ -2,20 +2,24 @@
 dissipation d of Hunt and Crossley, f = k p (1 + d p′) ≥ 0.
 """
 
+import math
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
 
 from bouncing_ball.contacts.engines.engine import (
+    ERROR,
     Engine,
     EngineParameters,
     Physical,
     at_speeds,
     written,
 )
+from bouncing_ball.contacts.engines.given_step import AtStep
+from bouncing_ball.contacts.engines.hunt_crossley_steps import at_step_of_law, needs_speed
 from bouncing_ball.contacts.engines.scheme import Scheme
-from bouncing_ball.errors import ModelError
+from bouncing_ball.errors import require
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.hertzian import LinearHuntCrossley
 
@@ -85,12 +89,40 @@ class HuntCrossleyDrake(Drake):
         self._law_in_si = law_in_si or {}
 
     def contact(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
-        if "time_step" in parameters:
-            raise ModelError(
-                "time_step is not allowed with hunt_crossley_dissipation, whose contact is that of "
-                "small time steps: leave it out, or give relaxation_time"
-            )
-        return super().contact(parameters, mass)
+        """The contact of small time steps: a ``time_step`` changes its r, and no other number."""
+        values = dict(parameters)
+        step = values.pop("time_step", None)
+        if step is not None:
+            require(0 < step < math.inf, step, "time_step", "a positive number of s")
+        return self.read(values, mass)
+
+    def at_step_of(
+        self,
+        parameters: Mapping[str, Any],
+        mass: float | None,
+        time_step: float,
+        error: float = ERROR,
+        release: str | None = None,
+        speed: float | None = None,
+    ) -> AtStep:
+        """What Drake does with parameters and a time step in s, at an impact speed in m/s.
+
+        Raises
+        ------
+        ModelError
+            See :meth:`read`; or if there is no speed.
+
+        Examples
+        --------
+        >>> given = {"point_contact_stiffness": 2e5, "hunt_crossley_dissipation": 0.5}
+        >>> HuntCrossleyDrake().at_step_of(given, 0.5, 1e-3, speed=1.0).span
+        '0.4218 to 0.5201'
+        """
+        self.release(release)
+        m, _, _ = self._two(parameters, mass)
+        if speed is None:
+            raise needs_speed()
+        return at_step_of_law(self.law(parameters, m), m, speed, time_step, error)
 
     def parameters(self, contact: Physical) -> EngineParameters:
         values = (written(2 * self._law_in_si["stiffness"]), written(self._law_in_si["damping"]))
@@ -100,6 +132,10 @@ class HuntCrossleyDrake(Drake):
         m, double, _ = self._two(parameters, mass)
         return Physical(m, double / 2, 0.0)
 
+    def _given(self, parameters: Mapping[str, Any], mass: float | None) -> float:
+        values = {name: value for name, value in parameters.items() if name != "time_step"}
+        return super()._given(values, mass)
+
     def law(
         self, parameters: Mapping[str, Any], mass: float = 1, time: float = 1, length: float = 1
     ) -> LinearHuntCrossley:
@@ -108,5 +144,7 @@ class HuntCrossleyDrake(Drake):
 
     def remarks(self, parameters: Mapping[str, Any]) -> tuple[str, ...]:
         law = self.law(parameters)
+        if "time_step" in parameters:
+            return ()
         impacts = at_speeds(law, np.array([0.1, 1, 10]) / (law.damping or 1))
         return (f"in the limit of small time steps a free impact has {impacts}",)

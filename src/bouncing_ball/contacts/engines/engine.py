@@ -287,8 +287,11 @@ class Engine(ABC):
             other = Physical(contact.mass, contact.stiffness, written(at.retuned))
             again = at_step(self.name, self.scheme, other, rule, time_step, error, asked=contact)
             again = self._at(other, rule, again)
-        soft = Physical(*map(written, (contact.mass, at.stiffest, at.stiffest_damping)))
-        softer = self._at(soft, rule, self.at_step(soft, rule, time_step, error))
+        exact = at.softer(contact.mass)
+        softer = None
+        if exact is not None:
+            soft = Physical(*map(written, exact))
+            softer = self._at(soft, rule, self.at_step(soft, rule, time_step, error))
         return replace(found, instant=self.instant(at.restitution), retuned=again, softer=softer)
 
     def _at(self, contact: Physical, release: Release, at: AtStep) -> EngineSettings:
@@ -333,8 +336,10 @@ class Engine(ABC):
         time_step: float,
         error: float = ERROR,
         release: str | None = None,
+        speed: float | None = None,
     ) -> AtStep:
-        """What the engine does with parameters and a time step in s.
+        """What the engine does with parameters and a time step in s, at an impact speed in m/s if r
+        depends on it.
 
         Parameters that are not made for this step are damped by it: r is then compared with the
         limit of small steps.

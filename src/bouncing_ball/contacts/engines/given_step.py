@@ -71,7 +71,8 @@ class AtStep:
     it is None if no damping achieves that, or if the contact is within the error as it is. The
     stiffest contact with the same r is within the error allowed. ``remarks`` are sentences on how
     the engine changes the contact at this step, and ``is_of_parameters`` tells whether parameters
-    that contain the step were given.
+    that contain the step were given. If r depends on the impact ``speed`` in m/s, all this holds at
+    this speed, the damping is that of Hunt and Crossley in s/m, and no stiffest contact is sought.
     """
 
     engine: str
@@ -84,14 +85,20 @@ class AtStep:
     error: float
     allowed: float
     is_within: bool
-    stiffest: float
-    stiffest_damping: float
-    stiffest_contact_time: float
-    stiffest_steps: float
+    stiffest: float | None = None
+    stiffest_damping: float | None = None
+    stiffest_contact_time: float | None = None
+    stiffest_steps: float | None = None
     mean: float = math.nan
     retuned: float | None = None
     remarks: tuple[str, ...] = ()
     is_of_parameters: bool = False
+    speed: float | None = None
+
+    @property
+    def unit_of_damping(self) -> str:
+        """The unit of the damping ``retuned``."""
+        return "N s/m" if self.speed is None else "s/m"
 
     @property
     def span(self) -> str:
@@ -100,10 +107,17 @@ class AtStep:
         most = f"{self.most:.4g}"
         return least if least == most else f"{least} to {most}"
 
+    def softer(self, mass: float) -> Physical | None:
+        """The stiffest contact with the same r for a mass in kg; None if none was sought."""
+        if self.stiffest is None or self.stiffest_damping is None:
+            return None
+        return Physical(mass, self.stiffest, self.stiffest_damping)
+
     @property
     def verdict(self) -> str:
         """What the contact does at this step, in one sentence."""
-        found = f"a free impact has r = {self.span} in place of {self.restitution:.4g}"
+        at = "" if self.speed is None else f" at {self.speed:.4g} m/s"
+        found = f"a free impact{at} has r = {self.span} in place of {self.restitution:.4g}"
         if not self.is_stable:
             return f"unstable in {self.engine}: {found}"
         held = "resolved" if self.is_within else "not resolved"
@@ -123,8 +137,9 @@ class Spread(NamedTuple):
         return max(self.most - restitution, restitution - self.least)
 
 
-def spread(impacts: Callable[[np.ndarray], np.ndarray]) -> Spread:
-    """The range and the mean of r, a function of the instant in (0, 1] that is linear in pieces.
+def spread(impacts: Callable[[np.ndarray], np.ndarray], straight: float = _STRAIGHT) -> Spread:
+    """The range and the mean of r, a function of the instant in (0, 1] that is linear in pieces, or
+    smooth in pieces if these are divided until they are as ``straight`` as that.
 
     Examples
     --------
@@ -140,7 +155,7 @@ def spread(impacts: Callable[[np.ndarray], np.ndarray]) -> Spread:
         middle = (low[0] + high[0]) / 2
         between = np.stack([middle, impacts(middle)])
         found.append(between)
-        size = _STRAIGHT * np.maximum(1.0, np.abs(between[1]))
+        size = straight * np.maximum(1.0, np.abs(between[1]))
         bent = np.abs(between[1] - (low[1] + high[1]) / 2) > size
         if not 0 < np.count_nonzero(bent) < _MOST_PARTS:
             break

@@ -186,6 +186,7 @@ class MuJoCo(Engine):
         time_step: float,
         error: float = ERROR,
         release: str | None = None,
+        speed: float | None = None,
     ) -> AtStep:
         """What MuJoCo does with parameters and a time step in s.
 

@@ -145,7 +145,8 @@ HEAD = "speed [m/s],restitution\n"
 HOSTILE = {
     "": "no line with the names of the columns",
     HEAD: "no line of numbers",
-    "recording,interval\n1,0.8\n1,0.4\n2,0.7\n": "1 interval: two are needed",
+    "recording,interval\n1,0.8\n1,0.4\n2,0.7\n": "recording 2 has fewer than two intervals",
+    "recording,interval\nA,0.8\nA,0.4\n": "line 2: recording = 'A' does not begin with a number",
     "recording,speed\n1,0.8\n": "line 1: the columns must be",
     HEAD + "1.0,nan\n": "line 2: restitution = 'nan' does not begin with a number",
     HEAD + "1.0,1.2\n": "line 2: restitution = 1.2 is not a number in (0, 1]",

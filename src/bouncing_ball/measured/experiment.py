@@ -287,9 +287,20 @@ def _recordings(columns: dict[str, np.ndarray]) -> list[np.ndarray]:
     """The intervals of each recording, in the order of the file."""
     name = "interval" if "interval" in columns else "time"
     values = columns[name]
-    numbers = columns.get("recording", np.zeros(values.size))
-    parts = [values[numbers == each] for each in dict.fromkeys(numbers)]
-    return [part if name == "interval" else np.diff(part) for part in parts]
+    if "recording" not in columns:
+        return [values if name == "interval" else np.diff(values)]
+    numbers = columns["recording"]
+    found = []
+    for each in dict.fromkeys(numbers):
+        part = values[numbers == each]
+        intervals = part if name == "interval" else np.diff(part)
+        if intervals.size < 2:
+            raise ModelError(
+                f"recording {each:g} has fewer than two intervals, which the impact between them "
+                "needs"
+            )
+        found.append(intervals)
+    return found
 
 
 def _experiment(

@@ -9,6 +9,7 @@ import pytest
 
 from bouncing_ball.measured.experiment import COLUMNS, QUANTITIES, TEXTS, experiment, names, read
 from bouncing_ball.measured.flights import drag_length, heard
+from bouncing_ball.measured.verdicts import Verdict, judge
 
 PAGE = (Path(__file__).parents[2] / "docs" / "measured.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"```\w*\n(.*?)```", PAGE, re.DOTALL)
@@ -62,6 +63,20 @@ def test_every_experiment_is_in_the_list():
         speeds = experiment(name).speeds
         assert float(f"{speeds.min():.2g}") == low and float(f"{speeds.max():.2g}") == high
         assert f"| {speeds.size} |" in row
+
+
+def test_membranes_and_drops_decide_as_the_page_says():
+    constant, smooth, sharp = "restitution", "kuwabara-kono", "hunt-crossley"
+    for name, compatible in (
+        ("membrane_heavy", {constant, smooth}),
+        ("membrane_light", {constant, smooth}),
+        ("thin_drop", {sharp}),
+        ("viscous_drop", set()),
+    ):
+        verdicts = judge(experiment(name).fit((constant, smooth, sharp)))
+        for law, found in verdicts.items():
+            wanted = Verdict.COMPATIBLE if law in compatible else Verdict.INCOMPATIBLE
+            assert found.verdict is wanted, (name, law)
 
 
 def test_the_drag_on_a_table_tennis_ball_is_some_per_cent():

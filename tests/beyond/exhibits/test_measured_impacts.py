@@ -56,6 +56,21 @@ def test_the_points_and_curves_are_those_of_the_fits(laws):
     assert set(single.law_verdict.values) == {"undecided"}
 
 
+def test_uncertainties_are_those_of_the_experiment_and_the_scatter_does_not_depend_on_them():
+    data = typed(measured_impacts)(
+        {"experiments": ["croquet", "membrane_light"], "samples": 2},
+    )
+    given = experiment("membrane_light")
+    one = data.sel(experiment="membrane_light")
+    found = one.measured_uncertainty.dropna("measured_impact")
+    np.testing.assert_allclose(found, given.uncertainties[np.argsort(given.speeds)], rtol=1e-12)
+    assert data.sel(experiment="croquet").measured_uncertainty.isnull().all()
+    x = np.log(given.speeds)
+    rest = given.restitutions - np.polynomial.Polynomial.fit(x, given.restitutions, 2)(x)
+    scatter = np.sqrt(np.sum(rest**2) / (x.size - 3))
+    assert one.measured_scatter.item() == pytest.approx(scatter, rel=1e-6)
+
+
 def test_the_papers_two_models_are_rows(laws):
     papers = laws.sel(fitted_law=["restitution", "linear"])
     both = papers[["fit_rms", "left_out_rms", "extrapolation_rms"]]

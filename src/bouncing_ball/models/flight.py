@@ -111,6 +111,24 @@ class Flight(Motion):
         """The end of the time in which z > Λ, or the time itself if it is not within this time."""
         return np.where((time >= self.above) & (time < self.below), self.below, time)
 
+    @property
+    def strongest(self) -> Any:
+        """1 + Λ, a bound of the acceleration δ″."""
+        return 1 + self.amplitude
+
+    @property
+    def largest_change(self) -> Any:
+        """Λ, a bound of the rate of change of δ″."""
+        return self.amplitude
+
+    def rise(self) -> Motion:
+        """δ as a motion, see :class:`Rise`."""
+        return Rise(self)
+
+    def unloaded(self, lag: Any) -> Motion:
+        """-(δ + κ δ′) as a motion, see :class:`Unloaded`."""
+        return Unloaded(self, lag)
+
     def level_speed_squared(self) -> np.ndarray:
         """v² + 2(1 + Λ)δ_b: the square of the relative speed at the table's level against the
         strongest relative gravity, 1 + Λ.
@@ -199,6 +217,27 @@ class Rise(Motion):
             fourth_bound=lam,
             ended=(rate <= 0) & (second <= 0),
         )
+
+
+class Unloaded(Motion):
+    """The motion -(δ + κ δ′) in free flight; the search ends where δ ≥ 0."""
+
+    def __init__(self, flight: Flight, lag):
+        self.flight = flight
+        self.lag = lag
+        self.forcing = flight.amplitude * np.sqrt(1 + lag * lag)
+
+    def __call__(self, time: np.ndarray) -> Derivatives:
+        lag = self.lag
+        displacement, rate, second, third = self.flight.gap(time)
+        # At the release y = 0 but for rounding; this zero is not the one that is searched for.
+        y = np.where(time == 0, 0.0, displacement + lag * rate)
+        y_rate = rate + lag * second
+        y_second = second + lag * third
+        # The fourth derivative of δ is minus that of the table: δ⁗ = -Λ sin τ = -(1 + δ″).
+        y_third = third - lag * (1 + second)
+        bounds = 1 + self.forcing, self.forcing, self.forcing
+        return Derivatives(-y, -y_rate, -y_second, -y_third, *bounds, ended=displacement >= 0)
 
 
 class Fall(Motion):

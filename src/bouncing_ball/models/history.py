@@ -88,5 +88,6 @@ def _in_contact(
         duration=sequence.contact_duration[row],
         release_displacement=sequence.release_displacement[row],
         release_velocity=sequence.relative_bounce_velocity[row],
+        setting=sequence.setting,
     )
     return sequence.contact.during(span, since)

@@ -248,6 +248,12 @@ class LinearContactDynamics(ResumingDynamics):
         departure = self._ended(impact, motion, nearest_zero(motion, duration))
         return departure._replace(by=self._released(impact, departure))
 
+    def after(self, impact: Impact, duration: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """δ and δ′ a time after the starts of contacts, whether they have ended or not."""
+        start = impact.displacement, impact.velocity, impact.phase
+        state = self.law.flow(duration, *start, self.amplitude)
+        return state.displacement, state.velocity
+
     def release_function(
         self, impact: Impact, departure: Departure
     ) -> Callable[[np.ndarray], np.ndarray]:

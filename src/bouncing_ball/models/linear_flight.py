@@ -17,7 +17,7 @@ remains within ``R = √((p - b/q)² + p′²/q)``: a mass with ``b/q - R > Λ �
 its stop.
 """
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -30,6 +30,18 @@ from bouncing_ball.numerics.first_zero import Derivatives, Motion, first_zero
 # are below this part of its terms.
 _ROUNDING = 1e-12
 _FAR = 1.0
+
+
+class Lagged(NamedTuple):
+    """y = δ + κ δ′ and its derivatives up to the third order, bounds of those of the orders 2 to 4,
+    δ, and p + κ p′ with its rate of change.
+    """
+
+    values: list[np.ndarray]
+    bounds: list[np.ndarray]
+    gap: np.ndarray
+    free: np.ndarray
+    free_rate: np.ndarray
 
 
 class LinearFlight(Motion):
@@ -187,7 +199,7 @@ class LinearFlight(Motion):
         """
         (_, _, second, third, _), free = self._moved(np.zeros(np.shape(self.velocity)))
         strongest, _, fourth = self._bounds(free, (2, 3, 4))
-        square = self.velocity * self.velocity + 2 * strongest * self.displacement
+        square = self._level_speed_squared(strongest)
         time = (self.velocity + np.sqrt(np.maximum(square, 0.0))) / strongest
         slack = _ROUNDING * (np.abs(free[2]) + self.bound(2))
         rests = (self.velocity == 0) & (self.displacement == 0) & (second >= -slack)
@@ -196,6 +208,55 @@ class LinearFlight(Motion):
         lift = np.maximum(second, 0.0)
         by_lift = np.minimum(lift / np.maximum(np.abs(third), 1e-300), np.sqrt(3 * lift / fourth))
         return np.where(rests, np.maximum(by_lift, 4 * third / fourth), time)
+
+    @property
+    def strongest(self) -> np.ndarray:
+        """A bound of the acceleration δ″."""
+        _, free = self._moved(np.zeros(np.shape(self.velocity)))
+        return self._bounds(free, (2,))[0]
+
+    @property
+    def largest_change(self) -> np.ndarray:
+        """A bound of the rate of change of δ″."""
+        _, free = self._moved(np.zeros(np.shape(self.velocity)))
+        return self._bounds(free, (3,))[0]
+
+    def _level_speed_squared(self, strongest: np.ndarray) -> np.ndarray:
+        return self.velocity * self.velocity + 2 * strongest * self.displacement
+
+    def level_speed_squared(self) -> np.ndarray:
+        """v² + 2Kδ_b: the square of the relative speed at the table's level against the bound K of
+        the acceleration; see :meth:`.Flight.level_speed_squared`.
+        """
+        return self._level_speed_squared(self.strongest)
+
+    def rise(self) -> Motion:
+        """δ as a motion, see :class:`.Rise`."""
+        return _Rise(self)
+
+    def unloaded(self, lag: Any) -> Motion:
+        """-(δ + κ δ′) as a motion, see :class:`.Unloaded`."""
+        return _Unloaded(self, lag)
+
+    def lagged(self, time: np.ndarray, lag: Any) -> Lagged:
+        """y = δ + κ δ′ after a time, with the bounds of its derivatives from this time on.
+
+        P = p + κ p′ obeys the equation of p, so that the energy of its free oscillation bounds its
+        derivatives, and a harmonic of W + κ W′ is √(1 + κ²k²) times that of W.
+        """
+        of_gap, free = self._moved(time)
+        y = [of_gap[j] + lag * of_gap[j + 1] for j in range(4)]
+        of_free = [free[j] + lag * free[j + 1] for j in range(5)]
+        k = self.waveform.orders
+        turn = np.asarray(lag, dtype=float)[..., np.newaxis] * k
+        size = self.size * np.sqrt(1 + turn * turn)
+        q = self.stiffness
+        bounds = [
+            np.sqrt(of_free[j] * of_free[j] + q * of_free[j - 1] * of_free[j - 1])
+            + (k**j * size).sum(axis=-1)
+            for j in (2, 3, 4)
+        ]
+        return Lagged(y, bounds, of_gap[0], of_free[0], of_free[1])
 
     def carried(
         self, by: Any, end: Any, time: np.ndarray, velocity: np.ndarray, lag: np.ndarray | float
@@ -273,6 +334,34 @@ class _Turning(Motion):
             fourth_bound=by_fifth,
             ended=time > self.longest,
         )
+
+
+class _Rise(Motion):
+    """The motion δ of balls below the table's level; the search stops if they fall ever faster."""
+
+    def __init__(self, flight: LinearFlight) -> None:
+        self.flight = flight
+
+    def __call__(self, time: np.ndarray) -> Derivatives:
+        (gap, rate, second, third, _), free = self.flight._moved(time)
+        bounds = self.flight._bounds(free, (2, 3, 4))
+        ended = (rate <= 0) & (second <= 0)
+        return Derivatives(gap, rate, second, third, *bounds, ended=ended)
+
+
+class _Unloaded(Motion):
+    """The motion -(δ + κ δ′) in flight; the search ends where δ ≥ 0."""
+
+    def __init__(self, flight: LinearFlight, lag: Any) -> None:
+        self.flight = flight
+        self.lag = lag
+
+    def __call__(self, time: np.ndarray) -> Derivatives:
+        at = self.flight.lagged(time, self.lag)
+        y, *rates = at.values
+        # At the release y = 0 but for rounding; this zero is not the one that is searched for.
+        y = np.where(time == 0, 0.0, y)
+        return Derivatives(-y, *(-x for x in rates), *at.bounds, ended=at.gap >= 0)
 
 
 class Pressure(Motion):

@@ -31,7 +31,7 @@ from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import LINEAR, Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.models.setting import setting_of
+from bouncing_ball.models.setting import require_sine, setting_of
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.models.suspension import Suspension
@@ -107,6 +107,8 @@ def spring_damper(
     damping_ratio: DampingRatioAxis | None = None,
     measured_restitution: RestitutionAxis | None = None,
     release: ReleaseName = "displacement",
+    table: Waveform | None = None,
+    flight: Suspension | None = None,
 ) -> SpringDamperModel:
     """A ball on a contact with a spring and a damper (Eqs. 10-27).
 
@@ -127,6 +129,10 @@ def spring_damper(
     release : str
         Where a contact ends: "displacement" at the table's level, as in the paper (default), or
         "force" where the contact force vanishes.
+    table : Waveform, optional
+        The shape of a table with several harmonics, in place of the sine.
+    flight : Drag or Spring, optional
+        What moves the ball beside the contact, in flight and in contact, in place of gravity alone.
 
     Raises
     ------
@@ -157,7 +163,8 @@ def spring_damper(
     else:
         measured = loss == "measured_restitution"
         contact = SpringDamper.from_restitution(flat[loss], ratio, release, measured=measured)
-    return SpringDamperModel(contact).labelled({**parameters, "release": str(release)})
+    given = {**parameters, "release": str(release)} | _single_numbers(flight)
+    return SpringDamperModel(contact, setting_of(table, flight)).labelled(given)
 
 
 def the_loss(
@@ -202,6 +209,7 @@ def corrected(ball: Ball) -> Ball:
     known: Any = a_ball(ball)
     if not known.is_known:
         return known.corrected()
+    require_sine(known.place, "the corrected restitution model of this ball")
     law = known.impact_law
     if not isinstance(law, ContactLaw):
         raise ModelError(f"{known.name} impacts have no contact that could be corrected")

@@ -4,7 +4,7 @@ Such a release has δ_b < 0 and a rising ball: y = δ + κ δ′ = 0. In the fre
 from 0. Either δ reaches 0 first, and the flight ends with a landing as usual, or y falls back to 0
 while δ < 0. The contact then resumes at δ < 0, while the ball is still rising.
 
-Most balls leave fast. With G = 1 + Λ, the strongest relative gravity, the conditions ::
+Most balls leave fast. With G, the strongest relative gravity, 1 + Λ in the paper, the conditions ::
 
     v² + 2Gδ_b > 0   and   √(v² + 2Gδ_b) ≥ κ G
 
@@ -19,42 +19,21 @@ import numpy as np
 
 from bouncing_ball.models.contact import ContactSpan, FiniteContact
 from bouncing_ball.models.dynamics import Departure, Dynamics, Impact
-from bouncing_ball.models.flight import Flight, land
+from bouncing_ball.models.flight import land
 from bouncing_ball.numerics.arrays import pick
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.numerics.first_zero import Derivatives, Motion, first_zero
+from bouncing_ball.numerics.first_zero import first_zero
 
 
-class _Unloaded(Motion):
-    """The motion -y in free flight; the search ends where δ ≥ 0."""
-
-    def __init__(self, flight: Flight, lag):
-        self.flight = flight
-        self.lag = lag
-        self.forcing = flight.amplitude * np.sqrt(1 + lag * lag)
-
-    def __call__(self, time: np.ndarray) -> Derivatives:
-        lag = self.lag
-        displacement, rate, second, third = self.flight.gap(time)
-        # At the release y = 0 but for rounding; this zero is not the one that is searched for.
-        y = np.where(time == 0, 0.0, displacement + lag * rate)
-        y_rate = rate + lag * second
-        y_second = second + lag * third
-        # The fourth derivative of δ is minus that of the table: δ⁗ = -Λ sin τ = -(1 + δ″).
-        y_third = third - lag * (1 + second)
-        bounds = 1 + self.forcing, self.forcing, self.forcing
-        return Derivatives(-y, -y_rate, -y_second, -y_third, *bounds, ended=displacement >= 0)
-
-
-def resumption(flight: Flight, lag: Any) -> tuple[np.ndarray, np.ndarray]:
+def resumption(flight: Any, lag: Any) -> tuple[np.ndarray, np.ndarray]:
     """A time before which released balls have certainly not landed, and whether contact resumes.
 
     ``lag`` is κ. If a ball's contact resumes, it does so at this time.
     """
 
-    def certified(slow: Flight, which: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def certified(slow: Any, which: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The time at which y falls back to 0 or δ reaches 0, and whether y falls back first."""
-        found = first_zero(_Unloaded(slow, pick(lag, which)), np.zeros_like(slow.velocity))
+        found = first_zero(slow.unloaded(pick(lag, which)), np.zeros_like(slow.velocity))
         return found.time, ~found.ended
 
     if not np.any(lag):
@@ -62,33 +41,31 @@ def resumption(flight: Flight, lag: Any) -> tuple[np.ndarray, np.ndarray]:
     return of_slow_balls(flight, np.flatnonzero(~leaves_fast(flight, lag)), certified)
 
 
-def leaves_fast(flight: Flight, lag: Any, lag_of_load: Any = 0.0) -> np.ndarray:
+def leaves_fast(flight: Any, lag: Any, lag_of_load: Any = 0.0) -> np.ndarray:
     """Whether δ certainly reaches 0 before the grip δ + κ δ′ + κ_a a can return.
 
-    ``lag`` is κ, and ``lag_of_load`` is κ_a, for a grip that depends on the load a; |a′| is at
-    most Λ.
+    ``lag`` is κ, and ``lag_of_load`` is κ_a, for a grip that depends on the load a, which is -δ″.
 
     Examples
     --------
     At Λ = 1 and κ = 0.1 a ball that rises fast leaves, and one that rises slowly or falls may not:
 
     >>> speeds = np.array([2.0, 0.1, -2.0])
+    >>> from bouncing_ball.models.flight import Flight
     >>> leaves_fast(Flight(np.full(3, -0.01), speeds, 1.0, 0.0, 1.0), 0.1).tolist()
     [True, False, False]
     """
     square = flight.level_speed_squared()
-    table = flight.amplitude
+    turned = lag * flight.strongest + lag_of_load * flight.largest_change
     return (
-        (square > 0)
-        & (flight.velocity >= 0)
-        & (np.sqrt(np.maximum(square, 0.0)) >= lag * (1 + table) + lag_of_load * table)
+        (square > 0) & (flight.velocity >= 0) & (np.sqrt(np.maximum(square, 0.0)) >= turned)
     )
 
 
 def of_slow_balls(
-    flight: Flight,
+    flight: Any,
     slow: np.ndarray,
-    search: Callable[[Flight, np.ndarray], tuple[np.ndarray, np.ndarray]],
+    search: Callable[[Any, np.ndarray], tuple[np.ndarray, np.ndarray]],
 ) -> tuple[np.ndarray, np.ndarray]:
     """The result of :func:`resumption` if only the balls with the indices ``slow`` may resume.
 
@@ -125,12 +102,13 @@ class ResumingDynamics(Dynamics):
             duration=departure.duration,
             release_displacement=departure.flight.displacement,
             release_velocity=departure.flight.velocity,
+            setting=self.setting,
         )
         found = self.law.take(which).during(pick(spans, which), time.ravel())
         displacement, velocity = (x.reshape(time.shape) for x in found)
         return displacement, velocity
 
-    def resumption(self, flight: Flight) -> tuple[np.ndarray, np.ndarray]:
+    def resumption(self, flight: Any) -> tuple[np.ndarray, np.ndarray]:
         """A time before which the balls have not landed, and whether their contact resumes then."""
         return resumption(flight, self.law.lag)
 

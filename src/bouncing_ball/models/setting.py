@@ -67,6 +67,11 @@ class Setting(Batch):
         """Whether the table is a sine and the flight is free."""
         return True
 
+    @property
+    def is_free(self) -> bool:
+        """Whether gravity alone acts in flight."""
+        return True
+
     def level(self, phase: np.ndarray, amplitude: Any) -> tuple[np.ndarray, np.ndarray]:
         """The table's velocity w′ and height w."""
         return table(phase, amplitude)
@@ -81,6 +86,12 @@ class Setting(Batch):
         numbers are those of ``level``.
         """
         return level
+
+    def forcing(self, amplitude: np.ndarray) -> np.ndarray:
+        """What a contact law needs of the load 1 + w″ of balls on the table: Λ in the setting of
+        the paper, and otherwise the harmonics of -w″, complex, shape (N, balls).
+        """
+        return amplitude
 
     def strength(self, amplitude: Any) -> Any:
         """A number S with g ≤ 1 + S and ``|g′| ≤ S`` at all phases."""
@@ -179,6 +190,14 @@ class OtherSetting(Setting):
         # A loss l shortens the chattering time T₀ by l T₀/6, as g′ does by g′T₀/(3g).
         return push.rate + self.suspension.loss * push.value / 2, 1 + push.value
 
+    @property
+    def is_free(self) -> bool:
+        return not np.any(self.suspension.loss) and not np.any(self.suspension.stiffness)
+
+    def forcing(self, amplitude: np.ndarray) -> np.ndarray:
+        k = self.form.orders
+        return (k * k * self.form.coefficients)[:, np.newaxis] * amplitude
+
     def strength(self, amplitude: Any) -> Any:
         waveform = self.form
         size = np.abs(self.suspension.coefficients(waveform)) * self._answer
@@ -250,6 +269,14 @@ def require_paper(setting: Setting, what: str) -> None:
             f"{what} are known for a table that moves as a sine, with free flight: use "
             "follow(orbit(…)) for another table or flight"
         )
+
+
+def require_sine(setting: Setting, what: str) -> None:
+    """Raise :class:`ParameterError` in another setting than that of the paper, for what has no form
+    for it.
+    """
+    if not setting.is_paper:
+        raise ParameterError(f"{what}: known for a table that moves as a sine, with free flight")
 
 
 def setting_of(waveform: Waveform | None, suspension: Suspension | None) -> Setting:

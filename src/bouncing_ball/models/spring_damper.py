@@ -35,11 +35,13 @@ from bouncing_ball.models.damping import (
 )
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.flight import table
+from bouncing_ball.models.held_contact import HeldContactDynamics, contact_path
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.contact_law import OscillatorLaw
 from bouncing_ball.models.linear_contact import LinearContactDynamics
 from bouncing_ball.models.linear_flow import ContactFlow
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
+from bouncing_ball.models.setting import PAPER, Setting
 
 
 @dataclass(frozen=True, repr=False)
@@ -260,6 +262,11 @@ class SpringDamper(OscillatorLaw):
         """δ and δ′ at times 0 ≤ s ≤ D after the starts of contacts, one time for each contact."""
         if not self.release.is_linear:
             return super().during(span, time)
+        if not span.setting.is_paper:
+            displacement, velocity, _, _ = contact_path(
+                self, span.setting, span, span.amplitude
+            ).gap(time)
+            return displacement, velocity
         start = span.displacement, span.velocity, span.phase
         flow = self.flow(time, *start, span.amplitude)
         return flow.displacement, flow.velocity
@@ -281,13 +288,15 @@ class SpringDamper(OscillatorLaw):
         numbers = self.frequency_ratio, self.damping_ratio, amplitude
         return linear_flow.integrals(*numbers, duration, table(phase, amplitude), gap, rate)
 
-    def dynamics(self, amplitude: ArrayLike) -> Dynamics:
+    def dynamics(self, amplitude: ArrayLike, setting: Setting = PAPER) -> Dynamics:
         """Contacts in closed form if all of them are linear and underdamped, otherwise by
         collocation.
         """
-        if self.release.is_linear and np.all(np.asarray(self.damping_ratio) < 1):
+        if not self.release.is_linear or np.any(np.asarray(self.damping_ratio) >= 1):
+            return super().dynamics(amplitude, setting)
+        if setting.is_paper:
             return LinearContactDynamics.of(self, amplitude)
-        return super().dynamics(amplitude)
+        return HeldContactDynamics.of(self, amplitude, setting)
 
     @property
     def constant_signature(self) -> Instant:

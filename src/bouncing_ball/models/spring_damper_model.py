@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError, ParameterError
+from bouncing_ball.models.held_contact import HeldContactDynamics, held_threshold
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.linear_contact import LinearContactDynamics
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
+from bouncing_ball.models.setting import PAPER, Setting
 from bouncing_ball.models.spring_damper import SpringDamper
 
 
@@ -24,6 +26,8 @@ class SpringDamperModel(Model):
     ----------
     contact : SpringDamper
         ϖ, ζ < 1 and the release rule of a linear contact.
+    setting : Setting, optional
+        The motion of the table and what moves the ball in flight, by default those of the paper.
 
     Raises
     ------
@@ -41,6 +45,7 @@ class SpringDamperModel(Model):
     """
 
     contact: SpringDamper
+    setting: Setting = PAPER
 
     name: ClassVar[str] = "spring-damper"
 
@@ -62,7 +67,13 @@ class SpringDamperModel(Model):
 
     def dynamics(self, amplitude: ArrayLike) -> LinearContactDynamics:
         """The contacts and flights of these balls on a table of amplitude Λ."""
-        return LinearContactDynamics.of(self.contact, amplitude)
+        if self.setting.is_paper:
+            return LinearContactDynamics.of(self.contact, amplitude)
+        return HeldContactDynamics.of(self.contact, amplitude, self.setting)
+
+    def __repr__(self) -> str:
+        where = "" if self.setting.is_paper else f", setting={self.setting!r}"
+        return f"{type(self).__name__}(contact={self.contact!r}{where})"
 
     def signature(self, speed: ArrayLike) -> Instant:
         """The signature in closed form, which is the same at every speed."""
@@ -71,9 +82,12 @@ class SpringDamperModel(Model):
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ up to which the ball stays on the table, of the model's shape.
 
-        It is Λ_SD(ϖ) for the displacement release and Λ_F(ϖ) for the force release.
+        It is Λ_SD(ϖ) for the displacement release and Λ_F(ϖ) for the force release, and
+        :func:`.held_threshold` in another setting than that of the paper.
         """
         contact = self.contact
+        if not self.setting.is_paper:
+            return np.broadcast_to(held_threshold(contact, self.setting), self.shape).astype(float)
         return permanent_contact_threshold(
             contact.frequency_ratio, contact.damping_ratio, contact.release
         )

@@ -22,6 +22,7 @@ from bouncing_ball.models.laws.force_law import NUMBER, ForceLaw, Unit
 from bouncing_ball.models.laws.motion import ContactDynamics
 from bouncing_ball.models.laws.panel import Start
 from bouncing_ball.models.laws.signature import computed
+from bouncing_ball.models.setting import PAPER, Setting
 
 # The closed form of a motion is used for √γ above this value: the relative error of its steady part
 # is ε/√γ.
@@ -37,7 +38,7 @@ class ContactLaw(ForceLaw):
     collocation, unless the subclass knows it in closed form.
     """
 
-    def dynamics(self, amplitude: ArrayLike) -> Dynamics:
+    def dynamics(self, amplitude: ArrayLike, setting: Setting = PAPER) -> Dynamics:
         """The contacts and flights of balls with this law on a table of amplitude Λ.
 
         Raises
@@ -45,7 +46,7 @@ class ContactLaw(ForceLaw):
         ModelError
             If Λ is outside its range.
         """
-        return ContactDynamics.of(self, amplitude)
+        return ContactDynamics.of(self, amplitude, setting)
 
     def during(self, span: ContactSpan, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """δ and δ′ at times 0 ≤ s ≤ D after the starts of contacts, one time for each contact."""
@@ -53,7 +54,7 @@ class ContactLaw(ForceLaw):
             depth=-span.displacement,
             rate=-span.velocity,
             phase=span.phase,
-            amplitude=span.amplitude,
+            amplitude=span.setting.forcing(span.amplitude),
             weight=np.ones_like(time),
         )
         ends = span.duration, -span.release_displacement, -span.release_velocity

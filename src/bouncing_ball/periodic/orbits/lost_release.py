@@ -21,7 +21,6 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball.models.dynamics import Dynamics
-from bouncing_ball.models.flight import Flight, table
 from bouncing_ball.numerics.corrector import NewtonSettings, solve
 from bouncing_ball.periodic.orbits.legs import Legs
 from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
@@ -62,17 +61,16 @@ class _LostRelease:
             return np.full((*y.shape[:-1], y.shape[-1]), np.nan)
         impact = orbits.impact(dynamics, y)
         duration = orbits.durations(y).ravel()
-        start = impact.displacement, impact.velocity, impact.phase
-        state = dynamics.law.flow(duration, *start, dynamics.amplitude)
-        displacement = state.displacement
-        velocity = state.velocity
-        x, level = table(impact.phase + duration, dynamics.amplitude)
-        flight = Flight(displacement, velocity, x, level, dynamics.amplitude)
+        displacement, velocity = dynamics.after(impact, duration)
+        setting = dynamics.setting
+        phase = impact.phase + duration
+        level = setting.level(phase, dynamics.amplitude)
+        flight = setting.flight(displacement, velocity, phase, level, dynamics.amplitude)
         gap, rate, _, _ = flight.gap(orbits.intervals(y).ravel() - duration)
         _, closing = orbits.states(y)
         lag = np.broadcast_to(_lag(dynamics), duration.shape)
         release = (displacement + lag * velocity).reshape(shape)
-        rise = (velocity + lag * (level - 1)).reshape(shape)
+        rise = (velocity + lag * (flight.y - 1)).reshape(shape)
         faster = rate.reshape(shape) - np.roll(closing, -1, axis=-1)
         lost = rise[..., [self.contact]]
         return np.concatenate([gap.reshape(shape), faster, release, lost], axis=-1)

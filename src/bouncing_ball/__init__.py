@@ -90,6 +90,7 @@ if TYPE_CHECKING:
     from bouncing_ball.periodic.orbits_of_ball import orbit as orbit
     from bouncing_ball.periodic.orbits_of_ball import orbits as orbits
     from bouncing_ball.periodic.orbits_of_ball import permanent_contact as permanent_contact
+    from bouncing_ball.periodic.read_orbits import read_orbits as read_orbits
 
 __version__ = "0.1.0"
 
@@ -128,6 +129,7 @@ _MODULES = {
     "orbit_of_motion": "long_run.orbit_of_motion",
     "orbits": "periodic.orbits_of_ball",
     "permanent_contact": "periodic.orbits_of_ball",
+    "read_orbits": "periodic.read_orbits",
     "rigid": "models.makers",
     "simulate": "models.over_time",
     "spring_damper": "models.makers",

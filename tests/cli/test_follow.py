@@ -123,15 +123,16 @@ def test_arguments_of_a_wrong_type_are_named(refusal, options, words):
         bouncing_ball.follow(doubling, **{"along": ("amplitude", "restitution")} | options)
 
 
-def test_a_part_of_a_branch_is_plain_data(refusal):
+def test_a_part_of_a_branch_has_its_orbits(refusal):
     found = bouncing_ball.follow(bouncing_ball.orbit(RIGID, amplitude=1.4), to=1.5)
     part = found.isel(point=0)
-    with refusal(ModelError, "a part of the result of follow is plain data, without orbits"):
-        part.states()
-    with refusal(ModelError, "is plain data, without orbits"):
+    assert [*part.states()] == [*found.states()][:1]
+    with refusal(NoOrbitError, "the branch has no period doubling; it ends because amplitude"):
         part.first("period doubling")
-    with refusal(ModelError, "without the dimension 'point' is plain data, without a figure"):
+    with refusal(ModelError, "without the dimension 'point' has no figure"):
         part.plot()
+    with refusal(ModelError, "the dataset has no orbits: it lacks ball_model"):
+        found.drop_vars("ball_model").states()
     assert found.isel(point=slice(3)).plot().axes
 
 

@@ -295,7 +295,7 @@ def test_a_whole_branch_has_its_orbits_and_its_words_are_those_of_follow(amplitu
     kinds = {
         orbit.kind: orbit
         for to in (0.1, 5.9)
-        for orbit in bouncing_ball.follow(there, to=to)._whole.special
+        for _, orbit in bouncing_ball.follow(there, to=to).special_states()
     }
     assert [kind for kind, _ in whole.special_states()] == whole.special_kind.values.tolist()
     for kind in ("saddle-node", "period doubling"):
@@ -309,10 +309,15 @@ def test_a_whole_branch_has_its_orbits_and_its_words_are_those_of_follow(amplitu
         whole.first("end of sticking")
 
 
-def test_several_branches_have_no_orbits(refusal):
-    several = bouncing_ball.branch(bouncing_ball.rigid(restitution=0.5), n=[1, 2], points=10)
-    with refusal(ModelError, "the branches of several balls are plain data, without orbits"):
+def test_of_several_branches_one_is_selected(refusal):
+    ball = bouncing_ball.rigid(restitution=0.5)
+    several = bouncing_ball.branch(ball, n=[1, 2], points=10)
+    with refusal(ModelError, "these are orbits of several balls: select one of n with isel"):
         several.first("saddle-node")
+    for n in (1, 2):
+        alone = bouncing_ball.branch(ball, n=n, points=10)
+        assert several.sel(n=n).special_states() == alone.special_states()
+        assert list(several.sel(n=n).states()) == list(alone.states())
 
 
 def test_a_branch_with_an_even_number_of_impacts_passes_a_difference_of_half_a_turn():

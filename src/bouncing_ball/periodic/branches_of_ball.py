@@ -24,6 +24,7 @@ from bouncing_ball.periodic.branches.following import Followed
 from bouncing_ball.periodic.branches.labelled import FollowedBranch
 from bouncing_ball.periodic.branches.observables import VARIABLES, joined, n_t_columns, no_branch
 from bouncing_ball.periodic.one_impact.whole_branch import LARGEST_STEP, whole_branch
+from bouncing_ball.periodic.orbits.saved import KEPT
 from bouncing_ball.periodic.places import by_place
 
 # The longest step along a branch is this fraction of the largest Λ, if that is large: a branch has
@@ -51,8 +52,8 @@ def branch(
     FollowedBranch
         ``amplitude``, ``phase`` and the other observables of each ``point``, and whether the
         orbit is ``stable`` and ``admissible``; ``special_amplitude`` and others of the
-        saddle-nodes, period doublings and grazing orbits. The branch of a single ball has the
-        orbits themselves as well, as that of :func:`bouncing_ball.follow`. Where one of several
+        saddle-nodes, period doublings and grazing orbits. A single branch has the orbits
+        themselves as well, as that of :func:`bouncing_ball.follow`. Where one of several
         branches does not exist it is NaN, and ``end_reason`` says why.
 
     Raises
@@ -80,19 +81,15 @@ def branch(
     if amplitude_max is not None:
         top = checked_number("amplitude_max", amplitude_max, POSITIVE)
 
-    followed: list[Followed] = []
-
     def found(one: Ball, n: int) -> xr.Dataset:
-        followed.append(_branch_of(one.at_limits(n), n, top, count))
-        return n_t_columns(followed[-1])
+        return n_t_columns(_branch_of(one.at_limits(n), n, top, count), kept=True)
 
     grid = Grid(n=family, **a_ball(ball).parameters)
-    whole = by_place(grid, ball, ("n",), found, partial(no_branch, count), joined)
-    data = grid.unfold(describe(whole, VARIABLES))
-    single = None if grid.shape else followed[0]
+    whole = by_place(grid, ball, ("n",), found, partial(no_branch, count, kept=True), joined)
+    data = grid.unfold(describe(whole, VARIABLES | KEPT)).assign_attrs(along="amplitude")
     if top is not None:
         data = data.assign_attrs(amplitude_max=top)
-    return FollowedBranch.of_orbits(data, "branch", single)
+    return FollowedBranch.of(data, "branch")
 
 
 def _branch_of(model: Model, n: int, amplitude_max: float | None, points: int) -> Followed:

@@ -144,7 +144,7 @@ def follow(
     elif orbit.kind == Special.SADDLE_NODE:
         towards = _to_stable_side(orbit, name, value)
     found = following.branch_from(start, name, value, towards=towards, most=most)
-    return FollowedBranch.of_orbits(labelled(found), "follow", found)
+    return FollowedBranch.of(labelled(found), "follow")
 
 
 def _to_stable_side(fold: Orbit, name: str, to: float | None) -> np.ndarray:
@@ -217,7 +217,7 @@ def _curve(orbit: Orbit, names: tuple[str, ...], ranges: Any, most: int) -> Spec
         most=most,
     )
     data = labelled(found).assign_attrs(curve_kind=str(orbit.kind))
-    return SpecialCurve.of_orbits(data, "curve", found)
+    return SpecialCurve.of(data, "curve")
 
 
 def _window(name: str, given: Any, start: float) -> Range | None:

@@ -72,7 +72,7 @@ class Range(NamedTuple):
     high: float
 
 
-def _orbits_of(problem: Coordinates, y: np.ndarray, kind: str = "") -> Orbit:
+def orbits_on(problem: Coordinates, y: np.ndarray, kind: str = "") -> Orbit:
     """The orbits at points y, with phases in [-π, π].
 
     Where a release is lost, which is a double zero, the duration among the unknowns is the one that
@@ -91,7 +91,7 @@ def _orbits_of(problem: Coordinates, y: np.ndarray, kind: str = "") -> Orbit:
 def orbits_along(problem: Coordinates, y: np.ndarray) -> Orbit:
     """The orbits at points y, with phases that pass ±π continuously along a branch."""
     orbits = problem.orbits
-    found = _orbits_of(problem, y)
+    found = orbits_on(problem, y)
     phase, _ = orbits.states(problem.inner(y))
     turned = np.round((phase - found.phases) / (2 * np.pi))
     turns = np.broadcast_to(orbits.turns, phase.shape)
@@ -119,7 +119,12 @@ class Orbits:
         return (self._one(y) for y in self.branch.points)
 
     def _one(self, y: np.ndarray, kind: str = "") -> Orbit:
-        return _orbits_of(self.problem, y, kind)
+        return orbits_on(self.problem, y, kind)
+
+    @property
+    def row(self) -> Orbit:
+        """The orbits as a row."""
+        return orbits_on(self.problem, self.branch.points)
 
     @property
     def special_points(self) -> list[SpecialPoint]:

@@ -2,73 +2,55 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import xarray as xr
 
 from bouncing_ball.datasets.arguments import chosen
 from bouncing_ball.datasets.variables import SHARED, Variable, describe
 from bouncing_ball.drawing.result import MADE_BY, Result
-from bouncing_ball.errors import ModelError
+from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic.branches import observables
 from bouncing_ball.periodic.branches.following import Orbits
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
+from bouncing_ball.periodic.orbits.saved import KEPT, orbits_in
 from bouncing_ball.periodic.orbits.special import Special
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_AXES = {
-    "point": Variable("number of the point, in order along the branch"),
-    "impact": Variable("number of the impact within the orbit"),
-}
+_AXES = {"point": Variable("number of the point, in order along the branch")}
 _PHASES = ("phase", "release_phase", "special_phase")
 
 
 class _Orbits(Result):
-    """Orbits one after another; a part of them, such as ``found.isel(point=0)``, is plain data,
-    which has no orbits.
+    """Orbits one after another, with all that they need among the variables.
+
+    A part of them, such as ``found.isel(point=0)``, a copy, a pickled one, and what
+    :func:`bouncing_ball.read_orbits` reads from a netCDF file have their orbits as well.
     """
 
-    __slots__ = ("_found",)
-
-    @classmethod
-    def of_orbits(cls, data: xr.Dataset, made_by: str, found: Orbits | None) -> Self:
-        """The labelled result of a call; ``found`` are the orbits of a single branch or curve."""
-        result = cls.of(data, made_by)
-        result._found = found
-        return result
+    __slots__ = ()
 
     @property
     def _maker(self) -> str:
         return str(self.attrs.get(MADE_BY, "a call"))
 
-    @property
-    def _whole(self) -> Any:
-        """The branch or curve of which these are the data.
-
-        Raises
-        ------
-        ModelError
-            If this is a part of a result, or several branches.
-        """
-        if not hasattr(self, "_found"):
-            raise ModelError(
-                f"a part of the result of {self._maker} is plain data, without orbits: "
-                "call the method of the whole result"
-            )
-        if self._found is None:
-            raise ModelError(
-                "the branches of several balls are plain data, without orbits: "
-                f"call {self._maker} for each ball"
-            )
-        return self._found
-
-    def plot(self, path: str | Path | None = None) -> Figure:  # type: ignore[override]
+    def plot(  # type: ignore[override]
+        self,
+        path: str | Path | None = None,
+        *,
+        ax: Axes | Iterable[Axes] | None = None,
+        size: tuple[float, float] | None = None,
+        font_size: float | None = None,
+    ) -> Figure:
         """As for every result; a part of the points, such as a slice, has the figure as well.
 
         Raises
@@ -80,14 +62,41 @@ class _Orbits(Result):
         missing = [name for name in needed if name not in self.dims]
         if missing and MADE_BY in self.attrs:
             raise ModelError(
-                f"a part of the result of {self._maker} without the dimension {missing[0]!r} is "
-                f"plain data, without a figure: select a list or a slice, or plot the whole result"
+                f"a part of the result of {self._maker} without the dimension {missing[0]!r} has "
+                "no figure: select a list or a slice, or plot the whole result"
             )
-        return super().plot(path)
+        return super().plot(path, ax=ax, size=size, font_size=font_size)
 
     def states(self) -> Iterator[Orbit]:
-        """The orbits, one after another."""
-        return iter(self._whole)
+        """The orbits, one after another.
+
+        Raises
+        ------
+        ModelError
+            If these are the branches of several balls, or if variables are missing.
+        """
+        return _one_by_one(orbits_in(self))
+
+    def special_states(self) -> list[tuple[str, Orbit]]:
+        """The special orbits with their kinds, in order.
+
+        Raises
+        ------
+        ModelError
+            If these are the branches of several balls, or if variables are missing.
+        """
+        orbits = list(_one_by_one(orbits_in(self, "special_")))
+        kinds = [str(kind) for kind in np.ravel(self.special_kind.values)]
+        # A branch beside others with more special orbits is filled with places without a kind.
+        known = ((kind, orbit) for kind, orbit in zip(kinds, orbits, strict=True) if kind)
+        return [(kind, replace(orbit, kind=kind)) for kind, orbit in known]
+
+
+def _one_by_one(orbits: Orbit) -> Iterator[Orbit]:
+    """The orbits of a row, or a single one."""
+    if not orbits.shape:
+        return iter([orbits])
+    return (orbits[k] for k in range(orbits.size))
 
 
 class FollowedBranch(_Orbits):
@@ -98,10 +107,6 @@ class FollowedBranch(_Orbits):
 
     __slots__ = ()
 
-    def special_states(self) -> list[tuple[str, Orbit]]:
-        """The special orbits with their kinds, in order."""
-        return [(orbit.kind, orbit) for orbit in self._whole.special]
-
     def first(self, kind: str) -> Orbit:
         """The first special orbit of a kind.
 
@@ -111,16 +116,26 @@ class FollowedBranch(_Orbits):
             If the branch has none.
         """
         name = chosen("kind", kind, [str(each) for each in Special])
-        return self._whole.first(Special(name))
+        for here, orbit in self.special_states():
+            if here == name:
+                return orbit
+        end = str(np.ravel(self.end_reason.values)[-1])
+        raise NoOrbitError(f"the branch has no {kind}; it ends because {end}")
 
 
 class SpecialCurve(_Orbits):
     """A curve of special orbits in two parameters; see :class:`FollowedBranch`.
 
-    The figure shows the curve in the plane of the parameters.
+    The orbits of :meth:`states` have the kind of the curve, so that each can be followed. The
+    figure shows the curve in the plane of the parameters.
     """
 
     __slots__ = ()
+
+    def states(self) -> Iterator[Orbit]:
+        """The special orbits, one after another."""
+        kind = str(self.attrs.get("curve_kind", ""))
+        return _one_by_one(orbits_in(self, kind=kind))
 
 
 def _attributes(problem: PeriodicOrbits) -> dict[str, Any]:
@@ -134,10 +149,13 @@ def _attributes(problem: PeriodicOrbits) -> dict[str, Any]:
 
 def labelled(found: Orbits) -> xr.Dataset:
     """The dataset of a branch or a curve, with phases in [-π, π]."""
-    data = observables.branch_columns(found)
+    data = observables.with_orbits(observables.branch_columns(found), found)
     turned = {name: data[name].copy(data=reduce_angle(data[name].values)) for name in _PHASES}
+    turned["phase"] = data.phase.copy(data=found.row.phases)
     along = found.problem.orbits.along
-    known = {name: SHARED.get(name, Variable(name.replace("_", " "))) for name in along}
+    changing = {*along, *(str(name) for name in data.variables if f"special_{name}" in data)}
+    known = {name: SHARED.get(name, Variable(name.replace("_", " "))) for name in changing}
     names = {f"special_{n}": v._replace(long_name=f"{v.long_name} there") for n, v in known.items()}
-    whole = describe(data.assign(turned), observables.VARIABLES | _AXES | known | names)
-    return whole.assign_attrs(_attributes(found.problem.orbits))
+    named = known | names | observables.VARIABLES | _AXES | KEPT
+    whole = describe(data.assign(turned), named)
+    return whole.assign_attrs(_attributes(found.problem.orbits), along=", ".join(along))

@@ -6,16 +6,17 @@ orbits become inadmissible.
 """
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from bouncing_ball.datasets.variables import Variable
 from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.periodic.branches.following import Orbits, orbits_along
+from bouncing_ball.periodic.branches.following import Orbits, orbits_along, orbits_on
 from bouncing_ball.periodic.orbits.balls import Balls
 from bouncing_ball.periodic.orbits.orbit import Orbit
+from bouncing_ball.periodic.orbits.saved import columns_of
 
 VARIABLES = {
     "special": Variable("special point of the branch, in order of arclength"),
@@ -89,21 +90,45 @@ def branch_columns(found: Orbits) -> xr.Dataset:
     ``end_reason`` over ``end``.
     ``special_point`` is the number of the last point before a special orbit.
     """
-    y = found.branch.points
-    special = np.array([each.point for each in found.special_points]).reshape(-1, y.shape[-1])
-    before, arclength = _places(special, y)
-    # In the order along the branch: the grazing orbits are located one kind after another.
-    order = np.argsort(arclength, kind="stable")
-    kinds = [str(found.special_points[k].name) for k in order]
+    special = _special_places(found)
     columns = _orbits_in_columns(
-        orbits_along(found.problem, y),
-        orbits_along(found.problem, special[order]),
-        kinds,
+        orbits_along(found.problem, found.branch.points),
+        orbits_along(found.problem, special.points),
+        special.kinds,
         [str(found.branch.start), str(found.branch.end)],
     )
     return columns.assign(
-        special_arclength=("special", arclength[order]), special_point=("special", before[order])
+        special_arclength=("special", special.arclength), special_point=("special", special.before)
     )
+
+
+def with_orbits(data: xr.Dataset, found: Orbits) -> xr.Dataset:
+    """The dataset of :func:`branch_columns`, with all that its orbits need to come back."""
+    special = _special_places(found)
+    columns = columns_of(orbits_on(found.problem, special.points), "special", "special_")
+    columns |= columns_of(found.row, "point")
+    known = {name: data[name] for name in data.variables}
+    return data.assign({name: x for name, x in columns.items() if name not in known})
+
+
+class _Special(NamedTuple):
+    """The special points of a branch in the order along it: the grazing orbits are located one kind
+    after another. ``before`` and ``arclength`` are those of :func:`_places`.
+    """
+
+    points: np.ndarray
+    kinds: list[str]
+    before: np.ndarray
+    arclength: np.ndarray
+
+
+def _special_places(found: Orbits) -> _Special:
+    y = found.branch.points
+    special = np.array([each.point for each in found.special_points]).reshape(-1, y.shape[-1])
+    before, arclength = _places(special, y)
+    order = np.argsort(arclength, kind="stable")
+    kinds = [str(found.special_points[k].name) for k in order]
+    return _Special(special[order], kinds, before[order], arclength[order])
 
 
 def _places(special: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -168,11 +193,12 @@ def _values(orbit: Orbit, name: str) -> np.ndarray:
     return np.broadcast_to(Balls(orbit.model, orbit.amplitude).values[name], orbit.shape)
 
 
-def n_t_columns(found: Orbits) -> xr.Dataset:
+def n_t_columns(found: Orbits, kept: bool = False) -> xr.Dataset:
     """As :func:`branch_columns` for orbits with one impact, from the unstable to the stable side,
-    without an axis of the impacts.
+    without an axis of the impacts; with all that the orbits need to come back if they are ``kept``.
     """
-    return _of_one_impact(branch_columns(found))
+    columns = branch_columns(found)
+    return _of_one_impact(with_orbits(columns, found) if kept else columns)
 
 
 def _of_one_impact(columns: xr.Dataset) -> xr.Dataset:
@@ -181,14 +207,19 @@ def _of_one_impact(columns: xr.Dataset) -> xr.Dataset:
     return one.assign(special_kind=kinds).assign_coords(end=["unstable side", "stable side"])
 
 
-def no_branch(count: int, error: Exception) -> xr.Dataset:
+def no_branch(count: int, error: Exception, kept: bool = False) -> xr.Dataset:
     """A dataset like that of :func:`n_t_columns`, of NaN, with the error as its end reasons."""
     none = Orbit.of(RestitutionModel(1.0), 1, np.full(count, np.nan), np.nan)
     found = _orbits_in_columns(none, none[:0], [], [str(error)] * 2)
     empty = np.empty(0)
-    return _of_one_impact(
-        found.assign(special_arclength=("special", empty), special_point=("special", empty))
-    )
+    places: dict[str, Any] = {
+        "special_arclength": ("special", empty),
+        "special_point": ("special", empty),
+    }
+    if kept:
+        places |= columns_of(none, "point") | columns_of(none[:0], "special", "special_")
+    missing = {name: x for name, x in places.items() if name not in found}
+    return _of_one_impact(found.assign(missing))
 
 
 def joined(branches: list[xr.Dataset], dim: str) -> xr.Dataset:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -26,6 +26,9 @@ from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls
 from bouncing_ball.periodic.orbits.legs import Legs, lag_of, time_to_section, without_force
 from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
 from bouncing_ball.periodic.orbits.simulation import is_admissible
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 OBSERVABLES = (
     "amplitude",
@@ -165,7 +168,10 @@ class Orbit(Batch):
 
     @property
     def _values(self) -> tuple[Any, ...]:
-        return tuple(_comparable(getattr(self, field.name)) for field in fields(self))
+        values = {field.name: getattr(self, field.name) for field in fields(self)}
+        values["turns"] = np.broadcast_to(self.turns, (*self.shape, self.impacts))
+        values["resumes"] = np.broadcast_to(self.resumes, (self.impacts,))
+        return tuple(_comparable(each) for each in values.values())
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Orbit) and self._values == other._values
@@ -176,6 +182,24 @@ class Orbit(Batch):
     def __getstate__(self) -> dict[str, Any]:
         # Computed quantities are left out: the equations of an orbit hold functions.
         return {field.name: getattr(self, field.name) for field in fields(self)}
+
+    def to_dataset(self) -> xr.Dataset:
+        """The orbit, or a row of orbits, as a labelled dataset with the model and its parameters.
+
+        :func:`bouncing_ball.read_orbits` makes equal orbits from it, also from a netCDF file of it.
+
+        Examples
+        --------
+        >>> from bouncing_ball import read_orbits
+        >>> from bouncing_ball.models.rigid import RestitutionModel
+        >>> orbit = Orbit.of(RestitutionModel(0.5), 1, 1.5, 0.7)
+        >>> read_orbits(orbit.to_dataset()) == orbit
+        True
+        """
+        # Imported here, because a single orbit needs no labels.
+        from bouncing_ball.periodic.orbits.saved import dataset_of
+
+        return dataset_of(self)
 
     # The shape of the orbits is that of the model, of Λ and of the impacts without their last axis.
 

@@ -41,7 +41,7 @@ equations.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property, lru_cache
 from typing import Any, NamedTuple, Self
 
@@ -111,6 +111,10 @@ class PeriodicOrbits:
     selects: bool = False
     unit: Any = 1.0
     resumes: Any = False
+
+    def __getstate__(self) -> dict[str, Any]:
+        # Only the fields are pickled: what has been computed holds functions.
+        return {field.name: getattr(self, field.name) for field in fields(self)}
 
     # The unknowns of a branch may be others, such as those of the paper.
 

@@ -1,0 +1,62 @@
+"""Orbits, branches and curves that were saved, for a user."""
+
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from bouncing_ball.datasets.files import read_dataset
+from bouncing_ball.drawing.result import MADE_BY
+from bouncing_ball.errors import ModelError, ParameterError
+from bouncing_ball.periodic.branches.labelled import FollowedBranch, SpecialCurve
+from bouncing_ball.periodic.orbits.orbit import Orbit
+from bouncing_ball.periodic.orbits.saved import has_orbits, orbits_in
+
+_RESULTS = {"follow": FollowedBranch, "branch": FollowedBranch, "curve": SpecialCurve}
+
+
+def read_orbits(source: str | Path | xr.Dataset) -> Orbit | FollowedBranch | SpecialCurve:
+    """Orbits, a branch or a curve from a netCDF file or a dataset, with the same bits.
+
+    Every result of :func:`bouncing_ball.follow` and :func:`bouncing_ball.branch` is such a dataset,
+    and so is that of ``orbit.to_dataset()``; ``to_netcdf(path)`` writes it to a file.
+
+    Parameters
+    ----------
+    source : str, Path or Dataset
+        The file, or the dataset. If the orbits obey a law of your own, its class must be defined.
+
+    Returns
+    -------
+    Orbit, FollowedBranch or SpecialCurve
+        What was saved.
+
+    Raises
+    ------
+    ModelError
+        If there is no such file, if it contains no orbits, or if a law is not known.
+
+    Examples
+    --------
+    >>> import bouncing_ball
+    >>> one = bouncing_ball.orbit(bouncing_ball.rigid(restitution=0.85), amplitude=0.9)
+    >>> branch = bouncing_ball.follow(one, to=1.2)
+    >>> part = bouncing_ball.read_orbits(branch.isel(point=slice(2, 5)))
+    >>> part.first("period doubling") == branch.first("period doubling")
+    True
+    >>> list(part.states()) == list(branch.states())[2:5]
+    True
+    """
+    if not isinstance(source, str | Path | xr.Dataset):
+        raise ParameterError("{source} = {} is neither a path nor a dataset", repr(source))
+    where = "the dataset" if isinstance(source, xr.Dataset) else str(source)
+    data = source if isinstance(source, xr.Dataset) else read_dataset(source)
+    if not has_orbits(data):
+        raise ModelError(
+            f"{where} contains no orbits: it is no result of follow, branch or orbit.to_dataset()"
+        )
+    result: Any = _RESULTS.get(str(data.attrs.get(MADE_BY, "")))
+    if result is None:
+        kind = str(data["kind"].item()) if "kind" in data else ""
+        return orbits_in(data, kind=kind)
+    return result(data.data_vars, data.coords, data.attrs)

@@ -79,7 +79,8 @@ def model_of(text: str, arrays: Mapping[str, Any]) -> Any:
 
 def _subclasses(base: type) -> Iterator[type]:
     """The subclasses of a class that are defined at present."""
-    for each in base.__subclasses__():
+    found: list[type] = base.__subclasses__()
+    for each in found:
         yield each
         yield from _subclasses(each)
 

@@ -10,7 +10,7 @@ from bouncing_ball.drawing.result import MADE_BY
 from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.periodic.branches.labelled import FollowedBranch, SpecialCurve
 from bouncing_ball.periodic.orbits.orbit import Orbit
-from bouncing_ball.periodic.orbits.saved import has_orbits, orbits_in
+from bouncing_ball.periodic.orbits.saved import has_orbits
 
 _RESULTS = {"follow": FollowedBranch, "branch": FollowedBranch, "curve": SpecialCurve}
 
@@ -57,6 +57,5 @@ def read_orbits(source: str | Path | xr.Dataset) -> Orbit | FollowedBranch | Spe
         )
     result: Any = _RESULTS.get(str(data.attrs.get(MADE_BY, "")))
     if result is None:
-        kind = str(data["kind"].item()) if "kind" in data else ""
-        return orbits_in(data, kind=kind)
+        return Orbit.of_dataset(data)
     return result(data.data_vars, data.coords, data.attrs)

@@ -19,7 +19,7 @@ from bouncing_ball.periodic.branches import observables
 from bouncing_ball.periodic.branches.following import Orbits
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
-from bouncing_ball.periodic.orbits.saved import KEPT, orbits_in
+from bouncing_ball.periodic.orbits.saved import KEPT
 from bouncing_ball.periodic.orbits.special import Special
 
 if TYPE_CHECKING:
@@ -75,7 +75,7 @@ class _Orbits(Result):
         ModelError
             If these are the branches of several balls, or if variables are missing.
         """
-        return _one_by_one(orbits_in(self))
+        return _one_by_one(Orbit.of_dataset(self))
 
     def special_states(self) -> list[tuple[str, Orbit]]:
         """The special orbits with their kinds, in order.
@@ -85,7 +85,7 @@ class _Orbits(Result):
         ModelError
             If these are the branches of several balls, or if variables are missing.
         """
-        orbits = list(_one_by_one(orbits_in(self, "special_")))
+        orbits = list(_one_by_one(Orbit.of_dataset(self, "special_")))
         kinds = [str(kind) for kind in np.ravel(self.special_kind.values)]
         # A branch beside others with more special orbits is filled with places without a kind.
         known = ((kind, orbit) for kind, orbit in zip(kinds, orbits, strict=True) if kind)
@@ -135,7 +135,7 @@ class SpecialCurve(_Orbits):
     def states(self) -> Iterator[Orbit]:
         """The special orbits, one after another."""
         kind = str(self.attrs.get("curve_kind", ""))
-        return _one_by_one(orbits_in(self, kind=kind))
+        return _one_by_one(replace(Orbit.of_dataset(self), kind=kind))
 
 
 def _attributes(problem: PeriodicOrbits) -> dict[str, Any]:

@@ -201,6 +201,19 @@ class Orbit(Batch):
 
         return dataset_of(self)
 
+    @classmethod
+    def of_dataset(cls, data: xr.Dataset, prefix: str = "") -> Self:
+        """The orbits in the variables of a dataset whose names begin with a prefix.
+
+        Raises
+        ------
+        ModelError
+            If there are none, or if their law is not known.
+        """
+        from bouncing_ball.periodic.orbits.saved import fields_in
+
+        return cls(**fields_in(data, prefix))
+
     # The shape of the orbits is that of the model, of Λ and of the impacts without their last axis.
 
     @property

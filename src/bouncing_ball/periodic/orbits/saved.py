@@ -18,7 +18,6 @@ from bouncing_ball.datasets.variables import SHARED, Variable, describe
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.as_text import model_of, text_of
 from bouncing_ball.numerics.elementary import reduce_angle
-from bouncing_ball.periodic.orbits.orbit import Orbit
 
 ORBIT = "orbit"
 """The dimension of several orbits that are no branch."""
@@ -40,7 +39,7 @@ _FIELDS = {
 }
 
 
-def columns_of(orbit: Orbit, over: str, prefix: str = "") -> dict[str, Any]:
+def columns_of(orbit: Any, over: str, prefix: str = "") -> dict[str, Any]:
     """The fields of orbits, a row of them over a dimension, as variables with this prefix.
 
     A single orbit has no such dimension.
@@ -61,7 +60,7 @@ def columns_of(orbit: Orbit, over: str, prefix: str = "") -> dict[str, Any]:
     return found | {"ball_model": ((), text), "resumes": ("impact", resumes)}
 
 
-def dataset_of(orbit: Orbit) -> xr.Dataset:
+def dataset_of(orbit: Any) -> xr.Dataset:
     """One orbit, or a row of orbits, as a labelled dataset; see :meth:`.Orbit.to_dataset`."""
     if len(orbit.shape) > 1:
         raise ModelError(f"orbits of the shape {orbit.shape} are not in a row: give a part of them")
@@ -79,8 +78,8 @@ def has_orbits(data: xr.Dataset, prefix: str = "") -> bool:
     return needed <= set(data.variables)
 
 
-def orbits_in(data: xr.Dataset, prefix: str = "", kind: str = "") -> Orbit:
-    """The orbits in variables of this prefix, a row or a single one.
+def fields_in(data: xr.Dataset, prefix: str = "") -> dict[str, Any]:
+    """The fields of the orbits in variables of this prefix, of a row or of a single one.
 
     Raises
     ------
@@ -94,7 +93,6 @@ def orbits_in(data: xr.Dataset, prefix: str = "", kind: str = "") -> Orbit:
     if data["ball_model"].ndim:
         names = ", ".join(map(str, data["ball_model"].dims))
         raise ModelError(f"these are orbits of several balls: select one of {names} with isel")
-    several = data[prefix + "phase"].ndim > ("impact" in data[prefix + "phase"].dims)
     values: dict[str, np.ndarray] = {}
     for name, field in _FIELDS.items():
         variable = data[prefix + name]
@@ -105,17 +103,17 @@ def orbits_in(data: xr.Dataset, prefix: str = "", kind: str = "") -> Orbit:
     if amplitude is None:
         raise ModelError("the dataset has no orbits: amplitude is missing")
     along = str(data.attrs.get("along", "amplitude"))
-    return Orbit(
-        model=model_of(str(data["ball_model"].item()), given),
-        amplitude=np.asarray(amplitude) if several and np.ndim(amplitude) else float(amplitude),
-        turns=values["turns"].astype(int),
-        phases=reduce_angle(values["phases"]),
-        velocities=values["velocities"],
-        durations=values["durations"],
-        resumes=np.atleast_1d(data["resumes"].values),
-        kind=kind,
-        along=tuple(along.split(", ")),
-    )
+    return {
+        "model": model_of(str(data["ball_model"].item()), given),
+        "amplitude": np.asarray(amplitude) if np.ndim(amplitude) else float(amplitude),
+        "turns": values["turns"].astype(int),
+        "phases": reduce_angle(values["phases"]),
+        "velocities": values["velocities"],
+        "durations": values["durations"],
+        "resumes": np.atleast_1d(data["resumes"].values),
+        "kind": str(data["kind"].item()) if "kind" in data else "",
+        "along": tuple(along.split(", ")),
+    }
 
 
 def _names_of(data: xr.Dataset, prefix: str) -> list[str]:

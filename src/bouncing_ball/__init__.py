@@ -66,6 +66,7 @@ if TYPE_CHECKING:
     from bouncing_ball.drawing.result import open as open
     from bouncing_ball.errors import ModelError as ModelError
     from bouncing_ball.errors import NoOrbitError as NoOrbitError
+    from bouncing_ball.long_run.basin_entropy import basin_entropy as basin_entropy
     from bouncing_ball.long_run.motion_of import basins as basins
     from bouncing_ball.long_run.motion_of import lyapunov_exponent as lyapunov_exponent
     from bouncing_ball.long_run.motion_of import motion_of as motion_of
@@ -109,6 +110,7 @@ _MODULES = {
     "Table": "contacts.table",
     "Waveform": "models.waveform",
     "assess_contact": "contacts.assess",
+    "basin_entropy": "long_run.basin_entropy",
     "basins": "long_run.motion_of",
     "branch": "periodic.branches_of_ball",
     "choose_contact": "contacts.choose",

@@ -10,10 +10,11 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.datasets import CASE
-from bouncing_ball.datasets.variables import Variable, described
+from bouncing_ball.datasets.variables import Variable, describe, described
 from bouncing_ball.errors import ParameterError
 from bouncing_ball.long_run.basins import basins as basins_of
 from bouncing_ball.long_run.basins import fastest
+from bouncing_ball.long_run.contraction import exponent_sum
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.motions import Motions
 from bouncing_ball.models.waveform import Waveform
@@ -24,6 +25,8 @@ VARIABLES = {
         "decimal digits of the start that the motion has lost on the way", budget=math.inf
     ),
     "end_velocity": Variable("velocity of the ball before that impact"),
+    "exponent_sum": Variable("sum of both Lyapunov exponents per period of the table"),
+    "second_exponent": Variable("smaller Lyapunov exponent per period of the table"),
     "followed": Variable("number of impacts for which a ball is followed"),
     "start": Variable("start of a ball at one amplitude"),
     "impact": Variable("impact of the motion on which the ball ends"),
@@ -87,6 +90,24 @@ def motions(
     require_memory(amplitude.size, "a grid of starts")
     found = final_motions(model, amplitude, phase, velocity, impacts=impacts)
     return described(_variables(found, (CASE,)), variables=VARIABLES)
+
+
+def exponents(
+    model: Any, amplitude: np.ndarray, phase: np.ndarray, velocity: np.ndarray, impacts: int
+) -> xr.Dataset:
+    """Both Lyapunov exponents of the motions of :func:`motions`, and the kinds of these motions."""
+    found = motions(model, amplitude, phase, velocity, impacts)
+    length = np.where(found.impacts.values > 0, found.impacts.values, impacts)
+    whole = exponent_sum(
+        model, amplitude, found.end_phase.values, found.end_velocity.values, length
+    )
+    largest = found.lyapunov_exponent.values
+    # Where the ball forgets, both exponents are -∞.
+    with np.errstate(invalid="ignore"):
+        second = np.where(np.isneginf(largest), largest, whole - largest)
+    sums = {"exponent_sum": (CASE, whole), "second_exponent": (CASE, second)}
+    kept = found[["lyapunov_exponent", "lyapunov_error", "kind"]]
+    return describe(kept.assign(sums), VARIABLES)
 
 
 def _variables(found: Motions, dims: tuple[str, ...]) -> dict[str, Any]:

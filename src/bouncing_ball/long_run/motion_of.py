@@ -92,7 +92,7 @@ def lyapunov_exponent(
     velocity: StartAxis = -math.pi,
     impacts: FollowedImpacts = 1500,
 ) -> Result:
-    """The largest Lyapunov exponent of the motion on which a ball ends, per period of the table.
+    """The two Lyapunov exponents of the motion on which a ball ends, per period of the table.
 
     The parameters are those of :func:`motion_of`.
 
@@ -101,8 +101,11 @@ def lyapunov_exponent(
     Result
         ``lyapunov_exponent`` with ``lyapunov_error``, its standard error, and the ``kind`` of the
         motion. For a periodic motion it follows from the larger multiplier, and is -∞ if the
-        later motion does not depend on earlier impacts. The figure shows the exponents with their
-        standard errors.
+        later motion does not depend on earlier impacts. ``exponent_sum`` is the sum of both
+        exponents: the mean of the logarithm of the determinant of the return map, over one
+        repetition, or over as many impacts as the ball was followed for. ``second_exponent`` is
+        the difference of the two. The figure shows the largest exponents with their standard
+        errors.
 
     Raises
     ------
@@ -118,8 +121,11 @@ def lyapunov_exponent(
     >>> abs(round(float(found.lyapunov_exponent) - math.log(0.85), 6))
     0.0
     """
-    found = motion_of(ball, amplitude=amplitude, phase=phase, velocity=velocity, impacts=impacts)
-    return Result.of(found[["lyapunov_exponent", "lyapunov_error", "kind"]], "exponent")
+    grid, first = first_impacts(ball, amplitude, phase, velocity)
+    most = checked_number("impacts", impacts, FOLLOWED)
+    model = first.model(ball, grid)
+    found = grids.exponents(model, *first, most)
+    return Result.of(grid.unfold(found), "exponent")
 
 
 def orbit_diagram(

@@ -87,6 +87,7 @@ if TYPE_CHECKING:
     from bouncing_ball.models.waveform import Waveform as Waveform
     from bouncing_ball.periodic.branches.follow import follow as follow
     from bouncing_ball.periodic.branches_of_ball import branch as branch
+    from bouncing_ball.periodic.orbits.normal_form import normal_form as normal_form
     from bouncing_ball.periodic.orbits_of_ball import limits as limits
     from bouncing_ball.periodic.orbits_of_ball import orbit as orbit
     from bouncing_ball.periodic.orbits_of_ball import orbits as orbits
@@ -125,6 +126,7 @@ _MODULES = {
     "limits": "periodic.orbits_of_ball",
     "lyapunov_exponent": "long_run.motion_of",
     "motion_of": "long_run.motion_of",
+    "normal_form": "periodic.orbits.normal_form",
     "open": "drawing.result",
     "orbit": "periodic.orbits_of_ball",
     "orbit_diagram": "long_run.motion_of",

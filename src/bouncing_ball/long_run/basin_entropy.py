@@ -64,7 +64,7 @@ def basin_entropy(found: xr.Dataset, box: int = 5) -> BasinEntropy:
     >>> halves = np.tile([[0, 0, 0, 1], [0, 0, 0, 1]], (2, 1))
     >>> map = xr.Dataset({"destination": (("start_speed", "start_phase"), halves)})
     >>> found = basin_entropy(map, box=2)
-    >>> found.boxes, found.boundary_boxes, round(found.boundary_entropy / np.log(2), 12)
+    >>> found.boxes, found.boundary_boxes, round(found.boundary_entropy / float(np.log(2)), 12)
     (4, 2, 1.0)
     """
     if not isinstance(found, xr.Dataset) or "destination" not in found:

@@ -5,9 +5,15 @@ of one more equation, g = 0. With two parameters the solutions are a curve, whic
 the same way as a branch. On it these points are named:
 
 * a cusp, where two saddle-nodes meet: the curve turns back in the plane of the parameters;
+* a generalized period doubling, where the coefficient of the normal form vanishes: the doublings on
+  one side of it are supercritical and those on the other side subcritical, and a curve of
+  saddle-nodes of the doubled orbits ends there;
 * the resonances 1:1 and 1:2, where both multipliers are 1 on a curve of saddle-nodes, or -1 on one
   of period doublings. The product of the multipliers is below 1 for every contact that dissipates,
   so that a curve meets a resonance only where the dissipation ends, for example at r = 1.
+
+A fold-flip, with the multipliers 1 and -1, does not occur: the determinant of the return map would
+be -1, and it is a product of positive contractions.
 
 At a cusp the tangent of the curve lies in the direction u of the null vector of the orbit's
 equations alone. The cusp is therefore a zero of the derivative of g in the direction u.
@@ -37,6 +43,7 @@ from bouncing_ball.periodic.branches.following import (
     limits_of,
 )
 from bouncing_ball.periodic.orbits.balls import LAMBDA, LOWEST
+from bouncing_ball.periodic.orbits.normal_form import coefficient
 from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
 from bouncing_ball.periodic.orbits.release import release_condition
@@ -61,6 +68,9 @@ _BY_DIFFERENCES = NewtonSettings(tolerance=1e-9, max_iterations=20)
 # A start that is farther from the corrected special orbit is none of its kind. Special orbits are
 # located to 1e-12, and those before a singular end of a branch to about 1e-5.
 _ANOTHER = 1e-3
+# The coefficient of doublings is computed at every so many points of a curve: it takes about as
+# long as a point, and changes slowly.
+_STRIDE = 4
 _MARGINS = {
     Special.GRAZING_FLIGHT: flight_margin,
     Special.GRAZING_IMPACT: impact_margin,
@@ -73,6 +83,7 @@ class Degenerate(StrEnum):
     CUSP = "cusp"
     ONE_TO_ONE = "1:1 resonance"
     ONE_TO_TWO = "1:2 resonance"
+    GENERALIZED = "generalized period doubling"
 
 
 def condition_of(orbits: PeriodicOrbits, kind: Special) -> Condition:
@@ -176,7 +187,11 @@ def curve_through(
             )
         except ContinuationError as error:
             raise NoOrbitError(str(error)) from None
-        special = [*_cusps(problem, branch, kind), *_resonances(problem, branch, kind)]
+        special = [
+            *_cusps(problem, branch, kind),
+            *_resonances(problem, branch, kind),
+            *_generalized(problem, branch, kind),
+        ]
         backwards = replace(branch, points=branch.points[::-1], end=branch.start)
         tests = [each for each in (*events(orbits), loss_of_release(orbits)) if each.name != kind]
         named = replace(
@@ -269,6 +284,28 @@ def _resonances(problem: CurveProblem, branch: Branch, kind: Special) -> list[Sp
     inner = np.flatnonzero((values[1:] > _RESONANT) != (values[:-1] > _RESONANT))
     for k in inner:
         place = locate(problem, Event(name, excess), branch.points[k], branch.points[k + 1])
+        if place is not None:
+            found.append(place)
+    return found
+
+
+def _generalized(problem: CurveProblem, branch: Branch, kind: Special) -> list[SpecialPoint]:
+    """The places between points of the curve where the coefficient of the doublings vanishes."""
+    if kind is not Special.PERIOD_DOUBLING:
+        return []
+
+    def cubic(y: np.ndarray) -> np.ndarray:
+        rows = y.reshape(-1, y.shape[-1])
+        values = [coefficient(problem.orbits, row, Bifurcation.PERIOD_DOUBLING)[0] for row in rows]
+        return np.reshape(values, y.shape[:-1])
+
+    last = len(branch.points) - 1
+    tested = np.unique([*range(0, last, _STRIDE), last])
+    values = cubic(branch.points[tested])
+    found = []
+    for k in np.flatnonzero(values[1:] * values[:-1] < 0):
+        left, right = (branch.points[tested[j]] for j in (k, k + 1))
+        place = locate(problem, Event(Degenerate.GENERALIZED, cubic), left, right, _BY_DIFFERENCES)
         if place is not None:
             found.append(place)
     return found

@@ -1,0 +1,82 @@
+"""The return map next to a periodic orbit, with its derivative.
+
+The equations of :mod:`~bouncing_ball.periodic.orbits.problem` are solved by orbits alone. Here the
+map is evaluated at states beside the first impact of an orbit: each flight lands near the time at
+which the orbit lands, and each contact ends near the time at which that of the orbit does, so that
+the map is the smooth continuation of that of the orbit.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from bouncing_ball.numerics.elementary import reduce_angle
+from bouncing_ball.periodic.orbits.balls import Balls
+from bouncing_ball.periodic.orbits.legs import lag_of, landed, without_force
+from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
+
+# Newton's method for a landing doubles its digits in each round.
+_ROUNDS = 12
+_SETTLED = 4e-16
+
+
+class Returned(NamedTuple):
+    """Images of states under the return map: their distances from the first impact of the orbit,
+    shape (states, 2), and the derivatives of the map, shape (states, 2, 2).
+    """
+
+    distance: np.ndarray
+    derivative: np.ndarray
+
+
+def returned(
+    orbits: PeriodicOrbits, y: np.ndarray, aside: np.ndarray, balls: Balls | None = None
+) -> Returned:
+    """The images of states at distances ``aside`` (dφ, dδ′) from the first impact of an orbit.
+
+    Parameters
+    ----------
+    orbits : PeriodicOrbits
+        The equations of one orbit.
+    y : ndarray, shape (N + parameters,)
+        The orbit.
+    aside : ndarray, shape (states, 2)
+    balls : Balls, optional
+        Other balls than those of the orbit, one for each state.
+
+    Returns
+    -------
+    Returned
+        NaN for states that do not return.
+    """
+    one = orbits.at(y)
+    dynamics = one.dynamics() if balls is None else balls.dynamics()
+    phases, velocities = orbits.states(y)
+    lasts = orbits.beside(y).duration[0]
+    interval = orbits.intervals(y)
+    turned = aside[:, 0]
+    velocity = velocities[0] + aside[:, 1]
+    derivative = np.broadcast_to(np.eye(2), (len(aside), 2, 2))
+    k = orbits.impacts
+    whole = np.ones(len(aside), dtype=bool)
+    with np.errstate(all="ignore"):
+        for i in range(k):
+            after = (i + 1) % k
+            lag = lag_of(dynamics, whole & orbits.resuming[i])
+            next_lag = lag_of(dynamics, whole & orbits.resuming[after])
+            start = dynamics.at_section(reduce_angle(phases[i] + turned), velocity)
+            impact = without_force(start, lag)
+            departure = dynamics.depart_after(impact, np.full(len(aside), lasts[i]))
+            due = interval[i] - turned
+            for _ in range(_ROUNDS):
+                landing = landed(dynamics, impact, departure, departure.duration, due, next_lag)
+                due = due + landing.late
+                if not np.any(np.abs(landing.late) > _SETTLED * np.abs(due)):
+                    break
+            change = dynamics.jacobian(impact, departure, landing.after, landing.passed)
+            matrix = np.moveaxis(np.array([[change.a, change.b], [change.c, change.d]]), -1, 0)
+            derivative = matrix @ derivative
+            phase, velocity = dynamics.section(landing.after)
+            turned = reduce_angle(phase - phases[after])
+    distance = np.stack([turned, velocity - velocities[0]], axis=-1)
+    return Returned(distance, derivative)

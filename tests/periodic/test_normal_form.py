@@ -1,0 +1,210 @@
+"""The criticality of bifurcations, against closed forms, 40 digits and simulation."""
+
+import math
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+import bouncing_ball
+from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.spring_damper import SpringDamper
+
+THIRD = bouncing_ball.Waveform([1.0, 0.0, 0.04])
+
+
+def _doubling(ball, amplitude, to):
+    one = bouncing_ball.orbit(ball, amplitude=amplitude)
+    return bouncing_ball.follow(one, to=to).first("period doubling")
+
+
+@pytest.mark.parametrize("n", [1, 2])
+@pytest.mark.parametrize("r", [0.3, 0.8])
+def test_the_saddle_node_of_the_restitution_model_is_that_of_its_closed_form(r, n):
+    """Λ cos φ = nπ(1 - r)/(1 + r), so that φ² = 2 dΛ/Λ next to φ = 0, where δ′ is the same on the
+    whole branch: ξ = φ, and -rate/a = 2/Λ. The flight lands at φ + 2πn + (1 + r) dφ-terms; the
+    second derivative by φ at fixed δ′ follows from Λ sin φ alone.
+    """
+    ball = bouncing_ball.rigid(restitution=r)
+    fold, _ = bouncing_ball.limits(ball, n)
+    found = bouncing_ball.normal_form(fold)
+    lam = n * math.pi * (1 - r) / (1 + r)
+    assert found.direction == pytest.approx((1.0, 0.0), abs=1e-12)
+    assert -found.rate / found.coefficient == pytest.approx(2 / lam, rel=1e-9)
+    assert found.opens_upwards and found.other == pytest.approx(r * r, rel=1e-12)
+    assert found.error < 1e-10 * abs(found.coefficient)
+
+
+def _map_in_digits(r, lam):
+    """The return map of the restitution model near one period, (φ, δ′) → (φ - 2π, δ′)."""
+
+    def image(phase, velocity):
+        up = -r * velocity + lam * mp.cos(phase)
+
+        def gap(t):
+            return lam * mp.sin(phase) + up * t - t * t / 2 - lam * mp.sin(phase + t)
+
+        t = mp.findroot(gap, 2 * mp.pi)
+        return phase + t - 2 * mp.pi, up - t - lam * mp.cos(phase + t)
+
+    return image
+
+
+def test_the_coefficient_of_a_doubling_is_that_of_forty_digits():
+    """The third derivative of F∘F along its centre manifold: with the slow coordinate ξ the twice
+    returned ξ is ξ - 2 b ξ³ + … on the doubling, whatever the fast coordinate does. The manifold is
+    found by the graph transform, in which the fast deviation shrinks by the other multiplier.
+    """
+    doubling = _doubling(bouncing_ball.rigid(restitution=0.5), 1.4, 1.8)
+    found = bouncing_ball.normal_form(doubling)
+    with mp.workdps(40):
+        r = mp.mpf("0.5")
+        # The doubling in closed form: (1 + r)² Λ sin φ = 2 (1 + r²) and Eq. 6.
+        along = mp.pi * (1 - r) / (1 + r)
+        across = 2 * (1 + r * r) / (1 + r) ** 2
+        lam = mp.sqrt(along**2 + across**2)
+        phase, velocity = mp.atan2(across, along), -2 * mp.pi / (1 + r)
+        assert abs(float(lam) - doubling.amplitude) < 1e-12
+        image = _map_in_digits(r, lam)
+
+        def slow(xi):
+            """The slow coordinate after two returns, p·(F²(x) - x₀), on the centre manifold."""
+            slopes = mp.matrix(2, 2)
+            for j in range(2):
+                for i in range(2):
+                    at = [phase, velocity]
+
+                    def entry(x, i=i, j=j, at=at):
+                        point = list(at)
+                        point[j] = x
+                        return image(*point)[i]
+
+                    slopes[i, j] = mp.diff(entry, at[j])
+            values, right = mp.eig(slopes)
+            k = 0 if abs(values[0] + 1) < abs(values[1] + 1) else 1
+            q, w = right[:, k], right[:, 1 - k]
+            q = q / mp.norm(q)
+            basis = mp.matrix([[q[0], w[0]], [q[1], w[1]]])
+            inverse = basis**-1
+
+            # Starts off the manifold by c ξ²: its slow coordinate is that of the map after the fast
+            # deviation is removed, so that c solves the graph equation h(ξ) = λ h(-ξ) + g ξ².
+            def both(xi, eta):
+                x = basis * mp.matrix([xi, eta])
+                f = image(phase + x[0], velocity + x[1])
+                return inverse * mp.matrix([f[0] - phase, f[1] - velocity])
+
+            other = values[1 - k]
+            g = mp.diff(lambda s: both(s, 0)[1], 0, 2) / 2
+            c = g / (1 - other)
+            first = both(xi, c * xi * xi)
+            return first[0]
+
+        # On the manifold F: ξ → -ξ + α ξ² + β ξ³, and b = α² + β.
+        alpha = mp.diff(slow, 0, 2) / 2
+        beta = mp.diff(slow, 0, 3) / 6
+        expected = float(mp.re(alpha**2 + beta))
+    assert found.coefficient == pytest.approx(expected, abs=2 * found.error + 1e-9)
+    assert found.error < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("ball", "amplitude", "to", "supercritical"),
+    [
+        (bouncing_ball.rigid(restitution=0.5), 1.4, 1.8, True),
+        (bouncing_ball.spring_damper(restitution=0.6, frequency_ratio=8.0), 1.2, 1.8, True),
+        (bouncing_ball.rigid(restitution=0.93, table=THIRD), 0.9, 1.6, False),
+    ],
+)
+def test_doubled_orbits_are_where_the_normal_form_has_them(ball, amplitude, to, supercritical):
+    doubling = _doubling(ball, amplitude, to)
+    found = bouncing_ball.normal_form(doubling)
+    assert found.is_supercritical is supercritical is found.opens_upwards
+    to = doubling.amplitude + (0.2 if supercritical else -0.2)
+    twice = next(bouncing_ball.follow(doubling, to=to, points=12).states())
+    change = twice.amplitude - doubling.amplitude
+    assert (change > 0) is supercritical and twice.is_stable() is supercritical
+    # Half the distance of the two turns at the first impact is ξ q, up to ξ³.
+    aside = np.array(
+        [
+            twice.phases[0] - twice.phases[1],
+            twice.relative_impact_velocity[0] - twice.relative_impact_velocity[1],
+        ]
+    )
+    xi = np.linalg.norm(aside) / 2
+    assert xi**2 == pytest.approx(found.rate * change / found.coefficient, rel=60 * xi**2 + 0.02)
+
+
+@pytest.mark.parametrize("supercritical", [True, False])
+def test_simulated_balls_on_both_sides_of_a_doubling_do_what_the_normal_form_says(supercritical):
+    r, table = (0.5, None) if supercritical else (0.93, THIRD)
+    ball = bouncing_ball.rigid(restitution=r, table=table)
+    doubling = _doubling(ball, 1.4 if supercritical else 0.9, 1.8)
+    found = bouncing_ball.normal_form(doubling)
+    share = 1e-3
+
+    def aside_after(change, xi, impacts):
+        """ξ of a ball after some impacts from the one-impact orbit plus ξ q."""
+        lam = doubling.amplitude + change
+        one = bouncing_ball.orbit(ball, amplitude=lam)
+        phase = one.phase + xi * found.direction[0]
+        relative = one.relative_impact_velocity + xi * found.direction[1]
+        waveform = ball.place.waveform
+        velocity = relative + lam * waveform.velocity(phase)
+        followed = ball.simulate(lam, phase, float(velocity), impacts)
+        return abs(math.remainder(float(followed.phase[-1]) - one.phase, 2 * math.pi))
+
+    size = math.sqrt(abs(found.rate * share / found.coefficient))
+    if supercritical:
+        # Beyond the doubling small and large deviations end on the doubled orbit, before it none.
+        assert aside_after(share, 0.2 * size, 6001) == pytest.approx(
+            size * abs(found.direction[0]), rel=0.1
+        )
+        assert aside_after(-share, 2 * size, 6001) < 1e-6
+    else:
+        # Before the doubling the unstable doubled orbit is the border of the basin.
+        assert aside_after(-share, 0.5 * size, 4001) < 0.1 * size
+        assert aside_after(-share, 1.5 * size, 4001) > 2 * size
+        assert aside_after(share, 0.1 * size, 4001) > 2 * size
+
+
+def test_the_doublings_on_both_sides_of_a_generalized_one_differ():
+    ball = bouncing_ball.rigid(restitution=0.8, table=THIRD)
+    doubling = _doubling(ball, 1.2, 2.0)
+    curve = bouncing_ball.follow(
+        doubling, along=("amplitude", "restitution"), ranges={"restitution": (0.75, 0.95)}
+    )
+    assert curve.special_kind.values.tolist() == ["generalized period doubling"]
+    place = float(curve.special_restitution[0])
+    forms = [(s.parameters["restitution"], bouncing_ball.normal_form(s)) for s in curve.states()]
+    assert {form.is_supercritical for r, form in forms if r < place} == {True}
+    assert {form.is_supercritical for r, form in forms if r > place} == {False}
+    # A saddle-node of the doubled orbits leaves from the generalized doubling on the supercritical
+    # side, and moves away from the doublings with the square of the distance.
+    apart = []
+    for r in (place - 0.01, place - 0.02):
+        there = _doubling(bouncing_ball.rigid(restitution=r, table=THIRD), 1.2, 2.0)
+        twice = bouncing_ball.follow(there, to=1.01 * there.amplitude)
+        apart.append(twice.first("saddle-node").amplitude - there.amplitude)
+    assert 0 < apart[0] and apart[1] / apart[0] == pytest.approx(4, rel=0.2)
+
+
+def test_no_contact_turns_areas_over_so_that_no_fold_flip_exists():
+    for ball in (
+        bouncing_ball.rigid(restitution=0.5),
+        bouncing_ball.spring_damper(restitution=0.5, frequency_ratio=5.0),
+        bouncing_ball.contact_law("hunt-crossley", stiffness=1e4, damping=0.1),
+    ):
+        fold, _ = bouncing_ball.limits(ball)
+        assert fold.determinant() > 0 and bouncing_ball.normal_form(fold).other > 0
+
+
+def test_an_orbit_without_a_bifurcation_has_no_normal_form(refusal):
+    one = bouncing_ball.orbit(bouncing_ball.rigid(restitution=0.5), amplitude=1.4)
+    with refusal(NoOrbitError, "normal_form needs a saddle-node or a period doubling"):
+        bouncing_ball.normal_form(one)
+    with refusal(NoOrbitError, "normal_form needs a saddle-node or a period doubling"):
+        bouncing_ball.normal_form(SpringDamper(10.0, 0.1))
+    fold, _ = bouncing_ball.limits(bouncing_ball.rigid(restitution=0.5))
+    with refusal(NoOrbitError, "a saddle-node is neither supercritical nor subcritical"):
+        bouncing_ball.normal_form(fold).is_supercritical  # noqa: B018

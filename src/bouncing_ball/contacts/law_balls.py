@@ -35,6 +35,9 @@ from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.law_of_impact import law_of_impact, reference
 from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.makers import corrected, flattened
+from bouncing_ball.models.setting import PAPER, Setting, require_sine, setting_of
+from bouncing_ball.models.suspension import Suspension
+from bouncing_ball.models.waveform import Waveform
 from bouncing_ball.periodic.one_impact.law_at_orbit import law_at_orbit
 from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
 from bouncing_ball.periodic.orbits.stability import Side
@@ -60,12 +63,15 @@ class FreeImpactBall(Ball):
         D of the free impact.
     is_corrected : bool
         Whether the ball obeys the corrected restitution model of the contact.
+    setting : Setting
+        The motion of the table.
     """
 
     law_type: type[ContactLaw]
     restitution: float
     duration: Any
     is_corrected: bool = False
+    setting: Setting = PAPER
 
     is_known = False
 
@@ -81,7 +87,13 @@ class FreeImpactBall(Ball):
     def at_speed(self, speed: ArrayLike) -> Any:
         return self._with(law_of_impact(self.law_type, self.restitution, self.duration, speed))
 
+    @property
+    def place(self) -> Setting:
+        """How the table moves."""
+        return self.setting
+
     def at_orbit(self, n: int, amplitude: float, side: str = "stable") -> Any:
+        require_sine(self.setting, "the speed at an orbit, at which {duration} is that of the law")
         return self._with(
             law_at_orbit(self.law_type, self.restitution, self.duration, n, amplitude, Side(side))
         )
@@ -90,11 +102,12 @@ class FreeImpactBall(Ball):
         return self.at_speed(rigid_speed(n, self.restitution))
 
     def _with(self, law: ContactLaw) -> Ball:
-        model = LawModel(law).labelled(self.parameters)
+        model = LawModel(law, self.setting).labelled(self.parameters)
         return corrected(model) if self.is_corrected else model
 
     def corrected(self) -> FreeImpactBall:
         """The ball of the corrected restitution model of this contact."""
+        require_sine(self.setting, "the corrected restitution model of this ball")
         return replace(self, is_corrected=True)
 
     def row(self, grid: Grid) -> FreeImpactBall:
@@ -113,6 +126,8 @@ def contact_law(
     restitution: float | None = None,
     duration: PositiveAxis | None = None,
     release: ReleaseName | Literal["approach"] | None = None,
+    table: Waveform | None = None,
+    flight: Suspension | None = None,
     **parameters: Axis,
 ) -> Ball:
     """A ball on a contact of another law than the linear spring and damper.
@@ -136,6 +151,11 @@ def contact_law(
     release : str, optional
         Where a contact of the linear law ends, "displacement" or "force", or "approach" if its
         damper acts on approach only; other laws determine it.
+    table : Waveform, optional
+        The shape of a table with several harmonics, in place of the sine.
+    flight : Drag or Spring, optional
+        Only ``Drag(0.0)``, the free flight: others are known for :func:`rigid` and
+        :func:`spring_damper`.
     **parameters : float or array
         The parameters of the law.
 
@@ -155,12 +175,13 @@ def contact_law(
     >>> ball.at_speed(3.0)
     LawModel(law=HuntCrossley(stiffness=641.257, damping=0.124382))
     """
+    setting = setting_of(table, flight)
     if isinstance(law, ContactLaw):
-        return LawModel(law)
+        return LawModel(law, setting)
     kind = law_named(str(law))
     if parameters:
         _refuse_free_impact(kind, parameters, restitution, duration, speed)
-        return _law_of_parameters(kind, parameters, release)
+        return _law_of_parameters(kind, parameters, release, setting)
     if restitution is None or duration is None:
         raise ParameterError(
             f"{{law}} {kind.name} needs {_needs(kind)}, or {{restitution}} and {{duration}}"
@@ -173,6 +194,7 @@ def contact_law(
         law_type=kind,
         restitution=checked("restitution", restitution, RESTITUTION),
         duration=checked("duration", duration, POSITIVE),
+        setting=setting,
     )
     # An r that no contact of this law has is refused here.
     reference(kind, ball.restitution)
@@ -205,7 +227,7 @@ def _refuse_free_impact(
 
 
 def _law_of_parameters(
-    kind: type[ContactLaw], parameters: Mapping[str, Any], release: str | None
+    kind: type[ContactLaw], parameters: Mapping[str, Any], release: str | None, setting: Setting
 ) -> LawModel:
     known = kind.parameter_names()
     for name in parameters:
@@ -218,11 +240,11 @@ def _law_of_parameters(
     values = {name: checked(name, x, _RANGES.get(name, FINITE)) for name, x in parameters.items()}
     flat = flattened(values)
     if release is None:
-        return LawModel(kind(**flat)).labelled({"law": kind.name, **values})
+        return LawModel(kind(**flat), setting).labelled({"law": kind.name, **values})
     if "release" not in kind.__dataclass_fields__:
         raise ParameterError(
             f"{{release}} is not allowed: {kind.name} determines where a contact ends"
         )
     rule = chosen("release", release, [str(each) for each in Release])
     law = kind(**flat, **{"release": Release.of(rule)})
-    return LawModel(law).labelled({"law": kind.name, **values, "release": rule})
+    return LawModel(law, setting).labelled({"law": kind.name, **values, "release": rule})

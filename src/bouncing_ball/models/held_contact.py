@@ -287,9 +287,6 @@ class HeldContactDynamics(LinearContactDynamics):
 
     continues: ClassVar[bool] = True
 
-    def __post_init__(self) -> None:
-        self.held.check(self.setting.waveform)
-
     @property
     def held(self) -> Held:
         """What moves the balls in contact."""

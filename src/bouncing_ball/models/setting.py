@@ -276,7 +276,10 @@ def require_sine(setting: Setting, what: str) -> None:
     for it.
     """
     if not setting.is_paper:
-        raise ParameterError(f"{what}: known for a table that moves as a sine, with free flight")
+        raise ParameterError(
+            f"{what} is known for a table that moves as a sine, with free flight, and not for "
+            "another {table} or {flight}"
+        )
 
 
 def setting_of(waveform: Waveform | None, suspension: Suspension | None) -> Setting:

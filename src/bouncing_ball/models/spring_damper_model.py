@@ -9,7 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import ModelError, ParameterError
-from bouncing_ball.models.held_contact import HeldContactDynamics, held_threshold
+from bouncing_ball.models.held_contact import (
+    HeldContactDynamics,
+    held_by,
+    held_threshold,
+)
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.linear_contact import LinearContactDynamics
 from bouncing_ball.models.model import Model
@@ -59,6 +63,8 @@ class SpringDamperModel(Model):
                 f'release="{self.contact.release}")'
             )
         self.contact.require_underdamped()
+        if not self.setting.is_paper:
+            held_by(self.contact, self.setting).check(self.setting.waveform)
 
     @property
     def label(self) -> str:

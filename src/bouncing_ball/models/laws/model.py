@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bouncing_ball.errors import ParameterError
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.analytic import require_analytic
@@ -17,6 +18,7 @@ from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.permanent_contact import permanent_contact
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.model import Model
+from bouncing_ball.models.setting import PAPER, Setting
 
 
 @dataclass(frozen=True, repr=False)
@@ -27,6 +29,8 @@ class LawModel(Model):
     ----------
     law : ContactLaw
         One law, or an array of laws.
+    setting : Setting, optional
+        The motion of the table, by default that of the paper.
 
     Raises
     ------
@@ -41,20 +45,33 @@ class LawModel(Model):
     """
 
     law: ContactLaw
+    setting: Setting = PAPER
 
     name: ClassVar[str] = "contact-law"
 
     def __post_init__(self) -> None:
         require_analytic(self.law)
+        if not self.setting.is_free:
+            raise ParameterError(
+                "{flight} is known for rigid and spring_damper, and not for contact laws"
+            )
+
+    def __repr__(self) -> str:
+        where = "" if self.setting.is_paper else f", setting={self.setting!r}"
+        return f"{type(self).__name__}(law={self.law!r}{where})"
 
     @cached_property
     def parameters(self) -> Mapping[str, Any]:
         """The parameters of the law by name, and the name of the law."""
         return {"law": self.law.name, **super().parameters}
 
+    def numbers(self) -> dict[str, Any]:
+        """The numerical parameters of the law, all of which can vary; the flight is free."""
+        return {name: x for name, x in super().numbers().items() if name != "drag"}
+
     def dynamics(self, amplitude: ArrayLike) -> Dynamics:
         """The contacts and flights of these balls on a table of amplitude Λ."""
-        return self.law.dynamics(amplitude)
+        return self.law.dynamics(amplitude, self.setting)
 
     def signature(self, speed: ArrayLike) -> Instant:
         """The signature of free impacts with speeds v > 0.
@@ -72,5 +89,6 @@ class LawModel(Model):
     def permanent_contact_threshold(self) -> np.ndarray:
         """Λ up to which a steady contact never releases the ball, of the shape of the laws."""
         laws = self.law.flat(self.law.shape)
-        found = [permanent_contact(laws.take(k)) for k in range(self.law.size)]
+        table = self.setting.waveform
+        found = [permanent_contact(laws.take(k), table) for k in range(self.law.size)]
         return np.array(found).reshape(self.law.shape)

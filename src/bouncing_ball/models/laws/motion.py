@@ -18,13 +18,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from bouncing_ball.models.deviations import Deviation, Jacobian
 from bouncing_ball.models.dynamics import Departure, Impact
-from bouncing_ball.models.flight import Flight, Rise, table
 from bouncing_ball.models.laws.force_law import ForceLaw
 from bouncing_ball.models.laws.march import MOST_PANELS, ContactEnds, march
 from bouncing_ball.models.laws.panel import Start, slopes_of
@@ -88,14 +87,16 @@ class ContactDynamics(ResumingDynamics):
         velocity = np.where(end.penetration > 0, -end.rate, np.maximum(-end.rate, 0.0))
         velocity = np.where(free, impact.velocity, velocity)
         phase = impact.phase + duration
-        x, y = table(phase, self.amplitude)
+        level = self.setting.level(phase, self.amplitude)
         no_end = np.isnan(duration)
         status = np.where(no_end, Status.UNDECIDED, Status.BOUNCING)
         status[held] = Status.PERMANENT_CONTACT
         return Departure(
             phase=phase,
             duration=np.where(no_end, np.inf, duration),
-            flight=Flight(displacement, velocity, x, y, self.amplitude),
+            flight=self.setting.flight(
+                displacement, velocity, phase, level, self.amplitude
+            ),
             status=status,
             by=end,
         )
@@ -116,7 +117,8 @@ class ContactDynamics(ResumingDynamics):
 
     def _meets_no_force(self, impact: Impact, depth: np.ndarray) -> np.ndarray:
         """Whether a ball at the surface meets no force, because the load pulls it."""
-        load = 1 - table(impact.phase, self.amplitude)[1]
+        level = self.setting.level(impact.phase, self.amplitude)
+        load = 1 - self.setting.at_rest(impact.phase, level, self.amplitude)[1]
         grip = self.law.loaded_grip(depth, -impact.velocity, load)
         return (depth == 0) & (grip < 0) & self.law.feels_load
 
@@ -130,15 +132,20 @@ class ContactDynamics(ResumingDynamics):
             # No contact is computed for free balls, because none of its panels would be accepted.
             rate=np.where(free, np.nan, -impact.velocity),
             phase=impact.phase,
-            amplitude=self.amplitude * one,
+            amplitude=self.setting.forcing(self.amplitude * one),
             weight=one,
         )
+        lam = self.amplitude * one
         compliant = not self.law.shape and rest(self.law) > _COMPLIANT
         attempts = (_SOME_PANELS, MOST_PANELS) if compliant else (MOST_PANELS,)
         for panels in attempts:
             end = march(self.law, start, panels, differentiate=differentiate, longest=_LASTING)
             lost = np.flatnonzero(np.isnan(end.duration) & ~free)
-            held = [int(k) for k in lost if holds(self.law.take(k), float(start.amplitude[k]))]
+            held = [
+                int(k)
+                for k in lost
+                if holds(self.law.take(k), float(lam[k]), self.setting.waveform)
+            ]
             if len(held) == lost.size:
                 break
         return end, held
@@ -155,7 +162,7 @@ class ContactDynamics(ResumingDynamics):
         of_free_impact = impact_of.duration
         return departure._replace(sticks=departure.duration > 2 * of_free_impact)
 
-    def resumption(self, flight: Flight) -> tuple[np.ndarray, np.ndarray]:
+    def resumption(self, flight: Any) -> tuple[np.ndarray, np.ndarray]:
         """A time before which the balls have not landed, and whether their contact resumes then."""
         if self.law.lag is not None:
             return super().resumption(flight)
@@ -183,7 +190,7 @@ class ContactDynamics(ResumingDynamics):
         return departure.by.contraction
 
 
-def sampled_resumption(flight: Flight, law: ForceLaw) -> tuple[np.ndarray, np.ndarray]:
+def sampled_resumption(flight: Any, law: ForceLaw) -> tuple[np.ndarray, np.ndarray]:
     """The result of :func:`~bouncing_ball.models.resumption.resumption` for a law without a
     lag, whose grip is sampled along the flights of slow balls.
     """
@@ -198,14 +205,14 @@ def sampled_resumption(flight: Flight, law: ForceLaw) -> tuple[np.ndarray, np.nd
     )
 
 
-def _sampled(flight: Flight, law: ForceLaw) -> tuple[np.ndarray, np.ndarray]:
+def _sampled(flight: Any, law: ForceLaw) -> tuple[np.ndarray, np.ndarray]:
     """The time at which the grip returns or δ reaches 0, and whether the grip returns first."""
 
     def held(time):
         displacement, rate, second, _ = flight.gap(time)
         return law.loaded_grip(np.maximum(-displacement, 0.0), -rate, -second) > 0
 
-    rise = first_zero(Rise(flight), np.zeros_like(flight.velocity))
+    rise = first_zero(flight.rise(), np.zeros_like(flight.velocity))
     share = np.linspace(0, 1, _SAMPLES)[1:-1, np.newaxis]
     now = held(share * rise.time)
     found = now.any(axis=0)

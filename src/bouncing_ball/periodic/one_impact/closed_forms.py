@@ -18,12 +18,14 @@ from numpy.typing import ArrayLike
 from bouncing_ball.models.corrected.impact import impact
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.instant import Instant
+from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.periodic.one_impact import corrected_branch as lines
 from bouncing_ball.periodic.one_impact import restitution_branch as formulas
 from bouncing_ball.periodic.one_impact import spring_damper_bifurcations as bifurcations
+from bouncing_ball.periodic.one_impact.contact_orbits import OrbitsOfContact
 from bouncing_ball.periodic.one_impact.other_settings import OtherOrbits
 from bouncing_ball.periodic.one_impact.spring_damper_branch import nearest_excess, orbits_on_branch
 from bouncing_ball.periodic.orbits.orbit import Orbit, check_index, in_order
@@ -194,7 +196,12 @@ def _(model: RestitutionModel) -> ClosedForm | None:
 
 @closed_form.register
 def _(model: SpringDamperModel) -> ClosedForm | None:
-    return SpringDamperBranch(model)
+    return SpringDamperBranch(model) if model.setting.is_paper else OrbitsOfContact(model)
+
+
+@closed_form.register
+def _(model: LawModel) -> ClosedForm | None:
+    return None if model.setting.is_paper else OrbitsOfContact(model)
 
 
 @closed_form.register

@@ -14,6 +14,7 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.model import Model
 from bouncing_ball.periodic.one_impact import start
 from bouncing_ball.periodic.one_impact.closed_forms import closed_form
+from bouncing_ball.periodic.one_impact.contact_orbits import OrbitsOfContact
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.stability import Bifurcation, Side
 
@@ -118,7 +119,8 @@ def absence(
     missing = ~np.asarray(orbit(model, n, amplitude, side).exists)
     fold = np.asarray(saddle_node(model, n).amplitude)
     other = Absence.NOT_FOUND
-    if closed_form(model) is not None:
+    form = closed_form(model)
+    if form is not None and not isinstance(form, OrbitsOfContact):
         # The search along the closed form is complete.
         no_fold = np.isnan(fold) & (side == Side.UNSTABLE)
         other = np.where(no_fold, Absence.NO_OTHER_SIDE, Absence.NOT_REACHED)

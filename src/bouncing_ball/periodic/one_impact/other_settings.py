@@ -88,10 +88,10 @@ class OtherOrbits:
 
     def period_doubling(self, n: ArrayLike) -> Orbit:
         """Raise an error: period doublings are found by :func:`bouncing_ball.follow`."""
-        raise ModelError(_NO_LIMITS)
+        raise ModelError(NO_LIMITS)
 
 
-_NO_LIMITS = (
+NO_LIMITS = (
     "the period doublings of limits are those of a table that moves as a sine, with free flight: "
     "use follow(orbit(…)) for another table or flight"
 )

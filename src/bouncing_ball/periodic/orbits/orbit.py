@@ -511,7 +511,9 @@ class Orbit(Batch):
             apex = self._flight_top()
         top = np.array(np.broadcast_to(apex, self.shape))
         lasting = np.any(self.durations > 0, axis=-1)
-        low = np.flatnonzero((top < self.amplitude) & lasting)
+        # The table is nowhere above this level, which is Λ in the paper.
+        highest = self.amplitude * self.model.place.waveform.bound(0)
+        low = np.flatnonzero((top < highest) & lasting)
         # The samples of all orbits at once would take gigabytes.
         for part in blocks(low.size, _BLOCK):
             lifted = self.flat(self.shape).take(low[part])._contact_top()

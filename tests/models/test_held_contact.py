@@ -167,7 +167,7 @@ def test_threshold_of_one_harmonic_is_that_of_the_paper():
         assert np.abs(found / of_paper - 1).max() < 1e-12
 
 
-@pytest.mark.parametrize("zeta", [1e-4, 0.05])
+@pytest.mark.parametrize("zeta", [2e-3, 0.05])
 def test_a_stiff_contact_that_lies_on_the_table_ends_where_the_load_does(zeta):
     # Thousands of oscillations pass before the table leaves the ball behind.
     where = {"table": Waveform(*TWO)}
@@ -177,8 +177,8 @@ def test_a_stiff_contact_that_lies_on_the_table_ends_where_the_load_does(zeta):
     lift = dead.place.lift_off(np.array([phase]), np.array([lam])).wait[0]
     found = ball.simulate(lam, phase, lam * ball.place.waveform.velocity(phase), 1)
     assert found.status == Status.BOUNCING
-    # The contact lags behind by a time of the order of the root of its depth, 1e-4.
-    assert abs(found.contact_duration[0] - lift) < 1e-2
+    # A damped contact follows its load with a lag of 2ζ/ϖ, and the ball has inertia.
+    assert abs(found.contact_duration[0] - lift) < 2e-5
 
 
 @pytest.mark.parametrize("case", ["held", "law"])

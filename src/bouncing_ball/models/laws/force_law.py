@@ -115,6 +115,17 @@ class ForceLaw(Batch, ABC):
         """
         return self.force(penetration, rate)
 
+    remembers: ClassVar[bool] = False
+    """Whether the force depends on the speed at the start of the contact, see :meth:`started`."""
+
+    def started(self, speed: ArrayLike) -> "ForceLaw":
+        """The laws of contacts that start with these speeds p′; the law itself by default."""
+        return self
+
+    def by_start(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """The derivative of the force by the speed at the start of the contact."""
+        return np.zeros_like(penetration)
+
     @property
     def has_kink(self) -> bool:
         """Whether the force has kinks, where :meth:`kink` changes its sign."""

@@ -79,6 +79,8 @@ def at_end(
     known[:, :, 0] += by_time[:, :, 0]
     known[:, :, 2] += felt * scaling_of(start, angle.T).T
     known[:, :, 3] += felt
+    if law.remembers:
+        known[:, :, 1] -= lever * law.by_start(depth, rate).T
     pushed = np.linalg.solve(matrix, known)
     of_root = free_root + step * step * (rule.twice @ pushed)
     of_rate = rate0 + step * (to_nodes @ pushed)

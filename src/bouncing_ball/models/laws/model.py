@@ -50,7 +50,7 @@ class LawModel(Model):
     name: ClassVar[str] = "contact-law"
 
     def __post_init__(self) -> None:
-        require_analytic(self.law)
+        require_analytic(self.law.started(1.0))
         if not self.setting.is_free:
             raise ParameterError(
                 "{flight} is known for rigid and spring_damper, and not for contact laws"

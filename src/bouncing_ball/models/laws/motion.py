@@ -186,8 +186,16 @@ class ContactDynamics(ResumingDynamics):
         return self.landed(released, departure, after, passed)
 
     def contraction(self, impact: Impact, departure: Departure) -> np.ndarray:
-        """exp(-∫ ∂f/∂p′ dτ) over each contact."""
-        return departure.by.contraction
+        """exp(-∫ ∂f/∂p′ dτ) over each contact.
+
+        For a law that remembers the speed at the start, it follows from the derivative of the
+        contact: with p′ = u at the release, the determinant of (φ + D, u) by (φ, v), times u/v.
+        """
+        if not self.law.remembers:
+            return departure.by.contraction
+        by_phase, by_speed = (departure.by.jacobian[:, :, k] for k in range(2))
+        determinant = (1 + by_phase[:, 0]) * by_speed[:, 2] - by_speed[:, 0] * by_phase[:, 2]
+        return np.abs(determinant * departure.by.rate / impact.velocity)
 
 
 def sampled_resumption(flight: Any, law: ForceLaw) -> tuple[np.ndarray, np.ndarray]:

@@ -316,9 +316,7 @@ class HeldContactDynamics(LinearContactDynamics):
         sticks = duration * self.held.frequency > _TURN
         return Departure(phase, duration, flight, status, sticks=sticks)
 
-    def after(
-        self, impact: Impact, duration: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def after(self, impact: Impact, duration: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """δ and δ′ a time after the starts of contacts, whether they have ended or not."""
         flight = contact_path(self.law, self.setting, impact, self.amplitude)
         displacement, velocity, _, _ = flight.gap(duration)

@@ -57,9 +57,7 @@ def leaves_fast(flight: Any, lag: Any, lag_of_load: Any = 0.0) -> np.ndarray:
     """
     square = flight.level_speed_squared()
     turned = lag * flight.strongest + lag_of_load * flight.largest_change
-    return (
-        (square > 0) & (flight.velocity >= 0) & (np.sqrt(np.maximum(square, 0.0)) >= turned)
-    )
+    return (square > 0) & (flight.velocity >= 0) & (np.sqrt(np.maximum(square, 0.0)) >= turned)
 
 
 def of_slow_balls(

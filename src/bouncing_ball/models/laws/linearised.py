@@ -123,9 +123,7 @@ def at_release(
     step = np.where(grip_by_rate == 0, 0.0, grip_by_rate * lever * force)
     by_root, by_rate, by_time = (by[:, k] for k in range(3))
     by_load = turning[:, np.newaxis] * by_time
-    by_load += np.stack(
-        [turning, 0 * angle, scaling_of(start, angle), np.ones_like(angle)], axis=1
-    )
+    by_load += np.stack([turning, 0 * angle, scaling_of(start, angle), np.ones_like(angle)], axis=1)
 
     def column(row):
         return row[:, np.newaxis]

@@ -94,9 +94,7 @@ class ContactDynamics(ResumingDynamics):
         return Departure(
             phase=phase,
             duration=np.where(no_end, np.inf, duration),
-            flight=self.setting.flight(
-                displacement, velocity, phase, level, self.amplitude
-            ),
+            flight=self.setting.flight(displacement, velocity, phase, level, self.amplitude),
             status=status,
             by=end,
         )

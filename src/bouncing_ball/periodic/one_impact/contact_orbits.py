@@ -21,7 +21,7 @@ from bouncing_ball.numerics.corrector import NewtonSettings, solve
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic.one_impact.other_settings import NO_LIMITS, OtherOrbits
 from bouncing_ball.periodic.one_impact.start import restitution_speed
-from bouncing_ball.periodic.orbits.orbit import Orbit, check_index, orbit_at
+from bouncing_ball.periodic.orbits.orbit import Orbit, check_index, orbit_of_point
 from bouncing_ball.periodic.orbits.stability import Bifurcation, Side
 
 _SETTINGS = NewtonSettings(max_iterations=25, longest=0.5)
@@ -142,7 +142,7 @@ def _solved(
     good = np.flatnonzero(found.converged & np.isfinite(found.point).all(axis=-1))
     if not good.size:
         return None
-    orbit = orbit_at(problem.take(good), found.point[good])
+    orbit = orbit_of_point(problem.take(good), found.point[good])
     lands = (orbit.contact_duration > 0) & (orbit.flight_time > 0)
     lands &= orbit.relative_impact_velocity < 0
     return orbit[np.flatnonzero(lands)] if lands.any() else None

@@ -67,12 +67,15 @@ if TYPE_CHECKING:
     from bouncing_ball.errors import ModelError as ModelError
     from bouncing_ball.errors import NoOrbitError as NoOrbitError
     from bouncing_ball.long_run.basin_entropy import basin_entropy as basin_entropy
+    from bouncing_ball.long_run.ensembles import ensemble as ensemble
     from bouncing_ball.long_run.motion_of import basins as basins
     from bouncing_ball.long_run.motion_of import lyapunov_exponent as lyapunov_exponent
     from bouncing_ball.long_run.motion_of import motion_of as motion_of
     from bouncing_ball.long_run.motion_of import orbit_diagram as orbit_diagram
     from bouncing_ball.long_run.orbit_of_motion import orbit_of_motion as orbit_of_motion
     from bouncing_ball.measured.fit import fit_contact as fit_contact
+    from bouncing_ball.models.laws.start_speed import Flores as Flores
+    from bouncing_ball.models.laws.start_speed import LankaraniNikravesh as LankaraniNikravesh
     from bouncing_ball.models.makers import corrected as corrected
     from bouncing_ball.models.makers import rigid as rigid
     from bouncing_ball.models.makers import spring_damper as spring_damper
@@ -101,6 +104,8 @@ _MODULES = {
     "Contact": "contacts.contact",
     "Drag": "models.suspension",
     "EngineSetup": "contacts.question",
+    "Flores": "models.laws.start_speed",
+    "LankaraniNikravesh": "models.laws.start_speed",
     "ModelError": "errors",
     "NoOrbitError": "errors",
     "Question": "contacts.question",
@@ -119,6 +124,7 @@ _MODULES = {
     "corrected": "models.makers",
     "describe_contact": "contacts.describe",
     "drop": "models.over_time",
+    "ensemble": "long_run.ensembles",
     "error_thresholds": "accuracy.error_thresholds",
     "fit_contact": "measured.fit",
     "follow": "periodic.branches.follow",

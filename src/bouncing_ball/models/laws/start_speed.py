@@ -14,8 +14,8 @@ too. With y = C p′ the energy of a free impact gives ``y - ln(1 + y)`` the sam
 
     c (1 + r) = ln((1 + c)/(1 - r c))
 
-r is not e: for e = 0.5 it is 0.725 with the first law and 0.470 with the second. Both tend to e as
-e tends to 1.
+r is not e: for e = 0.5 it is 0.725 with the first law and 0.470 with the second. As e tends to 1,
+the loss 1 - r tends to 2c/3, which is 1 - e with the first law and 16(1 - e)/15 with the second.
 
 Where such a law is not smooth: v₀ jumps from contact to contact, and as it tends to zero the damping
 grows without limit. A ball that is laid on the table, with v₀ = 0, would never sink; starts slower
@@ -165,7 +165,7 @@ class LankaraniNikravesh(DampedByStart):
     >>> import bouncing_ball
     >>> ball = bouncing_ball.contact_law(LankaraniNikravesh(1000.0, 0.9))
     >>> [round(float(ball.signature(v).restitution), 6) for v in (0.5, 5.0)]
-    [0.911179, 0.911179]
+    [0.913177, 0.913177]
     """
 
     name: ClassVar[str] = "lankarani-nikravesh"

@@ -126,7 +126,11 @@ def test_balls_that_stay_on_the_table_have_no_further_impacts():
 
 @pytest.mark.parametrize(
     ("given", "words"),
-    [({"noise": 0.4}, "noise = 0.4 is too large"), ({"noise": -0.1}, "noise"), ({"seed": -1}, "seed")],
+    [
+        ({"noise": 0.4}, "noise = 0.4 is too large"),
+        ({"noise": -0.1}, "noise"),
+        ({"seed": -1}, "seed"),
+    ],
 )
 def test_refusals(given, words):
     numbers = {"amplitude": 1.0, "noise": 0.1} | given

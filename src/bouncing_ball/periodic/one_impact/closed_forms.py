@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import singledispatch
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -36,8 +36,11 @@ from bouncing_ball.periodic.orbits.stability import Side
 _UNITS = 8
 
 
-class ClosedForm(Protocol):
-    """The branch of a model as a formula. Entries are NaN where there is no such orbit."""
+class OrbitsOfModel(Protocol):
+    """The n-T orbits of a model. Entries are NaN where there is no such orbit."""
+
+    is_complete: ClassVar[bool]
+    """Whether an orbit that is not found does not exist: the branch is a formula."""
 
     def orbit(self, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Orbit:
         """The n-T orbits at Λ on one side of the saddle-node."""
@@ -57,6 +60,8 @@ class RestitutionLine:
     """The line Λ cos φ = nπ (1 - r)/(1 + r) of the restitution model (Eq. 6)."""
 
     model: RestitutionModel
+
+    is_complete: ClassVar[bool] = True
 
     def orbit(self, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Orbit:
         """The n-T orbits at Λ on one side of the saddle-node; NaN below the saddle-node."""
@@ -87,6 +92,8 @@ class SpringDamperBranch:
     """The explicit branch of :mod:`~bouncing_ball.periodic.one_impact.spring_damper_branch`."""
 
     model: SpringDamperModel
+
+    is_complete: ClassVar[bool] = True
 
     def orbit(self, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Orbit:
         """The n-T orbits at Λ on one side of the saddle-node."""
@@ -128,6 +135,8 @@ class CorrectedLine:
     """
 
     model: CorrectedModel
+
+    is_complete: ClassVar[bool] = True
 
     @property
     def _instant(self) -> Instant:
@@ -178,7 +187,7 @@ def corrected_orbits(
 
 
 @singledispatch
-def closed_form(model: Model) -> ClosedForm | None:
+def closed_form(model: Model) -> OrbitsOfModel | None:
     """The closed form of a model's branch; None if none is known.
 
     Examples
@@ -190,22 +199,22 @@ def closed_form(model: Model) -> ClosedForm | None:
 
 
 @closed_form.register
-def _(model: RestitutionModel) -> ClosedForm | None:
+def _(model: RestitutionModel) -> OrbitsOfModel | None:
     return RestitutionLine(model) if model.setting.is_paper else OtherOrbits(model)
 
 
 @closed_form.register
-def _(model: SpringDamperModel) -> ClosedForm | None:
+def _(model: SpringDamperModel) -> OrbitsOfModel | None:
     return SpringDamperBranch(model) if model.setting.is_paper else OrbitsOfContact(model)
 
 
 @closed_form.register
-def _(model: LawModel) -> ClosedForm | None:
+def _(model: LawModel) -> OrbitsOfModel | None:
     return None if model.setting.is_paper else OrbitsOfContact(model)
 
 
 @closed_form.register
-def _(model: CorrectedModel) -> ClosedForm | None:
+def _(model: CorrectedModel) -> OrbitsOfModel | None:
     return CorrectedLine(model) if model.law.is_constant else None
 
 

@@ -9,6 +9,7 @@ phases. Such a search may miss an orbit; :func:`bouncing_ball.orbit_of_motion` a
 """
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -36,6 +37,8 @@ class OrbitsOfContact:
     """The n-T orbits of balls on contacts in another setting than that of the paper."""
 
     model: Model
+
+    is_complete: ClassVar[bool] = False
 
     def orbit(self, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Orbit:
         """The n-T orbits at Λ on one side of the saddle-node; NaN where none was found.

@@ -12,11 +12,10 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.model import Model
-from bouncing_ball.periodic.one_impact import start
-from bouncing_ball.periodic.one_impact.closed_forms import closed_form
-from bouncing_ball.periodic.one_impact.contact_orbits import OrbitsOfContact
+from bouncing_ball.periodic.one_impact.closed_forms import OrbitsOfModel, closed_form
+from bouncing_ball.periodic.one_impact.start import SearchedOrbits
 from bouncing_ball.periodic.orbits.orbit import Orbit
-from bouncing_ball.periodic.orbits.stability import Bifurcation, Side
+from bouncing_ball.periodic.orbits.stability import Side
 
 
 class Absence(StrEnum):
@@ -27,6 +26,11 @@ class Absence(StrEnum):
     NO_OTHER_SIDE = "the branch has no saddle-node and therefore no other side"
     NOT_REACHED = "this side of the branch does not reach this Λ"
     NOT_FOUND = "none was found, but one may exist"
+
+
+def orbits_of(model: Model) -> OrbitsOfModel:
+    """The n-T orbits of a model, from the closed form of its branch if there is one."""
+    return closed_form(model) or SearchedOrbits(model)
 
 
 def orbit(model: Model, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> Orbit:
@@ -58,10 +62,7 @@ def orbit(model: Model, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.ST
     >>> round(orbit(RestitutionModel(1.0), 1, 0.5).phase / np.pi, 15)
     0.5
     """
-    form = closed_form(model)
-    if form is None:
-        return start.orbit(model, n, amplitude, Side(side))
-    return form.orbit(n, amplitude, Side(side))
+    return orbits_of(model).orbit(n, amplitude, Side(side))
 
 
 def orbits(model: Model, n: int, amplitude: float) -> Orbit:
@@ -75,8 +76,7 @@ def orbits(model: Model, n: int, amplitude: float) -> Orbit:
     ModelError
         If n is not a positive integer.
     """
-    form = closed_form(model)
-    return start.orbits(model, n, amplitude) if form is None else form.orbits(n, amplitude)
+    return orbits_of(model).orbits(n, amplitude)
 
 
 def saddle_node(model: Model, n: ArrayLike) -> Orbit:
@@ -87,10 +87,7 @@ def saddle_node(model: Model, n: ArrayLike) -> Orbit:
     ModelError
         If n is not a positive integer.
     """
-    form = closed_form(model)
-    if form is None:
-        return start.bifurcation(model, n, Bifurcation.SADDLE_NODE)
-    return form.saddle_node(n)
+    return orbits_of(model).saddle_node(n)
 
 
 def period_doubling(model: Model, n: ArrayLike) -> Orbit:
@@ -103,10 +100,7 @@ def period_doubling(model: Model, n: ArrayLike) -> Orbit:
     ModelError
         If n is not a positive integer.
     """
-    form = closed_form(model)
-    if form is None:
-        return start.bifurcation(model, n, Bifurcation.PERIOD_DOUBLING)
-    return form.period_doubling(n)
+    return orbits_of(model).period_doubling(n)
 
 
 def absence(
@@ -119,9 +113,7 @@ def absence(
     missing = ~np.asarray(orbit(model, n, amplitude, side).exists)
     fold = np.asarray(saddle_node(model, n).amplitude)
     other = Absence.NOT_FOUND
-    form = closed_form(model)
-    if form is not None and not isinstance(form, OrbitsOfContact):
-        # The search along the closed form is complete.
+    if orbits_of(model).is_complete:
         no_fold = np.isnan(fold) & (side == Side.UNSTABLE)
         other = np.where(no_fold, Absence.NO_OTHER_SIDE, Absence.NOT_REACHED)
     why = np.where(np.asarray(amplitude) < fold, Absence.BELOW_SADDLE_NODE, other)

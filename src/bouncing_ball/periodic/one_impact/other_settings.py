@@ -13,7 +13,7 @@ w′ = nπ (1 - r)/(1 + r) (Eq. 6).
 """
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Self
+from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 import scipy
@@ -35,6 +35,8 @@ class OtherOrbits:
     """The n-T orbits of balls in another setting than that of the paper."""
 
     model: RestitutionModel
+
+    is_complete: ClassVar[bool] = True
 
     def orbit(self, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Orbit:
         """The n-T orbits at Λ on one side of the saddle-node; NaN where there is none.

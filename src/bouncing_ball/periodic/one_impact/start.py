@@ -8,7 +8,8 @@ followed instead, for one model at a time.
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -360,3 +361,28 @@ def bifurcation(model: Model, n: ArrayLike, kind: Bifurcation) -> Orbit:
         if points:
             y[k] = points[0 if kind is Bifurcation.SADDLE_NODE else -1]
     return _orbits(problem, y, shape)[0]
+
+
+@dataclass(frozen=True)
+class SearchedOrbits:
+    """The n-T orbits of a model without a closed form, each from a search."""
+
+    model: Model
+
+    is_complete: ClassVar[bool] = False
+
+    def orbit(self, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Orbit:
+        """The n-T orbits at Λ on one side of the saddle-node: see :func:`orbit`."""
+        return orbit(self.model, n, amplitude, side)
+
+    def orbits(self, n: int, amplitude: float) -> Orbit:
+        """The n-T orbits of a single model at one Λ: see :func:`orbits`."""
+        return orbits(self.model, n, amplitude)
+
+    def saddle_node(self, n: ArrayLike) -> Orbit:
+        """The orbits at the saddle-node."""
+        return bifurcation(self.model, n, Bifurcation.SADDLE_NODE)
+
+    def period_doubling(self, n: ArrayLike) -> Orbit:
+        """The orbits at the period doubling nearest to the saddle-node on the stable side."""
+        return bifurcation(self.model, n, Bifurcation.PERIOD_DOUBLING)

@@ -1,13 +1,16 @@
 """Motions on which balls end, against orbits, multipliers and motions side by side."""
 
+import inspect
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
 import bouncing_ball
-from bouncing_ball.long_run.destination import final_motions
+from bouncing_ball.long_run.basins import basins
+from bouncing_ball.long_run.destination import IMPACTS, final_motions
 from bouncing_ball.long_run.motions import Kind, Reason
+from bouncing_ball.long_run.orbit_of_motion import of_motion
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
@@ -238,3 +241,48 @@ def test_lift_offs_of_a_second_harmonic_may_alternate():
         path = ball.simulate(1.1, 0.0, -6.0, 60)
         rests = path.contact_duration > 0.01
         assert np.unique(path.release_phase[rests][-6:].round(9)).size == lift_offs
+
+
+def test_all_calls_that_judge_a_motion_have_one_default():
+    defaults = {
+        inspect.signature(call).parameters["impacts"].default
+        for call in (
+            bouncing_ball.motion_of,
+            bouncing_ball.lyapunov_exponent,
+            bouncing_ball.orbit_diagram,
+            bouncing_ball.basins,
+            bouncing_ball.orbit_of_motion,
+            of_motion,
+            basins,
+            final_motions,
+        )
+    }
+    assert defaults == {IMPACTS}
+
+
+@pytest.mark.slow
+def test_the_error_of_an_exponent_that_drifts_reaches_its_later_value():
+    # A nearly elastic ball gains speed for thousands of impacts.
+    ball = bouncing_ball.rigid(restitution=0.999)
+    later = bouncing_ball.lyapunov_exponent(ball, amplitude=2.0, impacts=20_000)
+    for impacts in (1500, IMPACTS):
+        now = bouncing_ball.lyapunov_exponent(ball, amplitude=2.0, impacts=impacts)
+        apart = abs(float(now.lyapunov_exponent - later.lyapunov_exponent))
+        assert apart < 2 * float(now.lyapunov_error)
+    # An exponent that is settled has its standard error only, which falls as the root.
+    settled = bouncing_ball.rigid(restitution=0.8)
+    some, more = (
+        bouncing_ball.lyapunov_exponent(settled, amplitude=3.0, impacts=k) for k in (1500, 6000)
+    )
+    assert some.kind.item() == more.kind.item() == "chaotic"
+    ratio = float(some.lyapunov_error / more.lyapunov_error)
+    assert 1.5 < ratio < 2.7
+
+
+def test_a_verdict_says_how_long_the_ball_was_followed():
+    ball = bouncing_ball.rigid(restitution=0.8)
+    found = bouncing_ball.motion_of(ball, amplitude=[0.3, 0.6, 3.0], impacts=200)
+    for kind, followed, verdict in zip(found.kind, found.followed, found.verdict, strict=True):
+        assert verdict.item().startswith(kind.item())
+        assert f"{followed.item()} impacts" in verdict.item()
+    assert "more may show a long transient" in found.verdict.values[2]

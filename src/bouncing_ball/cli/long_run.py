@@ -14,15 +14,15 @@ from bouncing_ball.datasets.arguments import AMPLITUDE, FOLLOWED, SAMPLES, START
 from bouncing_ball.datasets.files import PICTURES, require_writable
 from bouncing_ball.errors import ParameterError, count
 from bouncing_ball.long_run import motion_of as library
+from bouncing_ball.long_run.destination import IMPACTS
 from bouncing_ball.models.ball import Ball
 
 _MOTION = ("kind", "periods", "impacts", "reason")
 _AMPLITUDES = count(100_000, low=2)
 # The start of a ball if none is given: the phase, and the absolute velocity before the impact.
 _START = {"phase": 0.0, "velocity": -math.pi}
-# Other starts, along each axis, and the impacts for which each of their balls is followed.
+# Other starts, along each axis.
 _OTHER_STARTS = 10
-_FOLLOWED = 300
 
 
 def motion_options(parser: Parser) -> None:
@@ -31,7 +31,7 @@ def motion_options(parser: Parser) -> None:
     add_number(parser, "amplitude", AMPLITUDE, texts["amplitude"], required=True)
     add_number(parser, "phase", START, f"{texts['phase']} By default 0.")
     add_number(parser, "velocity", START, f"{texts['velocity']} By default -π.")
-    add_number(parser, "impacts", FOLLOWED, texts["impacts"], default=1500)
+    add_number(parser, "impacts", FOLLOWED, texts["impacts"], default=IMPACTS)
     add_ball(parser)
 
 
@@ -60,14 +60,14 @@ def motion(
     answer["digits_lost"] = lost if math.isfinite(lost) else None
     if phase is None and velocity is None:
         answer["start"] = _START
-        answer["share_of_other_starts"] = _ends_of_other_starts(ball, amplitude)
+        answer["share_of_other_starts"] = _ends_of_other_starts(ball, amplitude, impacts)
     return answer
 
 
-def _ends_of_other_starts(ball: Ball, amplitude: float) -> Answer:
+def _ends_of_other_starts(ball: Ball, amplitude: float, impacts: int) -> Answer:
     """The motions on which balls from an even grid of starts end, with their shares."""
     found = library.basins(
-        ball, amplitude=amplitude, starts=_OTHER_STARTS, impacts=_FOLLOWED
+        ball, amplitude=amplitude, starts=_OTHER_STARTS, impacts=impacts
     ).sortby("share", ascending=False)
     shares = {}
     for k in range(found.sizes["motion"]):
@@ -87,7 +87,7 @@ def diagram_options(parser: Parser) -> None:
     add_file(parser, "plot", "A figure: .pdf, .png or .svg.")
     add_number(parser, "starts", SAMPLES, texts["starts"], default=6)
     add_number(parser, "samples", SAMPLES, texts["samples"], default=64)
-    add_number(parser, "impacts", FOLLOWED, texts["impacts"], default=300)
+    add_number(parser, "impacts", FOLLOWED, texts["impacts"], default=IMPACTS)
     add_ball(parser)
 
 

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.long_run.destination import final_motions
+from bouncing_ball.long_run.destination import IMPACTS, final_motions
 from bouncing_ball.long_run.motions import Kind
 
 
@@ -58,7 +58,7 @@ def fastest(model: Any, amplitude: Any) -> np.ndarray:
 
 
 def basins(
-    model: Any, amplitude: float, starts: int, fast: float | None = None, impacts: int = 300
+    model: Any, amplitude: float, starts: int, fast: float | None = None, impacts: int = IMPACTS
 ) -> Basins:
     """The motions on which ``starts`` by ``starts`` balls end.
 

@@ -52,7 +52,8 @@ from bouncing_ball.models.dynamics import Dynamics, HasDynamics, Impact, Leg
 from bouncing_ball.models.sequence import Status
 
 IMPACTS = 2000
-"""Number of impacts after which the search for a repetition ends."""
+"""Number of impacts after which the search for a repetition ends, in all calls that judge a motion.
+"""
 # Number of standard errors by which the exponent of a chaotic motion must be positive; this happens
 # by chance once in three million.
 _ERRORS = 5.0
@@ -357,6 +358,8 @@ def _give_up(balls: Tracked, which: np.ndarray, found: Motions) -> None:
     exponentially = growth > -np.log(NEAR)
     chaotic = separates & exponentially & (doubt != MARGINAL)
     sticks_again = balls.sticking.number[which] > 1
+    # A drift is part of the error that is stored, and not of the test, which is one of the sign.
+    drift = stretch.drift(which)
     locked = sticks_again & (growth < -DIGITS) & (stretch.most[which] > FORGOTTEN)
     store(
         found,
@@ -365,7 +368,7 @@ def _give_up(balls: Tracked, which: np.ndarray, found: Motions) -> None:
         kind=np.where(chaotic, Kind.CHAOTIC, Kind.UNDECIDED),
         reason=np.where(chaotic, Reason.NONE, REASONS[doubt]),
         exponent=2 * np.pi * rate,
-        exponent_error=2 * np.pi * error,
+        exponent_error=2 * np.pi * np.fmax(error, drift),
     )
     of_locked = (2 * np.pi * rate[locked], 2 * np.pi * error[locked])
     _store_unresolved(found, balls, which[locked], *of_locked)

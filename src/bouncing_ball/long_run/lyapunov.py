@@ -4,6 +4,11 @@ The deviation is multiplied by the derivative of the map and normalised to lengt
 impact; the logarithms of its growth are added up. The Lyapunov exponent is the ratio of the mean
 growth to the mean time, over sections of 32 impacts, so that its standard error can be computed.
 
+A nearly elastic ball gains speed for thousands of impacts, and its exponent falls meanwhile. The
+standard error knows nothing of that. The exponent of the first sections, between a quarter and a
+half of them, is therefore compared with that of the others. If they differ by more than three
+standard errors, the exponent drifts, and its error is the difference.
+
 The digits that a motion has lost follow from the same growth. They are counted anew when the ball
 forgets: when a contact shrinks the deviation so far that less than a rounding error is left of its
 growth. The exponent contains these contractions, except for the first, because what was before it
@@ -25,6 +30,9 @@ FORGOTTEN = DIGITS + float(np.log(NEAR))
 _BATCH = 32
 # Number of first sections that are left out.
 _TRANSIENT = 2
+# The exponent drifts if that of the first sections differs by this number of standard errors from
+# that of the others, which happens by chance once in four hundred.
+_DRIFTS = 3.0
 # Relative error of a rate that is due to rounding: sums of n squares give the error √(n ε).
 _EQUAL = 1e-6
 # If a deviation shrinks to less than this length in one impact, a new deviation is started.
@@ -51,6 +59,9 @@ class Stretching(NamedTuple):
     # The number of sections, and the sums over them of the growth g, the time t, g², g t and t²,
     # shape (balls, 6).
     sums: np.ndarray
+    # The sums at the last number of sections that was a power of two, and at the power before.
+    latest: np.ndarray
+    first: np.ndarray
 
     @classmethod
     def of(cls, balls: int) -> Self:
@@ -66,6 +77,8 @@ class Stretching(NamedTuple):
             section_growth=np.zeros(balls),
             section_start=np.zeros(balls),
             sums=np.zeros((balls, 6)),
+            latest=np.zeros((balls, 6)),
+            first=np.zeros((balls, 6)),
         )
 
     def grow(self, change: Jacobian) -> np.ndarray:
@@ -114,12 +127,19 @@ class Stretching(NamedTuple):
             terms = np.stack([np.ones_like(t), g, t, g * g, g * t, t * t], axis=1)
             counts = seen[at] > _TRANSIENT * _BATCH
             self.sums[at[counts]] += terms[counts]
+            number = self.sums[at, 0].astype(int)
+            (doubled,) = (counts & (number & (number - 1) == 0)).nonzero()
+            if doubled.size:
+                balls = at[doubled]
+                self.first[balls] = self.latest[balls]
+                self.latest[balls] = self.sums[balls]
 
     def restart(self, which: np.ndarray, time: np.ndarray) -> None:
         """Begin the exponent again for balls that have forgotten for the first time."""
         self.section_growth[which] = 0
         self.section_start[which] = time[which]
-        self.sums[which] = 0
+        for sums in (self.sums, self.latest, self.first):
+            sums[which] = 0
 
     def lost(self) -> np.ndarray:
         """Whether a rounding error has grown too much since the ball last forgot."""
@@ -145,9 +165,31 @@ class Stretching(NamedTuple):
         >>> rate.tolist(), error.tolist()
         ([2.0], [1.0])
         """
-        number, growth, time, growth_squares, products, time_squares = self.sums[which].T
-        rate = growth / time
-        # The standard error of a ratio of means, where each mean is over a section of the motion.
-        residual = growth_squares - 2 * rate * products + rate * rate * time_squares
-        error = np.sqrt(np.maximum(residual, 0.0) * number / (number - 1)) / time
+        rate, error = _rate(self.sums[which])
         return rate, np.where(error > _EQUAL * np.abs(rate), error, np.nan)
+
+    def drift(self, which: np.ndarray) -> np.ndarray:
+        """The change of the exponent from the first sections to the others, 0 if it is within the
+        errors.
+
+        Examples
+        --------
+        >>> stretch = Stretching.of(1)
+        >>> stretch.first[0] = 4, 8, 4, 16.1, 8, 4
+        >>> stretch.sums[0] = 12, 16, 12, 24.2, 16, 12
+        >>> stretch.drift(np.array([0])).tolist()
+        [1.0]
+        """
+        early, error = _rate(self.first[which])
+        late, other = _rate(self.sums[which] - self.first[which])
+        change = np.abs(late - early)
+        return np.where(change > _DRIFTS * np.hypot(error, other), change, 0.0)
+
+
+def _rate(sums: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The growth per unit of time of sums over sections, shape (balls, 6), and its error."""
+    number, growth, time, growth_squares, products, time_squares = sums.T
+    rate = growth / time
+    # The standard error of a ratio of means, where each mean is over a section of the motion.
+    residual = growth_squares - 2 * rate * products + rate * rate * time_squares
+    return rate, np.sqrt(np.maximum(residual, 0.0) * number / (number - 1)) / time

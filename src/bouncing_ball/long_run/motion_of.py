@@ -24,6 +24,7 @@ from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import ParameterError
 from bouncing_ball.long_run import grids
+from bouncing_ball.long_run.destination import IMPACTS
 from bouncing_ball.models.ball import Ball, a_single_ball
 from bouncing_ball.models.over_time import first_impacts
 
@@ -34,7 +35,7 @@ def motion_of(
     amplitude: AmplitudeAxis,
     phase: StartAxis = 0.0,
     velocity: StartAxis = -math.pi,
-    impacts: FollowedImpacts = 1500,
+    impacts: FollowedImpacts = IMPACTS,
 ) -> Result:
     """The motion on which a ball ends, after a first impact as in
     :func:`bouncing_ball.simulate`.
@@ -60,7 +61,7 @@ def motion_of(
         table and the ``impacts`` until the motion repeats, its ``lyapunov_exponent`` per period of
         the table with ``lyapunov_error``, the ``reason`` if it is undecided or if it is locked with
         an unknown period, and one of its impacts. ``followed`` is the number of impacts for which
-        it was followed, and ``digits_lost`` the number of decimal digits of the start that were
+        it was followed, ``verdict`` says both in words, and ``digits_lost`` the number of decimal digits of the start that were
         lost on the way: a double has 16. The figure shows the periods of the motions over an
         argument.
 
@@ -90,7 +91,7 @@ def lyapunov_exponent(
     amplitude: AmplitudeAxis,
     phase: StartAxis = 0.0,
     velocity: StartAxis = -math.pi,
-    impacts: FollowedImpacts = 1500,
+    impacts: FollowedImpacts = IMPACTS,
 ) -> Result:
     """The two Lyapunov exponents of the motion on which a ball ends, per period of the table.
 
@@ -134,7 +135,7 @@ def orbit_diagram(
     amplitudes: AmplitudeAxis,
     starts: SampleCount = 6,
     samples: SampleCount = 64,
-    impacts: FollowedImpacts = 300,
+    impacts: FollowedImpacts = IMPACTS,
 ) -> Result:
     """The attractors over Λ, reached from several starts and by following balls in Λ.
 
@@ -193,7 +194,7 @@ def basins(
     amplitude: Amplitude,
     starts: SampleCount = 200,
     velocity_max: Positive | None = None,
-    impacts: FollowedImpacts = 2000,
+    impacts: FollowedImpacts = IMPACTS,
 ) -> Result:
     """The motions on which balls end that start from a grid of first impacts, and their shares.
 

@@ -63,7 +63,9 @@ class Motions(Batch):
         Largest Lyapunov exponent per period of the table. For a motion that repeats it follows from
         the larger multiplier, and is -∞ if the multiplier is zero; NaN where it is not known.
     exponent_error : array
-        Standard error of the exponent; 0 for a motion that repeats, and NaN where it is not known.
+        Standard error of the exponent, or its change from the first part of the motion to the rest
+        if that is larger and no accident; 0 for a motion that repeats, and NaN where it is not
+        known.
     reason : array of Reason
         The reason for which a motion is undecided, or the period of a locked motion not known.
     followed : array of int
@@ -116,6 +118,30 @@ class Motions(Batch):
             end_velocity=unknowns(),
             digits_lost=unknowns(),
         )
+
+    def in_words(self) -> str:
+        """The kind of a single motion, and for how many impacts the ball was followed.
+
+        Examples
+        --------
+        >>> from bouncing_ball.long_run.destination import final_motions
+        >>> from bouncing_ball.models.rigid import RestitutionModel
+        >>> start = [0.8, 2.0], 1.0, -3.0
+        >>> found = final_motions(RestitutionModel(0.9), *start, impacts=300)
+        >>> print(found[0].in_words(), found[1].in_words(), sep="\\n")
+        orbit, found within 183 impacts
+        chaotic in all 300 impacts for which it was followed; more may show a long transient
+        """
+        kind = str(self.kind)
+        many = int(self.followed)
+        why = f": {self.reason}" if str(self.reason) else ""
+        if kind == Kind.CHAOTIC:
+            followed = f"in all {many} impacts for which it was followed"
+            return f"{kind} {followed}; more may show a long transient"
+        if kind == Kind.UNDECIDED:
+            return f"{kind} after {many} impacts{why}"
+        unknown = f"; its period is not known{why}" if self.is_unresolved() else ""
+        return f"{kind}, found within {many} impacts{unknown}"
 
     def is_unresolved(self) -> np.ndarray:
         """Whether motions are locked, and rounding errors decide on the period."""

@@ -14,7 +14,7 @@ from bouncing_ball.datasets.arguments import (
     checked_number,
 )
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.long_run.destination import final_motions
+from bouncing_ball.long_run.destination import IMPACTS, final_motions
 from bouncing_ball.models.ball import Ball, a_single_ball
 from bouncing_ball.models.model import Model
 from bouncing_ball.periodic.branches.following import point_near
@@ -29,7 +29,7 @@ def orbit_of_motion(
     amplitude: AmplitudeOfOrbit,
     phase: Start = 0.0,
     velocity: Start = -math.pi,
-    impacts: FollowedImpacts = 4000,
+    impacts: FollowedImpacts = IMPACTS,
 ) -> Orbit:
     """The periodic orbit on which a ball ends, as a start for :func:`follow`.
 
@@ -67,7 +67,7 @@ def orbit_of_motion(
 
 
 def of_motion(
-    model: Model, amplitude: float, phase: float, velocity: float, impacts: int = 4000
+    model: Model, amplitude: float, phase: float, velocity: float, impacts: int = IMPACTS
 ) -> Orbit:
     """The orbit on which a simulated ball ends.
 

@@ -66,9 +66,9 @@ def motion(
 
 def _ends_of_other_starts(ball: Ball, amplitude: float, impacts: int) -> Answer:
     """The motions on which balls from an even grid of starts end, with their shares."""
-    found = library.basins(
-        ball, amplitude=amplitude, starts=_OTHER_STARTS, impacts=impacts
-    ).sortby("share", ascending=False)
+    found = library.basins(ball, amplitude=amplitude, starts=_OTHER_STARTS, impacts=impacts).sortby(
+        "share", ascending=False
+    )
     shares = {}
     for k in range(found.sizes["motion"]):
         one = found.isel(motion=k)

@@ -8,15 +8,15 @@ At an impact of the speed v = -δ′ the energy of a ball over its mass changes 
 
     w′ (1 + r) v - (1 - r²) v²/2
 
-The first term is the work of the table, and the second the loss. A free flight keeps the energy, so
-that the mean work is equal to the mean loss once the statistics do not change any more. Because r
-does not depend on v, the mean loss of impacts is (1 - r² - s²) ⟨v²⟩/2. On a table at rest the speeds
-obey v_{k+1} = r_k v_k, so that after k impacts ⟨v^j⟩ = v_0^j ⟨r^j⟩^k, with ⟨r²⟩ = r² + s².
+The first term is the work of the table, and the second the loss. A free flight keeps the energy,
+so that the mean work is equal to the mean loss once the statistics do not change any more. Because
+r does not depend on v, the mean loss of impacts is (1 - r² - s²) ⟨v²⟩/2. On a table at rest the
+speeds obey v_{k+1} = r_k v_k, so that after k impacts ⟨v^j⟩ = v_0^j ⟨r^j⟩^k, with ⟨r²⟩ = r² + s².
 
 That r scatters is seen in experiments, where the distribution is not Gaussian: M. Montaine and
 others, *The coefficient of restitution as a fluctuating quantity*, arXiv:1104.0049, of which the
-abstract and the introduction were read. They find two exponential flanks. The beta distribution here
-is a choice.
+abstract and the introduction were read. They find two exponential flanks. The beta distribution
+here is a choice.
 """
 
 from __future__ import annotations
@@ -137,7 +137,8 @@ def ensemble(
     rows = _followed(dynamics, dynamics.start(phases, relative), scatter, most, rng)
     given = {"amplitude": lam, "noise": scatter.deviation, "balls": number, "seed": seed}
     labels = {"phase": first[0], "velocity": first[1]}
-    return Result.of(_statistics(rows).assign_attrs(model.parameters | given | labels), "ensemble")
+    attributes = {**model.parameters, **given, **labels}
+    return Result.of(_statistics(rows).assign_attrs(attributes), "ensemble")
 
 
 class _Scatter(NamedTuple):
@@ -197,7 +198,7 @@ def _followed(
     ball = np.arange(size)
     time = np.zeros(size)
     for k in range(impacts):
-        # One number for each ball, whether it bounces or not, so that balls do not depend on others.
+        # One number for each ball, whether it bounces or not: balls do not depend on others.
         r = scatter.draw(rng, size)[ball]
         speed = -impact.velocity
         table_rate, _ = dynamics.table_at(impact)

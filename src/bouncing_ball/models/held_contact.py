@@ -1,7 +1,7 @@
 r"""Contacts with a spring and a damper on any table, also beside a drag or another spring.
 
-In the notation of :mod:`bouncing_ball.models.suspension` a flight obeys ``p″ + l p′ + q p = b`` with
-δ = p - W. In contact the spring and the damper of the contact act as well, on δ alone::
+In the notation of :mod:`bouncing_ball.models.suspension` a flight obeys ``p″ + l p′ + q p = b``
+with δ = p - W. In contact the spring and the damper of the contact act as well, on δ alone::
 
     δ″ + (l + 2ζϖ) δ′ + (q + ϖ²) δ = b - (W″ + l W′ + q W)
 
@@ -235,7 +235,8 @@ class HeldMotion(Motion):
         at = self.flight.lagged(time, self.lag)
         above = self._free_level(at) + self.most
         slack = _ROUNDING * np.abs(self.rest)
-        return Derivatives(*at.values, *at.bounds, ended=above <= slack)
+        y = Derivatives(*at.values, *at.bounds)
+        return y._replace(ended=above <= slack)
 
     def _free_level(self, at: Any) -> np.ndarray:
         """b/Q + R, which with S is a bound of y."""

@@ -345,8 +345,9 @@ class _Rise(Motion):
     def __call__(self, time: np.ndarray) -> Derivatives:
         (gap, rate, second, third, _), free = self.flight._moved(time)
         bounds = self.flight._bounds(free, (2, 3, 4))
-        ended = (rate <= 0) & (second <= 0)
-        return Derivatives(gap, rate, second, third, *bounds, ended=ended)
+        return Derivatives(gap, rate, second, third, *bounds)._replace(
+            ended=(rate <= 0) & (second <= 0)
+        )
 
 
 class _Unloaded(Motion):
@@ -361,7 +362,8 @@ class _Unloaded(Motion):
         y, *rates = at.values
         # At the release y = 0 but for rounding; this zero is not the one that is searched for.
         y = np.where(time == 0, 0.0, y)
-        return Derivatives(-y, *(-x for x in rates), *at.bounds, ended=at.gap >= 0)
+        falls = Derivatives(-y, *(-x for x in rates), *at.bounds)
+        return falls._replace(ended=at.gap >= 0)
 
 
 class Pressure(Motion):

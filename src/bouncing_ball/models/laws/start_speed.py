@@ -1,7 +1,7 @@
 r"""Contact laws whose damping is set by the speed at the start of each contact.
 
-The force of both laws is Hertz' with a hysteresis damping, ``f = K p^{3/2} (1 + c p′/v₀)``, where v₀
-is the speed at which the contact starts and c a number that follows from a nominal restitution
+The force of both laws is Hertz' with a hysteresis damping, ``f = K p^{3/2} (1 + c p′/v₀)``, where
+v₀ is the speed at which the contact starts and c a number that follows from a nominal restitution
 coefficient e::
 
     Lankarani and Nikravesh:   c = 3(1 - e²)/4
@@ -17,11 +17,11 @@ too. With y = C p′ the energy of a free impact gives ``y - ln(1 + y)`` the sam
 r is not e: for e = 0.5 it is 0.725 with the first law and 0.470 with the second. As e tends to 1,
 the loss 1 - r tends to 2c/3, which is 1 - e with the first law and 16(1 - e)/15 with the second.
 
-Where such a law is not smooth: v₀ jumps from contact to contact, and as it tends to zero the damping
-grows without limit. A ball that is laid on the table, with v₀ = 0, would never sink; starts slower
-than 10⁻⁹ are damped as one with this speed. A ball that is held by its weight after a slow start
-creeps in and out, and where it is pulled out faster than v₀/c the force is negative: the law lets
-the contact pull. Its release is at p = 0, at which the force vanishes. Chattering therefore is that
+Where such a law is not smooth: v₀ jumps from contact to contact, and as it tends to zero the
+damping grows without limit. A ball that is laid on the table, with v₀ = 0, would never sink; starts
+slower than 10⁻⁹ are damped as one with this speed. A ball that is held by its weight after a slow
+start creeps in and out, and where it is pulled out faster than v₀/c the force is negative: the law
+lets the contact pull. Its release is at p = 0, at which the force vanishes. Chattering therefore is that
 of very strong damping, and no theorem for fixed C applies to it. The derivatives of the return map
 contain that of C by v₀, and a contact multiplies areas by a factor that is not exp(-∫∂f/∂p′). The
 threshold of permanent contact, and whether a contact without an end is permanent, are those of the

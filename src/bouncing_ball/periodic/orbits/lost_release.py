@@ -55,7 +55,8 @@ class _LostRelease:
     def residual(self, y: np.ndarray) -> np.ndarray:
         """Their left sides less their right sides, shape (..., N + 1)."""
         orbits = self.orbits
-        dynamics, _ = orbits.dynamics(y)
+        # The durations are unknowns of linear contacts only, whose motion goes on beyond its end.
+        dynamics: Any = orbits.dynamics(y)[0]
         shape = (*y.shape[:-1], orbits.impacts)
         if dynamics is None:
             return np.full((*y.shape[:-1], y.shape[-1]), np.nan)

@@ -91,7 +91,7 @@ def test_doubled_orbit_and_its_branch_along_the_drag():
 
 @pytest.mark.slow
 def test_an_impact_grazes_where_the_steady_oscillation_reaches_the_stop():
-    # Nordmark 1991: the oscillation without impacts has the amplitude Λ/|ν² - 1 + 2iζν|.
+    # The oscillation without impacts has the amplitude Λ/|ν² - 1 + 2iζν|.
     for nu, zeta, gap in ((0.35, 0.02, 1.0), (0.6, 0.1, 2.0), (1.6, 0.05, 0.7)):
         ball = rigid(restitution=0.8, flight=Spring(nu, zeta, gap))
         expected = gap * abs(nu**2 - 1 + 2j * zeta * nu)
@@ -105,7 +105,7 @@ def test_an_impact_grazes_where_the_steady_oscillation_reaches_the_stop():
 
 
 def test_impact_speeds_over_the_gap_are_on_an_ellipse():
-    # Shaw and Holmes 1983; Budd and Dux 1994.
+    # Shaw and Holmes 1983: between two impacts there is one free oscillation.
     r, nu, lam = 0.8, 0.45, 1.0
     ball = rigid(restitution=r, flight=Spring(nu, 0.0, -0.5))
     one = bouncing_ball.orbit(ball, amplitude=lam)

@@ -28,7 +28,7 @@ VARIABLES = {
     "exponent_sum": Variable("sum of both Lyapunov exponents per period of the table"),
     "second_exponent": Variable("smaller Lyapunov exponent per period of the table"),
     "followed": Variable("number of impacts for which a ball is followed"),
-    "verdict": Variable("the kind of the motion, and how long the ball was followed"),
+    "in_words": Variable("the kind of the motion, and how long the ball was followed"),
     "start": Variable("start of a ball at one amplitude"),
     "impact": Variable("impact of the motion on which the ball ends"),
     "impact_phase": Variable(
@@ -90,8 +90,8 @@ def motions(
     """
     require_memory(amplitude.size, "a grid of starts")
     found = final_motions(model, amplitude, phase, velocity, impacts=impacts)
-    verdicts = np.array([found[k].in_words() for k in range(found.size)])
-    data = _variables(found, (CASE,)) | {"verdict": (CASE, verdicts)}
+    words = np.array([found[k].in_words() for k in range(found.size)])
+    data = _variables(found, (CASE,)) | {"in_words": (CASE, words)}
     return described(data, variables=VARIABLES)
 
 

@@ -61,7 +61,7 @@ def motion_of(
         table and the ``impacts`` until the motion repeats, its ``lyapunov_exponent`` per period of
         the table with ``lyapunov_error``, the ``reason`` if it is undecided or if it is locked with
         an unknown period, and one of its impacts. ``followed`` is the number of impacts for which
-        it was followed, ``verdict`` says both in words, and ``digits_lost`` is the number of
+        it was followed, ``in_words`` says both, and ``digits_lost`` is the number of
         decimal digits of the start that were lost on the way: a double has 16. The figure shows the
         periods of the motions over an argument.
 

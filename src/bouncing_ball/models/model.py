@@ -38,6 +38,7 @@ RANGES: Mapping[str, Range] = {
     "frequency_ratio": FREQUENCY_RATIO,
     "restitution": RESTITUTION,
     "damping_ratio": Range(0, 1, "[)"),
+    "damping": Range(0, np.inf, "[)"),
     "drag": DRAG,
     "spring_frequency": SPRING_FREQUENCY,
     "spring_damping": SPRING_DAMPING,

@@ -263,7 +263,8 @@ def branch_from(
         increasing = to is None or bool(to > orbits.values(here)[along])
     if towards is None:
         towards = np.eye(here.size)[-1] * (1.0 if increasing else -1.0)
-    limits = limits_of(along, range_ahead(orbits, here, to), orbits.equations)
+    within = range_ahead(orbits, here, to)
+    limits = limits_of(along, within, orbits.equations)
     near = min(_NEAR, float(turns_apart(orbits, here)) / 2)
     with np.errstate(all="ignore"):
         branch = _followed(
@@ -285,8 +286,32 @@ def branch_from(
             )
             branch = _joined(branch, further)
         tests = [*events(orbits), loss_of_release(orbits)]
+        branch = _up_to_limit(orbits, branch, within)
         whole = replace(branch, end=explained(branch, tests, limits))
         return Followed(orbits, _with_lost_release(orbits, whole))
+
+
+def _up_to_limit(orbits: PeriodicOrbits, branch: Branch, within: Range) -> Branch:
+    """A branch that ended next to an end of the range of its parameter, with the orbit at this end.
+
+    Steps beyond the end fail, because there are no balls, so that the steps become too short.
+    """
+    last = branch.points[-1]
+    ends = np.arcsinh(np.array(within))
+    at = ends[np.argmin(np.abs(ends - last[-1]))]
+    if not branch.end.stuck or not abs(at - last[-1]) < _AT_END:
+        return branch
+    # Rounding of sinh must not lead out of the range.
+    while not within.low <= np.sinh(at) <= within.high:
+        at = np.nextafter(at, last[-1])
+    point, why = corrector.corrected(orbits, np.array([*last[:-1], at]), PATIENT)
+    if why:
+        return branch
+    return replace(
+        branch,
+        points=np.concatenate([branch.points, [point]]),
+        tangents=np.concatenate([branch.tangents, branch.tangents[-1:]]),
+    )
 
 
 def _with_lost_release(orbits: PeriodicOrbits, branch: Branch) -> Branch:

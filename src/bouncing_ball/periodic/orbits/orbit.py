@@ -682,6 +682,12 @@ class Orbit(Batch):
         """Whether both multipliers lie inside the unit circle: asymptotic stability."""
         return self._single(stability.is_stable(*self.trace_and_determinant()))
 
+    def is_neutral(self) -> Any:
+        """Whether both multipliers lie on the unit circle, and are no ±1, up to rounding: an orbit
+        of a ball without dissipation, r = 1 or ζ = 0, that is not unstable. It is not stable.
+        """
+        return self._single(stability.is_neutral(*self.trace_and_determinant()))
+
     def is_admissible(self) -> Any:
         """Whether the simulated ball follows the orbit, without an earlier release or landing.
 

@@ -13,6 +13,10 @@ from numpy.typing import ArrayLike
 from bouncing_ball import datasets
 from bouncing_ball.errors import ModelError
 
+# The determinant of a contact that does not dissipate differs from 1 by rounding errors of its
+# parameters at most.
+_ROUNDING = 8 * np.finfo(float).eps
+
 
 def multipliers(trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:
     """Floquet multipliers, complex, shape (..., 2); that of larger modulus comes first.
@@ -69,12 +73,28 @@ class Bifurcation(StrEnum):
 def is_stable(trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:
     """Whether both multipliers lie inside the unit circle (Jury's conditions).
 
-    These are ``|det| < 1`` and ``1 ∓ tr + det > 0``.
+    These are ``|det| < 1`` and ``1 ∓ tr + det > 0``. A determinant that is 1 up to rounding, as
+    that of a contact that does not dissipate, is not below 1.
 
     Examples
     --------
-    >>> bool(is_stable(0.0, 0.5)), bool(is_stable(2.0, 0.5))
-    (True, False)
+    >>> bool(is_stable(0.0, 0.5)), bool(is_stable(2.0, 0.5)), bool(is_stable(0.0, 1 - 1e-16))
+    (True, False, False)
     """
-    inside = np.abs(np.asarray(determinant)) < 1
+    inside = np.abs(np.asarray(determinant)) < 1 - _ROUNDING
     return inside & np.all([kind.test(trace, determinant) > 0 for kind in Bifurcation], axis=0)
+
+
+def is_neutral(trace: ArrayLike, determinant: ArrayLike) -> np.ndarray:
+    """Whether both multipliers lie on the unit circle and are no ±1, up to rounding.
+
+    Neighbours neither approach the orbit nor leave it in the linear approximation, as without
+    dissipation.
+
+    Examples
+    --------
+    >>> bool(is_neutral(0.5, 1.0)), bool(is_neutral(-2.8, 1.0)), bool(is_neutral(0.5, 0.9))
+    (True, False, False)
+    """
+    on_circle = np.abs(np.asarray(determinant) - 1) <= _ROUNDING
+    return on_circle & np.all([kind.test(trace, determinant) > 0 for kind in Bifurcation], axis=0)

@@ -89,6 +89,7 @@ if TYPE_CHECKING:
     from bouncing_ball.models.suspension import Spring as Spring
     from bouncing_ball.models.waveform import Waveform as Waveform
     from bouncing_ball.periodic.branches.follow import follow as follow
+    from bouncing_ball.periodic.branches.grazing import grazing_form as grazing_form
     from bouncing_ball.periodic.branches_of_ball import branch as branch
     from bouncing_ball.periodic.orbits.normal_form import normal_form as normal_form
     from bouncing_ball.periodic.orbits_of_ball import limits as limits
@@ -128,6 +129,7 @@ _MODULES = {
     "error_thresholds": "accuracy.error_thresholds",
     "fit_contact": "measured.fit",
     "follow": "periodic.branches.follow",
+    "grazing_form": "periodic.branches.grazing",
     "history": "models.over_time",
     "limits": "periodic.orbits_of_ball",
     "lyapunov_exponent": "long_run.motion_of",

@@ -16,7 +16,7 @@ from bouncing_ball.datasets.arguments import (
     chosen,
 )
 from bouncing_ball.errors import NoOrbitError, ParameterError
-from bouncing_ball.periodic.branches import curves, following, switching
+from bouncing_ball.periodic.branches import curves, following, grazing, switching
 from bouncing_ball.periodic.branches.following import Range
 from bouncing_ball.periodic.branches.labelled import FollowedBranch, SpecialCurve, labelled
 from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls
@@ -57,8 +57,8 @@ def follow(
 
     An ordinary orbit is followed up to a value of the parameter or to the end of its branch. From a
     period doubling the branch of twice the period is followed, from a period halving that of half
-    the period, and from the grazing of a flight or of a release the branch on which it lies. A
-    saddle-node has orbits on one side of the parameter only, and two branches there: the stable one
+    the period, from the grazing of a flight that of the orbits with one impact more, and from the
+    grazing of a release the branch on which it lies. A saddle-node has orbits on one side of the parameter only, and two branches there: the stable one
     is followed. The other one comes behind the saddle-node if an orbit of the stable one is
     followed towards it. At the grazing of an impact, at a lost release and at the end of sticking a
     branch ends. With two parameters the curve of special orbits of this kind is followed in both
@@ -143,6 +143,8 @@ def follow(
         start = switching.halved(orbit)
     elif orbit.kind == Special.SADDLE_NODE:
         towards = _to_stable_side(orbit, name, value)
+    elif orbit.kind == Special.GRAZING_FLIGHT:
+        start, towards = grazing.first_with_one_more(orbit, name, value)
     found = following.branch_from(start, name, value, towards=towards, most=most)
     return FollowedBranch.of(labelled(found), "follow")
 

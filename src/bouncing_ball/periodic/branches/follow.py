@@ -58,11 +58,11 @@ def follow(
     An ordinary orbit is followed up to a value of the parameter or to the end of its branch. From a
     period doubling the branch of twice the period is followed, from a period halving that of half
     the period, from the grazing of a flight that of the orbits with one impact more, and from the
-    grazing of a release the branch on which it lies. A saddle-node has orbits on one side of the parameter only, and two branches there: the stable one
-    is followed. The other one comes behind the saddle-node if an orbit of the stable one is
-    followed towards it. At the grazing of an impact, at a lost release and at the end of sticking a
-    branch ends. With two parameters the curve of special orbits of this kind is followed in both
-    directions.
+    grazing of a release the branch on which it lies. A saddle-node has orbits on one side of the
+    parameter only, and two branches there: the stable one is followed. The other one comes behind
+    the saddle-node if an orbit of the stable one is followed towards it. At the grazing of an
+    impact, at a lost release and at the end of sticking a branch ends. With two parameters the
+    curve of special orbits of this kind is followed in both directions.
 
     Parameters
     ----------
@@ -146,7 +146,7 @@ def follow(
     elif orbit.kind == Special.GRAZING_FLIGHT:
         start, towards = grazing.first_with_one_more(orbit, name, value)
     found = following.branch_from(start, name, value, towards=towards, most=most)
-    return FollowedBranch.of(labelled(found), "follow")
+    return FollowedBranch(**labelled(found, "follow"))
 
 
 def _to_stable_side(fold: Orbit, name: str, to: float | None) -> np.ndarray:
@@ -218,8 +218,7 @@ def _curve(orbit: Orbit, names: tuple[str, ...], ranges: Any, most: int) -> Spec
         across_window=windows[1],
         most=most,
     )
-    data = labelled(found).assign_attrs(curve_kind=str(orbit.kind))
-    return SpecialCurve.of(data, "curve")
+    return SpecialCurve(**labelled(found, "curve", curve_kind=str(orbit.kind)))
 
 
 def _window(name: str, given: Any, start: float) -> Range | None:

@@ -8,10 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from bouncing_ball.datasets.arguments import chosen
-from bouncing_ball.datasets.variables import SHARED, Variable, describe
+from bouncing_ball.datasets.variables import SHARED, Variable
 from bouncing_ball.drawing.result import MADE_BY, Result
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.numerics.elementary import reduce_angle
@@ -147,15 +146,29 @@ def _attributes(problem: PeriodicOrbits) -> dict[str, Any]:
     return {"impacts": problem.impacts, "periods": int(problem.periods), **fixed}
 
 
-def labelled(found: Orbits) -> xr.Dataset:
-    """The dataset of a branch or a curve, with phases in [-π, π]."""
-    data = observables.with_orbits(observables.branch_columns(found), found)
-    turned = {name: data[name].copy(data=reduce_angle(data[name].values)) for name in _PHASES}
-    turned["phase"] = data.phase.copy(data=found.row.phases)
+def labelled(found: Orbits, made_by: str, **attributes: str) -> dict[str, Any]:
+    """The variables, coordinates and attributes of a branch or a curve, with phases in [-π, π].
+
+    They are the arguments of a dataset, which is made once, because that takes as long as some
+    points of a branch.
+    """
+    variables = observables.kept_variables(found)
+    for name in _PHASES:
+        dims, values = variables[name]
+        variables[name] = dims, reduce_angle(values)
+    variables["phase"] = variables["phase"][0], found.row.phases
     along = found.problem.orbits.along
-    changing = {*along, *(str(name) for name in data.variables if f"special_{name}" in data)}
+    changing = {*along, *(name for name in variables if f"special_{name}" in variables)}
     known = {name: SHARED.get(name, Variable(name.replace("_", " "))) for name in changing}
     names = {f"special_{n}": v._replace(long_name=f"{v.long_name} there") for n, v in known.items()}
-    named = known | names | observables.VARIABLES | _AXES | KEPT
-    whole = describe(data.assign(turned), named)
-    return whole.assign_attrs(_attributes(found.problem.orbits), along=", ".join(along))
+    named = SHARED | known | names | observables.VARIABLES | _AXES | KEPT
+    data = {name: (*x, named[name].attributes()) for name, x in variables.items()}
+    axes = {"point": len(found), "impact": found.problem.orbits.impacts, "multiplier": 2}
+    coords = {name: (name, np.arange(size)) for name, size in axes.items()}
+    coords |= {name: data.pop(name) for name in ("special", "end")}
+    of_ball = _attributes(found.problem.orbits)
+    return {
+        "data_vars": data,
+        "coords": {name: (*x[:2], named[name].attributes()) for name, x in coords.items()},
+        "attrs": {**of_ball, "along": ", ".join(along), **attributes, MADE_BY: made_by},
+    }

@@ -90,25 +90,28 @@ def branch_columns(found: Orbits) -> xr.Dataset:
     ``end_reason`` over ``end``.
     ``special_point`` is the number of the last point before a special orbit.
     """
+    return xr.Dataset(branch_variables(found))
+
+
+def branch_variables(found: Orbits) -> dict[str, Any]:
+    """The variables and the coordinates of :func:`branch_columns`."""
     special = _special_places(found)
-    columns = _orbits_in_columns(
+    variables = _orbits_in_columns(
         orbits_along(found.problem, found.branch.points),
         orbits_along(found.problem, special.points),
         special.kinds,
         [str(found.branch.start), str(found.branch.end)],
     )
-    return columns.assign(
-        special_arclength=("special", special.arclength), special_point=("special", special.before)
-    )
+    variables["special_arclength"] = "special", special.arclength
+    variables["special_point"] = "special", special.before
+    return variables
 
 
-def with_orbits(data: xr.Dataset, found: Orbits) -> xr.Dataset:
-    """The dataset of :func:`branch_columns`, with all that its orbits need to come back."""
+def kept_variables(found: Orbits) -> dict[str, Any]:
+    """The variables of :func:`branch_variables`, with all that the orbits need to come back."""
     special = _special_places(found)
-    columns = columns_of(orbits_on(found.problem, special.points), "special", "special_")
-    columns |= columns_of(found.row, "point")
-    known = {name: data[name] for name in data.variables}
-    return data.assign({name: x for name, x in columns.items() if name not in known})
+    kept = columns_of(orbits_on(found.problem, special.points), "special", "special_")
+    return columns_of(found.row, "point") | kept | branch_variables(found)
 
 
 class _Special(NamedTuple):
@@ -158,7 +161,7 @@ def _places(special: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]
 
 def _orbits_in_columns(
     orbit: Orbit, special: Orbit, kinds: list[str], ends: list[str]
-) -> xr.Dataset:
+) -> dict[str, Any]:
     """Orbits along a branch, its special orbits with their kinds, and the reasons for its two ends,
     as in :func:`branch_columns`.
     """
@@ -184,8 +187,9 @@ def _orbits_in_columns(
     data["special_residual"] = "special", special.defect()
     data["end_reason"] = "end", ends
     # Numbers, so that branches with different numbers of special points are aligned.
-    coords = {"special": np.arange(len(kinds)), "end": ["start", "end"]}
-    return xr.Dataset(data, coords)
+    data["special"] = "special", np.arange(len(kinds))
+    data["end"] = "end", ["start", "end"]
+    return data
 
 
 def _values(orbit: Orbit, name: str) -> np.ndarray:
@@ -197,8 +201,7 @@ def n_t_columns(found: Orbits, kept: bool = False) -> xr.Dataset:
     """As :func:`branch_columns` for orbits with one impact, from the unstable to the stable side,
     without an axis of the impacts; with all that the orbits need to come back if they are ``kept``.
     """
-    columns = branch_columns(found)
-    return _of_one_impact(with_orbits(columns, found) if kept else columns)
+    return _of_one_impact(xr.Dataset((kept_variables if kept else branch_variables)(found)))
 
 
 def _of_one_impact(columns: xr.Dataset) -> xr.Dataset:
@@ -211,15 +214,11 @@ def no_branch(count: int, error: Exception, kept: bool = False) -> xr.Dataset:
     """A dataset like that of :func:`n_t_columns`, of NaN, with the error as its end reasons."""
     none = Orbit.of(RestitutionModel(1.0), 1, np.full(count, np.nan), np.nan)
     found = _orbits_in_columns(none, none[:0], [], [str(error)] * 2)
-    empty = np.empty(0)
-    places: dict[str, Any] = {
-        "special_arclength": ("special", empty),
-        "special_point": ("special", empty),
-    }
+    found["special_arclength"] = "special", np.empty(0)
+    found["special_point"] = "special", np.empty(0)
     if kept:
-        places |= columns_of(none, "point") | columns_of(none[:0], "special", "special_")
-    missing = {name: x for name, x in places.items() if name not in found}
-    return _of_one_impact(found.assign(missing))
+        found = columns_of(none, "point") | columns_of(none[:0], "special", "special_") | found
+    return _of_one_impact(xr.Dataset(found))
 
 
 def joined(branches: list[xr.Dataset], dim: str) -> xr.Dataset:

@@ -21,9 +21,11 @@ _DIFFERENCE = 6e-6
 _PATIENT = NewtonSettings(max_iterations=20)
 # Rounding may move a zero at an end of the bracket outside, by at most this part of the bracket.
 _SLACK = 1e-6
-# Largest number of bisections of a chord.
-_BISECTIONS = 60
-# A chord is bisected until its length relative to the point is at most this rounding error.
+# A chord is divided at these shares, at points that are computed together, which costs hardly more
+# than one point does; and the largest number of such divisions.
+_SHARES = np.linspace(0.0, 1.0, 17)[1:-1, np.newaxis]
+_ROUNDS = 15
+# A chord is divided until its length relative to the point is at most this rounding error.
 _ROUNDING = 4e-16
 _TINY = np.finfo(float).tiny
 
@@ -156,9 +158,9 @@ def domain_limits(
 ) -> np.ndarray:
     """The last points of a branch inside a domain, one for each of the limits that it crosses.
 
-    A limit lies between a point inside and a point outside. It is found by bisection of the chord
-    between the two points, where each midpoint is corrected onto the branch, until the two points
-    agree to rounding.
+    A limit lies between a point inside and a point outside. The chord between the two points is
+    divided into 16 parts, again and again, where each point is corrected onto the branch, until the
+    two points agree to rounding.
 
     Parameters
     ----------
@@ -180,13 +182,20 @@ def domain_limits(
     outside = points[np.where(known[at], at + 1, at)]
     if not at.size:
         return inside
-    for _ in range(_BISECTIONS):
-        middle = (inside + outside) / 2
+    row = np.arange(at.size)
+    for _ in range(_ROUNDS):
         normal = outside - inside
         length = np.linalg.norm(normal, axis=-1, keepdims=True)
-        found = newton(problem, middle, plane(normal / np.maximum(length, _TINY), middle))
-        good = inside_at(found.point)
-        closer = found.converged & (length[:, 0] > _ROUNDING * np.linalg.norm(inside, axis=-1))
-        inside[closer & good] = found.point[closer & good]
-        outside[closer & ~good] = found.point[closer & ~good]
+        if np.all(length[:, 0] <= _ROUNDING * np.linalg.norm(inside, axis=-1)):
+            break
+        between = inside[:, np.newaxis] + _SHARES * normal[:, np.newaxis]
+        across = np.broadcast_to((normal / np.maximum(length, _TINY))[:, np.newaxis], between.shape)
+        found = newton(problem, between, plane(across, between))
+        # The limit lies after the last of the first points that are inside, and before the next.
+        good = inside_at(found.point) & found.converged
+        count = np.cumprod(good, axis=-1).sum(axis=-1)
+        known = np.concatenate([inside[:, np.newaxis], found.point, outside[:, np.newaxis]], axis=1)
+        solved = np.pad(found.converged, ((0, 0), (1, 1)), constant_values=True)
+        inside = known[row, count]
+        outside = np.where(solved[row, count + 1, np.newaxis], known[row, count + 1], outside)
     return inside

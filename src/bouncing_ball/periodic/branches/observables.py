@@ -109,9 +109,17 @@ def branch_variables(found: Orbits) -> dict[str, Any]:
 
 def kept_variables(found: Orbits) -> dict[str, Any]:
     """The variables of :func:`branch_variables`, with all that the orbits need to come back."""
-    special = _special_places(found)
-    kept = columns_of(orbits_on(found.problem, special.points), "special", "special_")
-    return columns_of(found.row, "point") | kept | branch_variables(found)
+    special = orbits_on(found.problem, _special_places(found).points)
+    along = columns_of(found.row, "point")
+    # No special orbit has parameters of its own if there is none.
+    empty = {f"special_{name}": ("special", np.empty(0)) for name in _over_points(along)}
+    kept = columns_of(special, "special", "special_")
+    return (empty if not special.size else {}) | kept | along | branch_variables(found)
+
+
+def _over_points(variables: dict[str, Any]) -> list[str]:
+    """The names of the variables with one number for each point."""
+    return [name for name, (dims, _) in variables.items() if dims == ("point",)]
 
 
 class _Special(NamedTuple):

@@ -53,7 +53,7 @@ def test_a_parameter_changes_the_arguments_of_its_studies_only(keys, value, expe
     ("file", "expected"),
     [
         ("paper/exhibits/restitution_model.py", {"fig02", "fig03"}),
-        ("paper/claims/verdict.py", {"claims", "ext_verdicts", "statements"}),
+        ("paper/claims/verdict.py", {"claims", "ext_verdicts"}),
         ("paper/claims/witness.py", {"witness"}),
         ("drawing/style.py", set()),
         ("drawing/matplotlibrc", set()),

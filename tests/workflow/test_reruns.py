@@ -44,7 +44,6 @@ def test_a_commit_runs_nothing_again_and_a_change_what_it_decides(complete):
         # Every orbit shown is followed by the comparison of the three routes.
         *("witness", "Setting witness"),
         *("claims", "Setting claims", "Writing results/paper.md and results/supplement.md"),
-        "statements",
     }
 
 

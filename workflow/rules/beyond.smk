@@ -288,24 +288,3 @@ use rule beyond_study as certified_verdicts_study with:
                 reads=("ext_proofs", "claims"),
             ),
         ),
-
-
-use rule beyond_study as statements_study with:
-    """Verdicts on our statements about the whole motion."""
-    wildcard_constraints:
-        artifact=stage(
-            "beyond.exhibits.statements",
-            statements=dict(
-                title="Verdicts on our statements about the whole motion",
-                study="statements",
-                reads=(
-                    "ext_locking",
-                    "ext_chaos",
-                    "ext_locked",
-                    "ext_lives",
-                    "ext_cascades",
-                    "ext_means",
-                    "ext_basins",
-                ),
-            ),
-        ),

@@ -8,7 +8,6 @@ import xarray as xr
 from declared_artifacts import ARTIFACTS
 
 from bouncing_ball.beyond.exhibits.certified_verdicts import PARAMETERS as CERTIFIED
-from bouncing_ball.beyond.exhibits.statements import PARAMETERS as STATED
 from bouncing_ball.datasets.files import parameter_attributes
 from bouncing_ball.paper.claims.claims import CLAIMS, claims, tally
 from bouncing_ball.paper.claims.formulas import DEFINITIONS
@@ -87,7 +86,7 @@ def test_an_explanation_fails_with_its_checks(data):
 
 @pytest.mark.parametrize(
     ("digests", "section"),
-    [(PAPER, "paper"), (CERTIFIED, "beyond"), (STATED, "beyond")],
+    [(PAPER, "paper"), (CERTIFIED, "beyond")],
 )
 def test_claims_are_decided_for_the_parameters_of_the_configuration(digests, section):
     config = read_yaml(ROOT / "config" / "config.yaml")

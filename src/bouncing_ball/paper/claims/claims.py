@@ -61,6 +61,10 @@ VARIABLES = {
         "reproduced, definition, in one reading, close, contradicted, undecidable or not asked"
     ),
     "printed_table": Variable("the printed table whose entry the claim is"),
+    "units": Variable("bound in units of the last printed digit"),
+    "numbers_beyond": Variable(
+        "printed numbers farther from the computed one than the bound, without restatements"
+    ),
     "explained_by": Variable("name of the explanation"),
     "explained": Variable("neither close nor contradicted, or explained by checks that hold"),
     "explanation": Variable("explanation of claims that are close or contradicted"),
@@ -70,6 +74,8 @@ VARIABLES = {
     ),
     "explanation_holds": Variable("whether the checks of the explanation hold"),
 }
+# Bounds of close numbers that might have been chosen, in units of the last printed digit.
+_BOUNDS = (0.5, 1.0, float(CLOSE_UNITS), 2.5, 5.0)
 _CHAPTERS = (impact_models, periodic_orbits, both_models)
 CLAIMS: tuple[Claim, ...] = tuple(claim for chapter in _CHAPTERS for claim in defined_in(chapter))
 """Every claim of the paper that can be decided, in the order of the paper."""
@@ -134,6 +140,30 @@ def assess(
     )
 
 
+def numbers_beyond(decided: xr.Dataset, bounds: Sequence[float]) -> list[int]:
+    """How many printed numbers are farther from the computed ones than each bound.
+
+    Restatements, and numbers that are not asked for, are left out.
+
+    Parameters
+    ----------
+    decided : Dataset
+        ``group`` and ``deviation_units`` over ``claim``.
+    bounds : sequence of float
+        Bounds in units of the last printed digit.
+
+    Examples
+    --------
+    >>> groups = ["number", "number", "restatement", "statement"]
+    >>> decided = xr.Dataset({"group": ("claim", groups),
+    ...                       "deviation_units": ("claim", [-2.1, 0.3, 6.0, math.nan])})
+    >>> numbers_beyond(decided, [0.5, 2.5])
+    [1, 0]
+    """
+    units = abs(decided.deviation_units.where(decided.group == "number"))
+    return [int((units > bound).sum()) for bound in bounds]
+
+
 def claims(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
     """The verdict on every claim of the paper, and the numbers that the article prints with them.
 
@@ -164,7 +194,11 @@ def claims(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
         evidence.permanent_contact_error,
     )
     numbers = {one.__name__: xr.DataArray(one(data)).reset_coords(drop=True) for one in printed}
-    return xr.merge([assess(CLAIMS, data), described(numbers, variables=VARIABLES)]).assign_attrs(
+    verdicts = assess(CLAIMS, data)
+    beyond = {"numbers_beyond": ("units", numbers_beyond(verdicts, _BOUNDS))}
+    bounds = described(beyond, coords={"units": list(_BOUNDS)}, variables=VARIABLES)
+    evident = described(numbers, variables=VARIABLES)
+    return xr.merge([verdicts, bounds, evident]).assign_attrs(
         close_units=CLOSE_UNITS,
         tolerance=evidence.TOLERANCE,
         stiff_frequency_ratio=evidence.STIFF,

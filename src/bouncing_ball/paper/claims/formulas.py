@@ -55,9 +55,9 @@ WEIGHTLESS = 1e16
 _COMPLIANT = 1e-4
 # The r and ϖ for Eq. 16 on a table at rest; the impact velocity is that of the 1-T orbit.
 STATIC = {"restitution": [0.85, 0.65], "frequency_ratio": [10.0, 100.0]}
-# Rows of definitions, about which the paper can claim nothing: r_a, and the error of a model. They
-# are compared because the package computes with them.
-DEFINITIONS = ("Eq. 17", "Eqs. 37-38")
+# Rows about which the paper claims nothing: the definitions of r_a and of the error of a model,
+# with which the package computes, and ϖ inverted, which results if its letters mean the opposite.
+DEFINITIONS = ("Eq. 17", "Eqs. 37-38", "ϖ = Ω/ω, Ω of the table")
 # For each formula: the comparison, the disagreement, and the disagreement that rounding explains.
 Checks = dict[str, tuple[str, float, float]]
 

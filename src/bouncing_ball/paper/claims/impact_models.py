@@ -141,28 +141,6 @@ def stable_between(data):
 sticking = formula("sticking", "Eq. 9", "permanent contact for amplitudes up to 1")
 # The spring-damper model.
 
-_RATIO = "ϖ = Ω/ω, Ω of the contact"
-
-
-@claim("before Eq. 11")
-def frequency_ratio(data):
-    """the frequency ratio is Ω/ω
-
-    Condition: with this ratio Eq. 10 becomes Eq. 11
-
-    Remark: Ω/ω can be read, but not which of the letters is the frequency of the table. Only the
-    contact's frequency divided by the table's turns Eq. 10 into Eq. 11 and makes ϖ large for a
-    stiff contact; with the usual letters, where Ω belongs to the table, the printed ratio would be
-    inverted
-
-    Answer: the letters are those of the paper's list of symbols, which is unreadable in our text
-    """
-    return {
-        "Ω is the table's frequency": of_formula(data, "ϖ = Ω/ω, Ω of the table"),
-        "Ω is the contact's frequency": of_formula(data, _RATIO),
-    }
-
-
 CONTACT = [
     formula(
         "contact equation",

@@ -35,10 +35,8 @@ class Verdict(StrEnum):
     """The verdict depends on how the claim is read."""
     NOT_ASKED = "not asked"
     """The datasets were not computed with the paper's parameters."""
-    CONFIRMED = "confirmed"
-    """A statement of ours that holds in the whole interval of the number found."""
     NOT_DECIDED = "not decided"
-    """A statement of ours, or a verdict on a number, that holds in a part of the interval."""
+    """A verdict on a number that holds in a part of the interval of the number."""
 
 
 @dataclass(frozen=True)

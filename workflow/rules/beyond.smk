@@ -191,12 +191,12 @@ use rule beyond_study as lives_study with:
 
 
 use rule beyond_study as locked_orbits_study with:
-    """What predicts a locked orbit."""
+    """Locked orbits of the restitution model on contacts."""
     wildcard_constraints:
         artifact=stage(
             "beyond.exhibits.locked_orbits",
             ext_locked=dict(
-                title="What predicts the frequency ratio at which a contact has a locked orbit, and transients before it",
+                title="The frequency ratio at which a contact has a locked orbit of the restitution model, and transients before it",
                 study="locked_orbits",
                 places="returns_at_places",
                 drawing="locked_orbits",

@@ -1,4 +1,4 @@
-"""Predictors of the stiffness at which a contact has the restitution model's locked orbit."""
+"""The locked orbits of the restitution model on contacts, and the time until balls lock."""
 
 import numpy as np
 import xarray as xr
@@ -8,44 +8,25 @@ from matplotlib.figure import Figure, SubFigure
 from bouncing_ball.beyond.exhibits.motion_maps import bars
 from bouncing_ball.drawing.canvas import coloured, legend_below, logarithmic, stacked
 from bouncing_ball.drawing.labels import number
-from bouncing_ball.drawing.style import COLOURS, GUIDE, Look
+from bouncing_ball.drawing.style import COLOURS, Look
 
 _DASHES = ("-", (0, (4, 1.5)), (0, (1, 1.2)), (0, (6, 1.5, 1, 1.5)))
-# The part of the axis of ϖ on either side of the contacts computed.
-_BEYOND = 10.0
 _LOOK: Look = {"color": COLOURS[1], "marker": "o"}
 
 
 def locked_orbits(data: xr.Dataset) -> Figure:
-    """The share with the same period by ϖ over its scale and by ϖ, and the share next to a
-    discontinuity; below, the survival of transients for each case.
+    """The share with the same period over ϖ, and the share next to a discontinuity; below, the
+    survival of transients for each case.
     """
     figure, (above, below) = stacked(5.4, (1.0, 1.1))
-    by_place, by_ratio, jumps = above.subplots(1, 3)
-    _draw_predictions(by_place, by_ratio, data)
+    by_ratio, jumps = above.subplots(1, 2)
+    bars(by_ratio, data.frequency_ratio.values, data, "same", **_LOOK)
+    logarithmic(by_ratio, xlabel=r"frequency ratio $\varpi$", ylim=(0, 1.03))
+    by_ratio.set_ylabel("share with the same\nlocked period")
+    by_ratio.set_title("by frequency ratio")
     _draw_jumps(jumps, data)
     _draw_survival(below, data)
     return figure
-
-
-def _draw_predictions(by_place: Axes, by_ratio: Axes, data: xr.Dataset) -> None:
-    """The share with the same period, by the prediction for all ϖ together and by ϖ."""
-    bars(by_place, data.predicted.values, data, "same_by_prediction", **_LOOK)
-    by_place.axvline(1.0, **GUIDE)
-    logarithmic(by_place, xlabel=r"$\varpi\,/\max(S/W, P)$", ylim=(0, 1.03))
-    by_place.set_ylabel("share with the same\nlocked period")
-    by_place.set_title(r"all $\varpi$ together, by the prediction")
-    scale = np.maximum(data.sensitivity / data.wait, data.peak)
-    wanted = np.sort(scale.dropna("node").values)
-    share = np.arange(1, wanted.size + 1) / wanted.size
-    by_ratio.plot(wanted, share, color=COLOURS[3], label=r"$\varpi\geq\max(S/W, P)$")
-    bars(by_ratio, data.frequency_ratio.values, data, "same", label="contact", **_LOOK, ls="none")
-    # Beyond the contacts computed the scale has nothing to be compared with.
-    computed = data.frequency_ratio.values
-    by_ratio.set(xlabel=r"frequency ratio $\varpi$", ylim=(0, 1.03), xscale="log")
-    by_ratio.set_xlim(computed.min() / _BEYOND, computed.max() * _BEYOND)
-    by_ratio.set_title("by frequency ratio")
-    by_ratio.legend(loc="lower right")
 
 
 def _draw_jumps(jumps: Axes, data: xr.Dataset) -> None:

@@ -32,6 +32,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import require
 from bouncing_ball.long_run.destination import final_motions
+from bouncing_ball.long_run.motions import Motions
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
@@ -253,15 +254,18 @@ def _is_next(contact: SpringDamper, amplitude: np.ndarray) -> np.ndarray:
     zeta, k, ratio = exists
     low, high, aside = (x[exists] for x in (last, amplitude, above))
     places = np.stack([low + 2 * aside, (low + high) / 2, high - aside, high + aside])
-    # The ball is set down behind the top of the table.
-    law = contact[zeta, ratio]
-    phase = np.pi / 2 + 3 / law.frequency_ratio
-    velocity = places * np.cos(phase) - 0.1 / np.square(law.frequency_ratio)
-    found = final_motions(SpringDamperModel(law), places, phase, velocity, impacts=_IMPACTS)
+    found = balls_behind_the_top(contact[zeta, ratio], places)
     flights = np.add.outer([0, 0, 0, 1], k + 1)
     is_next = np.zeros(amplitude.shape, dtype=bool)
     is_next[exists] = np.all((found.periods == 1) & (found.impacts == flights), axis=0)
     return is_next
+
+
+def balls_behind_the_top(law: SpringDamper, amplitude: np.ndarray) -> Motions:
+    """The motions on which balls end that are set down slowly behind the top of the table."""
+    phase = np.pi / 2 + 3 / law.frequency_ratio
+    velocity = amplitude * np.cos(phase) - 0.1 / np.square(law.frequency_ratio)
+    return final_motions(SpringDamperModel(law), amplitude, phase, velocity, impacts=_IMPACTS)
 
 
 class _Place(NamedTuple):

@@ -4,6 +4,10 @@ import numpy as np
 import pytest
 
 from bouncing_ball.beyond.exhibits.cascades import cascade_of_flights
+from bouncing_ball.long_run.destination import final_motions
+from bouncing_ball.models.damping import Release
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.pipeline.configuration import typed
 
 FLIGHTS = {
@@ -26,6 +30,21 @@ def test_each_row_of_openings_is_that_of_its_restitution_and_tends_to_its_limit(
     )
     # A compliant contact loses its stability first.
     assert np.isnan(found.opening_amplitude[..., 0]).all() and (found.opening_multiplier.max() < 1)
+
+
+def test_a_ball_leaves_the_orbit_of_one_period_on_compliant_contacts_only():
+    given = {"restitution": [0.95], "frequency_ratio": {"min": 27.12, "max": 100, "samples": 2}}
+    found = typed(cascade_of_flights)(given | {"flights": 2}, "displacement")
+    (compliant, stiff) = found.leaving[0]
+    assert found.stiff_opening[0, 0] * 0.7 < compliant < found.stiff_opening[0, 0]
+    assert found.leaving_periods[0, 0] == 2 and np.isnan(stiff)
+    # Another start just below and just above it.
+    law = SpringDamper.from_restitution(0.95, 27.12, Release.DISPLACEMENT)
+    lam = (
+        float(found.threshold_amplitude[0, 0])
+        + (float(compliant) - np.array([0.4, 0.0])) / 27.12**2
+    )
+    assert final_motions(SpringDamperModel(law), lam, 1.7, -0.2).periods.tolist() == [1, 2]
 
 
 def test_only_the_papers_release_has_openings():

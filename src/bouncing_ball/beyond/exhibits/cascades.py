@@ -22,7 +22,11 @@ from bouncing_ball.datasets.parameters import (
     number,
 )
 from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball.long_run.cascade_of_flights import openings, stiff_openings
+from bouncing_ball.long_run.cascade_of_flights import (
+    balls_behind_the_top,
+    openings,
+    stiff_openings,
+)
 from bouncing_ball.long_run.period_doublings import MOST, cascade
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
@@ -39,6 +43,14 @@ VARIABLES = {
     ),
     "stiff_opening": Variable(
         "ϖ² times the distance of an opening from Λ_SD, limit for ϖ → ∞", symbol="E_k"
+    ),
+    "leaving": Variable(
+        "smallest ϖ²(Λ - Λ_SD) up to the second opening at which a ball is not on an orbit of one "
+        "period",
+        symbol="E",
+    ),
+    "leaving_periods": Variable(
+        "periods of the table in which the motion repeats there; 0 if it does not"
     ),
     "doubling": Variable("period doubling of the orbit of so many doubled periods", symbol="k"),
     "step": Variable("step between two period doublings", symbol="k"),
@@ -86,7 +98,10 @@ def cascade_of_flights(parameters: Flights, release: Release) -> xr.Dataset:
     (restitution, flights, ϖ) is the Λ up to which the orbit has this number of flights, and
     ``opening_multiplier`` the larger modulus of its multipliers there; both are NaN where no stable
     orbit was found. ``stiff_opening`` (restitution, flights) is the limit of E = ϖ²(Λ - Λ_SD) for
-    stiff contacts. All except the first are NaN unless the release is the displacement release.
+    stiff contacts. ``leaving`` (restitution, ϖ) is the smallest E, of 40 equal steps up to the
+    limit of the second opening, at which a ball that is set down behind the top of the table does
+    not end on an orbit of one period, NaN if there is none, and ``leaving_periods`` the period of
+    its motion. All except the first are NaN, or 0, unless the release is the displacement release.
     """
     restitution = np.array(parameters.restitution)
     ratio = parameters.frequency_ratio.grid()
@@ -96,9 +111,12 @@ def cascade_of_flights(parameters: Flights, release: Release) -> xr.Dataset:
     amplitude = np.full((zeta.size, most, ratio.size), np.nan)
     multiplier = np.full((zeta.size, most, ratio.size), np.nan)
     stiff = np.full((zeta.size, most), np.nan)
+    excess = np.full((zeta.size, ratio.size), np.nan)
+    periods = np.zeros((zeta.size, ratio.size), dtype=int)
     if release is Release.DISPLACEMENT:
         amplitude, multiplier = openings(zeta, ratio, most)
         stiff = np.stack([stiff_openings(z, most) for z in zeta])
+        excess, periods = _leaving(law, stiff[:, 1])
     dims = ("restitution", "flights", "frequency_ratio")
     threshold = SpringDamperModel(law).permanent_contact_threshold()
     return described(
@@ -107,6 +125,8 @@ def cascade_of_flights(parameters: Flights, release: Release) -> xr.Dataset:
             "opening_amplitude": (dims, amplitude),
             "opening_multiplier": (dims, multiplier),
             "stiff_opening": (("restitution", "flights"), stiff),
+            "leaving": (("restitution", "frequency_ratio"), excess),
+            "leaving_periods": (("restitution", "frequency_ratio"), periods),
         },
         coords={
             "restitution": restitution,
@@ -117,6 +137,23 @@ def cascade_of_flights(parameters: Flights, release: Release) -> xr.Dataset:
     )
 
 
+def _leaving(law: SpringDamper, second: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The smallest E up to ``second`` (r,) at which balls on contacts, shape (r, ϖ), do not end on
+    an orbit of one period, and the period of their motion; NaN and 0 if there is none.
+    """
+    excess = second[:, np.newaxis] * np.linspace(0, 1, _PLACES + 1)[1:, np.newaxis, np.newaxis]
+    threshold = SpringDamperModel(law).permanent_contact_threshold()
+    amplitude = threshold + excess / np.square(law.frequency_ratio)
+    found = balls_behind_the_top(law, amplitude)
+    leaves = found.periods != 1
+    first = np.argmax(leaves, axis=0)[np.newaxis]
+    never = ~leaves.any(axis=0)
+    at = np.take_along_axis(np.broadcast_to(excess, leaves.shape), first, axis=0)[0]
+    periods = np.take_along_axis(found.periods, first, axis=0)[0]
+    return np.where(never, np.nan, at), np.where(never, 0, periods)
+
+
+_PLACES = 40
 _GRAVITY = 9.80665
 """Standard gravity in m/s²."""
 

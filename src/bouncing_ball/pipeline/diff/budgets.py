@@ -121,6 +121,8 @@ ARTIFACTS: dict[str, dict[str, Budget]] = {
         "lyapunov_exponent": Budget(5.0, scale="lyapunov_error", share=0.05),
         "lyapunov_error": Budget(0.5, share=0.05),
     },
+    # Where a ball just leaves its orbit, rounding decides between two places of E.
+    "ext_flights": dict.fromkeys(("leaving", "leaving_periods"), Budget(ROUNDING, share=0.1)),
     "ext_diagram": {
         # Densities of some hundred samples of a chaotic motion, and ends of balls that may change.
         "phase_density": Budget(0.05, scale="1", share=0.05),

@@ -71,6 +71,7 @@ PARTS = {
         "docs/gallery",
         "docs/python",
         "docs/periodic-orbits",
+        "docs/thesis",
         "docs/other-tables",
         "docs/design",
         "docs/engines",

@@ -3,7 +3,7 @@
 from typing import Any
 
 from bouncing_ball.cli.design import answer
-from bouncing_ball.cli.design_text import DesignAnswer
+from bouncing_ball.cli.design_answer import DesignAnswer
 from bouncing_ball.contacts.assess import Assessment
 from bouncing_ball.contacts.describe import Description
 

@@ -284,16 +284,16 @@ def continuation_settings():
 @pytest.fixture
 def short_runs(monkeypatch):
     """An answer follows few impacts: long runs are those of contacts/test_motion.py."""
-    from bouncing_ball.contacts import motion
+    from bouncing_ball.contacts import ends, means
 
     for impacts in ("_IMPACTS", "_IMPACTS_OF_LAW"):
-        monkeypatch.setattr(motion, impacts, 20)
+        monkeypatch.setattr(ends, impacts, 20)
     monkeypatch.setattr("bouncing_ball.contacts.starts._STARTS", 3)
     monkeypatch.setattr("bouncing_ball.contacts.starts._IMPACTS", 20)
-    monkeypatch.setattr(motion, "_BALLS_OF_CHANGE", 4)
-    few = motion.Sampling(unit=4, usual=4, impacts=(8,), before=4)
+    monkeypatch.setattr(means, "_BALLS_OF_CHANGE", 4)
+    few = means.Sampling(unit=4, usual=4, impacts=(8,), before=4)
     for samples in ("_SAMPLES", "_SAMPLES_OF_LAW"):
-        monkeypatch.setattr(motion, samples, few)
+        monkeypatch.setattr(means, samples, few)
 
 
 CHROMIUM = next(

@@ -4,16 +4,19 @@ All of them derive from :class:`ValueError`, so that callers can catch them with
 """
 
 import difflib
+import functools
+import inspect
 import math
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 _Known = TypeVar("_Known")
+_Call = TypeVar("_Call", bound=Callable[..., Any])
 
 
 class ModelError(ValueError):
@@ -137,6 +140,46 @@ def did_you_mean(name: object, known: Iterable[str]) -> str:
     typed = str(name).casefold().replace("_", "-")
     close = difflib.get_close_matches(typed, names, n=1, cutoff=_ALIKE)
     return f"; did you mean {close[0]}?" if close else ""
+
+
+def suggesting(call: _Call) -> _Call:
+    """A function or class that answers an unknown keyword argument with the one that it resembles.
+
+    Examples
+    --------
+    >>> @suggesting
+    ... def rise(*, restitution, height=1.0):
+    ...     return restitution**2 * height
+    >>> rise(restituton=0.5)
+    Traceback (most recent call last):
+    TypeError: rise() got an unexpected keyword argument 'restituton'; did you mean restitution?
+    >>> rise(speed=2.0)
+    Traceback (most recent call last):
+    TypeError: rise() got an unexpected keyword argument 'speed': it has restitution and height
+    """
+    if not isinstance(call, type):
+        return cast("_Call", _suggesting(call, call.__name__))
+    kind: Any = call
+    kind.__init__ = _suggesting(kind.__init__, call.__name__)
+    return call
+
+
+def _suggesting(call: Callable[..., Any], name: str) -> Callable[..., Any]:
+    known = [each for each in inspect.signature(call).parameters if each != "self"]
+
+    @functools.wraps(call)
+    def checked(*given: Any, **named: Any) -> Any:
+        unknown = next((each for each in named if each not in known), None)
+        if unknown is None:
+            return call(*given, **named)
+        begins = [each for each in known if each.startswith(unknown)]
+        meant = f"; did you mean {begins[0]}?" if len(begins) == 1 else ""
+        *others, last = known
+        has = f": it has {', '.join(others)} and {last}"
+        hint = meant or did_you_mean(unknown, known) or has
+        raise TypeError(f"{name}() got an unexpected keyword argument {unknown!r}{hint}")
+
+    return checked
 
 
 def escaped(text: str) -> str:

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from asked_contacts import assessed
 
-from bouncing_ball.contacts.motion import FinalMotion, Mean
-from bouncing_ball.contacts.verdict import aside, judged_by_motion
+from bouncing_ball.contacts.means import Mean
+from bouncing_ball.contacts.motion import FinalMotion
+from bouncing_ball.contacts.verdict_on_motion import aside, judged_by_motion
 from bouncing_ball.errors import ModelError
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.means import means as means_of
@@ -290,7 +291,7 @@ def test_the_headline_is_about_the_motion_on_which_most_balls_end():
 
 def test_a_larger_sample_decides_what_a_smaller_one_leaves_open(monkeypatch):
     # Here without changes of r, k and g, which decide about this error.
-    monkeypatch.setattr("bouncing_ball.contacts.motion._changes", lambda *_: None)
+    monkeypatch.setattr("bouncing_ball.contacts.means._changes", lambda *_: None)
     given = {"mass": "20 g", "frequency": "50 Hz", "acceleration": "2 g", "restitution": 0.5}
     asked = given | {"stiffness": "1e7 N/m", "tolerance": 0.2465}
     small = assessed(**asked, balls=256)

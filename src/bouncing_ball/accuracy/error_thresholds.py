@@ -26,12 +26,13 @@ from bouncing_ball.datasets.arguments import (
 from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.datasets.variables import described
 from bouncing_ball.drawing.result import Result
-from bouncing_ball.errors import ParameterError
+from bouncing_ball.errors import ParameterError, suggesting
 from bouncing_ball.models.ball import Ball, a_known_ball
 from bouncing_ball.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball.models.rigid import RestitutionModel
 
 
+@suggesting
 def error_thresholds(
     ball: Ball,
     n: FamilyAxis = 1,

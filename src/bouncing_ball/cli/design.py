@@ -9,7 +9,8 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
-from bouncing_ball.cli.design_text import KINDS, DesignAnswer, both, numbers, reason
+from bouncing_ball.cli.design_answer import KINDS, DesignAnswer
+from bouncing_ball.cli.design_text import numbers
 from bouncing_ball.cli.options import Parser, add_file, add_optional, option
 from bouncing_ball.contacts import rows
 from bouncing_ball.contacts.assess import Assessment, LargestTimeStep, assess
@@ -108,11 +109,8 @@ def answer(given: Mapping[str, Any]) -> DesignAnswer:
     if has_table or not (setup or contact.is_stiff or "speed" in si):
         table = Table(**_of(Table, read))
         read |= _quantities_of(table)
-        # An acceleration in m/s², with or without its unit, may have been meant in g.
-        hint = "" if "gravity" in si else _meant_in_g(given.get("acceleration"), table)
-        found, engine = _on_table(contact, table, question, setup, hint)
+        found, engine = _on_table(contact, table, question, setup)
     else:
-        hint = ""
         found, engine = _at_rest(
             contact, TableMotion.at_rest(si.get("gravity")), setup, si.get("speed")
         )
@@ -132,7 +130,6 @@ def answer(given: Mapping[str, Any]) -> DesignAnswer:
         engine=engine,
         at_step=at_step,
         question=read,
-        hint=hint,
         dropped_at_step=dropped_at_step(found.case, engine, si.get("speed")),
         softer=other,
         looser=looser(found.case, at_step),
@@ -162,19 +159,17 @@ def _on_table(
     table: Table,
     question: Question,
     setup: EngineSetup | None,
-    hint: str,
 ) -> tuple[Assessment, EngineSettings | None]:
     """The contact that is given, or the one that is chosen, and what to write into an engine."""
     written = None if setup is None else setup.engine
-    try:
+    with table.hinting():
         if contact.is_stiff:
             case = resolve(contact, table.motion, question.families, written)
             found = assess(case, question)
         else:
             choice = choose(contact, table.motion, question, written)
             found = assess(choice.case, question, choice)
-    except NoOrbitError as error:
-        raise NoOrbitError(both(str(error), hint)) from None
+    found = replace(found, hint=table.hint)
     if setup is None:
         return found, None
     engine = settings_on_table(found, setup)
@@ -195,19 +190,12 @@ def _at_rest(
     return found, settings(found.case, setup)
 
 
-def _meant_in_g(acceleration: Any, table: Table) -> str:
-    if acceleration is None or str(acceleration).strip().endswith("g"):
-        return ""
-    return f"perhaps {table.acceleration:g} g was meant"
-
-
 def _draw(given: DesignAnswer, path: Path) -> None:
     found = given.found
     if isinstance(found, Description):
         raise ParameterError("{plot} needs a table, such as {frequency} and {acceleration}")
     if not any(each.exists for each in found.judged.standing.values()):
-        why = reason(found, given.hint)
-        raise NoOrbitError(f"without an orbit there is no page to print: {why}")
+        raise NoOrbitError(f"without an orbit there is no page to print: {found.reason}")
     from bouncing_ball.contacts.page_data import page
 
     with extra("plot"):
@@ -223,8 +211,6 @@ def _draw(given: DesignAnswer, path: Path) -> None:
 def document(given: DesignAnswer) -> dict[str, Any]:
     """The answer as plain values for JSON, with the options."""
     found = rows.document(given.found)
-    if isinstance(given.found, Assessment):
-        found["reason"] = reason(given.found, given.hint)
     # What was not asked for has no key.
     for name in ("dropped", "engine", "at_step", "dropped_at_step", "softer", "looser"):
         more = getattr(given, name)

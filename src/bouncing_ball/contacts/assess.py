@@ -11,22 +11,21 @@ from bouncing_ball.contacts.describe import require_short
 from bouncing_ball.contacts.families import ComparedOrbit, Needed, families, finite, needed
 from bouncing_ball.contacts.motion import FinalMotion, of_family
 from bouncing_ball.contacts.notes import notes, remarks
-from bouncing_ball.contacts.quantities import check_kind
+from bouncing_ball.contacts.quantities import check_kinds
 from bouncing_ball.contacts.question import Question
 from bouncing_ball.contacts.resolve import resolve
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.rows import Listed
 from bouncing_ball.contacts.starts import FEW, Ends, ends_of_starts
 from bouncing_ball.contacts.table import Table
-from bouncing_ball.contacts.verdict import (
+from bouncing_ball.contacts.verdict import assessed, judged_choice
+from bouncing_ball.contacts.verdict_on_motion import (
     Judgement,
     aside,
-    assessed,
     headline,
     judged_by_motion,
-    judged_choice,
 )
-from bouncing_ball.errors import ModelError, NoOrbitError, require
+from bouncing_ball.errors import ModelError, NoOrbitError, require, suggesting
 from bouncing_ball.models.damping import LINEAR
 
 STEPS = 50
@@ -62,7 +61,7 @@ class Corrected:
     load: Annotated[float, Listed("corrected model, load σ", "s")]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Assessment:
     """The assessment of a contact on a table; times are in s, lengths in m, forces in N.
 
@@ -74,6 +73,7 @@ class Assessment:
     threshold was found. ``law`` has the ``name`` of a contact law and its parameters, whose units
     are powers of kg, m and s. ``chosen`` is the family for which the contact was chosen, None for a
     contact that was given. ``no_orbit`` says that no model has an orbit; it is empty if one has.
+    ``hint`` is what may have been meant in that case.
     """
 
     KEYS: ClassVar[tuple[str, ...]] = (
@@ -109,6 +109,12 @@ class Assessment:
     ends: Ends
     chosen: int | None = None
     no_orbit: str = ""
+    hint: str = ""
+
+    def __repr__(self) -> str:
+        """The verdict, and no numbers, of which there are hundreds."""
+        good = self.is_good_enough
+        return f"Assessment(n={self.n}, is_good_enough={good}, verdict={self.verdict!r})"
 
     @property
     def judged(self) -> ComparedOrbit:
@@ -146,8 +152,10 @@ class Assessment:
 
     @property
     def reason(self) -> str:
-        """The reason of the verdict."""
-        return self.judgement.reason
+        """The reason of the verdict, and what may have been meant if no model has an orbit."""
+        exists = any(each.exists for each in self.judged.standing.values())
+        why = self.judgement.reason
+        return why if exists or not self.hint else f"{why}; {self.hint}"
 
     @property
     def headline(self) -> str:
@@ -165,6 +173,7 @@ class Assessment:
         return remarks(self.case) + notes(self.case, self.judged, self.motion)
 
 
+@suggesting
 def assess_contact(table: Table, contact: Contact, question: Question | None = None) -> Assessment:
     """Whether the restitution model is good enough for a contact on a vibrating table.
 
@@ -194,10 +203,11 @@ def assess_contact(table: Table, contact: Contact, question: Question | None = N
     (1, True, 0.0122)
     """
     asked = Question() if question is None else question
-    check_kind("table", table, Table)
-    check_kind("contact", contact, Contact)
-    check_kind("question", asked, Question)
-    return assess(resolve(contact, table.motion, asked.families), asked)
+    of = {"table": (table, Table), "contact": (contact, Contact), "question": (asked, Question)}
+    check_kinds("assess_contact", **of)
+    with table.hinting():
+        found = assess(resolve(contact, table.motion, asked.families), asked)
+    return replace(found, hint=table.hint)
 
 
 def assess(case: ResolvedContact, question: Question, choice: Choice | None = None) -> Assessment:

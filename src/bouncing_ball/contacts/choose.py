@@ -11,14 +11,14 @@ from bouncing_ball.contacts.hertz import reduced_modulus
 from bouncing_ball.contacts.loss import of_loss
 from bouncing_ball.contacts.named_laws import law_named
 from bouncing_ball.contacts.notes import remarks
-from bouncing_ball.contacts.quantities import check_kind
+from bouncing_ball.contacts.quantities import check_kinds
 from bouncing_ball.contacts.question import Question
 from bouncing_ball.contacts.resolve import law_type, meant, resolve
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.table import Table, TableMotion
 from bouncing_ball.contacts.texts import percent
 from bouncing_ball.contacts.verdict import judged_choice
-from bouncing_ball.errors import NoOrbitError, ParameterError
+from bouncing_ball.errors import NoOrbitError, ParameterError, suggesting
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic.one_impact import n_t
@@ -59,6 +59,7 @@ class Choice:
         return remarks(self.case)
 
 
+@suggesting
 def choose_contact(table: Table, contact: Contact, question: Question | None = None) -> Choice:
     """The most compliant contact for which the restitution model is within a tolerance.
 
@@ -86,10 +87,10 @@ def choose_contact(table: Table, contact: Contact, question: Question | None = N
     ('1.36e+07 N/m, 0.000122 s', 83.0)
     """
     asked = Question() if question is None else question
-    check_kind("table", table, Table)
-    check_kind("contact", contact, Contact)
-    check_kind("question", asked, Question)
-    return choose(contact, table.motion, asked)
+    of = {"table": (table, Table), "contact": (contact, Contact), "question": (asked, Question)}
+    check_kinds("choose_contact", **of)
+    with table.hinting():
+        return choose(contact, table.motion, asked)
 
 
 def choose(

@@ -23,7 +23,7 @@ from bouncing_ball.contacts.quantities import (
     convert,
     given,
 )
-from bouncing_ball.errors import ParameterError
+from bouncing_ball.errors import ParameterError, suggesting
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.hertzian import Tsuji
 from bouncing_ball.models.spring_damper import SpringDamper
@@ -64,6 +64,7 @@ def _numbers_by_name(given: Mapping[Any, Any]) -> dict[str, Any]:
     return found
 
 
+@suggesting
 @dataclass(frozen=True, kw_only=True)
 class Contact:
     """A ball and its contact with a table, by any parameters that determine them.

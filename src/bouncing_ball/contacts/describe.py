@@ -6,14 +6,14 @@ from typing import Annotated, Any, ClassVar
 from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.drops import deep
 from bouncing_ball.contacts.notes import remarks
-from bouncing_ball.contacts.quantities import Gravity, Speed, check_kind, quantities
+from bouncing_ball.contacts.quantities import Gravity, Speed, check_kinds, quantities
 from bouncing_ball.contacts.resolve import needs_table, resolve
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.rows import Listed
 from bouncing_ball.contacts.table import TableMotion
 from bouncing_ball.contacts.texts import shown
 from bouncing_ball.contacts.units import in_si
-from bouncing_ball.errors import ModelError
+from bouncing_ball.errors import ModelError, suggesting
 
 LONGEST = 1000.0
 """The longest contact in s that is taken for one: no simulation has a longer one."""
@@ -58,6 +58,7 @@ class Description:
         return remarks(self.case) + sunk
 
 
+@suggesting
 def describe_contact(contact: Contact, gravity: Gravity = None, speed: Speed = None) -> Description:
     """The numbers of a contact without a table.
 
@@ -82,7 +83,7 @@ def describe_contact(contact: Contact, gravity: Gravity = None, speed: Speed = N
     >>> round(found.stiffness, 6), round(found.damping, 6), round(found.measured_restitution, 4)
     (13888.888889, 50.0, 0.451)
     """
-    check_kind("contact", contact, Contact)
+    check_kinds("describe_contact", contact=(contact, Contact))
     kinds = quantities(describe_contact)
     if gravity is not None:
         gravity = in_si("gravity", gravity, kinds["gravity"])

@@ -28,7 +28,7 @@ from bouncing_ball.datasets.arguments import (
     chosen,
     is_array,
 )
-from bouncing_ball.errors import ParameterError, Range
+from bouncing_ball.errors import ParameterError, Range, suggesting
 from bouncing_ball.models.ball import Ball
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
@@ -119,6 +119,7 @@ class FreeImpactBall(Ball):
         return replace(self, duration=float(self.duration[which]))
 
 
+@suggesting
 def contact_law(
     law: str | ContactLaw,
     *,

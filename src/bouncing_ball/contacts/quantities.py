@@ -74,22 +74,29 @@ def convert(data: Any) -> None:
             object.__setattr__(data, name, in_si(name, value, kind))
 
 
-def check_kind(name: str, value: Any, kind: type) -> None:
-    """Raise :class:`ParameterError` unless an argument is of its class.
+def check_kinds(call: str, **arguments: tuple[Any, type]) -> None:
+    """Raise :class:`ParameterError` unless each argument of a function is of its class.
 
     Examples
     --------
     >>> from bouncing_ball.contacts.question import Question
-    >>> check_kind("question", 0.05, Question)
+    >>> check_kinds("choose_contact", question=(0.05, Question))
     Traceback (most recent call last):
     bouncing_ball.errors.ParameterError: question = 0.05 is not a Question
     """
-    if not isinstance(value, kind):
+    kinds = [kind for _, kind in arguments.values()]
+    for name, (value, kind) in arguments.items():
+        if isinstance(value, kind):
+            continue
         # The text of a ball or of a dataset has several lines.
         text = repr(value)
         shown = type(value).__name__ if "\n" in text or len(text) > _LONGEST_SHOWN else text
         article = "an" if kind.__name__[0] in "AEIOU" else "a"
-        raise ParameterError(f"{{{name}}} = {{}} is not {article} {kind.__name__}", shown)
+        order = ""
+        if value is not None and type(value) in kinds:
+            order = f": write {call}({', '.join(arguments)}), in this order"
+        wrong = f"{{{name}}} = {{}} is not {article} {kind.__name__}{{}}"
+        raise ParameterError(wrong, shown, order)
 
 
 def given(data: Any) -> dict[str, Any]:

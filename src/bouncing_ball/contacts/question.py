@@ -8,13 +8,14 @@ from bouncing_ball.accuracy.errors import QUANTITIES, Quantity
 from bouncing_ball.contacts.engines.choice import engine_named
 from bouncing_ball.contacts.engines.engine import ERROR
 from bouncing_ball.contacts.quantities import RestitutionError, TimeStep, Tolerance, convert
-from bouncing_ball.errors import FAMILY, ModelError, ParameterError, count, one_of
+from bouncing_ball.errors import FAMILY, ModelError, ParameterError, count, one_of, suggesting
 
 # The families of which one is judged by default: those that the paper shows, and some more.
 _FAMILIES = range(1, 9)
 MOST_BALLS = count(100_000)
 
 
+@suggesting
 @dataclass(frozen=True, kw_only=True)
 class Question:
     """What is asked of a contact on a table.
@@ -62,6 +63,7 @@ class Question:
         return _FAMILIES if self.n is None else [int(self.n)]
 
 
+@suggesting
 @dataclass(frozen=True, kw_only=True)
 class EngineSetup:
     """A physics engine for which a contact is written, and how exactly it must step.

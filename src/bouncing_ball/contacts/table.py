@@ -1,7 +1,9 @@
 """The vibrating table: what a user gives of it, and the motion that follows."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
 from functools import cached_property
 
 from bouncing_ball.contacts.quantities import (
@@ -16,7 +18,7 @@ from bouncing_ball.contacts.quantities import (
     given,
     single,
 )
-from bouncing_ball.errors import require
+from bouncing_ball.errors import NoOrbitError, require, suggesting
 
 # Beyond this limit the square of Λ leaves no digits. The other calls have the same limit.
 _LARGEST = 1e8
@@ -69,6 +71,7 @@ class TableMotion:
         return self.gravity / self.angular_frequency**2
 
 
+@suggesting
 @dataclass(frozen=True, kw_only=True)
 class Table:
     """A vibrating table: one parameter for its frequency, one for its amplitude, and gravity.
@@ -108,9 +111,16 @@ class Table:
     table_amplitude: TableAmplitude = None
     acceleration: Acceleration = None
     gravity: Gravity = None
+    hint: str = field(default="", init=False, repr=False, compare=False)
+    """What may have been meant if no model has an orbit: an acceleration in g without its unit."""
 
     def __post_init__(self) -> None:
+        # Gravity is given for tables on which g is no unit.
+        in_g = self.acceleration is None or str(self.acceleration).strip().endswith("g")
+        hidden = in_g or self.gravity is not None
         convert(self)
+        meant = "" if hidden else f"perhaps {self.acceleration:g} g was meant"
+        object.__setattr__(self, "hint", meant)
         amplitude = self.motion.amplitude
         require(amplitude < _LARGEST, amplitude, "Λ", f"below {_LARGEST:g}")
 
@@ -132,3 +142,11 @@ class Table:
         if far == "acceleration":
             moved = self.acceleration / omega**2
         return TableMotion(omega, moved, data.get("gravity", STANDARD_GRAVITY))
+
+    @contextmanager
+    def hinting(self) -> Iterator[None]:
+        """A context in which the error of a missing orbit also says what may have been meant."""
+        try:
+            yield
+        except NoOrbitError as error:
+            raise NoOrbitError("; ".join(filter(None, [str(error), self.hint]))) from None

@@ -17,12 +17,12 @@ from bouncing_ball.contacts.engines.engine import EngineSettings
 from bouncing_ball.contacts.engines.given_step import AtStep, stiffest_contact
 from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.contacts.loss import of_loss
-from bouncing_ball.contacts.quantities import check_kind
+from bouncing_ball.contacts.quantities import check_kinds
 from bouncing_ball.contacts.question import EngineSetup, Question
 from bouncing_ball.contacts.resolve import resolve
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.table import Table, TableMotion
-from bouncing_ball.errors import ModelError, ParameterError
+from bouncing_ball.errors import ModelError, ParameterError, suggesting
 from bouncing_ball.models.spring_damper import SpringDamper
 
 _STEP = "time_step"
@@ -31,6 +31,7 @@ _OF_A_LAW = (
 )
 
 
+@suggesting
 def write_contact(
     contact: Contact,
     setup: EngineSetup,
@@ -75,13 +76,13 @@ def write_contact(
     (0.75, '74.6 N/m')
     """
     asked = Question() if question is None else question
-    check_kind("contact", contact, Contact)
-    check_kind("setup", setup, EngineSetup)
-    check_kind("question", asked, Question)
+    # Without a table its place is held by its class.
+    on = (table, Table) if table is not None else (None, type(None))
+    of = {"contact": (contact, Contact), "setup": (setup, EngineSetup), "table": on}
+    check_kinds("write_contact", **of, question=(asked, Question))
     if table is None:
         case = resolve_for(contact, setup, TableMotion.at_rest())
         return settings(describe(case).case, setup)
-    check_kind("table", table, Table)
     case = resolve(contact, table.motion, asked.families, setup.engine)
     return settings_on_table(assess(case, asked), setup)
 

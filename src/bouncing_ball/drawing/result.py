@@ -10,7 +10,7 @@ import xarray as xr
 
 from bouncing_ball.datasets import DRAWING
 from bouncing_ball.datasets.files import read_dataset
-from bouncing_ball.errors import ModelError, ParameterError, extra
+from bouncing_ball.errors import ModelError, ParameterError, extra, suggesting
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -117,6 +117,7 @@ def _function(name: str) -> Callable[..., Any]:
         raise ModelError(f"this version of the package has no {name}, which draws it") from None
 
 
+@suggesting
 def open(path: str | Path) -> Result:
     """The dataset in a netCDF file, such as that of an artifact of the replication.
 

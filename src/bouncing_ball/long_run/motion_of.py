@@ -22,13 +22,14 @@ from bouncing_ball.datasets.arguments import (
 )
 from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.drawing.result import Result
-from bouncing_ball.errors import ParameterError
+from bouncing_ball.errors import ParameterError, suggesting
 from bouncing_ball.long_run import grids
 from bouncing_ball.long_run.destination import IMPACTS
 from bouncing_ball.models.ball import Ball, a_single_ball
 from bouncing_ball.models.over_time import first_impacts
 
 
+@suggesting
 def motion_of(
     ball: Ball,
     *,
@@ -85,6 +86,7 @@ def motion_of(
     return Result.of(grid.unfold(found), "motion")
 
 
+@suggesting
 def lyapunov_exponent(
     ball: Ball,
     *,
@@ -129,6 +131,7 @@ def lyapunov_exponent(
     return Result.of(grid.unfold(found), "exponent")
 
 
+@suggesting
 def orbit_diagram(
     ball: Ball,
     *,
@@ -188,6 +191,7 @@ def orbit_diagram(
     return Result.of(Grid(**ball.parameters).unfold(found), "diagram")
 
 
+@suggesting
 def basins(
     ball: Ball,
     *,

@@ -13,7 +13,7 @@ from bouncing_ball.datasets.arguments import (
     Start,
     checked_number,
 )
-from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.errors import NoOrbitError, suggesting
 from bouncing_ball.long_run.destination import IMPACTS, final_motions
 from bouncing_ball.models.ball import Ball, a_single_ball
 from bouncing_ball.models.model import Model
@@ -23,6 +23,7 @@ from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball.periodic.orbits.simulation import simulated
 
 
+@suggesting
 def orbit_of_motion(
     ball: Ball,
     *,

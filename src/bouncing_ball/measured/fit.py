@@ -25,7 +25,7 @@ from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.quantities import STANDARD_GRAVITY, quantities
 from bouncing_ball.contacts.table import Table
 from bouncing_ball.contacts.units import in_si
-from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError, require
+from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError, require, suggesting
 from bouncing_ball.measured.curves import CURVES, Curve, curve_named
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
 from bouncing_ball.numerics.arrays import as_numbers
@@ -381,6 +381,7 @@ def _left_out(plain: np.ndarray, slope: np.ndarray, points: Points) -> float:
     return float(np.sqrt(np.mean((plain / (1 - hat)) ** 2)))
 
 
+@suggesting
 def fit_contact(
     speeds: ArrayLike,
     restitutions: ArrayLike,

@@ -25,7 +25,7 @@ from bouncing_ball.datasets.arguments import (
     chosen,
     is_array,
 )
-from bouncing_ball.errors import ModelError, ParameterError
+from bouncing_ball.errors import ModelError, ParameterError, suggesting
 from bouncing_ball.models.ball import Ball, a_ball
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.damping import LINEAR, Release
@@ -41,6 +41,7 @@ LOSSES = ("restitution", "damping_ratio", "measured_restitution")
 """The parameters that determine the loss of an impact; exactly one of them is needed."""
 
 
+@suggesting
 def rigid(
     *,
     restitution: RestitutionAxis,
@@ -100,6 +101,7 @@ def _single_numbers(flight: Suspension | None) -> dict[str, float]:
     return {name: float(value) for name, value in found.items()}
 
 
+@suggesting
 def spring_damper(
     *,
     frequency_ratio: FrequencyRatioAxis,
@@ -187,6 +189,7 @@ def the_loss(
     return given[0]
 
 
+@suggesting
 def corrected(ball: Ball) -> Ball:
     """The ball whose impacts are instants at the centroid of the contact force of another ball.
 

@@ -29,7 +29,7 @@ from bouncing_ball.datasets.arguments import (
     checked,
     checked_number,
 )
-from bouncing_ball.errors import ModelError, require
+from bouncing_ball.errors import ModelError, require, suggesting
 from bouncing_ball.models.ball import Ball, a_ball
 from bouncing_ball.models.flight import land
 from bouncing_ball.models.history import motion_at
@@ -86,6 +86,7 @@ def first_impacts(
     return grid, first
 
 
+@suggesting
 def simulate(
     ball: Ball,
     *,
@@ -134,6 +135,7 @@ def simulate(
     return _labelled_impacts(grid, first.model(ball, grid).simulate(*first, count))
 
 
+@suggesting
 def history(
     ball: Ball,
     *,
@@ -188,6 +190,7 @@ def history(
     return _labelled_history(grid, time, _followed(first.model(ball, grid), first, since))
 
 
+@suggesting
 def drop(
     ball: Ball,
     *,

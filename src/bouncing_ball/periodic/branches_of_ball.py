@@ -16,7 +16,7 @@ from bouncing_ball.datasets.arguments import (
 )
 from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.datasets.variables import describe
-from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.errors import NoOrbitError, suggesting
 from bouncing_ball.models.ball import Ball, a_ball
 from bouncing_ball.models.model import Model
 from bouncing_ball.numerics.continuation import ContinuationError
@@ -32,6 +32,7 @@ from bouncing_ball.periodic.places import by_place
 _STRIDE = 2e-3
 
 
+@suggesting
 def branch(
     ball: Ball, n: FamilyAxis = 1, *, amplitude_max: Positive | None = None, points: Points = 300
 ) -> FollowedBranch:

@@ -20,7 +20,7 @@ from bouncing_ball.datasets.arguments import (
     chosen,
     is_array,
 )
-from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.errors import NoOrbitError, suggesting
 from bouncing_ball.models.ball import Ball, a_ball, a_known_ball, a_single_ball
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.rigid import RestitutionModel
@@ -44,6 +44,7 @@ class TwoLimits(NamedTuple):
         return f"saddle-node: {self.saddle_node!r}\nperiod doubling: {self.period_doubling!r}"
 
 
+@suggesting
 def orbit(
     ball: Ball, n: FamilyAxis = 1, *, amplitude: AmplitudeOfOrbitAxis, side: SideName = "stable"
 ) -> Orbit | Result:
@@ -106,6 +107,7 @@ release='displacement')
     return n_t.require_orbit(model, family, lam, branch_side)
 
 
+@suggesting
 def orbits(ball: Ball, n: Family = 1, *, amplitude: AmplitudeOfOrbit) -> list[Orbit]:
     """All n-T orbits at one excitation amplitude Λ, in order of contact duration.
 
@@ -143,6 +145,7 @@ def orbits(ball: Ball, n: Family = 1, *, amplitude: AmplitudeOfOrbit) -> list[Or
     return [found[k] for k in range(found.size)]
 
 
+@suggesting
 def limits(ball: Ball, n: FamilyAxis = 1) -> TwoLimits | Result:
     """Saddle-node and period doubling of the n-T orbits; NaN where there is none.
 
@@ -186,6 +189,7 @@ def limits(ball: Ball, n: FamilyAxis = 1) -> TwoLimits | Result:
     )
 
 
+@suggesting
 def permanent_contact(ball: Ball) -> float | Result:
     """The Λ up to which a ball at rest stays on the table.
 

@@ -15,7 +15,7 @@ from bouncing_ball.datasets.arguments import (
     checked_number,
     chosen,
 )
-from bouncing_ball.errors import NoOrbitError, ParameterError
+from bouncing_ball.errors import NoOrbitError, ParameterError, suggesting
 from bouncing_ball.periodic.branches import curves, following, grazing, switching
 from bouncing_ball.periodic.branches.following import Range
 from bouncing_ball.periodic.branches.labelled import FollowedBranch, SpecialCurve, labelled
@@ -45,6 +45,7 @@ def follow(
 ) -> SpecialCurve: ...
 
 
+@suggesting
 def follow(
     orbit: Orbit,
     *,

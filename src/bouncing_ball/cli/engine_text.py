@@ -1,0 +1,140 @@
+"""How the settings for an engine are written as text, and what it does at a given time step."""
+
+from bouncing_ball.cli.design_answer import DesignAnswer
+from bouncing_ball.cli.options import option
+from bouncing_ball.contacts import rows
+from bouncing_ball.contacts.engines.drop_in_steps import Rise
+from bouncing_ball.contacts.engines.engine import ERROR, EngineSettings
+from bouncing_ball.contacts.engines.given_step import AtStep
+from bouncing_ball.contacts.texts import shown
+from bouncing_ball.contacts.write import Looser, Softer
+
+
+def line(name: str, *columns: str) -> str:
+    """A name with what stands in the columns beside it."""
+    return f"{name:<38}" + "".join(f"{column + ' ':<18}" for column in columns).rstrip()
+
+
+def engine_lines(given: DesignAnswer) -> list[str]:
+    """The settings of an engine, if one is named, and what it does at the time step given."""
+    at = given.at_step
+    engine = given.engine
+    if engine is None:
+        if at is None:
+            return []
+        return [*_step_lines(at), *_alternatives_at(at), *_looser(given.looser)]
+    speed = given.found.slowed_speed
+    slowed = "" if speed is None else f" of a fast impact, 1 % less at {shown(speed, 'm/s')}"
+    expected = [
+        ("depth at rest", given.found.case.static_deflection, "m"),
+        ("orbit, greatest height", engine.max_height, "m"),
+        ("orbit, duration of contact", engine.contact_duration, "s"),
+        ("orbit, penetration", engine.penetration, "m"),
+    ]
+    met = (
+        f"r = {engine.restitution:.4g}{slowed}, within {engine.error:g} in {engine.steps} steps "
+        f"of {engine.scheme} in a contact"
+    )
+    if at is not None and not at.is_within:
+        met = f"r = {at.span} at this step, {at.mean:.4g} in the mean"
+    return [
+        *([] if at is None else _step_lines(at)),
+        "",
+        f"For {engine.name}, with the {engine.release} release ({met}):",
+        *_pasted(engine),
+        line("time step", shown(engine.time_step, "s")),
+        *_many(engine),
+        *(line(words, shown(x, unit)) for words, x, unit in expected if x is not None),
+        *_rise(given.dropped_at_step),
+        *_alternatives(engine, given.softer, given.looser),
+    ]
+
+
+# More time steps in a contact than simulations have.
+_MANY = 100_000
+
+
+def _many(engine: EngineSettings) -> list[str]:
+    if engine.steps < _MANY:
+        return []
+    instead = f"{option('restitution_error')} {ERROR:g} takes fewer"
+    if engine.at_step is not None:
+        instead = f"a longer {option('time_step')} takes fewer"
+    return [f"Note: {engine.steps} steps in a contact are more than simulations have: {instead}."]
+
+
+def _pasted(engine: EngineSettings) -> list[str]:
+    return ["", *(f"    {line}".rstrip() for line in engine.snippet.splitlines()), ""]
+
+
+def _rise(found: Rise | None) -> list[str]:
+    if found is None:
+        return []
+    ends = [shown(height, "m") for height in (found.least, found.most)]
+    return [line("the drop rises at this step to", " to ".join(dict.fromkeys(ends)))]
+
+
+def _step_lines(at: AtStep) -> list[str]:
+    return [
+        "",
+        f"At a time step of {shown(at.time_step, 's')} the given contact, of {at.steps:.4g} steps, "
+        f"is {at.verdict}.",
+        *(f"Note: {remark}." for remark in at.remarks),
+    ]
+
+
+def _retuned(at: AtStep) -> str:
+    if at.retuned is None:
+        return f"No damping of this stiffness has a mean r of {at.restitution:.4g} at this step."
+    return (
+        f"With a damping of {shown(at.retuned, at.unit_of_damping)} in place of the given one the "
+        f"mean r is {at.restitution:.4g} at this step"
+    )
+
+
+def _alternatives_at(at: AtStep) -> list[str]:
+    """What else a given step allows, for parameters that were given."""
+    tuned = [] if at.is_within else [_retuned(at).rstrip(".") + "."]
+    if at.stiffest is None:
+        return tuned
+    return [
+        *tuned,
+        f"The stiffest contact with the same r within {at.allowed:g} has "
+        f"{shown(at.stiffest, 'N/m')}, with a damping of {shown(at.stiffest_damping, 'N s/m')} and "
+        f"a contact time of {shown(at.stiffest_contact_time, 's')} ({at.stiffest_steps:.4g} "
+        "steps).",
+    ]
+
+
+def _looser(found: Looser | None) -> list[str]:
+    """The stiffest contact for a larger error."""
+    if found is None:
+        return []
+    return [
+        f"Within {found.error:g} of r it may have {shown(found.stiffness, 'N/m')}, with a damping "
+        f"of {shown(found.damping, 'N s/m')}: {option('restitution_error')} {found.error:g}."
+    ]
+
+
+def _alternatives(engine: EngineSettings, other: Softer | None, wider: Looser | None) -> list[str]:
+    """The retuned and the softer contact, if the given step does not resolve the one asked for."""
+    at = engine.at_step
+    if at is None or other is None or engine.softer is None:
+        return [] if at is None else ["", *_alternatives_at(at)]
+    found = ["", _retuned(at)]
+    if engine.retuned is not None and engine.retuned.at_step is not None:
+        found[-1] += f", and any is r = {engine.retuned.at_step.span}:"
+        found += _pasted(engine.retuned)
+    return [
+        *found,
+        *filter(None, [engine.instant]),
+        f"A softer contact has this r within {at.allowed:g} at this step. Its numbers are:",
+        "",
+        *(line(*row) for row in rows.texts(other.contact)),
+        *([] if other.dropped is None else (line(*row) for row in rows.texts(other.dropped))),
+        *_rise(other.dropped_at_step),
+        *([] if other.dropped is None else (f"Note: {one}." for one in other.dropped.remarks)),
+        *([other.verdict] if other.verdict else []),
+        *_pasted(engine.softer),
+        *_looser(wider),
+    ]

@@ -1,0 +1,257 @@
+"""Means over time on motions that do not repeat, and the errors of the restitution model in them.
+
+A motion that repeats has the mean of one repetition. The mean of another motion is that of many
+balls that start beside its impacts (:mod:`bouncing_ball.long_run.sampled_means`). The sample
+grows until the difference between both models is known to be within or beyond the tolerance, or
+until it has as many balls and impacts as take about a second. The samples of both models are
+independent, because balls that start alike have nothing in common after the first impacts, which
+are left out. If rounding errors decide after which lap a ball locks, the mean is that of the lap
+computed, and its error that of a sample of as many impacts.
+"""
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from itertools import repeat
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from bouncing_ball.contacts.ends import End, FirstImpact, end_of
+from bouncing_ball.contacts.families import prediction_error
+from bouncing_ball.contacts.resolved import ResolvedContact
+from bouncing_ball.long_run.motions import Kind
+from bouncing_ball.long_run.sampled_means import (
+    Estimate,
+    SampleSize,
+    advance,
+    quantile,
+    sample_sizes,
+    sections,
+    start,
+    sums_at,
+)
+from bouncing_ball.models.spring_damper import SpringDamper
+
+# Relative change of an orbit's impact velocity for a start beside the orbit.
+BESIDE = 1e-3
+# Quantities of which means over time are compared.
+_MEANS = ("height", "power")
+
+
+@dataclass(frozen=True)
+class Mean:
+    """A mean, and half the width of its confidence interval of 95 %, in SI units."""
+
+    value: float
+    half_width: float
+
+
+class Sampling(NamedTuple):
+    """The samples of balls: the number of balls is rounded up to multiples of ``unit``; unless one
+    is asked for it is ``usual``. The means are examined after each of the numbers of ``impacts`` of
+    a ball. At least ``before`` first impacts are left out.
+    """
+
+    unit: int
+    usual: int
+    impacts: tuple[int, ...]
+    before: int
+
+
+# A step of a contact law takes much longer than one of a linear contact, though hardly longer for
+# many balls than for a few.
+_SAMPLES = Sampling(256, 4096, (25, 75, 150), 50)
+_SAMPLES_OF_LAW = Sampling(128, 256, (20, 40), 40)
+# An impact multiplies the energy by r² about, and so this number times 1/(1 - r) impacts by less
+# than e⁻⁴; but so many impacts are not left out next to r = 1.
+_FORGOTTEN = 2.0
+_MOST_BEFORE = 400
+# The relative change of r, k and g, which few users know better, and the balls of its samples.
+_CHANGE = 1e-3
+_BALLS_OF_CHANGE = 1024
+
+
+def compared_means(
+    case: ResolvedContact,
+    ends: Mapping[str, End],
+    tolerance: float,
+    most: int | None,
+    first: FirstImpact,
+) -> dict[str, Any]:
+    """Means of both models, in m and W, and the relative errors of the second model."""
+    sampling = _SAMPLES if case.law is None else _SAMPLES_OF_LAW
+    balls = sampling.usual if most is None else -(-most // sampling.unit) * sampling.unit
+    without_means = {"mean_height": dict.fromkeys(ends), "mean_power": dict.fromkeys(ends)}
+    if not all(end.impacts.phase.size for end in ends.values()):
+        # The only contact that was followed had resumed below the table, and never ended.
+        return without_means
+    samples = _sample_sizes(sampling, balls, ends.values())
+    sums = (_sums(case, name, end, samples) for name, end in ends.items())
+    for look, *of_models in zip(samples, *sums, strict=False):
+        if np.any(np.isnan(of_models[0])) or np.any(np.isnan(of_models[1])):
+            # Some balls come to rest, so that the means do not exist.
+            return without_means
+        exact, simple = (
+            _estimate(end, each) for end, each in zip(ends.values(), of_models, strict=True)
+        )
+        factor = quantile(look.level, min(exact.freedom, simple.freedom))
+        error, margin = _error_of_means(exact, simple, factor)
+        size = np.abs(error)
+        if np.all(size + margin <= tolerance) or np.any(size - margin > tolerance):
+            break
+    sampled = any(end.is_sampled for end in ends.values())
+    changes = _changes(case, ends, first) if sampled and not _are_unlike(ends) else None
+    table = case.table
+    watt = case.mass * table.gravity**2 / table.angular_frequency
+    means = dict(zip(ends, (exact, simple), strict=True))
+    return {
+        "mean_height": _in_si(means, 0, table.length, factor),
+        "mean_power": _in_si(means, 1, watt, factor),
+        "mean_error": {
+            name: Mean(float(error[k]), float(margin[k])) for k, name in enumerate(_MEANS)
+        },
+        "balls": look.balls,
+        "changes": changes,
+    }
+
+
+def _are_unlike(ends: Mapping[str, End]) -> bool:
+    """Whether one of the motions is periodic and the other is not, so that no mean decides."""
+    kinds = {end.kind.kind for end in ends.values()}
+    periodic = {str(Kind.ORBIT), str(Kind.SUBHARMONIC)}
+    return len(kinds) > 1 and bool(kinds & periodic) and str(Kind.UNDECIDED) not in kinds
+
+
+NO_CHANGE = "no change"
+"""The name of the linear contact in place of a law, among the changes."""
+
+
+def _changed(case: ResolvedContact) -> dict[str, ResolvedContact]:
+    """The case with r, k or g changed by a thousandth, the others as they are; in place of a law
+    the linear contact, also without a change.
+    """
+    linear = replace(case, law=None)
+    contact = case.contact
+    r = float(contact.restitution)
+    ratio = float(contact.frequency_ratio)
+
+    def with_r(restitution: float) -> ResolvedContact:
+        changed = SpringDamper.from_restitution(restitution, ratio, contact.release, measured=True)
+        return replace(linear, contact=changed)
+
+    stiffer = replace(contact, frequency_ratio=ratio * math.sqrt(1 + _CHANGE))
+    heavier = replace(case.table, gravity=case.table.gravity * (1 + _CHANGE))
+    found = {} if case.law is None else {NO_CHANGE: linear}
+    found["r -0.1 %"] = with_r(r * (1 - _CHANGE))
+    if r * (1 + _CHANGE) <= 1:
+        found["r +0.1 %"] = with_r(r * (1 + _CHANGE))
+    found["k +0.1 %"] = replace(linear, contact=stiffer)
+    found["g +0.1 %"] = replace(linear, table=heavier)
+    return found
+
+
+def _changes(
+    case: ResolvedContact, ends: Mapping[str, End], first: FirstImpact
+) -> dict[str, dict[str, Mean]] | None:
+    """The errors of the means in the changed cases, of the motions on which a ball with the same
+    start ends there, from smaller samples; None if a ball rests, or if the linear contact in place
+    of a law has another kind of motion.
+    """
+    balls = _BALLS_OF_CHANGE
+    small = _SAMPLES._replace(unit=balls, usual=balls, impacts=_SAMPLES.impacts[-2:][:1])
+    kinds = [end.kind.kind for end in ends.values()]
+    found = {}
+    for name, changed in _changed(case).items():
+        lam = changed.table.amplitude
+        # A ball beside a table that moves less would rise from it.
+        start = first._replace(velocity=min(first.velocity, lam * math.cos(first.phase)))
+        there = {model: end_of(changed, model, start) for model in list(changed.models)[:2]}
+        if name == NO_CHANGE and [end.kind.kind for end in there.values()] != kinds:
+            return None
+        if not all(end.impacts.phase.size for end in there.values()):
+            return None
+        samples = _sample_sizes(small, balls, there.values())
+        looked = (_sums(changed, *each, samples) for each in there.items())
+        # There is no end to the sums of a motion that repeats.
+        *_, (_, *sums) = zip(samples, *looked, strict=False)
+        if any(np.any(np.isnan(each)) for each in sums):
+            return None
+        exact, simple = (_estimate(*each) for each in zip(there.values(), sums, strict=True))
+        factor = quantile(samples[-1].level, min(exact.freedom, simple.freedom))
+        error, margin = _error_of_means(exact, simple, factor)
+        found[name] = {
+            each: Mean(float(error[k]), float(margin[k])) for k, each in enumerate(_MEANS)
+        }
+    return found
+
+
+def _sample_sizes(sampling: Sampling, balls: int, ends: Iterable[End]) -> list[SampleSize]:
+    """The sizes of the sample at which the means are examined.
+
+    Without a sample there is one look at one ball. Beside a lap on which rounding errors decide, a
+    larger sample would not make the interval smaller.
+    """
+    ends = list(ends)
+    if not any(end.is_sampled for end in ends):
+        return sample_sizes(1, 1, (1,))
+    if any(end.is_unresolved for end in ends):
+        return sample_sizes(sampling.unit, sampling.unit, sampling.impacts[-1:])
+    return sample_sizes(balls, sampling.usual, sampling.impacts)
+
+
+def _sums(
+    case: ResolvedContact, name: str, end: End, samples: list[SampleSize]
+) -> Iterator[np.ndarray]:
+    """The sums over the motion of a model at each look: of the balls of a sample, of sections of a
+    lap, or of one repetition.
+    """
+    lam = case.table.amplitude
+    model = case.models[name]
+    impacts = end.impacts
+    if end.is_sampled:
+        sampling = _SAMPLES if case.law is None else _SAMPLES_OF_LAW
+        starts = impacts.beside(samples[-1].balls, lam, BESIDE)
+        return sums_at(samples, starts, model, lam, _before(case, sampling.before))
+    if end.is_unresolved:
+        return repeat(sections(*start(model, lam, impacts.first()), impacts.phase.size))
+    _, once = advance(*start(model, lam, impacts.last()), end.kind.impacts)
+    return repeat(once)
+
+
+def _before(case: ResolvedContact, least: int) -> int:
+    """Number of first impacts that are left out."""
+    loss = 1 - float(case.contact.restitution)
+    forgotten = _MOST_BEFORE if loss * _MOST_BEFORE < _FORGOTTEN else math.ceil(_FORGOTTEN / loss)
+    return max(least, forgotten)
+
+
+def _estimate(end: End, sums: np.ndarray) -> Estimate:
+    """The means of a motion and their errors.
+
+    The lap on which a ball locks is another one with other rounding errors, and so differs from the
+    true one as two samples of its impacts do.
+    """
+    found = Estimate.of(sums)
+    return found._replace(error=np.sqrt(2) * found.error) if end.is_unresolved else found
+
+
+def _error_of_means(
+    exact: Estimate, simple: Estimate, factor: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Relative errors of the simple model's means against the exact ones, and their half-widths:
+    standard errors times a factor.
+    """
+    error = prediction_error(simple.mean, exact.mean)
+    spread = np.hypot(simple.error, (1 + error) * exact.error) / np.abs(exact.mean)
+    return error, factor * spread
+
+
+def _in_si(
+    means: Mapping[str, Estimate], quantity: int, unit: float, factor: float
+) -> dict[str, Mean]:
+    """The mean of a quantity in each model with its half-width."""
+    return {
+        name: Mean(float(each.mean[quantity]) * unit, factor * float(each.error[quantity]) * unit)
+        for name, each in means.items()
+    }

@@ -6,8 +6,12 @@ import numpy as np
 import pytest
 from asked_contacts import assessed
 
-from bouncing_ball.contacts.means import Mean
+from bouncing_ball.contacts.contact import Contact
+from bouncing_ball.contacts.ends import End, EndKind
+from bouncing_ball.contacts.means import Mean, _changed
 from bouncing_ball.contacts.motion import FinalMotion
+from bouncing_ball.contacts.resolve import resolve
+from bouncing_ball.contacts.table import Table
 from bouncing_ball.contacts.verdict_on_motion import aside, judged_by_motion
 from bouncing_ball.errors import ModelError
 from bouncing_ball.long_run.destination import final_motions
@@ -266,13 +270,47 @@ def test_a_chaotic_mean_of_a_law_has_its_changes():
     given = {"mass": "50 g", "frequency": "25 Hz", "acceleration": "2 g", "n": 1}
     found = assessed(**given, law="tsuji", contact_time="0.7 ms", restitution=0.7)
     changes = found.motion.changes
-    assert [*changes] == ["no change", "r -0.1 %", "r +0.1 %", "k +0.1 %", "g +0.1 %"]
-    linear = assessed(**given, contact_time="0.7 ms", restitution=0.7)
-    base = changes["no change"]["height"]
-    same = linear.motion.mean_error["height"]
+    assert [*changes] == ["r -0.1 %", "r +0.1 %", "k +0.1 %", "g +0.1 %"]
+    # Tsuji's r is the same at every speed, so that this contact is the changed one.
+    other = assessed(**given, law="tsuji", contact_time="0.7 ms", restitution=0.7 * 0.999)
+    one = changes["r -0.1 %"]["height"]
+    two = other.motion.mean_error["height"]
     # The same contact by samples of different sizes.
-    assert abs(base.value - same.value) < 1.5 * (base.half_width + same.half_width)
-    assert "is decided by changes of 0.1 % in r, k or g" in found.verdict
+    assert abs(one.value - two.value) < 1.5 * (one.half_width + two.half_width)
+
+
+@pytest.mark.parametrize("law", ["hunt-crossley", "tsuji", "kuwabara-kono"])
+def test_a_change_of_a_law_is_one_of_its_parameters_in_si_units(law):
+    """At the speed of the impacts r changes alone, k is a factor of the force, and g is none."""
+    given = {"law": law, "contact_time": "2 ms", "restitution": 0.7, "mass": "4 g"}
+    table = Table(frequency="20 Hz", acceleration="2 g").motion
+    case = resolve(Contact(**given), table)
+    impacts = Starts(np.array([0.5, 1.0]), np.array([-3.0, -4.0]))
+    speed = float(np.mean(2 * np.cos(impacts.phase) - impacts.velocity))
+    changed = _changed(case, End(EndKind("chaotic", 0, 0), impacts))
+    assert [*changed] == ["r -0.1 %", "r +0.1 %", "k +0.1 %", "g +0.1 %"]
+    before = case.law.signature(speed)
+    for name, factor in {"r -0.1 %": 0.999, "r +0.1 %": 1.001, "k +0.1 %": 1.0}.items():
+        after = changed[name].law.signature(speed)
+        assert after.restitution == pytest.approx(factor * before.restitution, rel=1e-10)
+        of_contact = changed[name].contact.restitution / case.contact.restitution
+        assert of_contact == pytest.approx(factor, rel=1e-12)
+    plain = case.law_in_si
+    stiffer = changed["k +0.1 %"].law_in_si
+    assert stiffer["stiffness"] == pytest.approx(1.001 * plain["stiffness"], rel=1e-5)
+    heavier = changed["g +0.1 %"]
+    same = heavier.law_in_si
+    for name in ("stiffness", "damping"):
+        assert same[name] == pytest.approx(plain[name], rel=1e-9)
+    assert heavier.table.gravity == pytest.approx(1.001 * table.gravity, rel=1e-14)
+
+
+def test_the_linear_contact_stands_for_a_law_that_no_impact_determines():
+    soft = Contact(mass=1, from_engine="mujoco", solref="-1e4 -20")
+    case = resolve(soft, Table(frequency="20 Hz", acceleration="2 g").motion)
+    impacts = Starts(np.array([0.5]), np.array([-3.0]))
+    changed = _changed(case, End(EndKind("chaotic", 0, 0), impacts))
+    assert "no change" in changed and all(each.law is None for each in changed.values())
 
 
 def test_the_headline_is_about_the_motion_on_which_most_balls_end():

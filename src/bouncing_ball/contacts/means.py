@@ -20,6 +20,7 @@ import numpy as np
 from bouncing_ball.contacts.ends import End, FirstImpact, end_of
 from bouncing_ball.contacts.families import prediction_error
 from bouncing_ball.contacts.resolved import ResolvedContact
+from bouncing_ball.errors import ModelError
 from bouncing_ball.long_run.motions import Kind
 from bouncing_ball.long_run.sampled_means import (
     Estimate,
@@ -31,6 +32,9 @@ from bouncing_ball.long_run.sampled_means import (
     start,
     sums_at,
 )
+from bouncing_ball.models.flight import table
+from bouncing_ball.models.laws.contact_law import ContactLaw
+from bouncing_ball.models.laws.law_of_impact import law_of_impact
 from bouncing_ball.models.spring_damper import SpringDamper
 
 # Relative change of an orbit's impact velocity for a start beside the orbit.
@@ -70,6 +74,11 @@ _MOST_BEFORE = 400
 # The relative change of r, k and g, which few users know better, and the balls of its samples.
 _CHANGE = 1e-3
 _BALLS_OF_CHANGE = 1024
+_BALLS_OF_CHANGE_OF_LAW = 128
+# To this part of itself a law is found from its impact again.
+_SAME = 1e-6
+# The parameter of a law to which its force is proportional.
+_STIFFNESS = "stiffness"
 
 
 def compared_means(
@@ -127,28 +136,94 @@ NO_CHANGE = "no change"
 """The name of the linear contact in place of a law, among the changes."""
 
 
-def _changed(case: ResolvedContact) -> dict[str, ResolvedContact]:
-    """The case with r, k or g changed by a thousandth, the others as they are; in place of a law
-    the linear contact, also without a change.
+def _changed(case: ResolvedContact, end: End) -> dict[str, ResolvedContact]:
+    """The case with r, k or g changed by a thousandth, the others as they are.
+
+    r of a contact law is changed at the mean speed of the impacts of the motion. In place of a law
+    that is not determined by an impact stands the linear contact, also without a change.
     """
-    linear = replace(case, law=None)
-    contact = case.contact
-    r = float(contact.restitution)
-    ratio = float(contact.frequency_ratio)
-
-    def with_r(restitution: float) -> ResolvedContact:
-        changed = SpringDamper.from_restitution(restitution, ratio, contact.release, measured=True)
-        return replace(linear, contact=changed)
-
-    stiffer = replace(contact, frequency_ratio=ratio * math.sqrt(1 + _CHANGE))
-    heavier = replace(case.table, gravity=case.table.gravity * (1 + _CHANGE))
-    found = {} if case.law is None else {NO_CHANGE: linear}
-    found["r -0.1 %"] = with_r(r * (1 - _CHANGE))
-    if r * (1 + _CHANGE) <= 1:
-        found["r +0.1 %"] = with_r(r * (1 + _CHANGE))
-    found["k +0.1 %"] = replace(linear, contact=stiffer)
-    found["g +0.1 %"] = replace(linear, table=heavier)
+    speed = _impact_speed(case, end)
+    if case.law is not None and not _is_of_impact(case.law, speed):
+        linear = replace(case, law=None, contact=case.linear)
+        return {NO_CHANGE: linear} | _changed(linear, end)
+    found = {"r -0.1 %": _with(case, speed, restitution=1 - _CHANGE)}
+    if float(case.contact.restitution) * (1 + _CHANGE) <= 1:
+        found["r +0.1 %"] = _with(case, speed, restitution=1 + _CHANGE)
+    found["k +0.1 %"] = _with(case, speed, duration=_shorter(case.law, speed))
+    # In units of g/Ω the same impact is then slower.
+    found["g +0.1 %"] = replace(
+        _with(case, speed, unit=1 + _CHANGE),
+        table=replace(case.table, gravity=case.table.gravity * (1 + _CHANGE)),
+    )
     return found
+
+
+def _impact_speed(case: ResolvedContact, end: End) -> float:
+    """The mean relative speed of the impacts of a motion, dimensionless."""
+    speed, _ = table(end.impacts.phase, case.table.amplitude)
+    return float(np.mean(speed - end.impacts.velocity))
+
+
+def _shorter(law: ContactLaw | None, speed: float) -> float:
+    """The factor of the duration of an impact on a stiffer contact."""
+    if law is None or isinstance(law, SpringDamper):
+        return 1 / math.sqrt(1 + _CHANGE)
+    stiffer = replace(law, **{_STIFFNESS: getattr(law, _STIFFNESS) * (1 + _CHANGE)})
+    return float(stiffer.signature(speed).duration / law.signature(speed).duration)
+
+
+def _with(
+    case: ResolvedContact,
+    speed: float,
+    restitution: float = 1.0,
+    duration: float = 1.0,
+    unit: float = 1.0,
+) -> ResolvedContact:
+    """The case with r and the duration of free impacts, and the unit of speeds, times factors."""
+    contact = case.contact
+    r = float(contact.restitution) * restitution
+    ratio = float(contact.frequency_ratio) / duration
+    other = SpringDamper.from_restitution(r, ratio, contact.release, measured=True)
+    law = None
+    if case.law is not None:
+        law = _law(case.law, speed, restitution, duration, unit)
+    return replace(case, contact=other, law=law)
+
+
+def _law(
+    law: ContactLaw,
+    speed: float,
+    restitution: float = 1.0,
+    duration: float = 1.0,
+    unit: float = 1.0,
+) -> ContactLaw:
+    """A law of the same kind, whose free impact at a speed has r and the duration times factors, in
+    a unit of speeds that is greater by a factor.
+
+    Raises
+    ------
+    ModelError
+        If an impact does not determine laws of this kind.
+    """
+    impact = law.signature(speed)
+    r = float(impact.restitution) * restitution
+    time = float(impact.duration) * duration
+    if isinstance(law, SpringDamper):
+        one = SpringDamper.from_restitution(r, 1.0, law.release, measured=True)
+        return replace(one, frequency_ratio=float(one.free_duration) / time)
+    return law_of_impact(type(law), r, time, speed / unit)
+
+
+def _is_of_impact(law: ContactLaw, speed: float) -> bool:
+    """Whether the impact at a speed determines the law, to the accuracy of the impact."""
+    try:
+        again = _law(law, speed).parameters()
+    except ModelError:
+        return False
+    return (isinstance(law, SpringDamper) or _STIFFNESS in again) and all(
+        math.isclose(float(again[name]), float(x), rel_tol=_SAME)
+        for name, x in law.parameters().items()
+    )
 
 
 def _changes(
@@ -158,11 +233,16 @@ def _changes(
     start ends there, from smaller samples; None if a ball rests, or if the linear contact in place
     of a law has another kind of motion.
     """
-    balls = _BALLS_OF_CHANGE
-    small = _SAMPLES._replace(unit=balls, usual=balls, impacts=_SAMPLES.impacts[-2:][:1])
+    exact_end, *_ = ends.values()
+    all_changed = _changed(case, exact_end)
+    # A law that stands for itself has no sample of the linear contact.
+    own = case.law is not None and NO_CHANGE not in all_changed
+    balls = _BALLS_OF_CHANGE_OF_LAW if own else _BALLS_OF_CHANGE
+    usual = _SAMPLES_OF_LAW if own else _SAMPLES
+    small = usual._replace(unit=balls, usual=balls, impacts=usual.impacts[-2:][:1])
     kinds = [end.kind.kind for end in ends.values()]
     found = {}
-    for name, changed in _changed(case).items():
+    for name, changed in all_changed.items():
         lam = changed.table.amplitude
         # A ball beside a table that moves less would rise from it.
         start = first._replace(velocity=min(first.velocity, lam * math.cos(first.phase)))

@@ -38,9 +38,10 @@ class FinalMotion:
     laid on the table, because no model has an orbit on which a ball can arrive, and ``is_common``
     whether it is the motion on which most balls end, because few end on the orbit. ``changes`` has
     the relative errors of the means if r, k or g change by a thousandth; "r -0.1 %" and the like
-    are the names of these changes. For a contact law they are those of the linear contact with its
-    r and duration, also without a change, because its own would take minutes; they are None if that
-    contact has another kind of motion.
+    are the names of these changes. The r of a contact law is changed at the mean speed of the
+    impacts of this motion. For a law that no impact determines, such as an impedance, they are
+    those of the linear contact with its r and duration, also without a change; they are None if
+    that contact has another kind of motion.
 
     The mean height is the mean over time of the height of the ball above the middle of the table,
     and the mean power that of the contact force times the velocity of the table.

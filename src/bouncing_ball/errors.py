@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 _Known = TypeVar("_Known")
 _Call = TypeVar("_Call", bound=Callable[..., Any])
+# Characters of a value in a message.
+_VALUE = 80
 
 
 class ModelError(ValueError):
@@ -44,7 +46,10 @@ class ParameterError(ModelError):
         rest = iter(values)
 
         def entry(found: re.Match) -> str:
-            return named(found[1]) if found[1] else str(next(rest, found[0]))
+            if found[1]:
+                return named(found[1])
+            # A value of a user may be an array or an object of many lines.
+            return printable(" ".join(str(next(rest, found[0])).split()), _VALUE)
 
         return re.sub(r"{(\w*)}", entry, text)
 
@@ -117,8 +122,9 @@ def one_of(kind: str, name: str, known: Mapping[str, _Known]) -> _Known:
     bouncing_ball.errors.ModelError: unknown side 'left': one of stable, unstable
     """
     if not isinstance(name, str) or name not in known:
-        meant = did_you_mean(str(name), known)
-        raise ModelError(f"unknown {kind} {name!r}: one of {', '.join(known)}{meant}")
+        meant = did_you_mean(name, known) if isinstance(name, str) else ""
+        listed = ", ".join(known)
+        raise ModelError(f"unknown {kind} {shortened(name)}: one of {listed}{meant}")
     return known[name]
 
 
@@ -209,6 +215,26 @@ def printable(text: object, width: int | None = 300) -> str:
     """
     text = str(text)
     return escaped(text if width is None or len(text) <= width else text[: width - 1] + "…")
+
+
+def shortened(value: object) -> str:
+    """A value as a message shows it: in one line, and cut off if it is long.
+
+    Examples
+    --------
+    >>> shortened("x"), shortened([[1.0], [2.0, 3.0]])
+    ("'x'", '[[1.0], [2.0, 3.0]]')
+    >>> len(shortened(list(range(1000)))), shortened(10**5000)
+    (80, 'a whole number of more than 4300 digits')
+    """
+    try:
+        text = repr(value)
+    # Python does not convert longer numbers to text.
+    except ValueError:
+        if isinstance(value, int):
+            return f"a whole number of more than {sys.get_int_max_str_digits()} digits"
+        return f"a {type(value).__name__}"
+    return printable(" ".join(text.split()), _VALUE)
 
 
 class Range(NamedTuple):

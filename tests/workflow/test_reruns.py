@@ -8,8 +8,6 @@ import compileall
 import os
 import shutil
 
-import numpy as np
-
 from bouncing_ball.datasets.files import read_dataset, write_dataset
 
 
@@ -79,10 +77,10 @@ def test_no_file_time_hides_a_change_of_a_sample_or_of_the_atlas(complete):
 
 
 def test_another_version_of_a_library_makes_everything_again(complete):
-    for path in complete.path.glob("results/code/*fig02"):
-        text = path.read_text(encoding="utf-8")
-        path.write_text(text.replace(f"{np.__version__} numpy", "1.0 numpy"), encoding="utf-8")
-        os.utime(path, (0, 0))
+    # What Python finds first is the version that is installed.
+    about = complete.path / "src" / "numpy-1.0.dist-info" / "METADATA"
+    about.parent.mkdir()
+    about.write_text("Metadata-Version: 2.1\nName: numpy\nVersion: 1.0\n", encoding="utf-8")
     assert complete.planned("fig02") == {"fig02", "Drawing fig02", "fig02 is up to date"}
 
 
@@ -97,8 +95,7 @@ def test_stale_bytecode_is_not_run(fresh):
     os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
     assert path.stat().st_size == before.st_size
     done = fresh.run("--cores", "1", "fig02", check=False)
-    assert "xr.Dateset" in (fresh.path / "results/logs/stages/fig02.log").read_text("utf-8")
-    assert done.returncode != 0
+    assert done.returncode != 0 and "Dateset" in done.stdout + done.stderr
 
 
 def test_touch_makes_files_of_any_time_up_to_date(complete):

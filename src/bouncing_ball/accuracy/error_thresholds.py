@@ -128,7 +128,10 @@ def _on_grid(grid: Grid, quantities: list[str], release: Release) -> xr.Dataset:
 def _names(quantities: Any) -> list[str]:
     if quantities is None:
         return [str(each) for each in Quantity]
-    names = [quantities] if isinstance(quantities, str) else list(quantities)
+    try:
+        names = [quantities] if isinstance(quantities, str) else list(quantities)
+    except TypeError:
+        names = [quantities]
     if not names:
         raise ParameterError("{quantities} has no entries")
     return [chosen("quantities", name, [str(each) for each in Quantity]) for name in names]

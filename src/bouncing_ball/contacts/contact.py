@@ -23,7 +23,7 @@ from bouncing_ball.contacts.quantities import (
     convert,
     given,
 )
-from bouncing_ball.errors import ParameterError, suggesting
+from bouncing_ball.errors import ParameterError, shortened, suggesting
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.hertzian import Tsuji
 from bouncing_ball.models.spring_damper import SpringDamper
@@ -48,7 +48,9 @@ def _numbers_by_name(given: Mapping[Any, Any]) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for name, value in given.items():
         if not isinstance(name, str):
-            raise ParameterError("{parameters} has the name {}, which is not a text", repr(name))
+            raise ParameterError(
+                "{parameters} has the name {}, which is not a text", shortened(name)
+            )
         if value is None:
             continue
         if name in _OF_MUJOCO:
@@ -60,7 +62,7 @@ def _numbers_by_name(given: Mapping[Any, Any]) -> dict[str, Any]:
             found[name] = math.nan
         if not math.isfinite(found[name]):
             why = "is not a number: give it in the unit of the engine, such as 1e5"
-            raise ParameterError(f"{{parameters}} {name} = {{}} {why}", repr(value))
+            raise ParameterError(f"{{parameters}} {name} = {{}} {why}", shortened(value))
     return found
 
 
@@ -167,11 +169,11 @@ class Contact:
         named: Any = self.parameters
         if named is not None and not isinstance(named, Mapping):
             why = "is not a mapping from names to numbers, such as dict(kn=1e5)"
-            raise ParameterError(f"{{parameters}} = {{}} {why}", repr(named))
+            raise ParameterError(f"{{parameters}} = {{}} {why}", shortened(named))
         if named is not None:
             object.__setattr__(self, "parameters", _numbers_by_name(named))
         if self.from_engine is not None and not isinstance(self.from_engine, str):
-            raise ParameterError("{from_engine} = {} is not a name", repr(self.from_engine))
+            raise ParameterError("{from_engine} = {} is not a name", shortened(self.from_engine))
         if self.from_engine is None and self.engine_parameters:
             first = next(iter(self.engine_parameters))
             what = f"{{{first}}}" if first in _OF_MUJOCO else f"{{parameters}} {first}"

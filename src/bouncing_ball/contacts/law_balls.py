@@ -28,7 +28,7 @@ from bouncing_ball.datasets.arguments import (
     chosen,
     is_array,
 )
-from bouncing_ball.errors import ParameterError, Range, suggesting
+from bouncing_ball.errors import ParameterError, Range, shortened, suggesting
 from bouncing_ball.models.ball import Ball
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
@@ -179,7 +179,7 @@ def contact_law(
     setting = setting_of(table, flight)
     if isinstance(law, ContactLaw):
         return LawModel(law, setting)
-    kind = law_named(str(law))
+    kind = law_named(law if isinstance(law, str) else shortened(law))
     if parameters:
         _refuse_free_impact(kind, parameters, restitution, duration, speed)
         return _law_of_parameters(kind, parameters, release, setting)

@@ -10,7 +10,7 @@ from dataclasses import fields
 from typing import Annotated, Any, get_args
 
 from bouncing_ball.contacts.units import SIParameter, in_si
-from bouncing_ball.errors import ParameterError, Range
+from bouncing_ball.errors import ParameterError, Range, shortened
 
 STANDARD_GRAVITY = 9.80665
 """Standard acceleration of gravity, in m/s²."""
@@ -89,8 +89,8 @@ def check_kinds(call: str, **arguments: tuple[Any, type]) -> None:
         if isinstance(value, kind):
             continue
         # The text of a ball or of a dataset has several lines.
-        text = repr(value)
-        shown = type(value).__name__ if "\n" in text or len(text) > _LONGEST_SHOWN else text
+        text = shortened(value)
+        shown = type(value).__name__ if len(text) > _LONGEST_SHOWN else text
         article = "an" if kind.__name__[0] in "AEIOU" else "a"
         order = ""
         if value is not None and type(value) in kinds:

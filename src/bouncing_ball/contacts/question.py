@@ -8,7 +8,15 @@ from bouncing_ball.accuracy.errors import QUANTITIES, Quantity
 from bouncing_ball.contacts.engines.choice import engine_named
 from bouncing_ball.contacts.engines.engine import ERROR
 from bouncing_ball.contacts.quantities import RestitutionError, TimeStep, Tolerance, convert
-from bouncing_ball.errors import FAMILY, ModelError, ParameterError, count, one_of, suggesting
+from bouncing_ball.errors import (
+    FAMILY,
+    ModelError,
+    ParameterError,
+    count,
+    one_of,
+    shortened,
+    suggesting,
+)
 
 # The families of which one is judged by default: those that the paper shows, and some more.
 _FAMILIES = range(1, 9)
@@ -53,9 +61,9 @@ class Question:
         convert(self)
         one_of("quantity", self.quantity, {str(each): each for each in QUANTITIES})
         if self.n is not None and (isinstance(self.n, bool) or self.n not in FAMILY):
-            raise ModelError(f"index of the family n = {self.n!r} is not {FAMILY}")
+            raise ModelError(f"index of the family n = {shortened(self.n)} is not {FAMILY}")
         if self.balls is not None and self.balls not in MOST_BALLS:
-            raise ParameterError(f"{{balls}} = {self.balls} is not {MOST_BALLS}")
+            raise ParameterError(f"{{balls}} = {shortened(self.balls)} is not {MOST_BALLS}")
 
     @property
     def families(self) -> Sequence[int]:

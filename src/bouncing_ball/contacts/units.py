@@ -18,7 +18,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from bouncing_ball.errors import ParameterError, Range
+import numpy as np
+
+from bouncing_ball.errors import ParameterError, Range, shortened
 
 # Units as they are written, by the SI unit of a parameter, for hints on a wrong spelling.
 _SPELLINGS = {
@@ -134,7 +136,9 @@ def number(name: str, value: Any, kind: SIParameter) -> float:
     bouncing_ball.errors.ParameterError: frequency = 20 ms is in millisecond, not in Hz: \
 write it as '50 Hz'
     """
-    short = textwrap.shorten(str(value), 60, placeholder="…")
+    short = textwrap.shorten(
+        value if isinstance(value, str) else shortened(value), 60, placeholder="…"
+    )
     unit = ""
     example = f"write it as {kind.example!r}"
 
@@ -142,7 +146,7 @@ write it as '50 Hz'
         return ParameterError(f"{{{name}}} = {{}} {why}", said)
 
     if isinstance(value, bool):
-        raise wrong("is neither a number nor a text", repr(value))
+        raise wrong("is neither a number nor a text", shortened(value))
 
     if isinstance(value, str):
         if spelled := _plain_spelling(value.strip()[:60]):
@@ -154,10 +158,12 @@ write it as '50 Hz'
     elif hasattr(value, "magnitude") and hasattr(value, "units"):
         unit = str(value.units).replace("dimensionless", "")
         value = value.magnitude
+    if value is np.ma.masked:
+        raise wrong("is masked: give a number", "a masked entry")
     try:
         plain = float(value)
     except (TypeError, ValueError):
-        raise wrong("is neither a number nor a text", repr(value)) from None
+        raise wrong("is neither a number nor a text", shortened(value)) from None
     except OverflowError:
         raise wrong("is not a finite number") from None
     found_value, why = _converted(plain, unit, kind) if unit else (plain, "")

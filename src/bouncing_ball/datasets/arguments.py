@@ -17,6 +17,7 @@ from bouncing_ball.errors import (
     ParameterError,
     Range,
     count,
+    shortened,
 )
 
 if TYPE_CHECKING:
@@ -75,7 +76,12 @@ def is_array(value: Any) -> bool:
     >>> is_array([1.0]), is_array(np.float64(1.0))
     (True, False)
     """
-    return np.ndim(value) > 0
+    # The lengths of the rows of a list are examined later; a number has no axes, and what is no
+    # number, such as a dataset, has no number of them.
+    if isinstance(value, list | tuple):
+        return True
+    dimensions = getattr(value, "ndim", 0)
+    return isinstance(dimensions, int) and dimensions > 0
 
 
 def checked(name: str, value: Any, allowed: Range) -> Any:
@@ -103,8 +109,17 @@ def checked(name: str, value: Any, allowed: Range) -> Any:
         raise ParameterError(f"{{{name}}} is missing")
     if isinstance(value, list | tuple):
         return _checked_list(name, value, allowed)
-    values = getattr(value, "values", value)
+    if isinstance(value, np.ma.MaskedArray):
+        raise ParameterError(f"{{{name}}} is a masked array: give its numbers, {name}.filled(…)")
+    # Of an xarray.DataArray or a column of a table.
+    inside = getattr(value, "values", None)
+    values = inside if isinstance(inside, np.ndarray) else value
     if isinstance(values, np.ndarray) and values.ndim:
+        if values.dtype.kind in "iuf":
+            # In less than double precision the ranges, and the results, would be rounded.
+            wide = np.result_type(values.dtype, np.int64 if values.dtype.kind in "iu" else float)
+            value = value.astype(wide, copy=False)
+            values = values.astype(wide, copy=False)
         _check_array(name, values, allowed, named=hasattr(value, "dims"))
         return value
     number = values.item() if isinstance(values, np.ndarray | np.generic) else values
@@ -159,7 +174,7 @@ def _within(values: np.ndarray, allowed: Range) -> np.ndarray:
 def _check_number(name: str, value: Any, allowed: Range) -> None:
     # To Python, True is the number 1.
     if isinstance(value, bool) or value not in allowed:
-        raise ParameterError(f"{{{name}}} = {{}} is not {allowed}", repr(value))
+        raise ParameterError(f"{{{name}}} = {{}} is not {allowed}", shortened(value))
 
 
 def chosen(name: str, value: Any, allowed: Mapping[str, Any] | Sequence[str]) -> str:
@@ -178,5 +193,5 @@ def chosen(name: str, value: Any, allowed: Mapping[str, Any] | Sequence[str]) ->
     """
     if not isinstance(value, str) or value not in allowed:
         words = ", ".join(allowed)
-        raise ParameterError(f"{{{name}}} = {{}} is not one of {words}", repr(value))
+        raise ParameterError(f"{{{name}}} = {{}} is not one of {words}", shortened(value))
     return str(value)

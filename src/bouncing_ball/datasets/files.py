@@ -33,9 +33,8 @@ def require_writable(path: Path | None, suffixes: Sequence[str] = ()) -> None:
     Raises
     ------
     ModelError
-        If the path has none of the suffixes, or its folder is not writable. For a file with
-        suffixes, a picture that a user asked for, the folder must exist; for any other file the
-        lowest folder on its path that exists counts, because the others are made.
+        If the path has none of the suffixes, if its folder does not exist or is not writable, or if
+        there is something else than a file, such as a device or a link, which a file would replace.
 
     Examples
     --------
@@ -48,11 +47,9 @@ def require_writable(path: Path | None, suffixes: Sequence[str] = ()) -> None:
         return
     if suffixes and path.suffix not in suffixes:
         raise ModelError(f"'{path}' does not end in {' or '.join(suffixes)}")
-    folders = path.absolute().parents
-    if suffixes:
-        folder = folders[0]
-    else:
-        folder = next(each for each in folders if os.path.exists(each))
+    if path.is_symlink() or (path.exists() and not path.is_file()):
+        raise ModelError(f"{path} cannot be written: it is no regular file")
+    folder = path.absolute().parent
     if not folder.is_dir() or not os.access(folder, os.W_OK):
         raise ModelError(f"{path} cannot be written: {folder} is no folder that can be written to")
 

@@ -23,10 +23,15 @@ class Grid:
     ``single`` has the arguments that are single values, and ``flat`` all arguments, where those
     that are arrays have one entry for each place of the grid.
 
+    Coordinates of a :class:`xarray.DataArray` that are not its axis belong to the result that it
+    was taken from, and are dropped.
+
     Raises
     ------
     ParameterError
-        If an array has several axes without names, or does not consist of numbers.
+        If an array has several axes without names, or does not consist of numbers; if two arrays
+        have other labels on the same axis; or if an axis has the name of another argument that
+        does not lie along it.
 
     Examples
     --------
@@ -37,6 +42,7 @@ class Grid:
 
     def __init__(self, **given: Any) -> None:
         self.coords = {name: _axis(name, value) for name, value in given.items() if np.ndim(value)}
+        _check_axes(self.coords, given)
         whole = _broadcast(self.coords)
         template = next(iter(whole.values()), xr.DataArray(0.0))
         self.dims = template.dims
@@ -79,7 +85,17 @@ class Grid:
         """Results along one axis, with one entry for each place, given the axes of the grid.
 
         Arguments that are single values become attributes.
+
+        Raises
+        ------
+        ParameterError
+            If an axis has the name of a result.
         """
+        taken = {*rows.variables, *rows.sizes} - {*self.coords, CASE}
+        if same := [str(axis) for axis in self.dims if axis in taken]:
+            raise ParameterError(
+                f"an array has an axis {same[0]}, which is the name of a result: rename this axis"
+            )
         data = {name: each for name, each in rows.variables.items() if name not in self.coords}
         for name, each in data.items():
             if CASE in each.dims:
@@ -97,11 +113,44 @@ def _broadcast(coords: Mapping[str, xr.DataArray]) -> dict[str, xr.DataArray]:
     return dict(zip(coords, xr.broadcast(*coords.values()), strict=True))
 
 
+def _check_axes(coords: Mapping[str, xr.DataArray], given: Mapping[str, Any]) -> None:
+    """Refuse arrays whose axes contradict each other, or another argument.
+
+    Examples
+    --------
+    >>> phase = xr.DataArray([0.1, 0.2], dims="amplitude", coords={"amplitude": [1.0, 1.2]})
+    >>> _check_axes({"phase": phase}, {"amplitude": 1.5, "phase": phase})
+    Traceback (most recent call last):
+    bouncing_ball.errors.ParameterError: phase lies along amplitude, but amplitude is a single value
+    """
+    labels: dict[Any, tuple[str, xr.DataArray]] = {}
+    for name, array in coords.items():
+        for axis in array.dims:
+            if axis in given and axis not in coords:
+                raise ParameterError(
+                    f"{{{name}}} lies along {axis}, but {{{axis}}} is a single value"
+                )
+            if axis in coords and coords[str(axis)].dims != (axis,):
+                raise ParameterError(f"{{{name}}} lies along {axis}, but {{{axis}}} does not")
+            other, labelled = labels.setdefault(axis, (name, array))
+            if array.sizes[axis] != labelled.sizes[axis]:
+                raise ParameterError(
+                    f"{{{other}}} and {{{name}}} have {labelled.sizes[axis]} and "
+                    f"{array.sizes[axis]} entries on the same axis {axis}"
+                )
+            if axis not in labelled.coords:
+                labels[axis] = name, array
+            elif axis in array.coords and not array[axis].equals(labelled[axis]):
+                raise ParameterError(
+                    f"{{{other}}} and {{{name}}} have other labels on the same axis {axis}"
+                )
+
+
 def _axis(name: str, value: Any) -> xr.DataArray:
     """An argument with a named axis, and with its description where it has one."""
     attributes = SHARED[name].attributes() if name in SHARED else {}
     if isinstance(value, xr.DataArray):
-        return value.assign_attrs(attributes)
+        return value.reset_coords(drop=True).assign_attrs(attributes)
     array = np.asarray(value)
     if array.ndim > 1:
         raise ParameterError(

@@ -10,7 +10,7 @@ import xarray as xr
 
 from bouncing_ball.datasets import DRAWING
 from bouncing_ball.datasets.files import read_dataset
-from bouncing_ball.errors import ModelError, ParameterError, extra, suggesting
+from bouncing_ball.errors import ModelError, ParameterError, extra, shortened, suggesting
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -129,6 +129,6 @@ def open(path: str | Path) -> Result:
         If there is no such file, or if it is damaged.
     """
     if not isinstance(path, str | Path):
-        raise ParameterError("{path} = {} is not the path of a file", repr(path))
+        raise ParameterError("{path} = {} is not the path of a file", shortened(path))
     found = read_dataset(path)
     return Result(found.data_vars, found.coords, found.attrs)

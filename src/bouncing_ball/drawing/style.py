@@ -1,8 +1,9 @@
 """The look that all figures share: colours, lines, markers and matplotlib's settings."""
 
-from collections.abc import Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
+from threading import RLock
 from typing import Any
 
 import matplotlib
@@ -92,6 +93,16 @@ def palette(count: int) -> Sequence[str]:
     return [to_hex(shade) for shade in shades]
 
 
-def style() -> AbstractContextManager[None]:
-    """The settings of ``matplotlibrc`` beside this module, to draw and save a figure."""
-    return matplotlib.rc_context(_SETTINGS)
+# The settings of matplotlib belong to the whole process. If two threads changed them and changed
+# them back at the same time, the settings of one would remain.
+_DRAWING = RLock()
+
+
+@contextmanager
+def style() -> Iterator[None]:
+    """The settings of ``matplotlibrc`` beside this module, to draw and save a figure.
+
+    Threads draw one after another.
+    """
+    with _DRAWING, matplotlib.rc_context(_SETTINGS):
+        yield

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.datasets.arguments import is_array
-from bouncing_ball.errors import ParameterError
+from bouncing_ball.errors import ParameterError, shortened
 
 # The models of contacts that are not balls themselves. A model imports the balls, so that only its
 # name is known here.
@@ -132,7 +132,7 @@ contact_law or corrected
         how = "rigid, spring_damper, contact_law or corrected"
         maker = _OF_CONTACTS.get(type(ball).__name__)
         remedy = f": give {maker}(…) of this contact" if maker else ""
-        raise ParameterError(f"the ball = {{}} is not made by {how}{remedy}", repr(ball))
+        raise ParameterError(f"the ball = {{}} is not made by {how}{remedy}", shortened(ball))
     return ball
 
 

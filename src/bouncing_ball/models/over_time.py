@@ -120,8 +120,8 @@ def simulate(
     Raises
     ------
     ModelError
-        If a parameter is missing, of a wrong type or shape, or out of range, or if the ball rises
-        from the table at first.
+        If a parameter is missing, of a wrong type or shape, or out of range, if the ball rises
+        from the table at first, or if there are more impacts than fit into memory.
 
     Examples
     --------
@@ -132,6 +132,7 @@ def simulate(
     """
     grid, first = first_impacts(ball, amplitude, phase, velocity)
     count = checked_number("impacts", impacts, IMPACTS)
+    _require_memory(count * grid.size, "impacts")
     return _labelled_impacts(grid, first.model(ball, grid).simulate(*first, count))
 
 
@@ -270,11 +271,16 @@ def instants(periods: float, samples: int, balls: int) -> np.ndarray:
     [0.0, 0.5, 1.0, 1.5, 2.0]
     """
     count = math.ceil(periods * samples) + 1
-    if count * balls > _STATES:
-        raise ModelError(
-            f"{count * balls} states exceed the limit of {_STATES}: use fewer samples or balls"
-        )
+    _require_memory(count * balls, "samples")
     return np.linspace(0.0, 2 * np.pi * periods, count)
+
+
+def _require_memory(states: int, what: str) -> None:
+    """Raise :class:`ModelError` if the states of all balls would fill the memory."""
+    if states > _STATES:
+        raise ModelError(
+            f"{states} states exceed the limit of {_STATES}: use fewer {what} or balls"
+        )
 
 
 def _dropped(ball: Ball, grid: Grid, time: np.ndarray) -> dict[str, np.ndarray]:

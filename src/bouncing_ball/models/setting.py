@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 
-from bouncing_ball.errors import ParameterError
+from bouncing_ball.errors import ParameterError, shortened
 from bouncing_ball.models.flight import Flight, table
 from bouncing_ball.models.linear_flight import LinearFlight, Pressure
 from bouncing_ball.models.suspension import Drag, Suspension
@@ -165,9 +165,11 @@ class OtherSetting(Setting):
 
     def __post_init__(self) -> None:
         if not isinstance(self.form, Waveform):
-            raise ParameterError("{table} = {} is not a Waveform", repr(self.form))
+            raise ParameterError("{table} = {} is not a Waveform", shortened(self.form))
         if not isinstance(self.suspension, Suspension):
-            raise ParameterError("{flight} = {} is neither Drag nor Spring", repr(self.suspension))
+            raise ParameterError(
+                "{flight} = {} is neither Drag nor Spring", shortened(self.suspension)
+            )
         self.suspension.check(self.form)
 
     @property

@@ -77,8 +77,8 @@ class SpringDamper(OscillatorLaw):
     name: ClassVar[str] = "linear"
 
     def __post_init__(self):
-        super().__post_init__()
         object.__setattr__(self, "release", Release.of(self.release))
+        super().__post_init__()
 
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """The force over the weight, ϖ² p + 2ζϖ p′; without p′ < 0 if the damper acts on approach.

@@ -8,12 +8,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ModelError, ParameterError
-from bouncing_ball.models.held_contact import (
-    HeldContactDynamics,
-    held_by,
-    held_threshold,
-)
+from bouncing_ball.errors import ModelError, ParameterError, shortened
+from bouncing_ball.models.held_contact import HeldContactDynamics, held_by, held_threshold
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.linear_contact import LinearContactDynamics
 from bouncing_ball.models.model import Model
@@ -55,7 +51,7 @@ class SpringDamperModel(Model):
 
     def __post_init__(self) -> None:
         if not isinstance(self.contact, SpringDamper):
-            raise ParameterError("contact = {} is not a SpringDamper", repr(self.contact))
+            raise ParameterError("contact = {} is not a SpringDamper", shortened(self.contact))
         if not self.contact.release.is_linear:
             raise ModelError(
                 f"a contact with the release {self.contact.release} is not linear: make its ball "

@@ -28,7 +28,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.errors import ParameterError, Range
+from bouncing_ball.errors import ParameterError, Range, shortened
 from bouncing_ball.models.waveform import Waveform
 from bouncing_ball.numerics.arrays import Batch, as_numbers
 from bouncing_ball.numerics.elementary import exponential, sine_and_cosine
@@ -199,7 +199,7 @@ def _check(name: str, value: Any, allowed: Range) -> None:
     """Raise :class:`ParameterError` unless all values of a parameter are in its range."""
     for each in np.ravel(as_numbers(value, name, str(allowed))).tolist():
         if each not in allowed:
-            raise ParameterError(f"{{{name}}} = {{}} is not {_text(allowed)}", repr(each))
+            raise ParameterError(f"{{{name}}} = {{}} is not {_text(allowed)}", shortened(each))
 
 
 def _text(allowed: Range) -> str:

@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ParameterError
+from bouncing_ball.errors import ParameterError, shortened
+from bouncing_ball.numerics.arrays import as_numbers
 from bouncing_ball.numerics.elementary import reduce_angle, sine_and_versine
 
 # Coefficients of samples below this part of the largest one are rounding errors of the samples.
@@ -46,11 +47,11 @@ class Waveform:
     def __init__(self, sine: Sequence[float], cosine: Sequence[float] = ()) -> None:
         rows = []
         for name, given in (("sine", sine), ("cosine", cosine)):
-            row = np.asarray(given)
-            if row.ndim != 1 or (row.size and row.dtype.kind not in "iuf"):
-                raise ParameterError(f"{{{name}}} = {{}} is not a row of numbers", repr(given))
+            row = as_numbers(given, name, "a row of numbers")
+            if row.ndim != 1:
+                raise ParameterError(f"{{{name}}} = {{}} is not a row of numbers", shortened(given))
             if not np.all(np.isfinite(row.astype(float))):
-                raise ParameterError(f"{{{name}}} = {{}} are not finite numbers", repr(given))
+                raise ParameterError(f"{{{name}}} = {{}} are not finite numbers", shortened(given))
             rows.append(row.astype(float))
         size = max(row.size for row in rows)
         a, b = (np.concatenate([row, np.zeros(size - row.size)]) for row in rows)
@@ -81,7 +82,7 @@ class Waveform:
         """
         row = np.asarray(heights)
         if row.ndim != 1 or row.size < 3 or row.dtype.kind not in "iuf":
-            raise ParameterError("{heights} = {} are not three samples or more", repr(heights))
+            raise ParameterError("{heights} = {} are not three samples or more", shortened(heights))
         if not np.all(np.isfinite(row)):
             raise ParameterError("{heights} are not finite numbers")
         most = (row.size - 1) // 2
@@ -89,7 +90,7 @@ class Waveform:
             raise ParameterError(
                 f"{{harmonics}} = {{}} is not a whole number from 1 to {most}, fewer than half of "
                 f"the {row.size} samples",
-                repr(harmonics),
+                shortened(harmonics),
             )
         # The transform is that of e^{-ikφ}: u = Re Σ 2 f_k e^{ikφ}.
         found = 2j * np.fft.rfft(row)[1 : 1 + (harmonics or most)] / row.size

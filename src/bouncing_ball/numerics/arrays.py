@@ -12,7 +12,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ModelError, printable
+from bouncing_ball.errors import ModelError, shortened
 
 
 def _entry(value: Any, shape: tuple[int, ...], index: Any) -> Any:
@@ -41,10 +41,11 @@ def as_numbers(value: ArrayLike, name: str, allowed: str) -> np.ndarray:
     """
     try:
         x = np.asarray(value)
-    except ValueError:
+    # Rows of unequal lengths, and objects such as datasets.
+    except (TypeError, ValueError):
         x = None
-    if x is None or x.dtype.kind not in "iuf":
-        raise ModelError(f"{name} = {printable(repr(value))} is not {allowed}")
+    if x is None or x.dtype.kind not in "iuf" or isinstance(value, np.ma.MaskedArray):
+        raise ModelError(f"{name} = {shortened(value)} is not {allowed}")
     return x.astype(float, copy=False)
 
 

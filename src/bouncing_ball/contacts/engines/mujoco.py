@@ -26,7 +26,7 @@ from bouncing_ball.contacts.engines.engine import ERROR, Engine, Physical, at_sp
 from bouncing_ball.contacts.engines.given_step import AtStep, at_step
 from bouncing_ball.contacts.engines.impedance import Impedance
 from bouncing_ball.contacts.engines.scheme import Scheme
-from bouncing_ball.errors import ModelError
+from bouncing_ball.errors import ModelError, shortened
 from bouncing_ball.models.damping import Release
 
 # What is written between numbers and around them elsewhere.
@@ -57,7 +57,7 @@ def _numbers(name: str, value: str | Sequence[float], counts: range) -> list[flo
         apart = " ".join(_BETWEEN.sub(" ", shown).split())
         how = "without commas" if apart == " ".join(shown.replace(",", " ").split()) else "plainly"
         hint = "" if apart == shown else f": write it {how}, {apart!r}"
-        raise ModelError(f"{name} = {shown!r} is not {allowed}{hint}")
+        raise ModelError(f"{name} = {shortened(shown)} is not {allowed}{hint}")
     return found
 
 

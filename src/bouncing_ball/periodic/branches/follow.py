@@ -15,7 +15,7 @@ from bouncing_ball.datasets.arguments import (
     checked_number,
     chosen,
 )
-from bouncing_ball.errors import NoOrbitError, ParameterError, suggesting
+from bouncing_ball.errors import NoOrbitError, ParameterError, shortened, suggesting
 from bouncing_ball.periodic.branches import curves, following, grazing, switching
 from bouncing_ball.periodic.branches.following import Range
 from bouncing_ball.periodic.branches.labelled import FollowedBranch, SpecialCurve, labelled
@@ -185,9 +185,11 @@ def _names(orbit: Orbit, along: Any) -> tuple[str, ...]:
         return orbit.along[:1]
     names = tuple(along) if isinstance(along, list | tuple) else (along,)
     if not all(isinstance(name, str) for name in names):
-        raise ParameterError("{along} = {} is not the name of a parameter or two", repr(along))
+        raise ParameterError("{along} = {} is not the name of a parameter or two", shortened(along))
     if len(names) not in (1, 2) or len(set(names)) < len(names):
-        raise ParameterError("{along} = {} is not one parameter or two different ones", repr(along))
+        raise ParameterError(
+            "{along} = {} is not one parameter or two different ones", shortened(along)
+        )
     balls = Balls(orbit.model, orbit.amplitude)
     for name in names:
         balls.range_of(name)
@@ -204,7 +206,7 @@ def _curve(orbit: Orbit, names: tuple[str, ...], ranges: Any, most: int) -> Spec
     if not isinstance(ranges, Mapping):
         first, second = names
         given = f'such as {{"{first}": (low, high), "{second}": (low, high)}}'
-        raise ParameterError("{ranges} = {} is not a range by name, {}", repr(ranges), given)
+        raise ParameterError("{ranges} = {} is not a range by name, {}", shortened(ranges), given)
     for name in ranges:
         chosen("ranges", name, names)
     first, second = names
@@ -231,7 +233,7 @@ def _window(name: str, given: Any, start: float) -> Range | None:
     if len(numbers) != 2 or not numbers[0] < numbers[1]:
         raise ParameterError(
             f"the range of {name} = {{}} is not two numbers of which the second is larger",
-            repr(given),
+            shortened(given),
         )
     low, high = numbers
     if not low <= start <= high:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball import datasets
-from bouncing_ball.errors import ModelError
+from bouncing_ball.errors import ModelError, shortened
 
 # The determinant of a contact that does not dissipate differs from 1 by rounding errors of its
 # parameters at most.
@@ -49,7 +49,7 @@ class Side(StrEnum):
 
     @classmethod
     def _missing_(cls, value: object) -> "Side":
-        raise ModelError(f"unknown side {value!r}: one of {', '.join(cls)}")
+        raise ModelError(f"unknown side {shortened(value)}: one of {', '.join(cls)}")
 
 
 class Bifurcation(StrEnum):

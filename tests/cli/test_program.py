@@ -146,3 +146,25 @@ def test_a_file_is_refused_before_its_contents_are_computed(refused, monkeypatch
     monkeypatch.setattr(f"bouncing_ball.{computes}", computed)
     status, line = refused(*call.split(), "/dev/null/a.svg")
     assert status == 2 and "/dev/null/a.svg cannot be written: /dev/null is no folder" in line
+
+
+@pytest.mark.parametrize("kind", ["a device", "a link", "a pipe", "a folder", "in no folder"])
+def test_a_page_replaces_nothing_but_a_regular_file(refused, tmp_path, kind):
+    target = tmp_path / "page.html"
+    if kind == "a device":
+        target = Path(os.devnull)
+    elif kind == "a link":
+        (tmp_path / "other").write_text("kept", encoding="utf-8")
+        target.symlink_to(tmp_path / "other")
+    elif kind == "a pipe":
+        os.mkfifo(target)
+    elif kind == "a folder":
+        target.mkdir()
+    else:
+        target = tmp_path / "new" / "folder" / "page.html"
+    before = sorted(tmp_path.rglob("*"))
+    status, line = refused("diff", str(ROOT), str(ROOT), "fig01", "--html", str(target))
+    assert status == 2 and f"{target} cannot be written" in line
+    assert sorted(tmp_path.rglob("*")) == before
+    if kind == "a link":
+        assert target.is_symlink() and target.read_text(encoding="utf-8") == "kept"

@@ -1,5 +1,6 @@
 """The dataset of an artifact draws its figure, in the axes, size and fonts that a user asks for."""
 
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -121,3 +122,13 @@ def test_a_function_that_is_gone_is_named(refusal):
     data = opened("fig06").assign_attrs({DRAWING: "bouncing_ball.paper.exhibits.gone:figure"})
     with refusal(bouncing_ball.ModelError, "this version of the package has no bouncing_ball"):
         data.plot()
+
+
+def test_threads_that_draw_leave_the_settings_of_the_user(tmp_path):
+    """Each draws the same figure at the same time, and changes the settings while it draws."""
+    data = opened("fig05")
+    before = dict(plt.rcParams)
+    with ThreadPoolExecutor(4) as pool:
+        list(pool.map(lambda k: data.plot(tmp_path / f"{k}.svg"), range(8)))
+    assert dict(plt.rcParams) == before
+    assert len({path.read_bytes() for path in tmp_path.iterdir()}) == 1

@@ -14,7 +14,7 @@ from typing import Any
 
 import xarray as xr
 
-from bouncing_ball.errors import ModelError
+from bouncing_ball.errors import ModelError, printable
 
 PICTURES = (".pdf", ".png", ".svg")
 """Suffixes of the figures that users request."""
@@ -147,7 +147,7 @@ def read_dataset(path: str | Path) -> xr.Dataset:
         with xr.open_dataset(path, engine="netcdf4") as dataset:
             return dataset.load()
     except FileNotFoundError:
-        raise ModelError(f"no dataset {path}") from None
+        raise ModelError(f"no dataset {printable(path, None)}") from None
     # The type of the error that the libraries raise depends on the place of the damage.
     except (OSError, ValueError, RuntimeError, AttributeError) as error:
         raise ModelError(f"{path} is damaged") from error

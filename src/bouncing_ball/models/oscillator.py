@@ -68,6 +68,9 @@ class Responses(NamedTuple):
     table: Response
 
 
+# What remains of an oscillation after a long time may be below the smallest number, and is then 0,
+# whatever the caller lets numpy do.
+@np.errstate(under="ignore")
 def _damped(s, a, q, w):
     """e^{-as} times C and S, for any sign of w = q - a²."""
     root = np.sqrt(np.abs(w))
@@ -104,6 +107,7 @@ def _gauss(radians: int) -> tuple[np.ndarray, np.ndarray]:
     return nodes, np.tile(weight / (2 * panels), panels)
 
 
+@np.errstate(under="ignore")
 def _integrated(nu, s, a, q, w):
     """h from its integral, for one-dimensional arrays of contacts."""
     nodes, weights = _gauss(int(np.max(np.abs(s))))
@@ -112,6 +116,7 @@ def _integrated(nu, s, a, q, w):
     return (s * weights * impulse * np.exp(nu * s * nodes)).sum(axis=1)
 
 
+@np.errstate(under="ignore")
 def _exponential(nu, s, a, q, w, impulse: Response) -> Response:
     """The response to e^{νs} from rest; real for ν = 0."""
     g = impulse.value

@@ -274,6 +274,9 @@ def branch_point(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> Bran
     return BranchPoint(*(np.concatenate(x).reshape(shape) for x in zip(*parts, strict=True)))
 
 
+# What a long contact leaves may be below the smallest number, and is then 0, whatever the caller
+# lets numpy do.
+@np.errstate(under="ignore")
 def _branch_point(eps, omega, zeta, sine, n) -> BranchPoint:
     """:func:`branch_point` for one block of arrays; ``sine`` is sin α = κϖ/2."""
     root = np.sqrt((1 - zeta) * (1 + zeta))

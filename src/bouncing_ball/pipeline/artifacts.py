@@ -220,7 +220,7 @@ def digests_of_code(results: Path, file: str) -> str | None:
     path = PurePosixPath(file)
     job = path.stem if path.suffix == DATASET else f"draw_{path.stem}"
     note = results / "code" / job
-    return without_versions(note.read_text(encoding="utf-8")) if note.is_file() else None
+    return without_versions(note.read_text("utf-8", errors="replace")) if note.is_file() else None
 
 
 def artifacts_among(paths: Iterable[str]) -> list[str]:

@@ -12,6 +12,8 @@ because otherwise the last value would be used without a warning.
 """
 
 import inspect
+import json
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from difflib import get_close_matches
 from pathlib import Path
@@ -50,6 +52,21 @@ class _Loader(yaml.SafeLoader):
             seen.add(str(key.value))
         return super().construct_mapping(node, deep)
 
+    def construct_decimal(self, node: yaml.ScalarNode) -> int:
+        """A whole number, which is written as one: not 0x10, 010, or 1:30, which are others."""
+        written = str(node.value)
+        if _DECIMAL.fullmatch(written):
+            return int(written)
+        line = node.start_mark.line + 1
+        raise ConfigurationError(
+            f"{printable(written, 60)} in line {line} is not a whole number of decimal digits"
+        )
+
+
+_Loader.add_constructor("tag:yaml.org,2002:int", _Loader.construct_decimal)
+# No parameter has as many digits, and Python reads no number of some thousands.
+_DECIMAL = re.compile(r"[-+]?(0|[1-9][0-9]{0,99})")
+
 
 def parse_yaml(text: str) -> Any:
     """The content of a YAML text.
@@ -69,10 +86,15 @@ def parse_yaml(text: str) -> Any:
     bouncing_ball.pipeline.configuration.ConfigurationError: duplicate key 'n' in line 1
     """
     try:
-        return yaml.load(text, Loader=_Loader)
+        content = yaml.load(text, Loader=_Loader)
+        # An alias may stand inside of what it names; such a content has no end.
+        json.dumps(content, default=str)
+    except ConfigurationError:
+        raise
     # Brackets within brackets, a thousand of them, are too deep for the reader.
-    except (yaml.YAMLError, RecursionError) as error:
+    except (yaml.YAMLError, RecursionError, ValueError, TypeError) as error:
         raise ConfigurationError(f"not YAML: {' '.join(str(error).split())}") from None
+    return content
 
 
 def read_yaml(path: str | Path) -> Any:

@@ -212,5 +212,5 @@ def changed_files(record: str, new: str) -> list[str]:
 
 def keep_digests(path: Path, found: str) -> None:
     """Write digests to a file if the file has others."""
-    if not path.is_file() or path.read_text(encoding="utf-8") != found:
+    if not path.is_file() or path.read_bytes() != found.encode():
         write_text(path, found)

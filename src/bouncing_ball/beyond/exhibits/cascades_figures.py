@@ -5,6 +5,7 @@ period doublings by the contact, with the errors of both simple models.
 import numpy as np
 import scipy
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bouncing_ball.datasets.selection import each
@@ -14,6 +15,7 @@ from bouncing_ball.drawing.style import COLOURS, GUIDE, MODELS
 from bouncing_ball.drawing.thresholds import with_zeros
 
 _DASHES = ("-", (0, (6, 1.5)), (0, (4, 1.5, 1, 1.5)), (0, (2, 1)))
+_OTHER_RELEASE = "openings are computed for\nthe displacement release only"
 _RATIO = r"frequency ratio $\varpi$"
 
 
@@ -33,7 +35,11 @@ def cascade_of_flights(data: xr.Dataset) -> Figure:
     ylabel = r"$E=\varpi^2\,(\Lambda-\Lambda_{SD})$"
     title = rf"flights in a period, $r={number(float(shown.restitution))}$"
     logarithmic(left, xlabel=_RATIO, yscale="log", ylabel=ylabel, title=title)
-    left.legend(loc="upper left")
+    if np.any(np.isfinite(excess)):
+        left.legend(loc="upper left")
+    else:
+        _say(left, "no opening was found here" if _is_sought(data) else _OTHER_RELEASE)
+        left.set_xlim(ratio[0], ratio[-1])
     for one, colour in coloured(data.sortby("restitution"), "restitution"):
         r = float(one.restitution)
         limits = one.stiff_opening.values
@@ -41,8 +47,25 @@ def cascade_of_flights(data: xr.Dataset) -> Figure:
         right.plot(data.flights, limits[-1] * r ** (2 * (data.flights[-1] - data.flights)), **GUIDE)
     right.set(yscale="log", xlabel="opening $k$", ylabel=r"$E_k$ for $\varpi\to\infty$")
     right.set(xticks=data.flights.values, title=r"limits; dotted: $E_{k+1}/E_k=1/r^2$")
-    right.legend(loc="upper left", title="$r$, from above")
+    if _is_sought(data):
+        right.legend(loc="upper left", title="$r$, from above")
+    else:
+        # A logarithmic axis without a number cannot be drawn.
+        for axes in (left, right):
+            axes.set(yscale="linear", yticks=[])
+        _say(right, _OTHER_RELEASE)
+        right.set_xlim(data.flights.values[[0, -1]])
     return figure
+
+
+def _say(axes: Axes, words: str) -> None:
+    """Words in place of curves."""
+    axes.text(0.5, 0.5, words, transform=axes.transAxes, ha="center", va="center")
+
+
+def _is_sought(data: xr.Dataset) -> bool:
+    """Whether the openings are those of the release for which they are computed."""
+    return bool(np.any(np.isfinite(data.stiff_opening)))
 
 
 _FINE = 400

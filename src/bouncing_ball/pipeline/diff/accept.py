@@ -67,7 +67,13 @@ def _require_reproducible(
     ModelError
         With the reason, see :func:`accept`.
     """
-    if provenance.revision(record).dirty != "no":
+    now = provenance.revision(record)
+    if now == provenance.UNKNOWN:
+        raise ModelError(
+            "this folder is no repository of git, in which the record could be committed: accept "
+            "results in a clone"
+        )
+    if now.dirty != "no":
         raise ModelError("some changes are not committed: commit them, run again, then accept")
     committed = read_yaml(record / provenance.CONFIGURATION)
     if changed := provenance.changes(config, committed):

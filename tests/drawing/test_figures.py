@@ -302,3 +302,16 @@ def test_basins_are_drawn_where_they_are(record):
         assert (image.origin, image.get_extent()) == ("lower", [-1.0, 1.0, 0.0, 8.0])
         colours = image.cmap(image.norm(np.arange(data.sizes["motion"])))
         assert len(np.unique(colours, axis=0)) == data.sizes["motion"]
+
+
+@pytest.mark.parametrize("kind", ["no opening", "the other release"])
+def test_a_cascade_without_openings_says_so(record, kind, tmp_path):
+    data = record["ext_flights"]
+    gone = {"opening_amplitude": data.opening_amplitude * np.nan}
+    if kind == "the other release":
+        gone["stiff_opening"] = data.stiff_opening * np.nan
+    figure = drawn("ext_flights", data.assign(gone))
+    save(figure, tmp_path / "flights.png", {})
+    words = [text.get_text() for axes in figure.axes for text in axes.texts]
+    said = "openings are computed for\nthe displacement release only"
+    assert words == (["no opening was found here"] if kind == "no opening" else [said, said])

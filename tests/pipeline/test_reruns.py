@@ -143,6 +143,10 @@ def test_the_file_of_a_digest_is_written_only_when_the_digest_changes(tmp_path):
     assert path.stat().st_mtime == 0
     keep_digests(path, "two")
     assert path.read_text() == "two" and path.stat().st_mtime > 0
+    # Whatever another program has written there.
+    path.write_bytes(b"\xff\xfe")
+    keep_digests(path, "three")
+    assert path.read_text() == "three"
 
 
 def test_no_import_statement_is_missed():

@@ -52,6 +52,17 @@ def test_a_duplicate_key_and_what_yaml_forbids_are_refused(refusal, text, said):
         parse_yaml(text)
 
 
+@pytest.mark.parametrize("text", ["0x10", "010", "0b1", "1:30", "1_000", "!!int 1.5", "9" * 5000])
+def test_a_whole_number_is_written_in_decimal_digits(refusal, text):
+    with refusal(ConfigurationError, "in line 2 is not a whole number of decimal digits"):
+        parse_yaml(f"release: force\nn: {text}\n")
+
+
+def test_an_alias_inside_of_what_it_names_is_refused(refusal):
+    with refusal(ConfigurationError, "not YAML: Circular reference"):
+        parse_yaml("a: &a {b: *a}")
+
+
 def test_an_alias_stands_for_what_it_names():
     assert parse_yaml("a: &a [1, 2]\nb: *a") == {"a": [1, 2], "b": [1, 2]}
 

@@ -55,6 +55,25 @@ def test_every_step_runs_whatever_fails_and_the_diff_runs_before_the_tests(tmp_p
     assert set(failing.split()) <= set(last.split())
 
 
+def test_the_linter_of_snakemake_has_to_end(tmp_path):
+    """It ends with the status 0 if the workflow stops it early, and then says nothing good."""
+    for program in ("ruff", "snakefmt", "mypy", "lint-imports", "snakemake"):
+        path = tmp_path / "bin" / program
+        path.parent.mkdir(exist_ok=True)
+        path.write_text("#!/bin/sh\necho $SAID\n", encoding="utf-8")
+        path.chmod(0o755)
+    for said, status in (("Your workflow is in a good condition!", 0), ("Using a profile.", 2)):
+        done = subprocess.run(
+            ["make", "lint", "SETUP=", f"VENV={tmp_path}"],
+            cwd=ROOT,
+            env=without_make() | {"SAID": said},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == status
+
+
 def test_without_the_set_up_nothing_runs(tmp_path):
     status, called, _ = run_script(tmp_path, "setup")
     assert status != 0 and called == ["setup"]

@@ -83,7 +83,7 @@ def test_accept_of_named_artifacts_copies_these_alone(pair, run, refusal):
 @pytest.mark.parametrize(
     ("state", "left", "config", "said"),
     [
-        (UNKNOWN, 0, "force", "some changes are not committed"),
+        (UNKNOWN, 0, "force", "this folder is no repository of git"),
         (Revision("1f0e", "yes"), 0, "force", "some changes are not committed"),
         (Revision("1f0e", "no"), 0, "displacement", "config.yaml: {'release': 'displacement'}"),
         (Revision("1f0e", "no"), 3, "force", "Snakemake would still run 3 jobs: run"),

@@ -3,6 +3,8 @@
 from types import SimpleNamespace
 
 import numpy as np
+import pytest
+from scipy.stats import poisson
 
 from bouncing_ball.beyond.exhibits import lives
 from bouncing_ball.beyond.exhibits.motion_samples import ThreeModels
@@ -34,3 +36,17 @@ def test_a_ball_has_arrived_where_phase_and_velocity_agree(monkeypatch):
     asked = lives.Transients(**case, balls=10, impacts=50, confidence=0.95, seed=1)
     data = lives.transients(asked, Release.DISPLACEMENT)
     assert np.all(data.mean_life == 3)
+
+
+@pytest.mark.parametrize("count", [1, 4, 30])
+def test_the_limits_of_a_mean_life_are_those_of_a_number_of_ends(count):
+    """At a limit, as few or as many ends as observed have half the probability that is left."""
+    total = 250.0
+    times = np.full(50, total / 50)
+    ends = np.arange(50) < count
+    for confidence in (0.9, 0.95):
+        mean, low, high = lives.mean_life(times, ends, confidence)
+        rest = (1 - confidence) / 2
+        assert mean == pytest.approx(total / count)
+        assert poisson.cdf(count, total / low) == pytest.approx(rest, rel=1e-9)
+        assert poisson.sf(count - 1, total / high) == pytest.approx(rest, rel=1e-9)

@@ -1,0 +1,68 @@
+"""What a line of a figure stands for, and the symbols of its parameters."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.figure import Figure
+
+import bouncing_ball as bb
+from bouncing_ball.beyond.exhibits.contact_laws_figures import contact_laws
+from bouncing_ball.beyond.exhibits.motion_maps import DOTS, mark_nodes
+from bouncing_ball.datasets.variables import SHARED
+from bouncing_ball.drawing.canvas import draw_curve
+from bouncing_ball.drawing.labels import _SYMBOLS
+from bouncing_ball.drawing.style import LINES, style
+
+IN_LATEX = {"Λ": r"\Lambda", "ϖ": r"\varpi", "ζ": r"\zeta", "φ": r"\varphi", "z′ᵢ": "z′_i"}
+
+
+@pytest.mark.parametrize("name", sorted(_SYMBOLS.keys() & SHARED.keys()))
+def test_a_parameter_has_the_symbol_of_its_variable(name):
+    symbol = SHARED[name].symbol
+    assert _SYMBOLS[name] == IN_LATEX.get(symbol, symbol)
+
+
+def test_the_damping_ratio_of_a_ball_is_in_the_title_of_its_figure():
+    ball = bb.spring_damper(damping_ratio=0.1, frequency_ratio=10.0)
+    figure = bb.history(ball, amplitude=1.0, periods=1).plot()
+    texts = [axes.get_title() for axes in figure.axes] + [text.get_text() for text in figure.texts]
+    assert any(r"\zeta" in text for text in texts), texts
+
+
+def test_the_inadmissible_part_of_a_curve_is_dotted_and_the_other_part_is_not():
+    x = np.arange(5.0)
+    y = x**2
+    admissible = np.array([True, True, False, False, True])
+    axes = Figure().add_subplot()
+    draw_curve(axes, x, y, admissible, color="#123456", **LINES["stable"])
+    whole, dotted = axes.lines
+    assert np.array_equal(np.isfinite(whole.get_ydata()), admissible)
+    assert np.array_equal(np.isfinite(dotted.get_ydata()), ~admissible)
+    assert np.nanmax(np.abs(dotted.get_ydata() - y)) == 0
+    axes.plot(x, y, **LINES["inadmissible"])
+    expected = axes.lines[-1]
+    assert dotted.get_linestyle() == expected.get_linestyle() != whole.get_linestyle()
+    assert dotted._unscaled_dash_pattern == expected._unscaled_dash_pattern
+
+
+def test_the_errors_of_the_laws_are_over_the_share_of_the_cycle(recorded):
+    """(D + κ)/(2πn), where the dataset has π/(D + κ)."""
+    data = recorded["ext_laws"]
+    length = np.pi / data.centroid_ratio.values
+    with style():
+        figure = contact_laws(data)
+    line = figure.axes[0].lines[0]
+    assert line.get_xdata() == pytest.approx(length / (2 * np.pi * data.attrs["n"]), rel=1e-14)
+
+
+def test_the_nodes_of_a_kind_are_marked_and_no_others():
+    kinds = np.array([["orbit", "chaotic"], ["locked", "chaotic"], ["orbit", "orbit"]])
+    axis = {"restitution": [0.2, 0.5, 0.8], "amplitude": [1.0, 2.0]}
+    one = xr.Dataset({"kind": (("restitution", "amplitude"), kinds)}, axis)
+    axes = Figure().add_subplot()
+    mark_nodes(axes, one, one.kind == "chaotic", {"marker": "."})
+    (marks,) = axes.lines
+    found = {tuple(map(float, point)) for point in marks.get_xydata()}
+    expected = {(0.2, 2.0), (0.5, 2.0)}
+    assert found in (expected, {(lam, r) for r, lam in expected})
+    assert {"chaotic"} <= {str(kind) for kind in DOTS}

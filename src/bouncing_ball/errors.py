@@ -129,7 +129,7 @@ def one_of(kind: str, name: str, known: Mapping[str, _Known]) -> _Known:
 
 
 # How alike a name and a known one must be for the known one to be suggested.
-_ALIKE = 0.83
+_ALIKE = 0.8
 
 
 def did_you_mean(name: object, known: Iterable[str]) -> str:

@@ -46,6 +46,20 @@ MISTAKES = """
     --acceleration = 0.8g's has an unknown unit: write it as '2 g'
 --mass "20 g" --frequency "50 Hz" --amplitude "1 mm" --stiffness 1e6 --restitution 0.8
     unrecognized arguments: --amplitude 1 mm; did you mean --table-amplitude?
+--mass "20 g" --stiffness "2*10^6 N/m" --restitution 0.8
+    --stiffness = 2*10^6 N/m is a power of ten: write '2e6 N/m'
+--mass "20 g" --stiffness 1e6 --damping -5
+    --damping = -5 N s/m is negative
+--mass "20 g" --kn 1e5 --restitution 0.8
+    unrecognized arguments: --kn 1e5: it is a parameter of lammps: --from lammps --set kn=NUMBER
+--mass "20 g" --from lammps --set Kn=1e5 --set gamma_n=1
+    lammps has no 'Kn': its parameters are kn and gamma_n; did you mean kn?
+--mass "20 g" --from newton-mujoco --set ke=1e6 --set kd=0
+    kd = 0 of newton-mujoco is no contact without damping, but the default of MuJoCo: kd is c/m in
+--mass "20 g" --from gazebo --set kp=1e6 --set kd=1 --time-step 1
+    a contact of 0.000624 s takes 0.000624 time steps of 1 s, which is not between 0.001 and 1e+08
+CROSSLEY --time-step "1 ms"
+    --time-step with hunt_crossley_dissipation needs --speed of an impact, or a table, because r
 BALL TABLE --release Force
     argument --release: invalid choice: 'Force' (choose from 'displacement', 'force', 'approach');
 BALL TABLE --law Hertz
@@ -127,11 +141,11 @@ BALL TABLE --tolerance "1 %%"
 --mass "20 g" --from lammps --set kn=1e5 --set gamma_n=1 --set time_step=1e-3
     lammps has no 'time_step': its parameters are kn and gamma_n, and the step of any engine is
 CROSSLEY --set time_step=1e-3
-    time_step is not allowed with hunt_crossley_dissipation, whose contact is that of small time
+    --time-step with hunt_crossley_dissipation needs --speed of an impact, or a table, because r
 BULLET --set time_step=1e-3 --time-step "1 ms"
     --time-step and --set time_step give the same: give one
-CROSSLEY --speed 1 --time-step "1 ms"
-    --time-step is given for a spring and a damper: the r of this contact depends on the speed
+CROSSLEY --speed 1 --time-step "1000 s"
+    a contact of 0.0139 s takes 1.39e-05 time steps of 1e+03 s, which is not above 0.001: check
 --mass "20 g" --from mujoco --solref "1000 10"
     solref = '1000 10' is a time constant of 1000 s, which no simulation has: -k/m and -c/m are
 BALL --engine lammps --time-step 5

@@ -6,7 +6,7 @@ import bouncing_ball
 from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.question import EngineSetup, Question
 from bouncing_ball.contacts.table import Table
-from bouncing_ball.errors import ModelError, ParameterError
+from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError
 
 TABLE = Table(frequency="50 Hz", acceleration="0.8 g")
 CONTACT = Contact(mass="20 g", stiffness="1e7 N/m", restitution=0.85)
@@ -27,6 +27,63 @@ BALL = bouncing_ball.rigid(restitution=0.5)
 def test_an_argument_of_a_wrong_class_is_named_in_one_line(refusal, call, arguments, words):
     with refusal(ParameterError, words):
         getattr(bouncing_ball, call)(*arguments)
+
+
+SETUP = EngineSetup(engine="mujoco")
+
+
+@pytest.mark.parametrize(("call", "arguments", "order"), [
+    ("assess_contact", (CONTACT, TABLE), "assess_contact(table, contact, question)"),
+    ("choose_contact", (CONTACT, TABLE), "choose_contact(table, contact, question)"),
+    ("write_contact", (CONTACT, TABLE, SETUP), "write_contact(contact, setup, table, question)"),
+    ("write_contact", (SETUP, CONTACT), "write_contact(contact, setup, table, question)"),
+])  # fmt: skip
+def test_swapped_arguments_are_answered_with_their_order(refusal, call, arguments, order):
+    with refusal(ParameterError, f"write {order}, in this order"):
+        getattr(bouncing_ball, call)(*arguments)
+
+
+@pytest.mark.parametrize(("call", "given", "words"), [
+    ("Contact", {"stifness": 1e5}, "'stifness'; did you mean stiffness?"),
+    ("Table", {"freq": 50}, "'freq'; did you mean frequency?"),
+    ("Question", {"balles": 5}, "'balles'; did you mean balls?"),
+    ("EngineSetup", {"engine": "mujoco", "dt": 1}, ": it has engine, restitution_error and time"),
+    ("assess_contact", {"tables": TABLE}, "'tables'; did you mean table?"),
+    ("spring_damper", {"frequencyratio": 1}, "'frequencyratio'; did you mean frequency_ratio?"),
+])  # fmt: skip
+def test_an_unknown_keyword_is_answered_with_the_one_that_it_resembles(call, given, words):
+    with pytest.raises(TypeError) as wrong:
+        getattr(bouncing_ball, call)(**given)
+    assert str(wrong.value).startswith(f"{call}() got an unexpected keyword argument")
+    assert words in str(wrong.value) and "\n" not in str(wrong.value)
+
+
+def test_every_public_function_answers_an_unknown_keyword():
+    for name in bouncing_ball.__all__:
+        call = getattr(bouncing_ball, name)
+        if not isinstance(call, type):
+            with pytest.raises(
+                TypeError, match=r"unexpected keyword argument 'zzz': it has|has no"
+            ):
+                call(zzz=1)
+
+
+def test_an_acceleration_without_its_unit_has_the_hint_of_the_command_line(refusal):
+    bare = Table(frequency="50 Hz", acceleration=0.8)
+    found = bouncing_ball.assess_contact(bare, CONTACT)
+    assert found.reason.endswith("; perhaps 0.8 g was meant")
+    with refusal(NoOrbitError, "perhaps 0.8 g was meant"):
+        bouncing_ball.assess_contact(bare, CONTACT, Question(n=1))
+    with refusal(NoOrbitError, "perhaps 0.8 g was meant"):
+        bouncing_ball.choose_contact(bare, Contact(mass="20 g", restitution=0.85))
+    for other in (TABLE, Table(frequency="50 Hz", acceleration=0.8, gravity=9.81)):
+        assert not other.hint
+
+
+def test_an_assessment_is_shown_by_its_verdict():
+    found = bouncing_ball.assess_contact(TABLE, CONTACT, Question(n=1))
+    assert repr(found).startswith("Assessment(n=1, is_good_enough=False, verdict='The restitution")
+    assert len(repr(found)) < 400
 
 
 LAMMPS = {"mass": "20 g", "from_engine": "lammps"}

@@ -297,7 +297,8 @@ def test_a_change_of_a_law_is_one_of_its_parameters_in_si_units(law):
         assert of_contact == pytest.approx(factor, rel=1e-12)
     plain = case.law_in_si
     stiffer = changed["k +0.1 %"].law_in_si
-    assert stiffer["stiffness"] == pytest.approx(1.001 * plain["stiffness"], rel=1e-5)
+    # Where r depends on k too, the damping that restores it takes a part of the duration.
+    assert stiffer["stiffness"] / plain["stiffness"] - 1 == pytest.approx(1e-3, rel=0.1)
     heavier = changed["g +0.1 %"]
     same = heavier.law_in_si
     for name in ("stiffness", "damping"):

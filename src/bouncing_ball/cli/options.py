@@ -50,6 +50,9 @@ class Parser(argparse.ArgumentParser):
     def _advice(self, unknown: str) -> str:
         """A clause on the first argument that is not recognized."""
         name = unknown.partition("=")[0]
+        if self.prog.endswith(_WITH_UNITS) and (engine := _engine_with(name.removeprefix("--"))):
+            own = name.removeprefix("--")
+            return f": it is a parameter of {engine}: --from {engine} --set {own}=NUMBER"
         if f"--{name}" in self._option_string_actions:
             return f"; did you mean --{name}?"
         if meant := name.startswith("--") and _meant(name, self._option_string_actions):
@@ -92,7 +95,28 @@ def _meant(text: str, known: Iterable[str]) -> str:
         for name, each in plain.items()
         if each.endswith(f"-{part}") or (part and each.startswith(part))
     ]
-    return did_you_mean(text, names) or did_you_mean("".join(longer[:1]), longer)
+    # Dashes are no letters that two names have in common.
+    alike = did_you_mean(part, plain.values())
+    for name, each in plain.items():
+        if alike == f"; did you mean {each}?":
+            return f"; did you mean {name}?"
+    return did_you_mean("".join(longer[:1]), longer)
+
+
+def _engine_with(parameter: str) -> str:
+    """The first engine that has a parameter of this name; empty if none has.
+
+    Examples
+    --------
+    >>> _engine_with("kn"), _engine_with("mass")
+    ('lammps', '')
+    """
+    # Imported here, because the import needs numpy, which the help does not need.
+    from bouncing_ball.contacts.engines.choice import ENGINES
+
+    plain = ("stiffness", "damping", "solref", "solimp")
+    known = (one.name for one in ENGINES.values() if parameter in one.names)
+    return "" if parameter in plain else next(known, "")
 
 
 def option(name: str) -> str:

@@ -51,6 +51,10 @@ _GROUPS = re.compile(r"[+-]?\d{1,3}(?:,\d{3})+(?!\d).*", re.DOTALL)
 _SEPARATED = re.compile(r"[+-]?\d{1,3}(?:['’_ ]\d{3})+(?!\d).*", re.DOTALL)
 _SEPARATOR = re.compile(r"(?<=\d)['’_ ](?=\d{3}(?!\d))")
 _FRACTION = re.compile(r"([+-]?\d+\.?\d*)/(\d+\.?\d*)((?!\d).*)", re.DOTALL)
+# A power of ten as one writes it by hand: 10^7, 2*10^7, 2x10**7.
+_POWER_OF_TEN = re.compile(
+    r"(?:(\d+\.?\d*) ?[*x·×] ?)?10 ?(?:\^|\*\*) ?([+-]?\d+)((?!\d).*)", re.DOTALL
+)
 # A number, and the rest of the text.
 _TEXT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
 # Letters, products, quotients and powers of one digit. A power of a power is refused, because pint
@@ -206,11 +210,17 @@ def _plain_spelling(text: str) -> str:
     "has a comma: write '0.65', with a decimal point"
     >>> _plain_spelling("1 000 000 N/m"), _plain_spelling("1/2 kg")
     ("has separated thousands: write '1000000 N/m'", "is a fraction: write '0.5 kg'")
+    >>> _plain_spelling("10^7 N/m"), _plain_spelling("2.5*10^6")
+    ("is a power of ten: write '1e7 N/m'", "is a power of ten: write '2.5e6'")
     """
     if comma := _without_comma(text):
         return f"has a comma: write {comma}"
     if _SEPARATED.fullmatch(text):
         return f"has separated thousands: write {_SEPARATOR.sub('', text)!r}"
+    power = _POWER_OF_TEN.fullmatch(text)
+    if power is not None:
+        mantissa, exponent, rest = power.groups()
+        return f"is a power of ten: write '{mantissa or 1}e{exponent}{rest}'"
     fraction = _FRACTION.fullmatch(text)
     if fraction and float(fraction[2]):
         return f"is a fraction: write '{float(fraction[1]) / float(fraction[2]):.6g}{fraction[3]}'"
@@ -303,9 +313,11 @@ def _is_bare(value: Any) -> bool:
 
 
 def _out_of_range(name: str, text: Any, value: float, kind: SIParameter) -> ParameterError:
-    said = f"{{{name}}} = {value:g} {kind.name}".rstrip()
+    said = f"{{{name}}} = {value:g} {kind.name.replace('*', ' ')}".rstrip()
     if value <= 0 < kind.allowed.low:
         return ParameterError(f"{said} is not a positive number")
+    if value < 0 == kind.allowed.low:
+        return ParameterError(f"{said} is negative")
     # A share above 1 was probably meant in percent. A restitution of a few percent is rare.
     least = _PERCENT if 1 in kind.allowed else 1
     is_share = kind.allowed.high == 1 and least <= value < 100 and "%" not in str(text)

@@ -168,6 +168,8 @@ function readEngine(engine, mass, [one, two, three]) {
     return value;
   });
   refuseIf(values[0] === 0, `${names[0]} = 0.0 is not positive`);
+  refuseIf(engine === "newton-mujoco" && values[1] === 0, "kd = 0 of newton-mujoco is no contact without damping, but "
+    + "the default of MuJoCo: kd is c/m in 1/s");
   refuseIf(engine === "genesis" && values[1] === 0, "dampratio = 0 is no contact of genesis: its time constant is 2 m/c");
   const [k, c] = ENGINE_READS[engine](mass, ...values);
   return stepped ? represented(k / mass, c / mass, step).map(x => x * mass) : [k, c];

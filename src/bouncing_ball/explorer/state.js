@@ -89,7 +89,7 @@ function didYouMean(name, known) {
   const typed = name.toLowerCase().replaceAll("_", "-");
   const alike = known.map(other => 2 * matched(other, typed) / (other.length + typed.length));
   const best = Math.max(...alike);
-  return best >= 0.83 ? `; did you mean ${known[alike.indexOf(best)]}?` : "";
+  return best >= 0.8 ? `; did you mean ${known[alike.indexOf(best)]}?` : "";
 }
 
 // The limits of r for ζ → 1, where it has one that is not 0.

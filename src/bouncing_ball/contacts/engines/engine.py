@@ -14,7 +14,7 @@ import numpy as np
 from bouncing_ball.contacts.engines.given_step import AtStep, at_step
 from bouncing_ball.contacts.engines.physical import Physical
 from bouncing_ball.contacts.engines.scheme import Scheme, compensated, represented, steps_for
-from bouncing_ball.errors import ModelError, require
+from bouncing_ball.errors import ModelError, did_you_mean, require
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
 
@@ -363,7 +363,8 @@ class Engine(ABC):
             first = sorted(unknown)[0]
             if first == "time_step":
                 names += ", and the step of any engine is given by --time-step or time_step"
-            raise ModelError(f"{self.name} has no {first!r}: its parameters are {names}")
+            meant = did_you_mean(first, self.names)
+            raise ModelError(f"{self.name} has no {first!r}: its parameters are {names}{meant}")
         if mass is None:
             raise ModelError(
                 f"the mass is missing: the parameters of {self.name} do not contain it"

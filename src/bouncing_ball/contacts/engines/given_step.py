@@ -294,14 +294,15 @@ def at_step(
     """
     wanted = asked or contact
     r = wanted.restitution(release)
-    duration = contact.contact_time(release) * contact.angular_frequency
+    # The step may have changed the contact.
+    for duration in (wanted.contact_time(release), contact.contact_time(release)):
+        if not _FEWEST <= duration / time_step <= _MOST:
+            raise ModelError(
+                f"a contact of {duration:.3g} s takes {duration / time_step:.3g} time steps of "
+                f"{time_step:.3g} s, which is not between {_FEWEST:g} and {_MOST:g}: check the "
+                "units"
+            )
     step = contact.angular_frequency * time_step
-    if not _FEWEST <= duration / step <= _MOST:
-        raise ModelError(
-            f"a contact of {duration / contact.angular_frequency:.3g} s takes "
-            f"{duration / step:.3g} time steps of {time_step:.3g} s, which is not between "
-            f"{_FEWEST:g} and {_MOST:g}: check the units"
-        )
     zeta = contact.damping_ratio
     found = spread_in_steps(scheme, zeta, release, step)
     off = found.error(r)

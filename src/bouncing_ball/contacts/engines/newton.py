@@ -24,6 +24,7 @@ from typing import Any
 from bouncing_ball.contacts.engines.engine import EngineParameters, Physical, Proportional
 from bouncing_ball.contacts.engines.mujoco import time_constant
 from bouncing_ball.contacts.engines.scheme import Scheme
+from bouncing_ball.errors import ModelError
 from bouncing_ball.models.damping import Release
 
 
@@ -66,6 +67,15 @@ class NewtonMuJoCo(Proportional):
     def parameters(self, contact: Physical) -> EngineParameters:
         time_constant(self.name, contact)
         return super().parameters(contact)
+
+    def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
+        found = super().read(parameters, mass)
+        if found.damping == 0:
+            raise ModelError(
+                "kd = 0 of newton-mujoco is no contact without damping, but the default of MuJoCo: "
+                "kd is c/m in 1/s"
+            )
+        return found
 
     def remarks(self, parameters: Mapping[str, Any]) -> tuple[str, ...]:
         return (

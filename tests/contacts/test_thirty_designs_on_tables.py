@@ -202,7 +202,7 @@ def sampled(mass, k, c, acceleration, pulls, restitution=None, balls=400):
         before = push(z, v, t, held)
         middle = push(z + h * v / 2, v + h * (before / mass - G) / 2, t + h / 2, held)
         slope = middle / mass - G
-        # The midpoint rule, whose error is of the second order, as a step is a fortieth of a contact.
+        # The midpoint rule has an error of the second order; a step is a fortieth of a contact.
         z_after = z + h * (v + h * (before / mass - G) / 2)
         v_after = v + h * slope
         if counts:

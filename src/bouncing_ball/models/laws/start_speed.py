@@ -22,8 +22,8 @@ damping grows without limit. A ball that is laid on the table, with v₀ = 0, wo
 slower than 10⁻⁹ are damped as one with this speed. A ball that is held by its weight after a slow
 start creeps in and out, and where it is pulled out faster than v₀/c the force is negative: the law
 lets the contact pull. Its release is at p = 0, at which the force vanishes. Chattering therefore is
-that of very strong damping, and no theorem for fixed C applies to it. The derivatives of the return map
-contain that of C by v₀, and a contact multiplies areas by a factor that is not exp(-∫∂f/∂p′). The
+that of very strong damping, and no theorem for fixed C applies to it. The derivatives of the return
+map contain that of C by v₀, and a contact multiplies areas by a factor that is not exp(-∫∂f/∂p′). The
 threshold of permanent contact, and whether a contact without an end is permanent, are those of the
 elastic part.
 

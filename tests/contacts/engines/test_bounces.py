@@ -169,14 +169,14 @@ def test_the_accepted_settings_are_what_the_page_says():
         )
         for name in SETTINGS
     }
-    # One contact of two bodies needs no iterations.
+    # One contact of two bodies needs no iterations: what is left is rounding, in Box2D that of
+    # single precision, 6e-8 of heights up to 2 m.
     for name in ("pymunk: iterations 1", "box2d: iterations 1, 1", "mujoco: iterations 1"):
-        assert moved[name] == 0
+        assert moved[name] < 1e-6
     assert moved["dartpy: detector of Bullet"] < 1e-4
     # Bullet with all of the settings has the bounce of DART.
     bullet = varied.got_mean.sel(setting="pybullet: all of these")
     assert abs(bullet - data.got_mean.sel(engine="dartpy")).max() < 0.001
-    # Genesis has the contact of MuJoCo, and its scheme.
-    assert (
-        abs(data.got_mean.sel(engine="genesis") - data.got_mean.sel(engine="mujoco")).max() < 1e-3
-    )
+    # Genesis has the contact of MuJoCo, and its scheme; both compute with double precision.
+    apart = data.got_mean.sel(engine="genesis") - data.got_mean.sel(engine="mujoco")
+    assert abs(apart).max() < 1e-9

@@ -145,7 +145,7 @@ CROSSLEY --set time_step=1e-3
 BULLET --set time_step=1e-3 --time-step "1 ms"
     --time-step and --set time_step give the same: give one
 CROSSLEY --speed 1 --time-step "1000 s"
-    a contact of 0.0139 s takes 1.39e-05 time steps of 1e+03 s, which is not above 0.001: check
+    a contact of 0.0144 s takes 1.44e-05 time steps of 1e+03 s, which is not above 0.001: check
 --mass "20 g" --from mujoco --solref "1000 10"
     solref = '1000 10' is a time constant of 1000 s, which no simulation has: -k/m and -c/m are
 BALL --engine lammps --time-step 5

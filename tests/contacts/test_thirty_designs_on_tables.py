@@ -1,7 +1,7 @@
 """The bifurcations and the chaotic means of thirty answers, by integrations that share no code.
 
 A ball is integrated in SI units: its contacts by scipy, or, for means, with all balls of a sample
-by classical Runge-Kutta steps of a fortieth of a contact; its flights are parabolas. A branch of
+by classical Runge-Kutta steps of a sixtieth of a contact; its flights are parabolas. A branch of
 n-T orbits is found by shooting, with the amplitude of the table as an unknown at a given phase: the
 saddle-node is its least amplitude, and at the period doubling a multiplier is -1. The multipliers
 are those of central differences.
@@ -176,38 +176,35 @@ def test_the_bifurcations_are_those_of_shooting(given, name):
 
 
 # Chaotic motions, whose means are known to some percent: mass, k, r and Λ.
-CHAOTIC = [
-    (0.5, 5e4, 0.5, 4.0, "force"),
-    (0.5, 2e5, 0.7, 3.0, "displacement"),
-    (0.02, 4e3, 0.6, 5.0, "force"),
-]
+CHAOTIC = [(0.5, 5e4, 0.5, 4.0, "force"), (0.5, 2e5, 0.7, 3.0, "displacement")]
 
 
 def sampled(mass, k, c, acceleration, pulls, restitution=None, balls=400):
     """Mean height and mean power of each of many balls: with a contact, or a coefficient r."""
     amplitude = acceleration * G / OMEGA**2
     rng = np.random.default_rng(3)
-    h = math.pi * math.sqrt(mass / k) / 40
+    h = math.pi * math.sqrt(mass / k) / 60
     z = amplitude + rng.uniform(0.0, 5 * amplitude, balls)
     v = np.zeros(balls)
     t = 0.0
-    held = np.zeros(balls, dtype=bool)
     height = np.zeros(balls)
     work = np.zeros(balls)
-    since, until = 60 * PERIOD, 300 * PERIOD
+    since, until = 60 * PERIOD, 260 * PERIOD
 
-    def push(z, v, t, held):
+    def push(z, v, t):
+        if restitution is not None:
+            return np.zeros(balls)
         p = amplitude * math.sin(OMEGA * t) - z
         rate = amplitude * OMEGA * math.cos(OMEGA * t) - v
-        force = np.where(held, k * p + c * rate, 0.0)
+        force = np.where(p > 0, k * p + c * rate, 0.0)
         return force if pulls else np.maximum(force, 0.0)
 
     while t < until:
         counts = t >= since
-        before = push(z, v, t, held)
-        middle = push(z + h * v / 2, v + h * (before / mass - G) / 2, t + h / 2, held)
+        before = push(z, v, t)
+        middle = push(z + h * v / 2, v + h * (before / mass - G) / 2, t + h / 2)
         slope = middle / mass - G
-        # The midpoint rule: its error is of the second order in a fortieth of a contact.
+        # The midpoint rule: an error of the second order; a contact begins within half a step.
         z_after = z + h * (v + h * (before / mass - G) / 2)
         v_after = v + h * slope
         if counts:
@@ -217,10 +214,7 @@ def sampled(mass, k, c, acceleration, pulls, restitution=None, balls=400):
         table = amplitude * math.sin(OMEGA * t)
         speed = amplitude * OMEGA * math.cos(OMEGA * t)
         below = z_after < table
-        if restitution is None:
-            pressed = push(z_after, v_after, t, np.ones(balls, dtype=bool)) > 0
-            held = below & (np.ones(balls, dtype=bool) if pulls else pressed | ~held)
-        else:
+        if restitution is not None:
             struck = below & (v_after < speed)
             away = speed - restitution * (v_after - speed)
             if counts:

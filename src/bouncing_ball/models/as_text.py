@@ -19,6 +19,7 @@ from bouncing_ball.models.laws.force_law import ForceLaw
 from bouncing_ball.models.laws.hertzian import HuntCrossley, KuwabaraKono, LinearHuntCrossley, Tsuji
 from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.laws.signature import Signature
+from bouncing_ball.models.laws.start_speed import Flores, LankaraniNikravesh
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.restitution_by_speed import RestitutionLaw, RestitutionLawModel
 from bouncing_ball.models.rigid import RestitutionModel
@@ -29,7 +30,7 @@ from bouncing_ball.models.suspension import Drag, Spring
 from bouncing_ball.models.waveform import Sine, Waveform
 
 _MODELS = (RestitutionModel, SpringDamperModel, LawModel, CorrectedModel, RestitutionLawModel)
-_HERTZ = (HuntCrossley, LinearHuntCrossley, Tsuji, KuwabaraKono)
+_HERTZ = (HuntCrossley, LinearHuntCrossley, Tsuji, KuwabaraKono, Flores, LankaraniNikravesh)
 _PARTS = (Setting, OtherSetting, Drag, Spring, Waveform, Sine, SpringDamper, Signature)
 _OF_USERS = (ForceLaw, RestitutionLaw, Model)
 _KNOWN = {each.__name__: each for each in (*_MODELS, *_PARTS, *_HERTZ, ElastoBacklash)}

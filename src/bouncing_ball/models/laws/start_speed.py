@@ -23,9 +23,9 @@ slower than 10⁻⁹ are damped as one with this speed. A ball that is held by i
 start creeps in and out, and where it is pulled out faster than v₀/c the force is negative: the law
 lets the contact pull. Its release is at p = 0, at which the force vanishes. Chattering therefore is
 that of very strong damping, and no theorem for fixed C applies to it. The derivatives of the return
-map contain that of C by v₀, and a contact multiplies areas by a factor that is not exp(-∫∂f/∂p′). The
-threshold of permanent contact, and whether a contact without an end is permanent, are those of the
-elastic part.
+map contain that of C by v₀, and a contact multiplies areas by a factor that is not exp(-∫∂f/∂p′).
+The threshold of permanent contact, and whether a contact without an end is permanent, are those of
+the elastic part.
 
 Sources: the forces as in the functions ``Contact_LN`` and ``Contact_FM`` of public Matlab code for
 multibody contacts, and in a table of a public verification of contact models, which give both with

@@ -171,7 +171,11 @@ def suggesting(call: _Call) -> _Call:
 
 
 def _suggesting(call: Callable[..., Any], name: str) -> Callable[..., Any]:
-    known = [each for each in inspect.signature(call).parameters if each != "self"]
+    parameters = inspect.signature(call).parameters
+    # A call that takes any keyword refuses unknown ones itself, as that of contact laws does.
+    if any(each.kind is each.VAR_KEYWORD for each in parameters.values()):
+        return call
+    known = [each for each in parameters if each != "self"]
 
     @functools.wraps(call)
     def checked(*given: Any, **named: Any) -> Any:

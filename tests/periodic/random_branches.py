@@ -1,8 +1,8 @@
 """Random branches of all models, and a second code that judges the orbits at their ends.
 
 The second code shares nothing with the package: contacts are integrated by scipy's DOP853, and
-flights are parabolas over a sine. It takes an orbit as phases, velocities and durations, and gives
-by how much it fails to close.
+flights are parabolas over a sine. It takes an orbit as phases, velocities and durations, and
+returns by how much it fails to close.
 """
 
 from typing import NamedTuple
@@ -168,9 +168,9 @@ def sample(count, seed):
         orbit = orbit_of(name, rng)
         for along, value in {**orbit.model.numbers(), "amplitude": orbit.amplitude}.items():
             factor = rng.choice([0.6, 1.5])
-            to = factor * float(value)
-            if along == "restitution":
-                to = min(to, 1.0)
+            to = (
+                min(factor * float(value), 1.0) if along == "restitution" else factor * float(value)
+            )
             if along == "damping_ratio":
                 continue
             verdicts.append(judged(orbit, along, to))

@@ -17,9 +17,8 @@ import pytest
 from mpmath import findroot, mp, mpf, workdps
 from orbits_found import balls
 
-from bouncing_ball.errors import ParameterError
+import bouncing_ball
 from bouncing_ball.long_run.orbit_of_motion import of_motion
-from bouncing_ball.periodic.branches.curves import curve_through
 from bouncing_ball.periodic.branches.following import branch_from
 from bouncing_ball.periodic.orbits.special import Special
 
@@ -89,7 +88,11 @@ CASES = [
 
 @pytest.mark.parametrize(("along", "amplitude", "restitution", "to"), CASES)
 def test_sticking_ends_where_the_bounces_become_self_similar(along, amplitude, restitution, to):
-    orbit = ended(along, amplitude, restitution, to)
+    self_similar(ended(along, amplitude, restitution, to), along, amplitude, restitution)
+
+
+def self_similar(orbit, along, amplitude, restitution):
+    """Check the end of sticking along a parameter, at a value of the other one."""
     rest = orbit.contact_duration
     (sticks,) = np.flatnonzero(rest > 0)
     flights = np.roll(orbit.flight_time, -sticks)
@@ -127,7 +130,15 @@ def test_a_simulated_ball_rests_in_its_first_turn_before_the_end_and_not_beyond_
         assert bool(rests.size and rests[0] < 2 * np.pi * orbit.periods) is expected
 
 
-def test_there_is_no_smooth_function_whose_zero_is_a_curve(refusal):
+@pytest.mark.slow
+def test_the_bounces_are_self_similar_along_a_curve_in_two_parameters():
     orbit = ended(*CASES[0])
-    with refusal(ParameterError, "'end of sticking' is not one of"):
-        curve_through(orbit, Special.STICKING, "amplitude", "restitution")
+    curve = bouncing_ball.follow(
+        orbit, along=("amplitude", "restitution"), ranges={"restitution": (0.3, 0.487)}, points=10
+    )
+    assert type(curve).__name__ == "SpecialCurve" and curve.sizes["point"] > 3
+    assert str(curve.end_reason[1].values) == "restitution = 0.487 is reached"
+    assert curve.attrs["curve_kind"] == "end of sticking"
+    for point in list(curve.states())[1::2]:
+        assert point.defect() < 1e-12
+        self_similar(point, "amplitude", point.amplitude, point.model.impact_law)

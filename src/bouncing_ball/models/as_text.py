@@ -30,10 +30,11 @@ from bouncing_ball.models.suspension import Drag, Spring
 from bouncing_ball.models.waveform import Sine, Waveform
 
 _MODELS = (RestitutionModel, SpringDamperModel, LawModel, CorrectedModel, RestitutionLawModel)
-_HERTZ = (HuntCrossley, LinearHuntCrossley, Tsuji, KuwabaraKono, Flores, LankaraniNikravesh)
+_HERTZ = (HuntCrossley, LinearHuntCrossley, Tsuji, KuwabaraKono)
+_OTHERS = (ElastoBacklash, LankaraniNikravesh, Flores)
 _PARTS = (Setting, OtherSetting, Drag, Spring, Waveform, Sine, SpringDamper, Signature)
 _OF_USERS = (ForceLaw, RestitutionLaw, Model)
-_KNOWN = {each.__name__: each for each in (*_MODELS, *_PARTS, *_HERTZ, ElastoBacklash)}
+_KNOWN = {each.__name__: each for each in (*_MODELS, *_PARTS, *_HERTZ, *_OTHERS)}
 # The keys of the type of an object, and of the name of the variable with an array.
 _TYPE = "type"
 _ARRAY = "array"

@@ -192,9 +192,10 @@ def domain_limits(
         across = np.broadcast_to((normal / np.maximum(length, _TINY))[:, np.newaxis], between.shape)
         found = newton(problem, between, plane(across, between))
         # The limit lies after the last of the first points that are inside, and before the next.
-        good = inside_at(found.point) & found.converged
+        reached = np.where(found.converged[..., np.newaxis], found.point, inside[:, np.newaxis])
+        good = inside_at(reached) & found.converged
         count = np.cumprod(good, axis=-1).sum(axis=-1)
-        known = np.concatenate([inside[:, np.newaxis], found.point, outside[:, np.newaxis]], axis=1)
+        known = np.concatenate([inside[:, np.newaxis], reached, outside[:, np.newaxis]], axis=1)
         solved = np.pad(found.converged, ((0, 0), (1, 1)), constant_values=True)
         inside = known[row, count]
         outside = np.where(solved[row, count + 1, np.newaxis], known[row, count + 1], outside)

@@ -42,6 +42,7 @@ from bouncing_ball.periodic.branches.following import (
     explained,
     limits_of,
 )
+from bouncing_ball.periodic.branches.sticking_curve import sticking_curve
 from bouncing_ball.periodic.orbits.balls import LAMBDA, LOWEST
 from bouncing_ball.periodic.orbits.normal_form import coefficient
 from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
@@ -172,8 +173,11 @@ def curve_through(
     """
     orbits = start.problem(along, across)
     guess = start.point(orbits)
+    windows = _ranges(orbits, {along: along_window, across: across_window})
+    if kind is Special.STICKING:
+        first, second = windows.values()
+        return Curve(orbits, sticking_curve(orbits, guess, (first, second), most), kind)
     problem = CurveProblem(orbits, condition_of(orbits, kind))
-    windows = {along: along_window, across: across_window}
     limits = _limits(orbits, windows)
     first = _corrected(problem, guess)
     if np.linalg.norm(first - guess) > _ANOTHER:
@@ -212,17 +216,25 @@ def _corrected(problem: CurveProblem, y: np.ndarray) -> np.ndarray:
     return point
 
 
-def _limits(orbits: PeriodicOrbits, windows: dict[str, Range | None]) -> list[Event]:
-    """The ends of the ranges of both parameters, as terminal events."""
-    found = []
-    for j, (name, window) in enumerate(windows.items()):
+def _ranges(orbits: PeriodicOrbits, windows: dict[str, Range | None]) -> dict[str, Range]:
+    """The ranges of both parameters, inside their windows if there are any."""
+    found = {}
+    for name, window in windows.items():
         low, high = orbits.balls.bounds(name)
         if name == LAMBDA:
             low = LOWEST
         if window is not None:
             low = max(low, window.low)
             high = min(high, window.high)
-        found += limits_of(name, Range(low, high), orbits.equations + j)
+        found[name] = Range(low, high)
+    return found
+
+
+def _limits(orbits: PeriodicOrbits, ranges: dict[str, Range]) -> list[Event]:
+    """The ends of the ranges of both parameters, as terminal events."""
+    found = []
+    for j, (name, within) in enumerate(ranges.items()):
+        found += limits_of(name, within, orbits.equations + j)
     return found
 
 

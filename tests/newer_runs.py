@@ -88,32 +88,43 @@ def mujoco_warp(trial):
     return np.array(heights), np.array(speeds)
 
 
-def genesis(trial):
+def genesis_balls(trials, radius=RADIUS):
+    """Trials that differ in their heights only, as environments of one scene: (steps, trial).
+
+    A ball that sinks in deeper than its radius falls through Genesis' plane.
+    """
     import genesis as gs
 
     if not gs._initialized:
         gs.init(backend=gs.cpu, precision="64", logging_level="error")
+    one = trials[0]
     names = {"gs": gs}
-    first, rest = trial.settings.snippet.split("\n", 1)
+    first, rest = one.settings.snippet.split("\n", 1)
     exec(first, names)
     options = names["options"]
-    options.gravity = (0.0, 0.0, -trial.gravity)
+    options.gravity = (0.0, 0.0, -one.gravity)
     scene = gs.Scene(show_viewer=False, sim_options=options)
-    volume = 4 / 3 * math.pi * RADIUS**3
+    volume = 4 / 3 * math.pi * radius**3
     table = scene.add_entity(gs.morphs.Plane())
     ball = scene.add_entity(
-        gs.morphs.Sphere(radius=RADIUS, pos=(0.0, 0.0, RADIUS + trial.height)),
-        material=gs.materials.Rigid(rho=trial.mass / volume, friction=0.01),
+        gs.morphs.Sphere(radius=radius, pos=(0.0, 0.0, 2 * radius)),
+        material=gs.materials.Rigid(rho=one.mass / volume, friction=0.01),
     )
-    scene.build()
+    scene.build(n_envs=len(trials))
     exec(rest, {"ball": ball, "table": table})
-    ball.set_dofs_velocity([0.0, 0.0, trial.speed, 0.0, 0.0, 0.0])
+    ball.set_pos(np.array([(0.0, 0.0, radius + trial.height) for trial in trials]))
+    ball.set_dofs_velocity(np.array([(0.0, 0.0, trial.speed, 0.0, 0.0, 0.0) for trial in trials]))
     heights, speeds = [], []
-    for _ in range(trial.steps):
+    for _ in range(one.steps):
         scene.step()
-        heights.append(float(ball.get_pos()[2]) - RADIUS)
-        speeds.append(float(ball.get_dofs_velocity()[2]))
+        heights.append(ball.get_pos().numpy()[:, 2] - radius)
+        speeds.append(ball.get_dofs_velocity().numpy()[:, 2])
     return np.array(heights), np.array(speeds)
+
+
+def genesis(trial):
+    heights, speeds = genesis_balls([trial])
+    return heights[:, 0], speeds[:, 0]
 
 
 NEWER = {

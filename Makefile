@@ -84,12 +84,13 @@ ENGINES = import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["pro
 setup-engines: $(SETUP)
 	@missing=""; \
 	for engine in $$($(BIN)/python -c '$(ENGINES)'); do \
-	    $(PIP) --only-binary :all: "$$engine" || missing="$$missing $$engine"; done; \
+	    $(PIP) --only-binary :all: --no-binary pygltflib "$$engine" || missing="$$missing $$engine"; done; \
 	echo "Engines without a wheel for this machine:$${missing:- none}."; \
-	echo "Engines of which no wheel was found: liggghts, mercurydpm, rapier, jolt; not tried: physx."
+	echo "Engines of which no wheel was found: liggghts, mercurydpm, jolt; not tried: physx."
 
 # Run the snippets of `design --engine` in the installed engines, in about ten minutes.
-# The dataset is results/config/engines.nc; `make accept ONLY=engines` accepts it.
+# The datasets are results/config/engines.nc, ext_bounces.nc and ext_bounce_settings.nc; `make accept
+# ONLY=engines` accepts one of them.
 test-engines: $(SETUP)
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -m engines tests/contacts/engines
 	$(BIN)/python docs/bounces/threads.py

@@ -1,4 +1,4 @@
-"""Answers to ten threads on bouncing balls in engines: `threads.py NAME`, or all of them.
+"""Answers to threads on bouncing balls in engines: `threads.py NAME`, or all of them.
 
 An answer that runs an engine is skipped where the engine is not installed.
 """
@@ -8,6 +8,7 @@ import sys
 from importlib.util import find_spec
 
 from bouncing_ball import Contact, EngineSetup, describe_contact, write_contact
+from bouncing_ball.contacts.drops import drop_at_rest
 from bouncing_ball.models.damping import damping_ratio, restitution_coefficient
 
 G = 9.81
@@ -71,13 +72,83 @@ def isaaclab_2890():
     return f"{found.steps} steps in a contact: {found.time_step:.3g} s"
 
 
+def isaaclab_6789():
+    """What Newton's defaults are where they cannot be set: ke = 2500 and kd = 100."""
+    parameters = {"ke": 2500.0, "kd": 100.0}
+    found = describe_contact(Contact(mass=1.0, from_engine="newton-mujoco", parameters=parameters))
+    return f"newton-mujoco: r = {found.measured_restitution:.4f}"
+
+
 def rapier_974():
-    """r² of drops from 2 m for r of 0.30, 0.50, 0.80, 0.95, and at 1/60 s in Chipmunk."""
-    exact = ", ".join(f"{r * r:.2f}" for r in (0.3, 0.5, 0.8, 0.95))
-    if find_spec("pymunk") is None:
-        return f"h'/h = {exact}"
-    got = ", ".join(f"{_chipmunk(r, 2.0, 1 / 60) ** 2:.2f}" for r in (0.3, 0.5, 0.8, 0.95))
-    return f"h'/h = {exact}; Chipmunk {got}"
+    """The test of the thread: r² of drops from 2 m at 1/60 s, and in Chipmunk and Rapier."""
+    asked = (0.3, 0.5, 0.8, 0.95)
+    answer = ["h'/h = " + ", ".join(f"{r * r:.2f}" for r in asked)]
+    for name, module, drop in (("Chipmunk", "pymunk", _chipmunk), ("Rapier", "rapier3d", _rapier)):
+        if find_spec(module) is not None:
+            got = ", ".join(f"{drop(r, 2.0, 1 / 60) ** 2:.2f}" for r in asked)
+            answer.append(f"{name} {got}")
+    return "; ".join(answer)
+
+
+def rapier_919():
+    """Whether a ball with r = 0.8 bounces if contacts are predicted at a greater distance."""
+    if find_spec("rapier3d") is None:
+        return "skipped: rapier3d is not installed"
+    got = ", ".join(f"{x}: {_rapier(0.8, 2.0, 1 / 60, x):.3f}" for x in (0.02, 0.1))
+    return f"r by normalized_prediction_distance: {got}"
+
+
+def bullet_3094():
+    """The speed below which Bullet's restitution is 0 by default, as the height of a drop."""
+    return f"drops below {0.2**2 / (2 * G):.4f} m do not bounce"
+
+
+def physx_351():
+    """The speed below which PhysX's restitution is 0 by default, as the height of a drop."""
+    return f"drops below {2.0**2 / (2 * G):.4f} m do not bounce"
+
+
+def lammps_4068():
+    """`damping coeff_restitution` holds for a contact whose damper may pull."""
+    released = float(restitution_coefficient(damping_ratio(0.75), "force"))
+    return f"asked 0.75: r = 0.7500, with limit_damping {released:.4f}"
+
+
+def lammps_5110():
+    """A number for a test of `hooke`: kn = 1e4 N/m, gamma_n = 20/s, 1 kg, dropped from 1 m."""
+    parameters = {"kn": 1e4, "gamma_n": 20.0}
+    contact = Contact(mass=1.0, from_engine="lammps", parameters=parameters)
+    r = describe_contact(contact).measured_restitution
+    return f"r = {r:.4f}, rises to {_exact_rise(contact):.4f} m"
+
+
+def drake_24063():
+    """A plant without a time step, k = 1e4 N/m and dissipation 0.1 s/m, dropped from 1 m."""
+    parameters = {"point_contact_stiffness": 2e4, "hunt_crossley_dissipation": 0.1}
+    contact = Contact(mass=1.0, from_engine="drake", parameters=parameters)
+    answer = f"rises to {_exact_rise(contact):.3f} m"
+    if find_spec("pydrake") is None:
+        return answer
+    schemes = (("cenic", 1e-3), ("cenic", 1e-5), ("runge_kutta3", 1e-3))
+    got = ", ".join(
+        f"{name} {accuracy:g}: {_drake(name, accuracy):.3f}" for name, accuracy in schemes
+    )
+    return f"{answer}; {got}"
+
+
+def chrono_634():
+    """The default restitution 0.4, which the documentation gave as 0."""
+    zeta = ", ".join(f"{float(damping_ratio(0.4, rule)):.4f}" for rule in ("displacement", "force"))
+    return f"h'/h = {0.4**2:.2f}, not 0; zeta = {zeta}"
+
+
+def farms_21():
+    """k and b of `solref` are in 1/s² and 1/s: the mass does not matter."""
+    of = [
+        describe_contact(Contact(mass=m, from_engine="mujoco", solref="-284244 -68.8"))
+        for m in (0.5, 5.0)
+    ]
+    return ", ".join(f"r = {x.measured_restitution:.4f}" for x in of)
 
 
 def box2d_1094():
@@ -98,6 +169,13 @@ def mujoco_3404():
     return f"r = {describe_contact(contact).measured_restitution:.4f}"
 
 
+def _exact_rise(contact):
+    """The height in m to which a ball rises that is dropped from 1 m, by the contact's law."""
+    speed = math.sqrt(2 * G)
+    at_rest = describe_contact(contact, gravity=G, speed=speed).case
+    return drop_at_rest(at_rest, speed).rebound_height
+
+
 def _chipmunk(restitution, drop, step):
     import pymunk
 
@@ -115,6 +193,56 @@ def _chipmunk(restitution, drop, step):
         heights.append(ball.position.y - 0.1)
     rises = [k for k in range(1, len(heights)) if heights[k] > heights[k - 1]]
     return math.sqrt(max(heights[rises[0] :]) / drop)
+
+
+def _rapier(restitution, drop, step, prediction=0.02):
+    import rapier3d
+
+    world = rapier3d.PhysicsWorld(gravity=(0, -G, 0))
+    world.integration_parameters.dt = step
+    world.integration_parameters.normalized_prediction_distance = prediction
+    world.add_collider(rapier3d.Collider.cuboid(30, 0.1, 30).restitution(restitution))
+    shape = rapier3d.Collider.ball(0.2).density(1.0).restitution(restitution)
+    start = rapier3d.RigidBody.dynamic(translation=(0, 0.3 + drop, 0))
+    ball = world.add_body(start, colliders=[shape])
+    heights = []
+    for _ in range(int(2.2 * math.sqrt(2 * drop / G) / step)):
+        world.step()
+        heights.append(world.rigid_bodies[ball].translation.y - 0.3)
+    rises = [k for k in range(1, len(heights)) if heights[k] > heights[k - 1]]
+    return math.sqrt(max(heights[rises[0] :]) / drop)
+
+
+def _drake(scheme, accuracy):
+    from pydrake import all as drake
+
+    builder = drake.DiagramBuilder()
+    config = drake.MultibodyPlantConfig(time_step=0.0, contact_model="point")
+    plant, _ = drake.AddMultibodyPlant(config, builder)
+    plant.mutable_gravity_field().set_gravity_vector([0, 0, -G])
+    ball = plant.AddRigidBody("ball", drake.SpatialInertia.SolidSphereWithMass(1.0, 0.1))
+    properties = drake.ProximityProperties()
+    drake.AddContactMaterial(
+        dissipation=0.1,
+        point_stiffness=2e4,
+        friction=drake.CoulombFriction(),
+        properties=properties,
+    )
+    still = drake.RigidTransform()
+    for body, shape in ((plant.world_body(), drake.HalfSpace()), (ball, drake.Sphere(0.1))):
+        plant.RegisterCollisionGeometry(body, still, shape, body.name(), properties)
+    plant.Finalize()
+    plant.SetDefaultFloatingBaseBodyPose(ball, drake.RigidTransform([0, 0, 1.1]))
+    log = drake.LogVectorOutput(plant.get_state_output_port(), builder, 1e-3)
+    simulator = drake.Simulator(builder.Build())
+    settings = drake.SimulatorConfig(
+        integration_scheme=scheme, accuracy=accuracy, use_error_control=True
+    )
+    drake.ApplySimulatorConfig(settings, simulator)
+    simulator.AdvanceTo(1.1)
+    heights = log.FindLog(simulator.get_context()).data()[6] - 0.1
+    rises = [k for k in range(1, len(heights)) if heights[k] > heights[k - 1]]
+    return max(heights[rises[0] :])
 
 
 def _dropped(engine, restitution):
@@ -150,7 +278,9 @@ THREADS = {
     answer.__name__: answer
     for answer in (
         isaacsim_698, newton_2009, newton_1137, newton_1289, newton_2515, warp_948,
-        isaaclab_2890, rapier_974, box2d_1094, jolt_1286, mujoco_3404,
+        isaaclab_2890, isaaclab_6789, rapier_974, rapier_919, box2d_1094, jolt_1286,
+        bullet_3094, physx_351, mujoco_3404, farms_21, lammps_4068, lammps_5110, drake_24063,
+        chrono_634,
     )
 }  # fmt: skip
 

@@ -17,6 +17,12 @@ stage(
         table="ext_bounces",
         accepted="config/ext_bounces.nc",
     ),
+    ext_bounce_settings=dict(
+        title="The bounce that physics engines give with other settings of their solvers",
+        drawing="settings",
+        table="ext_bounce_settings",
+        accepted="config/ext_bounce_settings.nc",
+    ),
 )
 stage(
     "beyond.atlas",

@@ -1,7 +1,8 @@
-"""The generated parts of README, and the pages that list the accepted files."""
+"""The generated parts of README and docs/bounces.md, and pages that list the accepted files."""
 
 from pathlib import Path
 
+from bouncing_ball.beyond.exhibits.bounces_figures import drivers
 from bouncing_ball.datasets.files import read_dataset, write_text
 from bouncing_ball.paper.claims.claims import tally
 from bouncing_ball.paper.claims.tables import Claims
@@ -23,7 +24,11 @@ def pages(top, artifacts):
     parts["figures"] = thumbnails(artifacts.values())
     readme = with_parts((top / "README.md").read_text(encoding="utf-8"), parts)
     folders = {page_of(part): folder_page(part, artifacts.values()) for part in ("paper", "beyond")}
-    return {"README.md": readme, **folders}
+    bounces = with_parts(
+        (top / "docs/bounces.md").read_text(encoding="utf-8"),
+        {"drivers": drivers(read_dataset(top / "config/ext_bounces.nc"))},
+    )
+    return {"README.md": readme, "docs/bounces.md": bounces, **folders}
 
 
 if "snakemake" in globals():

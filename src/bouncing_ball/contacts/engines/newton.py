@@ -8,6 +8,9 @@
   attribute ``mujoco:geom_solimp``, which exists after ``SolverMuJoCo.register_custom_attributes``.
   Contacts with friction are pyramids of several rows, which with a small impedance add up to
   another contact: ``mujoco:condim`` must be 1.
+  Without friction, or with very little, these pyramids are singular: in Newton 1.8.0 the ball's
+  state is not a number after one step, or with a small impedance the ball is thrown out. With
+  ``mujoco:condim`` = 1 a friction of 0 is right.
   A kd of 0 is not a contact without damping, but MuJoCo's default.
 
 All of them compute with single precision.
@@ -65,4 +68,7 @@ class NewtonMuJoCo(Proportional):
         return super().parameters(contact)
 
     def remarks(self, parameters: Mapping[str, Any]) -> tuple[str, ...]:
-        return ("ke and kd are per unit of mass in SolverMuJoCo: k/m in 1/s^2 and c/m in 1/s",)
+        return (
+            "ke and kd are per unit of mass in SolverMuJoCo: k/m in 1/s^2 and c/m in 1/s",
+            "without mujoco:condim = 1 a friction mu of 0 gives no numbers in Newton 1.8.0",
+        )

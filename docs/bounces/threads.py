@@ -21,7 +21,8 @@ def isaacsim_698():
         Contact(mass=MASS, stiffness=STIFFNESS, restitution=0.75),
         EngineSetup(engine="newton-mujoco"),
     )
-    ke, kd = found.parameters["ke"], found.parameters["kd"]
+    ke = found.parameters["ke"]
+    kd = found.parameters["kd"]
     return f"ke = {ke:.6g}, kd = {kd:.4g}: r = {found.restitution:.4f}"
 
 
@@ -61,7 +62,8 @@ def warp_948():
     depth = 2e-3
     contact = Contact(mass=MASS, stiffness=MASS / depth**2, restitution=0.75)
     found = write_contact(contact, EngineSetup(engine="newton-semi-implicit"))
-    ke, kd = found.parameters["ke"], found.parameters["kd"]
+    ke = found.parameters["ke"]
+    kd = found.parameters["kd"]
     return f"ke = {ke:.6g} N/m, kd = {kd:.4g} N s/m, r = {found.restitution:.4f}"
 
 
@@ -185,7 +187,8 @@ def _chipmunk(restitution, drop, step):
     ball = pymunk.Body(1, 1)
     ball.position = (0, 0.1 + drop)
     circle = pymunk.Circle(ball, 0.1)
-    floor.elasticity, circle.elasticity = 1.0, restitution
+    floor.elasticity = 1.0
+    circle.elasticity = restitution
     space.add(floor, ball, circle)
     heights = []
     for _ in range(int(2.2 * math.sqrt(2 * drop / G) / step)):

@@ -89,8 +89,8 @@ setup-engines: $(SETUP)
 	echo "Engines of which no wheel was found: liggghts, mercurydpm, jolt; not tried: physx."
 
 # Run the snippets of `design --engine` in the installed engines, in about ten minutes.
-# The datasets are results/config/engines.nc, ext_bounces.nc and ext_bounce_settings.nc; `make accept
-# ONLY=engines` accepts one of them.
+# The datasets are engines.nc, ext_bounces.nc, ext_bounce_settings.nc and bounce_drivers.nc in
+# results/config; `make accept ONLY=engines` accepts one of them.
 test-engines: $(SETUP)
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -m engines tests/contacts/engines
 	$(BIN)/python docs/bounces/threads.py

@@ -8,6 +8,10 @@
 stage(
     "contacts.engines",
     engines=dict(title="Orbits that physics engines ran", accepted="config/engines.nc"),
+    bounce_drivers=dict(
+        title="One bounce in the driver of each engine, beside certified numbers",
+        accepted="config/bounce_drivers.nc",
+    ),
 )
 stage(
     "beyond.exhibits.bounces",

@@ -26,7 +26,7 @@ def pages(top, artifacts):
     folders = {page_of(part): folder_page(part, artifacts.values()) for part in ("paper", "beyond")}
     bounces = with_parts(
         (top / "docs/bounces.md").read_text(encoding="utf-8"),
-        {"drivers": drivers(read_dataset(top / "config/ext_bounces.nc"))},
+        {"drivers": drivers(read_dataset(top / "config/bounce_drivers.nc"))},
     )
     return {"README.md": readme, "docs/bounces.md": bounces, **folders}
 

@@ -1,4 +1,4 @@
-"""What bounce one gets: engines whose restitution is a number that the user sets, and drivers.
+"""What bounce one gets: engines whose restitution is a number that the user sets.
 
 `make test-engines` writes the datasets ext_bounces.nc and ext_bounce_settings.nc in results/config;
 `make accept ONLY='ext_bounces ext_bounce_settings'` accepts them. An engine that is not installed
@@ -14,7 +14,6 @@ import numpy as np
 import pytest
 import xarray as xr
 from bounce_runs import BOUNCE, MODULES, PACKAGES, SETTINGS, G, rebounds
-from driver_runs import DRIVERS, MODULE, certified, top
 
 from bouncing_ball.beyond.exhibits.bounces import (
     ALL_VARIABLES,
@@ -74,9 +73,8 @@ def written(name, data, drawn):
 def record():
     """Mean, least and greatest r by engine, step, drop and r; the dataset if none is missing."""
     rows = {}
-    heights = {}
-    yield rows, heights
-    if {key[0] for key in rows} != set(BOUNCE) or set(heights) != set(DRIVERS):
+    yield rows
+    if {key[0] for key in rows} != set(BOUNCE):
         return
     shape = (len(BOUNCE), len(STEPS), len(DROPS), len(ASKED))
     found = np.array([rows[key] for key in sorted(rows)]).reshape(*shape, 3)
@@ -84,19 +82,12 @@ def record():
     versions = [version(PACKAGES.get(name, name)) for name in sorted(BOUNCE)]
     data = xr.Dataset(
         {name: (dims, found[..., k]) for k, name in enumerate(NAMES)}
-        | {
-            "engine_version": ("engine", versions),
-            "driver_rule": ("driver", [each.rule for each in DRIVERS.values()]),
-            "driver_step": ("driver", [each.time_step for each in DRIVERS.values()]),
-            "driver_height": ("driver", [heights[name] for name in DRIVERS]),
-            "driver_certified": ("driver", [certified(name) for name in DRIVERS]),
-        },
+        | {"engine_version": ("engine", versions)},
         coords={
             "engine": sorted(BOUNCE),
             "time_step": sorted(STEPS),
             "drop_height": sorted(DROPS),
             "asked": sorted(ASKED),
-            "driver": list(DRIVERS),
         },
     )
     written("ext_bounces", data, {"title": TITLE, "drawing": DRAWING})
@@ -130,7 +121,7 @@ def settings_record():
 def test_the_bounce_of_an_engine_is_recorded(name, step, drop, asked, record):
     only_if_installed(MODULES.get(name, name))
     got = dropped(BOUNCE[name], asked, step, drop)
-    record[0][name, step, drop, asked] = got
+    record[name, step, drop, asked] = got
     assert np.all(np.isfinite(got))
 
 
@@ -145,17 +136,6 @@ def test_the_bounce_with_a_setting_is_recorded(name, drop, asked, settings_recor
     got = dropped(SETTINGS[name], asked, OF_SETTINGS, drop)
     settings_record[name, drop, asked] = got
     assert np.all(np.isfinite(got))
-
-
-@pytest.mark.engines
-@pytest.mark.parametrize("name", DRIVERS)
-def test_a_driver_has_the_height_that_the_page_says(name, record):
-    only_if_installed(MODULE.get(name, name))
-    record[1][name] = top(name)
-    data = read_dataset(ROOT / "config" / "ext_bounces.nc")
-    # The page has four digits.
-    said = float(data.driver_height.sel(driver=name))
-    assert record[1][name] == pytest.approx(said, abs=1e-4)
 
 
 def test_the_accepted_bounces_are_what_the_page_says():

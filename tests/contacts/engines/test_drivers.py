@@ -1,13 +1,22 @@
-"""The drivers and threads of docs/bounces.md: the page has what they print."""
+"""The drivers and threads of docs/bounces.md: the page has what they print.
+
+`make test-engines` writes the dataset results/config/bounce_drivers.nc; `make accept
+ONLY=bounce_drivers` accepts it.
+"""
 
 import runpy
 from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
-from driver_runs import DRIVERS, certified
+import xarray as xr
+from driver_runs import DRIVERS, MODULE, certified, top
 
-from bouncing_ball.datasets.files import read_dataset
+from bouncing_ball.beyond.exhibits.bounces import ALL_VARIABLES, DRIVERS_TITLE
+from bouncing_ball.datasets.files import read_dataset, write_dataset
+from bouncing_ball.datasets.variables import describe
+from bouncing_ball.pipeline.configuration import read_yaml
+from bouncing_ball.pipeline.provenance import CONFIGURATION, gather
 
 ROOT = Path(__file__).parents[3]
 FOLDER = ROOT / "docs" / "bounces"
@@ -15,10 +24,47 @@ LAST_SEEN = {"newton": "1.8.0", "pymunk": "7.3.1", "rapier3d": "0.36.1", "drake"
 """The version of each engine with which these tests were last seen to pass."""
 
 
+def only_if_installed(module):
+    if find_spec(module) is None:
+        pytest.skip(f"{module} is not installed: make setup-engines")
+
+
+@pytest.fixture(scope="module")
+def record():
+    heights = {}
+    yield heights
+    if set(heights) != set(DRIVERS):
+        return
+    data = xr.Dataset(
+        {
+            "driver_rule": ("driver", [each.rule for each in DRIVERS.values()]),
+            "driver_step": ("driver", [each.time_step for each in DRIVERS.values()]),
+            "driver_height": ("driver", [heights[name] for name in DRIVERS]),
+            "driver_certified": ("driver", [certified(name) for name in DRIVERS]),
+        },
+        coords={"driver": list(DRIVERS)},
+    )
+    origin = gather("make test-engines", [], ROOT, read_yaml(ROOT / CONFIGURATION))
+    target = ROOT / "results" / "config" / "bounce_drivers.nc"
+    data = describe(data, ALL_VARIABLES).assign_attrs({"title": DRIVERS_TITLE}, **origin)
+    write_dataset(data, target)
+
+
+@pytest.mark.engines
+@pytest.mark.parametrize("name", DRIVERS)
+def test_a_driver_has_the_height_that_the_page_says(name, record):
+    only_if_installed(MODULE.get(name, name))
+    record[name] = top(name)
+    data = read_dataset(ROOT / "config" / "bounce_drivers.nc")
+    # The page has four digits.
+    said = float(data.driver_height.sel(driver=name))
+    assert record[name] == pytest.approx(said, abs=1e-4)
+
+
 def test_every_driver_is_in_the_accepted_dataset_with_its_certified_height():
     paths = sorted((FOLDER / "drivers").glob("*_driver.py"))
     assert {path.stem for path in paths} == {f"{name}_driver" for name in DRIVERS}
-    data = read_dataset(ROOT / "config" / "ext_bounces.nc")
+    data = read_dataset(ROOT / "config" / "bounce_drivers.nc")
     assert data.driver.values.tolist() == list(DRIVERS)
     known = [certified(name) for name in DRIVERS]
     assert data.driver_certified.values.tolist() == known
@@ -42,7 +88,6 @@ def test_every_driver_is_in_the_accepted_dataset_with_its_certified_height():
     ],
 )
 def test_a_thread_is_answered_by_its_engine(thread, engine, printed):
-    if find_spec(engine) is None:
-        pytest.skip(f"{engine} is not installed: make setup-engines")
+    only_if_installed(engine)
     answers = runpy.run_path(str(FOLDER / "threads.py"))["THREADS"]
     assert printed in answers[thread]()

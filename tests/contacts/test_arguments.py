@@ -101,7 +101,7 @@ LAMMPS = {"mass": "20 g", "from_engine": "lammps"}
     (Contact, {"mass": 1, "from_engine": ["a"]}, "from_engine = ['a'] is not a name"),
     (Question, {"n": "1"}, "index of the family n = '1' is not a whole number from 1 to 1000"),
     (Question, {"n": True}, "index of the family n = True is not a whole number"),
-    (Question, {"balls": "7"}, "balls = 7 is not a whole number from 1 to 100000"),
+    (Question, {"balls": "7"}, "balls = '7' is not a whole number from 1 to 100000"),
     (Question, {"tolerance": True}, "tolerance = True is neither a number nor a text"),
     (Question, {"quantity": 3}, "unknown quantity 3: one of max_height"),
     (EngineSetup, {"engine": ["a"]}, "unknown engine ['a']: one of generic"),

@@ -164,10 +164,23 @@ def _attribute_rows(name: str, record: Mapping[Any, Any], new: Mapping[Any, Any]
     return found
 
 
+def word_rows(record: xr.Dataset, new: xr.Dataset) -> list[Finding]:
+    """A row for each text about a dataset that differs, such as its title and its references.
+
+    Examples
+    --------
+    >>> record, new = (xr.Dataset(attrs={"title": title}) for title in ("Figure 1", "Figure 2"))
+    >>> [(row.name, row.new) for row in word_rows(record, new)]
+    [('title of the dataset', "'Figure 2'")]
+    """
+    old, now = ({name: data.attrs.get(name, "") for name in TEXTUAL} for data in (record, new))
+    return _attribute_rows("the dataset", old, now)
+
+
 def structure_rows(record: xr.Dataset, new: xr.Dataset) -> list[Finding]:
     """A row for each variable of another type or size, and for each attribute that differs.
 
-    The parameters and the provenance of the dataset are compared elsewhere.
+    The attributes of the dataset itself are compared elsewhere.
 
     Examples
     --------
@@ -176,10 +189,7 @@ def structure_rows(record: xr.Dataset, new: xr.Dataset) -> list[Finding]:
     >>> row.name, row.record, row.new
     ('x', 'float64, t: 1', 'float64, t: 2')
     """
-    texts = (
-        {name: data.attrs[name] for name in TEXTUAL if name in data.attrs} for data in (record, new)
-    )
-    found = _attribute_rows("the dataset", *texts)
+    found = []
     for name in map(str, {**record.variables, **new.variables}):
         old_form = _form(record, name)
         new_form = _form(new, name)

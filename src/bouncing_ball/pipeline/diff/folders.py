@@ -41,7 +41,7 @@ from bouncing_ball.pipeline.diff.cause import (
     own_causes,
     require_origin,
 )
-from bouncing_ball.pipeline.diff.datasets import compare_datasets
+from bouncing_ball.pipeline.diff.datasets import compare_datasets, word_rows
 from bouncing_ball.pipeline.diff.outcome import Finding, Outcome, Whole, worst
 from bouncing_ball.pipeline.diff.texts import compare_drawings, compare_texts, words_of
 
@@ -124,7 +124,8 @@ def _rows(old: Path, now: Path, data: Outcome | None) -> list[Finding]:
     if new is None:
         return [Finding("", Outcome.MISSING)]
     if old.suffix == DATASET:
-        return compare_datasets(old.stem, read_dataset(old), read_dataset(now))
+        both = read_dataset(old), read_dataset(now)
+        return word_rows(*both) + compare_datasets(old.stem, *both)
     if old.suffix in PICTURES and (note := redrawn(record, new)):
         return [Finding("", Outcome.WITHIN, note=note)]
     if old.suffix == ".png":

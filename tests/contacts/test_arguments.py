@@ -61,7 +61,8 @@ def test_an_unknown_keyword_is_answered_with_the_one_that_it_resembles(call, giv
 def test_every_public_function_answers_an_unknown_keyword():
     for name in bouncing_ball.__all__:
         call = getattr(bouncing_ball, name)
-        if not isinstance(call, type):
+        # The parameters of a contact law are keywords of any name.
+        if not isinstance(call, type) and name != "contact_law":
             with pytest.raises(
                 TypeError, match=r"unexpected keyword argument 'zzz': it has|has no"
             ):

@@ -185,7 +185,7 @@ def _suggesting(call: Callable[..., Any], name: str) -> Callable[..., Any]:
         begins = [each for each in known if each.startswith(unknown)]
         meant = f"; did you mean {begins[0]}?" if len(begins) == 1 else ""
         *others, last = known
-        has = f": it has {', '.join(others)} and {last}"
+        has = f": it has {' and '.join(filter(None, [', '.join(others), last]))}"
         hint = meant or did_you_mean(unknown, known) or has
         raise TypeError(f"{name}() got an unexpected keyword argument {unknown!r}{hint}")
 

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.errors import ModelError, ParameterError
+from bouncing_ball.errors import ModelError, ParameterError, suggesting
 
 
 @dataclass(frozen=True)
@@ -40,6 +40,7 @@ class BasinEntropy:
         return bool(self.boundary_entropy > np.log(2))
 
 
+@suggesting
 def basin_entropy(found: xr.Dataset, box: int = 5) -> BasinEntropy:
     """The basin entropy of a map of basins, from boxes of ``box`` × ``box`` starts.
 

@@ -41,7 +41,7 @@ from bouncing_ball.datasets.arguments import (
 )
 from bouncing_ball.datasets.variables import Variable, describe
 from bouncing_ball.drawing.result import Result
-from bouncing_ball.errors import ParameterError, Range, count
+from bouncing_ball.errors import ParameterError, Range, count, suggesting
 from bouncing_ball.models.ball import Ball, a_single_ball
 from bouncing_ball.models.dynamics import Dynamics, Impact
 from bouncing_ball.models.rigid import RestitutionModel
@@ -66,6 +66,7 @@ _VARIABLES = {
 }
 
 
+@suggesting
 def ensemble(
     ball: Ball,
     *,

@@ -7,7 +7,7 @@ import xarray as xr
 
 from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.drawing.result import MADE_BY
-from bouncing_ball.errors import ModelError, ParameterError
+from bouncing_ball.errors import ModelError, ParameterError, suggesting
 from bouncing_ball.periodic.branches.labelled import FollowedBranch, SpecialCurve
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.saved import has_orbits
@@ -15,6 +15,7 @@ from bouncing_ball.periodic.orbits.saved import has_orbits
 _RESULTS = {"follow": FollowedBranch, "branch": FollowedBranch, "curve": SpecialCurve}
 
 
+@suggesting
 def read_orbits(source: str | Path | xr.Dataset) -> Orbit | FollowedBranch | SpecialCurve:
     """Orbits, a branch or a curve from a netCDF file or a dataset, with the same bits.
 

@@ -26,7 +26,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.errors import NoOrbitError, suggesting
 from bouncing_ball.models.model import Model
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, plane
 from bouncing_ball.numerics.elementary import reduce_angle
@@ -81,6 +81,7 @@ class GrazingForm:
     persists: bool
 
 
+@suggesting
 def grazing_form(orbit: Orbit) -> GrazingForm:
     """The square root of the return map at the grazing of a flight, and the branch with one impact
     more.

@@ -29,7 +29,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.errors import NoOrbitError, suggesting
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
 from bouncing_ball.periodic.orbits.return_map import returned
@@ -88,6 +88,7 @@ class NormalForm:
         return sign * self.rate * self.coefficient > 0
 
 
+@suggesting
 def normal_form(orbit: Orbit) -> NormalForm:
     """The first coefficient of the normal form of a saddle-node or a period doubling.
 

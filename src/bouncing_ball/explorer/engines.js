@@ -115,7 +115,10 @@ const ENGINE_READS = {
 };
 // What a reader should know of the parameters of an engine: Engine.remarks.
 const ENGINE_REMARKS = {
-  "newton-mujoco": ["ke and kd are per unit of mass in SolverMuJoCo: k/m in 1/s^2 and c/m in 1/s"],
+  "newton-mujoco": [
+    "ke and kd are per unit of mass in SolverMuJoCo: k/m in 1/s^2 and c/m in 1/s",
+    "without mujoco:condim = 1 a friction mu of 0 gives no numbers in Newton 1.8.0",
+  ],
 };
 
 // Up to this impedance MuJoCo's contact is taken for a spring and a damper.

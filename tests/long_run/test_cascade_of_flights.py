@@ -232,13 +232,29 @@ def test_on_a_weakly_damped_contact_the_orbit_loses_its_stability_between_two_op
     ratio = 200 ** (1 - 13 / 24) * 5 ** (13 / 24)
     seen = motions(r, ratio, [5.4, 5.6, 5.92])
     assert seen.periods[0] == 1 and seen.impacts[0] == 1 and np.exp(seen.exponent[2]) > 1
-    first = openings([damping_ratio(r)], np.geomspace(5.0, 200.0, 25), 1).amplitude[0, 0]
-    exists = np.isfinite(first)
-    assert not exists[:12].any() and exists[12:].all()
+    found = openings([damping_ratio(r)], np.array([ratio, 31.6]), 2).amplitude[0]
+    excess = ratio**2 * (found[0, 0] - permanent_contact_threshold(ratio, damping_ratio(r)))
+    # The second opening has no stable orbit below it.
+    assert 5.4 < excess < 5.6 and np.isnan(found[1, 0]) and np.isfinite(found[0, 1])
 
 
-def test_on_a_compliant_contact_the_openings_end():
-    ratio = np.geomspace(2.0, 200.0, 31)
-    found = openings([damping_ratio(0.85)], ratio, 1).amplitude[0, 0]
-    exists = np.isfinite(found)
-    assert exists[-1] and not exists[0] and np.count_nonzero(np.diff(exists)) == 1
+def test_an_opening_is_the_first_from_below_and_does_not_depend_on_the_other_contacts():
+    """At ϖ = 12 the flights rise from 2 to 3 at Λ = 1.06155 and again at 1.07511."""
+    zeta = damping_ratio(0.85)
+    lam = np.array([1.0614, 1.0617, 1.0745, 1.0755])
+    excess = 144 * (lam - permanent_contact_threshold(12.0, zeta))
+    assert motions(0.85, 12.0, excess).impacts.tolist() == [2, 3, 2, 3]
+    alone = openings([zeta], np.array([12.0]), 2)
+    assert alone.amplitude[0, 1, 0] == pytest.approx(1.06155, abs=1e-5)
+    for ratio in ([12.0, 13.0, 40.0], [11.9, 12.0]):
+        others = openings([0.1, zeta], np.array(ratio), 2)
+        place = ratio.index(12.0)
+        for x, y in zip(others, alone, strict=True):
+            np.testing.assert_allclose(x[1, :, place], y[0, :, 0], rtol=0, atol=1e-12)
+
+
+def test_no_compliant_contact_has_a_second_opening():
+    ratio = np.geomspace(2.0, 200.0, 13)
+    first, second = openings([damping_ratio(0.85)], ratio, 2).amplitude[0]
+    assert np.isfinite(first[-7:]).all() and np.isfinite(second[-7:]).all()
+    assert np.isnan(second[:4]).all() and np.isfinite(first[np.isfinite(second)]).all()

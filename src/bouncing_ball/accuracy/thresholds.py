@@ -114,6 +114,31 @@ def last_crossing(function: Numbered, ratios: np.ndarray, scanned: np.ndarray) -
     return found
 
 
+def last_zero(function: Numbered, ratios: np.ndarray, scanned: np.ndarray) -> np.ndarray:
+    """The largest ϖ at which each function changes its sign and is zero, shape (k,).
+
+    The arguments are those of :func:`last_crossing`. Where the function changes its sign through
+    infinity there is no zero, and the result is NaN.
+
+    Examples
+    --------
+    >>> grid = np.geomspace(1, 1e4, 8)
+    >>> functions = lambda ratio, which: (ratio - 100) ** np.where(which == 0, 1.0, -1.0)
+    >>> last_zero(functions, grid, functions(grid, np.array([[0], [1]])))
+    array([100.,  nan])
+    """
+    found = last_crossing(function, ratios, scanned)
+    known = np.flatnonzero(np.isfinite(found))
+    if known.size:
+        there = np.abs(function(found[known], known))
+        place = np.searchsorted(ratios, found[known])
+        beside = np.abs(scanned[known, np.clip([place - 1, place], 0, ratios.size - 1)])
+        # At a zero that is located to the last digits the function is smaller than at its sides,
+        # and next to infinity larger.
+        found[known[there > beside.max(axis=0)]] = np.nan
+    return found
+
+
 def thresholds(
     error: Numbered, ratios: np.ndarray, scanned: np.ndarray, tolerances: ArrayLike
 ) -> Thresholds:

@@ -32,6 +32,9 @@ _OF_RIGID = {
     PERIOD_DOUBLING: "period_doubling",
     GRAZING_FLIGHT: "grazing",
 }
+# The beginning of the names of the variables of a second branch, from permanent contact.
+_LONG = "long_"
+_ALONG = ("point", "special", f"{_LONG}point", f"{_LONG}special", "multiplier", "end")
 # Width in characters of a reason below the title.
 _LINE = 110
 # Relative distance below which the end of a branch is at the largest Λ of the panel.
@@ -146,7 +149,7 @@ def phase_panels(touching: bool) -> tuple[Figure, list[Axes]]:
 
 def over_amplitude(data: xr.Dataset) -> Figure:
     """Branches of a labelled dataset as in Figs. 8 and 9, named by the arguments that differ."""
-    rows, names = in_a_row(data, "point", "special", "multiplier", "end")
+    rows, names = in_a_row(data, *_ALONG)
     figure, panels = phase_panels(bool((rows.contact_duration > 0).any()))
     panels[0].set_xlim(0.0, data.attrs.get("amplitude_max", data.amplitude.max()))
     # Both phases of a curve have its colour.
@@ -154,9 +157,24 @@ def over_amplitude(data: xr.Dataset) -> Figure:
         if name and curve.amplitude.notnull().any():
             name_curve(panels[0], name, colour)
         draw_both_phases(panels, placed(curve), colour)
+        if f"{_LONG}amplitude" in curve:
+            draw_both_phases(panels, placed(_long_branch(curve)), colour)
     legend_below(figure)
     head(figure, title(data), rows)
     return figure
+
+
+def _long_branch(curve: xr.Dataset) -> xr.Dataset:
+    """The second branch of a contact, from permanent contact, in place of the first.
+
+    The end of its contact is shown in the turn of the table in which the others are.
+    """
+    beginning = len(_LONG)
+    names = [str(name) for name in curve.variables if str(name).startswith(_LONG)]
+    long = curve[names].rename({name: name[beginning:] for name in names})
+    turns = 2 * np.pi * np.round((long.release_phase.mean() - np.pi / 2) / (2 * np.pi))
+    shifted = ("phase", "release_phase", "special_phase")
+    return long.assign({name: long[name] - turns for name in shifted})
 
 
 def head(figure: Figure, title: str, rows: xr.Dataset) -> None:

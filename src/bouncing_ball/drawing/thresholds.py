@@ -3,6 +3,7 @@
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from numpy.typing import ArrayLike
 
 from bouncing_ball.drawing.canvas import logarithmic
 from bouncing_ball.drawing.style import CONTACT, GUIDE, Look
@@ -48,30 +49,42 @@ def draw_relative_error(
     axes.set_ylim(bottom=_BELOW * lowest)
 
 
-def with_zeros(ratio: np.ndarray, error: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """A signed error along ϖ with the zeros between its samples, and its size.
+def with_zeros(
+    ratio: np.ndarray, error: np.ndarray, zeros: ArrayLike = ()
+) -> tuple[np.ndarray, np.ndarray]:
+    """An error along ϖ with its zeros, and its size.
 
-    Between two samples of different signs the error is linear in ln ϖ.
+    The zeros that are known become samples; NaN stands for none. Between two samples of different
+    signs there is a further zero, where the error is linear in ln ϖ.
 
     Examples
     --------
     >>> ratio, size = with_zeros(np.array([1.0, 100.0]), np.array([-1.0, 1.0]))
     >>> round(float(ratio[np.argmin(size)]), 12), float(size.min())
     (10.0, 0.0)
+    >>> ratio, size = with_zeros(np.array([1.0, 100.0]), np.array([1.0, 1.0]), 20.0)
+    >>> round(float(ratio[np.argmin(size)]), 12), float(size.min())
+    (20.0, 0.0)
     """
+    located = np.log(np.atleast_1d(zeros))
+    located = located[np.isfinite(located)]
     place = np.log(ratio)
-    parts = [ratio]
-    zeros = []
-    for k in np.flatnonzero(error[1:] * error[:-1] < 0):
-        zero = np.interp(0.0, *_rising(error[k : k + 2], place[k : k + 2]))
-        # Nearer and nearer to the zero, as a logarithmic axis shows it.
-        shares = 0.5 ** np.arange(_STEPS)
-        parts += [np.exp(zero + (end - zero) * shares[1:]) for end in place[k : k + 2]]
-        zeros.append(np.exp(zero))
-    fine = np.unique(np.concatenate([*parts, zeros]))
-    size = np.abs(np.interp(np.log(fine), place, error))
-    size[np.isin(fine, zeros)] = 0.0
-    return fine, size
+    order = np.argsort(np.concatenate([place, located]))
+    place = np.concatenate([place, located])[order]
+    error = np.concatenate([error, np.zeros(located.size)])[order]
+    changes = np.flatnonzero(error[1:] * error[:-1] < 0)
+    between = [np.interp(0.0, *_rising(error[k : k + 2], place[k : k + 2])) for k in changes]
+    every = np.concatenate([located, between])
+    parts = [place, every]
+    # Nearer and nearer to the zero, as a logarithmic axis shows it.
+    shares = 0.5 ** np.arange(1, _STEPS)
+    for zero in every:
+        sides = place[[np.searchsorted(place, zero) - 1, np.searchsorted(place, zero, "right")]]
+        parts += [zero + (side - zero) * shares for side in sides]
+    fine = np.unique(np.concatenate(parts))
+    size = np.abs(np.interp(fine, place, error))
+    size[np.isin(fine, every)] = 0.0
+    return np.exp(fine), size
 
 
 def _rising(values: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

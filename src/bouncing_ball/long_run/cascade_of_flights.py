@@ -6,8 +6,12 @@ until the ball touches the level of the table. There the contact opens: above th
 one more flight. The new flight begins with zero length and changes the return map as the power 3/2
 of Λ - Λ_k, so that the multipliers are continuous there and the orbit can be followed further.
 Opening k, where flight k + 1 begins, is at ``E_k = ϖ² (Λ_k - Λ_SD)``. It is the grazing of a
-release of the orbit with k impacts in one period (:mod:`bouncing_ball.periodic`), and is
-found with its equations, from the limit of stiff contacts on.
+release of the orbit with k impacts in one period (:mod:`bouncing_ball.periodic`), whose equations
+give its digits.
+
+On compliant contacts these equations have several solutions, because the contact may close again
+at a higher Λ and open once more. Opening k is the first one from below: Λ is raised from opening
+k - 1 on, and a simulated ball stays on the orbit with k flights up to opening k.
 
 For a stiff contact E_k has a limit. The ball leaves near the top of the table. Let s = ϖτ be the
 time of the contact, measured from the top, δ = x/ϖ⁴ and Λ = 1 + C/ϖ². The motion is then ::
@@ -22,7 +26,7 @@ of flight k is r^k times as large, and the last flight is that whose duration is
 contacts to that of the first flight.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, NamedTuple, Self
 
@@ -36,7 +40,7 @@ from bouncing_ball.long_run.motions import Motions
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.numerics.arrays import pick
+from bouncing_ball.numerics.arrays import Batch
 from bouncing_ball.numerics.corrector import NewtonSettings, newton
 from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls
 from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
@@ -47,13 +51,19 @@ _FINE = 400
 # The search for the next opening starts above the last opening by this fraction, where the new
 # flight is resolved.
 _ABOVE = 1e-3
-# The search for an opening goes up in steps of this factor.
+# The search for an opening goes up in steps of this factor of E; on contacts of finite stiffness,
+# which may close again, in smaller ones.
 _STEP = 1.2
-# The guesses at the next ϖ: the number of steps, and the share of the slope between the last two ϖ.
-# On a weakly damped contact the slope of coarse steps is that of the oscillation that is left from
-# the last contact, and may have the wrong sign.
-_GUESSES = ((1, 1.0), (1, 0.0), (1, -1.0), (3, 1.0))
-# Number of impacts within which a ball must be on its orbit.
+_SMALL_STEP = 1.05
+# The search on a contact begins and ends at these shares of the E of the limit of stiff contacts.
+_LOWEST, _HIGHEST = 0.02, 1.5
+# An opening is bracketed within this fraction of E before its equations are solved.
+_BRACKET = 1e-3
+# Number of impacts for each flight of an orbit within which most balls are on it, and within which
+# every ball must be.
+_SOON = 12
+_LATE = 40
+# The same for any motion of a ball behind the top of the table.
 _IMPACTS = 250
 _SETTINGS = NewtonSettings(max_iterations=8)
 
@@ -206,14 +216,17 @@ def stiff_openings(damping_ratio: float, most: int) -> np.ndarray:
 def openings(damping_ratio: ArrayLike, frequency_ratio: np.ndarray, most: int) -> Openings:
     """The openings of contacts with the displacement release, shape (ζ, most, ϖ).
 
-    The openings are followed from the limit of stiff contacts down to the first ϖ at which no
-    stable orbit is found, or at which simulated balls show that it is not the next opening.
+    Opening k is the first from below: Λ is raised from opening k - 1, or from near Λ_SD, in steps
+    of a twentieth of E, while a simulated ball stays on the orbit with k flights in each period.
+    It is NaN, with all openings above it, where the orbit ends or loses its stability before its
+    contact opens, or where there is no stable orbit with k + 1 flights right above. Each contact is
+    computed for itself, so that the openings do not depend on the other contacts. If the contact
+    closes again within one step, the opening may be passed over.
 
     Parameters
     ----------
     damping_ratio : array_like, shape (m,)
     frequency_ratio : ndarray, shape (N,)
-        Increasing.
     most : int
         Number of openings.
 
@@ -224,137 +237,166 @@ def openings(damping_ratio: ArrayLike, frequency_ratio: np.ndarray, most: int) -
     (True, True)
     """
     zeta = np.asarray(damping_ratio, dtype=float)
-    shape = (zeta.size, most, frequency_ratio.size)
-    found = Openings(np.full(shape, np.nan), np.full(shape, np.nan))
-    contact = SpringDamper(frequency_ratio, zeta[:, np.newaxis])
+    ratio, of_row = (x.ravel() for x in np.meshgrid(frequency_ratio, zeta))
+    limits = np.stack([stiff_openings(z, most) for z in zeta])
+    limits = np.repeat(limits, frequency_ratio.size, axis=0)
+    found = Openings(*np.full((2, ratio.size, most), np.nan))
+    rows = np.arange(ratio.size)
+    orbits = _Followed.near_threshold(SpringDamper(ratio, of_row), _LOWEST * limits[:, 0])
     for k in range(most):
-        limit = np.stack([_stiff_openings(z, most)[k] for z in zeta])
-        place = _Place.at_limit(limit)
-        for j in range(frequency_ratio.size - 1, -1, -1):
-            place = _next(zeta, frequency_ratio[j], place)
-            found.amplitude[:, k, j], found.multiplier[:, k, j] = place.opening
-    known = _is_next(contact, found.amplitude)
-    # Each opening requires the last one. From the first ϖ on at which another opening is found, it
-    # is no longer followed.
-    known = np.logical_and.accumulate(known, axis=1)
-    known = np.logical_and.accumulate(known[..., ::-1], axis=-1)[..., ::-1]
-    return Openings(*(np.where(known, x, np.nan) for x in found))
-
-
-def _is_next(contact: SpringDamper, amplitude: np.ndarray) -> np.ndarray:
-    """Whether simulated balls on contacts, shape (ζ, ϖ), have k flights from the last opening up to
-    opening k, and one more above it; of the shape of the openings, (ζ, k, ϖ).
-    """
-    threshold = permanent_contact_threshold(contact.frequency_ratio, contact.damping_ratio)
-    threshold = threshold[:, np.newaxis]
-    last = np.concatenate([threshold, amplitude[:, :-1]], axis=1)
-    # If two openings coincide in Λ, only the first is kept.
-    above = _ABOVE * (amplitude - threshold)
-    exists = np.nonzero(amplitude - last > above)
-    zeta, k, ratio = exists
-    low, high, aside = (x[exists] for x in (last, amplitude, above))
-    places = np.stack([low + 2 * aside, (low + high) / 2, high - aside, high + aside])
-    found = balls_behind_the_top(contact[zeta, ratio], places)
-    flights = np.add.outer([0, 0, 0, 1], k + 1)
-    is_next = np.zeros(amplitude.shape, dtype=bool)
-    is_next[exists] = np.all((found.periods == 1) & (found.impacts == flights), axis=0)
-    return is_next
+        if not rows.size:
+            break
+        orbits, there = orbits.raised(k + 1, _HIGHEST * limits[rows, k])
+        rows = rows[there]
+        orbits, opening, there = orbits.opened(k + 1)
+        rows = rows[there]
+        found.amplitude[rows, k], found.multiplier[rows, k] = opening
+    shape = (zeta.size, frequency_ratio.size, most)
+    return Openings(*(x.reshape(shape).swapaxes(1, 2) for x in found))
 
 
 def balls_behind_the_top(law: SpringDamper, amplitude: np.ndarray) -> Motions:
     """The motions on which balls end that are set down slowly behind the top of the table."""
-    phase = np.pi / 2 + 3 / law.frequency_ratio
-    velocity = amplitude * np.cos(phase) - 0.1 / np.square(law.frequency_ratio)
+    phase, closing = _behind_the_top(law)
+    velocity = amplitude * np.cos(phase) + closing
     return final_motions(SpringDamperModel(law), amplitude, phase, velocity, impacts=_IMPACTS)
 
 
-class _Place(NamedTuple):
-    """The openings of several contacts at one ϖ; NaN where none was found.
+def _behind_the_top(law: SpringDamper) -> tuple[np.ndarray, np.ndarray]:
+    """φ and δ′ of a ball that is set down slowly behind the top of the table."""
+    ratio = np.asarray(law.frequency_ratio)
+    return np.pi / 2 + 3 / ratio, -0.1 / np.square(ratio)
 
-    ``scaled`` are the unknowns, measured from their limits in units of their powers of ϖ, shape (ζ,
-    unknowns); they depend on 1/ϖ² with the slope ``rise``. ``opening`` has Λ_k and the larger
-    modulus of the multipliers, each of shape (ζ,).
+
+@dataclass(frozen=True, repr=False)
+class _Followed(Batch):
+    """Orbits on a row of contacts whose Λ is raised.
+
+    ``excess`` is E, and ``phase`` and ``closing`` are φ and δ′ < 0 of one of the impacts.
     """
 
-    ratio: float
-    scaled: np.ndarray
-    rise: np.ndarray
-    opening: Openings
+    law: SpringDamper
+    excess: np.ndarray
+    phase: np.ndarray
+    closing: np.ndarray
 
     @classmethod
-    def at_limit(cls, limit: np.ndarray) -> Self:
-        """The place ϖ → ∞."""
-        none = np.ones(len(limit))
-        return cls(np.inf, limit, np.zeros_like(limit), Openings(none, none))
+    def near_threshold(cls, law: SpringDamper, excess: np.ndarray) -> Self:
+        """Balls that are set down behind the top of the table, at small E."""
+        return cls(law, excess, *_behind_the_top(law))
 
-    @classmethod
-    def unknown(cls, ratio: float, shape: tuple[int, ...]) -> Self:
-        """A place without openings, for unknowns of this shape."""
-        none = np.full(shape, np.nan)
-        openings = np.full((2, shape[0]), np.nan)
-        return cls(ratio, none, none.copy(), Openings(*openings))
+    @property
+    def threshold(self) -> np.ndarray:
+        """Λ_SD."""
+        return permanent_contact_threshold(self.law.frequency_ratio, self.law.damping_ratio)
 
-    def store(self, which: np.ndarray, part: Self) -> None:
-        """Fill in the openings of the contacts with these indices."""
-        self.scaled[which] = part.scaled
-        self.rise[which] = part.rise
-        for whole, values in zip(self.opening, part.opening, strict=True):
-            whole[which] = values
+    @property
+    def amplitude(self) -> np.ndarray:
+        """Λ."""
+        return self.threshold + self.excess / np.square(self.law.frequency_ratio)
 
+    def at(self, excess: np.ndarray, flights: int, impacts: int = _LATE) -> tuple[Self, np.ndarray]:
+        """The motions at other E of balls with the same impacts, and whether each is an orbit with
+        this number of flights in each period. For each flight the ball has so many ``impacts``.
+        """
+        there = replace(self, excess=excess)
+        level = there.amplitude
+        velocity = level * np.cos(self.phase) + self.closing
+        model = SpringDamperModel(self.law)
+        found = final_motions(model, level, self.phase, velocity, impacts=impacts * (flights + 1))
+        closing = found.end_velocity - level * np.cos(found.end_phase)
+        there = replace(there, phase=found.end_phase, closing=closing)
+        return there, (found.periods == 1) & (found.impacts == flights)
 
-def _next(zeta: np.ndarray, ratio: float, place: _Place) -> _Place:
-    """The openings at the next smaller ϖ: for each contact those of the first guess that leads to a
-    stable orbit.
-    """
-    found = _Place.unknown(ratio, place.scaled.shape)
-    left = np.flatnonzero(np.isfinite(place.opening.amplitude))
-    for parts, share in _GUESSES:
-        if not left.size:
-            break
-        there = pick(place, left)
-        there = there._replace(rise=share * there.rise)
-        between = np.linspace(place.ratio**-2.0, ratio**-2.0, parts + 1)[1:-1] ** -0.5
-        for step in (*between, ratio):
-            there = _stepped(zeta[left], step, there)
-        known = np.isfinite(there.opening.amplitude)
-        found.store(left[known], pick(there, known))
-        left = left[~known]
-    return found
+    def raised(self, flights: int, top: np.ndarray) -> tuple[Self, np.ndarray]:
+        """The orbits shortly below the lowest E at which they lose this number of flights, and the
+        indices of the contacts that have such an E up to ``top``.
+        """
+        low, has = self.at(self.excess, flights)
+        high = np.full(top.shape, np.nan)
+        rising = np.flatnonzero(has)
+        while rising.size:
+            stopped = low.climb(rising, flights, top)
+            ahead = _SMALL_STEP * low.excess[stopped]
+            same = low.move(stopped, ahead, flights)
+            high[stopped[~same]] = ahead[~same]
+            rising = stopped[same]
+        wide = np.flatnonzero(np.isfinite(high))
+        while wide.size:
+            middle = (low.excess[wide] + high[wide]) / 2
+            same = low.move(wide, middle, flights)
+            high[wide[~same]] = middle[~same]
+            wide = wide[(high - low.excess)[wide] > _BRACKET * low.excess[wide]]
+        known = np.flatnonzero(np.isfinite(high))
+        return low.take(known), known
 
+    def climb(self, which: np.ndarray, flights: int, top: np.ndarray) -> np.ndarray:
+        """Raise the orbits with these indices in steps of E while they are soon seen to be orbits
+        with this number of flights; return the indices of those that are not, below ``top``.
+        """
+        stopped = []
+        while which.size:
+            ahead = _SMALL_STEP * self.excess[which]
+            same = self.move(which, ahead, flights, _SOON)
+            stopped.append(which[~same])
+            which = which[same & (ahead < top[which])]
+        return np.concatenate(stopped) if stopped else which
 
-def _stepped(zeta: np.ndarray, ratio: float, place: _Place) -> _Place:
-    """The openings at ϖ by Newton's method from the line through those at another ϖ."""
-    orbits, origin = _scaled(zeta, ratio, place.scaled.shape[-1] // 3)
-    ahead = ratio**-2.0 - place.ratio**-2.0
-    guess = origin + orbits.unit * (place.scaled + ahead * place.rise)
-    with np.errstate(all="ignore"):
-        solved = newton(orbits, guess, lambda y: release_condition(orbits, y), _SETTINGS)
-        multiplier = orbits.monodromy(solved.point).spectral_radius()
-    # With a multiplier above 1 the orbit has turned back at a saddle-node.
-    exists = solved.converged & (multiplier < 1)
-    y = np.where(exists[:, np.newaxis], solved.point, np.nan)
-    scaled = (y - origin) / orbits.unit
-    opening = Openings(orbits.values(y)[LAMBDA], np.where(exists, multiplier, np.nan))
-    return _Place(ratio, scaled, (scaled - place.scaled) / ahead, opening)
+    def move(
+        self, which: np.ndarray, excess: np.ndarray, flights: int, impacts: int = _LATE
+    ) -> np.ndarray:
+        """Move the orbits with these indices to other E, if there they are orbits with this number
+        of flights; return whether they are.
+        """
+        there, same = self.take(which).at(excess, flights, impacts)
+        for name in ("excess", "phase", "closing"):
+            getattr(self, name)[which[same]] = getattr(there, name)[same]
+        return same
 
+    def opened(self, flights: int) -> tuple[Self, Openings, np.ndarray]:
+        """From orbits shortly below an opening those right above it, the openings, and the indices
+        of the contacts on which an orbit with one more flight is there.
+        """
+        problem, guess = self._equations(flights)
+        with np.errstate(all="ignore"):
+            solved = newton(problem, guess, lambda y: release_condition(problem, y), _SETTINGS)
+            multiplier = problem.monodromy(solved.point).spectral_radius()
+        amplitude = problem.values(solved.point)[LAMBDA]
+        excess = np.square(self.law.frequency_ratio) * (amplitude - self.threshold)
+        # Another solution than the one that is bracketed is no answer.
+        near = np.abs(excess - self.excess) <= 2 * _BRACKET * self.excess
+        known = np.flatnonzero(solved.converged & (multiplier < 1) & near)
+        above, more = self.take(known).at((1 + _ABOVE) * excess[known], flights + 1)
+        there = known[more]
+        return above.take(more), Openings(amplitude[there], multiplier[there]), there
 
-def _scaled(
-    zeta: np.ndarray, frequency_ratio: float, impacts: int
-) -> tuple[PeriodicOrbits, np.ndarray]:
-    """The orbits with k impacts in one period, and the origin of their unknowns in the stiff limit.
+    def _equations(self, flights: int) -> tuple[PeriodicOrbits, np.ndarray]:
+        """The equations of the orbits along Λ, and these orbits as a guess.
 
-    From it the phases and durations differ by the order of ϖ⁻¹, the velocities by ϖ⁻³ and Λ by
-    ϖ⁻².
-    """
-    threshold = permanent_contact_threshold(frequency_ratio, zeta)
-    model = SpringDamperModel(SpringDamper(np.full(zeta.shape, frequency_ratio), zeta))
-    balls = Balls(model, threshold)
-    power = np.array([1.0, 3.0] * impacts + [1.0] * impacts + [2.0])
-    unit = np.broadcast_to(frequency_ratio**-power, (zeta.size, power.size)).copy()
-    # The coordinate is arsinh Λ.
-    unit[:, -1] /= np.hypot(1, threshold)
-    turns = np.eye(impacts, dtype=int)[-1]
-    orbits = PeriodicOrbits(balls, impacts, turns, (LAMBDA,), selects=True, unit=unit)
-    none = np.zeros((zeta.size, impacts))
-    periods = np.broadcast_to(2 * np.pi * turns, none.shape)
-    return orbits, orbits.point(none + np.pi / 2, none, periods, amplitude=threshold)
+        From permanent contact the phases and durations differ by the order of ϖ⁻¹, the velocities
+        by ϖ⁻³ and Λ by ϖ⁻².
+        """
+        model = SpringDamperModel(self.law)
+        amplitude = self.amplitude
+        velocity = amplitude * np.cos(self.phase) + self.closing
+        impacts = model.simulate(amplitude, self.phase, velocity, flights)
+        # The orbit starts with the impact after the longest contact, which ends in the next period.
+        longest = impacts.contact_duration.argmax(axis=0)
+        place = np.arange(1, flights + 1)[:, np.newaxis] + longest
+        of_impacts = (
+            impacts.phase[0] + impacts.time,
+            impacts.relative_velocity,
+            impacts.contact_duration,
+        )
+        phase, closing, duration = (
+            np.take_along_axis(x, place % flights, axis=0).T for x in of_impacts
+        )
+        phase = phase - 2 * np.pi * (place < flights).T
+        power = np.array([1.0, 3.0] * flights + [1.0] * flights + [2.0])
+        unit = np.asarray(self.law.frequency_ratio)[:, np.newaxis] ** -power
+        # The coordinate is arsinh Λ.
+        unit[:, -1] /= np.hypot(1, self.threshold)
+        turns = np.eye(flights, dtype=int)[-1]
+        balls = Balls(model, self.threshold)
+        problem = PeriodicOrbits(balls, flights, turns, (LAMBDA,), selects=True, unit=unit)
+        return problem, problem.point(phase, closing, duration, amplitude=amplitude)

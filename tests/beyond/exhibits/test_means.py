@@ -50,8 +50,14 @@ def test_the_share_of_right_nodes_counts_the_nodes_that_have_a_number():
     parameters = MeanMotions(**given, **sizes, frequency_ratio=ratios)
     data = mean_motions(parameters, Release.DISPLACEMENT, found)
     assert np.all(data.right_nodes == 3)
-    assert data.right.values[0, 0] == pytest.approx([1 / 3, 2 / 3, 2 / 3])
+    assert data.right_low.values[0, 0] == pytest.approx([1 / 3, 2 / 3, 2 / 3])
+    assert np.all(data.right_high == data.right_low)
     words = data.decision.values[0, 0].ravel().tolist()
     assert words == ["no number", "from this on", "not at any", "from this on"]
     least = data.needed_ratio.values[0, 0].ravel()
     np.testing.assert_array_equal(least, [np.nan, 100.0, np.nan, 10.0])
+    # With an interval that contains the tolerance at the errors of 0.2 only, they may be right.
+    found["mean_margin"] = np.where(np.abs(found["mean_error"]) > 0.1, 0.3, 0.0)
+    data = mean_motions(parameters, Release.DISPLACEMENT, found)
+    assert data.right_low.values[0, 0] == pytest.approx([1 / 3, 2 / 3, 2 / 3])
+    assert np.all(data.right_high == 1)

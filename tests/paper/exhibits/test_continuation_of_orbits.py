@@ -23,7 +23,7 @@ from bouncing_ball.periodic.one_impact.spring_damper_bifurcations import (
     period_doubling,
     saddle_node,
 )
-from bouncing_ball.periodic.one_impact.spring_damper_branch import branch_point
+from bouncing_ball.periodic.one_impact.spring_damper_branch import branch_point, excess_angle
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.pipeline.configuration import typed
 
@@ -42,6 +42,27 @@ def bifurcations(n, r, omega, release="displacement"):
         float(branch_point(find(contact, n), contact, n).amplitude)
         for find in (saddle_node, period_doubling)
     ]
+
+
+def test_figure_8_has_the_long_contacts_that_begin_where_permanent_contact_ends(
+    continuation_settings,
+):
+    """Against the explicit curve; at ϖ = 2 they are on the branch that is there already."""
+    found = orbit_branches(FIGURE_8, "displacement", continuation_settings)
+    compliant = found.sel(frequency_ratio=2.0)
+    held = permanent_contact_threshold(np.array([10.0, 2.0]), damping_ratio(0.85))
+    assert compliant.long_amplitude.isnull().all()
+    assert float(compliant.amplitude[0]) == pytest.approx(held[1], rel=1e-3)
+    one = found.sel(frequency_ratio=10.0)
+    lam = one.long_amplitude.values
+    assert lam[0] == pytest.approx(held[0], rel=1e-3) and lam.max() < 1.5
+    contact = SpringDamper(10.0, float(damping_ratio(0.85)))
+    point = branch_point(excess_angle(contact, one.long_contact_duration.values), contact, 1)
+    np.testing.assert_allclose(lam, point.amplitude, rtol=1e-9)
+    # They are stable and followed by balls up to where the contact opens.
+    opens = one.long_special_amplitude.values[one.long_special_kind == "grazing of a release"]
+    assert one.long_stable.all() and opens.size == 1
+    np.testing.assert_array_equal(one.long_admissible, lam < opens[0])
 
 
 @pytest.fixture

@@ -13,6 +13,7 @@ import xarray as xr
 from pydantic import Field
 
 from bouncing_ball.accuracy.corrected_errors import exact_and_simple_models
+from bouncing_ball.accuracy.thresholds import last_zero
 from bouncing_ball.datasets.parameters import (
     Family,
     LossyRestitution,
@@ -44,6 +45,7 @@ VARIABLES = {
     "stiff_opening": Variable(
         "ϖ² times the distance of an opening from Λ_SD, limit for ϖ → ∞", symbol="E_k"
     ),
+    "leaving_ratio": Variable("frequency ratio of contacts on which a ball leaves", symbol="ϖ"),
     "leaving": Variable(
         "smallest ϖ²(Λ - Λ_SD) up to the second opening at which a ball is not on an orbit of one "
         "period",
@@ -67,6 +69,11 @@ VARIABLES = {
         "relative error of a simple model in the amplitude of the period doublings, with its sign",
         budget=1e-10,
     ),
+    "cascade_zero": Variable(
+        "frequency ratio at which the restitution model's error at a period doubling is zero",
+        symbol="ϖ",
+        budget=1e-07,
+    ),
     "cascade_coefficient": Variable(
         "coefficient of the restitution model's error at the period doublings",
         symbol="K_k",
@@ -84,7 +91,9 @@ VARIABLES = {
 
 
 class Flights(Parameters):
-    """Contacts of several r on a grid of ϖ, and the number of openings that are followed."""
+    """A grid of ϖ for contacts of the first r, further r whose limits for stiff contacts are
+    computed, and the number of openings that are followed.
+    """
 
     restitution: Many[LossyRestitution]
     frequency_ratio: Span
@@ -94,44 +103,49 @@ class Flights(Parameters):
 def cascade_of_flights(parameters: Flights, release: Release) -> xr.Dataset:
     """The amplitudes above which the T-periodic orbit above Λ_SD has one more flight per period.
 
-    The dataset has ``threshold_amplitude`` Λ_SD (restitution, ϖ). ``opening_amplitude``
-    (restitution, flights, ϖ) is the Λ up to which the orbit has this number of flights, and
+    The dataset has, for the first r, ``threshold_amplitude`` Λ_SD (ϖ,). ``opening_amplitude``
+    (flights, ϖ) is the lowest Λ up to which the orbit has this number of flights, and
     ``opening_multiplier`` the larger modulus of its multipliers there; both are NaN where no stable
-    orbit was found. ``stiff_opening`` (restitution, flights) is the limit of E = ϖ²(Λ - Λ_SD) for
-    stiff contacts. ``leaving`` (restitution, ϖ) is the smallest E, of 40 equal steps up to the
-    limit of the second opening, at which a ball that is set down behind the top of the table does
-    not end on an orbit of one period, NaN if there is none, and ``leaving_periods`` the period of
-    its motion. All except the first are NaN, or 0, unless the release is the displacement release.
+    orbit was found: see :func:`bouncing_ball.long_run.cascade_of_flights.openings`.
+    ``stiff_opening`` (restitution, flights) is the limit of E = ϖ²(Λ - Λ_SD) for stiff contacts.
+    ``leaving`` (restitution, leaving_ratio) is the smallest E, of 40 equal steps up to the limit of
+    the second opening, at which a ball that is set down behind the top of the table does not end on
+    an orbit of one period, NaN if there is none, and ``leaving_periods`` the period of its motion;
+    ``leaving_ratio`` are some of the ϖ. All except the first are NaN, or 0, unless the release is
+    the displacement release.
     """
     restitution = np.array(parameters.restitution)
     ratio = parameters.frequency_ratio.grid()
     zeta = damping_ratio(restitution)
     most = parameters.flights
-    law = SpringDamper(ratio, zeta[:, np.newaxis], release)
-    amplitude = np.full((zeta.size, most, ratio.size), np.nan)
-    multiplier = np.full((zeta.size, most, ratio.size), np.nan)
+    every = SpringDamper(ratio, zeta[:, np.newaxis], release)
+    law = every[0]
+    some = slice(None, None, max(1, (ratio.size - 1) // _LEAVING_RATIOS))
+    amplitude = np.full((most, ratio.size), np.nan)
+    multiplier = np.full((most, ratio.size), np.nan)
     stiff = np.full((zeta.size, most), np.nan)
-    excess = np.full((zeta.size, ratio.size), np.nan)
-    periods = np.zeros((zeta.size, ratio.size), dtype=int)
+    excess = np.full((zeta.size, ratio[some].size), np.nan)
+    periods = np.zeros(excess.shape, dtype=int)
     if release is Release.DISPLACEMENT:
-        amplitude, multiplier = openings(zeta, ratio, most)
+        amplitude, multiplier = (x[0] for x in openings(zeta[:1], ratio, most))
         stiff = np.stack([stiff_openings(z, most) for z in zeta])
-        excess, periods = _leaving(law, stiff[:, 1])
-    dims = ("restitution", "flights", "frequency_ratio")
+        excess, periods = _leaving(every[:, some], stiff[:, 1])
+    dims = ("flights", "frequency_ratio")
     threshold = SpringDamperModel(law).permanent_contact_threshold()
     return described(
         {
-            "threshold_amplitude": (("restitution", "frequency_ratio"), threshold),
+            "threshold_amplitude": ("frequency_ratio", threshold),
             "opening_amplitude": (dims, amplitude),
             "opening_multiplier": (dims, multiplier),
             "stiff_opening": (("restitution", "flights"), stiff),
-            "leaving": (("restitution", "frequency_ratio"), excess),
-            "leaving_periods": (("restitution", "frequency_ratio"), periods),
+            "leaving": (("restitution", "leaving_ratio"), excess),
+            "leaving_periods": (("restitution", "leaving_ratio"), periods),
         },
         coords={
             "restitution": restitution,
             "flights": np.arange(1, most + 1),
             "frequency_ratio": ratio,
+            "leaving_ratio": ratio[some],
         },
         variables=VARIABLES,
     )
@@ -154,6 +168,8 @@ def _leaving(law: SpringDamper, second: np.ndarray) -> tuple[np.ndarray, np.ndar
 
 
 _PLACES = 40
+# The intervals between the ϖ at which it is sought where balls leave.
+_LEAVING_RATIOS = 24
 _GRAVITY = 9.80665
 """Standard gravity in m/s²."""
 
@@ -195,10 +211,11 @@ def cascades(parameters: Cascades, release: Release) -> xr.Dataset:
     ``cascade_ratio`` (restitution, step) are the ratios of successive distances in Λ, which tend to
     Feigenbaum's number, and ``contact_cascade_ratio`` (restitution, step, ϖ) those of the contact.
     ``cascade_error`` (model, restitution, doubling, ϖ) is the signed relative error of each simple
-    model. To leading order, the error of the restitution model is K/ϖ, where K is
-    ``cascade_coefficient`` (restitution, doubling), and that of the corrected model is C/ϖ², where
-    C is ``cascade_second_order``. Both are measured at two stiff contacts, and the next order is
-    eliminated (Richardson). Values are NaN where a doubling was not found. ``measured_cascade``
+    model, and ``cascade_zero`` (restitution, doubling) the largest ϖ at which that of the
+    restitution model is zero. To leading order, the error of the restitution model is K/ϖ, where K
+    is ``cascade_coefficient`` (restitution, doubling), and that of the corrected model is C/ϖ²,
+    where C is ``cascade_second_order``. Both are measured at two stiff contacts, and the next order
+    is eliminated (Richardson). Values are NaN where a doubling was not found. ``measured_cascade``
     (doubling,) is Λ of a measurement.
     """
     r = np.array(parameters.restitution)
@@ -217,6 +234,15 @@ def cascades(parameters: Cascades, release: Release) -> xr.Dataset:
     corrected_error = exact.amplitude / corrected.amplitude - 1
     errors = np.stack([simple_error, corrected_error])[..., : ratios.size]
     of_contact = exact.ratios()[..., : ratios.size]
+
+    def single(ratio: np.ndarray, row: np.ndarray) -> np.ndarray:
+        k, of_r = np.divmod(row, r.size)
+        model = exact_and_simple_models(SpringDamper.from_restitution(r[of_r], ratio, release))[0]
+        there = cascade(n_t.period_doubling(model, parameters.n), int(k.max()) + 1)
+        rows = np.arange(ratio.size)
+        return there.amplitude[k, rows] / simple.amplitude[k, of_r, 0] - 1
+
+    zeros = last_zero(single, ratios, errors[0].reshape(-1, ratios.size))
     return described(
         {
             "restitution_cascade": (("restitution", "doubling"), simple.amplitude[..., 0].T),
@@ -230,6 +256,7 @@ def cascades(parameters: Cascades, release: Release) -> xr.Dataset:
                 ("model", "restitution", "doubling", "frequency_ratio"),
                 errors.swapaxes(1, 2),
             ),
+            "cascade_zero": (("restitution", "doubling"), zeros.reshape(-1, r.size).T),
             "cascade_coefficient": (
                 ("restitution", "doubling"),
                 _stiff_coefficient(simple_error, order=1).T,

@@ -11,10 +11,10 @@ from matplotlib.figure import Figure
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.drawing.canvas import WIDE, canvas, coloured, legend_below, logarithmic
 from bouncing_ball.drawing.labels import number, parameters
-from bouncing_ball.drawing.style import COLOURS, GUIDE, MODELS
+from bouncing_ball.drawing.style import COLOURS, GUIDE, MODELS, Look
 from bouncing_ball.drawing.thresholds import with_zeros
 
-_DASHES = ("-", (0, (6, 1.5)), (0, (4, 1.5, 1, 1.5)), (0, (2, 1)))
+_MARKS = ("v", "o", "s", "D")
 _OTHER_RELEASE = "openings are computed for\nthe displacement release only"
 _RATIO = r"frequency ratio $\varpi$"
 
@@ -28,15 +28,15 @@ def cascade_of_flights(data: xr.Dataset) -> Figure:
     for one, line, colour in zip(each(shown, "flights"), excess, COLOURS, strict=False):
         k = int(one.flights)
         name = rf"from {k} to {k + 1}, $E_{k}$"
-        # Dots at the contacts computed, because the openings of compliant contacts undulate.
-        look = {"color": colour, "linestyle": _DASHES[k % 4], "marker": ".", "markersize": 3}
-        left.plot(ratio, line, label=name, **look)
+        # Dots, because the openings of compliant contacts undulate and jump.
+        look: Look = {"color": colour, "marker": _MARKS[k % 4], "markersize": 1.8}
+        left.plot(ratio, line, label=name, linestyle="none", **look)
         left.plot(ratio[-1], one.stiff_opening, marker=5, color=colour, clip_on=False)
     ylabel = r"$E=\varpi^2\,(\Lambda-\Lambda_{SD})$"
     title = rf"flights in a period, $r={number(float(shown.restitution))}$"
     logarithmic(left, xlabel=_RATIO, yscale="log", ylabel=ylabel, title=title)
     if np.any(np.isfinite(excess)):
-        left.legend(loc="upper left")
+        left.legend(loc="upper left", markerscale=2)
     else:
         _say(left, "no opening was found here" if _is_sought(data) else _OTHER_RELEASE)
         left.set_xlim(ratio[0], ratio[-1])
@@ -83,8 +83,9 @@ def cascades(data: xr.Dataset) -> Figure:
         look = MODELS[model] | {"linewidth": 0.9}
         for k in range(one.sizes["doubling"]):
             curve = one.isel(doubling=k).values
+            zero = float(shown.cascade_zero[k]) if model == "restitution" else np.nan
             errors.plot(ratio, np.abs(curve), ".", color=look["color"], markersize=3)
-            line = errors.plot(*_between(ratio, curve), **look)
+            line = errors.plot(*_between(ratio, curve, zero), **look)
         lines += line
         guide = abs(float(one.isel(doubling=-1, frequency_ratio=-1))) * (ratio[-1] / ratio) ** order
         errors.plot(ratio, guide, **GUIDE)
@@ -104,13 +105,16 @@ def cascades(data: xr.Dataset) -> Figure:
     return figure
 
 
-def _between(ratio: np.ndarray, error: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """ϖ and the size of a signed error between its samples, with its zeros.
+def _between(ratio: np.ndarray, error: np.ndarray, zero: float) -> tuple[np.ndarray, np.ndarray]:
+    """ϖ and the size of a signed error between its samples, of which its zero is one.
 
     ϖ times the error, which tends to a constant for stiff contacts, is interpolated.
     """
-    known = np.isfinite(error)
+    ratio = np.append(ratio, zero)
+    scaled = np.append(ratio[:-1] * error, 0.0)
+    known = np.flatnonzero(np.isfinite(ratio) & np.isfinite(scaled))
+    known = known[np.argsort(ratio[known])]
     place = np.log(ratio[known])
     fine = np.linspace(place[0], place[-1], _FINE)
-    curve = scipy.interpolate.PchipInterpolator(place, ratio[known] * error[known])(fine)
-    return with_zeros(np.exp(fine), curve / np.exp(fine))
+    curve = scipy.interpolate.PchipInterpolator(place, scaled[known])(fine)
+    return with_zeros(np.exp(fine), curve / np.exp(fine), zero)

@@ -30,6 +30,7 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.accuracy.corrected_errors import SIMPLE
 from bouncing_ball.accuracy.errors import Quantity, relative, values
+from bouncing_ball.accuracy.thresholds import last_zero
 from bouncing_ball.contacts.named_laws import LAWS
 from bouncing_ball.datasets.parameters import LawRestitution, Many, Tolerance
 from bouncing_ball.datasets.variables import Variable, described
@@ -57,6 +58,9 @@ VARIABLES = {
         "orbit at whose relative impact speed |δ′_i| the contact has the given r and centroid"
     ),
     "error_calibration": Variable("calibration of the contacts of the relative errors"),
+    "law_error_zero": Variable(
+        "π over D + κ at which the error passes through zero", symbol="π/(D+κ)", budget=1e-08
+    ),
     "stable_at_threshold": Variable("whether the orbit at the threshold is stable and admissible"),
 }
 
@@ -227,8 +231,10 @@ def corrected_values(exact: Any, *asked: Any) -> np.ndarray:
     return values(CorrectedModel.of_contact(exact.impact_law), *asked)
 
 
-def _errors(name: str, parameters: LawErrors) -> np.ndarray:
-    """Moduli of the relative errors of both simple models, shape (model, quantity, ratio)."""
+def _errors(name: str, parameters: LawErrors) -> tuple[np.ndarray, np.ndarray]:
+    """Relative errors of both simple models, shape (model, quantity, ratio), and the largest
+    π/(D + κ) at which each is zero, shape (model, quantity).
+    """
     n = parameters.n
     lam = parameters.amplitude
     rigid = RestitutionModel(parameters.restitution)
@@ -238,21 +244,30 @@ def _errors(name: str, parameters: LawErrors) -> np.ndarray:
         wanted = values(exact, n, lam, QUANTITIES)
         constant = values(rigid, n, lam, QUANTITIES)[:, np.newaxis]
         corrected = corrected_values(exact, n, lam, QUANTITIES)
-        return np.abs([relative(wanted, constant), relative(wanted, corrected)])
+        return np.array([relative(wanted, constant), relative(wanted, corrected)])
 
     contacts = CalibratedContacts(name, parameters)
-    return contacts.along(parameters.frequency_ratio.grid(), of_both_models)
+    ratios = parameters.frequency_ratio.grid()
+    found = contacts.along(ratios, of_both_models)
+    rows = found.reshape(-1, ratios.size)
+
+    def single(ratio: np.ndarray, row: np.ndarray) -> np.ndarray:
+        there = contacts.along(ratio, of_both_models)
+        return there.reshape(-1, ratio.size)[row, np.arange(ratio.size)]
+
+    return found, last_zero(single, ratios, rows).reshape(found.shape[:-1])
 
 
 def law_errors(parameters: LawErrors) -> xr.Dataset:
     """Errors of the restitution model and of the corrected one on all laws, along π/(D + κ).
 
     The dataset has ``relative_error`` (law, model, quantity, centroid_ratio), the modulus, on
-    contacts calibrated as ``error_calibration`` says; and ``error_threshold`` (case, calibration,
-    law), the π/(D + κ) from which on the greatest height of the restitution model is within the
-    tolerance, NaN where there is none on the grid, with ``stable_at_threshold``. The first case is
-    the orbit of the errors, the others are the ``further`` orbits, with ``n``, ``restitution`` and
-    ``amplitude`` (case,).
+    contacts calibrated as ``error_calibration`` says; ``law_error_zero`` (law, model, quantity),
+    the largest π/(D + κ) at which such an error is zero; and ``error_threshold`` (case,
+    calibration, law), the π/(D + κ) from which on the greatest height of the restitution model is
+    within the tolerance, NaN where there is none on the grid, with ``stable_at_threshold``. The
+    first case is the orbit of the errors, the others are the ``further`` orbits, with ``n``,
+    ``restitution`` and ``amplitude`` (case,).
 
     Raises
     ------
@@ -261,7 +276,9 @@ def law_errors(parameters: LawErrors) -> xr.Dataset:
     """
     ratios = parameters.frequency_ratio.grid()
     cases: list[OrbitParameters] = [parameters, *parameters.further]
-    errors = {name: _errors(name, parameters) for name in NAMES}
+    found = {name: _errors(name, parameters) for name in NAMES}
+    errors = {name: np.abs(each) for name, (each, _) in found.items()}
+    zeros = [zero for _, zero in found.values()]
     shape = len(cases), len(Calibration), len(NAMES)
     threshold = np.empty(shape)
     stable = np.empty(shape, dtype=bool)
@@ -272,9 +289,8 @@ def law_errors(parameters: LawErrors) -> xr.Dataset:
         # Those of the first orbit are known: the first model and the first quantity.
         known = case is parameters and calibration is Calibration.CONTACT
         error = errors[name][0, 0] if known else contacts.height_error(ratios)
-        found = contacts.threshold(ratios, error, parameters.tolerance)
-        threshold[place] = found
-        stable[place] = contacts.is_stable(found)
+        threshold[place] = contacts.threshold(ratios, error, parameters.tolerance)
+        stable[place] = contacts.is_stable(float(threshold[place]))
     by_case = ("case", "calibration", "law")
     return described(
         {
@@ -282,6 +298,7 @@ def law_errors(parameters: LawErrors) -> xr.Dataset:
                 ("law", "model", "quantity", "centroid_ratio"),
                 np.array(list(errors.values())),
             ),
+            "law_error_zero": (("law", "model", "quantity"), np.array(zeros)),
             "error_calibration": str(Calibration.CONTACT),
             "error_threshold": (by_case, threshold),
             "stable_at_threshold": (by_case, stable),

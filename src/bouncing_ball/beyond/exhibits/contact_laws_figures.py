@@ -17,19 +17,32 @@ from bouncing_ball.drawing.tables import (
     text,
     value,
 )
+from bouncing_ball.drawing.thresholds import with_zeros
+
+# The lowest error shown, as a share of the smallest at a sample.
+_BELOW = 0.3
 
 
 def contact_laws(data: xr.Dataset) -> Figure:
     """ext_laws: errors of both models for five laws, over D + κ as a share of the cycle."""
     figure, axes_of = panels_by_quantity(data, 5.0, r"share of the cycle, $(D+\kappa)/(2\pi n)$")
-    share = 1 / (2 * data.attrs["n"] * data.centroid_ratio.values)
+    ratio = data.centroid_ratio.values
+    per_cycle = 2 * data.attrs["n"]
+    share = 1 / (per_cycle * ratio)
     for name, axes in axes_of.items():
         for law in data["law"].values:
-            errors = data.relative_error.sel(law=law, quantity=name)
-            axes.plot(share, errors.transpose(..., "model"), linewidth=1.1, **LAWS[law])
+            for model in data["model"].values:
+                one = data.sel(law=law, quantity=name, model=model)
+                known = one.relative_error.notnull().values
+                size = one.relative_error.values[known]
+                place, error = with_zeros(ratio[known], size, one.law_error_zero)
+                axes.plot(1 / (per_cycle * place), error, linewidth=1.1, **LAWS[law])
         for slope in (1, 2):
             axes.plot(share[[0, -1]], share[[0, -1]] ** slope, **GUIDE)
         axes.set(xscale="log", yscale="log")
+    # The line of an error leaves the panel at its zero.
+    low, high = float(data.relative_error.min()), float(data.relative_error.max())
+    axes.set_ylim(_BELOW * low, max(1.0, high))
     spare = figure.axes[len(axes_of)]
     spare.axis("off")
     title = (

@@ -17,6 +17,7 @@ from pydantic import Field
 from bouncing_ball.accuracy import error_law
 from bouncing_ball.accuracy.corrected_errors import SIMPLE, errors, search
 from bouncing_ball.accuracy.errors import OF_IMPACTS, Quantity
+from bouncing_ball.accuracy.thresholds import last_zero
 from bouncing_ball.beyond.exhibits.random_orbits import random_orbits
 from bouncing_ball.datasets.parameters import LossyRestitution, Samples, Seed
 from bouncing_ball.datasets.variables import Variable, described
@@ -38,6 +39,11 @@ VARIABLES = {
     "law_threshold": Variable("frequency ratio for the tolerance by the error law", symbol="|K|/ε"),
     "error_zero": Variable(
         "frequency ratio at which the error passes through zero", symbol="ϖ", budget=1e-11
+    ),
+    "corrected_error_zero": Variable(
+        "frequency ratio at which the corrected model's error passes through zero",
+        symbol="ϖ",
+        budget=1e-08,
     ),
     "permanent_coefficient": Variable(
         "relative error of the permanent contact times the squared frequency ratio", symbol="K₂"
@@ -162,8 +168,9 @@ def orders(parameters: Orders, release: Release) -> xr.Dataset:
     ``coefficient`` K and ``second_order`` C (quantity,); ``error_threshold`` and
     ``threshold_status`` (model, quantity), ``law_threshold`` (quantity,), the ϖ for the tolerance
     exactly and by the law; ``error_zero`` (quantity,), the ϖ at which the restitution model's error
-    changes its sign. ``permanent_coefficient``, ``permanent_law`` and ``permanent_threshold`` are
-    the same numbers for the permanent contact, which has no impact to correct.
+    changes its sign, and ``corrected_error_zero`` for the corrected model's.
+    ``permanent_coefficient``, ``permanent_law`` and ``permanent_threshold`` are the same numbers
+    for the permanent contact, which has no impact to correct.
 
     For random orbits it has the measured ``order`` (model, quantity, sample) between the two ϖ in
     ``order_frequency_ratio`` (pair,), and
@@ -176,7 +183,14 @@ def orders(parameters: Orders, release: Release) -> xr.Dataset:
     # ζ by Eq. 16; the restitution model has the r that a contact with this ζ really has.
     zeta = float(damping_ratio(parameters.restitution))
     ratios = parameters.frequency_ratio.grid()
-    curves = np.abs(errors(SpringDamper(ratios, zeta, release), n, lam))
+
+    def along(ratio: np.ndarray) -> np.ndarray:
+        return errors(SpringDamper(ratio, zeta, release), n, lam)
+
+    def of_corrected(ratio: np.ndarray, quantity: np.ndarray) -> np.ndarray:
+        return along(ratio)[1, quantity, np.arange(ratio.size)]
+
+    curves = along(ratios)
     found = search(
         zeta,
         release,
@@ -190,13 +204,14 @@ def orders(parameters: Orders, release: Release) -> xr.Dataset:
     *law, still = error_law.law_thresholds(n, zeta, lam, release, tolerance).values()
     return described(
         {
-            "relative_error": (("model", "quantity", "frequency_ratio"), curves),
+            "relative_error": (("model", "quantity", "frequency_ratio"), np.abs(curves)),
             "coefficient": ("quantity", list(k.values())),
             "second_order": ("quantity", _second_order(zeta, release, n, lam)),
             "law_threshold": ("quantity", law),
             "error_threshold": (("model", "quantity"), found.threshold[:, :-1, 0]),
             "threshold_status": (("model", "quantity"), found.status[:, :-1, 0]),
             "error_zero": ("quantity", found.zero[:-1, 0]),
+            "corrected_error_zero": ("quantity", last_zero(of_corrected, ratios, curves[1])),
             "permanent_coefficient": error_law.permanent_contact_coefficient(zeta, release),
             "permanent_law": still,
             "permanent_threshold": found.threshold[0, -1, 0],

@@ -1,6 +1,5 @@
 """The corrected model: flights that meet at an instant, and orders of convergence."""
 
-import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
@@ -65,12 +64,8 @@ def orders(data: xr.Dataset) -> Figure:
             part = data.sel(model=model, quantity=name)
             look = MODELS[model]
             error = part.relative_error.values
-            if model == "restitution":
-                # The modulus, with the sign that changes at the zero.
-                side = np.where(ratio < float(part.error_zero), -1.0, 1.0)
-                axes.plot(*with_zeros(ratio, side * error), label=model, **look)
-            else:
-                axes.plot(ratio, error, label=model, **look)
+            zero = part.error_zero if model == "restitution" else part.corrected_error_zero
+            axes.plot(*with_zeros(ratio, error, zero), label=model, **look)
             # A guide with this slope through the last point.
             axes.plot(ratio, error[-1] * (ratio[-1] / ratio) ** order, **GUIDE)
             measured = f"order {float(part.order.median()):.2f}"

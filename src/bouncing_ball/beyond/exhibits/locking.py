@@ -10,7 +10,6 @@ from bouncing_ball.beyond.exhibits.motion_samples import (
     MODELS,
     SIMPLE,
     ParameterPlane,
-    share,
     three_models,
 )
 from bouncing_ball.datasets.parameters import number
@@ -24,12 +23,11 @@ from bouncing_ball.periodic.one_impact import n_t
 VARIABLES = {
     "kind_nodes": Variable("nodes at which the ball of a model ends on a motion of this group"),
     "motion_group": Variable("motions by what the simple model's ball ends on"),
-    "agreement": Variable(
-        "share of nodes at which the contact's ball ends on a motion of the same kind and "
-        "period as the simple model's"
+    "agreement_low": Variable(
+        "share of nodes at which the contact's ball is known to end on a motion of the same kind "
+        "and period as the simple model's"
     ),
-    "agreement_low": Variable("lower limit of the confidence interval of this share"),
-    "agreement_high": Variable("upper limit of the confidence interval of this share"),
+    "agreement_high": Variable("this share if the motions that are not known agreed as well"),
     "agreement_nodes": Variable("nodes of the group at which both motions are known"),
 }
 
@@ -47,7 +45,9 @@ class Locking(ParameterPlane):
 GROUPS = ("all", "orbit", "subharmonic", "locked", "locked, 1 to 4 T", "locked, above 10 T",
           "locked, unknown period", "chaotic")  # fmt: skip
 """Groups of nodes by the motion on which the ball of the simple model ends; ``all`` also contains
-permanent contact. The period of a locked motion is unknown if rounding errors decide on it."""
+permanent contact. The period of a locked motion is unknown if rounding errors decide on it. It is
+then long, because a double loses its digits on the way only, so that ``locked, above 10 T``
+contains these motions."""
 
 
 def group(found: Motions, name: str) -> np.ndarray:
@@ -57,33 +57,42 @@ def group(found: Motions, name: str) -> np.ndarray:
     if name == "locked, 1 to 4 T":
         return (found.kind == Kind.LOCKED) & (found.periods >= 1) & (found.periods <= 4)
     if name == "locked, above 10 T":
-        return (found.kind == Kind.LOCKED) & (found.periods > 10)
+        return (found.kind == Kind.LOCKED) & (found.periods > 10) | found.is_unresolved()
     if name == "locked, unknown period":
         return found.is_unresolved()
     return found.kind == name
 
 
-def agreement(simple: Motions, contact: Motions, confidence: float) -> np.ndarray:
-    """Shares of the nodes at which two models have motions of one kind and period.
+def agreement(simple: Motions, contact: Motions) -> np.ndarray:
+    """Shares of the nodes at which two models have motions of one kind and period, as bounds.
 
-    Nodes at which one of the motions is undecided are left out, and those at which the simple model
-    locks after an unknown period, whatever the contact does, because otherwise only its nodes with
-    a contact that does not lock would count. Those at which both lock, and the contact after an
-    unknown period, are left out as well. The share of the group whose period is unknown therefore
-    is NaN, with no nodes. The limits hold for independent nodes; the nodes of a regular grid are
-    spread more evenly.
+    At some nodes it is not known whether the motions agree, because one of them is undecided, or
+    because both lock and doubles do not tell one of the periods. These nodes count as not agreeing
+    in the lower bound and as agreeing in the upper one. They are not left out: they are those that
+    lose most digits, where the models differ most often.
 
     Returns
     -------
     array
-        :func:`share` for each of :data:`GROUPS`, shape (4, groups).
+        Over :data:`GROUPS`, shape (3, groups): the number of nodes at which it is known whether the
+        motions agree, and both bounds, NaN for a group without nodes.
+
+    Examples
+    --------
+    >>> found = Motions.unknown(4)
+    >>> found.fill(np.arange(4), kind=Kind.LOCKED, periods=[2, 20, 0, 0])
+    >>> agreement(found, found)[:, GROUPS.index("locked, above 10 T")].round(3).tolist()
+    [1.0, 0.333, 1.0]
     """
     undecided = (simple.kind == Kind.UNDECIDED) | (contact.kind == Kind.UNDECIDED)
     both_lock = (simple.kind == Kind.LOCKED) & (contact.kind == Kind.LOCKED)
-    unknown = simple.is_unresolved() | (both_lock & contact.is_unresolved())
-    known = ~(undecided | unknown)
-    same = (simple.kind == contact.kind) & (simple.periods == contact.periods)
-    return np.array([share(same[known & group(simple, x)], confidence) for x in GROUPS]).T
+    unresolved = simple.is_unresolved() | contact.is_unresolved()
+    known = ~(undecided | (both_lock & unresolved))
+    same = known & (simple.kind == contact.kind) & (simple.periods == contact.periods)
+    members = np.array([group(simple, name) for name in GROUPS])
+    sizes, decided, agreeing = ((members & x).sum(axis=-1) for x in (True, known, same))
+    with np.errstate(invalid="ignore"):
+        return np.stack([decided, agreeing / sizes, (agreeing + sizes - decided) / sizes])
 
 
 def motions_at_nodes(parameters: Locking, release: Release, part: Part = np.asarray) -> Arrays:
@@ -115,11 +124,11 @@ def locking(parameters: Locking, release: Release, found: Found = None) -> xr.Da
     ``kind``, ``periods``, ``impacts``, ``lyapunov_exponent`` and ``lyapunov_error`` (model,
     restitution, amplitude) are those of
     :func:`bouncing_ball.long_run.destination.final_motions` at the first ϖ, with one ball
-    for each node; the error of an exponent is at least 1e-5. ``agreement`` (simple,
-    frequency_ratio, motion_group) is the share of nodes at which the ball of the contact ends on a
-    motion of the same kind and period as the ball of the simple model. ``agreement_low`` and
-    ``agreement_high`` are the limits of its Wilson interval, and ``agreement_nodes`` is the number
-    of nodes of the group at which both motions are known: see :func:`agreement`.
+    for each node; the error of an exponent is at least 1e-5. ``agreement_low`` and
+    ``agreement_high`` (simple, frequency_ratio, motion_group) are bounds of the share of nodes at
+    which the ball of the contact ends on a motion of the same kind and period as the ball of the
+    simple model, and ``agreement_nodes`` is the number of nodes of the group at which it is known:
+    see :func:`agreement`. The nodes are a grid and no sample, so that there is no interval.
     ``kind_nodes`` (model, frequency_ratio, motion_group) is the number of nodes at which the ball
     of each model ends on a motion of the group. ``saddle_node_amplitude`` and
     ``period_doubling_amplitude`` (model, restitution) are those of the 1-T orbit.
@@ -128,13 +137,10 @@ def locking(parameters: Locking, release: Release, found: Found = None) -> xr.Da
     motions = Motions(**(found or motions_at_nodes(parameters, release)))
     contact = MODELS.index("spring-damper")
     shares = [
-        [
-            agreement(motions[simple, ratio], motions[contact, ratio], parameters.confidence)
-            for ratio in range(ratios.size)
-        ]
+        [agreement(motions[simple, ratio], motions[contact, ratio]) for ratio in range(ratios.size)]
         for simple in range(len(SIMPLE))
     ]
-    nodes, share_of_nodes, low, high = np.moveaxis(np.array(shares), 2, 0)
+    nodes, low, high = np.moveaxis(np.array(shares), 2, 0)
     of_shares = ("simple", "frequency_ratio", "motion_group")
 
     dims = ("model", "restitution", "amplitude")
@@ -156,7 +162,6 @@ def locking(parameters: Locking, release: Release, found: Found = None) -> xr.Da
             "saddle_node_amplitude": (("model", "restitution"), np.stack(saddle_nodes)),
             "period_doubling_amplitude": (("model", "restitution"), np.stack(period_doublings)),
             "agreement_nodes": (of_shares, nodes),
-            "agreement": (of_shares, share_of_nodes),
             "agreement_low": (of_shares, low),
             "agreement_high": (of_shares, high),
         },

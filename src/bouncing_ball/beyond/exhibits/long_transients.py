@@ -14,7 +14,6 @@ import xarray as xr
 from bouncing_ball.beyond.exhibits.motion_samples import (
     MostImpacts,
     PlaneNodes,
-    share,
     share_with_limits,
     with_limits,
 )
@@ -33,11 +32,13 @@ VARIABLES = {
     "band_low": Variable("lower end of the range of restitution coefficients", symbol="r"),
     "band_high": Variable("upper end of the range of restitution coefficients", symbol="r"),
     "locked_share": Variable("share of the balls that seem chaotic and lock within these impacts"),
-    "locked_share_low": Variable("lower limit of the confidence interval of the share that locks"),
-    "locked_share_high": Variable("upper limit of the confidence interval of the share that locks"),
     "lap_periods": Variable("periods of the locked orbit by many digits, 0 if none was found"),
     "lap_impacts": Variable("impacts until the ball locks by many digits, 0 if it did not"),
     "lap_digits": Variable("decimal digits that are lost in one period of the locked orbit"),
+    "half_locked": Variable(
+        "impacts within which half of the balls that seem chaotic have stuck twice, NaN if they "
+        "have not within the most impacts"
+    ),
     "resolved_share": Variable("share of the sample that locks by many digits"),
     "resolved_share_low": Variable("lower limit of the confidence interval of the locked share"),
     "resolved_share_high": Variable("upper limit of the confidence interval of the locked share"),
@@ -136,10 +137,12 @@ def long_transients(parameters: LongTransients, found: Found = None) -> xr.Datas
     A ball seems chaotic if after the fewest of the given impacts doubles show no repetition, but an
     exponential growth of deviations. ``locked_share`` (band, followed) is the share of these balls
     that have stuck twice within so many impacts, for all r and for ranges of r from ``band_low`` to
-    ``band_high``, and ``band_nodes`` (band) is their number. A random sample of them is followed
-    with as many digits as needed: ``resolved_share`` is the share that is known to have stuck twice
-    within ``resolved_impacts``, and ``double_share`` the share of the same balls by doubles. Each
-    has a lower and an upper limit, ``_low`` and ``_high``. Over ``sample``, the nodes of this
+    ``band_high``, ``half_locked`` (band) the number of impacts within which half of them have, NaN
+    if half of them have not at all, and ``band_nodes`` (band) is their number; the nodes are a
+    grid, so that these shares have no interval. A random sample of the balls is followed with as
+    many digits as needed: ``resolved_share`` is the share that is known to have stuck twice within
+    ``resolved_impacts``, and ``double_share`` the share of the same balls by doubles. Each of these
+    two has a lower and an upper limit, ``_low`` and ``_high``. Over ``sample``, the nodes of this
     sample, with the coordinates ``restitution`` and ``amplitude``, there are the results with many
     digits: ``lap_impacts`` until the ball has stuck twice, the ``lap_periods`` of the locked orbit
     and the ``lap_digits`` lost in it.
@@ -154,21 +157,24 @@ def long_transients(parameters: LongTransients, found: Found = None) -> xr.Datas
     highs = np.array([edges[-1], *edges[1:]])
     shares = []
     nodes = []
+    halves = []
     for low, high in zip(lows, highs, strict=True):
         inside = chaotic & (r >= low) & ((r < high) | (high == edges[-1]))
         nodes.append(int(inside.sum()))
-        shares.append(_locked_shares(locks_after[inside], parameters.followed, level))
+        shares.append([_share_within(locks_after[inside], x) for x in parameters.followed])
+        halves.append(_half(locks_after[inside]))
     sample = found["lap_impacts"] >= 0
     of_sample = found["lap_impacts"][sample]
     by_doubles = _within(locks_after[sample], parameters.resolved_impacts)
     estimates: dict[str, tuple[Any, Any]] = {
-        "locked_share": (("band", "followed"), shares),
         "resolved_share": ((), share_with_limits(of_sample > 0, level)),
         "double_share": ((), share_with_limits(by_doubles, level)),
     }
     return described(
         {
+            "locked_share": (("band", "followed"), shares),
             **with_limits(estimates),
+            "half_locked": ("band", halves),
             "band_nodes": ("band", nodes),
             "band_low": ("band", lows),
             "band_high": ("band", highs),
@@ -190,8 +196,14 @@ def _within(locks_after: np.ndarray, impacts: int) -> np.ndarray:
     return (locks_after > 0) & (locks_after <= impacts)
 
 
-def _locked_shares(
-    locks_after: np.ndarray, followed: tuple[int, ...], confidence: float
-) -> list[tuple[float, ...]]:
-    """The share that locks within each number of impacts, with its limits."""
-    return [share(_within(locks_after, impacts), confidence)[1:] for impacts in followed]
+def _share_within(locks_after: np.ndarray, impacts: int) -> float:
+    """The share of the balls that lock within a number of impacts; NaN for none."""
+    return float(_within(locks_after, impacts).mean()) if locks_after.size else np.nan
+
+
+def _half(locks_after: np.ndarray) -> float:
+    """The number of impacts within which half of the balls lock; NaN if fewer do, or for none."""
+    if not locks_after.size:
+        return np.nan
+    last = np.sort(np.where(locks_after > 0, locks_after, np.inf))[(locks_after.size - 1) // 2]
+    return float(last) if np.isfinite(last) else np.nan

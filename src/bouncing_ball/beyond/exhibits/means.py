@@ -6,7 +6,7 @@ import numpy as np
 import scipy
 import xarray as xr
 
-from bouncing_ball.beyond.exhibits.motion_samples import SIMPLE, ParameterPlane, share, three_models
+from bouncing_ball.beyond.exhibits.motion_samples import SIMPLE, ParameterPlane, three_models
 from bouncing_ball.datasets.parameters import Seed, Tolerance, number
 from bouncing_ball.datasets.shards import Arrays, Found, Part
 from bouncing_ball.datasets.variables import Variable, described
@@ -22,9 +22,10 @@ VARIABLES = {
     ),
     "mean_margin": Variable("half the width of the confidence interval of this error"),
     "decision": Variable("what is known of this frequency ratio"),
-    "right": Variable("share of the nodes that are known to be right from this frequency ratio on"),
-    "right_low": Variable("lower limit of the confidence interval of the share known to be right"),
-    "right_high": Variable("upper limit of the confidence interval of the share known to be right"),
+    "right_low": Variable(
+        "share of the nodes that are known to be right from this frequency ratio on"
+    ),
+    "right_high": Variable("share of the nodes that are not known to be wrong from this ratio on"),
     "right_nodes": Variable("nodes at which the simple model's mean is a number"),
 }
 DECISIONS = ("from this on", "not at any", "undecided", "no number")
@@ -51,6 +52,20 @@ class MeanMotions(ParameterPlane):
     seed: Seed
 
 
+def settled(
+    error: np.ndarray, margin: np.ndarray, tolerance: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Whether errors are known to be within a tolerance, and whether they are known to exceed it.
+
+    Examples
+    --------
+    >>> [x.tolist() for x in settled(np.array([0.002, -0.03, 0.009]), np.full(3, 0.005), 0.01)]
+    [[True, False, False], [False, True, False]]
+    """
+    size = np.abs(error)
+    return size + margin <= tolerance, size - margin > tolerance
+
+
 def needed(error: np.ndarray, margin: np.ndarray, tolerance: float) -> tuple[np.ndarray, ...]:
     """The index of the smallest ϖ above which an error is within the tolerance, and whether it is
     known, as an index into :data:`DECISIONS`.
@@ -66,14 +81,12 @@ def needed(error: np.ndarray, margin: np.ndarray, tolerance: float) -> tuple[np.
     >>> [x.tolist() for x in needed(error, np.full((3, 1), 0.005), 0.01)]
     [[2], [0]]
     """
-    size = np.abs(error)
     ratios = len(error)
     # From the largest ϖ down to the first ϖ at which the error is not known to be small.
-    within = (size + margin <= tolerance)[::-1]
+    within, exceeds = (x[::-1] for x in settled(error, margin, tolerance))
     none_within = np.zeros_like(within[:1])
     accurate = np.argmin(np.concatenate([within, none_within]), axis=0)
     first_other = np.minimum(accurate, ratios - 1)[np.newaxis]
-    exceeds = (size - margin > tolerance)[::-1]
     known = np.take_along_axis(exceeds, first_other, axis=0)[0] | (accurate == ratios)
     decision = np.select(
         [np.isnan(error).any(axis=0), known & (accurate > 0), known],
@@ -154,9 +167,10 @@ def mean_motions(parameters: MeanMotions, release: Release, found: Found = None)
     period, because the means are then over another lap than the true one. ``needed_ratio``
     (simple, mean, restitution, amplitude) is the smallest of the given ϖ above which all errors are
     within the tolerance, NaN where ``decision`` is not "from this on"; see :data:`DECISIONS`.
-    ``right`` (simple, mean, ϖ) is the share of the nodes at which the mean is known to be accurate
-    above this ϖ, among the nodes where the value of the simple model is finite. ``right_low`` and
-    ``right_high`` are its Wilson limits, and ``right_nodes`` is the number of nodes.
+    ``right_low`` (simple, mean, ϖ) is the share of the nodes at which the mean is known to be
+    accurate at this ϖ and above, among the ``right_nodes`` where the value of the simple model is
+    finite, and ``right_high`` the share of those at which it is not known to be inaccurate. The
+    nodes are a grid and no sample, so that there is no interval.
     """
     ratios = np.array(parameters.frequency_ratio)
     found = found or errors_at_nodes(parameters, release)
@@ -167,25 +181,29 @@ def mean_motions(parameters: MeanMotions, release: Release, found: Found = None)
     )
     known = decision == DECISIONS.index("from this on")
     least = np.where(known, ratios[np.minimum(place, ratios.size - 1)], np.nan)
-    right = np.stack([known & (place <= k) for k in range(ratios.size)], axis=2)
     counted = decision != DECISIONS.index("no number")
-    shares = np.empty((*right.shape[:3], 4))
-    for simple, mean, ratio in np.ndindex(right.shape[:3]):
-        chosen = right[simple, mean, ratio][counted[simple, mean]]
-        shares[simple, mean, ratio] = share(chosen, parameters.confidence)
+    within, exceeds = settled(error, margin, parameters.tolerance)
+    # At this ϖ and above.
+    right = np.logical_and.accumulate(within[:, :, ::-1], axis=2)[:, :, ::-1]
+    wrong = np.logical_or.accumulate(exceeds[:, :, ::-1], axis=2)[:, :, ::-1]
+    counts = counted[:, :, np.newaxis]
+    nodes = np.broadcast_to(counts, right.shape).sum(axis=(-2, -1))
+    known_right, known_wrong = ((x & counts).sum(axis=(-2, -1)) for x in (right, wrong))
+    with np.errstate(invalid="ignore"):
+        right_low = known_right / nodes
+        right_high = (nodes - known_wrong) / nodes
     dims = ("simple", "mean")
-    nodes = ("restitution", "amplitude")
+    of_nodes = ("restitution", "amplitude")
     along = (*dims, "frequency_ratio")
     return described(
         {
-            "mean_error": ((*along, *nodes), error),
-            "mean_margin": ((*along, *nodes), margin),
-            "needed_ratio": ((*dims, *nodes), least),
-            "decision": ((*dims, *nodes), np.array(DECISIONS)[decision]),
-            "right_nodes": (along, shares[..., 0]),
-            "right": (along, shares[..., 1]),
-            "right_low": (along, shares[..., 2]),
-            "right_high": (along, shares[..., 3]),
+            "mean_error": ((*along, *of_nodes), error),
+            "mean_margin": ((*along, *of_nodes), margin),
+            "needed_ratio": ((*dims, *of_nodes), least),
+            "decision": ((*dims, *of_nodes), np.array(DECISIONS)[decision]),
+            "right_nodes": (along, nodes),
+            "right_low": (along, right_low),
+            "right_high": (along, right_high),
         },
         coords={
             "simple": list(SIMPLE),

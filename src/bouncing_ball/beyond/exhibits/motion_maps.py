@@ -43,6 +43,7 @@ UNKNOWN = {"not at any": "#000000", "undecided": "#ffffff", "no number": "#c8c8c
 _HATCHES = {UNKNOWN_PERIOD: "//////", "chaotic": "......"}
 _HATCHES |= {"undecided": "xxxx", "subharmonic": "||||||"}
 _HATCHES |= dict.fromkeys(("permanent contact", "no number"), "------")
+_BARS: Look = {"markersize": 4, "linewidth": 0.8, "capsize": 2}
 LOWEST_RATE = -1.5
 HIGHEST_RATE = 1.5
 """Exponents outside of this range are drawn as its ends."""
@@ -138,7 +139,8 @@ def patches(fills: Iterable[tuple[str, Any]]) -> list[Patch]:
 def draw_shares(
     part: Any, data: xr.Dataset, name: str, dim: str, looks: Mapping, title: str
 ) -> None:
-    """Shares along ϖ with confidence intervals, side by side for the places along a dimension.
+    """Bounds of shares along ϖ, side by side for the places along a dimension: a mark at the lower
+    one, and a bar up to the upper one.
 
     There is a panel for each simple model.
     """
@@ -146,7 +148,9 @@ def draw_shares(
         for k, (place, (text, colour, marker)) in enumerate(looks.items()):
             one = data.sel({"simple": simple, dim: place})
             ratio = one.frequency_ratio.values * 1.06 ** (k - 2)
-            bars(axes, ratio, one, name, color=colour, marker=marker, label=text)
+            low, high = (one[f"{name}{end}"].values for end in ("_low", "_high"))
+            look: Look = {"color": colour, "marker": marker, "label": text, **_BARS}
+            axes.errorbar(ratio, low, [np.zeros_like(low), high - low], **look)
         axes.set(xlabel=r"frequency ratio $\varpi$", title=title.format(simple))
         logarithmic(axes, ylim=(0, 1.03))
     legend_below(part, ncols=len(looks), fontsize=7)
@@ -155,5 +159,5 @@ def draw_shares(
 def bars(axes: Axes, place: np.ndarray, data: xr.Dataset, name: str, **look) -> None:
     """A variable at given places, with error bars between its limits ``_low`` and ``_high``."""
     middle, low, high = (data[f"{name}{end}"].values for end in ("", "_low", "_high"))
-    look = {"markersize": 4, "linewidth": 0.8, "capsize": 2} | look
+    look = _BARS | look
     axes.errorbar(place, middle, [middle - low, high - middle], **look)

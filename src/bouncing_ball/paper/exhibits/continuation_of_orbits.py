@@ -13,7 +13,7 @@ from bouncing_ball.datasets.parameters import (
     Parameters,
     number,
 )
-from bouncing_ball.datasets.variables import Variable, describe
+from bouncing_ball.datasets.variables import SHARED, Variable, describe
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.rigid import RestitutionModel
@@ -33,7 +33,12 @@ from bouncing_ball.periodic.branches.observables import (
 )
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact import restitution_branch as restitution_orbits
-from bouncing_ball.periodic.one_impact.whole_branch import NoBranch, whole_branches
+from bouncing_ball.periodic.one_impact.spring_damper_branch import excess_angle, orbits_on_branch
+from bouncing_ball.periodic.one_impact.whole_branch import (
+    NoBranch,
+    branches_through,
+    whole_branches,
+)
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
@@ -48,6 +53,20 @@ VARIABLES = {
 }
 # The variables of branches are declared beside the function that writes them.
 _VARIABLES = VARIABLES | observables.VARIABLES
+_COMMON = ("point", "amplitude", "stable", "admissible", *observables.OBSERVED)
+LONG = "long_"
+"""The beginning of the names of the variables of a second branch, which begins where permanent
+contact ends."""
+VARIABLES |= {
+    f"{LONG}{name}": known._replace(long_name=f"{known.long_name}, branch from permanent contact")
+    for name, known in (SHARED | observables.VARIABLES).items()
+    if name in observables.VARIABLES or name in _COMMON
+}
+# The first flight of an orbit near permanent contact, in units of 1/ϖ: short against an oscillation
+# of the contact, and long enough for the equations.
+_SHORT_FLIGHT = 0.5
+# Relative distance below which the end of a branch is at the largest Λ.
+_AT_THE_TOP = 1e-9
 
 
 class Continuation(Parameters):
@@ -101,8 +120,9 @@ def followed(
     )
 
 
-def _branch(ratio: float, points: int, branch: Followed | NoBranch) -> xr.Dataset:
+def _branch(ratio: float, branch: Followed | NoBranch, parameters: Domains) -> xr.Dataset:
     """The branch of one contact; NaN, with the reason, where it cannot be followed."""
+    points = parameters.points
     try:
         if not isinstance(branch, Followed):
             raise branch
@@ -123,6 +143,11 @@ def orbit_branches(parameters: Domains, release: Release, continuation: Continua
     ``damping_ratio`` ζ. Where a branch cannot be followed its values are NaN and ``end_reason`` is
     the error.
 
+    For n = 1 permanent contact continues into an orbit with a short flight. If its branch is
+    another one, because the two are connected beyond ``amplitude_max`` only or not at all, the
+    dataset has all of these variables a second time, with names that begin with ``long_``, and NaN
+    on contacts on which this branch cannot be followed.
+
     Raises
     ------
     NoOrbitError
@@ -138,10 +163,47 @@ def _branches(parameters: Domains, release: Release, continuation: Continuation)
     """The dataset of :func:`orbit_branches`, also if no branch can be followed."""
     branches = followed(parameters, release, continuation)
     pairs = zip(parameters.frequency_ratio, branches, strict=True)
-    rows = [_branch(ratio, parameters.points, branch) for ratio, branch in pairs]
+    rows = [_branch(*pair, parameters) for pair in pairs]
     zeta = float(damping_ratio(parameters.restitution))
     data = joined(rows, "frequency_ratio").assign(damping_ratio=zeta)
-    return describe(data, variables=_VARIABLES)
+    data = describe(data, variables=_VARIABLES)
+    others = _long_branches(parameters, release, continuation, branches)
+    if not any(isinstance(other, Followed) for other in others):
+        return data
+    pairs = zip(parameters.frequency_ratio, others, strict=True)
+    long = joined([_branch(*pair, parameters) for pair in pairs], "frequency_ratio")
+    names = [*long.data_vars, "point", "special"]
+    long = long.rename({name: f"{LONG}{name}" for name in names})
+    return data.merge(describe(long, variables=_VARIABLES | VARIABLES))
+
+
+def _long_branches(
+    parameters: Domains,
+    release: Release,
+    continuation: Continuation,
+    branches: list[Followed | NoBranch],
+) -> list[Followed | NoBranch]:
+    """The branches that begin at permanent contact, with errors in place of those that are not
+    followed: on most contacts of the force release, for n > 1, and where the first branch ends at
+    permanent contact itself.
+    """
+    ratios = np.array(parameters.frequency_ratio)
+    contacts = SpringDamper.from_restitution(parameters.restitution, ratios, release)
+    duration = 2 * np.pi * parameters.n - _SHORT_FLIGHT / ratios
+    starts = orbits_on_branch(excess_angle(contacts, duration), contacts, parameters.n)
+    top = parameters.amplitude_max
+    possible = starts.exists & (starts.amplitude < top) & starts.is_admissible()
+    for row in np.flatnonzero(possible):
+        first = branches[row]
+        if isinstance(first, Followed):
+            ends = orbits_along(first.problem, first.branch.points[[0, -1]]).amplitude
+            possible[row] = np.all(ends > top * (1 - _AT_THE_TOP))
+    none = NoOrbitError("no other branch begins at permanent contact")
+    found: list[Followed | NoBranch] = [none] * ratios.size
+    for row in np.flatnonzero(possible):
+        start = starts[[row]]
+        (found[row],) = branches_through(start, top, continuation.largest_step)
+    return found
 
 
 class BothDomains(Branches):

@@ -318,6 +318,22 @@ def orbits_of(point: BranchPoint, contact: SpringDamper, n: ArrayLike) -> Orbit:
     )
 
 
+def excess_angle(contact: SpringDamper, duration: ArrayLike) -> np.ndarray:
+    """ε of contacts that last for the time D: the inverse of ``D = (θ₀ + ε)/ϖ_d``.
+
+    Examples
+    --------
+    >>> contact = SpringDamper(5.0, 0.1)
+    >>> point = branch_point(0.25, contact, 1)
+    >>> round(float(excess_angle(contact, point.contact_duration)), 12)
+    0.25
+    """
+    zeta = contact.damping_ratio
+    root = np.sqrt((1 - zeta) * (1 + zeta))
+    free = 2 * np.arccos(contact.release_sine)
+    return np.asarray(duration) * contact.frequency_ratio * root - free
+
+
 def orbits_on_branch(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> Orbit:
     """The orbits with excess angles ε of the contact; NaN where ε is NaN.
 

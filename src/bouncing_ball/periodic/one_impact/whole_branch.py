@@ -144,22 +144,32 @@ def whole_branches(
         why = f"{_none(model.take(k), family[k], top)} was found to start from"
         found[k] = NoOrbitError(why)
     rows = rows[starts.exists]
-    branches = _followed(starts[starts.exists], top, largest_step, ends)
+    branches = branches_through(starts[starts.exists], top, largest_step, ends)
     found |= dict(zip(rows.tolist(), branches, strict=True))
     return [found[k] for k in range(family.size)]
 
 
-def _followed(
-    starts: Orbit, top: float, largest_step: float, ends: Collection[Bifurcation]
+def branches_through(
+    starts: Orbit, amplitude_max: float, largest_step: float, ends: Collection[Bifurcation] = ()
 ) -> list[Followed | NoBranch]:
-    """The branches through a row of orbits."""
+    """The branches through a row of n-T orbits; the other arguments and the result are as for
+    :func:`whole_branches`.
+
+    Examples
+    --------
+    >>> from bouncing_ball.models.rigid import RestitutionModel
+    >>> starts = n_t.orbit(RestitutionModel(0.85), 1, np.array([1.0]))
+    >>> (found,) = branches_through(starts, 1.2, LARGEST_STEP)
+    >>> round(found.first("saddle-node").amplitude, 4)
+    0.2547
+    """
     if not starts.size:
         return []
     problem = PaperUnknowns.of(starts)
 
     def rows_of(which: Any) -> WithEvents:
         part = problem.take(which)
-        return WithEvents(part, _events(part, top, ends))
+        return WithEvents(part, _events(part, amplitude_max, ends))
 
     points = list(problem.point(starts))
     control = StepControl(largest=largest_step)

@@ -75,7 +75,10 @@ def _branches(coordinate: float, multiplier: float) -> dict[str, Budget]:
     flags = dict.fromkeys(_FLAGS, Budget(0.002, over="point"))
     orbit = dict.fromkeys(_ORBIT, Budget(coordinate, over="amplitude"))
     multipliers = dict.fromkeys(_MULTIPLIER, Budget(multiplier, over="amplitude"))
-    return {**flags, "amplitude": Budget(coordinate, over="phase"), **orbit, **multipliers}
+    first = {**flags, "amplitude": Budget(coordinate, over="phase"), **orbit, **multipliers}
+    # A second branch, with names of its own.
+    second = {f"long_{name}": x._replace(over=f"long_{x.over}") for name, x in first.items()}
+    return first | second
 
 
 def _with_limits(name: str) -> tuple[str, str, str]:
@@ -115,7 +118,7 @@ ARTIFACTS: dict[str, dict[str, Budget]] = {
     # 0.022 at most. Three times that is allowed.
     "ext_locking": {
         **dict.fromkeys(("kind", "periods", "impacts"), Budget(ROUNDING, share=0.05)),
-        **dict.fromkeys(_with_limits("agreement"), Budget(0.07, scale="1")),
+        **dict.fromkeys(("agreement_low", "agreement_high"), Budget(0.07, scale="1")),
         "agreement_nodes": Budget(0.05),
         # Five standard errors; the standard error is an estimate itself.
         "lyapunov_exponent": Budget(5.0, scale="lyapunov_error", share=0.05),
@@ -176,7 +179,7 @@ ARTIFACTS: dict[str, dict[str, Budget]] = {
         "mean_margin": Budget(0.5, share=0.05),
         "decision": Budget(ROUNDING, share=0.2),
         "needed_ratio": Budget(ROUNDING, share=0.2),
-        **dict.fromkeys(_with_limits("right"), Budget(0.37, scale="1")),
+        **dict.fromkeys(("right_low", "right_high"), Budget(0.37, scale="1")),
         "right_nodes": Budget(0.15),
     },
     # Saddle-nodes are found as minima here, and some readings are ill-conditioned.

@@ -28,7 +28,8 @@ from bouncing_ball.periodic.one_impact import spring_damper_bifurcations as bifu
 from bouncing_ball.periodic.one_impact.contact_orbits import OrbitsOfContact
 from bouncing_ball.periodic.one_impact.other_settings import OtherOrbits
 from bouncing_ball.periodic.one_impact.spring_damper_branch import nearest_excess, orbits_on_branch
-from bouncing_ball.periodic.orbits.orbit import Orbit, check_index, in_order
+from bouncing_ball.periodic.orbits.impacts import check_index
+from bouncing_ball.periodic.orbits.orbit import Orbit, in_order
 from bouncing_ball.periodic.orbits.stability import Side
 
 # Bound of the rounding error of a Λ that is exactly 0, in units in the last place of z′_i; the

@@ -22,7 +22,8 @@ from bouncing_ball.numerics.corrector import NewtonSettings, solve
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.periodic.one_impact.other_settings import NO_LIMITS, OtherOrbits
 from bouncing_ball.periodic.one_impact.start import restitution_speed
-from bouncing_ball.periodic.orbits.orbit import Orbit, check_index, orbit_of_point
+from bouncing_ball.periodic.orbits.impacts import check_index
+from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball.periodic.orbits.stability import Bifurcation, Side
 
 _SETTINGS = NewtonSettings(max_iterations=25, longest=0.5)

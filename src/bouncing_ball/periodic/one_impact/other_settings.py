@@ -23,7 +23,8 @@ from bouncing_ball.errors import ModelError
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.suspension import responses
 from bouncing_ball.models.waveform import Waveform, turned
-from bouncing_ball.periodic.orbits.orbit import Orbit, check_index
+from bouncing_ball.periodic.orbits.impacts import check_index
+from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.stability import Bifurcation, Side
 
 # Samples of the equation in one period of the highest harmonic, between which its zeros are found.

@@ -24,7 +24,8 @@ from bouncing_ball.periodic.one_impact.spring_damper_branch import (
     branch_point,
     orbits_on_branch,
 )
-from bouncing_ball.periodic.orbits.orbit import Orbit, check_index
+from bouncing_ball.periodic.orbits.impacts import check_index
+from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.stability import Bifurcation, Side
 
 # Points of the scan on each side of ε = 0, spaced geometrically from this small

@@ -28,7 +28,8 @@ from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.periodic.branches.following import Range, limit, limits_of
 from bouncing_ball.periodic.one_impact import corrected_branch as corrected
 from bouncing_ball.periodic.orbits.balls import LAMBDA, LOWEST
-from bouncing_ball.periodic.orbits.orbit import Orbit, check_index, in_order, orbit_of_point
+from bouncing_ball.periodic.orbits.impacts import check_index
+from bouncing_ball.periodic.orbits.orbit import Orbit, in_order, orbit_of_point
 from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
 from bouncing_ball.periodic.orbits.special import bifurcations, ends_of_contact, with_ends
 from bouncing_ball.periodic.orbits.stability import Bifurcation, Side

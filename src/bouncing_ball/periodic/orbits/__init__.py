@@ -11,5 +11,6 @@ In reading order:
 ``lost_release``  where a contact no longer opens
 ``special``       all special orbits, as events on a branch
 ``simulation``    from a simulated ball to an orbit, and whether a ball follows an orbit
-``orbit``         an orbit of any model, or an array of orbits
+``impacts``       the impacts of orbits, and what follows from them
+``orbit``         an orbit of any model, or an array of orbits: its motion and its stability
 """

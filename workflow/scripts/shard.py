@@ -1,5 +1,7 @@
 """The arrays of the places of one shard of a study."""
 
+from time import process_time
+
 import xarray as xr
 from adapter import function
 
@@ -16,4 +18,4 @@ with logged(snakemake):
         # Each array has dimensions of its own.
         dimensions = [f"{name}_{k}" for k in range(values.ndim)]
         data[name] = (dimensions, values)
-    publish(snakemake, xr.Dataset(data), recorded(job.arguments))
+    publish(snakemake, xr.Dataset(data), recorded(job.arguments), seconds=process_time())

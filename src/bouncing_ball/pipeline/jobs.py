@@ -7,6 +7,7 @@ Snakemake provides for them.
 import gc
 import signal
 import sys
+import time
 import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
@@ -34,6 +35,9 @@ REFERENCE = (
     "and spring-damper models for the bouncing ball problem, DETC2011-47870 (2011)"
 )
 HISTORY = "computed from the equations; the attributes provenance_* say by what and from what"
+
+SECONDS = f"{PREFIX}seconds"
+"""The attribute with the processor time that an accepted sample took, or one of its shards."""
 
 _CONCLUSION = Path("results/logs/conclusion")
 
@@ -208,14 +212,20 @@ def make_dataset(snakemake: Any, study: Callable[..., xr.Dataset]) -> list[str]:
     from_other_jobs: dict[str, Any] = {}
     if paths := snakemake.input.get("data"):
         from_other_jobs["data"] = {Path(path).stem: read_input(path) for path in paths}
+    earlier = 0.0
     if paths := snakemake.input.get("shards"):
-        from_other_jobs["found"] = joined([read_input(path) for path in paths])
+        shards = [read_input(path) for path in paths]
+        from_other_jobs["found"] = joined(shards)
+        earlier = sum(float(shard.attrs[SECONDS]) for shard in shards)
     dataset = typed(study)(**given, **from_other_jobs)
     for name, variable in dataset.variables.items():
         if "units" not in variable.attrs:
             raise ModelError(f"{name} has no unit: the study ends with described(...)")
     parameters = dataset.attrs or recorded(given)
-    publish(snakemake, dataset, parameters, compressed=snakemake.params.get("compressed", False))
+    # The files of a run are the same, to the last byte, each time; an accepted sample is made once.
+    sample = snakemake.params.get("compressed", False)
+    seconds = earlier + time.process_time() if sample else None
+    publish(snakemake, dataset, parameters, compressed=sample, seconds=seconds)
     sizes = ", ".join(f"{name} {size}" for name, size in dataset.sizes.items())
     lines = [f"{snakemake.output.data}: {sizes}"]
     if "end_reason" in dataset:
@@ -224,9 +234,16 @@ def make_dataset(snakemake: Any, study: Callable[..., xr.Dataset]) -> list[str]:
 
 
 def publish(
-    snakemake: Any, dataset: xr.Dataset, parameters: Mapping[str, Any], *, compressed: bool = False
+    snakemake: Any,
+    dataset: xr.Dataset,
+    parameters: Mapping[str, Any],
+    *,
+    compressed: bool = False,
+    seconds: float | None = None,
 ) -> None:
-    """Write the job's dataset, with its title, parameters and provenance as attributes."""
+    """Write the job's dataset, with its title, parameters and provenance as attributes, among them
+    the processor time in seconds if it is given.
+    """
     drawing = snakemake.params.get("drawing")
     dataset.attrs = {
         "Conventions": CONVENTIONS,
@@ -236,5 +253,6 @@ def publish(
         "history": HISTORY,
         **parameters,
         **provenance(snakemake),
+        **({} if seconds is None else {SECONDS: f"{seconds:.0f}"}),
     }
     write_dataset(dataset, snakemake.output.data, compressed=compressed)

@@ -21,6 +21,7 @@ from bouncing_ball.paper.claims import tables as rows
 from bouncing_ball.paper.claims.claims import claims
 from bouncing_ball.paper.exhibits import continuation_of_orbits_figures, error_thresholds_figures
 from bouncing_ball.pipeline.article import render_article
+from bouncing_ball.pipeline.configuration import read_yaml
 
 ROOT = Path(__file__).resolve().parents[1]
 TEMPLATES = ROOT / "workflow" / "report" / "paper"
@@ -49,7 +50,7 @@ def record(recorded):
 
 
 def all_texts(data, verdicts=None):
-    """All tables in all formats, the article and its supplement.
+    """All tables in all formats, the articles and the supplement.
 
     ``verdicts`` are those by certified intervals; by default they are computed.
     """
@@ -61,18 +62,19 @@ def all_texts(data, verdicts=None):
         for form in (to_csv, to_markdown):
             made[name, form.__name__] = form(*table)
     texts = {name: made[name, "to_markdown"] for name in TABLES}
-    data["atlas"] = read_dataset(ROOT / "config" / "atlas.nc")
+    data |= {name: read_dataset(ROOT / f"config/{name}.nc") for name in ("atlas", "engines")}
     texts["atlas"] = to_markdown(*shares(data["atlas"]))
-    for name in ("article", "supplement"):
-        made[name] = render_article(
-            TEMPLATES / f"{name}.md.j2", data, texts, rows.Claims(data["claims"]), ARTIFACTS
-        )
+    about = read_yaml(ROOT / "CITATION.cff")
+    decided = rows.Claims(data["claims"])
+    for name in ("article", "supplement", "motions"):
+        file = TEMPLATES / f"{name}.md.j2"
+        made[name] = render_article(file, data, texts, decided, ARTIFACTS, about=about)
     return made
 
 
 @pytest.fixture(scope="session")
 def texts():
-    """Makes all tables in all formats, and the article, from datasets by name."""
+    """Makes all tables in all formats, and the articles, from datasets by name."""
     return all_texts
 
 

@@ -1,4 +1,4 @@
-# The accepted record in git: figures/, paper.md and supplement.md. Its history is
+# The accepted record in git: figures/, paper.md, supplement.md and motions.md. Its history is
 # `git log figures/`.
 # Both rules have no outputs, so that Snakemake runs them at each call.
 

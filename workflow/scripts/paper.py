@@ -1,4 +1,4 @@
-"""The replication article and its supplement from their templates, and the tally."""
+"""The replication article, its supplement and the article on motions, and the tally."""
 
 from pathlib import Path
 
@@ -8,7 +8,11 @@ from bouncing_ball.drawing.tables import to_markdown
 from bouncing_ball.paper.claims import tables as rows
 from bouncing_ball.paper.claims.claims import tally
 from bouncing_ball.pipeline.article import render_article
+from bouncing_ball.pipeline.configuration import read_yaml
 from bouncing_ball.pipeline.jobs import logged, read_input, using
+
+# The templates, and the names of the texts.
+ARTICLES = {"article": "paper", "supplement": "supplement", "motions": "motions"}
 
 
 def text_of(path):
@@ -25,9 +29,11 @@ with logged(snakemake) as lines:
         tables["atlas"] = to_markdown(*shares(data["atlas"]))
     claims = rows.Claims(data["claims"])
     artifacts = snakemake.params.artifacts
-    for template, path in (("article", "paper"), ("supplement", "supplement")):
+    about = read_yaml(snakemake.input.citation)
+    for template, path in ARTICLES.items():
         file = Path(snakemake.params.templates, f"{template}.md.j2")
-        write_text(snakemake.output[path], render_article(file, data, tables, claims, artifacts))
+        text = render_article(file, data, tables, claims, artifacts, about=about)
+        write_text(snakemake.output[path], text)
     last = tally(data["claims"])
     write_text(snakemake.output.tally, last + "\n")
     lines.append(last)

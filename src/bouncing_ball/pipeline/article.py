@@ -1,4 +1,4 @@
-"""The article and its supplement: from datasets and templates to Markdown and PDF.
+"""The articles and the supplement: from datasets and templates to Markdown and PDF.
 
 A template takes every number from a dataset and prints it by one of the functions in
 :data:`FORMATS`. Then headings, figures and tables get their numbers, and pandoc (part of
@@ -121,8 +121,9 @@ def numbered(text: str) -> str:
     """The text with numbers in its headings and in place of the references ``«name»``.
 
     The name of a section is its heading. Figures and tables are numbered in the order of their
-    captions, ``**Figure «name»`` and ``**Table «name»``. The numbers follow those of the 16 figures
-    and the table of the paper; in a supplement they begin with S1.
+    captions, ``**Figure «name»`` and ``**Table «name»``. In a replication the numbers follow those
+    of the 16 figures and the table of the paper; in a supplement they begin with S1, and in any
+    other article with 1.
 
     Raises
     ------
@@ -131,16 +132,19 @@ def numbered(text: str) -> str:
 
     Examples
     --------
-    >>> print(numbered("## Models\\n### Flight\\n**Figure «ball».** See «Flight».\\n## Results"))
+    >>> text = "## Models\\n### Flight\\n**Figure «ball».** See «Flight».\\n## Results"
+    >>> print(numbered(f"# [Re] A title\\n{text}"))
+    # [Re] A title
     ## 1. Models
     ### 1.1 Flight
     **Figure 17.** See 1.1.
     ## 2. Results
     """
     is_supplement = text.startswith("# Supplement")
+    is_replication = text.startswith("# [Re]")
     prefix = "S" if is_supplement else ""
     text, numbers = _with_numbered_headings(text, prefix)
-    count = Counter() if is_supplement else Counter(Figure=16, Table=1)
+    count = Counter(Figure=16, Table=1) if is_replication else Counter()
     for kind, name in _CAPTION.findall(text):
         count[kind] += 1
         numbers[name] = f"{prefix}{count[kind]}"
@@ -262,12 +266,15 @@ def render_article(
     tables: Mapping[str, str],
     claims: Any,
     artifacts: Mapping[str, Artifact],
+    *,
+    about: Mapping[str, Any] | None = None,
 ) -> str:
     """The text of a template with numbered sections, figures, tables and citations.
 
     Each sentence has a line. A template may include other templates of its folder. Templates can
-    use ``data``, ``tables`` and ``artifacts`` by name, ``claims``, and the functions in
-    :data:`FORMATS`. Citations have the syntax of pandoc, ``[@key]``.
+    use ``data``, ``tables`` and ``artifacts`` by name, ``claims``, the functions in
+    :data:`FORMATS`, and with ``about`` what CITATION.cff says: authors, version, address. Citations
+    have the syntax of pandoc, ``[@key]``.
 
     Raises
     ------
@@ -285,6 +292,8 @@ def render_article(
         keep_trailing_newline=True,
     )
     known = {"data": data, "tables": tables, "claims": claims, "artifacts": artifacts}
+    if about is not None:
+        known["about"] = about
     environment.globals.update(FORMATS, **known)
     text = environment.get_template(Path(template).name).render()
     with_formulas = by_sentence(numbered(text)).replace("Λ_SD", r"$\Lambda_{SD}$")

@@ -5,7 +5,7 @@ the files of an artifact that a folder has. A run writes to a folder, ``results/
 record has the same layout at the top of the repository. ``figures/`` holds the artifacts of the
 paper, ``figures/beyond/`` those that go past it, and all files of an artifact have its name:
 ``fig14.nc`` is the dataset, ``fig14.png`` and ``fig14.svg`` are the pictures drawn from it,
-``table1.csv`` and ``table1.md`` are tables, and ``explorer.html`` is a page. The article and its
+``table1.csv`` and ``table1.md`` are tables, and ``explorer.html`` is a page. The articles and the
 supplement are texts beside ``figures/``, made from all datasets. The measurements of physics
 engines, ``config/engines.nc``, are an artifact that no run makes.
 """
@@ -30,8 +30,8 @@ PAGE = ".html"
 CARRIERS = (DATASET, *PICTURES)
 """Suffixes of the files that carry their provenance themselves."""
 
-TEXTS = ("paper.md", "supplement.md")
-"""The article and its supplement."""
+TEXTS = ("paper.md", "supplement.md", "motions.md")
+"""The article of the replication with its supplement, and the article on the motions."""
 
 MEASURED = "config/engines.nc"
 """Measurements of physics engines, which are compared if both folders have them."""
@@ -168,7 +168,7 @@ class ArtifactFiles:
 
     @property
     def is_text(self) -> bool:
-        """Whether this is the article or its supplement, which are made from all datasets."""
+        """Whether this is an article or the supplement, which are made from all datasets."""
         return self.files[0] in TEXTS
 
 
@@ -237,7 +237,7 @@ def artifacts_among(paths: Iterable[str]) -> list[str]:
 def carrier_of(path: Path) -> Path:
     """The file that carries the provenance of a file: the file itself, or its dataset.
 
-    For the article and the supplement it is the dataset of the claims, the last dataset of a run.
+    For the articles and the supplement it is the dataset of the claims, the last one of a run.
 
     Raises
     ------

@@ -61,7 +61,7 @@ VARIABLES = {
         "reproduced, definition, in one reading, close, contradicted, undecidable or not asked"
     ),
     "printed_table": Variable("the printed table whose entry the claim is"),
-    "units": Variable("bound in units of the last printed digit"),
+    "unit_bound": Variable("bound in units of the last printed digit"),
     "numbers_beyond": Variable(
         "printed numbers farther from the computed one than the bound, without restatements"
     ),
@@ -195,8 +195,8 @@ def claims(data: Mapping[str, xr.Dataset]) -> xr.Dataset:
     )
     numbers = {one.__name__: xr.DataArray(one(data)).reset_coords(drop=True) for one in printed}
     verdicts = assess(CLAIMS, data)
-    beyond = {"numbers_beyond": ("units", numbers_beyond(verdicts, _BOUNDS))}
-    bounds = described(beyond, coords={"units": list(_BOUNDS)}, variables=VARIABLES)
+    beyond = {"numbers_beyond": ("unit_bound", numbers_beyond(verdicts, _BOUNDS))}
+    bounds = described(beyond, coords={"unit_bound": list(_BOUNDS)}, variables=VARIABLES)
     evident = described(numbers, variables=VARIABLES)
     return xr.merge([verdicts, bounds, evident]).assign_attrs(
         close_units=CLOSE_UNITS,

@@ -147,6 +147,21 @@ class Claims:
             if verdict in ("", claim.verdict) and table in ("", claim.printed_table)
         )
 
+    def printed(self, *, beyond: float = 0.0, table: str = "") -> list[Any]:
+        """Claims of printed numbers that differ from the computed ones by more than a share, the
+        largest relative difference first; of one table if that is named, and else without
+        restatements.
+        """
+        numbers = [
+            claim for claim in self.all if claim.printed_text and abs(claim.deviation) > beyond
+        ]
+        chosen = [
+            claim
+            for claim in numbers
+            if (claim.printed_table == table if table else claim.group == "number")
+        ]
+        return sorted(chosen, key=lambda claim: -abs(claim.deviation))
+
     def asked(self, name: str) -> bool:
         """Whether a claim has a verdict, for which the run must have the paper's parameters."""
         return self(name).verdict != "not asked"

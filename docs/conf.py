@@ -52,6 +52,7 @@ PARTS = {
     "Replication": [
         "paper",
         "supplement",
+        "motions",
         "figures/*",
         "docs/datasets",
         "docs/variables",

@@ -13,18 +13,24 @@ from bouncing_ball.paper.claims.verdict import Verdict
 
 @pytest.fixture(scope="module")
 def texts(pristine):
-    names = ("paper.md", "supplement.md")
+    names = ("paper.md", "supplement.md", "motions.md")
     return [(pristine.path / "results" / name).read_text(encoding="utf-8") for name in names]
 
 
 def test_the_sections_are_numbered_without_gaps(texts):
-    sections = re.findall(r"^## (\d+)\. ", texts[0], re.MULTILINE)
-    assert list(map(int, sections)) == list(range(1, len(sections) + 1))
+    for text in (texts[0], texts[2]):
+        sections = re.findall(r"^## (\d+)\. ", text, re.MULTILINE)
+        assert list(map(int, sections)) == list(range(1, len(sections) + 1))
 
 
-def test_the_article_shows_every_figure_and_table(texts, pristine):
+def test_the_articles_and_the_pages_on_engines_show_every_figure_and_table(texts, pristine):
+    pages = [Path(pristine.path, "docs", f"{name}.md") for name in ("engines", "bounces")]
+    pages = [page.read_text(encoding="utf-8").replace("](../", "](") for page in pages]
     text = "".join(texts).replace(r"$\Lambda_{SD}$", "Λ_SD")
     shown = re.findall(r"!\[[^]]*\]\((figures/[^)]*)\)", text)
+    # A page may show a figure of the article, too.
+    on_pages = {*re.findall(r"!\[[^]]*\]\((figures/[^)]*)\)", "".join(pages))}
+    shown += sorted(on_pages - {*shown})
     results = pristine.path / "results"
     figures = sorted(str(path.relative_to(results)) for path in results.glob("figures/**/*.png"))
     assert sorted(shown) == figures

@@ -41,7 +41,11 @@ def test_a_commit_runs_nothing_again_and_a_change_what_it_decides(complete):
         *("formulas", "Setting formulas"),
         # Every orbit shown is followed by the comparison of the three routes.
         *("witness", "Setting witness"),
-        *("claims", "Setting claims", "Writing results/paper.md and results/supplement.md"),
+        *(
+            "claims",
+            "Setting claims",
+            "Writing results/paper.md, results/supplement.md and results/motions.md",
+        ),
     }
 
 

@@ -30,7 +30,7 @@ def test_a_run_makes_every_figure_and_table(pristine):
     data = {f"{ARTIFACTS[name].place}.nc" for name in made_by_a_run()}
     recorded = {str(path.with_suffix("").relative_to(ROOT)) for path in figures.rglob("*.csv")}
     texts = {f"{place}.{kind}" for place in recorded for kind in ("csv", "md")}
-    pages = {"figures/beyond/explorer.html", "paper.md", "supplement.md", "tally.txt"}
+    pages = {"figures/beyond/explorer.html", "paper.md", "supplement.md", "motions.md", "tally.txt"}
     assert made == pictures | data | texts | pages
 
 

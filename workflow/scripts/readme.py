@@ -1,4 +1,4 @@
-"""The generated parts of README and docs/bounces.md, and pages that list the accepted files."""
+"""The generated parts of README and of two pages on engines, and pages that list the accepted files."""
 
 from pathlib import Path
 
@@ -23,12 +23,17 @@ def pages(top, artifacts):
     }
     parts["figures"] = thumbnails(artifacts.values())
     readme = with_parts((top / "README.md").read_text(encoding="utf-8"), parts)
+    steps = top / "workflow/report/front/engines/time_steps.md.j2"
+    run = {"ext_engines": read_dataset(top / "figures/beyond/ext_engines.nc")}
+    time_steps = {"time_steps": render_article(steps, run, {}, claims, artifacts)}
+    engines = with_parts((top / "docs/engines.md").read_text(encoding="utf-8"), time_steps)
     folders = {page_of(part): folder_page(part, artifacts.values()) for part in ("paper", "beyond")}
     bounces = with_parts(
         (top / "docs/bounces.md").read_text(encoding="utf-8"),
         {"drivers": drivers(read_dataset(top / "config/bounce_drivers.nc"))},
     )
-    return {"README.md": readme, "docs/bounces.md": bounces, **folders}
+    written = {"README.md": readme, "docs/engines.md": engines, "docs/bounces.md": bounces}
+    return {**written, **folders}
 
 
 if "snakemake" in globals():

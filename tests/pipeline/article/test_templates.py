@@ -17,7 +17,7 @@ DISPLAY = re.compile(r"\$\$.*?\$\$", re.DOTALL)
 INLINE = re.compile(r"\$[^$]+\$")
 CITATION = re.compile(r"\[@[^\]]+\]")
 CODE = re.compile(r"`[^`\n]*`")
-SPAN = r"R?\d+(?:[-–]\d+)?"
+SPAN = r"[RM]?\d+(?:[-–]\d+)?"
 NAMED = re.compile(rf"\b(?:Eq|Fig|Figure|Table|Eqs|Figs)s?\.? {SPAN}(?:(?:,| and|, and) {SPAN})*")
 FAMILY = re.compile(r"\b\d-T\b")
 HEADING = re.compile(r"^#+ .*$", re.MULTILINE)
@@ -64,7 +64,7 @@ def test_no_number_is_typed_into_an_explanation():
         assert typed_numbers(why.__doc__) == [], why
 
 
-@pytest.mark.parametrize("name", ["article", "supplement"])
+@pytest.mark.parametrize("name", ["article", "supplement", "motions"])
 def test_the_site_can_typeset_every_formula(accepted, name):
     # With an unknown command the site would not be built.
     formulas = [part.strip("$") for part in mathematics(accepted[name])]

@@ -27,7 +27,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 all: $(SETUP)
 	$(BIN)/snakemake --cores 2 $(QUIETLY)
-	@echo "Results: results/paper.md, results/figures/. Compare with the record: make diff"
+	@echo "Results: results/paper.md, results/motions.md, results/figures/. Compare with the record: make diff"
 
 # The paper alone, and its comparison with the record: results/diff/replication.html.
 replication: $(SETUP)
@@ -160,7 +160,8 @@ newest: setup-newest clean
 config-docs: $(SETUP)
 	$(BIN)/snakemake --cores 1 config_docs $(QUIETLY)
 
-# The verdicts and Table 1 in README.md, and the lists of files in figures/, from the accepted record.
+# The verdicts and Table 1 in README.md, what time steps cost in docs/engines.md, and the lists of
+# files in figures/, from the accepted record.
 readme: $(SETUP)
 	$(BIN)/snakemake --cores 1 readme $(QUIETLY)
 

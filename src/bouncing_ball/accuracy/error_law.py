@@ -31,16 +31,16 @@ Permanent contact has no impact to correct, and its error is of the second
 order: ``Λ_SD = 1 + K₂/ϖ² + O(1/ϖ⁴)`` with K₂ = -(1 - 2ζ²) for the
 displacement release and -1 for the force release.
 
-The remainder is bounded by three numbers, δ = δ_SN + δ_load + δ_period::
+The remainder is bounded by three numbers, η = η_SN + η_load + η_period::
 
-    δ_SN = |σ a₀| Λ/((1 + r) Y₀²)    shift of ψ over tan ψ₀, the distance to the fold
-    δ_load = D (1 + |a₀|)/(r v₀)     load against the speed of the ball that leaves
-    δ_period = D max(1, Λ)           contact against the period
+    η_SN = |σ a₀| Λ/((1 + r) Y₀²)    shift of ψ over tan ψ₀, the distance to the fold
+    η_load = D (1 + |a₀|)/(r v₀)     load against the speed of the ball that leaves
+    η_period = D max(1, Λ)           contact against the period
 
-``|error - K| ≤ M S δ``, with all terms at the ϖ of the contact, where S is the :func:`scale` of K
+``|error - K| ≤ M S η``, with all terms at the ϖ of the contact, where S is the :func:`scale` of K
 and M = 4 for the phase and 2 for the other quantities. M is fitted: the largest factor among 20 000
 random orbits is 3.0 for the phase and 1.6 for the others, and no other sample has exceeded M at any
-δ. The law gives no useful bound where δ is of order 1: next to the saddle-node, within
+η. The law gives no useful bound where η is of order 1: next to the saddle-node, within
 Λ - Λ_SN ~ 1/ϖ, for grazing and slow impacts, and for small r.
 """
 
@@ -58,14 +58,14 @@ from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic.one_impact import restitution_branch as restitution_orbit
 
 VALID_BELOW = 0.3
-"""δ below which the law is considered useful: the remainder is then less than 0.6 times the scale,
+"""η below which the law is considered useful: the remainder is then less than 0.6 times the scale,
 or 1.2 times for the phase."""
 
 ByQuantity = dict[Quantity, np.ndarray]
 """One array for each quantity of an impact, in the order of :data:`OF_IMPACTS`."""
 
 REMAINDER = dict.fromkeys(OF_IMPACTS, 2.0) | {Quantity.PHASE: 4.0}
-"""M of each quantity: the remainder is at most M S δ. M is fitted to a sample and not proved."""
+"""M of each quantity: the remainder is at most M S η. M is fitted to a sample and not proved."""
 
 
 def _of_orbit(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> tuple[np.ndarray, ...]:
@@ -136,7 +136,7 @@ def _period_doubling(half, r, delay, load, fold):
 
 
 def small_parameter(n: ArrayLike, instant: Instant, amplitude: ArrayLike) -> np.ndarray:
-    """The small parameter δ of the bound of the remainder; infinite at the saddle-node.
+    """The small parameter η of the bound of the remainder; infinite at the saddle-node.
 
     Arguments, shape and errors are those of :func:`first_order`.
 
@@ -188,13 +188,13 @@ class Remainder(NamedTuple):
     law: np.ndarray
     """The first-order errors by the law, shape (quantity, ...)."""
     factor: np.ndarray
-    """|error - law|/(S δ) of each quantity; NaN where the error is NaN."""
+    """|error - law|/(S η) of each quantity; NaN where the error is NaN."""
     small: np.ndarray
-    """δ, without the axis of quantities."""
+    """η, without the axis of quantities."""
     is_valid: np.ndarray
-    """Whether the error is finite and δ is below :data:`VALID_BELOW`, so that the law is useful."""
+    """Whether the error is finite and η is below :data:`VALID_BELOW`, so that the law is useful."""
     exceeded: np.ndarray
-    """Whether the factor is above M, at any δ."""
+    """Whether the factor is above M, at any η."""
 
 
 def remainder(

@@ -105,8 +105,15 @@ def test_nan_is_printed_as_a_dash():
 
 def test_names_have_numbers_in_the_order_of_their_captions(render):
     text = "**Table «b».** **Figure «a», a ball.** See Figure «a» and Table «b».\n## End\n«End»"
-    assert render(text) == (
-        "**Table 2.** **Figure 17, a ball.** See Figure 17 and Table 2.\n## 1. End\n1"
-    )
+    # Those of a replication follow the figures and the table of the paper.
+    for title, prefix, figure, table in (
+        ("# [Re] A title", "", 17, 2),
+        ("# Supplement", "S", "S1", "S1"),
+        ("# A title", "", 1, 1),
+    ):
+        assert render(f"{title}\n\n{text}") == (
+            f"{title}\n\n**Table {table}.** **Figure {figure}, a ball.** "
+            f"See Figure {figure} and Table {table}.\n## {prefix}1. End\n{prefix}1"
+        )
     with pytest.raises(KeyError, match="nowhere"):
         render("Figure «nowhere»")

@@ -4,22 +4,22 @@ The corrected model (:mod:`bouncing_ball.periodic.one_impact.corrected_branch`) 
 exact model in the second order, and from the restitution model in the first order, through
 the delay t_c and the load sensitivity σ. The first-order error of the
 restitution model is therefore the derivative of the closed forms along (t_c, σ, D) at 0.
-With ``C = nπ (1 - r)/(1 + r)``, ``cos ψ₀ = C/Λ``, ``Y₀ = Λ sin ψ₀`` and
-``a₀ = 1 - Y₀`` of the restitution model's orbit ::
+With ``X₀ = nπ (1 - r)/(1 + r)``, ``cos ψ₀ = X₀/Λ``, ``Y₀ = Λ sin ψ₀`` and
+``q₀ = 1 - Y₀`` of the restitution model's orbit ::
 
-    ψ = ψ₀ + σ a₀/((1 + r) Y₀)                (the line, at fixed Λ)
+    ψ = ψ₀ + σ q₀/((1 + r) Y₀)                (the line, at fixed Λ)
     φ = ψ - t_c
-    max z = Λ sin ψ - v₀ t_c + (nπ)²/2,   v₀ = nπ + C = 2nπ/(1 + r)
+    max z = Λ sin ψ - v₀ t_c + (nπ)²/2,   v₀ = nπ + X₀ = 2nπ/(1 + r)
     z′_b = nπ - (D - t_c)
-    r_a = r + [σ - D + (1 + r) t_c] a₀/v₀
+    r_a = r + [σ - D + (1 + r) t_c] q₀/v₀
     Λ_SN = (nπ(1 - r) - σ)/√((1 + r)² + σ²)
 
 and at the period doubling, with ``Y₀ - 1 = (1 - r)²/(1 + r)²`` there, from its
 two straight lines ::
 
     δX = σ (Y₀ - 1)/(1 + r)
-    δY = [2 t_c (Y₀ - 1) - nπ σ C + (1 - r) δX]/(nπ (1 + r))
-    δΛ = (C δX + Y₀ δY)/Λ_PD
+    δY = [2 t_c (Y₀ - 1) - nπ σ X₀ + (1 - r) δX]/(nπ (1 + r))
+    δΛ = (X₀ δX + Y₀ δY)/Λ_PD
 
 For a linear contact t_c, σ and D are inversely proportional to ϖ, so that the
 signature at ϖ = 1 gives the K of a relative error K/ϖ + O(1/ϖ²). The contact
@@ -33,8 +33,8 @@ displacement release and -1 for the force release.
 
 The remainder is bounded by three numbers, η = η_SN + η_load + η_period::
 
-    η_SN = |σ a₀| Λ/((1 + r) Y₀²)    shift of ψ over tan ψ₀, the distance to the fold
-    η_load = D (1 + |a₀|)/(r v₀)     load against the speed of the ball that leaves
+    η_SN = |σ q₀| Λ/((1 + r) Y₀²)    shift of ψ over tan ψ₀, the distance to the fold
+    η_load = D (1 + |q₀|)/(r v₀)     load against the speed of the ball that leaves
     η_period = D max(1, Λ)           contact against the period
 
 ``|error - K| ≤ M S η``, with all terms at the ϖ of the contact, where S is the :func:`scale` of K

@@ -1,5 +1,5 @@
 # Carbonelli, Perret-Liaudet, Rigaud and Feki (2011), from the equations to the figures.
-# `snakemake --cores 2` makes everything, `snakemake --cores 2 replication` the paper alone,
+# `snakemake --cores 2` makes all figures, tables and texts, `snakemake --cores 2 replication` the paper alone,
 # `snakemake --cores 2 permanent_contact` a stage, `snakemake --cores 2 fig08` one figure, `snakemake --cores 1 accept` copies the results over the
 # record.
 

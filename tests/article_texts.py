@@ -62,7 +62,8 @@ def all_texts(data, verdicts=None):
         for form in (to_csv, to_markdown):
             made[name, form.__name__] = form(*table)
     texts = {name: made[name, "to_markdown"] for name in TABLES}
-    data |= {name: read_dataset(ROOT / f"config/{name}.nc") for name in ("atlas", "engines")}
+    other = [path for path in (ROOT / "config").glob("*.nc") if path.stem not in data]
+    data |= {path.stem: read_dataset(path) for path in other}
     texts["atlas"] = to_markdown(*shares(data["atlas"]))
     about = read_yaml(ROOT / "CITATION.cff")
     decided = rows.Claims(data["claims"])

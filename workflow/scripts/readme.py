@@ -1,4 +1,4 @@
-"""The generated parts of README and of two pages on engines, and pages that list the accepted files."""
+"""The generated parts of README and of two pages on engines, and lists of the accepted files."""
 
 from pathlib import Path
 

@@ -78,6 +78,20 @@ def percent(share: float, digits: int = 3) -> str:
     return f"{short(above_a_half, digits)} %"
 
 
+def at_most(share: float, digits: int) -> str:
+    """A share in per cent, rounded up, for a sentence that says "at most" or "up to".
+
+    Examples
+    --------
+    >>> percent(0.00345, 1), at_most(0.00345, 1), at_most(0.03, 2)
+    ('0.3 %', '0.4 %', '3 %')
+    """
+    value = 100 * abs(float(share))
+    step = 10.0 ** (math.floor(math.log10(value)) - digits + 1) if value else 1.0
+    # A share that has so few digits itself is not raised by its rounding error.
+    return f"{short(step * math.ceil(value / step * (1 - 1e-9)), digits)} %"
+
+
 def listed(values: Iterable[str | float], word: str = "and") -> str:
     """Texts or numbers as a list in a sentence.
 
@@ -102,6 +116,7 @@ def pairs(left: Iterable[float], right: Iterable[float]) -> list[str]:
 
 
 FORMATS = {
+    "at_most": at_most,
     "decimal": decimal,
     "listed": listed,
     "pairs": pairs,

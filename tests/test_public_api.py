@@ -338,7 +338,10 @@ def test_a_misspelt_parameter_is_named_with_its_function():
         (lambda: n_t.orbit(RIGID, 1, 1.0, "up"), "one of stable, unstable"),
         (lambda: orbit(RIGID, n=2.5, amplitude=1.0), "n = 2.5 is not a whole number"),
         (lambda: orbit(RIGID, n=np.array([True]), amplitude=1.0), "n = True is not a whole"),
-        (lambda: orbit(0.85, amplitude=1.0), "the ball = 0.85 is not made by rigid, spring_damp"),
+        (
+            lambda: orbit(0.85, amplitude=1.0),
+            "the ball = 0.85 is not a ball: it is not made by rigid, spring_damp",
+        ),
         (lambda: rigid(restitution=[[0.5]]), "restitution has several axes without names"),
         (lambda: rigid(restitution=np.array([0.5, np.nan])), "restitution = nan is not a number"),
         (

@@ -377,3 +377,20 @@ def test_a_point_that_is_no_period_doubling_is_not_switched(refusal):
             bouncing_ball.follow(replace(point, kind="period doubling"))
         with refusal(NoOrbitError, "the orbit is no period doubling: det(M + 1) = "):
             switch(point)
+
+
+@pytest.mark.parametrize("ratio", [1.5, 2.0])
+def test_a_branch_that_merges_with_permanent_contact_says_so(ratio):
+    """Its points accumulate there: 500 of them were followed to no end at ϖ = 1.5."""
+    ball = bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=ratio)
+    found = bouncing_ball.follow(bouncing_ball.orbit(ball, amplitude=0.9), to=0.01)
+    assert "merges with permanent contact" in str(found.end_reason[1].values)
+    assert float(found.amplitude[-1]) == pytest.approx(float(ball.permanent_contact_threshold()))
+    assert found.sizes["point"] < 200
+
+
+def test_an_orbit_on_a_resting_table_is_not_followed(refusal):
+    """The saddle-node of an elastic ball is at Λ = 0, where all phases are the same orbit."""
+    fold, _ = bouncing_ball.limits(bouncing_ball.rigid(restitution=1.0))
+    with refusal(NoOrbitError, "the table rests at this orbit, where the phase has no meaning"):
+        bouncing_ball.follow(fold, to=0.5)

@@ -1,11 +1,16 @@
 """Orbits on any contact: the closed form where there is one, and properties that all laws share."""
 
+import math
+
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
+import bouncing_ball
 from bouncing_ball.accuracy.error_law import first_order
 from bouncing_ball.accuracy.errors import OF_ORBITS, relative
 from bouncing_ball.contacts.engines.impedance import Impedance
+from bouncing_ball.contacts.law_balls import contact_law
 from bouncing_ball.contacts.named_laws import LAWS, law_named
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.models.corrected.model import CorrectedModel
@@ -162,3 +167,31 @@ def test_a_row_of_corrected_models_is_that_of_its_laws(kind):
     np.testing.assert_allclose(found, [n_t.orbit(x, 1, 1.0).max_height for x in one], rtol=1e-12)
     fold = n_t.saddle_node(row, 1).amplitude
     np.testing.assert_allclose(fold, [n_t.saddle_node(x, 1).amplitude for x in one], rtol=1e-11)
+
+
+def test_an_overdamped_contact_with_a_force_release_has_orbits():
+    """One cycle by scipy, which shares no code: the contact up to zero force, then a parabola."""
+    omega, zeta, lam = 20.0, 1.5, 3.0
+    ball = contact_law("linear", frequency_ratio=omega, damping_ratio=zeta, release="force")
+    orbit = bouncing_ball.orbit(ball, amplitude=lam)
+
+    def force(_, y):
+        return -(omega**2 * y[0] + 2 * zeta * omega * y[1])
+
+    def motion(s, y):
+        return y[1], -1 + lam * math.sin(orbit.phase + s) + force(s, y)
+
+    force.terminal = True
+    force.direction = -1
+    start = [0.0, orbit.relative_impact_velocity]
+    run = solve_ivp(motion, (0, 6), start, "DOP853", events=force, rtol=1e-12, atol=1e-14)
+    ((gap, rate),) = run.y_events[0]
+    (duration,) = run.t_events[0]
+    assert duration == pytest.approx(orbit.contact_duration, rel=1e-9)
+    left = orbit.phase + duration
+    velocity = rate + lam * math.cos(left)
+    flight = 2 * math.pi - duration
+    landing = gap + lam * math.sin(left) + velocity * flight - flight**2 / 2
+    assert landing == pytest.approx(lam * math.sin(orbit.phase), abs=1e-8)
+    assert velocity - flight == pytest.approx(orbit.impact_velocity, abs=1e-8)
+    assert orbit.is_stable() and bouncing_ball.limits(ball).saddle_node.amplitude < lam

@@ -125,14 +125,16 @@ def a_ball(ball: Any) -> Ball:
     --------
     >>> a_ball(0.85)
     Traceback (most recent call last):
-    bouncing_ball.errors.ParameterError: the ball = 0.85 is not made by rigid, spring_damper, \
-contact_law or corrected
+    bouncing_ball.errors.ParameterError: the ball = 0.85 is not a ball: it is not made by rigid, \
+spring_damper, contact_law or corrected
     """
     if not isinstance(ball, Ball):
         how = "rigid, spring_damper, contact_law or corrected"
         maker = _OF_CONTACTS.get(type(ball).__name__)
         remedy = f": give {maker}(…) of this contact" if maker else ""
-        raise ParameterError(f"the ball = {{}} is not made by {how}{remedy}", shortened(ball))
+        raise ParameterError(
+            f"the ball = {{}} is not a ball: it is not made by {how}{remedy}", shortened(ball)
+        )
     return ball
 
 

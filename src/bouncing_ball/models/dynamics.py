@@ -1,6 +1,7 @@
 """The simulation of balls from impact to impact, by the contacts and flights of any model.
 
-A subclass of :class:`Dynamics` computes the ends of contacts; everything else follows from them.
+A subclass of :class:`Dynamics` computes the ends of contacts and their derivatives; the simulation
+follows from them.
 """
 
 from abc import ABC, abstractmethod

@@ -1,8 +1,9 @@
 """The interface of every model of the impact.
 
-Code that uses a model calls only the methods of this interface and never asks for its class. A
-model says how a ball comes into contact, leaves the table and flies, and how small deviations grow
-on the way (:class:`~bouncing_ball.models.dynamics.Dynamics`); its periodic orbits follow from that
+Code that uses a model calls the methods of this interface; only closed forms, which are a second
+route, and calls for rigid balls alone ask for its class. A model says how a ball comes into
+contact, leaves the table and flies, and how small deviations grow on the way
+(:class:`~bouncing_ball.models.dynamics.Dynamics`); its periodic orbits follow from that
 (:mod:`bouncing_ball.periodic`)::
 
     model = SpringDamperModel(SpringDamper.from_restitution(0.85, 10.0))  # or RestitutionModel(…)

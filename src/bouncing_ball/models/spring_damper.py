@@ -166,7 +166,7 @@ class SpringDamper(OscillatorLaw):
         return cls(check_positive(frequency_ratio, "frequency ratio ϖ"), zeta, rule)
 
     def implied(self, values: Mapping[str, Any]) -> dict[str, Any]:
-        """ζ of a given r, or r of a given ζ (Eq. 16); nothing if neither is given.
+        """ζ of a given r, or r of a given ζ (Eq. 16); nothing if neither is given, or for ζ ≥ 1.
 
         Examples
         --------
@@ -178,7 +178,8 @@ class SpringDamper(OscillatorLaw):
             return {"damping_ratio": damping_ratio(values["restitution"])}
         if "damping_ratio" in values:
             zeta = values["damping_ratio"]
-            return {"restitution": restitution_coefficient(zeta, Release.DISPLACEMENT)}
+            if np.all(np.asarray(zeta) < 1):
+                return {"restitution": restitution_coefficient(zeta, Release.DISPLACEMENT)}
         return {}
 
     @cached_property
@@ -299,22 +300,19 @@ class SpringDamper(OscillatorLaw):
         return HeldContactDynamics.of(self, amplitude, setting)
 
     @property
-    def constant_signature(self) -> Instant:
-        """The signature in closed form.
-
-        Raises
-        ------
-        ModelError
-            If ζ ≥ 1: the formulas hold for underdamped contacts only.
+    def constant_signature(self) -> Instant | None:
+        """The signature in closed form; None for overdamped contacts, for which it does not hold.
 
         Examples
         --------
         The force of an elastic contact is symmetric in time, so that its centroid is in the middle:
 
-        >>> instant = SpringDamper(2.0, 0.0).constant_signature
+        >>> instant = SpringDamper(2.0, 0.0).signature(1.0)
         >>> float(instant.delay) == np.pi / 4, float(instant.restitution), float(instant.load)
         (True, 1.0, 0.0)
         """
+        if np.any(np.asarray(self.damping_ratio) >= 1):
+            return None
         duration = self.free_duration
         r = self.restitution
         # The time at which the flight after the contact rises through δ = 0.

@@ -208,7 +208,7 @@ class Impedance(OscillatorLaw):
         if self.has_kink or np.any(np.asarray(self.damping_ratio) >= 1):
             return None
         spring = SpringDamper(self.frequency_ratio, self.damping_ratio, Release.FORCE)
-        free = spring.constant_signature
+        free = spring.signature(1.0)
         return free._replace(load=free.load + self.share * spring.lag * free.restitution)
 
     @property

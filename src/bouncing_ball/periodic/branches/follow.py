@@ -133,6 +133,10 @@ def follow(
     balls = Balls(orbit.model, orbit.amplitude)
     allowed = AMPLITUDE_OF_ORBIT if name == LAMBDA else balls.range_of(name)
     value = None if to is None else checked_number("to", to, allowed)
+    if orbit.amplitude == 0:
+        raise NoOrbitError(
+            "the table rests at this orbit, where the phase has no meaning: follow one at Λ > 0"
+        )
     if orbit.kind in _ENDS:
         kind = Special(orbit.kind)
         raise NoOrbitError(f"the branch ends at the {kind}: {MEANINGS[kind]}")

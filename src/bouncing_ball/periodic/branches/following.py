@@ -30,14 +30,16 @@ from bouncing_ball.periodic.orbits.special import (
     Coordinates,
     Special,
     events,
+    flight_time,
     halves,
     loss_of_release,
     turns_apart,
 )
 from bouncing_ball.periodic.orbits.stability import Bifurcation
 
-STEPS = StepControl(initial=0.01, smallest=1e-9, largest=0.1, max_angle=0.15)
-"""Steps in arclength, over the phases, the velocities and arsinh of the parameter."""
+STEPS = StepControl(initial=0.01, smallest=1e-9, largest=0.1, max_angle=0.15, creep=1e-6)
+"""Steps in arclength, over the phases, the velocities and arsinh of the parameter. A branch ends
+where its points accumulate, for example where its orbits merge with permanent contact."""
 PATIENT = NewtonSettings(max_iterations=20, longest=0.3)
 """Newton's method from a guess that is not the last point of a branch."""
 _BOUND = "bound"
@@ -47,6 +49,7 @@ _NEAR = 0.1
 _CLOSER = 0.1
 _TRIES = 4
 _HALVES = "the two turns of the orbit become nearly equal"
+_STAYS = "the flight vanishes: the orbit merges with permanent contact"
 _CORNER = "the branch has a corner, where the map of the model has no derivative"
 # If the steps become too short, a test function this small, or a parameter this close to the end of
 # its range, is given as the reason. Close to an event the functions are of the order of the square
@@ -287,7 +290,7 @@ def branch_from(
             branch = _joined(branch, further)
         tests = [*events(orbits), loss_of_release(orbits)]
         branch = _up_to_limit(orbits, branch, within)
-        whole = replace(branch, end=explained(branch, tests, limits))
+        whole = replace(branch, end=_explained_end(orbits, branch, tests, limits))
         return Followed(orbits, _with_lost_release(orbits, whole))
 
 
@@ -421,6 +424,19 @@ def _up_to_halving(orbits: PeriodicOrbits, branch: Branch) -> Branch | None:
         start=branch.start,
         end=End(f"{kind_here}: {MEANINGS[kind_here]}"),
     )
+
+
+def _explained_end(
+    orbits: PeriodicOrbits, branch: Branch, tests: Sequence[Event], limits: Sequence[Event]
+) -> End:
+    """The end of a branch: see :func:`explained`.
+
+    Where the only flight of an orbit vanishes, so do the speeds of its impact and of its release.
+    """
+    if branch.end.stuck and orbits.impacts == 1:
+        if float(flight_time(orbits, branch.points[-1])) < _CLOSE:
+            return End(_STAYS)
+    return explained(branch, tests, limits)
 
 
 def explained(branch: Branch, tests: Sequence[Event], limits: Sequence[Event]) -> End:

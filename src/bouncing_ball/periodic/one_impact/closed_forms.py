@@ -189,7 +189,8 @@ def corrected_orbits(
 
 @singledispatch
 def closed_form(model: Model) -> OrbitsOfModel | None:
-    """The closed form of a model's branch; None if none is known.
+    """The n-T orbits of a model from the closed form of its branch, or in another setting than the
+    paper's from a search of its own; None if a search from the corrected model finds them.
 
     Examples
     --------

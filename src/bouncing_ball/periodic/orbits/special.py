@@ -236,6 +236,11 @@ def events(orbits: PeriodicOrbits) -> Sequence[Event]:
     )
 
 
+def flight_time(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
+    """The shortest flight of each orbit, of the leading shape of y."""
+    return (orbits.intervals(y) - orbits.beside(y).duration[0]).min(axis=-1)
+
+
 def ends_of_contact(orbits: PeriodicOrbits) -> list[Event]:
     """Where an orbit with one impact ceases to exist: the ball no longer approaches the table at
     impact, it no longer leaves the table at the end of contact, or its flight time vanishes.
@@ -254,9 +259,6 @@ def ends_of_contact(orbits: PeriodicOrbits) -> list[Event]:
             return np.full(y.shape[:-1], np.nan)
         return _at_point(legs, rise_of_release(legs)).min(axis=-1)
 
-    def aloft(y: np.ndarray) -> np.ndarray:
-        return (orbits.intervals(y) - orbits.beside(y).duration[0]).min(axis=-1)
-
     return [
         end(
             "contact lost",
@@ -264,7 +266,11 @@ def ends_of_contact(orbits: PeriodicOrbits) -> list[Event]:
             lambda y: impact_margin(orbits, y) - _MARGIN,
         ),
         end(Special.RELEASE_LOST, MEANINGS[Special.RELEASE_LOST], released),
-        end("flight lost", "the contact fills the whole cycle", lambda y: aloft(y) - _MARGIN),
+        end(
+            "flight lost",
+            "the contact fills the whole cycle",
+            lambda y: flight_time(orbits, y) - _MARGIN,
+        ),
     ]
 
 

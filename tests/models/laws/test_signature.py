@@ -1,5 +1,7 @@
 """The signature of the linear contact against the motion in the contact."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -55,9 +57,20 @@ def test_an_elastic_contact_has_its_centroid_in_the_middle(release):
     np.testing.assert_array_equal(instant.load, 0.0)
 
 
-def test_an_overdamped_contact_has_no_signature(refusal):
-    with refusal(ModelError, "damping ratio ζ = 1.0", "below 1"):
-        Signature(SpringDamper(10.0, 1.0))
+def test_an_overdamped_contact_that_pulls_has_no_signature(refusal):
+    with refusal(ModelError, "a free impact of speed 1 does not end within a dozen oscillations"):
+        Signature(SpringDamper(10.0, 1.5))(np.ones(1))
+
+
+def test_an_overdamped_contact_that_does_not_pull_has_the_signature_of_its_roots():
+    """p = (e^{at} - e^{bt})/(a - b) with the roots a and b, up to p″ = 0, where the force ends."""
+    omega, zeta = 10.0, 1.5
+    slow, fast = (omega * (-zeta + sign * math.sqrt(zeta**2 - 1)) for sign in (1, -1))
+    end = 2 * math.log(fast / slow) / (slow - fast)
+    rate = (slow * math.exp(slow * end) - fast * math.exp(fast * end)) / (slow - fast)
+    found = Signature(SpringDamper(omega, zeta, "force"))(np.ones(1))
+    assert found.restitution[0] == pytest.approx(-rate, rel=1e-10)
+    assert found.duration[0] == pytest.approx(end, rel=1e-10)
 
 
 KINKED = Impedance(10.0, 0.136, 0.95, 0.5, width=0.2)

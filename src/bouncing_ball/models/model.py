@@ -176,7 +176,8 @@ def _numbers(law: Any) -> dict[str, Any]:
     found = {name: value for name, value in values.items() if _is_number(value)}
     for inner in _inner(law):
         found |= _numbers(inner)
-    return found | _implied(law, found)
+    found |= _implied(law, found)
+    return {name: x if np.ndim(x) else np.asarray(x).item() for name, x in found.items()}
 
 
 def _with_numbers(law: Any, values: Mapping[str, Any]) -> Any:

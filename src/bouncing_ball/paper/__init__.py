@@ -24,6 +24,7 @@ Eqs.    what                      where
 18-20   period of the n-T orbit   ``periodic.orbits.orbit.Orbit.flight_time``
 21, 22  start of contact          ``models.dynamics.Dynamics.start``
 23      end of the contact        ``models.linear_contact.LinearContactDynamics.depart``
+..      near a given duration     ``models.linear_contact.LinearContactDynamics.depart_after``
 24-26   return to the start       ``periodic.orbits.problem.PeriodicOrbits.residual``
 ..      all, in unknowns of paper ``periodic.one_impact.paper_unknowns.PaperUnknowns``
 ..      at a given duration       ``periodic.one_impact.spring_damper_branch.branch_point``

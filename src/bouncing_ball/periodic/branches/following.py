@@ -24,8 +24,9 @@ from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.periodic.orbits.balls import LAMBDA
 from bouncing_ball.periodic.orbits.lost_release import lost_release
 from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
-from bouncing_ball.periodic.orbits.problem import PeriodicOrbits, twice
+from bouncing_ball.periodic.orbits.problem import PeriodicOrbits, turns_of_half, twice
 from bouncing_ball.periodic.orbits.special import (
+    CLOSE,
     MEANINGS,
     Coordinates,
     Special,
@@ -51,10 +52,8 @@ _TRIES = 4
 _HALVES = "the two turns of the orbit become nearly equal"
 _STAYS = "the flight vanishes: the orbit merges with permanent contact"
 _CORNER = "the branch has a corner, where the map of the model has no derivative"
-# If the steps become too short, a test function this small, or a parameter this close to the end of
-# its range, is given as the reason. Close to an event the functions are of the order of the square
-# root of the distance.
-_CLOSE = 1e-2
+# If the steps become too short, a parameter this close to the end of its range is given as the
+# reason.
 _AT_END = 1e-6
 # The duration of a contact is that of the release near the unknown one, of which Newton's method
 # finds twelve digits; a release at another time is another one.
@@ -402,9 +401,7 @@ def _up_to_halving(orbits: PeriodicOrbits, branch: Branch) -> Branch | None:
     phase, velocity = orbits.states(last)
     first = phase[:k]
     turned = np.concatenate([first, first + reduce_angle(phase[k:] - first)])
-    turns = orbits.turns[:k].copy()
-    # The turn ends at the first impact of the first turn in place of the second.
-    turns[-1] += round(float(phase[k] - phase[0]) / (2 * np.pi))
+    turns = turns_of_half(orbits.turns, phase)
     half = replace(orbits, impacts=k, turns=turns, resumes=orbits.resuming[:k])
     rows = (turned, velocity, orbits.durations(last))
     means = (row.reshape(2, k).mean(axis=0) for row in rows)
@@ -434,7 +431,7 @@ def _explained_end(
     Where the only flight of an orbit vanishes, so do the speeds of its impact and of its release.
     """
     if branch.end.stuck and orbits.impacts == 1:
-        if float(flight_time(orbits, branch.points[-1])) < _CLOSE:
+        if float(flight_time(orbits, branch.points[-1])) < CLOSE:
             return End(_STAYS)
     return explained(branch, tests, limits)
 
@@ -452,7 +449,7 @@ def explained(branch: Branch, tests: Sequence[Event], limits: Sequence[Event]) -
         return end
     near = {event.name: abs(float(event.function(last))) for event in tests}
     nearest = min(near, key=lambda name: near[name])
-    if not near[nearest] < _CLOSE:
+    if not near[nearest] < CLOSE:
         return End(_CORNER) if end.kind is EndKind.CORNER else end
     sentence = (
         f"the orbit is next to {_PLACES[Special(nearest)]}, where its equations are not smooth"

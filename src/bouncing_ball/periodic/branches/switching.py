@@ -15,7 +15,7 @@ from bouncing_ball.numerics.corrector import Correction, newton, plane, tangent
 from bouncing_ball.periodic.branches.following import PATIENT, point_near
 from bouncing_ball.periodic.orbits.balls import LAMBDA
 from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
-from bouncing_ball.periodic.orbits.problem import PeriodicOrbits, twice
+from bouncing_ball.periodic.orbits.problem import PeriodicOrbits, turns_of_half, twice
 from bouncing_ball.periodic.orbits.stability import Bifurcation, is_stable
 
 ASIDE = 0.02
@@ -122,12 +122,9 @@ def halved(halving: Orbit) -> Orbit:
     """The orbit of half the period with which a branch merges at a period halving."""
     k = halving.impacts // 2
     phases = halving.phases
-    turns = np.array(halving.turns[:k])
-    # The turn ends at the first impact of the first turn in place of the second.
-    turns[-1] += round(float(phases[k] - phases[0]) / (2 * np.pi))
     return replace(
         halving,
-        turns=turns,
+        turns=turns_of_half(halving.turns, phases),
         phases=phases[:k],
         velocities=halving.velocities[:k],
         durations=halving.durations[:k],

@@ -505,3 +505,14 @@ def twice(orbits: PeriodicOrbits, y: np.ndarray) -> tuple[PeriodicOrbits, np.nda
     velocities = np.concatenate([velocity, velocity], axis=-1)
     durations = np.concatenate([duration, duration], axis=-1)
     return whole, whole.point(phases, velocities, durations, **orbits.values(y))
+
+
+def turns_of_half(turns: np.ndarray, phase: np.ndarray) -> np.ndarray:
+    """The turns of the first half of an orbit that repeats after half its period, from the turns
+    and the phases of the whole orbit, each of shape (2k,).
+    """
+    half = len(turns) // 2
+    found = np.array(turns[:half])
+    # The half ends at its own first impact in place of that of the second half.
+    found[-1] += round(float(phase[half] - phase[0]) / (2 * np.pi))
+    return found

@@ -36,9 +36,9 @@ from bouncing_ball.periodic.orbits.stability import Bifurcation
 # Rounding errors of 1e-16 are divided by the impact speed and by the flight time where both vanish:
 # the margin limits each of them to about 1e-12.
 _MARGIN = 1e-4
-# If the steps of a branch became too short, its orbits end where a function is this small. Close to
-# the end the functions are of the order of the square root of the distance.
-_CLOSE = 1e-2
+CLOSE = 1e-2
+"""How small the function of an event is where a branch with too short steps ends next to it. Close
+to an event the functions are of the order of the square root of the distance."""
 # The value of a function where there is no minimum or maximum, and thus no event near.
 _FAR = 1.0
 
@@ -296,7 +296,7 @@ def _end_near(
     inner = problem.inner(point)
     near = [abs(float(event.function(inner))) for event in ends]
     nearest = ends[int(np.argmin(near))]
-    if not min(near) < _CLOSE:
+    if not min(near) < CLOSE:
         return end, []
     place = lost_release(problem.orbits, inner) if nearest.name == Special.RELEASE_LOST else None
     there = point if place is None else problem.outer(place)

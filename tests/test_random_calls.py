@@ -53,6 +53,9 @@ def error_thresholds(calls: Calls) -> Any:
 # Branches and curves.
 
 
+SPECIAL = list(map(str, Special))
+
+
 def branch_of_an_orbit(calls: Calls) -> Any:
     ends = calls.draw(st.sampled_from([orbit, partial(CALLS["orbit_of_motion"])]))
     start = ends(calls)
@@ -99,6 +102,19 @@ def follow(calls: Calls) -> Any:
     ranges = {"amplitude": limits_of(calls)} if calls.draw(st.booleans()) else {}
     along = "amplitude", across(calls, start)
     return calls.random("follow", start, along=along, ranges=ranges)
+
+
+def normal_form(calls: Calls) -> Any:
+    return calls.call("normal_form", special(calls, calls.draw(st.sampled_from(SPECIAL))))
+
+
+def grazing_form(calls: Calls) -> Any:
+    return calls.call("grazing_form", special(calls, calls.draw(st.sampled_from(SPECIAL))))
+
+
+def basin_entropy(calls: Calls) -> Any:
+    found = calls.random("basins", calls.ball(), needed=("amplitude",))
+    return calls.call("basin_entropy", found, calls.draw(st.integers(-1, 12)))
 
 
 # Contacts of engineers.
@@ -182,8 +198,8 @@ def fit_contact(calls: Calls) -> Any:
 CALLS: dict[str, Callable[[Calls], Any]] = {
     each.__name__: each
     for each in (
-        orbit, error_thresholds, follow, describe_contact, assess_contact,
-        choose_contact, write_contact, fit_contact,
+        orbit, error_thresholds, follow, normal_form, grazing_form, basin_entropy,
+        describe_contact, assess_contact, choose_contact, write_contact, fit_contact,
     )
 } | {
     name: with_ball(name, *needed)
@@ -192,6 +208,7 @@ CALLS: dict[str, Callable[[Calls], Any]] = {
         ("orbits", "amplitude"), ("branch",), ("permanent_contact",), ("motion_of", "amplitude"),
         ("lyapunov_exponent", "amplitude"), ("orbit_diagram", "amplitudes"),
         ("basins", "amplitude"), ("orbit_of_motion", "amplitude"),
+        ("ensemble", "amplitude", "noise"),
     )
 }  # fmt: skip
 """A function for each public function, which draws its arguments and calls it."""
@@ -215,8 +232,9 @@ def check(name: str, data: Any) -> None:
 def test_every_public_function_is_called():
     functions = {name for name in bb.__all__ if inspect.isfunction(getattr(bb, name))}
     makers = {"rigid", "spring_damper", "contact_law", "corrected"}
-    # It takes the path of a file and no numbers: tests/drawing/test_figures_of_files.py.
-    assert functions - makers - {"open"} == CALLS.keys()
+    # They take the path of a file and no numbers: tests/drawing/test_figures_of_files.py and
+    # tests/periodic/test_saved.py.
+    assert functions - makers - {"open", "read_orbits"} == CALLS.keys()
 
 
 def test_the_ranges_of_numbers_are_declared():

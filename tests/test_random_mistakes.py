@@ -128,6 +128,8 @@ def test_a_wrong_quantity_is_refused(refusal, data, case):
         said = "not a finite number" if math.isnan(wrong) else f"is not {quantity.allowed}"
         if wrong <= 0 < quantity.allowed.low:
             said = "is not a positive number"
+        if wrong < 0 == quantity.allowed.low:
+            said = "is negative"
         with refusal(ModelError, name, said):
             kind(**engine, **{name: wrong})
 

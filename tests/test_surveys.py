@@ -90,10 +90,10 @@ def test_two_arrays_make_a_grid_and_arrays_along_one_axis_are_pairs():
     compliant = bb.spring_damper(restitution=0.85, frequency_ratio=5.0)
     one = bb.history(compliant, amplitude=1.0, **length)
     np.testing.assert_array_equal(grid.ball.sel(amplitude=1.0, frequency_ratio=5.0), one.ball)
-    lam, ratio = (xr.DataArray(x, dims="ball") for x in ([0.5, 1.0], [20.0, 5.0]))
+    lam, ratio = (xr.DataArray(x, dims="pair") for x in ([0.5, 1.0], [20.0, 5.0]))
     several = bb.spring_damper(restitution=0.85, frequency_ratio=ratio)
     pairs = bb.history(several, amplitude=lam, **length)
-    assert pairs.ball.dims == ("ball", "time")
+    assert pairs.ball.dims == ("pair", "time")
     np.testing.assert_array_equal(pairs.ball[1], one.ball)
     assert grid.frequency_ratio.attrs["symbol"] == "ϖ"
 

@@ -12,6 +12,9 @@ from bouncing_ball.pipeline.diff.budgets import ARTIFACTS, budget_of
 IN_SI = dict.fromkeys(("measured_speed", "curve_speed", "shaker_speed"), "m s-1") | {
     "shaker_frequency": "Hz",
     "time_step": "s",
+    "driver_step": "s",
+    "driver_height": "m",
+    "driver_certified": "m",
     "drop_height": "m",
 }
 

@@ -69,7 +69,8 @@ def model_of(text: str, arrays: Mapping[str, Any]) -> Any:
     >>> model_of(*text_of(RestitutionModel(0.5)))
     RestitutionModel(restitution=0.5)
     """
-    known = _KNOWN | {x.__name__: x for base in _OF_USERS for x in _subclasses(base)}
+    # A law of a user may have the name of one of the library.
+    known = {x.__name__: x for base in _OF_USERS for x in _subclasses(base)} | _KNOWN
     try:
         found = _read(json.loads(text), arrays, known)
     except (json.JSONDecodeError, KeyError, TypeError, AttributeError):

@@ -44,6 +44,7 @@ ENDS = "periodic/one_impact/spring_damper_bifurcations.py"
 LINEAR = "models/linear_contact.py"
 PERMANENT = "models/permanent_contact.py"
 ORBIT = "periodic/orbits/orbit.py"
+IMPACTS = "periodic/orbits/impacts.py"
 EDITS = [
     Edit("models/flight.py", "(self.velocity - _HALF * time)", "(self.velocity - time)", "Eq. 4"),
     Edit("models/flight.py", "slowing = y * sine + x * versine", "slowing = y * sine", "Eq. 5"),
@@ -85,13 +86,13 @@ EDITS = [
         "Eq. 16",
     ),
     Edit(
-        ORBIT,
+        IMPACTS,
         "self._shaped(-self._leaving / closing)",
         "self._shaped(self._bounces / closing)",
         "Eq. 17",
     ),
     Edit(
-        ORBIT,
+        IMPACTS,
         "return self._shaped(self._flights)",
         "return self._shaped(self._intervals)",
         "Eqs. 18-20",
@@ -120,7 +121,7 @@ EDITS = [
         "Eqs. 21-26",
     ),
     Edit(
-        ORBIT,
+        IMPACTS,
         "return np.roll(self.velocities, -1, axis=-1) + self._flights",
         "return np.roll(self.velocities, -1, axis=-1) + self._intervals",
         "Eq. 27",

@@ -422,7 +422,7 @@ def test_the_reports_name_the_worst_first_with_its_cause_and_place(pair):
     data = pair.dataset("fig05")
     data.phase.values[1, 40] += 1e-3
     pair.write("fig05", data)
-    pair.rewrite("paper.md", "reproduced", "contradicted")
+    pair.rewrite("paper.md", "*reproduced*", "*contradicted*")
     comparison = pair.compare()
     lines = to_terminal(comparison).splitlines()
     assert lines[0] == "fig05: numbers moved"

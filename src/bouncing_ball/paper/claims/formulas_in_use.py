@@ -36,6 +36,7 @@ _TOLERANCE = 0.01
 _OF_ORBITS = (
     "models.dynamics.Dynamics.start",
     "models.linear_contact.LinearContactDynamics.depart",
+    "models.linear_contact.LinearContactDynamics.depart_after",
     "periodic.orbits.problem.PeriodicOrbits.residual",
     "periodic.one_impact.paper_unknowns.PaperUnknowns",
     "periodic.one_impact.spring_damper_branch.branch_point",

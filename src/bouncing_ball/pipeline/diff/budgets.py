@@ -76,8 +76,12 @@ def _branches(coordinate: float, multiplier: float) -> dict[str, Budget]:
     orbit = dict.fromkeys(_ORBIT, Budget(coordinate, over="amplitude"))
     multipliers = dict.fromkeys(_MULTIPLIER, Budget(multiplier, over="amplitude"))
     first = {**flags, "amplitude": Budget(coordinate, over="phase"), **orbit, **multipliers}
-    # A second branch, with names of its own.
-    second = {f"long_{name}": x._replace(over=f"long_{x.over}") for name, x in first.items()}
+    # A second branch, with names of its own; it is one of the spring-damper model alone.
+    second = {
+        f"long_{name}": budget._replace(over=f"long_{budget.over}")
+        for name, budget in first.items()
+        if not name.startswith("restitution")
+    }
     return first | second
 
 

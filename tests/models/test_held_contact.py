@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from contacts_by_quadrature import leg, linear, of_force
 from settings_by_quadrature import table_of
+from side_by_side import VELOCITY, checked_deviations
 
 import bouncing_ball
 from bouncing_ball import Drag, Spring, Waveform, contact_law, rigid, spring_damper
@@ -181,41 +182,26 @@ def test_a_stiff_contact_that_lies_on_the_table_ends_where_the_load_does(zeta):
     assert abs(found.contact_duration[0] - lift) < 2e-5
 
 
-@pytest.mark.parametrize("case", ["held", "law"])
-@pytest.mark.parametrize("flight", FLIGHTS)
+# A contact law has no other flight than the free one.
+@pytest.mark.parametrize(
+    ("case", "flight"), [*(("held", flight) for flight in FLIGHTS), ("law", "gravity")]
+)
 def test_a_deviation_grows_as_side_by_side_balls_do(case, flight):
     kind, _ = FLIGHTS[flight]
     if case == "law":
-        if flight != "gravity":
-            return
         ball = contact_law("hunt-crossley", stiffness=500.0, damping=0.1, table=Waveform(*TWO))
     else:
         where = {"table": Waveform(*TWO), "flight": kind}
         ball = spring_damper(frequency_ratio=6.0, damping_ratio=0.1, release="force", **where)
     dynamics = ball.dynamics(1.7)
-
-    def after(phase, velocity):
-        leg = next(dynamics.legs(dynamics.start(np.array([phase]), np.array([velocity]))))
-        impact, passed = leg.fly()
-        return np.array([phase + passed[0], impact.velocity[0]])
-
-    start = dynamics.start(np.array([0.4]), np.array([-3.0]))
-    leg = next(dynamics.legs(start, differentiate=True))
-    leg.fly()
-    a, b, c, d = (entry[0] for entry in leg.jacobian())
-    h = 1e-5
-    by_phase = (after(0.4 + h, -3.0) - after(0.4 - h, -3.0)) / (2 * h)
-    by_velocity = (after(0.4, -3.0 + h) - after(0.4, -3.0 - h)) / (2 * h)
-    # The error of the difference is that of rounding, 1e-14/h, and of h².
-    size = 1e-8 * (1 + np.abs([a, b, c, d]).max()) ** 2
-    assert np.abs(by_phase - [a, c]).max() < size and np.abs(by_velocity - [b, d]).max() < size
+    start, leg, determinant = checked_deviations(dynamics)
     contraction = dynamics.contraction(start, leg.departure)[0]
     contraction *= dynamics.setting.contraction(leg.passed - leg.departure.duration)[()]
     released = leg.departure.flight
     # A step of the force at the release multiplies areas too; here there is none.
-    expected = contraction * (-3.0) / leg.after.velocity
+    expected = contraction * VELOCITY / leg.after.velocity
     assert released.velocity[0] > 0
-    assert abs(np.ravel(a * d - b * c - expected)[0]) < 1e-9 * (1 + abs(np.ravel(expected)[0]))
+    assert abs(np.ravel(determinant - expected)[0]) < 1e-9 * (1 + abs(np.ravel(expected)[0]))
 
 
 def test_one_harmonic_is_the_table_of_the_paper():

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.special import lambertw
 from settings_by_quadrature import impacts, on_a_spring, table_of, with_drag
+from side_by_side import VELOCITY, checked_deviations
 
 import bouncing_ball
 from bouncing_ball import Drag, Spring, Waveform, rigid
@@ -118,26 +119,11 @@ def test_a_deviation_grows_as_side_by_side_balls_do(case):
     harmonics, flight = CASES[case]
     ball = rigid(restitution=0.6, table=Waveform(*harmonics), flight=flight)
     dynamics = ball.dynamics(1.7)
-
-    def after(phase, velocity):
-        leg = next(dynamics.legs(dynamics.start(np.array([phase]), np.array([velocity]))))
-        impact, passed = leg.fly()
-        return np.array([phase + passed[0], impact.velocity[0]])
-
-    start = dynamics.start(np.array([0.4]), np.array([-3.0]))
-    leg = next(dynamics.legs(start, differentiate=True))
-    leg.fly()
-    a, b, c, d = (entry[0] for entry in leg.jacobian())
-    h = 1e-5
-    by_phase = (after(0.4 + h, -3.0) - after(0.4 - h, -3.0)) / (2 * h)
-    by_velocity = (after(0.4, -3.0 + h) - after(0.4, -3.0 - h)) / (2 * h)
-    # The error of the difference is that of rounding, 1e-16/h, and of h².
-    size = 1e-8 * (1 + np.abs([a, b, c, d]).max()) ** 2
-    assert np.abs(by_phase - [a, c]).max() < size and np.abs(by_velocity - [b, d]).max() < size
+    start, leg, determinant = checked_deviations(dynamics)
     contraction = dynamics.contraction(start, leg.departure)[0]
     contraction *= dynamics.setting.contraction(leg.passed - leg.departure.duration)[()]
-    expected = contraction * (-3.0) / leg.after.velocity
-    assert abs(a * d - b * c - expected) < 1e-11 * (1 + abs(expected))
+    expected = contraction * VELOCITY / leg.after.velocity
+    assert abs(determinant - expected) < 1e-11 * (1 + abs(expected))
 
 
 def test_time_of_flight_with_drag_is_that_of_lambert():

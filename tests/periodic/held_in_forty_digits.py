@@ -6,9 +6,9 @@ landing are only sought near given times.
 """
 
 from mpmath import mp, mpf
+from settings_in_forty_digits import derivative
 
 mp.dps = 40
-_STEP = mpf(10) ** -14
 
 
 class Exact:
@@ -95,16 +95,8 @@ class Exact:
         return phase, velocity
 
     def matrix(self, lam, state, legs):
-        """The derivative of the map, by central differences."""
-        columns = []
-        for j in range(2):
-            ends = []
-            for sign in (1, -1):
-                moved = list(state)
-                moved[j] += sign * _STEP
-                ends.append(self.turned(lam, moved, legs))
-            columns.append([(ends[0][i] - ends[1][i]) / (2 * _STEP) for i in range(2)])
-        return mp.matrix(columns).T
+        """The derivative of the map."""
+        return derivative(lambda moved: self.turned(lam, moved, legs), state)
 
     def orbit(self, lam, state, legs, periods):
         """The state of the orbit with this period, near a state."""

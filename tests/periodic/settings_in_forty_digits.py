@@ -13,6 +13,19 @@ mp.dps = 40
 _STEP = mpf(10) ** -14
 
 
+def derivative(turned, state):
+    """The derivative of a map of the phase and the velocity, by central differences."""
+    columns = []
+    for j in range(2):
+        ends = []
+        for sign in (1, -1):
+            moved = list(state)
+            moved[j] += sign * _STEP
+            ends.append(turned(moved))
+        columns.append([(ends[0][i] - ends[1][i]) / (2 * _STEP) for i in range(2)])
+    return mp.matrix(columns).T
+
+
 class Exact:
     """The map of a ball with the restitution r; ``sine`` are the harmonics of the table."""
 
@@ -70,16 +83,8 @@ class Exact:
         return phase, velocity, passed
 
     def matrix(self, lam, state, times):
-        """The derivative of the map, by central differences."""
-        columns = []
-        for j in range(2):
-            ends = []
-            for sign in (1, -1):
-                moved = list(state)
-                moved[j] += sign * _STEP
-                ends.append(self.turned(lam, moved, times))
-            columns.append([(ends[0][i] - ends[1][i]) / (2 * _STEP) for i in range(2)])
-        return mp.matrix(columns).T
+        """The derivative of the map."""
+        return derivative(lambda moved: self.turned(lam, moved, times), state)
 
     def orbit(self, lam, state, times, periods):
         """The state of the orbit with this period, near a state."""

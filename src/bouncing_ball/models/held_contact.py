@@ -235,8 +235,18 @@ class HeldMotion(Motion):
         at = self.flight.lagged(time, self.lag)
         above = self._free_level(at) + self.most
         slack = _ROUNDING * np.abs(self.rest)
-        y = Derivatives(*at.values, *at.bounds)
-        return y._replace(ended=above <= slack)
+        value, rate, second, third = at.values
+        by_second, by_third, by_fourth = at.bounds
+        return Derivatives(
+            value=value,
+            rate=rate,
+            second=second,
+            third=third,
+            second_bound=by_second,
+            third_bound=by_third,
+            fourth_bound=by_fourth,
+            ended=above <= slack,
+        )
 
     def _free_level(self, at: Any) -> np.ndarray:
         """b/Q + R, which with S is a bound of y."""

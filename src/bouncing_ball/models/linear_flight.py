@@ -359,11 +359,20 @@ class _Unloaded(Motion):
 
     def __call__(self, time: np.ndarray) -> Derivatives:
         at = self.flight.lagged(time, self.lag)
-        y, *rates = at.values
+        y, rate, second, third = at.values
+        by_second, by_third, by_fourth = at.bounds
         # At the release y = 0 but for rounding; this zero is not the one that is searched for.
         y = np.where(time == 0, 0.0, y)
-        falls = Derivatives(-y, *(-x for x in rates), *at.bounds)
-        return falls._replace(ended=at.gap >= 0)
+        return Derivatives(
+            value=-y,
+            rate=-rate,
+            second=-second,
+            third=-third,
+            second_bound=by_second,
+            third_bound=by_third,
+            fourth_bound=by_fourth,
+            ended=at.gap >= 0,
+        )
 
 
 class Pressure(Motion):

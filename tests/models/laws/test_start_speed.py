@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
+from side_by_side import VELOCITY, checked_deviations
 
 import bouncing_ball
 from bouncing_ball.errors import ModelError
@@ -76,24 +77,9 @@ def test_contacts_are_those_of_a_second_code(kind, speed):
 def test_a_deviation_grows_as_side_by_side_balls_do(kind):
     ball = bouncing_ball.contact_law(kind(STIFFNESS, 0.6))
     dynamics = ball.dynamics(1.7)
-
-    def after(phase, velocity):
-        leg = next(dynamics.legs(dynamics.start(np.array([phase]), np.array([velocity]))))
-        impact, passed = leg.fly()
-        return np.array([phase + passed[0], impact.velocity[0]])
-
-    start = dynamics.start(np.array([0.4]), np.array([-3.0]))
-    leg = next(dynamics.legs(start, differentiate=True))
-    leg.fly()
-    a, b, c, d = (entry[0] for entry in leg.jacobian())
-    h = 1e-5
-    by_phase = (after(0.4 + h, -3.0) - after(0.4 - h, -3.0)) / (2 * h)
-    by_velocity = (after(0.4, -3.0 + h) - after(0.4, -3.0 - h)) / (2 * h)
-    # The error of the difference is that of rounding, 1e-14/h, and of h².
-    size = 1e-8 * (1 + np.abs([a, b, c, d]).max()) ** 2
-    assert np.abs(by_phase - [a, c]).max() < size and np.abs(by_velocity - [b, d]).max() < size
-    determinant = dynamics.contraction(start, leg.departure)[0] * -3.0 / leg.after.velocity[0]
-    assert abs(a * d - b * c - determinant) < 1e-11 * (1 + abs(determinant))
+    start, leg, found = checked_deviations(dynamics)
+    determinant = dynamics.contraction(start, leg.departure)[0] * VELOCITY / leg.after.velocity[0]
+    assert abs(found - determinant) < 1e-11 * (1 + abs(determinant))
 
 
 @pytest.mark.parametrize("kind", KINDS)

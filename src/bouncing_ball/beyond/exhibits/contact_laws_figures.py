@@ -41,7 +41,8 @@ def contact_laws(data: xr.Dataset) -> Figure:
             axes.plot(share[[0, -1]], share[[0, -1]] ** slope, **GUIDE)
         axes.set(xscale="log", yscale="log")
     # The line of an error leaves the panel at its zero.
-    low, high = float(data.relative_error.min()), float(data.relative_error.max())
+    low = float(data.relative_error.min())
+    high = float(data.relative_error.max())
     axes.set_ylim(_BELOW * low, max(1.0, high))
     spare = figure.axes[len(axes_of)]
     spare.axis("off")

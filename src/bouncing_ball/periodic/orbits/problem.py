@@ -491,7 +491,8 @@ class Compared(NamedTuple):
         """The derivative of values of the legs, by a parameter."""
         right, left = self.sides(j, values)
         length = self.lengths[j]
-        return (right - left) / length.reshape(*length.shape, *(1,) * (right.ndim - length.ndim))
+        axes_of_values = (1,) * (right.ndim - length.ndim)
+        return (right - left) / length.reshape(length.shape + axes_of_values)
 
 
 def twice(orbits: PeriodicOrbits, y: np.ndarray) -> tuple[PeriodicOrbits, np.ndarray]:

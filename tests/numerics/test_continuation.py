@@ -107,7 +107,8 @@ def test_both_folds_of_a_cubic_are_located_in_the_order_of_the_branch():
     steps = np.diff(branch.points, axis=0)
     lengths = np.linalg.norm(steps, axis=1)
     assert lengths.min() > 0
-    assert lengths.max() <= StepControl().largest * 1.01
+    # A round ends before a step that is longer by a quarter, because the branch turns.
+    assert lengths.max() <= StepControl().largest * 1.25
     assert np.all(np.sum(steps * branch.tangents[:-1], axis=1) > 0.9 * lengths)
     # The special points come in the order of the branch.
     order = [np.argmin(np.linalg.norm(branch.points - s.point, axis=1)) for s in branch.special]

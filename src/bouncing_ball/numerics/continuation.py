@@ -1,16 +1,18 @@
 """Predictor-corrector continuation of branches, with events.
 
-A step starts from a state: a point y of the branch, its tangent t with the derivative t′ along the
+A round starts from a state: a point y of the branch, its tangent t with the derivative t′ along the
 branch, and the values of the test functions. The predictor is ``y + h t + h² t′/2``, and Newton's
 method in the plane normal to t is the corrector; t′ is the difference of the tangents over the last
-step. Events within the step are then located, and :class:`StepControl` chooses the next h. A
-step is repeated with half its length if the corrector fails, if the tangent turns too much, or if
-an event cannot be located. The branch ends at a terminal event, where no step is short enough, or
-after a given number of points.
+step. Because an evaluation of the equations costs hardly more for ten points than for one, the next
+points of a branch, at several distances h, are predicted and corrected together. They are accepted
+in order, up to the first step between neighbours at which the corrector fails, at which the tangent
+turns too much, or on which an event cannot be located. If this is the first of them, the next round
+tries several shorter steps in its place, of which the longest one that succeeds is taken.
+:class:`StepControl` chooses the steps. The branch ends at a terminal event, where no step is short
+enough, or after a given number of points.
 
-Several branches are followed side by side: their next points are corrected together, because an
-evaluation of the equations costs hardly more for ten points than for one. Each branch has steps of
-its own and ends on its own, so that it is the same as if it were followed alone.
+Several branches are followed side by side for the same reason. Each branch has steps of its own and
+ends on its own, so that it is the same as if it were followed alone.
 """
 
 from collections.abc import Callable, Sequence
@@ -33,6 +35,9 @@ from bouncing_ball.numerics.events import Event, SpecialPoint, changes_of_sign, 
 
 # Number of steps after which a branch whose points accumulate ends.
 _CREEPING = 16
+# The planes of a round are normal to one tangent, so that its steps become longer as the branch
+# turns. A round ends before a step that is longer than intended by this factor.
+_STRETCHED = 1.25
 
 
 class ContinuationError(RuntimeError):
@@ -45,7 +50,8 @@ class StepControl:
 
     The step grows if the corrector needed fewer iterations than ``target_iterations``, and shrinks
     if it needed more. It is also limited such that the tangent turns by less than ``max_angle``, so
-    that folds are resolved and the continuation does not jump to another branch.
+    that folds are resolved and the continuation does not jump to another branch. Within a round of
+    ``ahead`` points each step is twice as long as the one before, up to the largest.
 
     Parameters
     ----------
@@ -57,6 +63,8 @@ class StepControl:
         Largest angle in radians between the tangents of neighbouring points.
     creep : float
         A branch whose last 16 steps lead no farther than this ends; by default it goes on.
+    ahead : int
+        Number of points that are predicted from one state.
     """
 
     initial: float = 0.02
@@ -65,6 +73,29 @@ class StepControl:
     target_iterations: int = 3
     max_angle: float = 0.2
     creep: float = 0.0
+    ahead: int = 8
+
+    def steps(self, first: np.ndarray) -> np.ndarray:
+        """The steps of a round, of the shape of the first steps and ``ahead``.
+
+        Examples
+        --------
+        >>> StepControl(largest=0.3, ahead=4).steps(np.array(0.1)).tolist()
+        [0.1, 0.2, 0.3, 0.3]
+        """
+        growing = np.asarray(first)[..., np.newaxis] * 2.0 ** np.arange(self.ahead)
+        return np.minimum(growing, self.largest)
+
+    def shorter(self, failed: np.ndarray) -> np.ndarray:
+        """The steps that are tried in place of those that failed, of their shape and ``ahead``.
+
+        Examples
+        --------
+        >>> StepControl(smallest=0.03, ahead=4).shorter(np.array(0.2)).tolist()
+        [0.1, 0.05, 0.03, 0.03]
+        """
+        halved = np.asarray(failed)[..., np.newaxis] * 0.5 ** np.arange(1, self.ahead + 1)
+        return np.maximum(halved, self.smallest)
 
     def after(self, step: float, iterations: int, angle: float) -> float:
         """The length of the next step after an accepted step.
@@ -198,14 +229,16 @@ class _State(NamedTuple):
 
 
 class _Attempt(NamedTuple):
-    """The corrected next point of a branch, with the tangent and the values of the test functions.
+    """A corrected next point of a branch, with the tangent and the values of the test functions.
 
-    ``angle`` is the angle by which the tangent turns, NaN if the Jacobian is not defined.
+    ``step`` is the one from the point before. ``angle`` is the larger one of those that the tangent
+    and the chord make with the tangent there, NaN if the Jacobian is not defined.
     """
 
     point: np.ndarray
     tangent: np.ndarray
     values: np.ndarray
+    step: float
     converged: bool
     residual: float
     iterations: int
@@ -213,7 +246,7 @@ class _Attempt(NamedTuple):
 
 
 class _Rejected(Exception):
-    """A step that must be repeated with half its length.
+    """A step that must be repeated with a shorter length.
 
     If the step cannot be shorter, the branch ends, for the reason ``why``. ``finished`` and
     ``kind`` are those of this :class:`End`.
@@ -228,26 +261,62 @@ class _Rejected(Exception):
 
 @dataclass
 class _Followed:
-    """A branch that is being followed: its states, its events, the next step, and its end."""
+    """A branch that is being followed: its states, its events, its end, and the length of the next
+    step, or of the step that ``failed``.
+    """
 
     states: list[_State]
     length: float
+    failed: bool = False
     special: list[SpecialPoint] = field(default_factory=list)
     end: End | None = None
 
-    def advance(self, attempt: _Attempt, tested: WithEvents, control: StepControl) -> None:
-        """Accept the next point, or repeat the step with half its length, or end the branch."""
+    def advance(
+        self, attempts: Sequence[_Attempt], tested: WithEvents, control: StepControl
+    ) -> None:
+        """Accept the next points up to the first step that fails, or the longest one of several
+        shorter steps in place of one that failed, or end the branch.
+        """
+        if self.failed:
+            self._retry(attempts, tested, control)
+            return
+        for number, attempt in enumerate(attempts):
+            why = self._refused(attempt, tested, control)
+            if why:
+                self.failed = number == 0
+                return
+            # Far points need more iterations because they are far.
+            self.length = control.after(attempt.step, attempts[0].iterations, attempt.angle)
+            if self.end:
+                return
+
+    def _retry(
+        self, attempts: Sequence[_Attempt], tested: WithEvents, control: StepControl
+    ) -> None:
+        """Accept the longest of several steps from the last point, or end the branch."""
+        for attempt in attempts:
+            why = self._refused(attempt, tested, control)
+            if not why:
+                self.failed = False
+                self.length = control.after(attempt.step, attempt.iterations, attempt.angle)
+                return
+            self.length = attempt.step
+            if self.length <= control.smallest:
+                sentence = f"step too small ({self.length:.1e}): {why.why}"
+                self.end = End(sentence, why.finished, why.kind)
+                return
+
+    def _refused(
+        self, attempt: _Attempt, tested: WithEvents, control: StepControl
+    ) -> "_Rejected | None":
+        """Accept a point, unless it is rejected."""
         try:
             reached, end = self._step(attempt, tested, control.max_angle)
         except _Rejected as rejected:
-            if self.length / 2 < control.smallest:
-                sentence = f"step too small ({self.length:.1e}): {rejected.why}"
-                self.end = End(sentence, rejected.finished, rejected.kind)
-            self.length /= 2
-            return
+            return rejected
         self.states.append(reached)
         self.end = end or _creeping(self.states, control.creep)
-        self.length = control.after(self.length, attempt.iterations, attempt.angle)
+        return None
 
     def _step(
         self, attempt: _Attempt, tested: WithEvents, max_angle: float
@@ -339,27 +408,46 @@ def _first_state(tested: WithEvents, start: np.ndarray, towards: np.ndarray) -> 
 
 
 def _attempts(
-    tested: WithEvents, states: Sequence[_State], lengths: np.ndarray, max_angle: float
-) -> list[_Attempt]:
-    """Predict and correct the next point of each branch."""
+    tested: WithEvents, ways: Sequence[_Followed], control: StepControl
+) -> list[list[_Attempt]]:
+    """Predict and correct the next points of each branch, in rows of the same length."""
     problem, events = tested
-    point = np.array([state.point for state in states])
-    along = np.array([state.tangent for state in states])
-    curvature = np.array([state.curvature for state in states])
-    length = lengths[:, np.newaxis]
-    predicted = point + length * (along + length / 2 * curvature)
+    count = control.ahead
+    states = [way.states[-1] for way in ways]
+    point = np.repeat([state.point for state in states], count, axis=0)
+    along = np.repeat([state.tangent for state in states], count, axis=0)
+    curvature = np.repeat([state.curvature for state in states], count, axis=0)
+    failed = np.array([[way.failed] for way in ways])
+    length = np.array([way.length for way in ways])
+    steps = np.where(failed, control.shorter(length), control.steps(length))
+    distance = np.where(failed, steps, np.cumsum(steps, axis=-1)).reshape(-1, 1)
+    predicted = point + distance * (along + distance / 2 * curvature)
     found = newton(problem, predicted, plane(along, predicted))
     # A branch whose corrector failed stays where it is.
     reached = np.where(found.converged[:, np.newaxis], found.point, point)
     ahead = tangent(problem.jacobian(reached), along)
-    angle = np.arccos(np.clip(np.sum(ahead * along, axis=-1), -1.0, 1.0))
-    values = np.full((len(states), len(events)), np.nan)
-    if np.any(found.converged & (angle <= max_angle)):
+    # The point before each one is the row before, except for a first row and for shorter steps.
+    first = (failed | (np.arange(count) == 0)).reshape(-1, 1)
+    chord = reached - np.where(first, point, np.roll(reached, 1, axis=0))
+    behind = np.where(first, along, np.roll(ahead, 1, axis=0))
+    angle = np.maximum(_angle(ahead, behind), _angle(chord, behind))
+    stretched = np.linalg.norm(chord, axis=-1) > _STRETCHED * steps.ravel()
+    angle[stretched] = np.inf
+    values = np.full((len(reached), len(events)), np.nan)
+    if np.any(found.converged & (angle <= control.max_angle)):
         for k, event in enumerate(events):
             values[:, k] = event.function(reached)
-    columns = found.converged, found.residual, found.iterations, angle
+    columns = steps.ravel(), found.converged, found.residual, found.iterations, angle
     rows = zip(reached, ahead, values, *(column.tolist() for column in columns), strict=True)
-    return [_Attempt(*row) for row in rows]
+    attempts = [_Attempt(*row) for row in rows]
+    return [attempts[k : k + count] for k in range(0, len(attempts), count)]
+
+
+def _angle(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """The angles between the rows of two arrays, the second of unit vectors; NaN at a zero."""
+    with np.errstate(invalid="ignore"):
+        cosine = np.sum(one * other, axis=-1) / np.linalg.norm(one, axis=-1)
+    return np.arccos(np.clip(cosine, -1.0, 1.0))
 
 
 def continue_branches(
@@ -401,13 +489,12 @@ def continue_branches(
     before: list[int] = []
     while going := [k for k, way in ways.items() if not way.end and len(way.states) < max_points]:
         if going != before:
-            tested = rows_of(np.array(going))
+            tested = rows_of(np.repeat(going, control.ahead))
             before = going
-        states = [ways[k].states[-1] for k in going]
-        lengths = np.array([ways[k].length for k in going])
-        attempts = _attempts(tested, states, lengths, control.max_angle)
-        for k, attempt in zip(going, attempts, strict=True):
-            ways[k].advance(attempt, one(k), control)
+        rounds = _attempts(tested, [ways[k] for k in going], control)
+        for k, attempts in zip(going, rounds, strict=True):
+            left = max_points - len(ways[k].states)
+            ways[k].advance(attempts[:left], one(k), control)
     return [errors[k] if k in errors else ways[k].branch() for k in range(len(starts))]
 
 

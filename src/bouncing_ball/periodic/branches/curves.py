@@ -179,6 +179,8 @@ def curve_through(
         return Curve(orbits, sticking_curve(orbits, guess, (first, second), most), kind)
     problem = CurveProblem(orbits, condition_of(orbits, kind))
     limits = _limits(orbits, windows)
+    # Where an impact grazes, so does its release.
+    ends = [] if kind is Special.GRAZING_IMPACT else [loss_of_release(orbits)]
     first = _corrected(problem, guess)
     if np.linalg.norm(first - guess) > _ANOTHER:
         places = orbit_of_point(orbits, first).parameters.items()
@@ -187,7 +189,7 @@ def curve_through(
     with np.errstate(all="ignore"):
         try:
             branch = continue_both_ways(
-                problem, first, events=limits, control=control, max_points=most
+                problem, first, events=[*ends, *limits], control=control, max_points=most
             )
         except ContinuationError as error:
             raise NoOrbitError(str(error)) from None

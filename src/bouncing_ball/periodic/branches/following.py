@@ -34,6 +34,7 @@ from bouncing_ball.periodic.orbits.special import (
     flight_time,
     halves,
     loss_of_release,
+    next_to,
     turns_apart,
 )
 from bouncing_ball.periodic.orbits.stability import Bifurcation
@@ -445,13 +446,10 @@ def explained(branch: Branch, tests: Sequence[Event], limits: Sequence[Event]) -
     for limit in limits:
         if abs(float(limit.function(last))) < _AT_END:
             return End(limit.reason)
-    if not tests:
-        return end
-    near = {event.name: abs(float(event.function(last))) for event in tests}
-    nearest = min(near, key=lambda name: near[name])
-    if not near[nearest] < CLOSE:
-        return End(_CORNER) if end.kind is EndKind.CORNER else end
+    nearest = next_to(tests, last)
+    if nearest is None:
+        return End(_CORNER) if end.kind is EndKind.CORNER and tests else end
     sentence = (
-        f"the orbit is next to {_PLACES[Special(nearest)]}, where its equations are not smooth"
+        f"the orbit is next to {_PLACES[Special(nearest.name)]}, where its equations are not smooth"
     )
-    return End(sentence, event=nearest)
+    return End(sentence, event=nearest.name)

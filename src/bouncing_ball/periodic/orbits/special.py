@@ -274,6 +274,17 @@ def ends_of_contact(orbits: PeriodicOrbits) -> list[Event]:
     ]
 
 
+def next_to(tests: Sequence[Event], y: np.ndarray) -> Event | None:
+    """The event next to a point at which the steps of a branch became too short, None if there is
+    none: one at which branches end, if one is near.
+    """
+    near = {k: abs(float(event.function(y))) for k, event in enumerate(tests)}
+    close = [k for k, value in near.items() if value < CLOSE]
+    if not close:
+        return None
+    return tests[min(close, key=lambda k: (not tests[k].terminal, near[k]))]
+
+
 def with_ends(problem: Coordinates, branch: Branch) -> Branch:
     """A branch with its ends of contact where the steps became too short.
 
@@ -294,9 +305,8 @@ def _end_near(
     if not end.stuck:
         return end, []
     inner = problem.inner(point)
-    near = [abs(float(event.function(inner))) for event in ends]
-    nearest = ends[int(np.argmin(near))]
-    if not min(near) < CLOSE:
+    nearest = next_to(ends, inner)
+    if nearest is None:
         return end, []
     place = lost_release(problem.orbits, inner) if nearest.name == Special.RELEASE_LOST else None
     there = point if place is None else problem.outer(place)

@@ -206,7 +206,7 @@ CALLS: dict[str, Callable[[Calls], Any]] = {
     for name, *needed in (
         ("simulate", "amplitude"), ("history", "amplitude"), ("drop", "height"), ("limits",),
         ("orbits", "amplitude"), ("branch",), ("permanent_contact",), ("motion_of", "amplitude"),
-        ("lyapunov_exponent", "amplitude"), ("orbit_diagram", "amplitudes"),
+        ("lyapunov_exponent", "amplitude"), ("orbit_diagram", "amplitude"),
         ("basins", "amplitude"), ("orbit_of_motion", "amplitude"),
         ("ensemble", "amplitude", "noise"),
     )

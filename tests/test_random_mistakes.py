@@ -146,7 +146,7 @@ CALLS = {
     "branch": {"ball": BALL}, "error_thresholds": {"ball": BALL, "amplitude": 1.0},
     "motion_of": {"ball": BALL, "amplitude": 1.0},
     "lyapunov_exponent": {"ball": BALL, "amplitude": 1.0},
-    "orbit_diagram": {"ball": BALL, "amplitudes": [0.9, 1.0]},
+    "orbit_diagram": {"ball": BALL, "amplitude": [0.9, 1.0]},
     "basins": {"ball": BALL, "amplitude": 1.0},
     "orbit_of_motion": {"ball": BALL, "amplitude": 1.0},
 }  # fmt: skip

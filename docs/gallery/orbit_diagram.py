@@ -5,5 +5,5 @@ import numpy as np
 import bouncing_ball
 
 ball = bouncing_ball.rigid(restitution=0.7)
-found = bouncing_ball.orbit_diagram(ball, amplitudes=np.linspace(0.4, 2.0, 200))
+found = bouncing_ball.orbit_diagram(ball, amplitude=np.linspace(0.4, 2.0, 200))
 found.plot("orbit_diagram.png")

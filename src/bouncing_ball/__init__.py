@@ -63,7 +63,6 @@ if TYPE_CHECKING:
     from bouncing_ball.contacts.question import Question as Question
     from bouncing_ball.contacts.table import Table as Table
     from bouncing_ball.contacts.write import write_contact as write_contact
-    from bouncing_ball.drawing.result import open as open
     from bouncing_ball.errors import ModelError as ModelError
     from bouncing_ball.errors import NoOrbitError as NoOrbitError
     from bouncing_ball.long_run.basin_entropy import basin_entropy as basin_entropy
@@ -96,6 +95,7 @@ if TYPE_CHECKING:
     from bouncing_ball.periodic.orbits_of_ball import orbit as orbit
     from bouncing_ball.periodic.orbits_of_ball import orbits as orbits
     from bouncing_ball.periodic.orbits_of_ball import permanent_contact as permanent_contact
+    from bouncing_ball.periodic.read_orbits import open as open
     from bouncing_ball.periodic.read_orbits import read_orbits as read_orbits
 
 __version__ = "0.1.0"
@@ -135,7 +135,7 @@ _MODULES = {
     "lyapunov_exponent": "long_run.motion_of",
     "motion_of": "long_run.motion_of",
     "normal_form": "periodic.orbits.normal_form",
-    "open": "drawing.result",
+    "open": "periodic.read_orbits",
     "orbit": "periodic.orbits_of_ball",
     "orbit_diagram": "long_run.motion_of",
     "orbit_of_motion": "long_run.orbit_of_motion",

@@ -38,7 +38,7 @@ def test_the_end_of_a_motion_is_on_it(ball):
 def test_the_diagram_has_the_orbits_and_their_period_doubling(ball):
     ends = [limit.amplitude for limit in bb.limits(ball)]
     lam = np.linspace(ends[0] + 0.02, ends[1] + 0.05, 8)
-    found = bb.orbit_diagram(ball, amplitudes=lam, starts=2)
+    found = bb.orbit_diagram(ball, amplitude=lam, starts=2)
     orbit = n_t.orbit(ball, 1, lam)
     for k, exact in enumerate(orbit.phase):
         at = found.isel(amplitude=k)
@@ -53,7 +53,7 @@ def test_the_diagram_has_the_orbits_and_their_period_doubling(ball):
 
 def test_an_attractor_is_followed_from_where_starts_find_it():
     lam = np.linspace(1.6, 1.7, 6)
-    found = bb.orbit_diagram(R, amplitudes=lam, starts=1, impacts=300)
+    found = bb.orbit_diagram(R, amplitude=lam, starts=1, impacts=300)
     # The orbit of period 2 at all of them up to its own doubling, 1.667.
     for k in np.flatnonzero(lam < 1.66):
         at = found.isel(amplitude=k)
@@ -87,8 +87,8 @@ def test_the_exponent_is_that_of_the_motion():
             lambda: bb.motion_of(R, amplitude=-1.0),
             "amplitude = -1.0 is not 0 or a number in [1e-12, 1e+08]",
         ),
-        (lambda: bb.orbit_diagram(R, amplitudes=[]), "amplitudes has no entries"),
-        (lambda: bb.orbit_diagram(R, amplitudes=[2.0, 1.0]), "at least one Λ, in rising order"),
+        (lambda: bb.orbit_diagram(R, amplitude=[]), "amplitude has no entries"),
+        (lambda: bb.orbit_diagram(R, amplitude=[2.0, 1.0]), "at least one Λ, in rising order"),
         (lambda: bb.basins(R, amplitude=1.0, starts=100_000), "10000000000 balls are more than"),
         (lambda: bb.basins(R, amplitude=[1.0, 2.0]), "amplitude must be a single number"),
         (
@@ -115,7 +115,7 @@ def test_every_answer_draws_itself(given, tmp_path):
     given = {"amplitude": 3.0} | given
     found = [bb.motion_of(R, **given, impacts=200), bb.lyapunov_exponent(R, **given, impacts=200)]
     if "phase" in given:
-        found.append(bb.orbit_diagram(R, amplitudes=given["amplitude"], starts=1, impacts=50))
+        found.append(bb.orbit_diagram(R, amplitude=given["amplitude"], starts=1, impacts=50))
         found.append(bb.basins(R, amplitude=3.0, starts=5, impacts=200))
     for k, data in enumerate(found):
         data.plot(tmp_path / f"{k}.png")

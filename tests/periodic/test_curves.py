@@ -13,7 +13,7 @@ from bouncing_ball.long_run.orbit_of_motion import of_motion
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.periodic.branches.curves import Degenerate, curve_through
-from bouncing_ball.periodic.branches.following import STEPS, Range, branch_from
+from bouncing_ball.periodic.branches.following import STEPS, Window, branch_from
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact import restitution_branch as formulas
 from bouncing_ball.periodic.orbits.special import Special, flight_margin
@@ -34,7 +34,7 @@ def curve_of(start, across, **settings):
     (Special.PERIOD_DOUBLING, 2.0, formulas.period_doubling),
 ])  # fmt: skip
 def test_the_curves_of_the_restitution_model_are_the_closed_forms(kind, to, formula):
-    window = Range(0.2, 0.95)
+    window = Window(0.2, 0.95)
     found = curve_of(special("restitution", kind, to), "restitution", across_window=window)
     values = found.problem.values(found.branch.points)
     assert values["restitution"].min() == pytest.approx(0.2)
@@ -44,7 +44,7 @@ def test_the_curves_of_the_restitution_model_are_the_closed_forms(kind, to, form
 
 def test_along_the_stiffness_the_curve_is_that_of_the_closed_form():
     start = special("spring-damper", Special.PERIOD_DOUBLING, 2.0)
-    found = curve_of(start, "frequency_ratio", across_window=Range(3.0, 50.0))
+    found = curve_of(start, "frequency_ratio", across_window=Window(3.0, 50.0))
     for each in list(found)[::10]:
         expected = n_t.period_doubling(each.model, 1).amplitude
         assert each.amplitude == pytest.approx(expected, abs=1e-12)
@@ -52,7 +52,7 @@ def test_along_the_stiffness_the_curve_is_that_of_the_closed_form():
 
 def test_the_curve_of_doublings_ends_at_a_1_to_2_resonance_without_dissipation():
     start = special("restitution", Special.PERIOD_DOUBLING, 2.0)
-    found = curve_of(start, "restitution", across_window=Range(0.3, 1.0))
+    found = curve_of(start, "restitution", across_window=Window(0.3, 1.0))
     (resonance,) = found.special
     assert resonance.kind == Degenerate.ONE_TO_TWO
     assert resonance.amplitude == pytest.approx(1.0, abs=1e-8)
@@ -63,7 +63,7 @@ def test_without_dissipation_a_curve_of_saddle_nodes_ends_at_a_1_to_1_resonance(
     """With det M = r^{2k}, a saddle-node has the multipliers 1 and r^{2k}, both 1 at r = 1 only."""
     case = next(x for x in FOUND if x[:2] == ("restitution", 3))
     fold = branch_from(found_orbit(case), to=0.5).first(Special.SADDLE_NODE)
-    found = curve_of(fold, "restitution", across_window=Range(0.2, 1.0))
+    found = curve_of(fold, "restitution", across_window=Window(0.2, 1.0))
     trace, determinant = found.problem.trace_and_determinant(found.branch.points)
     r = found.problem.values(found.branch.points)["restitution"]
     size = np.abs(trace) + 1
@@ -84,7 +84,7 @@ def test_two_folds_of_a_compliant_contact_meet_at_a_cusp():
     assert len(folds) >= 2
     cusps = []
     for fold in folds[:2]:
-        windows = {"along_window": Range(0.01, 2.0), "across_window": Range(0.9, 3.0)}
+        windows = {"along_window": Window(0.01, 2.0), "across_window": Window(0.9, 3.0)}
         found = curve_of(fold, "frequency_ratio", **windows)
         cusps += [each for each in found.special if each.kind == Degenerate.CUSP]
     values = np.array([list(cusp.parameters.values()) for cusp in cusps])
@@ -93,7 +93,7 @@ def test_two_folds_of_a_compliant_contact_meet_at_a_cusp():
 
 def test_grazing_orbits_are_a_curve():
     start = special("restitution", Special.GRAZING_FLIGHT, 0.9, amplitude=2.0)
-    found = curve_of(start, "restitution", across_window=Range(0.45, 0.55))
+    found = curve_of(start, "restitution", across_window=Window(0.45, 0.55))
     assert len(found) > 5
     margins = flight_margin(found.problem, found.branch.points)
     # At grazing the minimum may be negative by rounding.
@@ -133,7 +133,7 @@ def test_the_cascade_of_flights_is_the_curve_on_which_a_long_contact_opens():
         largest = abs(opening.multipliers()[0])
         assert largest == pytest.approx(known.multiplier[0, k, 0], abs=1e-9)
         if k == 0:
-            window = Range(15.0, 25.0)
+            window = Window(15.0, 25.0)
             found = curve_of(opening, "frequency_ratio", across_window=window)
             values = found.problem.values(found.branch.points)
             order = values["frequency_ratio"].argsort()

@@ -178,7 +178,7 @@ def test_basins_and_diagrams_are_those_of_the_motions():
     shares = bouncing_ball.basins(ball, amplitude=amplitude, starts=12, impacts=400)
     assert abs(float(shares.share.sum()) - 1) < 1e-12
     lam = [0.9 * amplitude, amplitude]
-    diagram = bouncing_ball.orbit_diagram(ball, amplitudes=lam, starts=2, impacts=300)
+    diagram = bouncing_ball.orbit_diagram(ball, amplitude=lam, starts=2, impacts=300)
     checked = 0
     for k, each in enumerate(lam):
         one = bouncing_ball.orbit(ball, amplitude=each)

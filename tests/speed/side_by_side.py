@@ -27,7 +27,7 @@ from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.corrector import newton, plane
 from bouncing_ball.periodic.branches.curves import CurveProblem, condition_of, curve_through
-from bouncing_ball.periodic.branches.following import Range, branch_from
+from bouncing_ball.periodic.branches.following import Window, branch_from
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls
 from bouncing_ball.periodic.orbits.orbit import Orbit
@@ -186,7 +186,7 @@ def curve_row() -> Row:
     ball = bouncing_ball.rigid(restitution=R)
     start = bouncing_ball.orbit_of_motion(ball, amplitude=1.6, phase=1.0, velocity=-3.0)
     special = branch_from(start, to=1.8).first(Special.PERIOD_DOUBLING)
-    window = Range(R, 0.8)
+    window = Window(R, 0.8)
     kind = Special.PERIOD_DOUBLING
     ours, found = timed(
         lambda: curve_through(special, kind, LAMBDA, "restitution", across_window=window)

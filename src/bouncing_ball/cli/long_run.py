@@ -114,7 +114,7 @@ def diagram(
         raise ParameterError(f"{{amplitudes}} {low:g} {high:g}: the second must be larger")
     found = library.orbit_diagram(
         ball_of(**impact),
-        amplitudes=np.linspace(low, high, points),
+        amplitude=np.linspace(low, high, points),
         starts=starts,
         samples=samples,
         impacts=impacts,

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any, Self
 import xarray as xr
 
 from bouncing_ball.datasets import DRAWING
-from bouncing_ball.datasets.files import read_dataset
-from bouncing_ball.errors import ModelError, ParameterError, extra, shortened, suggesting
+from bouncing_ball.errors import ModelError, extra
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -115,20 +114,3 @@ def _function(name: str) -> Callable[..., Any]:
         return getattr(import_module(found[1]), found[2])
     except (ModuleNotFoundError, AttributeError):
         raise ModelError(f"this version of the package has no {name}, which draws it") from None
-
-
-@suggesting
-def open(path: str | Path) -> Result:
-    """The dataset in a netCDF file, such as that of an artifact of the replication.
-
-    ``bouncing_ball.open("figures/fig06.nc").plot("talk.pdf")`` draws the artifact's figure from it.
-
-    Raises
-    ------
-    ModelError
-        If there is no such file, or if it is damaged.
-    """
-    if not isinstance(path, str | Path):
-        raise ParameterError("{path} = {} is not the path of a file", shortened(path))
-    found = read_dataset(path)
-    return Result(found.data_vars, found.coords, found.attrs)

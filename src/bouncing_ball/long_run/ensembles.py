@@ -23,6 +23,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import islice
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
@@ -45,7 +46,6 @@ from bouncing_ball.errors import ParameterError, Range, count, suggesting
 from bouncing_ball.models.ball import Ball, a_single_ball
 from bouncing_ball.models.dynamics import Dynamics, Impact
 from bouncing_ball.models.rigid import RestitutionModel
-from bouncing_ball.models.sequence import Status
 
 NOISE = Range(0, 0.5, "[)")
 SEED = count(2**32 - 1, low=0)
@@ -198,24 +198,23 @@ def _followed(
     rows = _Rows(*(np.full((impacts, size), np.nan) for _ in _Rows._fields))
     ball = np.arange(size)
     time = np.zeros(size)
-    for k in range(impacts):
+
+    def renewed(before: Dynamics) -> Dynamics:
         # One number for each ball, whether it bounces or not: balls do not depend on others.
-        r = scatter.draw(rng, size)[ball]
-        speed = -impact.velocity
-        table_rate, _ = dynamics.table_at(impact)
+        return replace(before, law=scatter.draw(rng, size)[ball])
+
+    for k, leg in enumerate(islice(dynamics.legs(impact, renewed=renewed), impacts)):
+        r = leg.dynamics.law
+        speed = -leg.impact.velocity
+        table_rate, _ = leg.dynamics.table_at(leg.impact)
         rows.speed[k, ball] = speed
         rows.time[k, ball] = time
         rows.work[k, ball] = table_rate * (1 + r) * speed
         rows.loss[k, ball] = (1 - r * r) * speed * speed / 2
-        moved = replace(dynamics, law=r)
-        departure = moved.depart(impact)
-        going = np.flatnonzero(departure.status == Status.BOUNCING)
-        if not going.size or k + 1 == impacts:
-            break
-        moved, departure, ball, time = moved.kept(going, departure, ball, time)
-        dynamics = dynamics.take(going)
-        impact, passed = moved.fly(departure)
-        time = time + passed
+        ball, time = leg.keep(leg.bouncing(), ball, time)
+        if k + 1 < impacts:
+            _, passed = leg.fly()
+            time = time + passed
     return rows
 
 

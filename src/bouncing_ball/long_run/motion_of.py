@@ -135,7 +135,7 @@ def lyapunov_exponent(
 def orbit_diagram(
     ball: Ball,
     *,
-    amplitudes: AmplitudeAxis,
+    amplitude: AmplitudeAxis,
     starts: SampleCount = 6,
     samples: SampleCount = 64,
     impacts: FollowedImpacts = IMPACTS,
@@ -146,7 +146,7 @@ def orbit_diagram(
     ----------
     ball : Ball
         A single ball.
-    amplitudes : float or array
+    amplitude : float or array
         Excitation amplitudes Λ in rising order.
     starts : int
         Number of balls at each amplitude, spread evenly over phases and speeds. Further balls
@@ -174,13 +174,13 @@ def orbit_diagram(
     Below and above the period doubling, for the ball that starts near the 1-T orbit:
 
     >>> from bouncing_ball import rigid
-    >>> found = orbit_diagram(rigid(restitution=0.5), amplitudes=[1.5, 1.6], impacts=200)
+    >>> found = orbit_diagram(rigid(restitution=0.5), amplitude=[1.5, 1.6], impacts=200)
     >>> found.impacts.isel(start=6).values.tolist()
     [1, 2]
     """
-    lam = np.atleast_1d(np.asarray(checked("amplitudes", amplitudes, AMPLITUDE)))
+    lam = np.atleast_1d(np.asarray(checked("amplitude", amplitude, AMPLITUDE)))
     if lam.ndim > 1 or np.any(np.diff(lam) <= 0):
-        raise ParameterError("{amplitudes} must be at least one Λ, in rising order")
+        raise ParameterError("{amplitude} must be at least one Λ, in rising order")
     found = grids.diagram(
         a_single_ball(ball),
         lam,

@@ -250,13 +250,20 @@ class Dynamics(Batch, ABC):
         shape = np.broadcast_shapes(self.shape, *(x.shape for x in arrays))
         return self.flat(shape), [np.broadcast_to(x, shape).reshape(-1) for x in arrays], shape
 
-    def legs(self, impact: Impact, *, differentiate: bool = False) -> "Iterator[Leg]":
+    def legs(
+        self,
+        impact: Impact,
+        *,
+        differentiate: bool = False,
+        renewed: Callable[[Any], Any] | None = None,
+    ) -> "Iterator[Leg]":
         """The legs of a row of balls that begin with these impacts, one after the other.
 
         There is no end to them unless no balls are left: :meth:`Leg.keep` leaves out balls, also
         those that stay on the table, which have no flight. With ``differentiate`` the legs can be
         differentiated. A flight is computed when it is asked for, or for the next leg; an impact
-        :attr:`Leg.after` that is changed is the start of the next leg.
+        :attr:`Leg.after` that is changed is the start of the next leg. Each leg obeys the dynamics
+        that ``renewed`` makes of those of the balls left, for example with a law drawn anew.
 
         Examples
         --------
@@ -269,6 +276,8 @@ class Dynamics(Batch, ABC):
         """
         dynamics = self
         while impact.phase.size:
+            if renewed:
+                dynamics = renewed(dynamics)
             leg = Leg(dynamics, impact, dynamics.depart(impact, differentiate=differentiate))
             yield leg
             impact, _ = leg.fly()

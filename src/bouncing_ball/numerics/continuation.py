@@ -26,9 +26,9 @@ import numpy as np
 from bouncing_ball.numerics.corrector import (
     NewtonSettings,
     Problem,
-    corrected,
     newton,
     plane,
+    solution_at,
     tangent,
 )
 from bouncing_ball.numerics.events import Event, SpecialPoint, changes_of_sign, locate_all
@@ -197,7 +197,7 @@ def solve_at(problem: Problem, guess: np.ndarray) -> np.ndarray:
     >>> solve_at(Circle(), np.array([1.0, 0.6])).round(12).tolist()
     [0.8, 0.6]
     """
-    point, why = corrected(problem, guess)
+    point, why = solution_at(problem, guess)
     if why:
         raise ContinuationError(
             f"no solution near the starting guess {np.array2string(guess, precision=4)}: {why}"

@@ -241,7 +241,7 @@ def tangent(jacobian: np.ndarray, along: np.ndarray) -> np.ndarray:
     return np.where(ahead < 0, -vector, vector)
 
 
-def corrected(
+def solution_at(
     problem: Problem, guess: np.ndarray, settings: NewtonSettings = NewtonSettings()
 ) -> tuple[np.ndarray, str]:
     """The solution with the parameter of a guess, shape (N + 1,), and why there is none, or "".

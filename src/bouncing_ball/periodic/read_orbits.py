@@ -1,4 +1,4 @@
-"""Orbits, branches and curves that were saved, for a user."""
+"""Results that were saved, with their figures and with their orbits, for a user."""
 
 from pathlib import Path
 from typing import Any
@@ -6,13 +6,40 @@ from typing import Any
 import xarray as xr
 
 from bouncing_ball.datasets.files import read_dataset
-from bouncing_ball.drawing.result import MADE_BY
-from bouncing_ball.errors import ModelError, ParameterError, suggesting
+from bouncing_ball.drawing.result import MADE_BY, Result
+from bouncing_ball.errors import ModelError, ParameterError, shortened, suggesting
 from bouncing_ball.periodic.branches.labelled import FollowedBranch, SpecialCurve
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.saved import has_orbits
 
-_RESULTS = {"follow": FollowedBranch, "branch": FollowedBranch, "curve": SpecialCurve}
+_RESULTS: dict[str, Any] = {
+    "follow": FollowedBranch,
+    "branch": FollowedBranch,
+    "curve": SpecialCurve,
+}
+
+
+@suggesting
+def open(path: str | Path) -> Result:
+    """The dataset in a netCDF file, such as that of an artifact of the replication.
+
+    ``bouncing_ball.open("figures/fig06.nc").plot("talk.pdf")`` draws the artifact's figure from it.
+    A branch or a curve has its orbits, as from :func:`bouncing_ball.read_orbits`.
+
+    Raises
+    ------
+    ModelError
+        If there is no such file, or if it is damaged.
+    """
+    if not isinstance(path, str | Path):
+        raise ParameterError("{path} = {} is not the path of a file", shortened(path))
+    return _result_of(read_dataset(path))
+
+
+def _result_of(data: xr.Dataset) -> Result:
+    """The dataset as the result of the call that made it."""
+    kind = _RESULTS.get(str(data.attrs.get(MADE_BY, "")), Result)
+    return (kind if has_orbits(data) else Result)(data.data_vars, data.coords, data.attrs)
 
 
 @suggesting
@@ -56,7 +83,5 @@ def read_orbits(source: str | Path | xr.Dataset) -> Orbit | FollowedBranch | Spe
         raise ModelError(
             f"{where} contains no orbits: it is no result of follow, branch or orbit.to_dataset()"
         )
-    result: Any = _RESULTS.get(str(data.attrs.get(MADE_BY, "")))
-    if result is None:
-        return Orbit.of_dataset(data)
-    return result(data.data_vars, data.coords, data.attrs)
+    result = _result_of(data)
+    return result if isinstance(result, FollowedBranch | SpecialCurve) else Orbit.of_dataset(data)

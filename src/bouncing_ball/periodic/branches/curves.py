@@ -32,13 +32,13 @@ from bouncing_ball.numerics.continuation import (
     StepControl,
     continue_both_ways,
 )
-from bouncing_ball.numerics.corrector import Condition, NewtonSettings, corrected, null_vector
+from bouncing_ball.numerics.corrector import Condition, NewtonSettings, null_vector, solution_at
 from bouncing_ball.numerics.events import Event, SpecialPoint, locate, vanishing
 from bouncing_ball.periodic.branches.following import (
     PATIENT,
     STEPS,
     Orbits,
-    Range,
+    Window,
     explained,
     limits_of,
 )
@@ -144,8 +144,8 @@ def curve_through(
     along: str,
     across: str,
     *,
-    along_window: Range | None = None,
-    across_window: Range | None = None,
+    along_window: Window | None = None,
+    across_window: Window | None = None,
     control: StepControl = CURVE_STEPS,
     most: int = 1000,
 ) -> Curve:
@@ -158,7 +158,7 @@ def curve_through(
     kind : Special
     along, across : str
         The two parameters.
-    along_window, across_window : Range, optional
+    along_window, across_window : Window, optional
         The ranges of the two parameters outside which the curve is not followed.
     control : StepControl
     most : int
@@ -181,7 +181,7 @@ def curve_through(
     limits = _limits(orbits, windows)
     # Where an impact grazes, so does its release.
     ends = [] if kind is Special.GRAZING_IMPACT else [loss_of_release(orbits)]
-    first = _corrected(problem, guess)
+    first = _special_at(problem, guess)
     if np.linalg.norm(first - guess) > _ANOTHER:
         places = orbit_of_point(orbits, first).parameters.items()
         where = ", ".join(f"{name} = {x:.10g}" for name, x in places)
@@ -209,16 +209,16 @@ def curve_through(
     return Curve(orbits, named, kind)
 
 
-def _corrected(problem: CurveProblem, y: np.ndarray) -> np.ndarray:
+def _special_at(problem: CurveProblem, y: np.ndarray) -> np.ndarray:
     """The special orbit with the second parameter of y."""
     with np.errstate(all="ignore"):
-        point, why = corrected(problem, y, PATIENT)
+        point, why = solution_at(problem, y, PATIENT)
     if why:
         raise NoOrbitError(f"no special orbit was found near the start of the curve: {why}")
     return point
 
 
-def _ranges(orbits: PeriodicOrbits, windows: dict[str, Range | None]) -> dict[str, Range]:
+def _ranges(orbits: PeriodicOrbits, windows: dict[str, Window | None]) -> dict[str, Window]:
     """The ranges of both parameters, inside their windows if there are any."""
     found = {}
     for name, window in windows.items():
@@ -228,11 +228,11 @@ def _ranges(orbits: PeriodicOrbits, windows: dict[str, Range | None]) -> dict[st
         if window is not None:
             low = max(low, window.low)
             high = min(high, window.high)
-        found[name] = Range(low, high)
+        found[name] = Window(low, high)
     return found
 
 
-def _limits(orbits: PeriodicOrbits, ranges: dict[str, Range]) -> list[Event]:
+def _limits(orbits: PeriodicOrbits, ranges: dict[str, Window]) -> list[Event]:
     """The ends of the ranges of both parameters, as terminal events."""
     found = []
     for j, (name, within) in enumerate(ranges.items()):

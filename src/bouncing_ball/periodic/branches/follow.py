@@ -17,7 +17,7 @@ from bouncing_ball.datasets.arguments import (
 )
 from bouncing_ball.errors import NoOrbitError, ParameterError, shortened, suggesting
 from bouncing_ball.periodic.branches import curves, following, grazing, switching
-from bouncing_ball.periodic.branches.following import Range
+from bouncing_ball.periodic.branches.following import Window
 from bouncing_ball.periodic.branches.labelled import FollowedBranch, SpecialCurve, labelled
 from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls
 from bouncing_ball.periodic.orbits.orbit import Orbit
@@ -228,7 +228,7 @@ def _curve(orbit: Orbit, names: tuple[str, ...], ranges: Any, most: int) -> Spec
     return SpecialCurve(**labelled(found, "curve", curve_kind=str(orbit.kind)))
 
 
-def _window(name: str, given: Any, start: float) -> Range | None:
+def _window(name: str, given: Any, start: float) -> Window | None:
     """The range of a parameter on a curve, which contains its value at the start."""
     if given is None:
         return None
@@ -245,4 +245,4 @@ def _window(name: str, given: Any, start: float) -> Range | None:
             f"the range {low:g} to {high:g} does not contain {name} = {start:g}, "
             "at which the curve starts"
         )
-    return Range(low, high)
+    return Window(low, high)

@@ -8,7 +8,6 @@ from typing import ClassVar, NamedTuple, Self
 import numpy as np
 
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.numerics import corrector
 from bouncing_ball.numerics.continuation import (
     Branch,
     ContinuationError,
@@ -18,7 +17,7 @@ from bouncing_ball.numerics.continuation import (
     continue_branch,
     resample,
 )
-from bouncing_ball.numerics.corrector import NewtonSettings, newton, tangent
+from bouncing_ball.numerics.corrector import NewtonSettings, newton, solution_at, tangent
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.periodic.orbits.balls import LAMBDA
@@ -68,7 +67,7 @@ _PLACES = {kind: f"a {kind}" for kind in Special} | {
 _FARTHEST = 10.0
 
 
-class Range(NamedTuple):
+class Window(NamedTuple):
     """The range of a parameter in which a branch or a curve is followed."""
 
     low: float
@@ -181,7 +180,7 @@ def point_near(problem: PeriodicOrbits, guess: np.ndarray) -> np.ndarray:
         If Newton's method does not converge.
     """
     with np.errstate(all="ignore"):
-        point, why = corrector.corrected(problem, guess, PATIENT)
+        point, why = solution_at(problem, guess, PATIENT)
     if why:
         k = problem.impacts
         raise NoOrbitError(
@@ -190,7 +189,7 @@ def point_near(problem: PeriodicOrbits, guess: np.ndarray) -> np.ndarray:
     return point
 
 
-def range_ahead(orbits: PeriodicOrbits, start: np.ndarray, to: float | None) -> Range:
+def range_ahead(orbits: PeriodicOrbits, start: np.ndarray, to: float | None) -> Window:
     """The range of the parameter on a branch: up to the value ``to``, and as far beyond the start.
 
     Without such a value it is the range of the parameter. If this has no largest value, the largest
@@ -201,11 +200,11 @@ def range_ahead(orbits: PeriodicOrbits, start: np.ndarray, to: float | None) -> 
     here = float(orbits.values(start)[name])
     if to is not None:
         back = 2 * here - to
-        return Range(max(low, min(to, back)), min(high, max(to, back)))
-    return Range(low, min(high, _FARTHEST * max(abs(here), 1.0)))
+        return Window(max(low, min(to, back)), min(high, max(to, back)))
+    return Window(low, min(high, _FARTHEST * max(abs(here), 1.0)))
 
 
-def limits_of(name: str, within: Range, column: int) -> list[Event]:
+def limits_of(name: str, within: Window, column: int) -> list[Event]:
     """The ends of a branch at the finite ends of the range of a parameter, an entry of y."""
     found = []
     for bound, sign in ((within.low, 1.0), (within.high, -1.0)):
@@ -294,7 +293,7 @@ def branch_from(
         return Followed(orbits, _with_lost_release(orbits, whole))
 
 
-def _up_to_limit(orbits: PeriodicOrbits, branch: Branch, within: Range) -> Branch:
+def _up_to_limit(orbits: PeriodicOrbits, branch: Branch, within: Window) -> Branch:
     """A branch that ended next to an end of the range of its parameter, with the orbit at this end.
 
     Steps beyond the end fail, because there are no balls, so that the steps become too short.
@@ -307,7 +306,7 @@ def _up_to_limit(orbits: PeriodicOrbits, branch: Branch, within: Range) -> Branc
     # Rounding of sinh must not lead out of the range.
     while not within.low <= np.sinh(at) <= within.high:
         at = np.nextafter(at, last[-1])
-    point, why = corrector.corrected(orbits, np.array([*last[:-1], at]), PATIENT)
+    point, why = solution_at(orbits, np.array([*last[:-1], at]), PATIENT)
     if why:
         return branch
     return replace(

@@ -15,7 +15,7 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.continuation import Branch, End
 from bouncing_ball.numerics.corrector import newton, plane, tangent
 from bouncing_ball.numerics.events import domain_limits
-from bouncing_ball.periodic.branches.following import PATIENT, Range
+from bouncing_ball.periodic.branches.following import PATIENT, Window
 from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
 from bouncing_ball.periodic.orbits.special import sticking
 
@@ -30,7 +30,7 @@ _LONGER = 10
 
 
 def sticking_curve(
-    orbits: PeriodicOrbits, start: np.ndarray, windows: tuple[Range, Range], most: int
+    orbits: PeriodicOrbits, start: np.ndarray, windows: tuple[Window, Window], most: int
 ) -> Branch:
     """The limits of sticking through one of them, in both directions of the second parameter.
 
@@ -40,7 +40,7 @@ def sticking_curve(
         The equations, with the two parameters.
     start : ndarray, shape (N + 2,)
         An orbit at the end of sticking.
-    windows : tuple of Range
+    windows : tuple of Window
         The ranges of the two parameters.
     most : int
         Number of points in each direction.
@@ -62,7 +62,11 @@ def sticking_curve(
 
 
 def _one_way(
-    orbits: PeriodicOrbits, first: np.ndarray, sign: float, windows: tuple[Range, Range], most: int
+    orbits: PeriodicOrbits,
+    first: np.ndarray,
+    sign: float,
+    windows: tuple[Window, Window],
+    most: int,
 ) -> tuple[list[np.ndarray], End]:
     """The points in one direction of the second parameter, and why they end."""
     along, across = orbits.along

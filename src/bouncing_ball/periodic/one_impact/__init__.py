@@ -3,12 +3,14 @@
 In reading order:
 
 ``n_t``                          the orbits of any model, their saddle-nodes and period doublings
-``closed_forms``                 in which models they have a closed form
+``closed_forms``                 those of the models that have a closed form
 ``restitution_branch``           that of the restitution model
 ``corrected_branch``             that of the corrected model
 ``spring_damper_branch``         the explicit curve of the spring-damper model
 ``spring_damper_bifurcations``   the bifurcations on this curve, and its orbits at a given Λ
-``start``                        where the branch of a model without a closed form begins
+``start``                        the search for the orbits of models without a closed form
+``other_settings``               rigid balls on another table, with drag or on a spring
+``contact_orbits``               contacts of finite duration there
 ``law_at_orbit``                 the contact law that has a given r and D at its orbit
 ``paper_unknowns``               the equations in the unknowns of the paper
 ``whole_branch``                 a whole branch, from one end to the other

@@ -18,15 +18,12 @@ from numpy.typing import ArrayLike
 from bouncing_ball.models.corrected.impact import impact
 from bouncing_ball.models.corrected.model import CorrectedModel
 from bouncing_ball.models.instant import Instant
-from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.periodic.one_impact import corrected_branch as lines
+from bouncing_ball.periodic.one_impact import corrected_branch as line
 from bouncing_ball.periodic.one_impact import restitution_branch as formulas
 from bouncing_ball.periodic.one_impact import spring_damper_bifurcations as bifurcations
-from bouncing_ball.periodic.one_impact.contact_orbits import OrbitsOfContact
-from bouncing_ball.periodic.one_impact.other_settings import OtherOrbits
 from bouncing_ball.periodic.one_impact.spring_damper_branch import nearest_excess, orbits_on_branch
 from bouncing_ball.periodic.orbits.impacts import check_index
 from bouncing_ball.periodic.orbits.orbit import Orbit, in_order
@@ -147,7 +144,7 @@ class CorrectedLine:
         """The n-T orbits at Λ on one side of the saddle-node."""
         check_index(n)
         lam = np.asarray(amplitude, dtype=float)
-        psi = lines.instant_phase(n, self._instant, lam, side is Side.STABLE)
+        psi = line.instant_phase(n, self._instant, lam, side is Side.STABLE)
         return corrected_orbits(self.model, n, lam, psi)
 
     def orbits(self, n: int, amplitude: float) -> Orbit:
@@ -157,14 +154,14 @@ class CorrectedLine:
     def saddle_node(self, n: ArrayLike) -> Orbit:
         """The orbits at the saddle-node, ψ = -χ."""
         check_index(n)
-        lam = lines.saddle_node(n, self._instant)
-        psi = lines.saddle_node_phase(self._instant)
+        lam = line.saddle_node(n, self._instant)
+        psi = line.saddle_node_phase(self._instant)
         return corrected_orbits(self.model, n, lam, np.where(np.isnan(lam), np.nan, psi))
 
     def period_doubling(self, n: ArrayLike) -> Orbit:
         """The orbits at the period doubling."""
         check_index(n)
-        lam, psi = lines.period_doubling(n, self._instant)
+        lam, psi = line.period_doubling(n, self._instant)
         return corrected_orbits(self.model, n, lam, psi)
 
 
@@ -185,39 +182,6 @@ def corrected_orbits(
     hit = impact(model.law, amplitude, psi, -launch)
     delay = hit.instant.delay
     return Orbit.of(model, n, amplitude, hit.phase - delay, hit.instant.duration, delay - launch)
-
-
-@singledispatch
-def closed_form(model: Model) -> OrbitsOfModel | None:
-    """The n-T orbits of a model from the closed form of its branch, or in another setting than the
-    paper's from a search of its own; None if a search from the corrected model finds them.
-
-    Examples
-    --------
-    >>> closed_form(RestitutionModel(0.5))
-    RestitutionLine(model=RestitutionModel(restitution=0.5))
-    """
-    return None
-
-
-@closed_form.register
-def _(model: RestitutionModel) -> OrbitsOfModel | None:
-    return RestitutionLine(model) if model.setting.is_paper else OtherOrbits(model)
-
-
-@closed_form.register
-def _(model: SpringDamperModel) -> OrbitsOfModel | None:
-    return SpringDamperBranch(model) if model.setting.is_paper else OrbitsOfContact(model)
-
-
-@closed_form.register
-def _(model: LawModel) -> OrbitsOfModel | None:
-    return None if model.setting.is_paper else OrbitsOfContact(model)
-
-
-@closed_form.register
-def _(model: CorrectedModel) -> OrbitsOfModel | None:
-    return CorrectedLine(model) if model.law.is_constant else None
 
 
 def nearest(orbit: Orbit) -> Orbit:

@@ -2,17 +2,33 @@
 
 They follow from the closed form of the model's branch if there is one
 (:mod:`~bouncing_ball.periodic.one_impact.closed_forms`), and otherwise from a search that starts
-from the corrected model (:mod:`~bouncing_ball.periodic.one_impact.start`).
+from the corrected model (:mod:`~bouncing_ball.periodic.one_impact.start`). On another table, beside
+a drag or a spring, they are zeros of an equation for the phase
+(:mod:`~bouncing_ball.periodic.one_impact.other_settings`), or are found from such zeros
+(:mod:`~bouncing_ball.periodic.one_impact.contact_orbits`). A branch of n-T orbits begins at one of
+these orbits, and :func:`orbits_of` alone decides how it is found.
 """
 
 from enum import StrEnum
+from functools import singledispatch
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.corrected.model import CorrectedModel
+from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.model import Model
-from bouncing_ball.periodic.one_impact.closed_forms import OrbitsOfModel, closed_form
+from bouncing_ball.models.rigid import RestitutionModel
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic.one_impact.closed_forms import (
+    CorrectedLine,
+    OrbitsOfModel,
+    RestitutionLine,
+    SpringDamperBranch,
+)
+from bouncing_ball.periodic.one_impact.contact_orbits import OrbitsOfContact
+from bouncing_ball.periodic.one_impact.other_settings import OtherOrbits
 from bouncing_ball.periodic.one_impact.start import SearchedOrbits
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.stability import Side
@@ -28,9 +44,36 @@ class Absence(StrEnum):
     NOT_FOUND = "none was found, but one may exist"
 
 
+@singledispatch
 def orbits_of(model: Model) -> OrbitsOfModel:
-    """The n-T orbits of a model, from the closed form of its branch if there is one."""
-    return closed_form(model) or SearchedOrbits(model)
+    """The n-T orbits of a model: how they are found depends on its class and its setting.
+
+    Examples
+    --------
+    >>> orbits_of(RestitutionModel(0.5))
+    RestitutionLine(model=RestitutionModel(restitution=0.5))
+    """
+    return SearchedOrbits(model)
+
+
+@orbits_of.register
+def _(model: RestitutionModel) -> OrbitsOfModel:
+    return RestitutionLine(model) if model.setting.is_paper else OtherOrbits(model)
+
+
+@orbits_of.register
+def _(model: SpringDamperModel) -> OrbitsOfModel:
+    return SpringDamperBranch(model) if model.setting.is_paper else OrbitsOfContact(model)
+
+
+@orbits_of.register
+def _(model: LawModel) -> OrbitsOfModel:
+    return SearchedOrbits(model) if model.setting.is_paper else OrbitsOfContact(model)
+
+
+@orbits_of.register
+def _(model: CorrectedModel) -> OrbitsOfModel:
+    return CorrectedLine(model) if model.law.is_constant else SearchedOrbits(model)
 
 
 def orbit(model: Model, n: ArrayLike, amplitude: ArrayLike, side: Side = Side.STABLE) -> Orbit:

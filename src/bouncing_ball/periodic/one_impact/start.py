@@ -25,8 +25,8 @@ from bouncing_ball.numerics.continuation import (
 )
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, solve, tangent
 from bouncing_ball.numerics.events import Event, SpecialPoint
-from bouncing_ball.periodic.branches.following import Range, limit, limits_of
-from bouncing_ball.periodic.one_impact import corrected_branch as corrected
+from bouncing_ball.periodic.branches.following import Window, limit, limits_of
+from bouncing_ball.periodic.one_impact import corrected_branch as line
 from bouncing_ball.periodic.orbits.balls import LAMBDA, LOWEST
 from bouncing_ball.periodic.orbits.impacts import check_index
 from bouncing_ball.periodic.orbits.orbit import Orbit, in_order, orbit_of_point
@@ -204,9 +204,9 @@ def orbit(model: Model, n: ArrayLike, amplitude: ArrayLike, side: Side) -> Orbit
     """
     side = Side(side)
     search, (lam,), shape = _Search.of(model, n, amplitude)
-    psi = corrected.instant_phase(search.n, search.instant, lam, side is Side.STABLE)
+    psi = line.instant_phase(search.n, search.instant, lam, side is Side.STABLE)
     # Next to the fold, the given Λ may lie below the fold of the corrected model.
-    psi = np.where(np.isnan(psi), corrected.saddle_node_phase(search.instant), psi)
+    psi = np.where(np.isnan(psi), line.saddle_node_phase(search.instant), psi)
     problem, guess = search.guess(lam, psi)
     y = _solved(problem, guess)
     found, test = _orbits(problem, y, shape)
@@ -274,9 +274,9 @@ def continued(
         is found to start from, or if the continuation fails before an end of the branch.
     """
     search, _, _ = _Search.of(model, [n])
-    fold = float(np.nan_to_num(corrected.saddle_node(n, search.instant)[0]))
+    fold = float(np.nan_to_num(line.saddle_node(n, search.instant)[0]))
     above = np.array([max(amplitude, fold) * _ABOVE])
-    problem, guess = search.guess(above, corrected.instant_phase(n, search.instant, above))
+    problem, guess = search.guess(above, line.instant_phase(n, search.instant, above))
     y = _solved(problem, guess)[0]
     problem = problem.take(0)
     if np.any(np.isnan(y)):
@@ -287,7 +287,7 @@ def continued(
         *bifurcations(problem),
         *ends_of_contact(problem),
         Event(_HERE, lambda y: y[..., -1] - here),
-        *limits_of(LAMBDA, Range(LOWEST, most), problem.equations),
+        *limits_of(LAMBDA, Window(LOWEST, most), problem.equations),
     )
     try:
         branch = continue_branch(
@@ -341,10 +341,10 @@ def bifurcation(model: Model, n: ArrayLike, kind: Bifurcation) -> Orbit:
     search, _, shape = _Search.of(model, n)
     index = search.n
     if kind is Bifurcation.SADDLE_NODE:
-        lam = corrected.saddle_node(index, search.instant)
-        psi = corrected.saddle_node_phase(search.instant)
+        lam = line.saddle_node(index, search.instant)
+        psi = line.saddle_node_phase(search.instant)
     else:
-        lam, psi = corrected.period_doubling(index, search.instant)
+        lam, psi = line.period_doubling(index, search.instant)
     problem, guess = search.guess(lam, psi)
     found = newton(problem, guess, lambda y: problem.bifurcation(kind, y), _EXTENDED)
     low = (lam < LOWEST) & (kind is Bifurcation.SADDLE_NODE)

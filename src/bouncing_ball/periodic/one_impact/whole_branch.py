@@ -23,7 +23,7 @@ from bouncing_ball.numerics.continuation import (
     continue_all_both_ways,
 )
 from bouncing_ball.numerics.events import Event
-from bouncing_ball.periodic.branches.following import Followed, Range, limits_of
+from bouncing_ball.periodic.branches.following import Followed, Window, limits_of
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns
 from bouncing_ball.periodic.orbits.balls import LAMBDA, LOWEST
@@ -225,7 +225,7 @@ def _events(problem: PaperUnknowns, top: float, ends: Collection[Bifurcation]) -
     of_orbits = [
         *passed_by(orbits),
         *ends_of_contact(orbits),
-        *limits_of(LAMBDA, Range(LOWEST, top), orbits.equations),
+        *limits_of(LAMBDA, Window(LOWEST, top), orbits.equations),
     ]
     return [
         replace(problem.event(event), terminal=event.terminal or event.name in ends)

@@ -177,10 +177,11 @@ class Orbit(Impacts):
         displacement, velocity = (x.reshape(time.shape) for x in found)
         return displacement, velocity
 
-    def contact_motion(self, time: ArrayLike, impact: int = 0) -> tuple[np.ndarray, np.ndarray]:
+    def contact_motion(self, time: ArrayLike, impact: int = 0) -> tuple[Any, Any]:
         """δ and δ′ at times 0 ≤ s ≤ τ_b in the contact of one impact, NaN at other times.
 
-        The results have the shape to which the times and the orbits broadcast.
+        The results have the shape to which the times and the orbits broadcast; they are floats for
+        one orbit at one time.
         """
         s = np.asarray(time, dtype=float)
         shape = np.broadcast_shapes(s.shape, self.shape)
@@ -197,26 +198,29 @@ class Orbit(Impacts):
         last = self.durations[..., impact] * (1 + 8 * _EPS)
         inside = (s >= 0) & (s <= last)
         displacement, velocity = np.where(inside, found.reshape(2, *shape), np.nan)
-        return displacement, velocity
+        return self._single(displacement), self._single(velocity)
 
-    def contact_path(self, time: ArrayLike, impact: int = 0) -> tuple[np.ndarray, np.ndarray]:
+    def contact_path(self, time: ArrayLike, impact: int = 0) -> tuple[Any, Any]:
         """Height z and velocity z′ at times 0 ≤ s ≤ τ_b in the contact of one impact."""
         displacement, velocity = self.contact_motion(time, impact)
         phase = self.phases[..., impact] + np.asarray(time)
         waveform = self.model.place.waveform
         height = displacement + self.amplitude * waveform.height(phase)
-        return height, velocity + self.amplitude * waveform.velocity(phase)
+        speed = velocity + self.amplitude * waveform.velocity(phase)
+        return self._single(height), self._single(speed)
 
-    def flight_path(self, time: ArrayLike, impact: int = 0) -> tuple[np.ndarray, np.ndarray]:
+    def flight_path(self, time: ArrayLike, impact: int = 0) -> tuple[Any, Any]:
         """Height and velocity in the flight after one impact, from which the time is counted
         (Eqs. 14-15).
         """
         s = np.asarray(time) - self.durations[..., impact]
-        if not self.model.place.is_paper:
-            return self._other_flight_path(s, impact)
-        bounce = self._bounces[..., impact]
-        velocity = bounce - s
-        return self._heights[..., impact] + (bounce + velocity) / 2 * s, velocity
+        if self.model.place.is_paper:
+            bounce = self._bounces[..., impact]
+            velocity = bounce - s
+            height = self._heights[..., impact] + (bounce + velocity) / 2 * s
+        else:
+            height, velocity = self._other_flight_path(s, impact)
+        return self._single(height), self._single(velocity)
 
     def _other_flight_path(self, since: np.ndarray, impact: int) -> tuple[np.ndarray, np.ndarray]:
         """Height and velocity at times since one release, in another setting than the paper's."""

@@ -274,7 +274,8 @@ class Range(NamedTuple):
         if self.whole:
             return f"a whole number from {self.low:g} to {self.high:.0f}"
         if math.isinf(self.high):
-            return "a finite number" + ("" if math.isinf(self.low) else f" > {self.low:g}")
+            sign = ">" if self.ends[0] == "(" else "≥"
+            return "a finite number" + ("" if math.isinf(self.low) else f" {sign} {self.low:g}")
         interval = f"a number in {self.interval}"
         return f"0 or {interval}" if self.or_zero else interval
 

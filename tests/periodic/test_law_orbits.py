@@ -195,3 +195,15 @@ def test_an_overdamped_contact_with_a_force_release_has_orbits():
     assert landing == pytest.approx(lam * math.sin(orbit.phase), abs=1e-8)
     assert velocity - flight == pytest.approx(orbit.impact_velocity, abs=1e-8)
     assert orbit.is_stable() and bouncing_ball.limits(ball).saddle_node.amplitude < lam
+
+
+def test_an_overdamped_contact_is_followed_along_its_damping():
+    """The orbits at the end of the branch are those that are found there directly."""
+    law = {"frequency_ratio": 20.0, "release": "force"}
+    ball = contact_law("linear", damping_ratio=1.5, **law)
+    orbit = bouncing_ball.orbit(ball, amplitude=3.0)
+    *_, last = bouncing_ball.follow(orbit, along="damping_ratio", to=2.0).states()
+    there = bouncing_ball.orbit(contact_law("linear", damping_ratio=2.0, **law), amplitude=3.0)
+    assert float(last.distance(there)) < 1e-10
+    with pytest.raises(ModelError, match=r"to = 0.5 is not a finite number ≥ 1"):
+        bouncing_ball.follow(orbit, along="damping_ratio", to=0.5)

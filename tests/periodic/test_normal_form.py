@@ -9,6 +9,7 @@ import pytest
 import bouncing_ball
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.numerics.elementary import reduce_angle
 
 THIRD = bouncing_ball.Waveform([1.0, 0.0, 0.04])
 
@@ -143,8 +144,8 @@ def test_simulated_balls_on_both_sides_of_a_doubling_do_what_the_normal_form_say
     found = bouncing_ball.normal_form(doubling)
     share = 1e-3
 
-    def aside_after(change, xi, impacts):
-        """ξ of a ball after some impacts from the one-impact orbit plus ξ q."""
+    def aside(change, xi, impacts):
+        """ξ of a ball at each impact from the one-impact orbit plus ξ q on."""
         lam = doubling.amplitude + change
         one = bouncing_ball.orbit(ball, amplitude=lam)
         phase = one.phase + xi * found.direction[0]
@@ -152,20 +153,21 @@ def test_simulated_balls_on_both_sides_of_a_doubling_do_what_the_normal_form_say
         waveform = ball.place.waveform
         velocity = relative + lam * waveform.velocity(phase)
         followed = ball.simulate(lam, phase, float(velocity), impacts)
-        return abs(math.remainder(float(followed.phase[-1]) - one.phase, 2 * math.pi))
+        return np.abs(reduce_angle(np.ravel(followed.phase) - one.phase))
 
     size = math.sqrt(abs(found.rate * share / found.coefficient))
     if supercritical:
         # Beyond the doubling small and large deviations end on the doubled orbit, before it none.
-        assert aside_after(share, 0.2 * size, 6001) == pytest.approx(
+        assert aside(share, 0.2 * size, 6001)[-1] == pytest.approx(
             size * abs(found.direction[0]), rel=0.1
         )
-        assert aside_after(-share, 2 * size, 6001) < 1e-6
+        assert aside(-share, 2 * size, 6001)[-1] < 1e-6
     else:
-        # Before the doubling the unstable doubled orbit is the border of the basin.
-        assert aside_after(-share, 0.5 * size, 4001) < 0.1 * size
-        assert aside_after(-share, 1.5 * size, 4001) > 2 * size
-        assert aside_after(share, 0.1 * size, 4001) > 2 * size
+        # Before the doubling the unstable doubled orbit is the border of the basin. A ball that
+        # leaves may come back much later.
+        assert aside(-share, 0.5 * size, 4001)[-1] < 0.1 * size
+        assert aside(-share, 1.5 * size, 4001).max() > 2 * size
+        assert aside(share, 0.1 * size, 4001).max() > 2 * size
 
 
 def test_the_doublings_on_both_sides_of_a_generalized_one_differ():

@@ -126,6 +126,10 @@ class Model(Batch, Ball, ABC):
         """
         return _numbers(self)
 
+    def range_of(self, name: str) -> Range:
+        """The range of a parameter along a branch; without another one it is any finite number."""
+        return RANGES.get(name, Range())
+
     def implied(self, values: Mapping[str, Any]) -> dict[str, Any]:
         """Parameters that follow from others, of which these values are given, as ζ from r."""
         return _implied(self, values)

@@ -33,6 +33,7 @@ from bouncing_ball.numerics.corrector import (
 )
 from bouncing_ball.numerics.events import Event, SpecialPoint, changes_of_sign, locate_all
 
+_TINY = np.finfo(float).tiny
 # Number of steps after which a branch whose points accumulate ends.
 _CREEPING = 16
 # The planes of a round are normal to one tangent, so that its steps become longer as the branch
@@ -621,24 +622,35 @@ def continue_both_ways(
     return _branch(found)
 
 
-# Number of rounds that equalise the chords between resampled points. Each round starts from the
-# points of the round before.
+# Number of rounds that equalise the chords between resampled points.
 _EQUALISING_ROUNDS = 10
 
 
-def _interpolated(wanted: np.ndarray, arc: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """Rows that are known at the arclengths ``arc``, interpolated linearly at those wanted."""
-    return np.stack([np.interp(wanted, arc, column) for column in rows.T], axis=-1)
+def _between(
+    wanted: np.ndarray, arc: np.ndarray, points: np.ndarray, tangents: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Points and directions at arclengths between those of known points with unit tangents, by
+    Hermite's cubic.
+    """
+    k = np.clip(np.searchsorted(arc, wanted, side="right") - 1, 0, len(arc) - 2)
+    width = np.maximum(arc[k + 1] - arc[k], _TINY)[:, np.newaxis]
+    s = (wanted - arc[k])[:, np.newaxis] / width
+    chord = points[k + 1] - points[k]
+    before = width * tangents[k] - chord
+    after = width * tangents[k + 1] - chord
+    rest = 1 - s
+    at = points[k] + s * chord + s * rest * (rest * before - s * after)
+    slope = chord + rest * (rest - 2 * s) * before - s * (2 * rest - s) * after
+    return at, slope / np.linalg.norm(slope, axis=-1, keepdims=True)
 
 
 def resample(problem: Problem, branch: Branch, count: int) -> np.ndarray:
     """Solutions at equal distances along a branch, shape (count, N + 1).
 
-    Linear interpolation between the points of the branch and between their tangents is the
-    predictor, and Newton's method in the plane normal to the tangent is the corrector; the first
-    and last points are those of the branch. The same is done again with the new points, until the
-    chords between neighbours are equal, so that the result depends on the branch and on ``count``,
-    but not on the step control.
+    The cubic through the points of the branch with their tangents is the predictor, and Newton's
+    method in the plane normal to it is the corrector; the first and last points are those of the
+    branch. The same is done again at other arclengths, until the chords between neighbours are
+    equal, so that the result depends on the branch and on ``count``, but not on the step control.
 
     Raises
     ------
@@ -649,12 +661,10 @@ def resample(problem: Problem, branch: Branch, count: int) -> np.ndarray:
     arc = branch.arclength
     if len(arc) < 2:
         raise ContinuationError(f"a branch of one point has no length: {branch.end}")
+    wanted = np.linspace(0.0, arc[-1], count)
     points = branch.points
-    along = branch.tangents
     for _ in range(_EQUALISING_ROUNDS):
-        wanted = np.linspace(0.0, arc[-1], count)
-        guess = _interpolated(wanted, arc, points)
-        along = _interpolated(wanted, arc, along)
+        guess, along = _between(wanted, arc, branch.points, branch.tangents)
         found = newton(problem, guess, plane(along, guess))
         if not np.all(found.converged):
             residual = found.residual.max()
@@ -665,5 +675,6 @@ def resample(problem: Problem, branch: Branch, count: int) -> np.ndarray:
         chords = np.linalg.norm(np.diff(points, axis=0), axis=1)
         if np.ptp(chords) <= NewtonSettings().tolerance * chords.mean():
             break
-        arc = np.concatenate([[0.0], np.cumsum(chords)])
+        passed = np.concatenate([[0.0], np.cumsum(chords)])
+        wanted = np.interp(np.linspace(0.0, passed[-1], count), passed, wanted)
     return points

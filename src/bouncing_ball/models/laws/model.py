@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.errors import ParameterError
+from bouncing_ball.errors import ParameterError, Range
 from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.analytic import require_analytic
@@ -68,6 +68,14 @@ class LawModel(Model):
     def numbers(self) -> dict[str, Any]:
         """The numerical parameters of the law, all of which can vary; the flight is free."""
         return {name: x for name, x in super().numbers().items() if name != "drag"}
+
+    def range_of(self, name: str) -> Range:
+        """As for every model, but that an overdamped contact stays overdamped: the unknowns of its
+        orbits are others than those below ζ = 1.
+        """
+        if name == "damping_ratio" and np.all(np.asarray(self.numbers()[name]) >= 1):
+            return Range(1, np.inf, "[)")
+        return super().range_of(name)
 
     def dynamics(self, amplitude: ArrayLike) -> Dynamics:
         """The contacts and flights of these balls on a table of amplitude Λ."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from bouncing_ball.errors import AMPLITUDE, ModelError, ParameterError, Range, did_you_mean
 from bouncing_ball.models.dynamics import Dynamics
-from bouncing_ball.models.model import RANGES, Model
+from bouncing_ball.models.model import Model
 from bouncing_ball.numerics.arrays import pick
 
 LAMBDA = "amplitude"
@@ -18,7 +18,7 @@ LOWEST = 1e-4
 the steps along a branch are too long to resolve it."""
 # A branch stays away from an end of a range that is not in the range by this number.
 _INSIDE = 1e-9
-_RANGES = {LAMBDA: AMPLITUDE._replace(or_zero=False), **RANGES}
+_RANGE_OF_LAMBDA = AMPLITUDE._replace(or_zero=False)
 
 
 @dataclass(frozen=True)
@@ -103,11 +103,14 @@ amplitude
         if name not in names:
             known = f"one of {', '.join(names)}{did_you_mean(name, names)}"
             raise ParameterError(f"these orbits have no {{}}: {known}", repr(name))
-        return _RANGES.get(name, Range())
+        return self._allowed(name)
+
+    def _allowed(self, name: str) -> Range:
+        return _RANGE_OF_LAMBDA if name == LAMBDA else self.model.range_of(name)
 
     def bounds(self, name: str) -> tuple[float, float]:
         """The smallest and the largest value of a parameter on a branch."""
-        allowed = _RANGES.get(name, Range())
+        allowed = self._allowed(name)
         low = allowed.low + (_INSIDE if allowed.ends[0] == "(" else 0.0)
         high = allowed.high - (_INSIDE if allowed.ends[1] == ")" else 0.0)
         return low, high

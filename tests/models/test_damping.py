@@ -3,9 +3,11 @@
 import mpmath
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.damping import Release, damping_ratio, restitution_coefficient
+from bouncing_ball.models.spring_damper import SpringDamper
 
 EPS = np.finfo(float).eps
 
@@ -66,3 +68,31 @@ def test_one_bad_value_among_many_is_reported_on_one_line(refusal):
 def test_a_release_given_by_its_name_gives_the_same_damping(release):
     assert damping_ratio(0.65, str(release)) == damping_ratio(0.65, release)
     assert restitution_coefficient(0.1, str(release)) == restitution_coefficient(0.1, release)
+
+
+@pytest.mark.parametrize("release", [Release.FORCE, Release.APPROACH])
+@pytest.mark.parametrize("zeta", [0.999, 1.0, 1.0001, 1.5, 4.0])
+def test_an_overdamped_ball_rebounds_where_its_force_vanishes(release, zeta):
+    def motion(time, state):
+        rate = state[1] if release.is_linear else max(state[1], 0.0)
+        return [state[1], -state[0] - 2 * zeta * rate]
+
+    def ends(time, state):
+        return state[0] + 2 * zeta * state[1] if release.is_linear else state[0] + (time == 0)
+
+    def turns(time, state):
+        return state[1]
+
+    ends.terminal = turns.terminal = True
+    ends.direction = turns.direction = -1
+    precise = {"method": "DOP853", "rtol": 1e-13, "atol": 1e-14}
+    # The force of a damper on approach has a kink at the turn, where the integration starts anew.
+    down = solve_ivp(motion, (0.0, 20.0), [0.0, 1.0], events=turns, **precise)
+    turn = down.t[-1]
+    up = solve_ivp(motion, (turn, 40.0), [down.y[0, -1], -1e-300], events=ends, **precise)
+    contact = SpringDamper(1.0, zeta, release)
+    assert float(contact.free_duration) == pytest.approx(up.t[-1], rel=1e-9)
+    assert float(contact.restitution) == pytest.approx(-up.y[1, -1], rel=1e-9)
+    assert float(SpringDamper(2.0, zeta, release).free_duration) == pytest.approx(up.t[-1] / 2)
+    many = SpringDamper(1.0, np.array([0.1, zeta]), release)
+    assert many.free_duration[1] == contact.free_duration

@@ -16,6 +16,7 @@ from bouncing_ball.contacts.engines.drop_in_steps import MOST_STEPS, Rise, drop_
 from bouncing_ball.contacts.engines.engine import EngineSettings
 from bouncing_ball.contacts.engines.given_step import AtStep, stiffest_contact
 from bouncing_ball.contacts.engines.scheme import Scheme
+from bouncing_ball.contacts.engines.steps import LinearStep
 from bouncing_ball.contacts.loss import of_loss
 from bouncing_ball.contacts.quantities import check_kinds
 from bouncing_ball.contacts.question import EngineSetup, Question
@@ -216,10 +217,9 @@ def dropped_at_step(
     if written.at_step.steps > MOST_STEPS:
         return None
     release = case.contact.release
-    scheme = Scheme(written.scheme)
-    return drop_in_steps(
-        scheme, case.physical, release, written.time_step, speed, case.table.gravity
-    )
+    m, k, c = case.physical
+    step = LinearStep.of(Scheme(written.scheme), k / m, c / m, release, written.time_step)
+    return drop_in_steps(step, speed, case.table.gravity, case.physical.contact_time(release))
 
 
 def at_given_step(

@@ -123,6 +123,39 @@ class Release(StrEnum):
         zeta = np.asarray(damping_ratio, dtype=float)
         return damped + np.pi / 2 * np.sqrt((1 - zeta) * (1 + zeta))
 
+    def require_rebound(self, damping_ratio: ArrayLike) -> np.ndarray:
+        """ζ as an array.
+
+        Raises
+        ------
+        ModelError
+            If any ζ is no number or negative, or not below 1 for the displacement release, under
+            which an overdamped ball does not come back to the table's level.
+        """
+        allowed = "a number ≥ 0"
+        if self is Release.DISPLACEMENT:
+            allowed = "in [0, 1): an overdamped contact has no restitution coefficient"
+        zeta = as_numbers(damping_ratio, "damping ratio ζ", allowed)
+        below = 1.0 if self is Release.DISPLACEMENT else np.inf
+        require((zeta >= 0) & (zeta < below), zeta, "damping ratio ζ", allowed)
+        return zeta
+
+    def overdamped_duration(self, damping_ratio: ArrayLike) -> np.ndarray:
+        """The time, in units of 1/ω, during which the damper of a free contact with ζ ≥ 1 acts.
+
+        With ζ = cosh β it is 2β/sinh β for the force release, which is 2 at ζ = 1, and half of that
+        for a damper that acts on approach only.
+
+        Examples
+        --------
+        >>> float(Release.FORCE.overdamped_duration(1.0))
+        2.0
+        """
+        zeta = np.asarray(damping_ratio, dtype=float)
+        sinh = np.sqrt((zeta - 1) * (zeta + 1))
+        half = np.where(sinh > 0, np.arcsinh(sinh) / np.where(sinh > 0, sinh, 1.0), 1.0)
+        return 2 * half if self.is_linear else half
+
 
 LINEAR = tuple(rule for rule in Release if rule.is_linear)
 """The release rules of contacts that are linear from their start to their end."""
@@ -263,23 +296,24 @@ def _half_angle(decrement: np.ndarray) -> np.ndarray:
 
 
 def restitution_coefficient(damping: ArrayLike, release: str = Release.DISPLACEMENT) -> np.ndarray:
-    """Restitution coefficient of a free, underdamped linear contact.
+    """Restitution coefficient of a free linear contact.
 
     ``r = exp(-(π - 2α) ζ/√(1 - ζ²))``, the inverse of :func:`damping_ratio`. For the
     force release r is greater, because the contact ends before its force pulls the ball. If the
-    damper acts on approach only, ``r = exp(-ζ arccos ζ/√(1 - ζ²))``, the root of that.
+    damper acts on approach only, ``r = exp(-ζ arccos ζ/√(1 - ζ²))``, the root of that. Both also
+    rebound from an overdamped contact, whose ζ = cosh β: ``r = exp(-2ζβ/sinh β)``, and its root.
 
     Parameters
     ----------
     damping : array_like
-        ζ in [0, 1).
+        ζ in [0, 1) for the displacement release, and at least 0 for the others.
     release : Release or str
         The condition that ends the contact.
 
     Raises
     ------
     ModelError
-        If any ζ lies outside [0, 1): the formula holds for underdamped contacts only.
+        If any ζ lies outside this range.
 
     Examples
     --------
@@ -287,9 +321,16 @@ def restitution_coefficient(damping: ArrayLike, release: str = Release.DISPLACEM
     1.0
     >>> [round(float(restitution_coefficient(z, "approach")), 4) for z in (0.1, 0.2, 0.3)]
     [0.8626, 0.7561, 0.6715]
+    >>> bool(restitution_coefficient(1.0, "force") == np.exp(-2))
+    True
     """
-    allowed = "in [0, 1): an overdamped contact has no restitution coefficient"
-    zeta = as_numbers(damping, "damping ratio ζ", allowed)
-    require((zeta >= 0) & (zeta < 1), zeta, "damping ratio ζ", allowed)
-    angle = Release.of(release).damped_angle(zeta)
-    return exponential(-angle * zeta / np.sqrt((1 - zeta) * (1 + zeta)))
+    rule = Release.of(release)
+    zeta = rule.require_rebound(damping)
+    over = zeta >= 1
+    under = np.where(over, 0.0, zeta)
+    angle = rule.damped_angle(under)
+    found = exponential(-angle * under / np.sqrt((1 - under) * (1 + under)))
+    if not over.any():
+        return found
+    large = np.where(over, zeta, 1.0)
+    return np.where(over, np.exp(-large * rule.overdamped_duration(large)), found)

@@ -199,7 +199,7 @@ class SpringDamper(OscillatorLaw):
         Raises
         ------
         ModelError
-            If ζ ≥ 1.
+            If ζ ≥ 1 with the displacement release.
         """
         return restitution_coefficient(self.damping_ratio, self.release)
 
@@ -217,14 +217,29 @@ class SpringDamper(OscillatorLaw):
 
     @property
     def free_duration(self) -> np.ndarray:
-        """Duration of the free contact: (π - 2α)/ϖ_d if it is linear.
+        """Duration of the free contact: (π - 2α)/ϖ_d if it is linear and ζ < 1; for ζ ≥ 1 see
+        :meth:`.Release.overdamped_duration`.
 
         Raises
         ------
         ModelError
-            If ζ ≥ 1.
+            If ζ ≥ 1 with the displacement release.
+
+        Examples
+        --------
+        >>> float(SpringDamper(2.0, 1.0, "force").free_duration)
+        1.0
         """
-        return self.free_angle / self.damped_frequency
+        zeta = self.release.require_rebound(self.damping_ratio)
+        over = zeta >= 1
+        under = np.where(over, 0.0, zeta)
+        root = np.sqrt((1 - under) * (1 + under))
+        found = self.release.free_angle(under) / (self.frequency_ratio * root)
+        if not over.any():
+            return found
+        alone = 0.0 if self.release.is_linear else np.pi / 2
+        large = self.release.overdamped_duration(np.where(over, zeta, 1.0)) + alone
+        return np.where(over, large / self.frequency_ratio, found)
 
     def flow(
         self,

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from bouncing_ball import Contact, describe_contact
 from bouncing_ball.contacts.engines.choice import ENGINES, engine_named
 from bouncing_ball.contacts.engines.engine import ERROR, Physical
-from bouncing_ball.contacts.engines.scheme import Scheme, error_in_steps
+from bouncing_ball.contacts.engines.impacts import error_in_steps
+from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.damping import LINEAR, Release, damping_ratio
 

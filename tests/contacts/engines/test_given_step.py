@@ -10,15 +10,11 @@ from engine_runs import RUN, Trial, only_if_installed
 from bouncing_ball import Contact, EngineSetup, ModelError, write_contact
 from bouncing_ball.contacts.engines.choice import ENGINES
 from bouncing_ball.contacts.engines.given_step import at_step, spread_in_steps, stiffest_contact
+from bouncing_ball.contacts.engines.impacts import FEWEST, impacts_in_steps, is_stable
 from bouncing_ball.contacts.engines.physical import Physical
-from bouncing_ball.contacts.engines.scheme import (
-    FEWEST,
-    Scheme,
-    free_impact,
-    impacts_in_steps,
-    is_stable,
-)
+from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.models.damping import LINEAR, Release
+from bouncing_ball.models.spring_damper import SpringDamper
 
 FRACTIONS = np.linspace(0.02, 0.98, 17).tolist()
 
@@ -69,7 +65,9 @@ def test_semi_implicit_steps_grow_beyond_their_limit_and_implicit_ones_never(zet
 @pytest.mark.parametrize("error", [0.02, 0.003])
 def test_the_stiffest_contact_is_within_the_error_and_a_stiffer_one_is_not(scheme, error):
     zeta = 0.1
-    duration, r = free_impact(zeta, Release.FORCE)
+    contact = SpringDamper(1.0, zeta, Release.FORCE)
+    duration = float(contact.free_duration)
+    r = float(contact.restitution)
     _, steps = stiffest_contact(scheme, 1.0, zeta, Release.FORCE, 1.0, error)
     assert steps > FEWEST
     # As many instants within a step as show a jump at its side of 1e-5.
@@ -93,7 +91,7 @@ def test_the_range_of_r_at_a_coarse_step_is_that_of_a_million_instants(scheme, s
     zeta = 0.0335
     instants = np.linspace(1e-9, 1.0, 1_000_001)
     for rule in LINEAR if scheme is not Scheme.SEMI_IMPLICIT else Release:
-        h = free_impact(zeta, rule).duration / steps
+        h = float(SpringDamper(1.0, zeta, rule).free_duration) / steps
         many = np.maximum(impacts_in_steps(scheme, zeta, rule, h, instants), 0.0)
         found = spread_in_steps(scheme, zeta, rule, h)
         # No slope is steeper than 100.

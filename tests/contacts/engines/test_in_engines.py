@@ -32,8 +32,9 @@ from bouncing_ball.beyond.exhibits.engine_steps import (
 )
 from bouncing_ball.contacts.engines.choice import ENGINES
 from bouncing_ball.contacts.engines.engine import ERROR, Physical
+from bouncing_ball.contacts.engines.impacts import steps_for
 from bouncing_ball.contacts.engines.impedance import Impedance
-from bouncing_ball.contacts.engines.scheme import Scheme, steps_for
+from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.datasets.files import read_dataset, write_dataset
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.models.damping import Release, damping_ratio, restitution_coefficient

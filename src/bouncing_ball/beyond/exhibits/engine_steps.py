@@ -17,7 +17,8 @@ from pydantic import AfterValidator, Strict
 
 from bouncing_ball.accuracy.corrected_errors import SIMPLE, errors
 from bouncing_ball.accuracy.errors import relative
-from bouncing_ball.contacts.engines.scheme import Scheme, restitution_in_steps
+from bouncing_ball.contacts.engines.impacts import restitution_in_steps
+from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.datasets.parameters import Family, Many, Parameters, Restitution, Seed, number
 from bouncing_ball.datasets.selection import index_of
 from bouncing_ball.datasets.variables import Variable, describe

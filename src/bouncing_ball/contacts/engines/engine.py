@@ -12,8 +12,9 @@ from typing import Any, ClassVar
 import numpy as np
 
 from bouncing_ball.contacts.engines.given_step import AtStep, at_step
+from bouncing_ball.contacts.engines.impacts import steps_for
 from bouncing_ball.contacts.engines.physical import Physical
-from bouncing_ball.contacts.engines.scheme import Scheme, compensated, represented, steps_for
+from bouncing_ball.contacts.engines.scheme import Scheme, compensated, represented
 from bouncing_ball.errors import ModelError, did_you_mean, require
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw

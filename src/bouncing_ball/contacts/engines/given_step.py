@@ -25,17 +25,17 @@ from typing import NamedTuple
 import numpy as np
 import scipy
 
-from bouncing_ball.contacts.engines.physical import Physical
-from bouncing_ball.contacts.engines.scheme import (
+from bouncing_ball.contacts.engines.impacts import (
     FEWEST,
-    Scheme,
     fewest_steps,
-    free_impact,
     impacts_in_steps,
     is_stable,
 )
+from bouncing_ball.contacts.engines.physical import Physical
+from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.damping import Release
+from bouncing_ball.models.spring_damper import SpringDamper
 
 # Velocities below this part of that of the impact are those of a ball that does not leave.
 _STAYS = 1e-6
@@ -212,7 +212,9 @@ def _fewest(scheme: Scheme, zeta: float, release: Release, error: float) -> floa
     The error as a function of this number has bends and jumps. Below the number returned the
     contact is not within the error, and with any more steps it is.
     """
-    duration, exact = free_impact(zeta, release)
+    contact = SpringDamper(1.0, zeta, release)
+    duration = float(contact.free_duration)
+    exact = float(contact.restitution)
 
     def within(steps: float) -> bool:
         return spread_in_steps(scheme, zeta, release, duration / steps).error(exact) <= error
@@ -250,7 +252,7 @@ def stiffest_contact(
     ('4550.6 N/m', True)
     """
     fewest = _fewest(scheme, round(zeta, _DIGITS), release, error)
-    omega = free_impact(zeta, release).duration / (fewest * time_step)
+    omega = float(SpringDamper(1.0, zeta, release).free_duration) / (fewest * time_step)
     return Physical(mass, mass * omega**2, 2 * zeta * mass * omega), fewest
 
 

@@ -1,16 +1,6 @@
-r"""A free impact on Drake's contact with Hunt and Crossley's damping, in time steps.
+"""A free impact on Drake's contact with Hunt and Crossley's damping, at a time step that is given.
 
-The force of a step is that of its end, ``f = k (p - h v⁺)(1 - d v⁺)`` with both factors not below
-0, where p is the penetration at its start and v⁺ the velocity of separation at its end. In units of
-the impact speed V and of 1/ω, ω = √(k/m), with h = ωΔt and D = dV, ::
-
-    v⁺ = v + h (p - h v⁺)(1 - D v⁺)
-
-is a quadratic equation for v⁺. Without damping the step is one of implicit Euler. As a linear
-damper of the parameters could, this one cannot take back the damping of the step, because it grows
-with the penetration.
-
-Source: Drake's documentation of its discrete contact approximations, "lagged" and "similar".
+In units of the impact speed V and of 1/ω, ω = √(k/m), it depends on h = ωΔt and D = dV.
 """
 
 import math
@@ -19,6 +9,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from bouncing_ball.contacts.engines.given_step import AtStep, Spread, spread
+from bouncing_ball.contacts.engines.steps import HuntCrossleyStep, followed, patience
 from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.models.laws.hertzian import LinearHuntCrossley
 
@@ -27,39 +18,27 @@ _SMOOTH = 1e-6
 # Steps in a contact above which the exact impact is as good, and the fewest of a simulation.
 _MOST_STEPS = 20_000
 _FEWEST_STEPS = 1e-3
-# A ball that has not left after so many times the duration of a contact stays.
-_PATIENCE = 20
-_FEW = 200
 _FINE = 1e-9
 
 
-def impacts_in_steps(damping: float, step: float, fraction: np.ndarray, steps: int) -> np.ndarray:
-    """r of free impacts with D and h, which begin at fractions of a step before the first one in
-    contact; 0 for a ball that has not left after so many ``steps``.
+def spread_of_damping(damping: float, step: float, most: int) -> Spread:
+    """The range and the mean of r with D and h; 0 for a ball that is inside after ``most`` steps.
 
     Examples
     --------
     Small steps lose what the work of the damper is, (1 - rD) exp(D (1 + r)) = 1 + D:
 
-    >>> r = impacts_in_steps(0.5, 1e-3, np.array([0.5]), 5000)[0]
+    >>> r = spread_of_damping(0.5, 1e-3, 5000).mean
     >>> bool(abs((1 - 0.5 * r) * np.exp(0.5 * (1 + r)) - 1.5) < 1e-3)
     True
     """
-    x = -step * np.asarray(fraction, dtype=float)
-    v = np.full_like(x, -1.0)
-    square = step * step * damping
-    for _ in range(steps):
-        inside = x < 0
-        if not inside.any():
-            break
-        p = np.maximum(-x, 0.0)
-        linear = 1 + step * p * damping + step * step
-        free = step * p + v
-        pushed = 2 * free / (linear + np.sqrt(linear * linear - 4 * square * free))
-        least = np.minimum(p / step, 1 / damping) if damping > 0 else p / step
-        v = np.where(inside & (v < least), pushed, v)
-        x = np.where(inside, x + step * v, x)
-    return np.where(x < 0, 0.0, v)
+    of_contact = HuntCrossleyStep(1.0, damping, step)
+
+    def impacts(fraction: np.ndarray) -> np.ndarray:
+        x, v = followed(of_contact, -step * fraction, np.full(fraction.shape, -1.0), most)
+        return np.where(x < 0, 0.0, v)
+
+    return spread(impacts, _SMOOTH)
 
 
 def at_step_of_law(
@@ -89,12 +68,11 @@ def at_step_of_law(
         )
     h = math.sqrt(float(law.stiffness)) * time_step
     damping = float(law.damping) * speed
-    patience = _FEW + int(_PATIENCE * steps)
 
     def found(ratio: float) -> Spread:
         if steps > _MOST_STEPS:
             return Spread(exact, exact, exact)
-        return spread(lambda place: impacts_in_steps(ratio, h, place, patience), _SMOOTH)
+        return spread_of_damping(ratio, h, patience(steps))
 
     of_law = found(damping)
     off = of_law.error(exact)

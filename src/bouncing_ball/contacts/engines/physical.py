@@ -3,8 +3,8 @@
 import math
 from typing import NamedTuple
 
-from bouncing_ball.contacts.engines.scheme import free_impact
-from bouncing_ball.models.damping import Release
+from bouncing_ball.models.damping import Release, restitution_coefficient
+from bouncing_ball.models.spring_damper import SpringDamper
 
 
 class Physical(NamedTuple):
@@ -39,7 +39,7 @@ class Physical(NamedTuple):
         ModelError
             If ζ ≥ 1 with the displacement release, under which the ball does not come back.
         """
-        return free_impact(self.damping_ratio, release).restitution
+        return float(restitution_coefficient(self.damping_ratio, release))
 
     def contact_time(self, release: Release) -> float:
         """Duration of a free impact under a release rule, in s.
@@ -49,4 +49,5 @@ class Physical(NamedTuple):
         ModelError
             If ζ ≥ 1 with the displacement release.
         """
-        return free_impact(self.damping_ratio, release).duration / self.angular_frequency
+        contact = SpringDamper(1.0, self.damping_ratio, release)
+        return float(contact.free_duration) / self.angular_frequency

@@ -12,7 +12,8 @@ from bouncing_ball.contacts import rows
 from bouncing_ball.contacts.assess import Assessment
 from bouncing_ball.contacts.describe import Description
 from bouncing_ball.contacts.engines.given_step import AtStep
-from bouncing_ball.contacts.families import ComparedOrbit, ErrorsByQuantity, Needed
+from bouncing_ball.contacts.families import ComparedOrbit, ErrorsByQuantity
+from bouncing_ball.contacts.needed import Needed
 from bouncing_ball.contacts.texts import percent, shown, signed
 
 _SIMPLE = "error law", "corrected"

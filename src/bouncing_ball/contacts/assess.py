@@ -8,8 +8,9 @@ from bouncing_ball.accuracy.errors import OF_ORBITS
 from bouncing_ball.contacts.choose import Choice
 from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.describe import require_short
-from bouncing_ball.contacts.families import ComparedOrbit, Needed, families, finite, needed
+from bouncing_ball.contacts.families import ComparedOrbit, families
 from bouncing_ball.contacts.motion import FinalMotion, of_family
+from bouncing_ball.contacts.needed import Needed, finite, needed
 from bouncing_ball.contacts.notes import notes, remarks
 from bouncing_ball.contacts.quantities import check_kinds
 from bouncing_ball.contacts.question import Question

@@ -6,10 +6,11 @@ from dataclasses import dataclass, replace
 from bouncing_ball.accuracy.errors import OF_ORBITS, QUANTITIES, Quantity
 from bouncing_ball.accuracy.thresholds import RATIOS, ThresholdStatus
 from bouncing_ball.contacts.contact import Contact
-from bouncing_ball.contacts.families import Needed, families, needed
+from bouncing_ball.contacts.families import families
 from bouncing_ball.contacts.hertz import reduced_modulus
 from bouncing_ball.contacts.loss import of_loss
 from bouncing_ball.contacts.named_laws import law_named
+from bouncing_ball.contacts.needed import Needed, needed
 from bouncing_ball.contacts.notes import remarks
 from bouncing_ball.contacts.quantities import check_kinds
 from bouncing_ball.contacts.question import Question

@@ -1,6 +1,6 @@
 """A contact without a table: its numbers."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Annotated, Any, ClassVar
 
 from bouncing_ball.contacts.contact import Contact
@@ -39,9 +39,10 @@ class Description:
 
     mass: Annotated[float, Listed("mass in kg")]
     stiffness: Annotated[float, Listed("stiffness", "N/m")]
-    natural_frequency: Annotated[float, Listed("natural frequency ω = ϖΩ", "rad/s")]
+    natural_frequency: Annotated[float, Listed("natural frequency ω", "rad/s")]
     release: str
-    case: ResolvedContact
+    # Its units are those of a table at rest, which nobody gave.
+    case: ResolvedContact = field(repr=False)
     damping: Annotated[float | None, Listed("damping", "N s/m")] = None
     damping_ratio: Annotated[float | None, Listed("damping ratio ζ")] = None
     contact_time: Annotated[float | None, Listed("contact time", "s")] = None

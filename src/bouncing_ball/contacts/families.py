@@ -1,8 +1,4 @@
-"""The n-T families of a case: orbits, margins, loads and errors in every model.
-
-:func:`needed` gives the frequency ratio ϖ that a tolerance needs, from a root of the exact error
-over ϖ.
-"""
+"""The n-T families of a case: orbits, margins, loads and errors in every model."""
 
 import math
 from collections.abc import Sequence
@@ -13,10 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.accuracy import error_law
-from bouncing_ball.accuracy.corrected_errors import search
-from bouncing_ball.accuracy.error_law import law_thresholds
 from bouncing_ball.accuracy.errors import OF_IMPACTS, OF_ORBITS, Quantity, relative
-from bouncing_ball.accuracy.thresholds import RATIOS
+from bouncing_ball.contacts.needed import finite
+from bouncing_ball.contacts.rebounds import greatest_loads
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.rows import Listed
 from bouncing_ball.contacts.table import TableMotion
@@ -24,7 +19,6 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.permanent_contact import RESTITUTION_THRESHOLD
-from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.stability import Bifurcation
@@ -82,27 +76,6 @@ class ComparedOrbit:
     law_holds: bool
 
 
-@dataclass(frozen=True)
-class Needed:
-    """The frequency ratio above which the error of a quantity stays within a tolerance ε.
-
-    The error is relative to the value on the contact.
-
-    ``frequency_ratio`` is the largest ϖ at which the error of the restitution model crosses the
-    tolerance, and ``corrected`` that of the corrected model. ``by_law`` is the ϖ that the error
-    law gives, |K|/ε, or √(|K₂|/ε) for the permanent contact. A value that does not exist is None,
-    and ``status`` or ``corrected_status``, otherwise "found", gives the reason.
-    """
-
-    quantity: str
-    tolerance: float
-    frequency_ratio: float | None
-    by_law: float | None
-    corrected: float | None
-    status: str
-    corrected_status: str
-
-
 # Samples of a contact, and further samples for each radian of the table's motion, because a long
 # contact has several maxima. The two steps around the greatest sample are sampled again. A step is
 # then 2·10⁻⁶ of the contact, so that a parabola exceeds its samples by less than 10⁻¹¹ of its
@@ -114,28 +87,6 @@ _IN_A_RADIAN = 16
 # their saddle-nodes at a multiple of Λ.
 _STIFF = 10.0
 _FAR = 2.0
-
-
-def finite(value: float | np.ndarray) -> float | None:
-    """The value as a Python float; None if it is NaN or infinite."""
-    return float(value) if math.isfinite(value) else None
-
-
-def against_contact(error: np.ndarray) -> np.ndarray:
-    """The error of a simple model against the contact, (q - q_SD)/q_SD, from that of the paper.
-
-    The paper divides by the value of the simple model: its error is e = (q_SD - q)/q (Eq. 37), so
-    that the error against the contact is -e/(1 + e). Both are the same to first order, but for
-    the sign.
-
-    Examples
-    --------
-    >>> against_contact(np.array([-0.5, 1.0, np.inf])).tolist()
-    [1.0, -0.5, -1.0]
-    """
-    paper = np.asarray(error, dtype=float)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(np.isinf(paper), -1.0, -paper / (1 + paper))
 
 
 def prediction_error(predicted: ArrayLike, true: ArrayLike) -> np.ndarray:
@@ -158,20 +109,13 @@ def _loads(law: ContactLaw, orbit: Any) -> tuple[float, float]:
     if not orbit.exists:
         return math.nan, math.nan
 
-    def loads(time: np.ndarray) -> np.ndarray:
+    def motion(time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         displacement, velocity = orbit.contact_motion(time)
-        load = 1 - orbit.amplitude * np.sin(orbit.phase + time)
-        force = law.loaded_force(np.maximum(-displacement, 0.0), -velocity, load)
-        return np.array([-displacement, force])
+        return -displacement, -velocity, 1 - orbit.amplitude * np.sin(orbit.phase + time)
 
     duration = float(orbit.contact_duration)
     times = np.linspace(0.0, duration, _SAMPLES + int(_IN_A_RADIAN * duration))
-    tops = loads(times).argmax(axis=1)
-    low, high = times[np.clip([tops - 1, tops + 1], 0, times.size - 1)]
-    around_depth, around_force = np.linspace(low, high, _SAMPLES, axis=1)
-    depth, _ = loads(around_depth)
-    _, force = loads(around_force)
-    return float(np.max(depth)), float(np.max(force))
+    return greatest_loads(law, motion, times)
 
 
 def by_error_law(case: ResolvedContact, n: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -353,72 +297,3 @@ def _units(table: TableMotion) -> np.ndarray:
     units[order.index(Quantity.MAX_HEIGHT)] = table.length
     units[order.index(Quantity.BOUNCE_VELOCITY)] = table.length / table.time
     return units
-
-
-NO_ORBIT = "no orbit"
-"""A status in addition to :class:`~bouncing_ball.accuracy.thresholds.ThresholdStatus`."""
-
-
-def needed(
-    quantity: str, tolerance: float, contact: SpringDamper, n: int, amplitude: float
-) -> Needed:
-    """The ϖ that a tolerance needs, for contacts with the ζ and the release of a given contact.
-
-    Parameters
-    ----------
-    quantity : str
-        One of :class:`~bouncing_ball.accuracy.errors.Quantity`.
-    tolerance : float
-        Largest relative error allowed, against the contact (:func:`against_contact`).
-    contact : SpringDamper
-    n : int
-    amplitude : float
-        Λ.
-
-    Examples
-    --------
-    Without damping the threshold is Λ_SD = 1 - 1/ϖ², for which the restitution model has 1, so
-    that its error is 1/(ϖ² - 1):
-
-    >>> found = needed("permanent_contact", 0.01, SpringDamper(5.0, 0.0), 1, 1.0)
-    >>> round(found.frequency_ratio**2, 9), round(found.by_law, 12)
-    (101.0, 10.0)
-    """
-    zeta = contact.damping_ratio
-    rule = contact.release
-    # The error law of a limit does not depend on Λ. A Λ too small for an orbit is therefore
-    # replaced by nπ, which is above the saddle-node.
-    there = amplitude if quantity in OF_ORBITS else max(amplitude, n * np.pi)
-    try:
-        by_law = finite(law_thresholds(n, zeta, there, rule, tolerance)[Quantity(quantity)])
-    except NoOrbitError:
-        return Needed(
-            quantity=quantity,
-            tolerance=tolerance,
-            frequency_ratio=None,
-            by_law=None,
-            corrected=None,
-            status=NO_ORBIT,
-            corrected_status=NO_ORBIT,
-        )
-    found = search(
-        zeta,
-        rule,
-        n=n,
-        amplitude=amplitude,
-        ratios=RATIOS,
-        tolerance=tolerance,
-        quantities=(quantity,),
-        measure=against_contact,
-    )
-    simple, corrected = found.threshold[:, 0, 0]
-    status, corrected_status = found.status[:, 0, 0]
-    return Needed(
-        quantity=quantity,
-        tolerance=tolerance,
-        frequency_ratio=finite(simple),
-        by_law=by_law,
-        corrected=finite(corrected),
-        status=str(status),
-        corrected_status=str(corrected_status),
-    )

@@ -6,7 +6,7 @@ import xarray as xr
 from bouncing_ball.accuracy.corrected_errors import SIMPLE, search
 from bouncing_ball.accuracy.thresholds import RATIOS, ThresholdStatus
 from bouncing_ball.contacts.assess import Assessment
-from bouncing_ball.contacts.families import against_contact
+from bouncing_ball.contacts.needed import against_contact
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.periodic.one_impact import n_t
 

@@ -5,6 +5,7 @@ ball takes that never leaves again, is one integration up to its turn.
 """
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import scipy
@@ -20,8 +21,9 @@ SLOWED = 0.01
 _TOLERANCE = 1e-13
 # Times of the scale of a contact after which a ball that has not turned lies on the table.
 _PATIENCE = 200.0
-# Samples of the force on the way down; those beside the greatest are sampled again.
+# Samples of the way down, and of the interval around the greatest of them.
 _SAMPLES = 4001
+_AROUND = 1001
 # Decades in which the first speed is searched for at which gravity lowers r by less than 1 %, and
 # steps from there to the half of the speed.
 _DECADES = 6
@@ -61,13 +63,10 @@ def compression(law: ContactLaw, speed: float) -> tuple[float, float]:
     length, rate = (float(x[0]) for x in scales(law, np.array([speed]), np.ones(1)))
     unit = length / rate
 
-    def force(p: np.ndarray, v: np.ndarray) -> np.ndarray:
-        found = law.loaded_force(np.maximum(p, 0.0), v, 1.0)
-        return np.maximum(found, 0.0)
-
-    def motion(_: float, state: np.ndarray) -> list[float]:
+    def fall(_: float, state: np.ndarray) -> list[float]:
         p, v = state * [length, rate]
-        return [v / rate, float(1 - force(np.array([p]), np.array([v]))[0]) * unit / rate]
+        force = max(float(law.loaded_force(np.array([max(p, 0.0)]), np.array([v]), 1.0)[0]), 0.0)
+        return [v / rate, (1 - force) * unit / rate]
 
     def turn(_: float, state: np.ndarray) -> float:
         return float(state[1])
@@ -75,19 +74,58 @@ def compression(law: ContactLaw, speed: float) -> tuple[float, float]:
     turn.terminal = True  # type: ignore[attr-defined]
     turn.direction = -1  # type: ignore[attr-defined]
     run = scipy.integrate.solve_ivp(
-        motion, (0.0, _PATIENCE), [0.0, speed / rate], method="DOP853", events=turn,
+        fall, (0.0, _PATIENCE), [0.0, speed / rate], method="DOP853", events=turn,
         rtol=_TOLERANCE, atol=_TOLERANCE, dense_output=True,
     )  # fmt: skip
     # Densely at the start, where a damper acts from the first instant on.
     times = run.t[-1] * np.linspace(0.0, 1.0, _SAMPLES) ** 2
-    for _ in range(2):
+
+    def contact_motion(times: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         p, v = run.sol(times) * np.array([[length], [rate]])
-        forces = force(p, v)
-        top = int(np.argmax(forces))
-        times = np.linspace(times[max(top - 1, 0)], times[min(top + 1, times.size - 1)], _SAMPLES)
+        return p, v, np.ones_like(times)
+
+    deepest, heaviest = greatest_loads(law, contact_motion, times)
     turned = run.t_events[0].size > 0
-    deepest = float(run.y[0, -1]) * length if turned else max(rest(law), float(p.max()))
-    return deepest, float(max(forces.max(), 1.0))
+    return deepest if turned else max(rest(law), deepest), max(heaviest, 1.0)
+
+
+def greatest_loads(
+    law: ContactLaw,
+    motion: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray, np.ndarray]],
+    times: np.ndarray,
+) -> tuple[float, float]:
+    """The greatest penetration and the greatest force over the weight of a motion in contact.
+
+    Parameters
+    ----------
+    law : ContactLaw
+    motion : callable
+        Penetration p, its rate p′ and the load a at times, which is 1 on a table at rest.
+    times : ndarray
+        Increasing times, dense enough to have only one maximum between three of them.
+
+    Examples
+    --------
+    Undamped on a table at rest, p = (1 - cos 2t)/4 for ϖ = 2, if the ball starts at its level:
+
+    >>> from bouncing_ball.models.spring_damper import SpringDamper
+    >>> law = SpringDamper(2.0, 0.0)
+    >>> motion = lambda t: ((1 - np.cos(2 * t)) / 4, np.sin(2 * t) / 2, np.ones_like(t))
+    >>> depth, force = greatest_loads(law, motion, np.linspace(0.0, 3.0, 100))
+    >>> round(depth, 9), round(force, 9)
+    (0.5, 2.0)
+    """
+
+    def loads(times: np.ndarray) -> np.ndarray:
+        p, rate, load = motion(times)
+        return np.array([p, law.loaded_force(np.maximum(p, 0.0), rate, load)])
+
+    tops = loads(times).argmax(axis=1)
+    found = []
+    for which, top in enumerate(tops.tolist()):
+        around = np.linspace(times[max(top - 1, 0)], times[min(top + 1, times.size - 1)], _AROUND)
+        found.append(float(loads(around)[which].max()))
+    return found[0], found[1]
 
 
 def _ends(law: ContactLaw, speed: float) -> bool:

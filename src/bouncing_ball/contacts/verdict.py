@@ -2,7 +2,8 @@
 
 from bouncing_ball.accuracy.errors import QUANTITIES, Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
-from bouncing_ball.contacts.families import NO_ORBIT, ComparedOrbit, Needed
+from bouncing_ball.contacts.families import ComparedOrbit
+from bouncing_ball.contacts.needed import NO_ORBIT, Needed
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.texts import in_place_of, percent, shown, signed
 from bouncing_ball.contacts.verdict_on_motion import Judgement

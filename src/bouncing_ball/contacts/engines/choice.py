@@ -4,15 +4,10 @@ from bouncing_ball.contacts.engines.drake import Drake
 from bouncing_ball.contacts.engines.engine import Engine
 from bouncing_ball.contacts.engines.gazebo import Gazebo
 from bouncing_ball.contacts.engines.genesis import Genesis
+from bouncing_ball.contacts.engines.granular import Lammps, Liggghts, MercuryDPM
 from bouncing_ball.contacts.engines.mujoco import MuJoCo
 from bouncing_ball.contacts.engines.newton import NewtonMuJoCo, NewtonSemiImplicit
-from bouncing_ball.contacts.engines.proportional import (
-    Generic,
-    Lammps,
-    Liggghts,
-    MercuryDPM,
-    PyBullet,
-)
+from bouncing_ball.contacts.engines.proportional import Generic, PyBullet
 from bouncing_ball.errors import one_of
 
 ENGINES: dict[str, Engine] = {

@@ -390,24 +390,3 @@ class Engine(ABC):
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}()"
-
-
-class Proportional(Engine):
-    """An engine with two parameters a·k and b·c, whose factors a and b depend on the mass alone.
-
-    Both factors are 1 unless a subclass defines them.
-    """
-
-    def factors(self, mass: float) -> tuple[float, float]:
-        """The factors a and b for k and c, for a ball of this mass in kg."""
-        return 1.0, 1.0
-
-    def parameters(self, contact: Physical) -> EngineParameters:
-        stiff, lossy = self.factors(contact.mass)
-        values = (stiff * contact.stiffness, lossy * contact.damping)
-        return dict(zip(self.names, values, strict=True))
-
-    def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
-        m, stiffness, loss = self._two(parameters, mass)
-        stiff, lossy = self.factors(m)
-        return Physical(m, stiffness / stiff, loss / lossy)

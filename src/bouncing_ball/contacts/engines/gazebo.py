@@ -12,7 +12,7 @@ Sources: ODE's manual, *Soft constraint: constraint force mixing*; the threads 2
 gazebo-classic. Gazebo itself was not run.
 """
 
-from bouncing_ball.contacts.engines.engine import Proportional
+from bouncing_ball.contacts.engines.proportional import Proportional
 from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.models.damping import Release
 

@@ -14,7 +14,8 @@ import math
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
-from bouncing_ball.contacts.engines.engine import EngineParameters, Physical, Proportional, written
+from bouncing_ball.contacts.engines.engine import EngineParameters, Physical, written
+from bouncing_ball.contacts.engines.proportional import Proportional
 from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.errors import ParameterError
 from bouncing_ball.models.damping import Release

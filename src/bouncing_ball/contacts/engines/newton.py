@@ -21,8 +21,9 @@ Source: the kernels of Newton 1.8, read with the engine itself.
 from collections.abc import Mapping
 from typing import Any
 
-from bouncing_ball.contacts.engines.engine import EngineParameters, Physical, Proportional
+from bouncing_ball.contacts.engines.engine import EngineParameters, Physical
 from bouncing_ball.contacts.engines.mujoco import time_constant
+from bouncing_ball.contacts.engines.proportional import Proportional
 from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.damping import Release

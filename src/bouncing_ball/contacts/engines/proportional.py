@@ -1,29 +1,40 @@
 """Engines whose contact has two parameters, proportional to the stiffness and to the damping.
 
 * *generic*: any script with a spring, a damper and a rule that ends the contact.
-* *LAMMPS* and *LIGGGHTS*: granular walls with Hooke's law, whose damper is per unit of mass. The
-  force of ``fix wall/gran hooke`` on a sphere is ``kn p - m gamman v``. On a wall the effective
-  mass m is that of the sphere; between two equal spheres it is half of that. By default the damper
-  pulls until the ball has left the wall; ``limit_damping`` in LAMMPS and ``limitForce`` in LIGGGHTS
-  prevent that.
-* *MercuryDPM*: a linear viscoelastic species, whose damper pulls until the ball has left.
 * *PyBullet*: a spring and a damper on each of the two bodies, which form one constraint.
+
+Granular engines are in :mod:`bouncing_ball.contacts.engines.granular`.
 """
 
 import math
 from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import Any
 
-from bouncing_ball.contacts.engines.engine import (
-    Engine,
-    EngineParameters,
-    Physical,
-    Proportional,
-)
-from bouncing_ball.contacts.engines.hertz_granular import LAWS, HertzLammps, HertzLiggghts
+from bouncing_ball.contacts.engines.engine import Engine, EngineParameters, Physical
 from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.damping import Release
+
+
+class Proportional(Engine):
+    """An engine with two parameters a·k and b·c, whose factors a and b depend on the mass alone.
+
+    Both factors are 1 unless a subclass defines them.
+    """
+
+    def factors(self, mass: float) -> tuple[float, float]:
+        """The factors a and b for k and c, for a ball of this mass in kg."""
+        return 1.0, 1.0
+
+    def parameters(self, contact: Physical) -> EngineParameters:
+        stiff, lossy = self.factors(contact.mass)
+        values = (stiff * contact.stiffness, lossy * contact.damping)
+        return dict(zip(self.names, values, strict=True))
+
+    def read(self, parameters: Mapping[str, Any], mass: float | None) -> Physical:
+        m, stiffness, loss = self._two(parameters, mass)
+        stiff, lossy = self.factors(m)
+        return Physical(m, stiffness / stiff, loss / lossy)
 
 
 class Generic(Proportional):
@@ -56,65 +67,6 @@ class Generic(Proportional):
         values = dict(parameters)
         mass = values.pop("mass", mass)
         return super().read(values, mass)
-
-
-class Lammps(Proportional):
-    """``fix wall/gran hooke``: kn = k in N/m, gamma_n = c/m in 1/s.
-
-    Examples
-    --------
-    >>> from bouncing_ball.contacts.engines.engine import Physical
-    >>> found = Lammps().settings(Physical(mass=2.0, stiffness=200.0, damping=4.0))
-    >>> found.parameters, found.release
-    ({'kn': 200.0, 'gamma_n': 2.0}, 'displacement')
-    >>> Lammps().read(found.parameters, 2.0)
-    Physical(mass=2.0, stiffness=200.0, damping=4.0)
-    """
-
-    name = "lammps"
-    names = ("kn", "gamma_n")
-    releases = (Release.DISPLACEMENT, Release.FORCE)
-    scheme = Scheme.SEMI_IMPLICIT
-    laws: ClassVar[dict[str, str]] = LAWS
-
-    def with_law(self, law_in_si: Mapping[str, Any]) -> Engine:
-        return HertzLammps(law_in_si)
-
-    def factors(self, mass: float) -> tuple[float, float]:
-        return 1.0, 1 / mass
-
-
-class Liggghts(Lammps):
-    """``model hooke/stiffness``: kn = k in N/m and gamman = c/m in 1/s, for one type of atom.
-
-    Examples
-    --------
-    >>> from bouncing_ball.contacts.engines.engine import Physical
-    >>> Liggghts().parameters(Physical(mass=2.0, stiffness=200.0, damping=4.0))
-    {'kn': 200.0, 'gamman': 2.0}
-    """
-
-    name = "liggghts"
-    names = ("kn", "gamman")
-
-    def with_law(self, law_in_si: Mapping[str, Any]) -> Engine:
-        return HertzLiggghts(law_in_si)
-
-
-class MercuryDPM(Proportional):
-    """``LinearViscoelasticSpecies``: stiffness k in N/m and dissipation c in N s/m.
-
-    Examples
-    --------
-    >>> from bouncing_ball.contacts.engines.engine import Physical
-    >>> MercuryDPM().parameters(Physical(mass=2.0, stiffness=200.0, damping=4.0))
-    {'stiffness': 200.0, 'dissipation': 4.0}
-    """
-
-    name = "mercurydpm"
-    names = ("stiffness", "dissipation")
-    releases = (Release.DISPLACEMENT,)
-    scheme = Scheme.SEMI_IMPLICIT
 
 
 class PyBullet(Proportional):

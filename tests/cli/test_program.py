@@ -168,3 +168,11 @@ def test_a_page_replaces_nothing_but_a_regular_file(refused, tmp_path, kind):
     assert sorted(tmp_path.rglob("*")) == before
     if kind == "a link":
         assert target.is_symlink() and target.read_text(encoding="utf-8") == "kept"
+
+
+def test_a_phase_beyond_a_turn_is_noted(ask):
+    ball = ("--restitution", "0.5", "--amplitude", "0.5")
+    note = "phase 400 is in radians, 63.66 turns of the table; 400 degrees are 6.981"
+    for command in ("motion", "simulate"):
+        assert ask(command, *ball, "--phase", "400", "--impacts", "10")["note"] == note
+        assert "note" not in ask(command, *ball, "--phase", "6.28", "--impacts", "10")

@@ -6,7 +6,7 @@ from typing import Any
 from bouncing_ball.accuracy.errors import OF_IMPACTS, OF_ORBITS, QUANTITIES, Quantity
 from bouncing_ball.accuracy.thresholds import ThresholdStatus
 from bouncing_ball.cli.design_answer import KINDS, DesignAnswer
-from bouncing_ball.cli.engine_text import engine_lines, line
+from bouncing_ball.cli.engine_text import engine_lines, law_lines, line
 from bouncing_ball.cli.options import option
 from bouncing_ball.contacts import rows
 from bouncing_ball.contacts.assess import Assessment
@@ -134,23 +134,6 @@ def _drop_remarks(given: DesignAnswer) -> list[str]:
     return [] if given.dropped is None else [f"Note: {one}." for one in given.dropped.remarks]
 
 
-def _law_lines(found: Assessment | Description) -> list[str]:
-    """The parameters of a contact law, with their units."""
-    law = found.case.law
-    values = dict(found.law or {})
-    name = values.pop("name", "")
-    units = {} if law is None else law.units
-    # With units, ϖ is the natural frequency ϖΩ.
-    words = {"frequency_ratio": "natural frequency"}
-    return [
-        line(
-            f"{name}, {words.get(key, key.replace('_', ' '))}",
-            shown(x, units[key].name),
-        )
-        for key, x in values.items()
-    ]
-
-
 def _echo(question: Mapping[str, Any]) -> str:
     """The parameters that were given, with their units."""
     said = []
@@ -194,7 +177,7 @@ def _description(given: DesignAnswer, found: Description) -> list[str]:
         *(f"Note: {doubt}." for doubt in given.doubts),
         *(line(*row) for row in numbers(given)),
         line("release", found.release),
-        *_law_lines(found),
+        *law_lines(found),
         *(f"Note: {note}." for note in found.notes),
         *_drop_remarks(given),
         *_of_parameters(given.at_step),
@@ -243,7 +226,7 @@ def _assessment(given: DesignAnswer, found: Assessment) -> list[str]:
         "",
         *(line(*row) for row in numbers(given) if not by_engine or row[0] != _STEP),
         *([] if by_engine else [f"Time step: {found.time_step.rule}."]),
-        *_law_lines(found),
+        *law_lines(found),
         "",
         line(asked, "exact", *_SIMPLE),
         line("", exact, by_law, corrected),

@@ -3,6 +3,8 @@
 from bouncing_ball.cli.design_answer import DesignAnswer
 from bouncing_ball.cli.options import option
 from bouncing_ball.contacts import rows
+from bouncing_ball.contacts.assess import Assessment
+from bouncing_ball.contacts.describe import Description
 from bouncing_ball.contacts.engines.drop_in_steps import Rise
 from bouncing_ball.contacts.engines.engine import ERROR, EngineSettings
 from bouncing_ball.contacts.engines.given_step import AtStep
@@ -13,6 +15,23 @@ from bouncing_ball.contacts.write import Looser, Softer
 def line(name: str, *columns: str) -> str:
     """A name with what stands in the columns beside it."""
     return f"{name:<38}" + "".join(f"{column + ' ':<18}" for column in columns).rstrip()
+
+
+def law_lines(found: Assessment | Description) -> list[str]:
+    """The parameters of a contact law, with their units."""
+    law = found.case.law
+    values = dict(found.law or {})
+    name = values.pop("name", "")
+    units = {} if law is None else law.units
+    # With units, ϖ is the natural frequency ϖΩ.
+    words = {"frequency_ratio": "natural frequency"}
+    return [
+        line(
+            f"{name}, {words.get(key, key.replace('_', ' '))}",
+            shown(x, units[key].name),
+        )
+        for key, x in values.items()
+    ]
 
 
 def engine_lines(given: DesignAnswer) -> list[str]:
@@ -97,10 +116,11 @@ def _alternatives_at(at: AtStep) -> list[str]:
     tuned = [] if at.is_within else [_retuned(at).rstrip(".") + "."]
     if at.stiffest is None:
         return tuned
+    damping = shown(at.stiffest_damping, at.unit_of_damping)
     return [
         *tuned,
         f"The stiffest contact with the same r within {at.allowed:g} has "
-        f"{shown(at.stiffest, 'N/m')}, with a damping of {shown(at.stiffest_damping, 'N s/m')} and "
+        f"{shown(at.stiffest, 'N/m')}, with a damping of {damping} and "
         f"a contact time of {shown(at.stiffest_contact_time, 's')} ({at.stiffest_steps:.4g} "
         "steps).",
     ]
@@ -110,9 +130,10 @@ def _looser(found: Looser | None) -> list[str]:
     """The stiffest contact for a larger error."""
     if found is None:
         return []
+    damping = shown(found.damping, found.unit_of_damping)
     return [
         f"Within {found.error:g} of r it may have {shown(found.stiffness, 'N/m')}, with a damping "
-        f"of {shown(found.damping, 'N s/m')}: {option('restitution_error')} {found.error:g}."
+        f"of {damping}: {option('restitution_error')} {found.error:g}."
     ]
 
 
@@ -131,6 +152,7 @@ def _alternatives(engine: EngineSettings, other: Softer | None, wider: Looser | 
         f"A softer contact has this r within {at.allowed:g} at this step. Its numbers are:",
         "",
         *(line(*row) for row in rows.texts(other.contact)),
+        *law_lines(other.contact),
         *([] if other.dropped is None else (line(*row) for row in rows.texts(other.dropped))),
         *_rise(other.dropped_at_step),
         *([] if other.dropped is None else (f"Note: {one}." for one in other.dropped.remarks)),

@@ -10,6 +10,7 @@ import numpy as np
 from bouncing_ball.cli.impact import add_ball, ball_of
 from bouncing_ball.cli.options import Parser, add_file, add_interval, add_number, meanings
 from bouncing_ball.cli.periodic import Answer
+from bouncing_ball.cli.simulate import note_on
 from bouncing_ball.datasets.arguments import AMPLITUDE, FOLLOWED, SAMPLES, START
 from bouncing_ball.datasets.files import PICTURES, require_writable
 from bouncing_ball.errors import ParameterError, count
@@ -52,7 +53,8 @@ def motion(
     given = {"phase": phase, "velocity": velocity}
     start = _START | {name: x for name, x in given.items() if x is not None}
     found = library.motion_of(ball, amplitude=amplitude, impacts=impacts, **start)
-    answer: Answer = {name: x for name in _MOTION if (x := found[name].item()) != ""}
+    answer = note_on(phase)
+    answer |= {name: x for name in _MOTION if (x := found[name].item()) != ""}
     exponents = {name: float(found[name]) for name in ("lyapunov_exponent", "lyapunov_error")}
     answer |= {name: x if math.isfinite(x) else None for name, x in exponents.items()}
     answer["impacts_followed"] = found.followed.item()

@@ -159,6 +159,20 @@ class ResolvedContact:
         return self.contact.linear
 
     @property
+    def unit_speed(self) -> float:
+        """The unit of speeds, g/Ω, in m/s."""
+        return self.table.length / self.table.time
+
+    @property
+    def law_speed(self) -> float:
+        """The impact speed in m/s at which a law has the r of ``contact``: that of the drop, or of
+        the 1-T orbit of the restitution model.
+        """
+        if self.impact_speed is not None:
+            return self.impact_speed
+        return float(rigid_speed(1, self.contact.restitution)) * self.unit_speed
+
+    @property
     def needs_speed(self) -> bool:
         """Whether the contact was given by an engine's parameters whose r depends on the speed."""
         return self.given.engine is not None and self.given.engine.needs_speed

@@ -13,10 +13,9 @@ from bouncing_ball.contacts.describe import LONGEST, Description, describe
 from bouncing_ball.contacts.drops import Dropped, drop_at_rest
 from bouncing_ball.contacts.engines.choice import engine_named
 from bouncing_ball.contacts.engines.drop_in_steps import MOST_STEPS, Rise, drop_in_steps
-from bouncing_ball.contacts.engines.engine import EngineSettings
+from bouncing_ball.contacts.engines.engine import Engine, EngineSettings
 from bouncing_ball.contacts.engines.given_step import AtStep, stiffest_contact
-from bouncing_ball.contacts.engines.scheme import Scheme
-from bouncing_ball.contacts.engines.steps import LinearStep
+from bouncing_ball.contacts.engines.hunt_crossley_steps import fewest_steps_of_law
 from bouncing_ball.contacts.loss import of_loss
 from bouncing_ball.contacts.quantities import check_kinds
 from bouncing_ball.contacts.question import EngineSetup, Question
@@ -24,11 +23,13 @@ from bouncing_ball.contacts.resolve import resolve
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.table import Table, TableMotion
 from bouncing_ball.errors import ModelError, ParameterError, suggesting
+from bouncing_ball.models.laws.hertzian import LinearHuntCrossley
 from bouncing_ball.models.spring_damper import SpringDamper
 
 _STEP = "time_step"
 _OF_A_LAW = (
-    "{time_step} is given for a spring and a damper: the r of this contact depends on the speed"
+    "{time_step} is given for a spring and a damper, or for drake with {law} hunt-crossley: "
+    "what other engines and laws do at a step is not known"
 )
 
 
@@ -120,23 +121,34 @@ def resolve_for(
     return resolve(stiff, at_rest, written=setup.engine)
 
 
-def settings(case: ResolvedContact, setup: EngineSetup) -> EngineSettings:
-    """The settings for a contact.
+def settings(
+    case: ResolvedContact, setup: EngineSetup, speed: float | None = None
+) -> EngineSettings:
+    """The settings for a contact, which at a given time step have the r of a law at an impact speed
+    in m/s, by default that at which the law has the r of the contact.
 
     Raises
     ------
     ModelError
-        If the engine has no such contact, or if a time step is given for a contact law.
+        If the engine has no such contact, or if a time step is given for a contact law, and it is
+        not known what the engine does there.
     """
-    engine = engine_named(setup.engine)
-    law = case.law_in_si
-    if law is not None:
-        if setup.time_step is not None:
-            raise ParameterError(_OF_A_LAW)
-        engine = engine.with_law({**law, "radius": case.given.radius})
+    engine = _engine_of(case, setup.engine, speed)
+    if case.law_in_si is not None and setup.time_step is not None and not engine.has_steps_of_law:
+        raise ParameterError(_OF_A_LAW)
     release = str(case.contact.release)
     error = setup.restitution_error
     return engine.settings(case.physical, release, error, setup.time_step)
+
+
+def _engine_of(case: ResolvedContact, name: str, speed: float | None = None) -> Engine:
+    """The engine with this name, for the law of a contact and for impacts with a speed in m/s."""
+    engine = engine_named(name)
+    law = case.law_in_si
+    if law is None:
+        return engine
+    at = case.law_speed if speed is None else speed
+    return engine.with_law({**law, "radius": case.given.radius, "speed": at})
 
 
 def settings_on_table(found: Assessment, setup: EngineSetup) -> EngineSettings:
@@ -147,7 +159,7 @@ def settings_on_table(found: Assessment, setup: EngineSetup) -> EngineSettings:
     ModelError
         See :func:`settings`.
     """
-    written = settings(found.case, setup)
+    written = settings(found.case, setup, found.judged.impact_speed)
     if written.at_step is not None and not written.at_step.is_within:
         # At this step the contact has another r, and so another orbit.
         return written
@@ -182,21 +194,42 @@ def softer(
     """
     if written.softer is None or written.softer.at_step is None:
         return None
-    ball = written.softer.at_step.softer(case.mass)
-    if ball is None:
-        return None
-    ratio = ball.angular_frequency * case.table.time
-    spring = SpringDamper(ratio, ball.damping_ratio, case.contact.release)
-    law = None if spring.release.is_linear else spring
-    own = replace(
-        case, contact=spring, law=law, given_stiffness=ball.stiffness, given_damping=ball.damping
-    )
+    at = written.softer.at_step
+    if case.law_in_si is not None:
+        own = _longer(case, at.steps * at.time_step)
+    else:
+        ball = at.softer(case.mass)
+        if ball is None:
+            return None
+        ratio = ball.angular_frequency * case.table.time
+        spring = SpringDamper(ratio, ball.damping_ratio, case.contact.release)
+        law = None if spring.release.is_linear else spring
+        own = replace(
+            case,
+            contact=spring,
+            law=law,
+            given_stiffness=ball.stiffness,
+            given_damping=ball.damping,
+        )
     return Softer(
         contact=describe(own),
         dropped=None if speed is None else drop_at_rest(own, speed),
         dropped_at_step=dropped_at_step(own, written.softer, speed),
         verdict="" if case.table.is_at_rest else _verdict(own, question),
     )
+
+
+def _longer(case: ResolvedContact, contact_time: float) -> ResolvedContact:
+    """The contact of a linear spring with Hunt and Crossley's damping, whose impacts take so many
+    seconds, with the same r at each speed.
+    """
+    law = case.law
+    assert isinstance(law, LinearHuntCrossley)
+    factor = contact_time / (
+        float(law.signature(case.law_speed / case.unit_speed).duration) * case.table.time
+    )
+    slower = replace(case.contact, frequency_ratio=case.contact.frequency_ratio / factor)
+    return replace(case, contact=slower, law=replace(law, stiffness=law.stiffness / factor**2))
 
 
 def _verdict(case: ResolvedContact, question: Question) -> str:
@@ -217,8 +250,7 @@ def dropped_at_step(
     if written.at_step.steps > MOST_STEPS:
         return None
     release = case.contact.release
-    m, k, c = case.physical
-    step = LinearStep.of(Scheme(written.scheme), k / m, c / m, release, written.time_step)
+    step = _engine_of(case, written.name).step(case.physical, release, written.time_step)
     return drop_in_steps(step, speed, case.table.gravity, case.physical.contact_time(release))
 
 
@@ -277,6 +309,7 @@ class Looser:
     error: float
     stiffness: float
     damping: float
+    unit_of_damping: str = "N s/m"
 
 
 def looser(case: ResolvedContact, at: AtStep | None) -> Looser | None:
@@ -293,6 +326,8 @@ def looser(case: ResolvedContact, at: AtStep | None) -> Looser | None:
     """
     if at is None or at.is_within or at.allowed >= LOOSE:
         return None
+    if at.speed is not None:
+        return _looser_of_law(at, at.speed)
     exact = at.softer(case.mass)
     if exact is None:
         return None
@@ -302,3 +337,13 @@ def looser(case: ResolvedContact, at: AtStep | None) -> Looser | None:
         scheme, case.mass, exact.damping_ratio, release, at.time_step, LOOSE
     )
     return Looser(LOOSE, found.stiffness, found.damping)
+
+
+def _looser_of_law(at: AtStep, speed: float) -> Looser | None:
+    """The contact with a larger error and the damping of Hunt and Crossley."""
+    if at.stiffest is None or at.stiffest_steps is None or at.stiffest_damping is None:
+        return None
+    # The number of steps depends on the damping and the speed alone.
+    law = LinearHuntCrossley(at.stiffest, at.stiffest_damping)
+    stiffer = at.stiffest * (at.stiffest_steps / fewest_steps_of_law(law, speed, LOOSE)) ** 2
+    return Looser(LOOSE, stiffer, at.stiffest_damping, at.unit_of_damping)

@@ -12,6 +12,7 @@ from bouncing_ball.contacts.engines.engine import (
     ERROR,
     Engine,
     EngineParameters,
+    EngineSettings,
     Physical,
     at_speeds,
     written,
@@ -19,6 +20,7 @@ from bouncing_ball.contacts.engines.engine import (
 from bouncing_ball.contacts.engines.given_step import AtStep
 from bouncing_ball.contacts.engines.hunt_crossley_steps import at_step_of_law, needs_speed
 from bouncing_ball.contacts.engines.scheme import Scheme
+from bouncing_ball.contacts.engines.steps import HuntCrossleyStep
 from bouncing_ball.errors import require
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.hertzian import LinearHuntCrossley
@@ -71,7 +73,8 @@ class HuntCrossleyDrake(Drake):
     Parameters
     ----------
     law_in_si : mapping, optional
-        The stiffness k in N/m and the damping d that :meth:`parameters` gives.
+        The stiffness k in N/m and the damping d that :meth:`parameters` gives, and the ``speed`` in
+        m/s of the impact whose r is asked for at a time step.
 
     Examples
     --------
@@ -82,6 +85,7 @@ class HuntCrossleyDrake(Drake):
 
     names = ("point_contact_stiffness", "hunt_crossley_dissipation")
     scheme = Scheme.IMPLICIT
+    has_steps_of_law = True
     needs_speed = True
     text = "drake-hunt-crossley"
 
@@ -123,6 +127,44 @@ class HuntCrossleyDrake(Drake):
         if speed is None:
             raise needs_speed()
         return at_step_of_law(self.law(parameters, m), m, speed, time_step, error)
+
+    def step(self, contact: Physical, release: Release, time_step: float) -> HuntCrossleyStep:
+        law = self._of_mass(contact.mass)
+        return HuntCrossleyStep(float(law.stiffness), float(law.damping), time_step)
+
+    def at_step(
+        self, contact: Physical, release: Release, time_step: float, error: float
+    ) -> AtStep:
+        law = self._of_mass(contact.mass)
+        return at_step_of_law(law, contact.mass, self._law_in_si["speed"], time_step, error)
+
+    def _of_mass(self, mass: float) -> LinearHuntCrossley:
+        """The law that is written, with the stiffness per unit of mass."""
+        return LinearHuntCrossley(self._law_in_si["stiffness"] / mass, self._law_in_si["damping"])
+
+    def _with(self, **changed: float) -> "HuntCrossleyDrake":
+        return HuntCrossleyDrake({**self._law_in_si, **changed})
+
+    def _retuned(self, contact: Physical, release: Release, at: AtStep) -> EngineSettings | None:
+        if at.retuned is None:
+            return None
+        other = self._with(damping=written(at.retuned))
+        law = other._of_mass(contact.mass)
+        speed = self._law_in_si["speed"]
+        again = at_step_of_law(
+            law, contact.mass, speed, at.time_step, at.allowed, asked=at.restitution
+        )
+        return other._at(contact, release, again)
+
+    def _softer(self, contact: Physical, release: Release, at: AtStep) -> EngineSettings | None:
+        if at.stiffest is None or at.stiffest_contact_time is None:
+            return None
+        other = self._with(stiffness=written(at.stiffest))
+        # The linear contact with the same r lasts longer by the same factor.
+        longer = at.stiffest_contact_time / (at.steps * at.time_step)
+        m, k, c = contact
+        soft = Physical(m, written(k / longer**2), written(c / longer))
+        return other._at(soft, release, other.at_step(soft, release, at.time_step, at.allowed))
 
     def parameters(self, contact: Physical) -> EngineParameters:
         values = (written(2 * self._law_in_si["stiffness"]), written(self._law_in_si["damping"]))

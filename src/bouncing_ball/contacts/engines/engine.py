@@ -15,6 +15,7 @@ from bouncing_ball.contacts.engines.given_step import AtStep, at_step
 from bouncing_ball.contacts.engines.impacts import steps_for
 from bouncing_ball.contacts.engines.physical import Physical
 from bouncing_ball.contacts.engines.scheme import Scheme, compensated, represented
+from bouncing_ball.contacts.engines.steps import LinearStep, Step
 from bouncing_ball.errors import ModelError, did_you_mean, require
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.laws.contact_law import ContactLaw
@@ -101,6 +102,8 @@ class Engine(ABC):
     laws: ClassVar[dict[str, str]] = {}
     """The names of the engine's other contact laws, by the names that users may give."""
     text: ClassVar[str] = ""
+    has_steps_of_law: ClassVar[bool] = False
+    """Whether it is known what the engine's law does at a time step that is given."""
     needs_speed: ClassVar[bool] = False
     """Whether the damping depends on the impact speed, so that :meth:`read` returns c = 0."""
 
@@ -192,7 +195,8 @@ class Engine(ABC):
         return None
 
     def with_law(self, law_in_si: Mapping[str, Any]) -> "Engine":
-        """The engine for a contact law, which has a ``name`` and its parameters in SI units.
+        """The engine for a contact law, which has a ``name`` and its parameters in SI units, also
+        the ``radius`` in m of the ball and the ``speed`` in m/s of an impact, if they are known.
 
         Its settings are made from the linear contact with the same restitution and duration.
 
@@ -283,17 +287,30 @@ class Engine(ABC):
         found = self._at(contact, rule, at)
         if at.is_within:
             return found
-        again = None
-        if at.retuned is not None:
-            other = Physical(contact.mass, contact.stiffness, written(at.retuned))
-            again = at_step(self.name, self.scheme, other, rule, time_step, error, asked=contact)
-            again = self._at(other, rule, again)
+        return replace(
+            found,
+            instant=self.instant(at.restitution),
+            retuned=self._retuned(contact, rule, at),
+            softer=self._softer(contact, rule, at),
+        )
+
+    def _retuned(self, contact: Physical, release: Release, at: AtStep) -> EngineSettings | None:
+        """The settings with the damping that restores the mean r; None if there is none."""
+        if at.retuned is None:
+            return None
+        other = Physical(contact.mass, contact.stiffness, written(at.retuned))
+        again = at_step(
+            self.name, self.scheme, other, release, at.time_step, at.allowed, asked=contact
+        )
+        return self._at(other, release, again)
+
+    def _softer(self, contact: Physical, release: Release, at: AtStep) -> EngineSettings | None:
+        """The settings of the stiffest contact that the step resolves; None if none was found."""
         exact = at.softer(contact.mass)
-        softer = None
-        if exact is not None:
-            soft = Physical(*map(written, exact))
-            softer = self._at(soft, rule, self.at_step(soft, rule, time_step, error))
-        return replace(found, instant=self.instant(at.restitution), retuned=again, softer=softer)
+        if exact is None:
+            return None
+        soft = Physical(*map(written, exact))
+        return self._at(soft, release, self.at_step(soft, release, at.time_step, at.allowed))
 
     def _at(self, contact: Physical, release: Release, at: AtStep) -> EngineSettings:
         """The settings of a contact at a time step that is given."""
@@ -323,6 +340,11 @@ class Engine(ABC):
             snippet=self.snippet(contact, release, step, at),
             at_step=at,
         )
+
+    def step(self, contact: Physical, release: Release, time_step: float) -> Step:
+        """A time step in s of a ball in a contact that is written for the engine."""
+        m, k, c = contact
+        return LinearStep.of(self.scheme, k / m, c / m, release, time_step)
 
     def at_step(
         self, contact: Physical, release: Release, time_step: float, error: float

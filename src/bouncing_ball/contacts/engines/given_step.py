@@ -72,7 +72,8 @@ class AtStep:
     stiffest contact with the same r is within the error allowed. ``remarks`` are sentences on how
     the engine changes the contact at this step, and ``is_of_parameters`` tells whether parameters
     that contain the step were given. If r depends on the impact ``speed`` in m/s, all this holds at
-    this speed, the damping is that of Hunt and Crossley in s/m, and no stiffest contact is sought.
+    this speed, the dampings are those of Hunt and Crossley in s/m, and a stiffest contact is sought
+    only if the contact is not within the error.
     """
 
     engine: str
@@ -97,7 +98,7 @@ class AtStep:
 
     @property
     def unit_of_damping(self) -> str:
-        """The unit of the damping ``retuned``."""
+        """The unit of the dampings ``retuned`` and ``stiffest_damping``."""
         return "N s/m" if self.speed is None else "s/m"
 
     @property
@@ -108,8 +109,10 @@ class AtStep:
         return least if least == most else f"{least} to {most}"
 
     def softer(self, mass: float) -> Physical | None:
-        """The stiffest contact with the same r for a mass in kg; None if none was sought."""
-        if self.stiffest is None or self.stiffest_damping is None:
+        """The stiffest spring and damper with the same r for a mass in kg; None if none was sought,
+        or if it has the damping of Hunt and Crossley.
+        """
+        if self.speed is not None or self.stiffest is None or self.stiffest_damping is None:
             return None
         return Physical(mass, self.stiffest, self.stiffest_damping)
 

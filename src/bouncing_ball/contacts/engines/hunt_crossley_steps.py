@@ -1,6 +1,9 @@
 """A free impact on Drake's contact with Hunt and Crossley's damping, at a time step that is given.
 
-In units of the impact speed V and of 1/ω, ω = √(k/m), it depends on h = ωΔt and D = dV.
+In units of the impact speed V and of 1/ω, ω = √(k/m), it depends on h = ωΔt and D = dV. For a given
+d and V the duration T of a contact in units of 1/ω is fixed, so that a contact that needs N steps
+has ω = T/(N Δt): with the smallest N for which r is within an error it is the stiffest one with
+this r. The steps are implicit ones, whose error falls about as 1/N.
 """
 
 import math
@@ -9,6 +12,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from bouncing_ball.contacts.engines.given_step import AtStep, Spread, spread
+from bouncing_ball.contacts.engines.impacts import FEWEST
 from bouncing_ball.contacts.engines.steps import HuntCrossleyStep, followed, patience
 from bouncing_ball.errors import ModelError, ParameterError
 from bouncing_ball.models.laws.hertzian import LinearHuntCrossley
@@ -19,6 +23,9 @@ _SMOOTH = 1e-6
 _MOST_STEPS = 20_000
 _FEWEST_STEPS = 1e-3
 _FINE = 1e-9
+# How closely the number of steps of the stiffest contact is found, and the steps of that search.
+_CLOSE = 1e-3
+_TRIED = 40
 
 
 def spread_of_damping(damping: float, step: float, most: int) -> Spread:
@@ -41,10 +48,61 @@ def spread_of_damping(damping: float, step: float, most: int) -> Spread:
     return spread(impacts, _SMOOTH)
 
 
+def fewest_steps_of_law(law: LinearHuntCrossley, speed: float, error: float) -> float:
+    """The smallest number of steps in a contact for which its r at a speed is within an error;
+    infinite if it is more than are followed.
+
+    Examples
+    --------
+    Without damping the contact is the linear one:
+
+    >>> from bouncing_ball.contacts.engines.impacts import fewest_steps
+    >>> from bouncing_ball.contacts.engines.scheme import Scheme
+    >>> from bouncing_ball.models.damping import Release
+    >>> linear = fewest_steps(Scheme.IMPLICIT, 0.0, Release.FORCE, 0.1)
+    >>> bool(abs(fewest_steps_of_law(LinearHuntCrossley(3.0, 0.0), 2.0, 0.1) / linear - 1) < 1e-2)
+    True
+    """
+    impact = law.signature(speed)
+    angle = float(impact.duration) * math.sqrt(float(law.stiffness))
+    exact = float(impact.restitution)
+
+    def off(steps: float) -> float:
+        damping = float(law.damping) * speed
+        return spread_of_damping(damping, angle / steps, patience(steps)).error(exact)
+
+    bad = FEWEST / 2
+    good = math.inf
+    steps = float(FEWEST)
+    for _ in range(_TRIED):
+        found = off(steps)
+        if found <= error:
+            good = steps
+        else:
+            bad = steps
+        if good <= FEWEST or (math.isfinite(good) and good - bad <= _CLOSE * good):
+            return good
+        # The error falls about as 1/N, which the next number is beyond by a little.
+        guess = steps * found / error * (1 + _CLOSE / 2 * math.copysign(1, found - error))
+        inside = bad * (1 + _CLOSE / 4) < guess < good * (1 - _CLOSE / 4)
+        steps = guess if inside else math.sqrt(bad * min(good, 4 * bad))
+        if steps > _MOST_STEPS:
+            return math.inf
+    return good
+
+
 def at_step_of_law(
-    law: LinearHuntCrossley, mass: float, speed: float, time_step: float, error: float
+    law: LinearHuntCrossley,
+    mass: float,
+    speed: float,
+    time_step: float,
+    error: float,
+    asked: float | None = None,
 ) -> AtStep:
-    """What the contact of a law in SI units does with a time step in s, at an impact speed in m/s.
+    """What the contact of a law does with a time step in s, at an impact speed in m/s.
+
+    The law has its parameters in SI units, with the stiffness per unit of mass; ``asked`` is the r
+    that was asked for, if it is another one than that of the law.
 
     Raises
     ------
@@ -60,6 +118,7 @@ def at_step_of_law(
     impact = law.signature(speed)
     duration = float(impact.duration)
     exact = float(impact.restitution)
+    wanted = exact if asked is None else asked
     steps = duration / time_step
     if steps < _FEWEST_STEPS:
         raise ModelError(
@@ -75,21 +134,29 @@ def at_step_of_law(
         return spread_of_damping(ratio, h, patience(steps))
 
     of_law = found(damping)
-    off = of_law.error(exact)
+    off = of_law.error(wanted)
     tuned = None
-    if off > error and found(0.0).mean >= exact:
-        tuned = float(brentq(lambda ratio: found(ratio).mean - exact, 0.0, damping, xtol=_FINE))
+    fewest = math.inf
+    if off > error and asked is None:
+        fewest = fewest_steps_of_law(law, speed, error)
+        if found(0.0).mean >= exact:
+            tuned = float(brentq(lambda ratio: found(ratio).mean - exact, 0.0, damping, xtol=_FINE))
+    is_known = math.isfinite(fewest)
     return AtStep(
         engine="drake",
         time_step=time_step,
         steps=steps,
         is_stable=True,
-        restitution=exact,
+        restitution=wanted,
         least=of_law.least,
         most=of_law.most,
         error=off,
         allowed=error,
         is_within=off <= error,
+        stiffest=mass * float(law.stiffness) * (steps / fewest) ** 2 if is_known else None,
+        stiffest_damping=float(law.damping) if is_known else None,
+        stiffest_contact_time=fewest * time_step if is_known else None,
+        stiffest_steps=fewest if is_known else None,
         mean=of_law.mean,
         retuned=None if tuned is None else tuned / speed,
         speed=speed,

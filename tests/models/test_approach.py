@@ -1,11 +1,14 @@
 """A damper that acts on approach only: against an integration that knows none of the formulas."""
 
+from time import process_time
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 from bouncing_ball import ModelError, contact_law, corrected, orbit, rigid, spring_damper
 from bouncing_ball.models.damping import LINEAR, Release, damping_ratio, restitution_coefficient
+from bouncing_ball.models.laws.permanent_contact import permanent_contact
 from bouncing_ball.models.laws.signature import computed
 from bouncing_ball.models.spring_damper import SpringDamper
 
@@ -115,3 +118,29 @@ def test_the_linear_model_refuses_it_in_one_line(refusal):
     assert APPROACH not in LINEAR
     with refusal(ModelError, "release"):
         spring_damper(frequency_ratio=10.0, restitution=0.9, release="approach")
+
+
+@pytest.mark.parametrize(("omega", "zeta"), [(0.6, 0.3), (3.3, 0.1), (7.0, 0.9), (20.0, 0.1)])
+def test_the_threshold_of_permanent_contact_is_that_of_an_integration(omega, zeta):
+    def motion(time, state):
+        y, rate = state
+        return [rate, np.sin(time) - omega**2 * y - 2 * zeta * omega * min(rate, 0.0)]
+
+    # The steady motion at Λ = 1, less its depth at rest: a transient falls by exp(-2πζϖ/2) or so.
+    periods = int(np.ceil(30 / (np.pi * zeta * omega))) + 2
+    last = 2 * np.pi * np.array([periods - 1, periods])
+    run = solve_ivp(motion, (0.0, last[1]), [0.0, 0.0], method="LSODA", rtol=1e-11, atol=1e-15,
+                    dense_output=True)  # fmt: skip
+    top = run.sol(np.linspace(*last, 200_001))[0].max()
+    contact = SpringDamper(omega, zeta, "approach")
+    assert permanent_contact(contact) == pytest.approx(1 / (omega**2 * top), rel=1e-7)
+
+
+def test_the_threshold_of_a_stiff_contact_is_found_at_once():
+    start = process_time()
+    # A slow table: δ = -(1 - Λ sin t)/ϖ² up to the next order, and 1 - Λ is of the order ϖ⁻².
+    for omega in (200.0, 1000.0):
+        found = permanent_contact(SpringDamper(omega, 0.1, "approach"))
+        assert 0 < (1 - found) * omega**2 < 2
+    # Hundredths of a second here; a search by collocation took 28 s.
+    assert process_time() - start < 5

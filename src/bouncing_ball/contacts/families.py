@@ -127,6 +127,7 @@ def by_error_law(case: ResolvedContact, n: np.ndarray) -> tuple[np.ndarray, np.n
 
     Examples
     --------
+    >>> from bouncing_ball.models.spring_damper import SpringDamper
     >>> case = ResolvedContact(1.0, TableMotion(1.0, 1.0, 1.0), SpringDamper(10.0, 0.0))
     >>> by_error_law(case, np.array([1]))[0][-1].tolist()
     [0.01]
@@ -177,6 +178,7 @@ def families(
 
     Examples
     --------
+    >>> from bouncing_ball.models.spring_damper import SpringDamper
     >>> case = ResolvedContact(1.0, TableMotion(1.0, 0.5, 1.0), SpringDamper(10.0, 0.1))
     >>> [family.n for family in families(case, [1, 2, 3])]
     [1]

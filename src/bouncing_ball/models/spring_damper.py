@@ -26,6 +26,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.models import linear_flow
+from bouncing_ball.models.approach_threshold import approach_threshold
 from bouncing_ball.models.contact import ContactSpan
 from bouncing_ball.models.damping import (
     Release,
@@ -343,11 +344,13 @@ class SpringDamper(OscillatorLaw):
 
     @property
     def permanent_contact(self) -> np.ndarray | None:
-        """Λ_SD or Λ_F, depending on the release (Eq. 33); None if the damper acts on approach only,
-        because the steady contact is then no sinusoid.
+        """Λ_SD or Λ_F, depending on the release (Eq. 33); for a damper that acts on approach only
+        see :mod:`.approach_threshold`, and None where that finds none.
         """
         if not self.release.is_linear:
-            return None
+            each = np.vectorize(approach_threshold, otypes=[float])
+            found = each(self.frequency_ratio, self.damping_ratio)
+            return found if np.all(np.isfinite(found)) else None
         return permanent_contact_threshold(self.frequency_ratio, self.damping_ratio, self.release)
 
     @classmethod

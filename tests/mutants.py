@@ -3,8 +3,10 @@
 Single faults are put into modules as these are imported, one at a time. First ``make quick``
 runs without a fault, and each test is noted with the functions that it calls. For a fault the
 tests run that reach its function, the nearest first, and then all others of its folder. A fault
-is noticed if one of them fails, or hangs. What survives is listed: it changes nothing, for a
-reason that stands in ``equivalent_faults.yaml``, or a test is missing.
+is noticed if one of them fails, or if one hangs: this is said apart, and it is judged by processor
+time, so that other programs on the machine do not matter. What survives is listed: it changes
+nothing, for a reason that stands in ``equivalent_faults.yaml``, or a test is missing. Faults are
+decided one group after another, so that a run that was stopped has a share of those before.
 
 usage: python tests/mutants.py [--count 200] [--seed 2011] [--workers 2] [--only PART ...]
 """
@@ -46,8 +48,13 @@ QUICK = "not long and not slow and not cluster and not engines and not docs"
 ELSEWHERE = {"tests/drawing", "tests/speed", "tests/workflow"}
 # Imported once for all processes.
 LIBRARIES = ["matplotlib", "mpmath", "netCDF4", "pint", "pydantic", "scipy.optimize", "xarray"]
-# A test hangs that takes this many times as long as without a fault, and one second more.
-LONGER = 60
+# A test hangs that takes this many times the processor time that it takes without a fault, and
+# one second more.
+LONGER = 20
+# A test that waits takes no processor time: it may last this many times as long, and a second more.
+WAITING = 600
+# Faults for each process whose near tests run before their other tests.
+GROUP = 5
 Functions = set[tuple[str, int]]
 # Another operator of the same kind: a sign, an exponent, a border, a condition.
 _EXCHANGED = [
@@ -69,6 +76,7 @@ _NEIGHBOURS = {
     "fmax": "fmin", "fmin": "fmax", "argmin": "argmax", "argmax": "argmin",
 }  # fmt: skip
 _SMALL = 1e-3
+NOTICED, HANGS, EQUAL, SURVIVED = "noticed", "hangs", "equal", "SURVIVED"
 
 
 class Fault(NamedTuple):
@@ -230,19 +238,27 @@ class Chosen:
 
     def __init__(self, seconds: dict[str, float]) -> None:
         self._seconds = seconds
+        self.hung = False
 
     def pytest_collection(self) -> None:
         # It is enough that a random example fails; it need not be the simplest one.
         settings.register_profile("first", settings(), phases=[Phase.explicit, Phase.generate])
         settings.load_profile("first")
         # A test that hangs is interrupted.
-        signal.signal(signal.SIGALRM, signal.default_int_handler)
+        signal.signal(signal.SIGPROF, self._interrupt)
+        signal.signal(signal.SIGALRM, self._interrupt)
+
+    def _interrupt(self, number: int, frame: FrameType | None) -> None:
+        self.hung = True
+        raise KeyboardInterrupt
 
     def pytest_collection_modifyitems(self, items: list[Any]) -> None:
         items[:] = [item for item in items if item.nodeid in self._seconds]
 
     def pytest_runtest_setup(self, item: Any) -> None:
-        signal.setitimer(signal.ITIMER_REAL, LONGER * (1 + self._seconds[item.nodeid]))
+        usual = 1 + self._seconds[item.nodeid]
+        signal.setitimer(signal.ITIMER_PROF, LONGER * usual)
+        signal.setitimer(signal.ITIMER_REAL, WAITING * usual)
 
 
 def passes(files: Iterable[str], plugin: Reach | Chosen) -> bool:
@@ -296,8 +312,8 @@ def chosen(
     return {name: tests[name][0] for name in sorted(found, key=order)}
 
 
-def survives(work: tuple[Path, Fault, dict[str, float]]) -> bool:
-    """Whether no test notices a fault."""
+def state(work: tuple[Path, Fault, dict[str, float]]) -> str:
+    """Whether tests notice a fault, one of them hangs, or the fault survives them."""
     path, fault, seconds = work
     wrong = str(path.absolute())
     right = SourceFileLoader.get_code
@@ -309,7 +325,10 @@ def survives(work: tuple[Path, Fault, dict[str, float]]) -> bool:
 
     SourceFileLoader.get_code = get_code
     files = dict.fromkeys(name.split("::")[0] for name in seconds)
-    return not files or passes(files, Chosen(seconds))
+    plugin = Chosen(seconds)
+    if not files or passes(files, plugin):
+        return SURVIVED
+    return HANGS if plugin.hung else NOTICED
 
 
 def reasons(tree: Path) -> dict[tuple[Path, int, str, str], str]:
@@ -347,22 +366,25 @@ def main() -> None:
             sys.exit(f"{failed} fail without any fault: see make quick")
         tests = dict(ChainMap(*found.values()))
         known = reasons(ROOT)
-        survived = drawn
-        equal = 0
-        for near in (True, False):
-            tried = survived
-            survived = []
-            work = ((*each, chosen(*each, tests, near)) for each in tried)
-            for (path, fault), lives in zip(tried, pool.imap(survives, work), strict=True):
-                why = known.get((path, fault.line, fault.before, fault.after), "") if lives else ""
-                equal += bool(why)
-                if lives and not why:
-                    survived.append((path, fault))
-                if why or not (lives and near):
-                    state = "noticed " if not lives else "equal   " if why else "SURVIVED"
+        count: Counter[str] = Counter()
+        for start in range(0, len(drawn), GROUP * options.workers):
+            tried = drawn[start : start + GROUP * options.workers]
+            for near in (True, False):
+                work = [(*each, chosen(*each, tests, near)) for each in tried]
+                tried = []
+                for (path, fault, _), end in zip(work, pool.imap(state, work), strict=True):
                     change = f"{path}:{fault.line}: {fault.before}  →  {fault.after}"
-                    print(state, change, why and f"({why})", flush=True)
-    print(f"{len(drawn)} faults: {equal} change nothing, {len(survived)} survived")
+                    why = known.get((path, fault.line, fault.before, fault.after), "")
+                    if end == SURVIVED and near and not why:
+                        tried.append((path, fault))
+                        continue
+                    end = EQUAL if end == SURVIVED and why else end
+                    count[end] += 1
+                    print(f"{end:8}", change, f"({why})" if end == EQUAL else "", flush=True)
+    print(
+        f"{len(drawn)} faults: {count[EQUAL]} change nothing, {count[SURVIVED]} survived, "
+        f"{count[HANGS]} hang"
+    )
 
 
 if __name__ == "__main__":

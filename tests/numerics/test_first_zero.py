@@ -79,3 +79,41 @@ def test_a_zero_at_the_start_counts_if_the_function_rises():
     assert found.time[0] == pytest.approx(start[0], rel=4 * EPS)
     # From the second zero the function falls, and the next zero is before the next top.
     assert found.time[1] == pytest.approx(start[0] + 2 * np.pi, rel=8 * EPS)
+
+
+class Cubic(Motion):
+    """y = h + a s + b s²/2 + c s³/6 from s = 0 on, which is not followed and has no later zero."""
+
+    def __init__(self, height, rate, second, third):
+        self.height = height
+        self.rate = rate
+        self.second = second
+        self.third = third
+
+    def __call__(self, time):
+        return Derivatives(
+            value=self.height
+            + time * (self.rate + time * (self.second + time * self.third / 3) / 2),
+            rate=self.rate + time * (self.second + time * self.third / 2),
+            second=self.second + time * self.third,
+            third=self.third,
+            second_bound=10.0,
+            third_bound=1.0,
+            fourth_bound=0.0,
+            ended=np.ones(time.shape, dtype=bool),
+        )
+
+    def skip(self, time, steps):
+        return np.maximum(time, 5.0)
+
+
+@pytest.mark.parametrize("height", [0.0, EPS])
+def test_a_function_at_zero_counts_by_the_first_derivative_that_does_not_vanish(height):
+    # Rising by the rate, though it bends down; by the second and by the third derivative; falling.
+    rate = np.array([0.5, 0.5, 0.0, 0.0, 0.0, -0.5])
+    second = np.array([0.5, -0.5, 0.5, 0.0, -0.5, 0.5])
+    third = np.array([0.0, 0.0, 0.0, 1.0, 1.0, 0.0])
+    rises = [True, True, True, True, False, False]
+    found = first_zero(Cubic(np.full(6, height), rate, second, third), np.zeros(6))
+    assert (~found.ended).tolist() == rises
+    assert np.all(found.time[rises] == 0)

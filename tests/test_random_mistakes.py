@@ -25,8 +25,8 @@ from hypothesis import strategies as st
 from whole_configuration import configuration_type
 
 import bouncing_ball as bb
+from bouncing_ball.cli.answers import parser
 from bouncing_ball.cli.commands import COMMANDS
-from bouncing_ball.cli.main import parser
 from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.quantities import quantities
 from bouncing_ball.contacts.question import EngineSetup, Question

@@ -1,0 +1,67 @@
+"""One subcommand of ``bouncing-ball``: its options, its answer, and the exit status."""
+
+import json
+
+from bouncing_ball import __version__
+from bouncing_ball.cli.commands import COMMANDS, Program
+from bouncing_ball.cli.interrupt import importing
+from bouncing_ball.cli.options import Parser, option
+from bouncing_ball.cli.output import fail, say
+from bouncing_ball.cli.patience import patience
+from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError, extra
+
+
+def _program(command: str) -> Program:
+    try:
+        with extra("pipeline"), importing():
+            return COMMANDS[command].program()
+    except ModelError as error:
+        fail(str(error), status=2)
+
+
+def parser(arguments: list[str]) -> Parser:
+    """The parser of all subcommands; only those named in the arguments have their options."""
+    top = Parser(
+        prog="bouncing-ball",
+        description="Orbits and other motions of a ball on a vibrating table. Quantities are "
+        "dimensionless: times Ωt, lengths Ω²y/g, velocities Ωẏ/g. Only design has units.",
+        epilog="bouncing-ball COMMAND --help explains a command and gives examples",
+    )
+    top.add_argument("--version", action="version", version=f"{top.prog} {__version__}")
+    commands = top.add_subparsers(dest="command", parser_class=Parser)
+    for name, command in COMMANDS.items():
+        text = command.purpose
+        sub = commands.add_parser(name, help=text, description=text, epilog=command.explanation())
+        if name in arguments:
+            program = _program(name)
+            program.add_options(sub)
+            if program.lines is not None:
+                sub.add_argument("--json", action="store_true", help="one JSON object")
+    return top
+
+
+def answer(arguments: list[str]) -> None:
+    """Answer one subcommand; exit with 1 if there is no answer, and with 2 on a mistake."""
+    top = parser(arguments)
+    given = vars(top.parse_args(arguments))
+    command = given.pop("command")
+    as_json = given.pop("json", False)
+    if command is None:
+        top.error(f"a command is missing, one of {', '.join(COMMANDS)}")
+    program = _program(command)
+    with importing():
+        import numpy as np
+
+    try:
+        with np.errstate(all="ignore"), patience(COMMANDS[command].cheaper):
+            found = program.answer(**given)
+            if as_json:
+                text = json.dumps(program.document(found), allow_nan=False)
+            else:
+                text = "\n".join(program.lines(found) if program.lines else [])
+    except ValueError as error:
+        text = error.shown(option) if isinstance(error, ParameterError) else str(error)
+        if as_json:
+            say(json.dumps({"error": text}))
+        fail(text, status=1 if isinstance(error, NoOrbitError) else 2)
+    say(text)

@@ -58,6 +58,11 @@ def test_where_a_model_has_no_orbit_the_error_is_not_tolerated():
     assert found(lambda w: 1e-6, 0.01)[0] == RATIOS[0]
 
 
+def test_an_error_beyond_the_tolerance_at_the_largest_ratio_has_no_threshold():
+    for error in (1.0, -1.0, 0.02):
+        assert found(lambda w, error=error: error, 0.01)[0] == np.inf
+
+
 def test_errors_side_by_side_have_the_thresholds_that_each_has_alone():
     # Errors that come and go, some of them with excursions, zeros and places without orbit.
     random = np.random.default_rng(6)

@@ -10,7 +10,7 @@ from bouncing_ball.beyond.exhibits.contact_laws_figures import contact_laws
 from bouncing_ball.beyond.exhibits.motion_maps import DOTS, mark_nodes
 from bouncing_ball.datasets.variables import SHARED
 from bouncing_ball.drawing.canvas import draw_curve
-from bouncing_ball.drawing.labels import _SYMBOLS
+from bouncing_ball.drawing.labels import _SYMBOLS, in_a_row
 from bouncing_ball.drawing.style import LINES, style
 
 IN_LATEX = {"Λ": r"\Lambda", "ϖ": r"\varpi", "ζ": r"\zeta", "φ": r"\varphi", "z′ᵢ": "z′_i"}
@@ -27,6 +27,16 @@ def test_the_damping_ratio_of_a_ball_is_in_the_title_of_its_figure():
     figure = bb.history(ball, amplitude=1.0, periods=1).plot()
     texts = [axes.get_title() for axes in figure.axes] + [text.get_text() for text in figure.texts]
     assert any(r"\zeta" in text for text in texts), texts
+
+
+@pytest.mark.parametrize("special", [0, 2])
+def test_cases_are_in_a_row_also_if_there_are_no_special_points(special):
+    size = {"n": 2, "amplitude": 3, "special": special}
+    values = np.arange(6.0 * special).reshape(tuple(size.values()))
+    data = xr.Dataset({"phase": (tuple(size), values)}, {"n": [1, 2], "amplitude": [0.5, 0.6, 0.7]})
+    rows, names = in_a_row(data, "special")
+    assert np.array_equal(rows.phase.values, values.reshape(6, special))
+    assert rows.phase.dims == ("case", "special") and len(names) == 6
 
 
 def test_the_inadmissible_part_of_a_curve_is_dotted_and_the_other_part_is_not():

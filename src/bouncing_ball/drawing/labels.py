@@ -99,9 +99,14 @@ def in_a_row(data: xr.Dataset, *kept: str) -> tuple[xr.Dataset, list[str]]:
     ['$n=1$', '$n=2$']
     """
     axes = [dim for dim in data.dims if dim not in kept]
+    # xarray merges no axes of arrays that have no entries, such as those of special points: they
+    # have one while the axes are merged.
+    empty = [dim for dim, size in data.sizes.items() if size == 0]
     varied = [name for name in data.coords if name in _SYMBOLS and data[name].dims]
     labels = [name for name in varied if set(data[name].dims) <= {*axes}]
-    rows = data.stack({CASE: axes}, create_index=False) if axes else data.expand_dims(CASE)
+    filled = data.pad(dict.fromkeys(empty, (0, 1))) if empty else data
+    rows = filled.stack({CASE: axes}, create_index=False) if axes else filled.expand_dims(CASE)
+    rows = rows.isel(dict.fromkeys(empty, slice(0)))
     told = [{name: rows[name].values[k] for name in labels} for k in range(rows.sizes[CASE])]
     names = [", ".join(f"${_SYMBOLS[x]}={number(v)}$" for x, v in one.items()) for one in told]
     return rows.transpose(CASE, ...), names

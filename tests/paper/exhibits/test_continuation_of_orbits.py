@@ -65,6 +65,15 @@ def test_figure_8_has_the_long_contacts_that_begin_where_permanent_contact_ends(
     np.testing.assert_array_equal(one.long_admissible, lam < opens[0])
 
 
+def test_figure_8_is_drawn_under_the_other_release_too(continuation_settings):
+    """There the branches of long contacts have no special points on any contact."""
+    found = orbit_branches(FIGURE_8, "force", continuation_settings)
+    assert found.sizes["long_special"] == 0
+    data = found.assign_attrs(n=1, restitution=0.85, amplitude_max=1.5)
+    drawn = np.concatenate([line.get_xdata() for line in domains(data).axes[0].lines])
+    assert np.isin(data.amplitude.values, drawn).all()
+
+
 @pytest.fixture
 def follow(continuation_settings):
     """The equations and the branch of n-T orbits up to ``top``."""

@@ -153,3 +153,26 @@ def test_more_impacts_than_fit_into_memory_are_refused_before_they_are_computed(
         bb.ModelError, "100000000 states exceed the limit of 10000000", "impacts or balls"
     ):
         bb.simulate(BALL, amplitude=np.linspace(1.0, 2.0, 1000), impacts=100_000)
+
+
+LAW = bb.contact_law("hunt-crossley", restitution=0.7, duration=0.3)
+LONG = np.linspace(0.5, 1.5, 100_001)
+
+
+@pytest.mark.parametrize(
+    ("call", "text"),
+    [
+        (lambda: bb.orbit(BALL, [1, 2] * 50, amplitude=LONG), "10000100 places of a grid exceed"),
+        (lambda: bb.permanent_contact(bb.rigid(restitution=np.ones(10**7 + 1))), "10000001 places"),
+        (lambda: bb.orbit(LAW, amplitude=LONG), "100001 results exceed the limit of 100000"),
+        (lambda: bb.branch(bb.rigid(restitution=LONG / 2)), "30000300 points exceed the limit"),
+        (lambda: bb.history(BALL, amplitude=LONG), "states exceed the limit of 10000000"),
+        (lambda: bb.motion_of(BALL, amplitude=np.full(20_000_001, 1.0)), "20000001 places of a"),
+        (lambda: bb.basins(BALL, amplitude=1.0, starts=5000), "balls exceed the limit of 20000000"),
+    ],
+)
+def test_results_that_would_fill_the_memory_are_refused_before_they_are_computed(
+    call, text, refusal
+):
+    with refusal(bb.ModelError, text, "use fewer"):
+        call()

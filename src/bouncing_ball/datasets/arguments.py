@@ -68,6 +68,25 @@ ReleaseName = Literal["displacement", "force"]
 SideName = Literal["stable", "unstable"]
 
 
+MOST_STATES = 10_000_000
+"""Largest number of states, orbits or points in a result. One takes 50 to 300 bytes while it is
+computed, so that they take three gigabytes at most."""
+
+
+def require_memory(number: int, of: str, fewer: str, limit: int = MOST_STATES) -> None:
+    """Raise :class:`ParameterError` if a result of this many parts would fill the memory.
+
+    Examples
+    --------
+    >>> require_memory(10**9, "balls", "starts")
+    Traceback (most recent call last):
+    bouncing_ball.errors.ParameterError: 1000000000 balls exceed the limit of 10000000: use fewer \
+starts
+    """
+    if number > limit:
+        raise ParameterError(f"{number} {of} exceed the limit of {limit}: use fewer {fewer}")
+
+
 def is_array(value: Any) -> bool:
     """Whether an argument spans an axis.
 

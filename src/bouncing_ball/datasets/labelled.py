@@ -13,6 +13,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.datasets import CASE
+from bouncing_ball.datasets.arguments import require_memory
 from bouncing_ball.datasets.variables import SHARED
 from bouncing_ball.errors import ParameterError
 
@@ -30,8 +31,8 @@ class Grid:
     ------
     ParameterError
         If an array has several axes without names, or does not consist of numbers; if two arrays
-        have other labels on the same axis; or if an axis has the name of another argument that
-        does not lie along it.
+        have other labels on the same axis; if an axis has the name of another argument that
+        does not lie along it; or if the results would fill the memory.
 
     Examples
     --------
@@ -43,6 +44,8 @@ class Grid:
     def __init__(self, **given: Any) -> None:
         self.coords = {name: _axis(name, value) for name, value in given.items() if np.ndim(value)}
         _check_axes(self.coords, given)
+        lengths = {axis: n for each in self.coords.values() for axis, n in each.sizes.items()}
+        require_memory(math.prod(lengths.values()), "places of a grid", "values")
         whole = _broadcast(self.coords)
         template = next(iter(whole.values()), xr.DataArray(0.0))
         self.dims = template.dims

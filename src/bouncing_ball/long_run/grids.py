@@ -10,8 +10,8 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.datasets import CASE
+from bouncing_ball.datasets.arguments import require_memory
 from bouncing_ball.datasets.variables import Variable, describe, described
-from bouncing_ball.errors import ParameterError
 from bouncing_ball.long_run.basins import basins as basins_of
 from bouncing_ball.long_run.basins import fastest
 from bouncing_ball.long_run.contraction import exponent_sum
@@ -58,23 +58,6 @@ REACH = max(_FURTHER)
 """The motions at one Λ depend on at most this number of amplitudes on each side."""
 
 
-def require_memory(balls: int, what: str) -> None:
-    """Raise :class:`ParameterError` if there are more balls than fit into memory.
-
-    Examples
-    --------
-    >>> require_memory(10**9, "starts")
-    Traceback (most recent call last):
-    ...
-    bouncing_ball.errors.ParameterError: starts: 1000000000 balls are more than fit into memory, \
-20000000 are allowed
-    """
-    if balls > MOST_BALLS:
-        raise ParameterError(
-            f"{what}: {balls} balls are more than fit into memory, {MOST_BALLS} are allowed"
-        )
-
-
 def motions(
     model: Any, amplitude: np.ndarray, phase: np.ndarray, velocity: np.ndarray, impacts: int
 ) -> xr.Dataset:
@@ -88,7 +71,7 @@ def motions(
     ModelError
         If there are too many balls, or a state is outside its range.
     """
-    require_memory(amplitude.size, "a grid of starts")
+    require_memory(amplitude.size, "balls", "starts", MOST_BALLS)
     found = final_motions(model, amplitude, phase, velocity, impacts=impacts)
     words = np.array([found[k].in_words() for k in range(found.size)])
     data = _variables(found, (CASE,)) | {"in_words": (CASE, words)}
@@ -135,7 +118,8 @@ def diagram(
         If there are too many balls.
     """
     balls = starts + len(_FAMILIES) + 2 * len(_FURTHER)
-    require_memory(amplitude.size * balls * samples, "amplitudes, starts and samples")
+    number = amplitude.size * balls * samples
+    require_memory(number, "balls", "amplitudes, starts or samples", MOST_BALLS)
     lam = amplitude[:, np.newaxis]
     phase, speed = _first_starts(model, lam, starts)
     found = _ends(model, lam, phase, speed, impacts)
@@ -233,7 +217,7 @@ def basins(
     ModelError
         If there are too many starts.
     """
-    require_memory(starts * starts, "a grid of starts")
+    require_memory(starts * starts, "balls", "starts", MOST_BALLS)
     found = basins_of(model, amplitude, starts, fast, impacts)
     share = found.share
     dims = ("start_speed", "start_phase")

@@ -28,6 +28,7 @@ from bouncing_ball.datasets.arguments import (
     StartAxis,
     checked,
     checked_number,
+    require_memory,
 )
 from bouncing_ball.errors import ModelError, require, suggesting
 from bouncing_ball.models.ball import Ball, a_ball
@@ -48,9 +49,6 @@ _FIRST, _MOST = 4, 65_536
 # its last, in three intervals or more, has less than 0.2 intervals more or less in the largest
 # number of impacts.
 _LOSSLESS = 1e-10
-# Largest number of states of all balls. A state takes about fifty bytes, and as much again while
-# it is computed.
-_STATES = 10_000_000
 
 
 class FirstImpacts(NamedTuple):
@@ -132,7 +130,7 @@ def simulate(
     """
     grid, first = first_impacts(ball, amplitude, phase, velocity)
     count = checked_number("impacts", impacts, IMPACTS)
-    _require_memory(count * grid.size, "impacts")
+    require_memory(count * grid.size, "states", "impacts or balls")
     return _labelled_impacts(grid, first.model(ball, grid).simulate(*first, count))
 
 
@@ -271,16 +269,8 @@ def instants(periods: float, samples: int, balls: int) -> np.ndarray:
     [0.0, 0.5, 1.0, 1.5, 2.0]
     """
     count = math.ceil(periods * samples) + 1
-    _require_memory(count * balls, "samples")
+    require_memory(count * balls, "states", "samples or balls")
     return np.linspace(0.0, 2 * np.pi * periods, count)
-
-
-def _require_memory(states: int, what: str) -> None:
-    """Raise :class:`ModelError` if the states of all balls would fill the memory."""
-    if states > _STATES:
-        raise ModelError(
-            f"{states} states exceed the limit of {_STATES}: use fewer {what} or balls"
-        )
 
 
 def _dropped(ball: Ball, grid: Grid, time: np.ndarray) -> dict[str, np.ndarray]:

@@ -13,6 +13,7 @@ from bouncing_ball.datasets.arguments import (
     Positive,
     checked,
     checked_number,
+    require_memory,
 )
 from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.datasets.variables import describe
@@ -86,6 +87,7 @@ def branch(
         return n_t_columns(_branch_of(one.at_limits(n), n, top, count), kept=True)
 
     grid = Grid(n=family, **a_ball(ball).parameters)
+    require_memory(count * grid.size, "points", "points or branches")
     whole = by_place(grid, ball, ("n",), found, partial(no_branch, count, kept=True), joined)
     data = grid.unfold(describe(whole, VARIABLES | KEPT)).assign_attrs(along="amplitude")
     if top is not None:

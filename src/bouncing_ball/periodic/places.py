@@ -7,12 +7,17 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.datasets import CASE
+from bouncing_ball.datasets.arguments import require_memory
 from bouncing_ball.datasets.labelled import Grid
 from bouncing_ball.datasets.variables import describe
 from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.ball import Ball
 from bouncing_ball.periodic.branches.observables import VARIABLES
+
+# Largest number of results that are computed one after another; each is a dataset, which takes 4 to
+# 20 kilobytes.
+_MOST_RESULTS = 100_000
 
 
 def labelled(
@@ -63,7 +68,14 @@ def by_place(
     missing: Callable[[NoOrbitError], xr.Dataset],
     joined: Callable[..., xr.Dataset] = xr.concat,
 ) -> xr.Dataset:
-    """The results at each place of a grid, computed one after another."""
+    """The results at each place of a grid, computed one after another.
+
+    Raises
+    ------
+    ParameterError
+        If they would fill the memory.
+    """
+    require_memory(grid.size, "results", "values", _MOST_RESULTS)
     balls = ball.row(grid)
     rows = []
     for number, place in enumerate(grid.cells()):

@@ -237,7 +237,8 @@ def check(model: type[BaseModel], config: Mapping[str, Any]) -> None:
 samples? Allowed here: min, max, samples
     """
     try:
-        model.model_validate(config)
+        # Some parameters are right under one setting of the run and wrong under another.
+        model.model_validate(config, context=config)
     except ValidationError as error:
         found = _each_once(error.errors())
         raise ConfigurationError(*_sentences(model, found)) from None

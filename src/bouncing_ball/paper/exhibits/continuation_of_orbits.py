@@ -20,7 +20,12 @@ from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.numerics.continuation import Branch, ContinuationError
-from bouncing_ball.paper.exhibits.orbit_parameters import BranchEnd, BranchPoints
+from bouncing_ball.paper.exhibits.orbit_parameters import (
+    BranchEnd,
+    BranchPoints,
+    BranchRatio,
+    BranchRatios,
+)
 from bouncing_ball.paper.exhibits.printed_table1 import printed_table
 from bouncing_ball.periodic.branches import observables
 from bouncing_ball.periodic.branches.following import Followed, orbits_along
@@ -92,7 +97,7 @@ class Branches(Parameters):
 class Domains(Branches):
     """One family, followed along Λ on several contacts."""
 
-    frequency_ratio: Many[FrequencyRatio]
+    frequency_ratio: BranchRatios
 
 
 class Ranges(Parameters):
@@ -209,7 +214,7 @@ def _long_branches(
 class BothDomains(Branches):
     """One family, followed along Λ on one contact and in the restitution model."""
 
-    frequency_ratio: FrequencyRatio
+    frequency_ratio: BranchRatio
 
 
 def both_domains(

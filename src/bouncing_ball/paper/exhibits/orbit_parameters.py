@@ -1,10 +1,11 @@
 """Types of parameters that require an orbit: amplitudes at which an orbit exists.
 
 A type reads the parameters ``n`` and ``restitution``, which are declared before it in its class.
+Those of frequency ratios read the amplitude and the release rule of the run as well.
 """
 
-from collections.abc import Callable
-from typing import Annotated
+from collections.abc import Callable, Sequence
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,6 +15,7 @@ from bouncing_ball.datasets.parameters import (
     Amplitude,
     AmplitudeMax,
     Family,
+    FrequencyRatio,
     Many,
     Parameters,
     Restitution,
@@ -22,7 +24,20 @@ from bouncing_ball.datasets.parameters import (
     number,
 )
 from bouncing_ball.errors import NoOrbitError
+from bouncing_ball.models.damping import Release
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
+from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.restitution_branch import saddle_node
+from bouncing_ball.periodic.orbits.stability import Side
+
+# The next frequency ratio that has an orbit is sought among so many, up to the largest, and then
+# so many times between two of them, which gives six digits.
+_STIFFER = 60
+_REFINED = 4
+_LARGEST = 1e6
+# The amplitudes at which the orbits of a branch are sought, over the largest.
+_ON_BRANCH = np.linspace(0.1, 1.0, 10)
 
 
 def require_orbit(amplitude: float, n: int, restitution: float) -> float:
@@ -70,6 +85,108 @@ def require_any_orbit(exists: np.ndarray, n: int, amplitude: ArrayLike, ratios: 
             f"nothing to draw: no {n}-T orbit at Λ = {levels} for any ϖ from {ratios[0]:g} to "
             f"{ratios[-1]:g}; stiffer contacts, of a larger ϖ, have one"
         )
+
+
+class Orbits(NamedTuple):
+    """n-T orbits at some of the amplitudes, on contacts of one r and one release rule.
+
+    On either side of the branch, or on the stable side and admissible.
+    """
+
+    n: int
+    restitution: float
+    amplitudes: np.ndarray
+    release: Release
+    admissible: bool = False
+
+    def exists(self, ratios: ArrayLike) -> np.ndarray:
+        """Whether contacts of the ratios ϖ have an orbit at one of the amplitudes, shape (k,).
+
+        Examples
+        --------
+        >>> Orbits(1, 0.85, np.array([1.0]), Release.DISPLACEMENT).exists([0.1, 10.0]).tolist()
+        [False, True]
+        """
+        column = np.asarray(ratios)[:, np.newaxis]
+        model = SpringDamperModel(
+            SpringDamper.from_restitution(self.restitution, column, self.release)
+        )
+        stable = n_t.orbit(model, self.n, self.amplitudes)
+        if self.admissible:
+            found = stable.exists & stable.is_admissible()
+        else:
+            unstable = n_t.orbit(model, self.n, self.amplitudes, Side.UNSTABLE)
+            found = stable.exists | unstable.exists
+        return found.any(axis=-1)
+
+    def next_stiffer(self, ratio: float) -> float:
+        """The smallest ϖ above this one, on which there is none, that has one; or infinity."""
+        low = ratio
+        high = _LARGEST
+        for _ in range(_REFINED):
+            stiffer = np.geomspace(low, high, _STIFFER)
+            there = np.flatnonzero(self.exists(stiffer[1:]))
+            if not there.size:
+                return np.inf
+            low, high = stiffer[there[0] : there[0] + 2]
+        return float(high)
+
+    def require(self, ratios: Sequence[float]) -> None:
+        """Raise an error if there is no orbit on any of these contacts.
+
+        Raises
+        ------
+        ValueError
+            One line that gives the next larger ϖ at which there is one.
+        """
+        if self.exists(ratios).any():
+            return
+        at = "=" if self.amplitudes.size == 1 else "up to"
+        limit = self.next_stiffer(max(ratios))
+        known = f"the next that has one is {limit:.6g}" if np.isfinite(limit) else "no larger has"
+        raise ValueError(
+            f"must be the ϖ of a contact with a {self.n}-T orbit at r = {self.restitution:g} and "
+            f"Λ {at} {self.amplitudes.max():g}: {known}"
+        )
+
+
+def _orbits(info: ValidationInfo, amplitude: str, share: np.ndarray) -> Orbits | None:
+    """The orbits that parameters ask for at shares of an amplitude; None if the release rule of
+    the run is not known, or if a parameter is missing or wrong, which is reported instead.
+    """
+    run: Any = info.context or {}
+    rule = run.get("release")
+    given = info.data
+    if not {"n", "restitution", amplitude} <= given.keys() or rule not in {*map(str, Release)}:
+        return None
+    return Orbits(given["n"], given["restitution"], given[amplitude] * share, Release(rule))
+
+
+def _on_contact(ratio: float, info: ValidationInfo) -> float:
+    if orbit := _orbits(info, "amplitude", np.ones(1)):
+        orbit._replace(admissible=True).require([ratio])
+    return ratio
+
+
+def _on_branch(ratio: float, info: ValidationInfo) -> float:
+    if branch := _orbits(info, "amplitude_max", _ON_BRANCH):
+        branch.require([ratio])
+    return ratio
+
+
+def _on_some_branch(ratios: tuple[float, ...], info: ValidationInfo) -> tuple[float, ...]:
+    # A contact without a branch is named in the figure of the others.
+    if branch := _orbits(info, "amplitude_max", _ON_BRANCH):
+        branch.require(ratios)
+    return ratios
+
+
+ContactRatio = Annotated[FrequencyRatio, AfterValidator(_on_contact)]
+"""ϖ of a contact that has an orbit of the family at Λ."""
+BranchRatio = Annotated[FrequencyRatio, AfterValidator(_on_branch)]
+"""ϖ of a contact that has orbits of the family up to the largest Λ."""
+BranchRatios = Annotated[Many[FrequencyRatio], AfterValidator(_on_some_branch)]
+"""ϖ of contacts of which at least one has such orbits."""
 
 
 def _has_orbits(families: Callable[[np.ndarray], int]) -> AfterValidator:

@@ -4,13 +4,13 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from bouncing_ball.datasets.parameters import FrequencyRatio, Many, Samples
+from bouncing_ball.datasets.parameters import Many, Samples
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.models.damping import Release
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.paper.exhibits.orbit_parameters import OrbitParameters
+from bouncing_ball.paper.exhibits.orbit_parameters import ContactRatio, OrbitParameters
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.orbits.orbit import Orbit
 
@@ -30,14 +30,14 @@ _CURVES = ("frequency_ratio", "table_phase")
 class ContactHistory(OrbitParameters):
     """One cycle of one orbit on one contact."""
 
-    frequency_ratio: FrequencyRatio
+    frequency_ratio: ContactRatio
     samples: Samples
 
 
 class Histories(OrbitParameters):
     """One cycle of one orbit on several contacts."""
 
-    frequency_ratio: Many[FrequencyRatio]
+    frequency_ratio: Many[ContactRatio]
     samples: Samples
 
 

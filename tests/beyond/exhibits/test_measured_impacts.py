@@ -151,6 +151,11 @@ def test_tables_and_figure(laws, shakers):
     figure = figures.measured_impacts(laws)
     # Two experiments have several speeds; the third panel of the row is empty.
     assert [axes.axison for axes in figure.axes] == [True, True, False]
+    single = laws.measured_speed.count("measured_impact") <= 1
+    figure = figures.measured_impacts(laws.isel(experiment=np.flatnonzero(single)))
+    assert [text.get_text() for text in figure.axes[0].texts] == [
+        "no experiment has several speeds"
+    ]
 
 
 @pytest.mark.parametrize(

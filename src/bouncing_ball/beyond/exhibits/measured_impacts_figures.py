@@ -36,6 +36,11 @@ _MANY_TICKS = (0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1, 1.5, 2, 3, 5)
 def measured_impacts(data: xr.Dataset) -> Figure:
     """ext_measured: a panel for each experiment with several speeds."""
     several = data.isel(experiment=np.flatnonzero(data.measured_speed.count("measured_impact") > 1))
+    if not several.sizes["experiment"]:
+        figure, axes = canvas()
+        axes.text(0.5, 0.5, "no experiment has several speeds", ha="center", va="center")
+        axes.axis("off")
+        return figure
     rows = -(-several.sizes["experiment"] // _COLUMNS)
     figure, axes = canvas(WIDE, 2.0 * rows + 0.6, rows=rows, columns=_COLUMNS, squeeze=False)
     count = several.sizes["experiment"]

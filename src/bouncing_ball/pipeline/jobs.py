@@ -27,6 +27,7 @@ from bouncing_ball.datasets.files import (
 )
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.configuration import typed
+from bouncing_ball.pipeline.patience import patience_of_job
 from bouncing_ball.pipeline.provenance import PREFIX, gather
 from bouncing_ball.pipeline.sources import without_versions
 
@@ -39,6 +40,8 @@ HISTORY = "computed from the equations; the attributes provenance_* say by what 
 SECONDS = f"{PREFIX}seconds"
 """The attribute with the processor time that an accepted sample took, or one of its shards."""
 
+# What makes the dataset of any study cheaper.
+_CHEAPER = "fewer samples, contacts or families in its parameters"
 _CONCLUSION = Path("results/logs/conclusion")
 
 
@@ -217,7 +220,10 @@ def make_dataset(snakemake: Any, study: Callable[..., xr.Dataset]) -> list[str]:
         shards = [read_input(path) for path in paths]
         from_other_jobs["found"] = joined(shards)
         earlier = sum(float(shard.attrs[SECONDS]) for shard in shards)
-    dataset = typed(study)(**given, **from_other_jobs)
+    with patience_of_job(
+        Path(snakemake.output.data).stem, "fewer samples, contacts and families in its parameters"
+    ):
+        dataset = typed(study)(**given, **from_other_jobs)
     for name, variable in dataset.variables.items():
         if "units" not in variable.attrs:
             raise ModelError(f"{name} has no unit: the study ends with described(...)")

@@ -47,6 +47,9 @@ def _distinct(values: tuple) -> tuple:
 Many = Annotated[tuple[_T, ...], Strict(False), Field(min_length=1), AfterValidator(_distinct)]
 """One or more distinct values, given as a list in the configuration."""
 
+Several = Annotated[Many[_T], Field(min_length=2)]
+"""Two or more distinct values."""
+
 Family = Annotated[
     int,
     number(

@@ -15,7 +15,7 @@ from bouncing_ball.beyond.exhibits.motion_samples import (
     uncertainty_exponent,
     with_limits,
 )
-from bouncing_ball.datasets.parameters import FrequencyRatio, Many, Seed, Sharded, number
+from bouncing_ball.datasets.parameters import FrequencyRatio, Many, Seed, Several, Sharded, number
 from bouncing_ball.datasets.shards import Arrays, Found, Part
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.long_run.destination import final_motions
@@ -60,7 +60,9 @@ class Basins(Sharded):
     ]
     starts: Annotated[int, number("starts along each axis, at middles of cells", ge=10, le=1000)]
     random: Annotated[int, number("random starts for each case", ge=10, le=10**6)]
-    shifts: Many[Annotated[float, number("changes of the phase at the start", "rad", gt=0, le=1)]]
+    shifts: Several[
+        Annotated[float, number("changes of the phase at the start", "rad", gt=0, le=1)]
+    ]
     impacts: MostImpacts
     confidence: Confidence
     seed: Seed

@@ -16,8 +16,8 @@ from bouncing_ball.beyond.exhibits.motion_samples import (
     with_limits,
 )
 from bouncing_ball.datasets.parameters import (
-    Many,
     Seed,
+    Several,
     number,
 )
 from bouncing_ball.datasets.shards import Arrays, Found, Part
@@ -75,7 +75,7 @@ class LockedOrbits(ParameterPlane):
     """Random places in a range of (Λ, r)."""
 
     nodes: Annotated[int, number("random places", ge=10, le=100000)]
-    shifts: Many[Annotated[float, number("changes of Λ", gt=0, le=1)]]
+    shifts: Several[Annotated[float, number("changes of Λ", gt=0, le=1)]]
     seed: Seed
 
     def places(self) -> np.ndarray:

@@ -178,8 +178,10 @@ def comparisons(parameters: ToleratedError) -> Iterator[tuple[str, Comparison, f
         words = quantity.replace("_", " ")
         ending = ", corrected model" if comparison.corrected else ""
         start = float(found.threshold[model, k, 0])
-        there = errors(SpringDamper(start, zeta, Release.DISPLACEMENT), n, lam, [quantity])
-        sign = int(np.sign(np.nan_to_num(there[model, 0])))
+        sign = 0
+        if np.isfinite(start):
+            there = errors(SpringDamper(start, zeta, Release.DISPLACEMENT), n, lam, [quantity])
+            sign = int(np.sign(np.nan_to_num(there[model, 0])))
         tolerated = sign * exactly(parameters.tolerance)
         yield f"ϖ for {parameters.tolerance:.0%} of {words}{ending}", comparison, start, tolerated
         zero = float(found.zero[k, 0])

@@ -353,6 +353,7 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
     options = parser.parse_args()
     drawn = sample(options.count, options.seed, options.only)
+    known = reasons(ROOT)
     # Each part and each fault has a process, a fork of this one, which has the libraries.
     os.chdir(ROOT)
     os.environ["OMP_NUM_THREADS"] = "1"
@@ -365,7 +366,6 @@ def main() -> None:
         if failed := [part for part, tests in found.items() if tests is None]:
             sys.exit(f"{failed} fail without any fault: see make quick")
         tests = dict(ChainMap(*found.values()))
-        known = reasons(ROOT)
         count: Counter[str] = Counter()
         for start in range(0, len(drawn), GROUP * options.workers):
             tried = drawn[start : start + GROUP * options.workers]

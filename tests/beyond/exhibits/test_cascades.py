@@ -2,11 +2,13 @@
 
 import numpy as np
 import pytest
+from pydantic import create_model
 
 from bouncing_ball.accuracy.error_law import coefficients
-from bouncing_ball.beyond.exhibits.cascades import cascades
+from bouncing_ball.beyond.exhibits import cascades_figures
+from bouncing_ball.beyond.exhibits.cascades import Cascades, cascades
 from bouncing_ball.models.damping import LINEAR, Release, damping_ratio
-from bouncing_ball.pipeline.configuration import typed
+from bouncing_ball.pipeline.configuration import ConfigurationError, check, typed
 
 R = [0.5, 0.85]
 STIFF = {"min": 500.0, "max": 1000.0, "samples": 2}
@@ -55,3 +57,25 @@ def test_a_doubling_that_is_not_found_does_not_affect_the_others():
     changed = {"restitution": [0.05, 0.94], "frequency_ratio": span, "doublings": 5}
     data = typed(cascades)(CONFIG | changed, Release.DISPLACEMENT)
     assert np.all(np.isfinite(data.cascade_error).sum("doubling") == [1, 5])
+
+
+def test_a_single_frequency_ratio_with_orbits_is_drawn_as_dots(study):
+    _, data = study
+    stiffest = data.frequency_ratio == data.frequency_ratio[-1]
+    single = data.assign(
+        cascade_error=data.cascade_error.where(stiffest),
+        cascade_zero=data.cascade_zero.where(False),
+    )
+    figure = cascades_figures.cascades(single.assign_attrs(n=1))
+    dots = [line for line in figure.axes[0].lines if line.get_marker() == "."]
+    assert all(np.isfinite(line.get_ydata()).sum() == 1 for line in dots)
+
+
+def test_more_measured_doublings_than_are_computed_are_refused(refusal):
+    measured = {"frequency": 60.0, "amplitudes": [1e-4, 1.1e-4, 1.2e-4, 1.3e-4]}
+    ratios = {"min": 2.0, "max": 20.0, "samples": 2}
+    given = {"n": 1, "restitution": [0.5], "frequency_ratio": ratios, "measured": measured}
+    run = create_model("Run", fig=(Cascades, ...))
+    text = "measured.amplitudes has 4 values, more than doublings = 3"
+    with refusal(ConfigurationError, text):
+        check(run, {"fig": given | {"doublings": 3}})

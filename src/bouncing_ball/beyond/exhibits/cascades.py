@@ -6,11 +6,11 @@ shifts. The errors of these values are relative to the simple model as in Eqs. 3
 sign: (Λ_SD - Λ)/Λ, with Λ of the restitution model, or of the corrected one, at the same doubling.
 """
 
-from typing import Annotated
+from typing import Annotated, Self
 
 import numpy as np
 import xarray as xr
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from bouncing_ball.accuracy.corrected_errors import exact_and_simple_models
 from bouncing_ball.accuracy.thresholds import last_zero
@@ -197,6 +197,15 @@ class Cascades(Parameters):
         ),
     ]
     measured: Measured
+
+    @model_validator(mode="after")
+    def _computed(self) -> Self:
+        count = len(self.measured.amplitudes)
+        if count > self.doublings:
+            raise ValueError(
+                f"measured.amplitudes has {count} values, more than doublings = {self.doublings}"
+            )
+        return self
 
 
 _STIFF = np.array([1000.0, 2000.0])

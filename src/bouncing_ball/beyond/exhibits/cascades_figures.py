@@ -114,6 +114,9 @@ def _between(ratio: np.ndarray, error: np.ndarray, zero: float) -> tuple[np.ndar
     scaled = np.append(ratio[:-1] * error, 0.0)
     known = np.flatnonzero(np.isfinite(ratio) & np.isfinite(scaled))
     known = known[np.argsort(ratio[known])]
+    if known.size < 2:
+        # Nothing lies between samples; their dots are drawn.
+        return np.empty(0), np.empty(0)
     place = np.log(ratio[known])
     fine = np.linspace(place[0], place[-1], _FINE)
     curve = scipy.interpolate.PchipInterpolator(place, scaled[known])(fine)

@@ -20,8 +20,10 @@ def test_the_laws_are_ranked_with_verdicts(outcome):
     assert (status, err) == (0, "")
     rows = out.splitlines()
     assert rows[0].startswith("Croquet ball on wood: 10 impacts at 0.5 to 6.01 m/s")
-    assert rows[3].startswith("kuwabara-kono") and rows[3].endswith("incompatible")
-    assert "0.0041" in rows[3]
+    assert rows[1].startswith("Errors of e") and "scatter" in rows[1]
+    assert rows[4].startswith("kuwabara-kono") and rows[4].endswith("deviates")
+    assert "0.0041" in rows[4]
+    assert "given" in outcome("fit", "thin_drop")[1].splitlines()[1]
     assert any("N/m^1.5" in row for row in rows)
 
 
@@ -50,7 +52,8 @@ def test_json_has_the_numbers(outcome):
     low, high = best["restitution_interval"]
     assert low < best["restitution"] < high
     assert best["contact_time"] == pytest.approx(0.7314e-3)
-    assert answer["impacts"] == []
+    assert answer["impacts"] == [] and answer["errors_given"] is False
+    assert 0 < answer["errors_size"] < best["errors_needed"]
 
 
 def test_intervals_show_the_biases_that_were_removed(outcome, heard):

@@ -74,6 +74,18 @@ def test_the_drag_is_removed_where_the_ball_is_known():
     assert plastic.drag_bias == pytest.approx(found[-1] - plain[-1], rel=1e-6)
 
 
+def test_errors_by_a_height_are_those_of_a_difference():
+    plain = experiment("bouncy_ball")
+    heights = np.array([[0.10, 0.05], [1.70, 0.96]])
+    places = [0, -3]
+    higher = np.sqrt((heights[:, 1] + 1e-7) / heights[:, 0])
+    slope = (higher - np.sqrt(heights[:, 1] / heights[:, 0])) / 1e-7
+    np.testing.assert_allclose(plain.relative_errors[places], slope, rtol=1e-5)
+    # Errors that are given, or speeds in the file, leave none to be taken by their ratios.
+    assert experiment("croquet").relative_errors is None
+    assert experiment("membrane_light").relative_errors is None
+
+
 def write(tmp_path, text, name="drops.csv"):
     path = tmp_path / name
     path.write_text(text, encoding="utf-8")
@@ -148,6 +160,7 @@ HOSTILE = {
     "recording,interval\n1,0.8\n1,0.4\n2,0.7\n": "recording 2 has fewer than two intervals",
     "recording,interval\nA,0.8\nA,0.4\n": "line 2: recording = 'A' does not begin with a number",
     "recording,speed\n1,0.8\n": "line 1: the columns must be",
+    "recording,speed,restitution\n1,1,0.8\n": "line 1: a column recording needs a column interval",
     HEAD + "1.0,nan\n": "line 2: restitution = 'nan' does not begin with a number",
     HEAD + "1.0,1.2\n": "line 2: restitution = 1.2 is not a number in (0, 1]",
     HEAD + "1.0,85\n": "line 2: restitution = 85 is not a number in (0, 1]",

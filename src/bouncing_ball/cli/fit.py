@@ -11,7 +11,7 @@ from bouncing_ball.contacts.units import in_si
 from bouncing_ball.errors import ParameterError
 from bouncing_ball.measured.experiment import Experiment, experiment, names, read
 from bouncing_ball.measured.fit import ContactFit, LawFit
-from bouncing_ball.measured.verdicts import Judgement, judge
+from bouncing_ball.measured.verdicts import Judgement, error_size, judge
 
 
 class _At:
@@ -89,6 +89,8 @@ def fit(
         "fastest": float(fitted.points.speeds.max()),
         "reference_speed": best.speed,
         "impacts": _impacts(found),
+        "errors_given": fitted.points.is_known,
+        "errors_size": _number(error_size(fitted.points)),
         "laws": [_law(each, judged[each.law]) for each in fitted.laws],
         "notes": [*fitted.notes, *_notes(found, fitted, v)],
         "design": _design(best, v),
@@ -130,6 +132,7 @@ def _law(fitted: LawFit, judgement: Judgement) -> dict[str, Any]:
     return {
         "law": fitted.law,
         "verdict": str(judgement.verdict),
+        "errors_needed": _number(judgement.needed),
         "restitution": fitted.restitution,
         "restitution_interval": [_number(x) for x in fitted.interval],
         "rms": fitted.rms,
@@ -174,6 +177,7 @@ def lines(answer: dict[str, Any]) -> list[str]:
     found = [
         f"{answer['experiment']}: {answer['points']} impacts at {answer['slowest']:.3g} to "
         f"{answer['fastest']:.3g} m/s",
+        *_errors(answer),
         "",
     ]
     if answer["impacts"]:
@@ -183,14 +187,23 @@ def lines(answer: dict[str, Any]) -> list[str]:
         )
         found += [""]
     found += _table(
-        ("law", f"e at {answer['reference_speed']:.3g} m/s", "95 %", "rms", "left out", "verdict"),
+        (
+            "law",
+            f"e at {answer['reference_speed']:.3g} m/s",
+            "95 %",
+            "rms",
+            "left out",
+            "errors needed",
+            "verdict",
+        ),
         [
             [
                 law["law"],
                 f"{law['restitution']:.4f}",
                 _interval(law["restitution_interval"], 1, "{:.4f}"),
                 f"{law['rms']:.4f}",
-                "-" if law["left_out_rms"] is None else f"{law['left_out_rms']:.4f}",
+                _shown(law["left_out_rms"]),
+                _shown(law["errors_needed"]),
                 law["verdict"],
             ]
             for law in answer["laws"]
@@ -201,6 +214,18 @@ def lines(answer: dict[str, Any]) -> list[str]:
         found += ["", *_timed(timed)]
     found += ["", *answer["notes"], "", f"{_best(answer)} as a contact:", f"  {answer['design']}"]
     return found
+
+
+def _errors(answer: dict[str, Any]) -> list[str]:
+    """The size of the errors of e, and where it is from; nothing if it is not known."""
+    if answer["errors_size"] is None:
+        return []
+    source = "given" if answer["errors_given"] else "by the scatter about a smooth curve"
+    return [f"Errors of e, root mean square: {answer['errors_size']:.2g}, {source}"]
+
+
+def _shown(value: float | None) -> str:
+    return "-" if value is None else f"{value:.4f}"
 
 
 def _best(answer: dict[str, Any]) -> str:

@@ -104,6 +104,22 @@ class Curve:
         # At a speed of 1 the derivative with respect to ln v is a times that with respect to ln G.
         return np.asarray(self._free(self.kind, theta, x).d_restitution) / self.exponent
 
+    def trend(self, theta: float, ratio: ArrayLike) -> np.ndarray:
+        """v dr/dv at the speeds v = ``ratio`` v₀.
+
+        Examples
+        --------
+        >>> kono, step = curve_named("kuwabara-kono"), 1e-5
+        >>> up, down = (kono.restitution(-2.0, 3.0 * np.exp(s * step)) for s in (1, -1))
+        >>> bool(abs((up - down) / (2 * step) - kono.trend(-2.0, 3.0)) < 1e-9)
+        True
+        """
+        x = np.asarray(ratio, dtype=float)
+        if self.kind is None or self.is_constant:
+            return np.zeros(x.shape)
+        # The group is proportional to v to the power a.
+        return self.exponent * self.slope(theta, x)
+
     def _free(self, kind: type[ContactLaw], theta: float, ratio: np.ndarray) -> Instant:
         """Impacts at the speeds v = ``ratio`` v₀, in units of their scales."""
         return _free(kind, theta + self.exponent * np.log(ratio))

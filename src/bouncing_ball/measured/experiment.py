@@ -13,6 +13,11 @@ column ``recording`` numbers the recordings if there are several. ``uncertainty`
 restitution coefficient, ``duration`` and ``duration_uncertainty`` may follow. If the mass and the
 diameter of the ball are known, the drag of the air is removed from heights and intervals
 (:mod:`bouncing_ball.measured.flights`). The files of the package are in SI units.
+
+Where a file has no uncertainties their size follows from the scatter of the points. Errors of
+restitution coefficients that stand in the file are then taken as equal. Those that follow from
+heights or intervals are not: the same error of all heights, of a reading or of an uneven floor, is
+an error of e that falls as 1/v² (:func:`bouncing_ball.measured.flights.by_height`).
 """
 
 import csv
@@ -26,7 +31,14 @@ import numpy as np
 from bouncing_ball.contacts.units import SIParameter, in_si, number
 from bouncing_ball.errors import ModelError, ParameterError, Range
 from bouncing_ball.measured.fit import ContactFit, fit_contact
-from bouncing_ball.measured.flights import Heard, drag_length, drop_speeds, heard, together
+from bouncing_ball.measured.flights import (
+    Heard,
+    by_height,
+    drag_length,
+    drop_speeds,
+    heard,
+    together,
+)
 
 DATA = Path(__file__).with_name("data")
 """The folder of the package's experiments."""
@@ -71,6 +83,8 @@ class Experiment:
         Impact speeds and restitution coefficients, after the removal of the drag.
     uncertainties : ndarray or None
         Standard deviations of the restitution coefficients, or their covariance matrix.
+    relative_errors : ndarray or None
+        Standard deviations up to a common factor, where only these are known.
     durations, duration_uncertainties : ndarray, float or None
         Contact times: one for each point, or a single one.
     mass, diameter : float or None
@@ -87,6 +101,7 @@ class Experiment:
     speeds: np.ndarray
     restitutions: np.ndarray
     uncertainties: np.ndarray | None = None
+    relative_errors: np.ndarray | None = None
     durations: Any = None
     duration_uncertainties: Any = None
     mass: float | None = None
@@ -101,11 +116,13 @@ class Experiment:
 
     def fit(self, laws: tuple[str, ...] | None = None) -> ContactFit:
         """The contact laws fitted to this experiment, see :func:`.fit.fit_contact`."""
+        is_given = self.uncertainties is not None
         return fit_contact(
             self.speeds,
             self.restitutions,
             self.durations,
-            uncertainties=self.uncertainties,
+            uncertainties=self.uncertainties if is_given else self.relative_errors,
+            absolute_uncertainties=is_given or self.relative_errors is None,
             duration_uncertainties=self.duration_uncertainties,
             mass=self.mass,
             laws=laws,
@@ -239,6 +256,8 @@ def _columns(path: Path, rows: list[tuple[int, str]]) -> dict[str, np.ndarray]:
     if len(set(wanted)) < len(wanted) or not any(way <= set(wanted) for way in _WAYS):
         ways = "; or ".join(" and ".join(sorted(way, reverse=True)) for way in _WAYS)
         raise ModelError(f"{path}, line {at}: the columns must be {ways}, each of them once")
+    if "recording" in wanted and not {"interval", "time"} & set(wanted):
+        raise ModelError(f"{path}, line {at}: a column recording needs a column interval or time")
     found: dict[str, list[float]] = {name: [] for name in wanted}
     for at, line in rows[1:]:
         cells = next(csv.reader([line]))
@@ -340,12 +359,14 @@ def _experiment(
         restitutions = found.restitutions
         errors = found.covariance
         bias = float(np.max(np.abs(found.drag_bias)))
+    is_of_heights = errors is None and "speed" not in columns
     return Experiment(
         name=name,
         texts=texts,
         speeds=speeds,
         restitutions=restitutions,
         uncertainties=errors,
+        relative_errors=by_height(speeds, restitutions) if is_of_heights else None,
         durations=columns.get("duration", numbers.get("contact time")),
         duration_uncertainties=columns.get(
             "duration_uncertainty", numbers.get("contact time uncertainty")

@@ -6,9 +6,10 @@ from the contact times. Contact times tell nothing of the loss, and restitution 
 of the stiffness, so that the two fits are separate.
 
 With given uncertainties the intervals are those of the normal distribution, and χ² tests the fit.
-Otherwise the variance of the points is estimated from the fit itself, the intervals are Student's,
-and no test of the fit follows from the points alone (:mod:`bouncing_ball.measured.verdicts` takes
-the scatter about a smooth curve). The laws are ranked by Akaike's criterion with the correction for
+Otherwise the variance of the points is estimated from the fit itself, up to the ratios of the
+errors if these are known, the intervals are Student's, and no test of the fit follows from the
+points alone (:mod:`bouncing_ball.measured.verdicts` takes the scatter about a smooth curve). The
+laws are ranked by Akaike's criterion with the correction for
 few points, and by the error of leaving out one point, which follows from the fit of all points:
 ``(e_i - r(v_i))/(1 - h_i)``, h the diagonal of the hat matrix.
 """
@@ -53,12 +54,28 @@ class Points:
     speeds, restitutions : ndarray, shape (n,)
         In m/s, and in (0, 1].
     covariance : ndarray, shape (n, n), or None
-        Covariance of the restitution coefficients; None if it is not known.
+        Covariance of the restitution coefficients; None if their errors are independent and equal,
+        of a size that is not known.
+    is_relative : bool
+        Whether the covariance is known up to a factor only.
     """
 
     speeds: np.ndarray
     restitutions: np.ndarray
     covariance: np.ndarray | None = None
+    is_relative: bool = False
+
+    @property
+    def is_known(self) -> bool:
+        """Whether the uncertainties are known; otherwise they follow from a scatter."""
+        return self.covariance is not None and not self.is_relative
+
+    @property
+    def deviations(self) -> np.ndarray:
+        """Standard deviations of the points, up to a factor if they are not known."""
+        if self.covariance is None:
+            return np.ones(self.size)
+        return np.sqrt(np.diag(self.covariance))
 
     @property
     def size(self) -> int:
@@ -82,7 +99,12 @@ class Points:
     def take(self, which: np.ndarray) -> "Points":
         """Some of the points, by a mask or by indices."""
         kept = None if self.covariance is None else self.covariance[which][:, which]
-        return Points(self.speeds[which], self.restitutions[which], kept)
+        return replace(
+            self,
+            speeds=self.speeds[which],
+            restitutions=self.restitutions[which],
+            covariance=kept,
+        )
 
 
 @dataclass(frozen=True)
@@ -148,6 +170,10 @@ class LawFit:
     def restitution_at(self, speed: ArrayLike) -> np.ndarray:
         """r at impact speeds in m/s."""
         return self.curve.restitution(self.theta, np.asarray(speed, dtype=float) / self.speed)
+
+    def trend_at(self, speed: ArrayLike) -> np.ndarray:
+        """v dr/dv at impact speeds in m/s."""
+        return self.curve.trend(self.theta, np.asarray(speed, dtype=float) / self.speed)
 
     def band(self, speed: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
         """The 95 % band of r at impact speeds in m/s; NaN if it is not known."""
@@ -307,7 +333,7 @@ def fit_law(curve: Curve, points: Points) -> LawFit:
     left = residuals([theta])
     plain = points.restitutions - curve.restitution(theta, ratio)
     freedom = points.size - 1
-    is_known = points.covariance is not None
+    is_known = points.is_known
     square = float(left @ left)
     variance = 1.0 if is_known else (square / freedom if freedom else np.nan)
     # Where r is so close to 1 that it does not depend on θ, nothing determines θ.
@@ -373,10 +399,7 @@ def _left_out(plain: np.ndarray, slope: np.ndarray, points: Points) -> float:
     """Root mean square of the errors at points that are left out of the fit."""
     if points.size < 2:
         return np.nan
-    if points.covariance is None:
-        weights = np.ones(points.size)
-    else:
-        weights = 1 / np.diag(points.covariance)
+    weights = 1 / points.deviations**2
     hat = weights * slope**2 / np.sum(weights * slope**2)
     return float(np.sqrt(np.mean((plain / (1 - hat)) ** 2)))
 
@@ -388,6 +411,7 @@ def fit_contact(
     durations: ArrayLike | None = None,
     *,
     uncertainties: ArrayLike | None = None,
+    absolute_uncertainties: bool = True,
     duration_uncertainties: ArrayLike | None = None,
     mass: Any = None,
     laws: Sequence[str] | None = None,
@@ -406,6 +430,9 @@ def fit_contact(
     uncertainties : array_like, optional
         Standard deviations of the restitution coefficients, or their covariance matrix. Without
         them they follow from the scatter about each law.
+    absolute_uncertainties : bool
+        False if only the ratios of the uncertainties are known; a common factor then follows from
+        the scatter.
     duration_uncertainties : float or array_like, optional
         Standard deviations of the contact times in s.
     mass
@@ -427,6 +454,7 @@ def fit_contact(
     'kuwabara-kono'
     """
     points = checked(speeds, restitutions, uncertainties)
+    points = replace(points, is_relative=not absolute_uncertainties)
     weight = None if mass is None else in_si("mass", mass, quantities(Contact)["mass"])
     times = _times(durations, duration_uncertainties, points)
     names = tuple(CURVES) if laws is None else tuple(laws)
@@ -542,6 +570,9 @@ def _notes(points: Points, times: _Times | None) -> tuple[str, ...]:
             "Gravity during contact is neglected: it changes the speed by at most "
             f"{share:.2g} of the slowest impact speed."
         ]
-    if points.covariance is None and points.size > 1:
-        notes += ["Without uncertainties, intervals follow from the scatter about each law."]
+    if not points.is_known and points.size > 1:
+        notes += [
+            "Without uncertainties, intervals follow from the scatter about each law, and a "
+            "systematic error of the measurement counts as a deviation from each law."
+        ]
     return tuple(notes)

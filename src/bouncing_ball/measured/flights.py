@@ -102,6 +102,27 @@ def flight_speeds(time: ArrayLike, length: float = math.inf) -> tuple[np.ndarray
     return terminal * s, terminal * s / np.sqrt(1 + s * s)
 
 
+def by_height(speed: ArrayLike, restitution: ArrayLike) -> np.ndarray:
+    """Error of a restitution coefficient by an error of 1 m of the height of the rebound.
+
+    With ``e = √(h′/h)`` and ``h′ = (e v)²/(2g)`` it is ``e/(2h′) = g/(e v²)`` per metre.
+
+    Parameters
+    ----------
+    speed, restitution : array_like
+        Impact speeds v in m/s, and restitution coefficients e.
+
+    Examples
+    --------
+    >>> v, u = drop_speeds([1.0, 1.0], [0.25, 0.2501])
+    >>> e = u / v
+    >>> round(float((e[1] - e[0]) / 1e-4), 3), round(float(by_height(v, e)[0]), 3)
+    (1.0, 1.0)
+    """
+    v = np.asarray(speed, dtype=float)
+    return STANDARD_GRAVITY / (np.asarray(restitution, dtype=float) * v**2)
+
+
 @dataclass(frozen=True)
 class Heard:
     """Impacts of a ball whose times of impact were recorded, one for each pair of intervals.

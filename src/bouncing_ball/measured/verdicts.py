@@ -1,6 +1,6 @@
 r"""Is a contact law compatible with an experiment? By points that the fit has not seen.
 
-Two tests, each against the experiment's uncertainty:
+Two tests, each against the errors of the points:
 
 * *left out*: each point against the fit to all others. The sum of the squares of these errors is a
   quadratic form of the errors of the points, whose distribution is taken as a multiple of χ² with
@@ -8,11 +8,14 @@ Two tests, each against the experiment's uncertainty:
 * *extrapolated*: the faster half of the points against the fit to the slower half, with the
   uncertainty of this fit.
 
-The uncertainty is the one given, or the scatter about the parabola in ln v of least squares, which
-no law restricts; it takes five points. A law is *incompatible* if one of the tests has a
-probability below half of the level 0.01 (Bonferroni); *compatible* if both have one above 0.05 and
-the same points reject another law; otherwise *undecided*, because an experiment that rejects no law
-cannot confirm one.
+If the experiment gives no uncertainties the size of the errors is that of the scatter about the
+parabola in ln v of least squares, which no law restricts; it takes five points. A law is *rejected*
+if one of the tests has a probability below half of the level 0.01 (Bonferroni). It is then
+*incompatible* if the uncertainties are given. If only the scatter is known the law *deviates*: a
+systematic error of the measurement, which changes smoothly with the speed, is not in the scatter.
+How large it has to be is another number, the size of the errors with which both tests would pass. A
+law is *compatible* if both probabilities are above 0.05 and the same points reject another law;
+otherwise it is *undecided*, because an experiment that rejects no law cannot confirm one.
 """
 
 from dataclasses import dataclass
@@ -36,6 +39,7 @@ class Verdict(StrEnum):
 
     COMPATIBLE = "compatible"
     INCOMPATIBLE = "incompatible"
+    DEVIATES = "deviates"
     UNDECIDED = "undecided"
 
 
@@ -50,12 +54,84 @@ class Judgement:
         The probabilities of the two tests; NaN if there are too few points.
     extrapolation : float
         Root mean square of the errors at the faster half, of the fit to the slower half.
+    needed : float
+        The least size of the errors of the points, root mean square of their standard deviations,
+        with which the law would not be rejected.
     """
 
     verdict: Verdict
     left_out: float
     extrapolated: float
     extrapolation: float
+    needed: float
+
+
+@dataclass(frozen=True)
+class Unseen:
+    """Errors of points that a fit has not seen, against their expected size.
+
+    Parameters
+    ----------
+    square : float
+        Sum of the squares of the errors over its expectation if the errors of the points have the
+        standard deviations of :attr:`Points.deviations`.
+    freedom : float
+        Degrees of freedom of the sum.
+    size : float
+        Root mean square of the errors.
+    """
+
+    square: float
+    freedom: float
+    size: float = np.nan
+
+    def probability(self, variance: float, freedom: float) -> float:
+        """P of errors that are at least as large, if the variance of the points is known with these
+        degrees of freedom.
+        """
+        statistic = self.square / variance
+        if np.isinf(freedom):
+            return float(scipy.stats.chi2.sf(statistic * self.freedom, self.freedom))
+        return float(scipy.stats.f.sf(statistic, self.freedom, freedom))
+
+    @property
+    def passed_by(self) -> float:
+        """The least factor by which the deviations of the points have to be multiplied, so that
+        the test has a probability of half of the level.
+        """
+        bound = scipy.stats.chi2.isf(REJECTED / 2, self.freedom) / self.freedom
+        return float(np.sqrt(self.square / bound))
+
+
+_NONE = Unseen(np.nan, 1.0)
+
+
+def _about_a_parabola(points: Points) -> np.ndarray:
+    """The whitened points minus their parabola in ln v of least squares; NaN if there are too few
+    points or speeds.
+    """
+    if points.size < _FEWEST or np.unique(points.speeds).size < _SMOOTH + 1:
+        return np.full(points.size, np.nan)
+    whiten = points.whitening
+    curves = np.vander(np.log(points.speeds / points.reference), _SMOOTH)
+    best = np.linalg.lstsq(whiten @ curves, whiten @ points.restitutions, rcond=None)[0]
+    return whiten @ (points.restitutions - curves @ best)
+
+
+def scatter(points: Points) -> tuple[float, float]:
+    """The variance of the whitened points about the parabola in ln v of least squares, and its
+    degrees of freedom; NaN if there are fewer than five points or four speeds.
+
+    Examples
+    --------
+    >>> speeds = np.geomspace(1.0, 4.0, 5)
+    >>> scatter(Points(speeds, 0.8 - 0.1 * np.log(speeds)))[1]
+    2.0
+    """
+    left = _about_a_parabola(points)
+    freedom = points.size - _SMOOTH
+    variance = float(left @ left / freedom) if freedom > 0 else np.nan
+    return variance, float(freedom) if np.isfinite(variance) else np.nan
 
 
 def noise(points: Points) -> tuple[float, float]:
@@ -68,28 +144,52 @@ def noise(points: Points) -> tuple[float, float]:
     >>> noise(Points(np.array([1.0]), np.array([0.5]), np.array([[1e-4]])))
     (1.0, inf)
     """
-    if points.covariance is not None:
-        return 1.0, np.inf
-    if points.size < _FEWEST or np.unique(points.speeds).size < _SMOOTH + 1:
-        return np.nan, np.nan
-    x = np.log(points.speeds / points.reference)
-    smooth = np.polynomial.Polynomial.fit(x, points.restitutions, _SMOOTH - 1)
-    freedom = points.size - _SMOOTH
-    return float(np.sum((points.restitutions - smooth(x)) ** 2) / freedom), float(freedom)
+    return (1.0, np.inf) if points.is_known else scatter(points)
 
 
-def _tail(statistic: float, first: float, second: float) -> float:
-    """P(F > x), or P(χ²/f > x) if the variance is known."""
-    if np.isinf(second):
-        return float(scipy.stats.chi2.sf(statistic * first, first))
-    return float(scipy.stats.f.sf(statistic, first, second))
+def error_size(points: Points) -> float:
+    """Root mean square of the standard deviations of the points, those given or those by the
+    scatter; NaN if neither is known.
+
+    Examples
+    --------
+    >>> error_size(Points(np.array([1.0]), np.array([0.5]), np.array([[1e-4]])))
+    0.01
+    """
+    return float(np.sqrt(noise(points)[0] * np.mean(points.deviations**2)))
 
 
-def left_out(curve: Curve, points: Points) -> float:
-    """The probability of errors at left-out points that are at least as large."""
-    variance, freedom = noise(points)
-    if points.size < 3 or not np.isfinite(variance):
+def trend_of_scatter(points: Points) -> float:
+    """Probability of a trend of the scatter with ln v that is at least as strong, if the errors of
+    the points have the ratios of their covariance; NaN if there are too few points.
+
+    The score test of a variance ``exp(a + b ln v)`` against b = 0, with the limit of many points
+    for the distribution of its statistic, which is half of the explained sum of squares of the
+    squared residuals over their mean (Cook and Weisberg, Biometrika 70, 1983; from memory).
+
+    Examples
+    --------
+    >>> speeds = np.geomspace(1.0, 8.0, 40)
+    >>> signs = np.resize([1, -1], 40)
+    >>> growing, equal = (
+    ...     Points(speeds, 0.8 + 0.01 * signs * speeds**b) for b in (1, 0)
+    ... )
+    >>> trend_of_scatter(growing) < 1e-2, trend_of_scatter(equal) > 0.9
+    (True, True)
+    """
+    square = _about_a_parabola(points) ** 2
+    if not np.any(square > 0):
         return np.nan
+    x = np.log(points.speeds)
+    trend = x - x.mean()
+    slope = trend @ (square / square.mean())
+    return float(scipy.stats.chi2.sf(slope**2 / (2 * trend @ trend), 1))
+
+
+def left_out(curve: Curve, points: Points) -> Unseen:
+    """The errors at points that are left out of the fit."""
+    if points.size < 3:
+        return _NONE
     fit = fit_law(curve, points)
     ratio = points.speeds / fit.speed
     whiten = points.whitening
@@ -100,49 +200,61 @@ def left_out(curve: Curve, points: Points) -> float:
     spread = np.linalg.eigvalsh((np.eye(points.size) - hat) * np.outer(scale, scale))
     total = spread.sum()
     square = (spread**2).sum()
-    statistic = np.sum((scale * errors) ** 2) / (variance * total)
-    return _tail(float(statistic), float(total**2 / square), freedom)
+    return Unseen(float(np.sum((scale * errors) ** 2) / total), float(total**2 / square))
 
 
-def extrapolated(curve: Curve, points: Points) -> tuple[float, float]:
-    """The probability of errors at the faster half that are at least as large, and their root mean
-    square.
-    """
+def extrapolated(curve: Curve, points: Points) -> Unseen:
+    """The errors at the faster half of the points, of a fit to the slower half."""
     order = np.argsort(points.speeds, kind="stable")
     half = points.size // 2
     if half < 2 or np.ptp(points.speeds) == 0:
-        return np.nan, np.nan
+        return _NONE
     slow = points.take(order[:half])
     fast = points.take(order[half:])
     fit = fit_law(curve, slow)
     errors = fast.restitutions - fit.restitution_at(fast.speeds)
-    size = float(np.sqrt(np.mean(errors**2)))
-    variance, freedom = noise(points)
-    if not np.isfinite(variance):
-        return np.nan, size
     steep = slow.whitening @ curve.slope(fit.theta, slow.speeds / fit.speed)
     ahead = fast.whitening @ curve.slope(fit.theta, fast.speeds / fit.speed)
     spread = np.eye(fast.size) + np.outer(ahead, ahead) / (steep @ steep)
     white = fast.whitening @ errors
-    statistic = white @ np.linalg.solve(spread, white) / (variance * fast.size)
-    return _tail(float(statistic), float(fast.size), freedom), size
+    return Unseen(
+        square=float(white @ np.linalg.solve(spread, white) / fast.size),
+        freedom=float(fast.size),
+        size=float(np.sqrt(np.mean(errors**2))),
+    )
 
 
 def judge(fit: ContactFit) -> dict[str, Judgement]:
     """The verdicts on all laws of a fit, by the name of the law."""
+    points = fit.points
+    variance = noise(points)
     tests = {
-        each.law: (left_out(each.curve, fit.points), *extrapolated(each.curve, fit.points))
+        each.law: (left_out(each.curve, points), extrapolated(each.curve, points))
         for each in fit.laws
     }
-    least = {name: np.nanmin([a, b, np.inf]) for name, (a, b, _) in tests.items()}
-    rejected = {name for name, p in least.items() if p < REJECTED / 2}
-    found = {}
-    for name, (one, other, size) in tests.items():
-        if name in rejected:
-            verdict = Verdict.INCOMPATIBLE
-        elif rejected and one > ACCEPTED and other > ACCEPTED:
-            verdict = Verdict.COMPATIBLE
-        else:
-            verdict = Verdict.UNDECIDED
-        found[name] = Judgement(verdict, one, other, size)
-    return found
+    found = {
+        name: (one.probability(*variance), other.probability(*variance))
+        for name, (one, other) in tests.items()
+    }
+    rejected = {name for name, both in found.items() if np.nanmin([*both, np.inf]) < REJECTED / 2}
+    size = float(np.sqrt(np.mean(points.deviations**2)))
+    return {
+        name: Judgement(
+            verdict=_verdict(points, name in rejected, bool(rejected), found[name]),
+            left_out=found[name][0],
+            extrapolated=found[name][1],
+            extrapolation=other.size,
+            needed=size * float(np.fmax(one.passed_by, other.passed_by)),
+        )
+        for name, (one, other) in tests.items()
+    }
+
+
+def _verdict(
+    points: Points, is_rejected: bool, is_decisive: bool, found: tuple[float, float]
+) -> Verdict:
+    if is_rejected:
+        return Verdict.INCOMPATIBLE if points.is_known else Verdict.DEVIATES
+    if is_decisive and all(p > ACCEPTED for p in found):
+        return Verdict.COMPATIBLE
+    return Verdict.UNDECIDED

@@ -5,16 +5,29 @@ law, and the law is judged by points that the fit has not seen
 (:mod:`bouncing_ball.measured.verdicts`). The paper's two models have a constant r: they are the
 laws ``restitution``, without a contact, and ``linear``.
 
-On a shaker an experiment's ball has impact speeds of 2nπ/(1 + r) g/Ω, often below the measured
-ones. There the law that fits best gives r(v) and, if a contact time is known, the duration of the
-contact, and so the ϖ of the linear contact with the same r and duration. The error of the
-restitution model has then two parts: that by the duration, of the error law
-(:mod:`bouncing_ball.accuracy.error_law`), which r(v) does not remove, and that by the constant r,
-which it does. Both are signed and relative, as in the error law to the restitution model with r(v).
+An experiment without uncertainties is judged by the scatter of its points, in which a systematic
+error of the measurement does not show. The dataset says which those are, and with which size of the
+errors each law would pass.
+
+On a shaker the ball of an n-T orbit lands with 2nπ/(1 + r) g/Ω at every amplitude, often below the
+measured speeds. The law that fits best gives r(v) there and, if a contact time is known, the
+duration of the contact, and so the ϖ of the linear contact with the same r and duration. The error
+of the restitution model has two parts, signed and relative to the restitution model with r(v). The
+first is that by the duration, of the error law (:mod:`bouncing_ball.accuracy.error_law`), which
+r(v) does not remove. The second is that by a constant r. The constant r is the best one for this
+shaker: the r(v) at the impact speed of the first family of orbits. For this family it leaves the
+saddle-node and the heights as they are, because the impact speed is the same on all its orbits. It
+does not leave the period doubling, on which b = d(r v)/dv acts: with ``X = nπ (1 - r)/(1 + r)`` it
+is at ::
+
+    Λ² = X² + Y²,    Y = 2 (1 + r b)/((1 + r)(1 + b))
+
+which is Eq. 8 for the exact map if b = r. The balls of the other families land faster, with another
+r(v).
 """
 
-from dataclasses import replace
-from typing import Annotated
+from dataclasses import dataclass
+from typing import Annotated, Self
 
 import numpy as np
 import xarray as xr
@@ -22,13 +35,21 @@ import xarray as xr
 from bouncing_ball.accuracy.error_law import VALID_BELOW, first_order, small_parameter
 from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.contacts.quantities import STANDARD_GRAVITY
-from bouncing_ball.contacts.table import Table
+from bouncing_ball.contacts.table import Table, TableMotion
 from bouncing_ball.datasets.parameters import Family, Many, Parameters, Samples, number
 from bouncing_ball.datasets.variables import Variable, described
-from bouncing_ball.measured.curves import CONSTANT, CURVES
+from bouncing_ball.measured.curves import CURVES
 from bouncing_ball.measured.experiment import Experiment, experiment
 from bouncing_ball.measured.fit import LEVEL, ContactFit, LawFit, Points
-from bouncing_ball.measured.verdicts import ACCEPTED, REJECTED, Judgement, judge, noise
+from bouncing_ball.measured.verdicts import (
+    ACCEPTED,
+    REJECTED,
+    Judgement,
+    error_size,
+    judge,
+    scatter,
+    trend_of_scatter,
+)
 from bouncing_ball.models.damping import damping_ratio
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
 from bouncing_ball.models.laws.signature import Signature
@@ -49,7 +70,18 @@ VARIABLES = {
         "standard deviation of the restitution coefficient, where the experiment gives one"
     ),
     "measured_scatter": Variable(
-        "standard deviation about the parabola of least squares in ln v", budget=_FITTED
+        "standard deviation by the scatter about the parabola of least squares in ln v",
+        budget=_FITTED,
+    ),
+    "errors_given": Variable("whether the experiment gives the uncertainties of its points"),
+    "errors_size": Variable(
+        "root mean square of the standard deviations, given or by the scatter", budget=_FITTED
+    ),
+    "scatter_trend": Variable(
+        "probability of a stronger trend of the scatter with the speed", symbol="p", budget=_FITTED
+    ),
+    "errors_needed": Variable(
+        "size of the errors with which the law would not be rejected", budget=_FITTED
     ),
     "curve_speed": Variable("impact speed of the curves", symbol="v", units="m s-1"),
     "fitted_restitution": Variable(
@@ -79,7 +111,7 @@ VARIABLES = {
     "shaker_frequency": Variable("frequency of the shaker", symbol="Ω/2π", units="Hz"),
     "shaker_law": Variable("contact law that fits the experiment best"),
     "shaker_speed": Variable(
-        "impact speed of the orbit on the shaker", symbol="v", units="m s-1", budget=_FITTED
+        "impact speed of the orbits on the shaker", symbol="v", units="m s-1", budget=_FITTED
     ),
     "shaker_within": Variable("whether this speed is within the measured ones"),
     "shaker_ratio": Variable(
@@ -87,7 +119,6 @@ VARIABLES = {
         symbol="ϖ",
         budget=_FITTED,
     ),
-    "mean_restitution": Variable("constant r fitted to the experiment", symbol="r", budget=_FITTED),
     "shaker_restitution": Variable(
         "restitution coefficient of the law at this speed", symbol="r(v)", budget=_FITTED
     ),
@@ -95,14 +126,14 @@ VARIABLES = {
         "relative error of the restitution model by the duration of the contact", budget=_FITTED
     ),
     "by_constant": Variable(
-        "relative error of the restitution model by its constant r", budget=_FITTED
+        "relative error of the restitution model by the r of the first family", budget=_FITTED
     ),
     "shaker_small": Variable(
         "small parameter of the error law, useful below 0.3", symbol="δ", budget=_FITTED
     ),
 }
 
-COMPARED = (Quantity.MAX_HEIGHT, Quantity.SADDLE_NODE)
+COMPARED = (Quantity.MAX_HEIGHT, Quantity.SADDLE_NODE, Quantity.PERIOD_DOUBLING)
 Name = Annotated[str, number("name of an experiment of the package")]
 
 
@@ -114,12 +145,12 @@ class Measured(Parameters):
 
 
 class Shaker(Parameters):
-    """Shakers, and the orbits on them: Λ at a share of the way from the saddle-node to the period
-    doubling of the restitution model.
+    """Shakers, and the families of orbits on them: Λ at a share of the way from the saddle-node to
+    the period doubling. The constant r is that of the first family.
     """
 
     experiments: Many[Name]
-    n: Family
+    n: Many[Family]
     frequencies: Many[Annotated[float, number("frequency of the shaker", "Hz", gt=0)]]
     position: Annotated[
         float, number("place of Λ between saddle-node and period doubling", gt=0, lt=1)
@@ -130,9 +161,10 @@ def measured_impacts(parameters: Measured) -> xr.Dataset:
     """Every law on every experiment: curves with bands, errors and verdicts.
 
     The dataset has the measured points over (experiment, measured_impact), NaN beyond the last
-    one, with their uncertainties, NaN where the experiment gives none; the curves and their bands
-    over (experiment, fitted_law, sample) with their speeds over (experiment, sample); and errors,
-    probabilities and verdicts over (experiment, fitted_law).
+    one, with their uncertainties, NaN where the experiment gives none, and their standard
+    deviations by the scatter; the curves and their bands over (experiment, fitted_law, sample) with
+    their speeds over (experiment, sample); and errors, probabilities and verdicts over (experiment,
+    fitted_law).
     """
     found = [experiment(name) for name in parameters.experiments]
     longest = max(each.speeds.size for each in found)
@@ -158,10 +190,14 @@ def _padded(values: np.ndarray, size: int) -> np.ndarray:
     return np.concatenate([values, np.full(size - values.size, np.nan)])
 
 
-def _uncertainties(points: Points) -> np.ndarray:
-    if points.covariance is None:
-        return np.full(points.size, np.nan)
-    return np.sqrt(np.diag(points.covariance))
+def _errors(points: Points, order: np.ndarray, longest: int) -> dict[str, tuple[str, np.ndarray]]:
+    """The standard deviations of the points, those given and those by the scatter."""
+    given = points.deviations if points.is_known else np.full(points.size, np.nan)
+    by_scatter = np.sqrt(scatter(points)[0]) * points.deviations
+    return {
+        "measured_uncertainty": ("measured_impact", _padded(given[order], longest)),
+        "measured_scatter": ("measured_impact", _padded(by_scatter[order], longest)),
+    }
 
 
 def _one(measured: Experiment, fit: ContactFit, longest: int, samples: int) -> xr.Dataset:
@@ -181,11 +217,10 @@ def _one(measured: Experiment, fit: ContactFit, longest: int, samples: int) -> x
                 "measured_impact",
                 _padded(points.restitutions[order], longest),
             ),
-            "measured_uncertainty": (
-                "measured_impact",
-                _padded(_uncertainties(points)[order], longest),
-            ),
-            "measured_scatter": float(np.sqrt(noise(replace(points, covariance=None))[0])),
+            **_errors(points, order, longest),
+            "errors_given": points.is_known,
+            "errors_size": error_size(points),
+            "scatter_trend": trend_of_scatter(points),
             "curve_speed": ("sample", speeds),
             "fitted_restitution": (
                 ("fitted_law", "sample"),
@@ -206,15 +241,16 @@ def _verdicts(judgements: list[Judgement]) -> dict[str, tuple[str, list]]:
         "left_out_probability": ("fitted_law", [each.left_out for each in judgements]),
         "extrapolation_probability": ("fitted_law", [each.extrapolated for each in judgements]),
         "law_verdict": ("fitted_law", [str(each.verdict) for each in judgements]),
+        "errors_needed": ("fitted_law", [each.needed for each in judgements]),
     }
 
 
 def on_shakers(parameters: Shaker) -> xr.Dataset:
     """The balls of the experiments on shakers, and both errors of the restitution model there.
 
-    The dataset has ``by_duration`` and ``by_constant`` over (experiment, shaker_frequency,
-    quantity), and the other variables over (experiment, shaker_frequency). What needs a contact
-    time is NaN for an experiment without one.
+    The dataset has ``by_duration`` and ``by_constant`` over (experiment, shaker_frequency, n,
+    quantity), the best law over (experiment), and the other variables over (experiment,
+    shaker_frequency, n). What needs a contact time is NaN for an experiment without one.
     """
     found = [experiment(name) for name in parameters.experiments]
     rows = [_on_shakers(each.fit(), parameters) for each in found]
@@ -228,6 +264,7 @@ def on_shakers(parameters: Shaker) -> xr.Dataset:
             "experiment": [each.name for each in found],
             "experiment_title": ("experiment", [each.title for each in found]),
             "shaker_frequency": list(parameters.frequencies),
+            "n": list(parameters.n),
             "quantity": [str(quantity) for quantity in COMPARED],
         },
         variables=VARIABLES,
@@ -237,71 +274,92 @@ def on_shakers(parameters: Shaker) -> xr.Dataset:
 def _on_shakers(fit: ContactFit, parameters: Shaker) -> xr.Dataset:
     """One experiment on all shakers."""
     each = [_on_shaker(fit, frequency, parameters) for frequency in parameters.frequencies]
-    return xr.concat(each, "shaker_frequency").assign(
-        shaker_law=fit.best.law, mean_restitution=fit.law(CONSTANT).restitution
-    )
+    return xr.concat(each, "shaker_frequency").assign(shaker_law=fit.best.law)
 
 
 def _on_shaker(fit: ContactFit, frequency: float, parameters: Shaker) -> xr.Dataset:
-    n = parameters.n
-    best = fit.best
-    speed = best.speed_on(Table(frequency=frequency, acceleration=STANDARD_GRAVITY), n)
-    r = float(best.restitution_at(speed))
-    fold = float(restitution_branch.saddle_node(n, r))
-    doubling = float(restitution_branch.period_doubling(n, r))
-    amplitude = fold + parameters.position * (doubling - fold)
-    slowest = fit.points.speeds.min()
-    fastest = fit.points.speeds.max()
-    ratio = delta = np.nan
-    by_duration = np.full(len(COMPARED), np.nan)
-    if best.has_stiffness:
-        ratio, by_duration, delta = _by_duration(best, speed, frequency, n, amplitude)
-    return xr.Dataset(
-        {
-            "shaker_speed": speed,
-            "shaker_within": bool(slowest <= speed <= fastest),
-            "shaker_ratio": ratio,
-            "shaker_restitution": r,
-            "by_duration": ("quantity", by_duration),
-            "by_constant": ("quantity", _by_constant(fit, r, n, amplitude)),
-            "shaker_small": delta,
-        }
-    )
+    """One experiment on one shaker."""
+    orbits = [_Orbits.of(fit, frequency, n, parameters.position) for n in parameters.n]
+    return xr.concat([each.row(fit, orbits[0].restitution) for each in orbits], "n")
 
 
-def _by_duration(
-    best: LawFit, speed: float, frequency: float, n: int, amplitude: float
-) -> tuple[float, np.ndarray, float]:
-    """ϖ, the errors by the error law and its small parameter δ."""
-    motion = Table(frequency=frequency, acceleration=STANDARD_GRAVITY).motion
-    r = float(best.restitution_at(speed))
-    time = float(best.duration_at(speed))
-    duration = time / motion.time
-    unit = SpringDamper(1.0, float(damping_ratio(r)))
-    impact = speed * motion.time / motion.length
-    assert best.curve.kind is not None
-    law = law_of_impact(best.curve.kind, r, duration, impact)
-    instant = Signature(law)(impact)
-    errors = first_order(n, instant, amplitude)
-    return (
-        float(unit.free_duration) / duration,
-        np.array([float(errors[quantity]) for quantity in COMPARED]),
-        float(small_parameter(n, instant, amplitude)),
-    )
+@dataclass(frozen=True)
+class _Orbits:
+    """The n-T orbits of a ball on a shaker, whose impacts are instants with r(v).
 
-
-def _by_constant(fit: ContactFit, r: float, n: int, amplitude: float) -> list[float]:
-    """Relative errors of the restitution model whose r is the mean one, of :data:`COMPARED`; NaN
-    where it has no orbit.
+    ``speed`` is in m/s, ``slope`` is d(r v)/dv, and ``amplitude`` is the Λ at which heights are
+    compared.
     """
-    constant = fit.law(CONSTANT).restitution
-    folds = [float(restitution_branch.saddle_node(n, each)) for each in (constant, r)]
-    height = np.nan
-    if amplitude >= folds[0]:
-        tops = [
-            amplitude * np.sin(float(restitution_branch.phase(n, each, amplitude)))
-            + (n * np.pi) ** 2 / 2
-            for each in (constant, r)
-        ]
-        height = tops[0] / tops[1] - 1
-    return [height, folds[0] / folds[1] - 1]
+
+    motion: TableMotion
+    n: int
+    speed: float
+    restitution: float
+    slope: float
+    amplitude: float
+
+    @classmethod
+    def of(cls, fit: ContactFit, frequency: float, n: int, position: float) -> Self:
+        """The orbits of one family."""
+        best = fit.best
+        table = Table(frequency=frequency, acceleration=STANDARD_GRAVITY)
+        speed = best.speed_on(table, n)
+        r = float(best.restitution_at(speed))
+        slope = r + float(best.trend_at(speed))
+        fold = float(restitution_branch.saddle_node(n, r))
+        amplitude = fold + position * (_doubling(n, r, slope) - fold)
+        return cls(table.motion, n, speed, r, slope, amplitude)
+
+    def row(self, fit: ContactFit, constant: float) -> xr.Dataset:
+        """The orbits, and the errors of the restitution model with a constant r."""
+        speeds = fit.points.speeds
+        ratio, by_duration, delta = np.nan, np.full(len(COMPARED), np.nan), np.nan
+        if fit.best.has_stiffness:
+            ratio, by_duration, delta = self.by_duration(fit.best)
+        return xr.Dataset(
+            {
+                "shaker_speed": self.speed,
+                "shaker_within": bool(speeds.min() <= self.speed <= speeds.max()),
+                "shaker_ratio": ratio,
+                "shaker_restitution": self.restitution,
+                "by_duration": ("quantity", by_duration),
+                "by_constant": ("quantity", self.by_constant(constant)),
+                "shaker_small": delta,
+            }
+        )
+
+    def by_duration(self, best: LawFit) -> tuple[float, np.ndarray, float]:
+        """ϖ, the errors by the error law and its small parameter δ."""
+        time = float(best.duration_at(self.speed))
+        duration = time / self.motion.time
+        unit = SpringDamper(1.0, float(damping_ratio(self.restitution)))
+        impact = self.speed * self.motion.time / self.motion.length
+        assert best.curve.kind is not None
+        law = law_of_impact(best.curve.kind, self.restitution, duration, impact)
+        instant = Signature(law)(impact)
+        errors = first_order(self.n, instant, self.amplitude)
+        return (
+            float(unit.free_duration) / duration,
+            np.array([float(errors[quantity]) for quantity in COMPARED]),
+            float(small_parameter(self.n, instant, self.amplitude)),
+        )
+
+    def by_constant(self, constant: float) -> np.ndarray:
+        """Relative errors by a constant r, of :data:`COMPARED`; NaN where it has no orbit."""
+        simple = self.values(constant, constant)
+        return simple / self.values(self.restitution, self.slope) - 1
+
+    def values(self, restitution: float, slope: float) -> np.ndarray:
+        """The greatest height, the saddle-node and the period doubling."""
+        fold = float(restitution_branch.saddle_node(self.n, restitution))
+        height = np.nan
+        if self.amplitude >= fold:
+            phase = float(restitution_branch.phase(self.n, restitution, self.amplitude))
+            height = self.amplitude * np.sin(phase) + (self.n * np.pi) ** 2 / 2
+        return np.array([height, fold, _doubling(self.n, restitution, slope)])
+
+
+def _doubling(n: int, restitution: float, slope: float) -> float:
+    """Λ of the period doubling of impacts with r(v)."""
+    lift = 2 * (1 + restitution * slope) / ((1 + restitution) * (1 + slope))
+    return float(np.hypot(restitution_branch.saddle_node(n, restitution), lift))

@@ -1,14 +1,18 @@
 """Measured restitution coefficients over the speed with the laws, and the verdicts."""
 
+from collections.abc import Iterable
+
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.drawing.canvas import WIDE, canvas, legend_below
 from bouncing_ball.drawing.style import COLOURS, LAWS, Look
-from bouncing_ball.drawing.tables import Column, Columns, TextTable, at, table, text, value
+from bouncing_ball.drawing.tables import Column, Columns, TextTable, at, table, text, value, words
 
 # Laws with the same r(v) have one line: all with a constant r, and both of Hunt and Crossley.
 _DRAWN: dict[str, tuple[str, Look]] = {
@@ -21,10 +25,19 @@ _LEAST = 1e-3
 _POINTS: Look = {
     "marker": "o",
     "markersize": 3.6,
-    "markerfacecolor": "white",
     "markeredgewidth": 0.9,
     "linestyle": "none",
     "color": COLOURS[0],
+    "zorder": 4,
+}
+# Full points have the uncertainties of the experiment, and open ones those of a scatter.
+_GIVEN: Look = {"label": "measured, with the uncertainties of the experiment", "elinewidth": 0.9}
+_BY_SCATTER: Look = {
+    "label": "measured, with the scatter about a smooth curve",
+    "markerfacecolor": "white",
+    "elinewidth": 0.5,
+    "capsize": 1.6,
+    "capthick": 0.5,
 }
 _COLUMNS = 3
 # Ticks of panels whose speeds differ by more and by less than the factor of _WIDE_RANGE.
@@ -52,8 +65,17 @@ def measured_impacts(data: xr.Dataset) -> Figure:
         row[0].set_ylabel("restitution $e$, $r(v)$")
     for lowest in axes.flat[max(count - _COLUMNS, 0) : count]:
         lowest.set_xlabel("impact speed in m/s")
-    legend_below(figure, axes.flat[0].get_legend_handles_labels()[0], ncols=2)
+    legend_below(figure, _handles(axes.flat[:count]), ncols=2)
     return figure
+
+
+def _handles(panels: Iterable[Axes]) -> list[Artist]:
+    """A handle for each label of the panels, in the order in which the labels appear."""
+    found: dict[str, Artist] = {}
+    for panel in panels:
+        handles, labels = panel.get_legend_handles_labels()
+        found = dict(zip(labels, handles, strict=True)) | found
+    return sorted(found.values(), key=lambda each: str(each.get_label()).startswith("measured"))
 
 
 def _panel(axes: Axes, one: xr.Dataset) -> None:
@@ -68,14 +90,13 @@ def _panel(axes: Axes, one: xr.Dataset) -> None:
             alpha=0.13,
             linewidth=0,
         )
+    is_given = bool(one.errors_given)
     axes.errorbar(
         one.measured_speed,
         one.experiment_restitution,
-        yerr=one.measured_uncertainty.fillna(one.measured_scatter),
-        label="measured, with its uncertainty or the scatter about a smooth curve",
-        zorder=4,
-        elinewidth=0.7,
+        yerr=one.measured_uncertainty if is_given else one.measured_scatter,
         **_POINTS,
+        **(_GIVEN if is_given else _BY_SCATTER),
     )
     axes.set(xscale="log", title=one.experiment_title.item())
     slowest = float(one.curve_speed[0])
@@ -97,8 +118,11 @@ def ext_measured(data: xr.Dataset) -> TextTable:
     columns: Columns = {
         "experiment": text("experiment_title"),
         "impacts": lambda part: str(int(part.measured_speed.count())),
+        "errors": lambda part: "given" if part.errors_given.item() else "scatter",
+        "size": value("errors_size", "z.4f"),
         "law": text("fitted_law"),
         "verdict": text("law_verdict"),
+        "needed": value("errors_needed", "z.4f"),
         "rms": value("fit_rms", "z.4f"),
         "left out": value("left_out_rms", "z.4f"),
         "p": _probability("left_out_probability"),
@@ -115,24 +139,41 @@ def _probability(name: str) -> Column:
 
 
 def ext_shaker(data: xr.Dataset) -> TextTable:
-    """The balls of the experiments on shakers, and the errors of the restitution model there."""
+    """The balls of the experiments on shakers, and the errors of the restitution model there.
+
+    The columns of the first family have the errors by the duration, and that of the period doubling
+    by the constant r, which has no other error there; those of the other families have the errors
+    by this constant r.
+    """
+    first, *others = data.n.values
     columns: Columns = {
         "experiment": text("experiment_title"),
         "Hz": value("shaker_frequency", "g"),
         "law": text("shaker_law"),
-        "v in m/s": value("shaker_speed", ".3g"),
-        "measured": lambda part: "yes" if part.shaker_within.item() else "no",
-        "ϖ": value("shaker_ratio", ".3g"),
-        "r": value("mean_restitution", ".4f"),
-        "r(v)": value("shaker_restitution", ".4f"),
-        "δ": value("shaker_small", ".2g"),
+        **_orbits(first),
+        "ϖ": at(value("shaker_ratio", ".3g"), n=first),
+        "δ": at(value("shaker_small", ".2g"), n=first),
     }
     for quantity in data["quantity"].values:
-        name = str(quantity).replace("_", " ")
-        columns[f"{name}, by the duration"] = _of("by_duration", quantity)
-        columns[f"{name}, by the constant r"] = _of("by_constant", quantity)
+        columns[f"{words(quantity)}, by the duration"] = _error("by_duration", quantity, first)
+    doubling = Quantity.PERIOD_DOUBLING
+    columns[f"{words(doubling)}, by the constant r"] = _error("by_constant", doubling, first)
+    for n in others:
+        columns |= _orbits(n)
+        for quantity in data["quantity"].values:
+            name = f"{words(quantity)}, n = {n}, by the constant r"
+            columns[name] = _error("by_constant", quantity, n)
     return table(each(data, "experiment", "shaker_frequency"), columns)
 
 
-def _of(name: str, quantity: str) -> Column:
-    return at(value(name, "+z.4f"), quantity=quantity)
+def _orbits(n: int) -> Columns:
+    """The columns of the impact speed of n-T orbits, whether it was measured, and r(v)."""
+    return {
+        f"v in m/s, n = {n}": at(value("shaker_speed", ".3g"), n=n),
+        f"measured, n = {n}": lambda part: "yes" if part.shaker_within.sel(n=n).item() else "no",
+        f"r(v), n = {n}": at(value("shaker_restitution", ".4f"), n=n),
+    }
+
+
+def _error(name: str, quantity: str, n: int) -> Column:
+    return at(value(name, "+z.4f"), quantity=quantity, n=n)

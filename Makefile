@@ -88,7 +88,9 @@ setup-engines: $(SETUP)
 	for engine in $$($(BIN)/python -c '$(ENGINES)'); do \
 	    $(PIP) --only-binary :all: --no-binary pygltflib "$$engine" || missing="$$missing $$engine"; done; \
 	echo "Engines without a wheel for this machine:$${missing:- none}."; \
-	echo "Engines of which no wheel was found: liggghts, mercurydpm, jolt; not tried: physx."
+	echo "Engines of which no wheel was found: liggghts, mercurydpm, jolt; not tried: physx."; \
+	$(BIN)/python -c "import torch" 2> /dev/null || \
+	    echo "Genesis needs torch, of gigabytes, and is skipped without it: $(PIP) torch"
 
 # Run the snippets of `design --engine` in the installed engines, in about ten minutes.
 # The datasets are engines.nc, ext_bounces.nc, ext_bounce_settings.nc and bounce_drivers.nc in

@@ -277,8 +277,6 @@ SETTINGS = {
     "genesis: error 0.1": partial(genesis, error=0.1),
 }
 """Settings of the solvers, one after another; the name of the engine is before the colon."""
-MODULES = {"box2d": "Box2D", "pybullet_tuned": "pybullet", "rapier": "rapier3d"}
-PACKAGES = MODULES | {"genesis": "genesis-world"}
 
 
 def rebounds(heights):

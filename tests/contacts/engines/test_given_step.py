@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from asked_contacts import answered
-from engine_runs import RUN, Trial, only_if_installed
+from engine_runs import RUN, Trial
+from installed_engines import only_if_installed
 
 from bouncing_ball import Contact, EngineSetup, ModelError, write_contact
 from bouncing_ball.contacts.engines.choice import ENGINES

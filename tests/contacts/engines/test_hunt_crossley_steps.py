@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from asked_contacts import answered
-from engine_runs import Trial, drake, only_if_installed
+from engine_runs import Trial, drake
+from installed_engines import only_if_installed
 from scipy.optimize import brentq
 
 from bouncing_ball.contacts.engines.drake import HuntCrossleyDrake

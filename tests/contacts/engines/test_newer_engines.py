@@ -2,23 +2,17 @@
 
 import math
 from dataclasses import replace
-from importlib.util import find_spec
 
 import numpy as np
 import pytest
 from asked_contacts import answered
 from engine_runs import Trial
+from installed_engines import only_if_installed
 from newer_runs import NEWER, RECIPES
 
 from bouncing_ball import ModelError
 from bouncing_ball.contacts.engines.choice import ENGINES
 
-LAST_SEEN = {
-    "newton": "1.8.0",
-    "mujoco_warp": "4.0.0",
-    "genesis": "1.4.5",
-}
-"""The version of each engine with which these tests were last seen to pass."""
 G = 9.80665
 MASS = 0.5
 STIFFNESS = 1e5
@@ -26,12 +20,6 @@ STIFFNESS = 1e5
 ERROR = 0.0015
 ROUNDING = 0.0005
 pytestmark = [pytest.mark.engines, pytest.mark.filterwarnings("default")]
-
-
-def only_if_installed(name):
-    module = {"newton-semi-implicit": "newton", "newton-mujoco": "newton"}.get(name, name)
-    if find_spec(module.replace("-", "_")) is None:
-        pytest.skip(f"{module} is not installed: make setup-engines")
 
 
 def recipe(name, **given):

@@ -9,7 +9,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
+from bouncing_ball.beyond.exhibits.bounces_figures import rapier_974
 from bouncing_ball.cli.main import main
 from bouncing_ball.contacts.engines.choice import ENGINES
 from bouncing_ball.contacts.engines.engine import Physical
@@ -67,3 +69,48 @@ def test_the_table_has_every_engine_with_its_formulas_and_releases():
         assert re.findall("displacement|force|approach", releases) == list(
             map(str, ENGINES[name].releases)
         )
+
+
+def test_the_table_of_rapier_974_is_that_of_its_file():
+    folder = ROOT / "docs" / "bounces"
+    lines = (folder / "rapier_974.csv").read_text(encoding="utf-8").splitlines()
+    table = rapier_974(lines)
+    assert f"<!-- rapier_974 -->\n\n{table}" in BOUNCES
+    assert table.splitlines()[2].startswith("| r² |  |  | 0.0900 | 0.2500 |")
+    assert len(table.splitlines()) == len(lines) + 2
+
+
+@pytest.mark.parametrize("asked", [0.9, 0.75, 0.5])
+def test_the_answer_on_openhfdib_is_that_of_its_force(asked):
+    """A sphere of unit radius on a wall, with the force of the source, by scipy."""
+    mass, stiffness, speed = 1.0, 1e6, 0.1
+    reduced = mass / 2
+    length = 1.0 / 2
+    beta = -math.sqrt(5) * math.log(asked) / math.hypot(math.log(asked), math.pi)
+
+    def force(depth, rate):
+        volume = math.pi * depth**2 * (3 - depth) / 3
+        area = math.pi * (2 * depth - depth**2)
+        elastic = stiffness * volume / length
+        damping = beta * math.sqrt(stiffness * reduced * area / length) * rate
+        return elastic + max(damping, -elastic)
+
+    def out(t, y):
+        return y[0] if t > 0 else 1.0
+
+    out.terminal, out.direction = True, -1
+    path = solve_ivp(
+        lambda t, y: (y[1], -force(max(y[0], 0.0), y[1]) / mass),
+        (0, 1.0),
+        (0.0, speed),
+        events=out,
+        rtol=1e-9,
+        atol=1e-14,
+        max_step=1e-3,
+    )
+    answer = runpy.run_path(str(ROOT / "docs" / "bounces" / "threads.py"))["openhfdib_18"]()
+    promised = dict(
+        zip((0.9, 0.75, 0.5), map(float, answer.split("r = ")[1].split(", ")), strict=True)
+    )
+    # The ball sinks in by some thousandths of its radius, and the answer has three digits.
+    assert -path.y[1, -1] / speed == pytest.approx(promised[asked], abs=2e-3)

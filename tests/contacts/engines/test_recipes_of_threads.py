@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 from asked_contacts import answered
-from engine_runs import RADIUS, Trial, lammps, only_if_installed
+from engine_runs import RADIUS, Trial, lammps
+from installed_engines import only_if_installed
 from scipy.integrate import solve_ivp
 
 from bouncing_ball.errors import ModelError

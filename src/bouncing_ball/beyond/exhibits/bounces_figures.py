@@ -1,5 +1,8 @@
 """The restitution that engines have beside the one asked for (ext_bounces, ext_bounce_settings)."""
 
+import csv
+from collections.abc import Iterable
+
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
@@ -114,3 +117,19 @@ def drivers(data: xr.Dataset) -> str:
         "certified": value("driver_certified", ".4f"),
     }
     return to_markdown(*table(each(data, "driver"), columns))
+
+
+def rapier_974(lines: Iterable[str]) -> str:
+    """The parts of the height that Rapier recovers beside r², as the table of a page.
+
+    Parameters
+    ----------
+    lines : iterable of str
+        Those of docs/bounces/rapier_974.csv: the version, two settings, a column for each r, and
+        where the numbers are from.
+    """
+    header, *rows = csv.reader(lines)
+    squares = [f"{float(r) ** 2:.4f}" for r in header[3:-1]]
+    asked = [f"r = {r}" for r in header[3:-1]]
+    shown = [*header[:3], *asked, header[-1]]
+    return to_markdown(shown, [["r²", "", "", *squares, ""], *rows])

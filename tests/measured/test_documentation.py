@@ -9,7 +9,7 @@ import pytest
 
 from bouncing_ball.measured.experiment import COLUMNS, QUANTITIES, TEXTS, experiment, names, read
 from bouncing_ball.measured.flights import drag_length, heard
-from bouncing_ball.measured.verdicts import Verdict, judge
+from bouncing_ball.measured.verdicts import Verdict, error_size, judge, scatter
 
 PAGE = (Path(__file__).parents[2] / "docs" / "measured.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"```\w*\n(.*?)```", PAGE, re.DOTALL)
@@ -77,6 +77,20 @@ def test_membranes_and_drops_decide_as_the_page_says():
         for law, found in verdicts.items():
             wanted = Verdict.COMPATIBLE if law in compatible else Verdict.INCOMPATIBLE
             assert found.verdict is wanted, (name, law)
+
+
+def test_the_errors_that_the_page_names_are_those_of_the_fits():
+    croquet = experiment("croquet").fit()
+    judged = judge(croquet)
+    for number in (
+        judged["restitution"].needed,
+        judged["kuwabara-kono"].needed,
+        error_size(croquet.points),
+    ):
+        assert f"{number:.4f}" in PAGE
+    ball = experiment("bouncy_ball").fit().points
+    height = np.sqrt(scatter(ball)[0])
+    assert f"an error of {height * 1000:.0f} mm at all heights" in PAGE
 
 
 def test_the_drag_on_a_table_tennis_ball_is_some_per_cent():

@@ -192,6 +192,7 @@ def fit_contact(calls: Calls) -> Any:
     declared = {"durations": POSITIVE, "uncertainties": POSITIVE, "mass": mass}
     laws = st.lists(st.sampled_from(sorted(CURVES)), min_size=1, max_size=2)
     more = {"laws": calls.draw(laws)} if calls.draw(sometimes(3)) else {}
+    more["absolute_uncertainties"] = not calls.draw(sometimes(3))
     return calls.call("fit_contact", *columns, **calls.some(declared), **more)
 
 

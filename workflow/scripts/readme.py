@@ -2,13 +2,18 @@
 
 from pathlib import Path
 
-from bouncing_ball.beyond.exhibits.bounces_figures import drivers, rapier_974
+from bouncing_ball.beyond.exhibits.bounces_figures import drivers, in_javascript, rapier_974
 from bouncing_ball.datasets.files import read_dataset, write_text
 from bouncing_ball.paper.claims.claims import tally
 from bouncing_ball.paper.claims.tables import Claims
 from bouncing_ball.pipeline.article import render_article
 from bouncing_ball.pipeline.front import folder_page, page_of, thumbnails, with_parts
 from bouncing_ball.pipeline.jobs import logged
+
+
+def lines(path):
+    """Those of a text file."""
+    return path.read_text(encoding="utf-8").splitlines()
 
 
 def pages(top, artifacts):
@@ -32,9 +37,8 @@ def pages(top, artifacts):
         (top / "docs/bounces.md").read_text(encoding="utf-8"),
         {
             "drivers": drivers(read_dataset(top / "config/bounce_drivers.nc")),
-            "rapier_974": rapier_974(
-                (top / "docs/bounces/rapier_974.csv").read_text(encoding="utf-8").splitlines()
-            ),
+            "rapier_974": rapier_974(lines(top / "docs/bounces/rapier_974.csv")),
+            "javascript": in_javascript(lines(top / "docs/bounces/javascript.csv")),
         },
     )
     written = {"README.md": readme, "docs/engines.md": engines, "docs/bounces.md": bounces}
@@ -42,8 +46,8 @@ def pages(top, artifacts):
 
 
 if "snakemake" in globals():
-    with logged(snakemake) as lines:
+    with logged(snakemake) as written:
         top = Path(snakemake.scriptdir).resolve().parents[1]
         for path, text in pages(top, snakemake.params.artifacts).items():
             write_text(top / path, text)
-            lines.append(path)
+            written.append(path)

@@ -1,5 +1,6 @@
 """The commands and the scripts of docs/engines.md and README.md print what these pages say."""
 
+import io
 import math
 import re
 import runpy
@@ -8,10 +9,11 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pandas
 import pytest
 from scipy.integrate import solve_ivp
 
-from bouncing_ball.beyond.exhibits.bounces_figures import rapier_974
+from bouncing_ball.beyond.exhibits.bounces_figures import in_javascript, rapier_974
 from bouncing_ball.cli.main import main
 from bouncing_ball.contacts.engines.choice import ENGINES
 from bouncing_ball.contacts.engines.engine import Physical
@@ -78,6 +80,26 @@ def test_the_table_of_rapier_974_is_that_of_its_file():
     assert f"<!-- rapier_974 -->\n\n{table}" in BOUNCES
     assert table.splitlines()[2].startswith("| r² |  |  | 0.0900 | 0.2500 |")
     assert len(table.splitlines()) == len(lines) + 2
+
+
+def test_the_engines_for_javascript_bounce_as_the_page_says():
+    lines = (ROOT / "docs" / "bounces" / "javascript.csv").read_text(encoding="utf-8").splitlines()
+    assert f"<!-- javascript -->\n\n{in_javascript(lines)}" in BOUNCES
+    found = pandas.read_csv(io.StringIO("\n".join(lines)))
+    jolt = found[found.engine == "Jolt"]
+    elastic = jolt[jolt.r == 1]
+    assert (abs(elastic["mean"] - 1) < 0.001).all()
+    slow = jolt[(jolt["drop in m"] == 0.1) & (jolt.r < 0.75) & (jolt["time step in s"] != "1/1000")]
+    assert (slow["mean"] > slow.r + 0.02).all()
+    default = found[found.engine == "PhysX 5.6.1"]
+    assert (default[default["drop in m"] == 0.1]["mean"] < 0.05).all()
+    other = found[found.engine.str.endswith("= 0.01")]
+    gained = other[(other.r == 1) & (other["time step in s"] == "1/60")]
+    # The speed that gravity adds in a step of 1/60 s, over that of the impact.
+    steps = 9.81 / 60 / np.sqrt(2 * 9.81 * gained["drop in m"])
+    assert (abs(gained["mean"] - 1 - steps) < 0.02).all()
+    box = found[found.engine == "Box2D 3"]
+    assert (box["mean"] < box.r).all()
 
 
 @pytest.mark.parametrize("asked", [0.9, 0.75, 0.5])

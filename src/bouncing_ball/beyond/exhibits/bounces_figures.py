@@ -133,3 +133,21 @@ def rapier_974(lines: Iterable[str]) -> str:
     asked = [f"r = {r}" for r in header[3:-1]]
     shown = [*header[:3], *asked, header[-1]]
     return to_markdown(shown, [["r²", "", "", *squares, ""], *rows])
+
+
+def in_javascript(lines: Iterable[str]) -> str:
+    """The mean r that engines for JavaScript have, as the table of a page.
+
+    Parameters
+    ----------
+    lines : iterable of str
+        Those of docs/bounces/javascript.csv: a line for each r, which are next to each other.
+    """
+    rows = list(csv.DictReader(lines))
+    asked = list(dict.fromkeys(row["r"] for row in rows))
+    names = ("engine", "time step in s", "drop in m")
+    found = {}
+    for row in rows:
+        found.setdefault(tuple(row[name] for name in names), []).append(row["mean"])
+    header = [*names, *(f"r = {r}" for r in asked)]
+    return to_markdown(header, [[*place, *means] for place, means in found.items()])

@@ -146,7 +146,7 @@ def in_javascript(lines: Iterable[str]) -> str:
     rows = list(csv.DictReader(lines))
     asked = list(dict.fromkeys(row["r"] for row in rows))
     names = ("engine", "time step in s", "drop in m")
-    found = {}
+    found: dict[tuple[str, ...], list[str]] = {}
     for row in rows:
         found.setdefault(tuple(row[name] for name in names), []).append(row["mean"])
     header = [*names, *(f"r = {r}" for r in asked)]

@@ -92,7 +92,7 @@ setup-engines: $(SETUP)
 	$(BIN)/python -c "import torch" 2> /dev/null || \
 	    echo "Genesis needs torch, of gigabytes, and is skipped without it: $(PIP) torch"
 
-# Run the snippets of `design --engine` in the installed engines, in about ten minutes.
+# Run the snippets of `design --engine` in the installed engines: ten minutes of processor time.
 # The datasets are engines.nc, ext_bounces.nc, ext_bounce_settings.nc and bounce_drivers.nc in
 # results/config; `make accept ONLY=engines` accepts one of them.
 test-engines: $(SETUP)

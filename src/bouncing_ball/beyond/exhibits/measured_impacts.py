@@ -104,7 +104,7 @@ VARIABLES = {
         "probability of greater errors at the faster half", symbol="p", budget=_FITTED
     ),
     "law_verdict": Variable("whether the law is compatible with the experiment"),
-    "rejected_below": Variable("a law is incompatible if a probability is below", symbol="p"),
+    "rejected_below": Variable("a law is rejected if a probability is below", symbol="p"),
     "accepted_above": Variable("a law may be compatible if both probabilities are above"),
     "band_level": Variable("probability of the bands"),
     "useful_below": Variable("small parameter below which the error law is useful", symbol="δ"),

@@ -286,3 +286,17 @@ def test_a_verdict_says_how_long_the_ball_was_followed():
         assert verdict.item().startswith(kind.item())
         assert f"{followed.item()} impacts" in verdict.item()
     assert "more may show a long transient" in found.in_words.values[2]
+
+
+def test_chaos_on_a_contact_may_stick_again_and_again_but_not_after_an_instant():
+    """A contact that lasts long shrinks deviations by a finite factor, an instant forgets."""
+    lam = np.linspace(2.8, 4.0, 30)
+    stiff = final_motions(SpringDamperModel(contact(0.7, 100.0)), lam, 1.0, -5.0, impacts=600)
+    assert (stiff.times_stuck[stiff.kind == "chaotic"] > 2).any()
+    rigid = final_motions(RestitutionModel(0.7), lam, 1.0, -5.0, impacts=600)
+    assert (rigid.times_stuck[rigid.kind == "locked"] == 2).all()
+    assert rigid.times_stuck[rigid.kind == "chaotic"].max() <= 1
+    stuck = rigid.times_stuck > 0
+    assert np.isfinite(rigid.first_lift_off[stuck]).all()
+    assert np.isnan(rigid.first_lift_off[~stuck]).all()
+    assert (rigid.first_lift_off[stuck] <= rigid.followed_time[stuck]).any()

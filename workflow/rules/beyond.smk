@@ -177,12 +177,12 @@ use rule beyond_study as long_transients_study with:
 
 
 use rule beyond_study as lives_study with:
-    """How long balls take to lock."""
+    """How long balls take to stick to the table."""
     wildcard_constraints:
         artifact=stage(
             "beyond.exhibits.lives",
             ext_lives=dict(
-                title="How long balls take to reach the motion on which they lock",
+                title="How long balls take to stick to the table for the first time",
                 study="transients",
                 places="lives",
                 accepted="config/ext_lives.nc",

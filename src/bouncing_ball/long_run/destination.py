@@ -21,8 +21,11 @@ compared as for any other motion. If rounding errors grow too much for a return,
 again and again is locked if the deviations decrease on the whole by more than all digits, with an
 unknown period as well.
 
-A motion is called chaotic if it has done none of this in the impacts for which it was followed, and
-if its neighbours separate exponentially. More impacts may show that it is a long transient.
+A motion is called chaotic if it is not known to repeat in the impacts for which it was followed,
+and if its neighbours separate exponentially. More impacts may show that it is a long transient.
+With instantaneous impacts such a ball has stuck once at most. On a contact of finite stiffness it
+may have stuck many times, because a contact that shrinks deviations by a finite factor makes no
+motion repeat; ``times_stuck`` of :class:`~bouncing_ball.long_run.motions.Motions` is their number.
 
 Balls are followed with the operations + - × ÷ and √ only, so that the same bits give the same
 motion on every processor. A ball with a long transient loses the digits of its start, and the last
@@ -192,10 +195,12 @@ def _departing(leg: Leg, balls: Tracked, found: Motions) -> np.ndarray:
         store(found, balls, aloft, kind=Kind.ALOFT, periods=1, exponent_error=0.0)
         lost = done & ~stays & ~aloft
         store(found, balls, lost, kind=Kind.UNDECIDED, reason=Reason.NO_RELEASE)
-    if leg.dynamics.forgets:
-        sticks = ~done & departure.sticks
-        if sticks.any():
-            done |= _sticking_again(balls, sticks, balls.time + departure.duration, found)
+    sticks = ~done & departure.sticks
+    if sticks.any():
+        lift_off = balls.time + departure.duration
+        balls.sticking.tally(sticks, lift_off)
+        if leg.dynamics.forgets:
+            done |= _sticking_again(balls, sticks, lift_off, found)
     return done
 
 
@@ -254,7 +259,6 @@ def _advance(balls: Tracked, leg: Leg) -> None:
     sticking = balls.sticking
     balls.mark.advance(change)
     balls.mark.stuck[:] += sticks
-    sticking.number[:] += sticks
     grown = stretch.grow(change)
     forgot = stretch.forgetting(grown, sticks)
     if forgot.size:

@@ -24,7 +24,8 @@ class Sticking(NamedTuple):
     ``impact`` is the number of the impact that began this contact, -1 if there was none, and
     ``time`` the time of the lift-off, which is only known for instantaneous impacts. ``phase`` and
     ``velocity`` are the state of the first of these impacts, from which the later motion follows.
-    ``number`` is the number of contacts at which the ball stuck.
+    ``number`` is the number of contacts at which the ball stuck, and ``first_end`` the time at
+    which the first of them ended, NaN if there was none.
     """
 
     impact: np.ndarray
@@ -32,6 +33,7 @@ class Sticking(NamedTuple):
     phase: np.ndarray
     velocity: np.ndarray
     number: np.ndarray
+    first_end: np.ndarray
 
     @classmethod
     def of(cls, balls: int) -> Self:
@@ -42,7 +44,14 @@ class Sticking(NamedTuple):
             phase=np.zeros(balls),
             velocity=np.zeros(balls),
             number=np.zeros(balls, dtype=int),
+            first_end=np.full(balls, np.nan),
         )
+
+    def tally(self, sticks: np.ndarray, end: np.ndarray) -> None:
+        """Count the contacts at which the balls stick, of those that end at these times."""
+        first = sticks & (self.number == 0)
+        self.first_end[first] = end[first]
+        self.number[:] += sticks
 
     def store(self, which: np.ndarray, impact: Impact, seen: np.ndarray) -> np.ndarray:
         """Store that some balls forget after this impact; return which do so for the first time."""
@@ -92,10 +101,15 @@ def joined(one: Any, other: Any) -> Any:
 
 
 def store(found: Motions, balls: Tracked, which: np.ndarray, **values: ArrayLike) -> None:
-    """Store results of some balls, with the impacts followed and the digits lost until now."""
+    """Store results of some balls, with the impacts followed, the stickings and the digits lost
+    until now.
+    """
     found.fill(
         balls.lane[which],
         followed=balls.seen[which],
+        followed_time=balls.time[which],
+        times_stuck=balls.sticking.number[which],
+        first_lift_off=balls.sticking.first_end[which],
         digits_lost=balls.stretch.most[which] / np.log(10),
         **values,
     )

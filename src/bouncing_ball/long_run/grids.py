@@ -24,6 +24,11 @@ VARIABLES = {
     "digits_lost": Variable(
         "decimal digits of the start that the motion has lost on the way", budget=math.inf
     ),
+    "followed_time": Variable("time from the first impact to the last of those followed"),
+    "times_stuck": Variable("contacts at which the ball stuck to the table, of those followed"),
+    "first_lift_off": Variable(
+        "time from the first impact to the end of the first contact at which the ball stuck"
+    ),
     "end_velocity": Variable("velocity of the ball before that impact"),
     "exponent_sum": Variable("sum of both Lyapunov exponents per period of the table"),
     "second_exponent": Variable("smaller Lyapunov exponent per period of the table"),

@@ -28,9 +28,12 @@ class Kind(StrEnum):
     ALOFT = "aloft"
     """A mass on a spring swings with the table and never reaches its stop again."""
     CHAOTIC = "chaotic"
-    """The motion has not repeated as long as it was followed, nor stuck to the table in a way that
-    makes it repeat, and neighbouring motions separate from it at an exponential rate. If it is
-    followed for longer, it may turn out to be a long transient."""
+    """The motion is not known to repeat as long as it was followed, and neighbouring motions
+    separate from it at an exponential rate. If it is followed for longer, it may turn out to be a
+    long transient. After instantaneous impacts it has stuck once at most, because a ball that
+    sticks twice repeats its motion. On a contact of finite stiffness it may have stuck many times:
+    deviations shrink there by a finite factor, and may grow by a larger one until the ball sticks
+    again."""
     UNDECIDED = "undecided"
 
 
@@ -71,9 +74,16 @@ class Motions(Batch):
     followed : array of int
         Impacts after which the kind was known; those of a chaotic or undecided motion are all for
         which it was followed.
+    followed_time : array
+        Time from the first impact to the last of the impacts followed.
     end_phase, end_velocity : array
         Table phase φ and absolute velocity z′_i before the last of these impacts: a start from
         which the ball is on the motion at once. NaN in permanent contact.
+    times_stuck : array of int
+        Number of contacts at which the ball stuck to the table, among the impacts followed.
+    first_lift_off : array
+        Time from the first impact to the end of the first of these contacts, at which the ball
+        leaves the table; NaN if it has not stuck.
     digits_lost : array
         Decimal digits of the start that the motion has lost: the logarithm of the largest factor by
         which a deviation has grown. A double has 16 digits. If more than about 14 digits are lost,
@@ -89,8 +99,11 @@ class Motions(Batch):
     exponent_error: np.ndarray
     reason: np.ndarray
     followed: np.ndarray
+    followed_time: np.ndarray
     end_phase: np.ndarray
     end_velocity: np.ndarray
+    times_stuck: np.ndarray
+    first_lift_off: np.ndarray
     digits_lost: np.ndarray
 
     @classmethod
@@ -114,8 +127,11 @@ class Motions(Batch):
             exponent_error=unknowns(),
             reason=empty_texts(Reason),
             followed=zeros(),
+            followed_time=unknowns(),
             end_phase=unknowns(),
             end_velocity=unknowns(),
+            times_stuck=zeros(),
+            first_lift_off=unknowns(),
             digits_lost=unknowns(),
         )
 

@@ -1,52 +1,74 @@
-"""Mean lives against known rates, and when a ball has reached the motion on which it locks."""
-
-from types import SimpleNamespace
+"""Times until balls stick, against the contacts of a simulation, and means of known lives."""
 
 import numpy as np
 import pytest
-from scipy.stats import poisson
 
 from bouncing_ball.beyond.exhibits import lives
-from bouncing_ball.beyond.exhibits.motion_samples import ThreeModels
+from bouncing_ball.beyond.exhibits.motion_samples import three_models
 from bouncing_ball.long_run.motions import Kind
 from bouncing_ball.models.damping import Release
 
-
-def test_the_limits_of_a_mean_life_contain_the_known_value():
-    life = np.random.default_rng(3).exponential(30.0, 4000)
-    mean, low, high = lives.mean_life(np.minimum(life, 40.0), life < 40.0, 0.95)
-    assert low < 30 < high and low < mean < high
-    nothing = lives.mean_life(np.ones(5), np.zeros(5, dtype=bool), 0.95)
-    assert nothing[::2] == (np.inf, np.inf)
+PLACE = {"restitution": 0.6, "amplitude": 3.0}
+BALLS = {"cases": [PLACE], "frequency_ratio": [100.0], "balls": 40, "impacts": 300}
+ASKED = lives.Transients(**BALLS, confidence=0.95, seed=1)
 
 
-def test_a_ball_has_arrived_where_phase_and_velocity_agree(monkeypatch):
-    # Impacts a period apart: at the phase of the end, at its velocity, and then at both.
-    times = 2 * np.pi * np.arange(1, 4)
-    kind = np.full((1, 1, 10), Kind.LOCKED)
-
-    def final_motions(*_, path, **__):
-        path[:, :3] = np.reshape([times, [1, 2, 1], [-5, -4, -4]], (3, 3, 1, 1, 1))
-        return SimpleNamespace(end_phase=1.0, end_velocity=-4.0, kind=kind)
-
-    model = SimpleNamespace(impact_law=None, shape=())
-    monkeypatch.setattr(lives, "three_models", lambda *_: ThreeModels(*[model] * 3))
-    monkeypatch.setattr(lives, "final_motions", final_motions)
-    case = {"cases": [{"restitution": 0.5, "amplitude": 2.5}], "frequency_ratio": [10.0]}
-    asked = lives.Transients(**case, balls=10, impacts=50, confidence=0.95, seed=1)
-    data = lives.transients(asked, Release.DISPLACEMENT)
-    assert np.all(data.mean_life == 3)
+@pytest.fixture(scope="module")
+def found():
+    return lives.lives(ASKED, Release.DISPLACEMENT)
 
 
-@pytest.mark.parametrize("count", [1, 4, 30])
-def test_the_limits_of_a_mean_life_are_those_of_a_number_of_ends(count):
-    """At a limit, as few or as many ends as observed have half the probability that is left."""
-    total = 250.0
-    times = np.full(50, total / 50)
-    ends = np.arange(50) < count
-    for confidence in (0.9, 0.95):
-        mean, low, high = lives.mean_life(times, ends, confidence)
-        rest = (1 - confidence) / 2
-        assert mean == pytest.approx(total / count)
-        assert poisson.cdf(count, total / low) == pytest.approx(rest, rel=1e-9)
-        assert poisson.sf(count - 1, total / high) == pytest.approx(rest, rel=1e-9)
+def test_the_interval_of_a_mean_life_holds_for_lives_that_are_not_exponential():
+    """Of 400 means of lives with a dead time, some 95 % of the intervals contain the true mean."""
+    random = np.random.default_rng(3)
+    hits = 0
+    for _ in range(400):
+        life = 20 + random.gamma(0.5, 10.0, 200)
+        mean, low, high = lives.mean_with_limits(life, 0.95)
+        assert low < mean < high
+        hits += low < 25 < high
+    # Four standard deviations of the binomial count.
+    assert abs(hits - 380) < 4 * np.sqrt(400 * 0.95 * 0.05)
+    assert np.isnan(lives.mean_with_limits(life[:0], 0.95)).all()
+    assert np.isnan(lives.mean_with_limits(life[:1], 0.95)[1:]).all()
+
+
+def test_a_life_ends_where_the_first_sticking_of_a_simulation_ends(found):
+    """After an instant a ball that sticks has a contact of its own; on a contact of finite
+    stiffness the contact lasts longer than one damped oscillation.
+    """
+    random = np.random.default_rng(ASKED.seed)
+    phase = random.uniform(-np.pi, np.pi, ASKED.balls)
+    speed = random.uniform(1, 9, ASKED.balls)
+    r, lam = PLACE.values()
+    models = three_models(r, 100.0, Release.DISPLACEMENT)
+    zeta = -np.log(r) / np.hypot(np.pi, np.log(r))
+    oscillation = 2 * np.pi / (100.0 * np.sqrt(1 - zeta**2))
+    for place, (model, longest) in enumerate(
+        ((models.contact, oscillation), (models.restitution, 0))
+    ):
+        way = model.simulate(lam, phase, lam * np.cos(phase) - speed, ASKED.impacts)
+        sticks = (way.contact_duration > longest) & np.isfinite(way.contact_duration)
+        first = sticks.argmax(axis=0)
+        ball = np.arange(ASKED.balls)
+        ends = (way.time + way.contact_duration)[first, ball] / (2 * np.pi)
+        life = found["life"][0, place]
+        known = np.isfinite(life)
+        assert known.sum() > 20
+        assert np.allclose(life[known], ends[known], rtol=1e-12)
+        # A ball that is not found to stick has not stuck in the simulation either.
+        assert not sticks[:, ~known].any()
+
+
+def test_a_ball_that_has_not_stuck_is_censored_and_in_no_mean():
+    """Of ten balls five stick, at 1 to 5 T, three are chaotic, and two end on an orbit."""
+    life = np.array([1.0, 2, 3, 4, 5, *[np.nan] * 5]).reshape(1, 1, 10)
+    kind = np.array([Kind.LOCKED] * 4 + [Kind.CHAOTIC] * 4 + [Kind.ORBIT] * 2).reshape(1, 1, 10)
+    known = {"life": life, "life_followed": np.full((1, 1, 10), 2000.0), "life_kind": kind}
+    asked = ASKED.model_copy(update={"frequency_ratio": []})
+    data = lives.transients(asked, Release.DISPLACEMENT, known).isel(case=0, life_ratio=0)
+    assert data.mean_life == 3
+    assert (data.unstuck_share, data.lock_share) == (0.3, 0.4)
+    # Eight balls may stick.
+    at = data.survival.sel(life=[0.5, 2.5, 100], method="nearest")
+    assert at.values.tolist() == [1, 6 / 8, 3 / 8]

@@ -12,7 +12,7 @@ from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.pipeline.configuration import typed
 from bouncing_ball.pipeline.diff.datasets import compare_datasets
 
-START = {"phase": 1.0, "impact_speed": 10.0, "impacts": 200, "confidence": 0.95}
+START = {"phase": 1.0, "impact_speed": 10.0, "impacts": 200, "further": 400, "confidence": 0.95}
 
 
 def study(ratio, lam, r, **changed):
@@ -74,3 +74,19 @@ def test_rounding_may_decide_at_few_nodes_only(recorded):
             x.name for x in compare_datasets("ext_locking", record, new) if not x.outcome.agrees
         }
         assert names == (set() if allowed else {"kind"})
+
+
+def test_a_contact_may_be_chaotic_where_the_restitution_model_locks():
+    """At r = 0.7 on a compliant contact, ball by ball, also those that have stuck twice."""
+    data = study(100.0, (2.5, 4.5, 21), (0.7, 0.71, 2), impacts=400, further=800)
+    r, lam = (x.ravel() for x in np.meshgrid(data.restitution, data.amplitude, indexing="ij"))
+    velocity = lam * np.cos(START["phase"]) - START["impact_speed"]
+    contact, simple = (
+        final_motions(model, lam, START["phase"], velocity, impacts=400)
+        for model in three_models(r, 100.0, Release.DISPLACEMENT)[::-2]
+    )
+    both = (simple.kind == "locked") & (contact.kind == "chaotic")
+    assert both.sum() == data.chaotic_nodes[0] > 10
+    sticks = (contact.times_stuck > 1) & both
+    assert 0 < sticks.sum() == data.chaotic_sticking_nodes[0] < both.sum()
+    assert 0 < data.lasting_nodes[0] <= both.sum()

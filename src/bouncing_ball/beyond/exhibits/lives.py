@@ -1,9 +1,15 @@
-"""How long balls wander before they lock, in the restitution model and on contacts (beyond the
+"""How long balls wander before they stick, in the restitution model and on contacts (beyond the
 paper).
+
+A life ends with the same event in all models: the end of the first contact in which the ball sticks
+to the table, where the table releases it. In the restitution model the ball rests on the table
+until then, and is on its locked orbit from there on. On a contact of finite stiffness it is the end
+of the first contact that lasts longer than one of its damped oscillations. A motion that has stuck
+need not repeat there, so that the share of the balls that end on a locked orbit is given beside it.
 """
 
 from collections.abc import Sequence
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 import scipy
@@ -30,33 +36,38 @@ from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.motions import Kind
 from bouncing_ball.models.damping import Release
-from bouncing_ball.numerics.elementary import reduce_angle
 
 VARIABLES = {
     "life_ratio": Variable(
         "frequency ratio of the contact, infinite for the restitution model", symbol="ϖ"
     ),
     "life": Variable("time from the start in periods of the table"),
-    "survival": Variable("share of the balls that are not on their locked orbit yet"),
-    "mean_life": Variable("mean time until a ball is on its locked orbit in periods of the table"),
-    "mean_life_low": Variable(
-        "lower limit of the confidence interval of the mean time until a ball is locked"
+    "survival": Variable("share of the balls that have not stuck to the table yet"),
+    "mean_life": Variable(
+        "mean time from the start to the end of the first sticking in periods of the table, of the "
+        "balls that stick"
     ),
-    "mean_life_high": Variable(
-        "upper limit of the confidence interval of the mean time until a ball is locked"
+    "mean_life_low": Variable("lower limit of the confidence interval of the mean time to stick"),
+    "mean_life_high": Variable("upper limit of the confidence interval of the mean time to stick"),
+    "unstuck_share": Variable("share of the balls that have not stuck in all impacts followed"),
+    "unstuck_share_low": Variable(
+        "lower limit of the confidence interval of the share that has not stuck"
     ),
-    "chaotic_share": Variable("share of the balls that are chaotic to the end"),
-    "chaotic_share_low": Variable(
-        "lower limit of the confidence interval of the share that is chaotic to the end"
+    "unstuck_share_high": Variable(
+        "upper limit of the confidence interval of the share that has not stuck"
     ),
-    "chaotic_share_high": Variable(
-        "upper limit of the confidence interval of the share that is chaotic to the end"
+    "lock_share": Variable("share of the balls that end on a locked orbit"),
+    "lock_share_low": Variable(
+        "lower limit of the confidence interval of the share that ends on a locked orbit"
+    ),
+    "lock_share_high": Variable(
+        "upper limit of the confidence interval of the share that ends on a locked orbit"
     ),
 }
-# Distance from an impact of the final motion within which a ball has reached this motion.
-_NEAR = 1e-3
 # Number of times at which the survival is given.
 _TIMES = 60
+# The first of these times, in periods of the table.
+_FIRST = 0.1
 # Smallest and largest speed of balls at the start.
 _SPEEDS = (1.0, 9.0)
 
@@ -84,49 +95,48 @@ def columns(cases: Sequence[Place]) -> np.ndarray:
     return np.array([[value for _, value in case] for case in cases]).T
 
 
-def mean_life(time: np.ndarray, ends: np.ndarray, confidence: float) -> tuple[float, ...]:
-    """Mean life at a constant rate, and its limits, from times until an end or until censoring.
+def mean_with_limits(values: np.ndarray, confidence: float) -> tuple[float, float, float]:
+    """The mean of independent values with the limits of its confidence interval.
 
-    It is the sum of all times over the number of ends; its interval is that of a Poisson count.
+    The interval is that of Student's distribution with the standard deviation of the values. Lives
+    that are exponential are not assumed; of many values the mean is nearly normal by itself.
 
     Parameters
     ----------
-    time : array, shape (count,)
-        Times until the end of each life, or until it is no longer observed.
-    ends : array of bool, shape (count,)
-        Whether the end was observed.
+    values : array, shape (count,)
     confidence : float
-        The probability with which the interval contains the mean life, in (0, 1).
+        The probability with which the interval contains the mean, in (0, 1).
 
     Returns
     -------
     tuple of float
-        Mean, lower limit and upper limit, in the unit of the times; the mean and the upper limit
-        are infinite if no end was observed.
+        Mean, lower limit and upper limit; NaN where there are too few values.
 
     Examples
     --------
-    >>> float(mean_life(np.array([1.0, 3.0]), np.array([True, False]), 0.95)[0])
-    4.0
+    >>> mean, low, high = mean_with_limits(np.array([1.0, 3.0]), 0.95)
+    >>> float(mean), round(float(high - mean), 3) == round(float(mean - low), 3)
+    (2.0, True)
     """
-    total = time.sum()
-    count = ends.sum()
-    low = 2 * total / scipy.stats.chi2.ppf((1 + confidence) / 2, 2 * count + 2)
-    if not count:
-        return np.inf, low, np.inf
-    high = 2 * total / scipy.stats.chi2.ppf((1 - confidence) / 2, 2 * count)
-    return total / count, low, high
+    if not values.size:
+        return np.nan, np.nan, np.nan
+    mean = values.mean()
+    if values.size == 1:
+        return mean, np.nan, np.nan
+    quantile = scipy.stats.t.ppf((1 + confidence) / 2, values.size - 1)
+    width = quantile * scipy.stats.sem(values)
+    return mean, mean - width, mean + width
 
 
 def lives(parameters: Transients, release: Release, part: Part = np.asarray) -> Arrays:
-    """Times until balls reach the motion on which they end, and the kinds of these motions.
+    """Times until balls have stuck to the table, and the kinds of the motions on which they end.
 
     Returns
     -------
     dict of array
-        ``life`` in periods of the table, counted up to the last impact if the ball does not lock,
-        and ``life_kind``, shape (case, life_ratio, ball). The restitution model is the last along
-        ``life_ratio``.
+        ``life`` in periods of the table, up to the end of the first sticking, NaN if the ball does
+        not stick; ``life_followed``, the time up to the last impact followed; and ``life_kind``,
+        shape (case, life_ratio, ball). The restitution model is the last along ``life_ratio``.
     """
     random = np.random.default_rng(parameters.seed)
     phases = random.uniform(-np.pi, np.pi, parameters.balls)
@@ -136,78 +146,61 @@ def lives(parameters: Transients, release: Release, part: Part = np.asarray) -> 
     r, lam = columns(parameters.cases)[..., np.newaxis, np.newaxis]
     ratios = np.array(parameters.frequency_ratio)[:, np.newaxis]
     models = three_models(r, ratios, release)
-    times = []
-    kinds = []
-    for model in (models.contact, models.restitution):
-        time, kind = _time_to_the_end(model, lam, phase, speed, parameters.impacts)
-        times.append(time)
-        kinds.append(kind)
-    return {"life": np.concatenate(times, axis=1), "life_kind": np.concatenate(kinds, axis=1)}
-
-
-def _time_to_the_end(
-    model: Any, lam: np.ndarray, phase: np.ndarray, speed: np.ndarray, impacts: int
-) -> tuple[np.ndarray, np.ndarray]:
-    """Periods of the table until balls reach their locked orbits, and the kinds of their motions.
-
-    For a ball that does not lock it is the time of the last impact.
-    """
     velocity = lam * np.cos(phase) - speed
-    shape = np.broadcast_shapes(model.shape, lam.shape, phase.shape)
-    path = np.full((3, impacts, *shape), np.nan)
-    found = final_motions(model, lam, phase, velocity, impacts=impacts, path=path)
-    times, phases, velocities = path
-    from_end = np.maximum(
-        np.abs(reduce_angle(phases - found.end_phase)), np.abs(velocities - found.end_velocity)
-    )
-    arrival = (from_end < _NEAR).argmax(axis=0)
-    last = np.where(found.kind == Kind.LOCKED, arrival, impacts - 1)
-    time = np.take_along_axis(times, last[np.newaxis], axis=0)[0]
-    return time / (2 * np.pi), found.kind
+    ends = [
+        final_motions(model, lam, phase, velocity, impacts=parameters.impacts)
+        for model in (models.contact, models.restitution)
+    ]
+    period = 2 * np.pi
+    return {
+        "life": np.concatenate([found.first_lift_off for found in ends], axis=1) / period,
+        "life_followed": np.concatenate([found.followed_time for found in ends], axis=1) / period,
+        "life_kind": np.concatenate([found.kind for found in ends], axis=1),
+    }
 
 
 def transients(parameters: Transients, release: Release, found: Found = None) -> xr.Dataset:
-    """The shares of balls that have not yet reached the motion on which they lock.
+    """The shares of balls that have not stuck to the table yet.
 
     ``survival`` (case, life_ratio, life) is the estimate of Kaplan and Meier, over the time in
-    periods of the table. ``mean_life`` (case, life_ratio) and its limits are also in periods; see
-    :func:`mean_life`. A ball that is not found to lock is censored at its last impact, and a ball
-    that ends on an orbit without sticking is left out. If some balls lock, those that are chaotic
-    to the end are taken to be on another attractor and left out of the mean life;
-    ``chaotic_share`` (case, life_ratio) is their share of all. The restitution model has ϖ = ∞.
-    ``restitution`` and ``amplitude`` are coordinates of the case.
+    periods of the table up to the end of the first sticking. A ball that has not stuck is censored
+    at its last impact, and one that ends on an orbit without sticking is left out. ``mean_life``
+    (case, life_ratio) is the mean of this time over the balls that stick, see
+    :func:`mean_with_limits`. ``unstuck_share`` (case, life_ratio) is the share of all balls that
+    are left out of this mean although they end on no orbit: they have not stuck in all impacts
+    followed. ``lock_share`` is the share of all balls that end on a locked orbit. Each has limits.
+    The restitution model has ϖ = ∞. ``restitution`` and ``amplitude`` are coordinates of the case.
     """
     found = found or lives(parameters, release)
     r, lam = columns(parameters.cases)
-    time = found["life"]
+    life = found["life"]
     kind = found["life_kind"]
-    locks = kind == Kind.LOCKED
-    chaotic = kind == Kind.CHAOTIC
-    may_lock = (kind != Kind.ORBIT) & (kind != Kind.SUBHARMONIC)
-    on_another_attractor = chaotic & locks.any(axis=-1, keepdims=True)
-    transient = may_lock & ~on_another_attractor
-    times = np.geomspace(1, parameters.impacts, _TIMES)
-    shape = time.shape[:-1]
+    sticks = np.isfinite(life)
+    ends_without = (kind == Kind.ORBIT) | (kind == Kind.SUBHARMONIC)
+    unstuck = ~sticks & ~ends_without
+    times = np.geomspace(_FIRST, parameters.impacts, _TIMES)
+    shape = life.shape[:-1]
+    level = parameters.confidence
     survival = np.empty((*shape, _TIMES))
     mean_lives = np.empty((*shape, 3))
-    chaotic_shares = np.empty((*shape, 3))
+    unstuck_shares = np.empty((*shape, 3))
+    lock_shares = np.empty((*shape, 3))
     for k in np.ndindex(shape):
-        lives_so_far = scipy.stats.CensoredData.right_censored(
-            time[k][may_lock[k]], ~locks[k][may_lock[k]]
-        )
+        may_stick = sticks[k] | unstuck[k]
+        seen = np.where(sticks[k], life[k], found["life_followed"][k])[may_stick]
+        lives_so_far = scipy.stats.CensoredData.right_censored(seen, unstuck[k][may_stick])
         survival[k] = scipy.stats.ecdf(lives_so_far).sf.evaluate(times)
-        mean_lives[k] = mean_life(
-            time[k][transient[k]], locks[k][transient[k]], parameters.confidence
-        )
-        chaotic_shares[k] = share_with_limits(chaotic[k], parameters.confidence)
+        mean_lives[k] = mean_with_limits(life[k][sticks[k]], level)
+        unstuck_shares[k] = share_with_limits(unstuck[k], level)
+        lock_shares[k] = share_with_limits(kind[k] == Kind.LOCKED, level)
     dims = ("case", "life_ratio")
+    estimates = {
+        "mean_life": (dims, mean_lives),
+        "unstuck_share": (dims, unstuck_shares),
+        "lock_share": (dims, lock_shares),
+    }
     return described(
-        {
-            "survival": ((*dims, "life"), survival),
-            **with_limits(
-                {"mean_life": (dims, mean_lives), "chaotic_share": (dims, chaotic_shares)}
-            ),
-        },
+        {"survival": ((*dims, "life"), survival), **with_limits(estimates)},
         coords={
             "restitution": ("case", r),
             "amplitude": ("case", lam),

@@ -29,6 +29,17 @@ VARIABLES = {
     ),
     "agreement_high": Variable("this share if the motions that are not known agreed as well"),
     "agreement_nodes": Variable("nodes of the group at which both motions are known"),
+    "chaotic_nodes": Variable(
+        "nodes at which the restitution model locks and the contact's ball is chaotic"
+    ),
+    "chaotic_sticking_nodes": Variable(
+        "nodes at which the restitution model locks and the contact's ball is chaotic, although it "
+        "has stuck twice"
+    ),
+    "lasting_nodes": Variable(
+        "nodes at which the restitution model locks and the contact's ball is chaotic, also if it "
+        "is followed further"
+    ),
 }
 
 
@@ -40,6 +51,15 @@ class Locking(ParameterPlane):
 
     phase: Annotated[float, number("phase φ of the first impact", "rad", ge=-10, le=10)]
     impact_speed: Annotated[float, number("relative speed -δ′ of the first impact", gt=0, le=1000)]
+    further: Annotated[
+        int,
+        number(
+            "impacts for which contacts that are chaotic, where the restitution model locks, are "
+            "followed again",
+            ge=200,
+            le=100000,
+        ),
+    ]
 
 
 GROUPS = ("all", "orbit", "subharmonic", "locked", "locked, 1 to 4 T", "locked, above 10 T",
@@ -102,20 +122,36 @@ def motions_at_nodes(parameters: Locking, release: Release, part: Part = np.asar
     -------
     dict of array
         The fields of :class:`~bouncing_ball.long_run.motions.Motions`, shape (model, ϖ,
-        node). The restitution model has the same values at every ϖ.
+        node). The restitution model has the same values at every ϖ. And ``lasts``, shape (ϖ, node):
+        whether the restitution model locks, and the contact is chaotic also if it is followed
+        further.
     """
     ratios = np.array(parameters.frequency_ratio)
     r, lam = part(parameters.places())
     phase = parameters.phase
     velocity = lam * np.cos(phase) - parameters.impact_speed
-    found = [
-        vars(final_motions(model, lam, phase, velocity, impacts=parameters.impacts))
-        for model in three_models(r, ratios[:, np.newaxis], release)
-    ]
     shape = (ratios.size, lam.size)
-    return {
-        name: np.stack([np.broadcast_to(one[name], shape) for one in found]) for name in found[0]
-    }
+    found = []
+    for model in three_models(r, ratios[:, np.newaxis], release):
+        ends = final_motions(model, lam, phase, velocity, impacts=parameters.impacts)
+        found.append({name: np.broadcast_to(values, shape) for name, values in vars(ends).items()})
+    arrays = {name: np.stack([one[name] for one in found]) for name in found[0]}
+    lasts = chaotic_where_locked(Motions(**arrays))
+    of_ratio, node = np.nonzero(lasts)
+    contact = three_models(r[node], ratios[of_ratio], release).contact
+    further = final_motions(contact, lam[node], phase, velocity[node], impacts=parameters.further)
+    lasts[of_ratio, node] = further.kind == Kind.CHAOTIC
+    return arrays | {"lasts": lasts}
+
+
+def chaotic_where_locked(motions: Motions) -> np.ndarray:
+    """Whether the restitution model locks and the contact is chaotic, shape (ϖ, node).
+
+    The shape of the motions is (model, ϖ, node).
+    """
+    simple = motions.kind[MODELS.index("restitution")]
+    contact = motions.kind[MODELS.index("spring-damper")]
+    return (simple == Kind.LOCKED) & (contact == Kind.CHAOTIC)
 
 
 def locking(parameters: Locking, release: Release, found: Found = None) -> xr.Dataset:
@@ -130,11 +166,17 @@ def locking(parameters: Locking, release: Release, found: Found = None) -> xr.Da
     simple model, and ``agreement_nodes`` is the number of nodes of the group at which it is known:
     see :func:`agreement`. The nodes are a grid and no sample, so that there is no interval.
     ``kind_nodes`` (model, frequency_ratio, motion_group) is the number of nodes at which the ball
-    of each model ends on a motion of the group. ``saddle_node_amplitude`` and
+    of each model ends on a motion of the group. ``chaotic_nodes`` (frequency_ratio) is the number
+    of nodes at which the restitution model locks and the contact is chaotic,
+    ``chaotic_sticking_nodes`` the number of these at which the contact has stuck twice or more
+    often, and ``lasting_nodes`` that at which it is chaotic also if it is followed ``further``.
+    ``saddle_node_amplitude`` and
     ``period_doubling_amplitude`` (model, restitution) are those of the 1-T orbit.
     """
     ratios = np.array(parameters.frequency_ratio)
-    motions = Motions(**(found or motions_at_nodes(parameters, release)))
+    arrays = dict(found or motions_at_nodes(parameters, release))
+    lasts = arrays.pop("lasts")
+    motions = Motions(**arrays)
     contact = MODELS.index("spring-damper")
     shares = [
         [agreement(motions[simple, ratio], motions[contact, ratio]) for ratio in range(ratios.size)]
@@ -142,6 +184,9 @@ def locking(parameters: Locking, release: Release, found: Found = None) -> xr.Da
     ]
     nodes, low, high = np.moveaxis(np.array(shares), 2, 0)
     of_shares = ("simple", "frequency_ratio", "motion_group")
+
+    chaotic = chaotic_where_locked(motions)
+    sticks_twice = motions.times_stuck[contact] > 1
 
     dims = ("model", "restitution", "amplitude")
     at_first_ratio = {
@@ -164,6 +209,9 @@ def locking(parameters: Locking, release: Release, found: Found = None) -> xr.Da
             "agreement_nodes": (of_shares, nodes),
             "agreement_low": (of_shares, low),
             "agreement_high": (of_shares, high),
+            "chaotic_nodes": ("frequency_ratio", chaotic.sum(axis=-1)),
+            "chaotic_sticking_nodes": ("frequency_ratio", (chaotic & sticks_twice).sum(axis=-1)),
+            "lasting_nodes": ("frequency_ratio", lasts.sum(axis=-1)),
         },
         coords={
             "model": list(MODELS),

@@ -123,7 +123,10 @@ ARTIFACTS: dict[str, dict[str, Budget]] = {
     "ext_locking": {
         **dict.fromkeys(("kind", "periods", "impacts"), Budget(ROUNDING, share=0.05)),
         **dict.fromkeys(("agreement_low", "agreement_high"), Budget(0.07, scale="1")),
-        "agreement_nodes": Budget(0.05),
+        **dict.fromkeys(
+            ("agreement_nodes", "chaotic_nodes", "chaotic_sticking_nodes", "lasting_nodes"),
+            Budget(0.05),
+        ),
         # Five standard errors; the standard error is an estimate itself.
         "lyapunov_exponent": Budget(5.0, scale="lyapunov_error", share=0.05),
         "lyapunov_error": Budget(0.5, share=0.05),
@@ -160,7 +163,7 @@ ARTIFACTS: dict[str, dict[str, Budget]] = {
     # 11 of 100 periods. Three times the former is allowed.
     "ext_lives": {
         **dict.fromkeys(
-            ("survival", *_with_limits("chaotic_share")),
+            ("survival", *_with_limits("unstuck_share"), *_with_limits("lock_share")),
             Budget(0.2, scale="1"),
         ),
         **dict.fromkeys(_with_limits("mean_life"), Budget(0.5, share=0.2)),

@@ -57,7 +57,9 @@ rule atlas:
     message:
         "Atlas: its summary, with charts"
     input:
-        code=lambda wildcards: code("atlas-summary", "atlas.py"),
+        code=lambda wildcards: code(
+            "atlas-summary", "atlas.py", "beyond.atlas.shards"
+        ),
         parts=[rules.atlas_merge.output.data],
     output:
         data="results/atlas/summary.nc",

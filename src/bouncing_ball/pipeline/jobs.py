@@ -28,17 +28,15 @@ from bouncing_ball.datasets.files import (
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.configuration import typed
 from bouncing_ball.pipeline.patience import patience_of_job
-from bouncing_ball.pipeline.provenance import PREFIX, gather
-from bouncing_ball.pipeline.sources import without_versions
+from bouncing_ball.pipeline.provenance import PREFIX, gather, read_attributes
+from bouncing_ball.pipeline.samples import SECONDS, computed_by
+from bouncing_ball.pipeline.sources import file_of, names_of, without_versions
 
 REFERENCE = (
     "Carbonelli, Perret-Liaudet, Rigaud and Feki, Investigation of restitution coefficient "
     "and spring-damper models for the bouncing ball problem, DETC2011-47870 (2011)"
 )
 HISTORY = "computed from the equations; the attributes provenance_* say by what and from what"
-
-SECONDS = f"{PREFIX}seconds"
-"""The attribute with the processor time that an accepted sample took, or one of its shards."""
 
 # What makes the dataset of any study cheaper.
 _CHEAPER = "fewer samples, contacts or families in its parameters"
@@ -157,6 +155,11 @@ def using(*paths: str) -> Iterator[None]:
         ) from error
 
 
+def earlier_seconds(paths: Sequence[str]) -> float:
+    """The processor time of the files from which a sample is made; 0 for those without it."""
+    return sum(float(read_attributes(Path(path)).get(SECONDS, 0)) for path in paths)
+
+
 def joined(shards: Sequence[xr.Dataset]) -> dict[str, np.ndarray]:
     """The arrays of all places, from the datasets of all shards in their order.
 
@@ -219,10 +222,8 @@ def make_dataset(snakemake: Any, study: Callable[..., xr.Dataset]) -> list[str]:
     if paths := snakemake.input.get("shards"):
         shards = [read_input(path) for path in paths]
         from_other_jobs["found"] = joined(shards)
-        earlier = sum(float(shard.attrs[SECONDS]) for shard in shards)
-    with patience_of_job(
-        Path(snakemake.output.data).stem, "fewer samples, contacts and families in its parameters"
-    ):
+        earlier = earlier_seconds(paths)
+    with patience_of_job(Path(snakemake.output.data).stem, _CHEAPER):
         dataset = typed(study)(**given, **from_other_jobs)
     for name, variable in dataset.variables.items():
         if "units" not in variable.attrs:
@@ -248,9 +249,11 @@ def publish(
     seconds: float | None = None,
 ) -> None:
     """Write the job's dataset, with its title, parameters and provenance as attributes, among them
-    the processor time in seconds if it is given.
+    the processor time in seconds if it is given, and the code of what is compressed, a sample.
     """
     drawing = snakemake.params.get("drawing")
+    made = provenance(snakemake)
+    code = map(file_of, names_of(made[f"{PREFIX}code"]))
     dataset.attrs = {
         "Conventions": CONVENTIONS,
         "title": snakemake.params.title,
@@ -258,7 +261,8 @@ def publish(
         "references": REFERENCE,
         "history": HISTORY,
         **parameters,
-        **provenance(snakemake),
+        **made,
+        **(computed_by(code) if compressed else {}),
         **({} if seconds is None else {SECONDS: f"{seconds:.0f}"}),
     }
     write_dataset(dataset, snakemake.output.data, compressed=compressed)

@@ -13,6 +13,7 @@ from importlib.metadata import version
 from pathlib import Path
 from time import process_time
 
+import engine_runs
 import numpy as np
 import pytest
 import xarray as xr
@@ -46,8 +47,13 @@ from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
 from bouncing_ball.pipeline.configuration import read_yaml
 from bouncing_ball.pipeline.provenance import CONFIGURATION, gather
+from bouncing_ball.pipeline.samples import computed_by, processor_time, seconds_since
 
 ROOT = Path(__file__).parents[3]
+OURS = ROOT / "src" / "bouncing_ball" / "contacts" / "engines"
+RUNS = [Path(engine_runs.__file__), *sorted(OURS.glob("*.py"))]
+"""What the numbers depend on, beside the engines."""
+START = processor_time()
 WRITTEN = read_yaml(ROOT / CONFIGURATION)
 PARAMETERS = WRITTEN["beyond"]["ext_engines"]
 
@@ -170,6 +176,7 @@ def record():
     made = ["not installed" if missing(name) else version(name) for name in RUN]
     data["engine_version"] = ("engine", made)
     origin = gather("make test-engines", [], ROOT, WRITTEN)
+    origin |= computed_by(RUNS) | seconds_since(START)
     target = ROOT / "results" / "config" / "engines.nc"
     write_dataset(describe(data, VARIABLES).assign_attrs(origin), target)
 

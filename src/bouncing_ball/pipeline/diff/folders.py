@@ -44,6 +44,7 @@ from bouncing_ball.pipeline.diff.cause import (
 from bouncing_ball.pipeline.diff.datasets import compare_datasets, word_rows
 from bouncing_ball.pipeline.diff.outcome import Finding, Outcome, Whole, worst
 from bouncing_ball.pipeline.diff.texts import compare_drawings, compare_texts, words_of
+from bouncing_ball.pipeline.samples import outdated
 
 
 def redrawn(record: bytes, new: bytes) -> str:
@@ -344,5 +345,19 @@ def compare_folders(
             why = next(filter(None, reasons), "")
             whole = replace(whole, cause=_cause(whole, judged[name], origins, roots, why))
         found.append(whole)
+    if not only and (samples := _outdated_samples(record)):
+        found.append(samples)
     found.sort(key=lambda whole: (-whole.outcome.rank, -whole.share, whole.name))
     return Whole("", tuple(found))
+
+
+def _outdated_samples(record: Path) -> Whole | None:
+    """The accepted samples of the record that are older than the code that computes them."""
+    reasons = outdated(record)
+    if not reasons:
+        return None
+    files = [
+        Whole(f"config/{name}", (Finding("", Outcome.STALE, note=why),))
+        for name, why in reasons.items()
+    ]
+    return Whole("samples", tuple(files), cause="accepted samples are older than their code")

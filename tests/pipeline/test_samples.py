@@ -1,0 +1,94 @@
+"""Accepted samples against the code that computes them."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+import xarray as xr
+
+from bouncing_ball.datasets.files import write_dataset
+from bouncing_ball.pipeline import sources
+from bouncing_ball.pipeline.diff.folders import compare_folders
+from bouncing_ball.pipeline.diff.outcome import Outcome
+from bouncing_ball.pipeline.diff.page import to_html, to_terminal
+from bouncing_ball.pipeline.samples import COMPUTATION, computed_by, outdated
+
+ROOT = Path(__file__).parents[2]
+CODE = '"""Twice."""\n\n\ndef twice(x):\n    # By a sum.\n    return x + x\n'
+SAME = '"""Two\ntimes."""\ndef twice(x):\n    """The double."""\n    return x + x  # exactly\n'
+
+
+@pytest.fixture
+def checkout(tmp_path, monkeypatch):
+    """A repository with one module, and a sample that it has computed."""
+    package = tmp_path / "src" / "bouncing_ball"
+    (package / "models").mkdir(parents=True)
+    (tmp_path / "config").mkdir()
+    monkeypatch.setattr(sources, "_ROOT", package)
+    monkeypatch.setattr(sources, "_REPOSITORY", tmp_path)
+    module = package / "models" / "twice.py"
+    module.write_text(CODE)
+    errors = package / "errors.py"
+    errors.write_text("WORDS = 'no'\n")
+    data = xr.Dataset({"x": ((), 1.0)}, attrs=computed_by([module, errors]))
+    write_dataset(data, tmp_path / "config" / "one.nc")
+    return tmp_path
+
+
+def test_no_accepted_sample_is_older_than_its_code():
+    """`make samples`, `snakemake --cores 2 atlas` and `make test-engines` make them again."""
+    assert outdated(ROOT) == {}
+
+
+def test_comments_texts_and_other_modules_make_no_sample_older(checkout):
+    package = checkout / "src" / "bouncing_ball"
+    (package / "models" / "twice.py").write_text(SAME)
+    (package / "errors.py").write_text("WORDS = 'never'\n")
+    (package / "models" / "other.py").write_text("y = 2\n")
+    assert outdated(checkout) == {}
+
+
+@pytest.mark.parametrize(
+    "code", [CODE.replace("x + x", "x * 3"), CODE.replace("+ x", "+ x + 0"), None]
+)
+def test_a_sample_is_older_than_code_that_computes_something_else(checkout, code):
+    module = checkout / "src" / "bouncing_ball" / "models" / "twice.py"
+    if code is None:
+        module.unlink()
+    else:
+        module.write_text(code)
+    assert outdated(checkout) == {"one.nc": "older than models/twice.py"}
+
+
+def test_a_text_in_the_code_that_is_no_docstring_counts():
+    text = 'NAMES = ["one"]\n\n\ndef f():\n    return "#"\n'
+    assert sources.without_remarks(text) == text.replace("\n\n\n", "\n").rstrip()
+    assert (
+        sources.without_remarks('x = 1\n"""A field."""\ny = """a\nb"""\n')
+        == 'x = 1\ny = """a\nb"""'
+    )
+
+
+def test_the_comparison_names_a_sample_that_is_older_or_says_nothing(checkout):
+    for folder in (checkout, checkout / "results"):
+        (folder / "figures").mkdir(parents=True)
+        shutil.copy(checkout / "config" / "one.nc", folder / "figures" / "fig01.nc")
+    assert compare_folders(checkout, checkout / "results").outcome is Outcome.IDENTICAL
+    write_dataset(xr.Dataset({"x": ((), 1.0)}), checkout / "config" / "silent.nc")
+    found = compare_folders(checkout, checkout / "results")
+    assert found.outcome is Outcome.STALE and found.outcome.status == 1
+    (samples,) = (part for part in found.parts if part.name == "samples")
+    (file,) = samples.parts
+    assert file.name == "config/silent.nc" and "does not record" in file.parts[0].note
+    assert "config/silent.nc" in to_terminal(found) and "silent.nc" in to_html(found)
+    # One artifact alone is compared without them.
+    assert compare_folders(checkout, checkout / "results", ["fig01"]).outcome is Outcome.IDENTICAL
+
+
+def test_the_files_of_a_sample_are_named_with_digests(checkout):
+    recorded = computed_by([checkout / "src" / "bouncing_ball" / "models" / "twice.py"])[
+        COMPUTATION
+    ]
+    (line,) = recorded.splitlines()
+    digest, name = line.split(" ")
+    assert name == "models/twice.py" and len(digest) == 12

@@ -32,7 +32,9 @@ def test_a_stiff_contact_has_the_restitution_models_basins(data):
     assert (image != image.isel(model=0)).mean() < 0.01
     assert data.basin_share.sum("motion").values == pytest.approx(np.ones((1, 3)))
     assert np.all(data.basin_share_low <= data.basin_share)
-    assert np.all(data.uncertain_share.isel(shift=0) >= data.uncertain_share.isel(shift=1))
+    assert np.all(
+        data.uncertain_share.isel(change_of_phase=0) >= data.uncertain_share.isel(change_of_phase=1)
+    )
 
 
 def test_the_starts_of_the_picture_are_the_middles_of_its_cells():

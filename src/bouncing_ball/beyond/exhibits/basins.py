@@ -23,6 +23,7 @@ from bouncing_ball.long_run.motions import Kind, Motions
 from bouncing_ball.models.damping import Release
 
 VARIABLES = {
+    "change_of_phase": Variable("change of the phase at the start", units="rad"),
     "basin_share": Variable("share of the starts that end on a motion", budget=0.0001, scale="1"),
     "basin_share_low": Variable(
         "lower limit of the confidence interval of the share that ends on a motion"
@@ -129,7 +130,8 @@ def basins(parameters: Basins, release: Release, found: Found = None) -> xr.Data
 
     ``destination`` (case, model, start_speed, start_phase) is an index into :data:`MOTIONS`; φ in
     rad and the speed -δ′ are at the middles of cells. For the random starts, ``basin_share`` (case,
-    model, motion) is the share that ends on a motion, ``uncertain_share`` (case, model, shift) is
+    model, motion) is the share that ends on a motion, ``uncertain_share`` (case, model,
+    change_of_phase) is
     the share that ends on another motion if φ changes by the shift, and ``uncertainty_exponent``
     (case, model) is the exponent of this share. Each has limits, ``_low`` and ``_high``.
     ``restitution``, ``frequency_ratio`` and ``amplitude`` are coordinates of the case.
@@ -152,7 +154,7 @@ def basins(parameters: Basins, release: Release, found: Found = None) -> xr.Data
     dims = ("case", "model")
     estimates: dict[str, tuple] = {
         "basin_share": ((*dims, "motion"), _shares(ends_there, level)),
-        "uncertain_share": ((*dims, "shift"), _shares(changed, level)),
+        "uncertain_share": ((*dims, "change_of_phase"), _shares(changed, level)),
         "uncertainty_exponent": (dims, exponents),
     }
     return described(
@@ -166,7 +168,7 @@ def basins(parameters: Basins, release: Release, found: Found = None) -> xr.Data
             "amplitude": ("case", lam),
             "model": list(MODELS),
             "motion": list(MOTIONS),
-            "shift": shifts,
+            "change_of_phase": shifts,
             "start_phase": phase,
             "start_speed": speed,
         },

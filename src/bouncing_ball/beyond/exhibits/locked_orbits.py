@@ -49,17 +49,18 @@ VARIABLES = {
     "rank_correlation_high": Variable(
         "upper limit of the confidence interval of the rank correlation"
     ),
-    "reached_share": Variable("share of the places whose needed frequency ratio is finite"),
-    "reached_share_low": Variable("lower limit of the confidence interval of the share reached"),
-    "reached_share_high": Variable("upper limit of the confidence interval of the share reached"),
-    "reached_correlation": Variable(
-        "rank correlation of the locked period with the needed frequency ratio where this is finite"
+    "inner_places": Variable(
+        "number of places that need a frequency ratio between the smallest and the largest"
     ),
-    "reached_correlation_low": Variable(
-        "lower limit of the confidence interval of the rank correlation where it is finite"
+    "inner_correlation": Variable(
+        "rank correlation of the locked period with the needed frequency ratio at places that need "
+        "one between the smallest and the largest"
     ),
-    "reached_correlation_high": Variable(
-        "upper limit of the confidence interval of the rank correlation where it is finite"
+    "inner_correlation_low": Variable(
+        "lower limit of the confidence interval of the rank correlation without ties at the ends"
+    ),
+    "inner_correlation_high": Variable(
+        "upper limit of the confidence interval of the rank correlation without ties at the ends"
     ),
     "jump_share": Variable("share of the places whose locked period changes with the amplitude"),
     "jump_share_low": Variable(
@@ -145,9 +146,9 @@ def locked_orbits(
     the contact does not do so at the largest ϖ. ``same`` (frequency_ratio) is the share of places
     with the same period.
     ``rank_correlation`` is the correlation of the period of the locked orbit with the smallest ϖ.
-    In it all places at which this is infinite are one tie. ``reached_share`` is therefore the share
-    of the places at which it is finite, and ``reached_correlation`` the correlation at these places
-    only.
+    In it all places at which this is infinite are one tie, and those at which it is the smallest ϖ
+    are another. ``inner_correlation`` is therefore the correlation at the other places, of which
+    ``inner_places`` is the number.
     ``jump_share`` (shift) is the share of places next to a discontinuity, at which the period
     changes, or is not found, if Λ changes by the shift, and ``uncertainty_exponent`` its exponent.
     Each has a lower and an upper limit, ``_low`` and ``_high``. The variables of
@@ -164,19 +165,18 @@ def locked_orbits(
     same = found["same"]
     changed = np.array(periods_beside) != period
     needed = _needed_ratio(ratios, same)
-    known = sticks & np.isfinite(needed)
+    inner = sticks & np.isfinite(needed) & (needed > ratios.min())
     nodes = {"periods": period, "needed_ratio": np.where(sticks, needed, np.nan)}
     estimates = {
         "same": ("frequency_ratio", [share_with_limits(x[sticks], level) for x in same]),
         "rank_correlation": ((), correlation(period[sticks], needed[sticks], level)),
-        "reached_share": ((), share_with_limits(np.isfinite(needed[sticks]), level)),
-        "reached_correlation": ((), correlation(period[known], needed[known], level)),
+        "inner_correlation": ((), correlation(period[inner], needed[inner], level)),
         "jump_share": ("shift", [share_with_limits(x[sticks], level) for x in changed]),
         "uncertainty_exponent": ((), uncertainty_exponent(changed[:, sticks].T, shifts, level)),
     }
     variables = {name: ("node", values) for name, values in nodes.items()}
     orbits = described(
-        variables | with_limits(estimates),
+        variables | with_limits(estimates) | {"inner_places": ((), float(inner.sum()))},
         coords={
             "restitution": ("node", r),
             "amplitude": ("node", lam),

@@ -1,4 +1,4 @@
-"""The locked orbits of the restitution model on contacts, and the time until balls lock."""
+"""The locked orbits of the restitution model on contacts, and the time until balls stick."""
 
 import numpy as np
 import xarray as xr
@@ -38,7 +38,7 @@ def _draw_jumps(jumps: Axes, data: xr.Dataset) -> None:
 
 
 def _draw_survival(part: SubFigure, data: xr.Dataset) -> None:
-    """The share of the balls that are not locked yet, over time, in a panel for each case."""
+    """The share of the balls that have not stuck yet, over time, in a panel for each case."""
     panels = part.subplots(1, data.sizes["case"], sharex=True, sharey=True, squeeze=False)[0]
     for axes, k in zip(panels, range(data.sizes["case"]), strict=True):
         one = data.isel(case=k)
@@ -50,5 +50,5 @@ def _draw_survival(part: SubFigure, data: xr.Dataset) -> None:
         r, lam = (number(float(one[f"case_{x}"])) for x in ("restitution", "amplitude"))
         axes.set(xlabel="table periods", title=rf"transients, $r={r}$, $\Lambda={lam}$")
     panels[0].set(xscale="log", yscale="log", ylim=(0.01, 1.3))
-    panels[0].set_ylabel("share of balls not locked")
+    panels[0].set_ylabel("share of balls not stuck")
     legend_below(part)

@@ -123,10 +123,7 @@ ARTIFACTS: dict[str, dict[str, Budget]] = {
     "ext_locking": {
         **dict.fromkeys(("kind", "periods", "impacts"), Budget(ROUNDING, share=0.05)),
         **dict.fromkeys(("agreement_low", "agreement_high"), Budget(0.07, scale="1")),
-        **dict.fromkeys(
-            ("agreement_nodes", "chaotic_nodes", "chaotic_sticking_nodes", "lasting_nodes"),
-            Budget(0.05),
-        ),
+        "agreement_nodes": Budget(0.05),
         # Five standard errors; the standard error is an estimate itself.
         "lyapunov_exponent": Budget(5.0, scale="lyapunov_error", share=0.05),
         "lyapunov_error": Budget(0.5, share=0.05),
@@ -145,14 +142,15 @@ ARTIFACTS: dict[str, dict[str, Budget]] = {
         # On long locked orbits a deviation grows beyond the digits of a double, at some 15 % of the
         # places: rounding decides there.
         **dict.fromkeys(("periods", "needed_ratio"), Budget(1e-6, share=0.3)),
+        # The same share of all places is four of those.
+        "inner_places": Budget(0.05),
         # A change of 4e-16 of the amplitude moves a share by 0.0064 at most. Three times that is
         # allowed.
         **dict.fromkeys(
             (
                 *_with_limits("same"),
                 *_with_limits("rank_correlation"),
-                *_with_limits("reached_share"),
-                *_with_limits("reached_correlation"),
+                *_with_limits("inner_correlation"),
                 *_with_limits("jump_share"),
                 *_with_limits("uncertainty_exponent"),
             ),

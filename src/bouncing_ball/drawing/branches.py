@@ -23,7 +23,7 @@ from bouncing_ball.datasets import (
 )
 from bouncing_ball.drawing.canvas import WIDE, canvas, coloured, legend_below
 from bouncing_ball.drawing.labels import in_a_row, title
-from bouncing_ball.drawing.style import LINES, MARKS
+from bouncing_ball.drawing.style import LINES, MARKS, TABLE
 
 _GRAZING = {GRAZING_FLIGHT, GRAZING_RELEASE}
 # The special orbits of the restitution model, and the beginnings of the names of their variables.
@@ -39,6 +39,8 @@ _ALONG = ("point", "special", f"{_LONG}point", f"{_LONG}special", "multiplier", 
 _LINE = 110
 # Relative distance below which the end of a branch is at the largest Λ of the panel.
 _AT_THE_EDGE = 1e-9
+# The place of an enlargement in a panel: left, bottom, width and height.
+_CORNER = (0.13, 0.1, 0.3, 0.22)
 SPECIAL = (SADDLE_NODE, PERIOD_DOUBLING, GRAZING_FLIGHT, GRAZING_RELEASE)
 """The kinds of special points at which the line of a branch may change its look."""
 
@@ -158,7 +160,11 @@ def over_amplitude(data: xr.Dataset) -> Figure:
             name_curve(panels[0], name, colour)
         draw_both_phases(panels, placed(curve), colour)
         if f"{_LONG}amplitude" in curve:
-            draw_both_phases(panels, placed(_long_branch(curve)), colour)
+            long = placed(_long_branch(curve))
+            draw_both_phases(panels, long, colour)
+            hidden = long.amplitude.where(~long.admissible)
+            if hidden.notnull().any():
+                _enlarge(panels[0], long, hidden, colour)
     legend_below(figure)
     head(figure, title(data), rows)
     return figure
@@ -175,6 +181,24 @@ def _long_branch(curve: xr.Dataset) -> xr.Dataset:
     turns = 2 * np.pi * np.round((long.release_phase.mean() - np.pi / 2) / (2 * np.pi))
     shifted = ("phase", "release_phase", "special_phase")
     return long.assign({name: long[name] - turns for name in shifted})
+
+
+def _enlarge(axes: Axes, curve: xr.Dataset, amplitude: xr.DataArray, colour: str) -> None:
+    """The part of a branch with these Λ and its surroundings in a corner of a panel, where the
+    marks of its ends do not hide it.
+    """
+    corner = axes.inset_axes(_CORNER)
+    corner.set_xlim(*_around(amplitude))
+    corner.set_ylim(*_around(curve.phase.where(amplitude.notnull()) / np.pi))
+    _draw_phase(corner, curve, curve.phase, curve.special_phase, colour)
+    corner.tick_params(labelsize=6)
+    axes.indicate_inset_zoom(corner, edgecolor=TABLE)
+
+
+def _around(values: xr.DataArray) -> np.ndarray:
+    """The ends of an axis on which these values take the middle third."""
+    low, high = float(values.min()), float(values.max())
+    return np.array([2 * low - high, 2 * high - low])
 
 
 def head(figure: Figure, title: str, rows: xr.Dataset) -> None:

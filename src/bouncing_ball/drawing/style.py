@@ -70,7 +70,7 @@ LIMIT: Look = MODELS["restitution"] | {"linestyle": "--"}
 # Contact laws differ by their dashes as well as by their colours.
 LAWS: dict[str, Look] = {
     "linear": {"color": COLOURS[0], "linestyle": "-"},
-    "linear, force release": {"color": COLOURS[0], "linestyle": (0, (1, 1.5))},
+    "linear, force release": {"color": COLOURS[0], "linestyle": (0, (5, 1, 1, 1, 1, 1))},
     "hunt-crossley": {"color": COLOURS[1], "linestyle": (0, (4, 1.5))},
     "tsuji": {"color": COLOURS[2], "linestyle": (0, (6, 1.5, 1, 1.5))},
     "kuwabara-kono": {"color": COLOURS[3], "linestyle": (0, (2, 1))},

@@ -10,6 +10,7 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from bouncing_ball.datasets.selection import each
@@ -22,9 +23,9 @@ LEVELS = (3, 5, 10, 20, 30, 40, 50, 60, 70, 80, 90, 100, 200, 500, 1000)
 """Bounds between the colours; the last colour is for larger values."""
 
 _PALEST = 0.12
-# More lines would lie too close together for labels.
-_LAW_LEVELS = (50, 100)
-_LAW: Look = {"colors": CORRECTED, "linewidths": 1.1, "linestyles": ("--", "-")}
+# The error law is drawn where it is right within this factor: it fails next to the saddle-node.
+_LAW_HOLDS = 1.25
+_LAW: Look = {"colors": CORRECTED, "linewidths": 1.0, "linestyles": "--"}
 NEAR = 1
 """Ranges of positions next to the saddle-node, which the colours of the page do not include."""
 
@@ -84,7 +85,8 @@ def page(data: xr.Dataset, release: str = "displacement") -> Figure:
 def over_range(data: xr.Dataset, quantity: str = "max_height", n: int = 1) -> Figure:
     """The ϖ needed over r and the position of Λ in the stable range, by rule and model.
 
-    The error law's |K|/ε is drawn as lines over the map of the restitution model.
+    The error law's |K|/ε is drawn as lines over the map of the restitution model, at the borders of
+    its colours, where it is right within a quarter.
     """
     figure, slots = canvas(WIDE, 5.4, rows=2, columns=2, sharex=True, sharey=True)
     tolerance = float(data.summary_tolerance)
@@ -103,15 +105,23 @@ def over_range(data: xr.Dataset, quantity: str = "max_height", n: int = 1) -> Fi
             axes.set_title(f"{model} model, {release}", fontsize=8)
         law = data.law_coefficient.sel(n=n, quantity=quantity, release=release) / tolerance
         middle = (data.position_edge[1:].values + data.position_edge[:-1].values) / 2
-        law = np.ma.masked_invalid(law.transpose("position", "restitution"))
-        lines = row[0].contour(data.restitution, middle, law, levels=_LAW_LEVELS, **_LAW)
+        simple = data.needed.sel(n=n, quantity=quantity, release=release, model="restitution")
+        ratio = np.maximum(law / simple, simple / law)
+        # From the period doubling down; next to the saddle-node it may be right by chance.
+        right = (ratio <= _LAW_HOLDS).astype(int).sortby("position", ascending=False)
+        holds = right.cumprod("position").sortby("position") > 0
+        shown = law.where(holds).transpose("position", "restitution")
+        if shown.notnull().any():
+            row[0].contour(data.restitution, middle, shown, levels=LEVELS, **_LAW)
     bar = figure.colorbar(mesh, ax=slots, ticks=LEVELS, format="%g", pad=0.02, shrink=0.8)
     bar.set_label(rf"$\varpi$ from which the error is below {100 * tolerance:g} %")
     figure.suptitle(rf"{QUANTITIES[quantity]}: how stiff a contact must be, $n={n}$", fontsize=10)
-    names = [rf"error law, $|K|/\varepsilon={level}$" for level in _LAW_LEVELS]
+    line = Line2D([], [], color=CORRECTED, linestyle="--", linewidth=1.0)
     absent = Patch(facecolor="white", edgecolor=GUIDE["color"], hatch="////")
-    handles = [*lines.legend_elements()[0], absent]
-    legend_below(figure, handles, labels=[*names, "not computed"])
+    name = (
+        r"error law, $|K|/\varepsilon$ at the borders of the colours, where it is within a quarter"
+    )
+    legend_below(figure, [line, absent], labels=[name, "not computed"])
     return figure
 
 

@@ -20,7 +20,7 @@ _RATIO = r"frequency ratio $\varpi$"
 
 
 def cascade_of_flights(data: xr.Dataset) -> Figure:
-    """ext_flights: E of the openings over ϖ for the first r, and their limits for all r."""
+    """ext_flights: E of the openings over ϖ for the first r, and ratios of their limits by r."""
     figure, (left, right) = canvas(WIDE, 3.2, columns=2)
     shown = data.isel(restitution=0)
     ratio = data.frequency_ratio.values
@@ -43,16 +43,17 @@ def cascade_of_flights(data: xr.Dataset) -> Figure:
     for one, colour in coloured(data.sortby("restitution"), "restitution"):
         r = float(one.restitution)
         limits = one.stiff_opening.values
-        right.plot(data.flights, limits, "o-", color=colour, markersize=3, label=number(r))
-        right.plot(data.flights, limits[-1] * r ** (2 * (data.flights[-1] - data.flights)), **GUIDE)
-    right.set(yscale="log", xlabel="opening $k$", ylabel=r"$E_k$ for $\varpi\to\infty$")
-    right.set(xticks=data.flights.values, title=r"limits; dotted: $E_{k+1}/E_k=1/r^2$")
+        ratios = r**2 * limits[1:] / limits[:-1]
+        right.plot(data.flights[:-1], ratios, "o-", color=colour, markersize=3, label=number(r))
+    right.axhline(1, **GUIDE)
+    right.set(xlabel="opening $k$", ylabel=r"$r^2 E_{k+1}/E_k$ for $\varpi\to\infty$")
+    right.set(xticks=data.flights.values[:-1], title="ratios of the limits; dotted: 1")
     if _is_sought(data):
-        right.legend(loc="upper left", title="$r$, from above")
+        right.legend(loc="upper right", title="$r$")
     else:
         # A logarithmic axis without a number cannot be drawn.
-        for axes in (left, right):
-            axes.set(yscale="linear", yticks=[])
+        left.set(yscale="linear", yticks=[])
+        right.set(yticks=[])
         _say(right, _OTHER_RELEASE)
         right.set_xlim(data.flights.values[[0, -1]])
     return figure
@@ -98,8 +99,8 @@ def cascades(data: xr.Dataset) -> Figure:
         name = rf"$r$ = {r:g}"
         law.plot(data.doubling, one, "o", color=colour, linestyle=dashes, markersize=3, label=name)
     law.axhline(0, color="#8c8c8c", linewidth=0.6)
-    law.set(xlabel=r"$k$ of the orbit of $2^k$ impacts", ylabel=r"$K_k$ of the error $K_k/\varpi$")
-    law.set(title="$K_k$ changes less and less with $k$", xticks=data.doubling)
+    law.set(xlabel=r"$m$ of the orbit of $2^m$ impacts", ylabel=r"$K_m$ of the error $K_m/\varpi$")
+    law.set(title="$K_m$ changes less and less with $m$", xticks=data.doubling)
     law.legend(loc="best")
     legend_below(figure, lines, labels=[f"{x} model" for x in data["model"].values], ncols=2)
     return figure

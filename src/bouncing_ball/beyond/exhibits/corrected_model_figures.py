@@ -19,6 +19,9 @@ from bouncing_ball.drawing.tables import (
 )
 from bouncing_ball.drawing.thresholds import with_zeros
 
+# Quantiles of the measured orders: the median, and the ends of the middle 90 %.
+_QUANTILES = (0.05, 0.5, 0.95)
+
 
 def meeting_flights(data: xr.Dataset) -> Figure:
     """ext_instant: the continued flights before and after a contact; below, the contact force.
@@ -68,13 +71,14 @@ def orders(data: xr.Dataset) -> Figure:
             axes.plot(*with_zeros(ratio, error, zero), label=model, **look)
             # A guide with this slope through the last point.
             axes.plot(ratio, error[-1] * (ratio[-1] / ratio) ** order, **GUIDE)
-            measured = f"order {float(part.order.median()):.2f}"
+            low, middle, high = part.order.quantile(_QUANTILES).values
+            measured = f"{middle:.2f} ({low:.2f} to {high:.2f})"
             place: Look = {"transform": axes.transAxes, "ha": "right", "va": "top"}
             axes.text(0.97, 1.04 - 0.11 * order, measured, color=look["color"], fontsize=8, **place)
         logarithmic(axes, yscale="log", xlim=(ratio[0], ratio[-1]), ylim=(1e-9, 3.0))
     figure.suptitle(
         f"{parameters(data, 'n', 'restitution', 'amplitude')}; orders of "
-        f"{data.sizes['sample']} random orbits, median"
+        f"{data.sizes['sample']} random orbits, median (and the middle 90 %)"
     )
     legend_below(figure, ncols=2)
     return figure

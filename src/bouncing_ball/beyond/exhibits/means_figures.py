@@ -15,37 +15,39 @@ from bouncing_ball.beyond.exhibits.motion_maps import (
 )
 from bouncing_ball.drawing.canvas import legend_below, stacked
 from bouncing_ball.drawing.labels import number
-from bouncing_ball.drawing.style import COLOURS, Look
+from bouncing_ball.drawing.style import COLOURS, GUIDE, Look
 
-_MEANS = {name: (name, colour, marker) for name, colour, marker in zip(
-    ("power", "height", "flights", "exponent"), COLOURS, "osv^", strict=False)}  # fmt: skip
+# The other means are known at few nodes only.
+_MEANS = {
+    "power": ("power", COLOURS[0], "o"),
+    "height": ("height", COLOURS[1], "s"),
+}
 
 
 def mean_motions(data: xr.Dataset) -> Figure:
-    """The smallest ϖ from which on a mean of each simple model is right, over (Λ, r); below, the
-    share of nodes known to be right from ϖ on.
+    """The smallest ϖ from which on the mean power and height of each simple model are right, over
+    (Λ, r); below, the share of nodes known to be right from ϖ on.
     """
     ratios = data.frequency_ratio.values
-    means = data["mean"].values
-    figure, (maps, below) = stacked(6.6, (4.4, 2.2))
-    rows = maps.subplots(2, len(means), sharex=True, sharey=True)
+    panels = [(simple, mean) for mean in _MEANS for simple in data.simple.values]
+    figure, (maps, below) = stacked(5.2, (3.0, 2.2))
+    row = maps.subplots(1, len(panels), sharex=True, sharey=True)
     fills = [*colormaps["viridis_r"](np.linspace(0, 0.75, len(ratios))), *UNKNOWN.values()]
     look: Look = {"cmap": ListedColormap(fills), "vmin": -0.5, "vmax": len(fills) - 0.5}
-    for simple, row in zip(data.simple.values, rows, strict=True):
-        for mean, axes in zip(means, row, strict=True):
-            one = data.sel(simple=simple, mean=mean)
-            place = np.searchsorted(ratios, one.needed_ratio.fillna(0).values)
-            for k, name in enumerate(UNKNOWN, len(ratios)):
-                place[(one.decision == name).values] = k
-            plane_map(axes, one, place, **look)
-            for name, marker in {"undecided": "x", "no number": "_"}.items():
-                mark_nodes(axes, one, one.decision == name, {"marker": marker, "markersize": 3})
-        row[0].set_ylabel(f"{simple} model\n$r$")
-    for mean, top, bottom in zip(means, *rows, strict=True):
-        top.set_title(mean)
-        bottom.set_xlabel(r"amplitude $\Lambda$")
+    for (simple, mean), axes in zip(panels, row, strict=True):
+        one = data.sel(simple=simple, mean=mean)
+        place = np.searchsorted(ratios, one.needed_ratio.fillna(0).values)
+        for k, name in enumerate(UNKNOWN, len(ratios)):
+            place[(one.decision == name).values] = k
+        plane_map(axes, one, place, **look)
+        undecided = {"marker": "x", "markersize": 2.5, "color": GUIDE["color"]}
+        mark_nodes(axes, one, one.decision == "undecided", undecided)
+        axes.set(title=f"{mean},\n{simple} model", xlabel=r"amplitude $\Lambda$")
+    row[0].set_ylabel("restitution coefficient $r$")
     names = [rf"$\varpi\geq{number(float(ratio))}$" for ratio in ratios]
-    handles = patches(zip([*names, *UNKNOWN], fills, strict=True))
+    shown = data.decision.sel(mean=list(_MEANS)).values
+    found = zip([*names, *UNKNOWN], fills, strict=True)
+    handles = patches((name, fill) for name, fill in found if name in names or name in shown)
     legend_below(maps, handles, ncols=5, fontsize=7)
     draw_shares(below, data, "right", "mean", _MEANS, "{} model")
     below.axes[0].set_ylabel("share of nodes known to be\nright from here on")

@@ -14,6 +14,7 @@ from matplotlib.patches import Patch
 
 from bouncing_ball.datasets import PERIOD_DOUBLING, SADDLE_NODE
 from bouncing_ball.drawing.canvas import image, legend_below, logarithmic
+from bouncing_ball.drawing.labels import number
 from bouncing_ball.drawing.style import COLOURS, Look
 
 # The lowest period of each colour for locked motions.
@@ -28,11 +29,10 @@ OTHER_COLOURS = {
     "chaotic": "#f3d3c1",
     "undecided": "#b5b5b5",
 }
-# Marks that also distinguish areas in greyscale: dots for motions that do not repeat, crosses for
-# unknown motions, and strokes for other areas whose grey level is that of a period.
+# Marks that also distinguish areas in greyscale: dots for locked motions whose period is not known,
+# crosses for unknown motions, and strokes for other areas whose grey level is that of a period.
 DOTS: dict[str, Look] = {
-    UNKNOWN_PERIOD: {"marker": "3", "markersize": 1.8, "markeredgewidth": 0.3},
-    "chaotic": {"marker": ".", "markersize": 1.3, "color": "#AA3A00", "markeredgewidth": 0},
+    UNKNOWN_PERIOD: {"marker": ".", "markersize": 1.6, "markeredgewidth": 0},
     "undecided": {"marker": "x", "markersize": 1.6, "color": "#000000", "markeredgewidth": 0.3},
     "permanent contact": {"marker": "_", "markersize": 2.5, "markeredgewidth": 0.4},
     "subharmonic": {"marker": "|", "markersize": 2.5, "markeredgewidth": 0.4},
@@ -40,8 +40,7 @@ DOTS: dict[str, Look] = {
 # Largest number of restitution coefficients at which nodes are marked.
 _MARKED = 43
 UNKNOWN = {"not at any": "#000000", "undecided": "#ffffff", "no number": "#c8c8c8"}
-_HATCHES = {UNKNOWN_PERIOD: "//////", "chaotic": "......"}
-_HATCHES |= {"undecided": "xxxx", "subharmonic": "||||||"}
+_HATCHES = {UNKNOWN_PERIOD: "......", "undecided": "xxxx", "subharmonic": "||||||"}
 _HATCHES |= dict.fromkeys(("permanent contact", "no number"), "------")
 _BARS: Look = {"markersize": 4, "linewidth": 0.8, "capsize": 2}
 LOWEST_RATE = -1.5
@@ -56,10 +55,12 @@ _BIFURCATIONS: dict[str, Look] = {
     SADDLE_NODE: _BIFURCATION | {"linestyle": "-"},
     PERIOD_DOUBLING: _BIFURCATION | {"linestyle": (0, (3, 1.5))},
 }
-GROUP_LOOKS = {"all": ("all nodes", COLOURS[0], "o"), "orbit": ("n-T orbits", COLOURS[4], "s"),
-          "locked, 1 to 4 T": ("locked, 1 to 4 T", COLOURS[2], "^"),
-          "locked": ("locked", COLOURS[1], "D"),
-          "locked, above 10 T": ("locked, above 10 T", COLOURS[3], "v")}  # fmt: skip
+# Parts of a bar from below: known to agree, not known, and known to differ.
+_PARTS: tuple[Look, ...] = (
+    {"facecolor": COLOURS[1], "label": "the same"},
+    {"facecolor": "#ffffff", "hatch": "////", "label": "not known"},
+    {"facecolor": "#d9d9d9", "label": "another"},
+)
 
 
 def node_map(
@@ -134,6 +135,32 @@ def patches(fills: Iterable[tuple[str, Any]]) -> list[Patch]:
     """Entries of a legend for areas, hatched where the areas have dots."""
     look: Look = {"edgecolor": "#000000", "linewidth": 0.4}
     return [Patch(facecolor=x, label=name, hatch=_HATCHES.get(name), **look) for name, x in fills]
+
+
+def stacked_shares(part: Any, data: xr.Dataset, groups: Mapping[str, str], title: str) -> None:
+    """Shares of nodes known to agree, not known, and known to differ, as bars one upon another.
+
+    There is a panel for each simple model, with a bar for each group and ϖ. ``groups`` are the
+    groups with their names in the picture.
+    """
+    ratios = data.frequency_ratio.values
+    for simple, axes in zip(data.simple.values, part.subplots(1, 2, sharey=True), strict=True):
+        one = data.sel(simple=simple, motion_group=list(groups)).transpose("motion_group", ...)
+        low, high = one.agreement_low.values, one.agreement_high.values
+        place = np.arange(len(groups))[:, np.newaxis] * (ratios.size + 1) + np.arange(ratios.size)
+        sizes = (low, high - low, 1 - high)
+        bottoms = (np.zeros_like(low), low, high)
+        for size, bottom, look in zip(sizes, bottoms, _PARTS, strict=True):
+            drawn: Look = {"edgecolor": "#000000", "linewidth": 0.4, "width": 0.9} | look
+            axes.bar(place.ravel(), size.ravel(), bottom=bottom.ravel(), **drawn)
+        names = [f"${number(float(x))}$" for x in ratios]
+        axes.set_xticks(place.ravel(), names * len(groups))
+        axes.tick_params(axis="x", labelsize=5.5, length=0)
+        for middle, group in zip(place.mean(axis=1), groups.values(), strict=True):
+            axes.text(middle, 1.03, group, ha="center", va="bottom", fontsize=7)
+        axes.set(xlabel=r"frequency ratio $\varpi$", ylim=(0, 1))
+        axes.set_title(title.format(simple), pad=16)
+    legend_below(part, ncols=len(_PARTS), fontsize=7)
 
 
 def draw_shares(

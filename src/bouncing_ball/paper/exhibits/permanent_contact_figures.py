@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from bouncing_ball.drawing.canvas import canvas, legend_below, logarithmic
 from bouncing_ball.drawing.labels import parameters
-from bouncing_ball.drawing.style import CONTACT, GUIDE, LIMIT
+from bouncing_ball.drawing.style import CONTACT, GUIDE, LIMIT, Look
 from bouncing_ball.drawing.thresholds import draw_relative_error
 from bouncing_ball.paper.exhibits.printed_table1 import printed_contact_ratio
 
@@ -18,6 +18,8 @@ _HIGHEST = 2.0
 _ROOM = 1.5
 # The names of the regions below and above the threshold, and the forms in which a name is tried:
 # on one line, on two, and upright on two.
+# Not dotted, as the tolerance below is.
+_MINIMUM: Look = GUIDE | {"linestyle": (0, (6, 2, 1, 2)), "color": "#555555"}
 _PERMANENT = ("permanent", "contact")
 _LEAVES = ("the ball leaves", "the table")
 _FORMS = ((" ", 0), ("\n", 0), ("\n", 90))
@@ -66,7 +68,7 @@ def _draw_threshold(axes: Axes, data: xr.Dataset) -> None:
     name = f"spring-damper, {symbol}"
     axes.plot(data.frequency_ratio, data.threshold_amplitude, color=CONTACT, label=name)
     formula = "" if force else r", $2\zeta\sqrt{1-\zeta^2}$"
-    axes.axhline(float(data.minimum_threshold), label=f"minimum{formula}", **GUIDE)
+    axes.axhline(float(data.minimum_threshold), label=f"minimum{formula}", **_MINIMUM)
     ylabel = f"threshold amplitude {symbol}"
     title = rf"{parameters(data, 'restitution')}, $\zeta={float(data.damping_ratio):.4f}$"
     highest = max(_HIGHEST, _ROOM * float(data.threshold_amplitude.min()))

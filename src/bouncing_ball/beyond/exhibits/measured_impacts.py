@@ -107,7 +107,7 @@ VARIABLES = {
     "rejected_below": Variable("a law is rejected if a probability is below", symbol="p"),
     "accepted_above": Variable("a law may be compatible if both probabilities are above"),
     "band_level": Variable("probability of the bands"),
-    "useful_below": Variable("small parameter below which the error law is useful", symbol="δ"),
+    "useful_below": Variable("small parameter below which the error law is useful", symbol="η"),
     "shaker_frequency": Variable("frequency of the shaker", symbol="Ω/2π", units="Hz"),
     "shaker_law": Variable("contact law that fits the experiment best"),
     "shaker_speed": Variable(
@@ -129,7 +129,7 @@ VARIABLES = {
         "relative error of the restitution model by the r of the first family", budget=_FITTED
     ),
     "shaker_small": Variable(
-        "small parameter of the error law, useful below 0.3", symbol="δ", budget=_FITTED
+        "small parameter of the error law, useful below 0.3", symbol="η", budget=_FITTED
     ),
 }
 

@@ -129,7 +129,7 @@ def ext_measured(data: xr.Dataset) -> TextTable:
         "extrapolated": value("extrapolation_rms", "z.4f"),
         "p of it": _probability("extrapolation_probability"),
     }
-    return table(each(data, "experiment", "fitted_law"), columns)
+    return table(each(data.sel(fitted_law=list(_DRAWN)), "experiment", "fitted_law"), columns)
 
 
 def _probability(name: str) -> Column:
@@ -152,10 +152,10 @@ def ext_shaker(data: xr.Dataset) -> TextTable:
         "law": text("shaker_law"),
         **_orbits(first),
         "ϖ": at(value("shaker_ratio", ".3g"), n=first),
-        "δ": at(value("shaker_small", ".2g"), n=first),
+        "η": at(value("shaker_small", ".2g"), n=first),
     }
     for quantity in data["quantity"].values:
-        columns[f"{words(quantity)}, by the duration"] = _error("by_duration", quantity, first)
+        columns[f"{words(quantity)}, by the duration"] = _by_duration(quantity, first)
     doubling = Quantity.PERIOD_DOUBLING
     columns[f"{words(doubling)}, by the constant r"] = _error("by_constant", doubling, first)
     for n in others:
@@ -177,3 +177,13 @@ def _orbits(n: int) -> Columns:
 
 def _error(name: str, quantity: str, n: int) -> Column:
     return at(value(name, "+z.4f"), quantity=quantity, n=n)
+
+
+def _by_duration(quantity: str, n: int) -> Column:
+    """The errors by the error law, empty for contacts that are too compliant for it."""
+    column = _error("by_duration", quantity, n)
+
+    def where_useful(part: xr.Dataset) -> str:
+        return column(part) if part.shaker_small.sel(n=n) <= part.useful_below else "–"
+
+    return where_useful

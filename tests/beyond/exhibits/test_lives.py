@@ -10,6 +10,7 @@ from bouncing_ball.models.damping import Release
 
 PLACE = {"restitution": 0.6, "amplitude": 3.0}
 BALLS = {"cases": [PLACE], "frequency_ratio": [100.0], "balls": 40, "impacts": 300}
+BALLS |= {"impact_speeds": {"min": 1.0, "max": 9.0}}
 ASKED = lives.Transients(**BALLS, confidence=0.95, seed=1)
 
 

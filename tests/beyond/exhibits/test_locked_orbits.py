@@ -29,6 +29,7 @@ def test_a_contact_agrees_from_the_needed_ratio_on():
     place = {"restitution": 0.5, "amplitude": 2.5}
     common = {"confidence": 0.95, "seed": 5}
     balls = {"cases": [place], "frequency_ratio": [1000.0], "balls": 20, "impacts": 250}
+    balls |= {"impact_speeds": {"min": 1.0, "max": 9.0}}
     of_balls = typed(transients)(balls | common, "displacement")
     given = {
         "amplitude": {"min": 2.0, "max": 4.0, "samples": 2},

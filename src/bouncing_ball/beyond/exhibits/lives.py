@@ -24,6 +24,7 @@ from bouncing_ball.beyond.exhibits.motion_samples import (
 from bouncing_ball.datasets.parameters import (
     Amplitude,
     FrequencyRatio,
+    Interval,
     LossyRestitution,
     Many,
     Parameters,
@@ -68,8 +69,6 @@ VARIABLES = {
 _TIMES = 60
 # The first of these times, in periods of the table.
 _FIRST = 0.1
-# Smallest and largest speed of balls at the start.
-_SPEEDS = (1.0, 9.0)
 
 
 class Place(Parameters):
@@ -79,11 +78,22 @@ class Place(Parameters):
     amplitude: Amplitude
 
 
+ImpactSpeed = Annotated[float, number("relative speed -δ′ of the first impact", gt=0, le=1000)]
+
+
+class ImpactSpeeds(Interval):
+    """Speeds of first impacts, uniformly distributed."""
+
+    min: ImpactSpeed
+    max: ImpactSpeed
+
+
 class Transients(Sharded):
     """Balls with random starts, at several places."""
 
     cases: Many[Place]
     frequency_ratio: Many[FrequencyRatio]
+    impact_speeds: ImpactSpeeds
     balls: Annotated[int, number("random starts for each case and ϖ", ge=10, le=10000)]
     impacts: Annotated[int, number("largest number of impacts of a ball", ge=50, le=100000)]
     confidence: Confidence
@@ -140,7 +150,9 @@ def lives(parameters: Transients, release: Release, part: Part = np.asarray) -> 
     """
     random = np.random.default_rng(parameters.seed)
     phases = random.uniform(-np.pi, np.pi, parameters.balls)
-    speeds = random.uniform(*_SPEEDS, parameters.balls)
+    speeds = random.uniform(
+        parameters.impact_speeds.min, parameters.impact_speeds.max, parameters.balls
+    )
     phase, speed = part(np.stack([phases, speeds]))
     # Arrays over the case, ϖ and the ball.
     r, lam = columns(parameters.cases)[..., np.newaxis, np.newaxis]

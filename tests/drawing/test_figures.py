@@ -137,6 +137,21 @@ def test_a_line_changes_its_look_at_a_special_point_and_nowhere_else(record, nam
     assert set(met) == marks and sorted(met.values()).count(1) == inside
 
 
+def test_what_marks_hide_of_a_branch_is_enlarged_in_a_corner(record):
+    """In Fig. 8 the contact opens just before the end of the branch of ϖ = 10."""
+    data = record["fig08"]
+    start, end = drawn("fig08", data).axes
+    (corner,) = start.child_axes
+    assert not end.child_axes
+    one = data.sel(frequency_ratio=10.0)
+    hidden = one.long_amplitude.where(~one.long_admissible).dropna("long_point")
+    assert hidden.size > 10
+    low, high = corner.get_xlim()
+    assert low < hidden.min() < hidden.max() < high
+    dotted = [line for line in corner.lines if line.get_label() == "inadmissible"]
+    assert set(hidden.values) <= {x for line in dotted for x in line.get_xdata()}
+
+
 def test_markers_stand_at_the_bifurcations(record):
     data = record["fig08"].sel(frequency_ratio=10.0)
     found = lines(drawn("fig08", record["fig08"]))

@@ -62,8 +62,10 @@ def motion_of(
         table and the ``impacts`` until the motion repeats, its ``lyapunov_exponent`` per period of
         the table with ``lyapunov_error``, the ``reason`` if it is undecided or if it is locked with
         an unknown period, and one of its impacts. ``followed`` is the number of impacts for which
-        it was followed, ``in_words`` says both, and ``digits_lost`` is the number of
-        decimal digits of the start that were lost on the way: a double has 16. The figure shows the
+        it was followed, up to ``followed_time``, ``in_words`` says both, and ``digits_lost`` is the
+        number of decimal digits of the start that were lost on the way: a double has 16.
+        ``times_stuck`` is the number of contacts at which the ball stuck to the table meanwhile,
+        and ``first_lift_off`` the time at which the first of them ended. The figure shows the
         periods of the motions over an argument.
 
     Raises

@@ -1,8 +1,10 @@
 """Maps of the motions on which balls end, against orbits and a changed rounding."""
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from bouncing_ball.beyond.exhibits.locking import GROUPS, agreement, locking
+from bouncing_ball.beyond.exhibits.motion_maps import stacked_shares
 from bouncing_ball.beyond.exhibits.motion_samples import three_models
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.motions import Kind, Motions
@@ -60,6 +62,21 @@ def test_what_is_not_known_lies_between_the_bounds_of_a_share():
     # The long periods are the one known and the two unknown ones.
     assert found["locked, above 10 T"] == [1, 0, 2 / 3]
     assert np.isnan(found["orbit"][1:]).all()
+
+
+def test_the_bars_of_a_group_fill_the_whole_of_its_nodes(recorded):
+    """From below the lower bound of the share that agrees, and what is not known above it."""
+    data = recorded["ext_locking"]
+    figure = Figure()
+    stacked_shares(figure, data, {"locked, above 10 T": "above 10 T"}, "{}")
+    axes = figure.axes[0]
+    one = data.sel(simple="restitution", motion_group="locked, above 10 T")
+    same, unknown, other = (
+        np.array([[bar.get_y(), bar.get_height()] for bar in bars]).T for bars in axes.containers
+    )
+    assert np.array_equal(same[1], one.agreement_low)
+    assert np.allclose(unknown.sum(axis=0), one.agreement_high, rtol=0, atol=1e-15)
+    assert np.allclose(other.sum(axis=0), 1, rtol=0, atol=1e-15)
 
 
 def test_rounding_may_decide_at_few_nodes_only(recorded):

@@ -76,7 +76,7 @@ VARIABLES = {
     ),
     "cascade_coefficient": Variable(
         "coefficient of the restitution model's error at the period doublings",
-        symbol="K_k",
+        symbol="K_m",
         budget=1e-06,
     ),
     "cascade_second_order": Variable(

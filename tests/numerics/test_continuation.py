@@ -4,17 +4,10 @@ import numpy as np
 import pytest
 from bounds_of_branches import parameter_bound
 
-from bouncing_ball.numerics.continuation import (
-    STARTED,
-    Branch,
-    ContinuationError,
-    StepControl,
-    continue_both_ways,
-    continue_branch,
-    resample,
-    solve_at,
-)
+from bouncing_ball.numerics.branch import STARTED, Branch, ContinuationError, resample
+from bouncing_ball.numerics.continuation import continue_both_ways, continue_branch, solve_at
 from bouncing_ball.numerics.events import Event
+from bouncing_ball.numerics.steps import StepControl
 
 # Newton's last step is below 1e-12 and converges quadratically, so points are
 # exact to a few roundings; 1e-12 has a wide margin.

@@ -11,7 +11,8 @@ from bouncing_ball.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.numerics.continuation import StepControl, continue_branch
+from bouncing_ball.numerics.continuation import continue_branch
+from bouncing_ball.numerics.steps import StepControl
 from bouncing_ball.periodic.branches.following import orbits_along
 from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns
 from bouncing_ball.periodic.one_impact.spring_damper_bifurcations import orbit_at

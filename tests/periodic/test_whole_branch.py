@@ -7,7 +7,7 @@ from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.damping import LINEAR
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.numerics.continuation import ContinuationError
+from bouncing_ball.numerics.branch import ContinuationError
 from bouncing_ball.periodic.branches.following import Followed
 from bouncing_ball.periodic.one_impact.whole_branch import whole_branch, whole_branches
 

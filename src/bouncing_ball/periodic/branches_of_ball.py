@@ -20,7 +20,7 @@ from bouncing_ball.datasets.variables import describe
 from bouncing_ball.errors import NoOrbitError, suggesting
 from bouncing_ball.models.ball import Ball, a_ball
 from bouncing_ball.models.model import Model
-from bouncing_ball.numerics.continuation import ContinuationError
+from bouncing_ball.numerics.branch import ContinuationError
 from bouncing_ball.periodic.branches.following import Followed
 from bouncing_ball.periodic.branches.labelled import FollowedBranch
 from bouncing_ball.periodic.branches.observables import VARIABLES, joined, n_t_columns, no_branch

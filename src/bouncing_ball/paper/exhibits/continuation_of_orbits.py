@@ -19,7 +19,7 @@ from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
-from bouncing_ball.numerics.continuation import Branch, ContinuationError
+from bouncing_ball.numerics.branch import Branch, ContinuationError
 from bouncing_ball.paper.exhibits.orbit_parameters import (
     BranchEnd,
     BranchPoints,

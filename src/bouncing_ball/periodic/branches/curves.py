@@ -26,14 +26,11 @@ from enum import StrEnum
 import numpy as np
 
 from bouncing_ball.errors import NoOrbitError, ParameterError
-from bouncing_ball.numerics.continuation import (
-    Branch,
-    ContinuationError,
-    StepControl,
-    continue_both_ways,
-)
+from bouncing_ball.numerics.branch import Branch, ContinuationError
+from bouncing_ball.numerics.continuation import continue_both_ways
 from bouncing_ball.numerics.corrector import Condition, NewtonSettings, null_vector, solution_at
 from bouncing_ball.numerics.events import Event, SpecialPoint, locate, vanishing
+from bouncing_ball.numerics.steps import StepControl
 from bouncing_ball.periodic.branches.following import (
     PATIENT,
     STEPS,

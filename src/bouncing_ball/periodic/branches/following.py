@@ -8,18 +8,12 @@ from typing import ClassVar, NamedTuple, Self
 import numpy as np
 
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.numerics.continuation import (
-    Branch,
-    ContinuationError,
-    End,
-    EndKind,
-    StepControl,
-    continue_branch,
-    resample,
-)
+from bouncing_ball.numerics.branch import Branch, ContinuationError, End, EndKind, resample
+from bouncing_ball.numerics.continuation import continue_branch
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, solution_at, tangent
 from bouncing_ball.numerics.elementary import reduce_angle
 from bouncing_ball.numerics.events import Event, SpecialPoint
+from bouncing_ball.numerics.steps import StepControl
 from bouncing_ball.periodic.orbits.balls import LAMBDA
 from bouncing_ball.periodic.orbits.lost_release import lost_release
 from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from bouncing_ball.errors import NoOrbitError
-from bouncing_ball.numerics.continuation import Branch, End
+from bouncing_ball.numerics.branch import Branch, End
 from bouncing_ball.numerics.corrector import newton, plane, tangent
 from bouncing_ball.numerics.events import domain_limits
 from bouncing_ball.periodic.branches.following import PATIENT, Window

@@ -16,15 +16,11 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.model import Model
-from bouncing_ball.numerics.continuation import (
-    ContinuationError,
-    StepControl,
-    WithEvents,
-    continue_branch,
-    continue_branches,
-)
+from bouncing_ball.numerics.branch import ContinuationError
+from bouncing_ball.numerics.continuation import continue_branch, continue_branches
 from bouncing_ball.numerics.corrector import NewtonSettings, newton, solve, tangent
 from bouncing_ball.numerics.events import Event, SpecialPoint
+from bouncing_ball.numerics.steps import StepControl, WithEvents
 from bouncing_ball.periodic.branches.following import Window, limit, limits_of
 from bouncing_ball.periodic.one_impact import corrected_branch as line
 from bouncing_ball.periodic.orbits.balls import LAMBDA, LOWEST

@@ -15,14 +15,10 @@ from numpy.typing import ArrayLike
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.setting import require_paper
-from bouncing_ball.numerics.continuation import (
-    Branch,
-    ContinuationError,
-    StepControl,
-    WithEvents,
-    continue_all_both_ways,
-)
+from bouncing_ball.numerics.branch import Branch, ContinuationError
+from bouncing_ball.numerics.continuation import continue_all_both_ways
 from bouncing_ball.numerics.events import Event
+from bouncing_ball.numerics.steps import StepControl, WithEvents
 from bouncing_ball.periodic.branches.following import Followed, Window, limits_of
 from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.periodic.one_impact.paper_unknowns import PaperUnknowns

@@ -24,7 +24,7 @@ import numpy as np
 
 from bouncing_ball import datasets
 from bouncing_ball.numerics.arrays import pick
-from bouncing_ball.numerics.continuation import Branch, End
+from bouncing_ball.numerics.branch import Branch, End
 from bouncing_ball.numerics.corrector import Problem
 from bouncing_ball.numerics.events import Event, SpecialPoint
 from bouncing_ball.periodic.orbits.legs import Legs

@@ -17,6 +17,7 @@ ends on its own, so that it is the same as if it were followed alone.
 
 from collections.abc import Callable, Sequence
 from functools import cache
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -91,38 +92,40 @@ def _first_state(tested: WithEvents, start: np.ndarray, towards: np.ndarray) -> 
     return State(point, along, np.zeros_like(point), values)
 
 
-def _attempts(tested: WithEvents, ways: Sequence[Way], control: StepControl) -> list[list[Attempt]]:
-    """Predict and correct the next points of each branch, in rows of the same length."""
+def _attempts(
+    tested: WithEvents,
+    ways: Sequence[Way],
+    plans: Sequence[tuple[np.ndarray, np.ndarray]],
+    max_angle: float,
+) -> list[list[Attempt]]:
+    """Predict and correct the next points of each branch, with its steps and distances."""
     problem, events = tested
-    count = control.ahead
+    counts = [len(steps) for steps, _ in plans]
     states = [way.states[-1] for way in ways]
-    point = np.repeat([state.point for state in states], count, axis=0)
-    along = np.repeat([state.tangent for state in states], count, axis=0)
-    curvature = np.repeat([state.curvature for state in states], count, axis=0)
-    failed = np.array([[way.failed] for way in ways])
-    length = np.array([way.length for way in ways])
-    steps = np.where(failed, control.shorter(length), control.steps(length))
-    distance = np.where(failed, steps, np.cumsum(steps, axis=-1)).reshape(-1, 1)
+    point = np.repeat([state.point for state in states], counts, axis=0)
+    along = np.repeat([state.tangent for state in states], counts, axis=0)
+    curvature = np.repeat([state.curvature for state in states], counts, axis=0)
+    steps = np.concatenate([steps for steps, _ in plans])
+    distance = np.concatenate([distances for _, distances in plans])[:, np.newaxis]
     predicted = point + distance * (along + distance / 2 * curvature)
     found = newton(problem, predicted, plane(along, predicted))
     # A branch whose corrector failed stays where it is.
     reached = np.where(found.converged[:, np.newaxis], found.point, point)
     ahead = tangent(problem.jacobian(reached), along)
     # The point before each one is the row before, except for a first row and for shorter steps.
-    first = (failed | (np.arange(count) == 0)).reshape(-1, 1)
+    first = (steps == distance[:, 0])[:, np.newaxis]
     chord = reached - np.where(first, point, np.roll(reached, 1, axis=0))
     behind = np.where(first, along, np.roll(ahead, 1, axis=0))
     angle = np.maximum(_angle(ahead, behind), _angle(chord, behind))
-    stretched = np.linalg.norm(chord, axis=-1) > _STRETCHED * steps.ravel()
+    stretched = np.linalg.norm(chord, axis=-1) > _STRETCHED * steps
     angle[stretched] = np.inf
     values = np.full((len(reached), len(events)), np.nan)
-    if np.any(found.converged & (angle <= control.max_angle)):
+    if np.any(found.converged & (angle <= max_angle)):
         for k, event in enumerate(events):
             values[:, k] = event.function(reached)
-    columns = steps.ravel(), found.converged, found.residual, found.iterations, angle
+    columns = steps, found.converged, found.residual, found.iterations, angle
     rows = zip(reached, ahead, values, *(column.tolist() for column in columns), strict=True)
-    attempts = [Attempt(*row) for row in rows]
-    return [attempts[k : k + count] for k in range(0, len(attempts), count)]
+    return [[Attempt(*row) for row in islice(rows, count)] for count in counts]
 
 
 def _angle(one: np.ndarray, other: np.ndarray) -> np.ndarray:
@@ -165,15 +168,18 @@ def continue_branches(
     errors: dict[int, ContinuationError] = {}
     for k, (start, ahead) in enumerate(zip(starts, towards, strict=True)):
         try:
-            ways[k] = Way([_first_state(one(k), start, ahead)], control.initial)
+            first = _first_state(one(k), start, ahead)
+            ways[k] = Way([first], control.initial, control.ahead)
         except ContinuationError as error:
             errors[k] = error
-    before: list[int] = []
+    before = None
     while going := [k for k, way in ways.items() if not way.end and len(way.states) < max_points]:
-        if going != before:
-            tested = rows_of(np.repeat(going, control.ahead))
-            before = going
-        rounds = _attempts(tested, [ways[k] for k in going], control)
+        plans = [ways[k].plan(control) for k in going]
+        numbers = [k for k, (steps, _) in zip(going, plans, strict=True) for _ in steps]
+        if numbers != before:
+            tested = rows_of(np.array(numbers))
+            before = numbers
+        rounds = _attempts(tested, [ways[k] for k in going], plans, control.max_angle)
         for k, attempts in zip(going, rounds, strict=True):
             left = max_points - len(ways[k].states)
             ways[k].advance(attempts[:left], one(k), control)

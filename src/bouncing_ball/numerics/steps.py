@@ -12,6 +12,8 @@ from bouncing_ball.numerics.events import Event, SpecialPoint, changes_of_sign, 
 
 # Number of steps after which a branch whose points accumulate ends.
 _CREEPING = 16
+# Number of shorter steps that are tried together.
+_TRIED = 4
 
 
 @dataclass(frozen=True)
@@ -20,8 +22,8 @@ class StepControl:
 
     The step grows if the corrector needed fewer iterations than ``target_iterations``, and shrinks
     if it needed more. It is also limited such that the tangent turns by less than ``max_angle``, so
-    that folds are resolved and the continuation does not jump to another branch. Within a round of
-    ``ahead`` points each step is twice as long as the one before, up to the largest.
+    that folds are resolved and the continuation does not jump to another branch. Within a round
+    each step is twice as long as the one before, up to the largest.
 
     Parameters
     ----------
@@ -34,7 +36,7 @@ class StepControl:
     creep : float
         A branch whose last 16 steps lead no farther than this ends; by default it goes on.
     ahead : int
-        Number of points that are predicted from one state.
+        The largest number of points that are predicted from one state.
     """
 
     initial: float = 0.02
@@ -45,27 +47,25 @@ class StepControl:
     creep: float = 0.0
     ahead: int = 8
 
-    def steps(self, first: np.ndarray) -> np.ndarray:
-        """The steps of a round, of the shape of the first steps and ``ahead``.
+    def steps(self, first: float, count: int) -> np.ndarray:
+        """The steps of a round of so many points.
 
         Examples
         --------
-        >>> StepControl(largest=0.3, ahead=4).steps(np.array(0.1)).tolist()
+        >>> StepControl(largest=0.3).steps(0.1, 4).tolist()
         [0.1, 0.2, 0.3, 0.3]
         """
-        growing = np.asarray(first)[..., np.newaxis] * 2.0 ** np.arange(self.ahead)
-        return np.minimum(growing, self.largest)
+        return np.minimum(first * 2.0 ** np.arange(count), self.largest)
 
-    def shorter(self, failed: np.ndarray) -> np.ndarray:
-        """The steps that are tried in place of those that failed, of their shape and ``ahead``.
+    def shorter(self, failed: float) -> np.ndarray:
+        """The steps that are tried in place of one that failed.
 
         Examples
         --------
-        >>> StepControl(smallest=0.03, ahead=4).shorter(np.array(0.2)).tolist()
+        >>> StepControl(smallest=0.03).shorter(0.2).tolist()
         [0.1, 0.05, 0.03, 0.03]
         """
-        halved = np.asarray(failed)[..., np.newaxis] * 0.5 ** np.arange(1, self.ahead + 1)
-        return np.maximum(halved, self.smallest)
+        return np.maximum(failed * 0.5 ** np.arange(1, _TRIED + 1), self.smallest)
 
     def after(self, step: float, iterations: int, angle: float) -> float:
         """The length of the next step after an accepted step.
@@ -133,15 +133,24 @@ class _Rejected(Exception):
 
 @dataclass
 class Way:
-    """A branch that is being followed: its states, its events, its end, and the length of the next
-    step, or of the step that ``failed``.
+    """A branch that is being followed: its states, its events and its end, the ``length`` of the
+    next step, or of the step that ``failed``, and the number of points of the next round.
     """
 
     states: list[State]
     length: float
+    ahead: int
     failed: bool = False
     special: list[SpecialPoint] = field(default_factory=list)
     end: End | None = None
+
+    def plan(self, control: StepControl) -> tuple[np.ndarray, np.ndarray]:
+        """The steps of the next round, and the distances of its points from the last state."""
+        if self.failed:
+            steps = control.shorter(self.length)
+            return steps, steps
+        steps = control.steps(self.length, self.ahead)
+        return steps, np.cumsum(steps)
 
     def advance(
         self, attempts: Sequence[Attempt], tested: WithEvents, control: StepControl
@@ -156,11 +165,13 @@ class Way:
             why = self._refused(attempt, tested, control)
             if why:
                 self.failed = number == 0
+                self.ahead = number + 1
                 return
             # Far points need more iterations because they are far.
             self.length = control.after(attempt.step, attempts[0].iterations, attempt.angle)
             if self.end:
                 return
+        self.ahead = min(2 * self.ahead, control.ahead)
 
     def _retry(self, attempts: Sequence[Attempt], tested: WithEvents, control: StepControl) -> None:
         """Accept the longest of several steps from the last point, or end the branch."""

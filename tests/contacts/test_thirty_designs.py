@@ -15,6 +15,7 @@ import pytest
 from asked_contacts import answered
 from scipy.integrate import solve_ivp
 
+from bouncing_ball.contacts import rows
 from bouncing_ball.models.damping import Release
 
 G = 9.80665
@@ -160,10 +161,40 @@ DROPS = [
 @pytest.mark.parametrize("given", DROPS)
 def test_a_drop(given):
     answer = answered(**given)
-    found = answer.found
-    dropped = answer.dropped
-    ball = ball_of(answer)
+    compare(answer.found, answer.dropped, ball_of(answer))
+
+
+# The rows of a contact without a table that are printed.
+OF_CONTACT = {
+    "mass", "stiffness", "natural_frequency", "damping", "damping_ratio", "contact_time",
+    "measured_restitution", "slowed_speed", "static_deflection",
+}  # fmt: skip
+OF_DROP = {
+    "speed", "drop_height", "rebound_height", "second_rise", "third_rise", "restitution",
+    "at_half", "at_tenth", "greatest_compression", "peak_force",
+}  # fmt: skip
+
+
+def compare(found, dropped, ball):
+    """All printed numbers of a contact without a table and of a drop onto it."""
+    # A new row needs a comparison.
+    assert {row.key[0] for row in rows.rows(found) if row.words} == OF_CONTACT
+    assert {row.key[0] for row in rows.rows(dropped) if row.words} == OF_DROP
     speed = dropped.speed
+    k = found.stiffness
+    c = found.damping
+    assert found.natural_frequency == pytest.approx(math.sqrt(k / ball.mass), rel=1e-12)
+    assert found.damping_ratio == pytest.approx(c / 2 / math.sqrt(k * ball.mass), rel=1e-9)
+    if (found.law or {}).get("name") == "impedance":
+        # Those of the depths at which the impedance is constant.
+        assert found.natural_frequency == pytest.approx(found.law["frequency_ratio"], rel=1e-12)
+        assert found.damping_ratio == pytest.approx(found.law["damping_ratio"], rel=1e-12)
+    else:
+        # Of a law they are those of the linear contact with its r and duration.
+        spring = Ball(ball.mass, linear(k, c), found.release == "displacement", 1e-8)
+        _, time, _, rate, *_ = spring.contact(speed, gravity=0.0)
+        assert found.measured_restitution == pytest.approx(-rate / speed, rel=1e-6)
+        assert found.contact_time == pytest.approx(time, rel=1e-6)
     near = {"rel": ball.accuracy, "abs": 1e-9}
     first = ball.rise(speed)
     second = ball.rise(math.sqrt(2 * G * first)) if first else 0.0
@@ -328,7 +359,25 @@ def test_a_time_step_that_is_given(name, step, r):
     assert rise.least == pytest.approx(rises.min(), rel=0.01)
     assert rise.most == pytest.approx(rises.max(), rel=0.01)
     soft = answer.softer
-    assert soft.contact.static_deflection == pytest.approx(0.5 * G / soft.contact.stiffness)
+    k, c = soft.contact.stiffness, soft.contact.damping
+    compare(soft.contact, soft.dropped, Ball(0.5, linear(k, c), pulls, 1e-8))
+    k, c = written(name, answer.engine.softer)
+    many = in_steps(scheme, 0.5, k, c, h, np.linspace(1e-6, 1.0, 101), pulls=pulls)
+    assert np.abs(many - r).max() <= 1e-3 + 1e-9
+    rises = in_steps(
+        scheme, 0.5, k, c, h, np.linspace(0.0, 1.0, 41), pulls=pulls, drop=1 / (2 * G)
+    )  # fmt: skip
+    of_soft = soft.dropped_at_step
+    # A ball that stays is left below the table.
+    own = max(rises.min(), 0.0), max(rises.max(), 0.0)
+    assert (of_soft.least, of_soft.most) == pytest.approx(own, rel=0.02, abs=1e-6)
+    looser = answer.looser
+    if scheme == "semi":
+        many = in_steps(
+            scheme, 0.5, looser.stiffness, looser.damping, h, np.linspace(1e-6, 1.0, 101),
+            pulls=pulls,
+        )  # fmt: skip
+        assert np.abs(many - r).max() <= 0.01 + 1e-9
 
 
 def written(name, settings):

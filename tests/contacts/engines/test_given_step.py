@@ -14,7 +14,7 @@ from bouncing_ball.contacts.engines.given_step import at_step, spread_in_steps, 
 from bouncing_ball.contacts.engines.impacts import FEWEST, impacts_in_steps, is_stable
 from bouncing_ball.contacts.engines.physical import Physical
 from bouncing_ball.contacts.engines.scheme import Scheme
-from bouncing_ball.models.damping import LINEAR, Release
+from bouncing_ball.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
 
 FRACTIONS = np.linspace(0.02, 0.98, 17).tolist()
@@ -83,6 +83,19 @@ def test_the_stiffest_contact_is_within_the_error_and_a_stiffer_one_is_not(schem
     stiff = Physical(2.0, found.stiffest, found.stiffest_damping)
     assert stiff.damping_ratio == pytest.approx(zeta, rel=1e-12)
     assert stiff.contact_time(Release.FORCE) == pytest.approx(1e-4 * steps, rel=1e-12)
+
+
+@pytest.mark.parametrize("restitution", [0.5, 0.75, 0.8, 0.9])
+@pytest.mark.parametrize("error", [0.01, 0.001])
+def test_the_stiffest_contact_is_within_the_error_where_the_error_jumps(restitution, error):
+    """With the displacement release the sampled number of steps may be too small by a tenth."""
+    zeta = float(damping_ratio(restitution))
+    rule = Release.DISPLACEMENT
+    ball, _ = stiffest_contact(Scheme.SEMI_IMPLICIT, 1.0, zeta, rule, 1.0, error)
+    instants = np.linspace(1e-9, 1.0, 20_001)
+    step = ball.angular_frequency
+    found = impacts_in_steps(Scheme.SEMI_IMPLICIT, ball.damping_ratio, rule, step, instants)
+    assert np.abs(found - restitution).max() <= error
 
 
 @pytest.mark.parametrize("scheme", Scheme)

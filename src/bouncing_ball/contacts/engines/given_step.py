@@ -223,7 +223,11 @@ def _fewest(scheme: Scheme, zeta: float, release: Release, error: float) -> floa
         return spread_in_steps(scheme, zeta, release, duration / steps).error(exact) <= error
 
     sampled = fewest_steps(scheme, zeta, release, error)
-    tried = sampled * np.linspace(1 + _MARGIN, 1 - _MARGIN, _TRIED)
+    top = 1 + _MARGIN
+    # Of the displacement release the number of steps jumps, and the error with it.
+    while not within(sampled * top):
+        top += _MARGIN / 4
+    tried = sampled * np.linspace(top, 1 - _MARGIN, _TRIED)
     tried = np.append(tried[tried > FEWEST], FEWEST) if sampled * (1 - _MARGIN) < FEWEST else tried
     good = float(tried[0])
     for steps in tried.tolist():

@@ -1,6 +1,7 @@
 """What a ball does in the end: labels, statistics and the verdict on them."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -8,7 +9,8 @@ from asked_contacts import assessed
 
 from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.ends import End, EndKind
-from bouncing_ball.contacts.means import Mean, _changed
+from bouncing_ball.contacts.engines.impedance import Impedance
+from bouncing_ball.contacts.means import Mean, _changed, _oscillator
 from bouncing_ball.contacts.motion import FinalMotion
 from bouncing_ball.contacts.resolve import resolve
 from bouncing_ball.contacts.table import Table
@@ -17,6 +19,8 @@ from bouncing_ball.errors import ModelError
 from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.means import means as means_of
 from bouncing_ball.long_run.sampled_means import Starts, advance, start
+from bouncing_ball.models.laws.force_law import NUMBER
+from bouncing_ball.models.laws.hertzian import LinearHuntCrossley
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
@@ -306,12 +310,39 @@ def test_a_change_of_a_law_is_one_of_its_parameters_in_si_units(law):
     assert heavier.table.gravity == pytest.approx(1.001 * table.gravity, rel=1e-14)
 
 
+@dataclass(frozen=True, repr=False)
+class Stiffening(LinearHuntCrossley):
+    """A law with a third number, which r and the duration of an impact do not determine."""
+
+    more: float = 0.0
+
+    units: ClassVar = LinearHuntCrossley.units | {"more": NUMBER}
+
+    def force(self, penetration, rate):
+        return (1 + self.more * penetration**2) * super().force(penetration, rate)
+
+
 def test_the_linear_contact_stands_for_a_law_that_no_impact_determines():
+    plain = Contact(mass=1, stiffness=1e5, restitution=0.7)
+    case = resolve(plain, Table(frequency="20 Hz", acceleration="2 g").motion)
+    case = replace(case, law=Stiffening(400.0, 0.1, 0.5))
+    impacts = Starts(np.array([0.5]), np.array([-3.0]))
+    changed = _changed(case, End(EndKind("chaotic", 0, 0), impacts))
+    assert "no change" in changed and all(each.law is None for each in changed.values())
+
+
+def test_an_impedance_is_changed_as_itself():
     soft = Contact(mass=1, from_engine="mujoco", solref="-1e4 -20")
     case = resolve(soft, Table(frequency="20 Hz", acceleration="2 g").motion)
     impacts = Starts(np.array([0.5]), np.array([-3.0]))
     changed = _changed(case, End(EndKind("chaotic", 0, 0), impacts))
-    assert "no change" in changed and all(each.law is None for each in changed.values())
+    assert [*changed] == ["r -0.1 %", "r +0.1 %", "k +0.1 %", "g +0.1 %"]
+    before = case.law_in_si
+    heavier = changed["g +0.1 %"].law_in_si
+    assert heavier.pop("name") == before.pop("name") == "impedance"
+    assert heavier == pytest.approx(before, rel=1e-8)
+    stiffer = changed["k +0.1 %"].law_in_si
+    assert stiffer["frequency_ratio"] / before["frequency_ratio"] == pytest.approx(1.0005, abs=5e-5)
 
 
 def test_the_headline_is_about_the_motion_on_which_most_balls_end():
@@ -384,3 +415,19 @@ def test_the_heights_of_a_motion_are_in_metres():
     late = slice(-4, None)
     tops = 1.1 * np.sin(run.phase[late]) + run.bounce_velocity[late] ** 2 / 2
     assert unit.motion.greatest["restitution"] == pytest.approx(tops.max(), rel=1e-6)
+
+
+def test_an_impedance_with_another_r_has_it_at_the_speed_of_its_impacts():
+    law = Impedance(20.0, 0.15, 0.95, 0.9, width=0.3)
+    impact = law.signature(2.0)
+    for factor, longer, unit in ((1.001, 1.0, 1.0), (0.999, 1 / 1.001, 1.0), (1.0, 1.0, 1.001)):
+        r = factor * float(impact.restitution)
+        duration = longer * float(impact.duration)
+        found = _oscillator(law, 2.0, r, duration, unit)
+        again = found.signature(2.0 / unit)
+        assert float(again.restitution) == pytest.approx(r, rel=1e-9)
+        assert float(again.duration) == pytest.approx(duration, rel=1e-9)
+        # The width in metres and the other numbers of solimp are those of the same contact.
+        assert found.width == pytest.approx(0.3 / unit, rel=1e-14)
+        assert (found.share, found.at_surface) == (0.95, 0.9)
+    assert _oscillator(law, 2.0, float(impact.restitution), float(impact.duration), 1.0) == law

@@ -7,7 +7,7 @@ any setting, to which they are equal but for rounding. In any other setting the 
 :class:`~bouncing_ball.models.suspension.Suspension`.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, is_dataclass
 from typing import Any, NamedTuple, Self
 
 import numpy as np
@@ -166,7 +166,9 @@ class OtherSetting(Setting):
 
     def __post_init__(self) -> None:
         if not isinstance(self.form, Waveform):
-            raise ParameterError("{table} = {} is not a Waveform", shortened(self.form))
+            # An engineer's table has a long text.
+            shown = type(self.form).__name__ if is_dataclass(self.form) else shortened(self.form)
+            raise ParameterError("{table} = {} is not a Waveform, the shape of its motion", shown)
         if not isinstance(self.suspension, Suspension):
             raise ParameterError(
                 "{flight} = {} is neither Drag nor Spring", shortened(self.suspension)

@@ -5,6 +5,7 @@ The settings are those of the contact that was asked for, with the r that it has
 Beside them are those with a retuned damping, and those of a softer contact with its own numbers.
 """
 
+import math
 from dataclasses import dataclass, replace
 
 from bouncing_ball.contacts.assess import Assessment, assess
@@ -22,6 +23,7 @@ from bouncing_ball.contacts.question import EngineSetup, Question
 from bouncing_ball.contacts.resolve import resolve
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.table import Table, TableMotion
+from bouncing_ball.contacts.texts import shown
 from bouncing_ball.errors import ModelError, ParameterError, suggesting
 from bouncing_ball.models.laws.hertzian import LinearHuntCrossley
 from bouncing_ball.models.spring_damper import SpringDamper
@@ -234,6 +236,10 @@ def _longer(case: ResolvedContact, contact_time: float) -> ResolvedContact:
 
 def _verdict(case: ResolvedContact, question: Question) -> str:
     """The headline and the verdict on a contact, or the reason why there are none."""
+    period = 2 * math.pi * case.table.time
+    if case.law_in_si is not None and case.contact_time > period:
+        long = f"an impact takes {shown(case.contact_time, 's')}, more than the table's period"
+        return f"It is not judged: {long} of {shown(period, 's')}."
     try:
         found = assess(case, question)
     except ModelError as error:

@@ -163,6 +163,9 @@ def test_the_page_shows_the_case(found, data):
     figure = draw(document(found), data, [("stiffness", "36 N/m")])
     star = next(line for line in figure.axes[0].lines if line.get_label() == "this contact")
     assert star.get_xydata().tolist() == [[0.65, found.frequency_ratio]]
+    # The tolerance 1/99 in per cent, and as a line among the errors.
+    assert figure.axes[0].get_title().startswith("right to 1.0101 % above the line")
+    assert [1 / 99, 1 / 99] in [list(line.get_xdata()) for line in figure.axes[1].lines]
     labels = [label.get_text() for label in figure.axes[1].get_yticklabels()]
     assert labels == [QUANTITIES[quantity] for quantity in Quantity]
     texts = " ".join(" ".join(text.get_text().split()) for text in figure.texts)

@@ -103,6 +103,12 @@ def test_a_line_that_is_new_or_gone_has_no_counterpart():
     ]
 
 
+def test_a_line_that_is_added_to_a_long_table_is_the_only_difference():
+    rows = [f"| {number} |" for number in range(300)]
+    found = compare_texts("\n".join(rows), "\n".join(["| new |", *rows]), None)
+    assert [(line.record, line.new) for line in found] == [(None, "| new |")]
+
+
 def save_png(path, picture: Image.Image, **text: str) -> None:
     info = PngInfo()
     for key, value in text.items():

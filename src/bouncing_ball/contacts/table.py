@@ -118,10 +118,11 @@ class Table:
     """What may have been meant if no model has an orbit: an acceleration in g without its unit."""
 
     def __post_init__(self) -> None:
-        # Gravity is given for tables on which g is no unit.
-        in_g = self.acceleration is None or str(self.acceleration).strip().endswith("g")
-        hidden = in_g or self.gravity is not None
+        written = self.acceleration
         convert(self)
+        # Gravity is given for tables on which g is no unit.
+        in_g = written is None or str(written).strip().endswith("g")
+        hidden = in_g or self.gravity is not None
         meant = "" if hidden else f"perhaps {self.acceleration:g} g was meant"
         object.__setattr__(self, "hint", meant)
         amplitude = self.motion.amplitude

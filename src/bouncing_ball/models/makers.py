@@ -165,8 +165,9 @@ def spring_damper(
     else:
         measured = loss == "measured_restitution"
         contact = SpringDamper.from_restitution(flat[loss], ratio, release, measured=measured)
+    setting = setting_of(table, flight)
     given = {**parameters, "release": str(release)} | _single_numbers(flight)
-    return SpringDamperModel(contact, setting_of(table, flight)).labelled(given)
+    return SpringDamperModel(contact, setting).labelled(given)
 
 
 def the_loss(

@@ -116,7 +116,7 @@ def test_a_value_of_a_wrong_type_is_named_in_one_line(refusal, kind, given, word
         kind(**given)
 
 
-@pytest.mark.parametrize("huge", [10**5000, -(10**5000), [10**5000]])
+@pytest.mark.parametrize("huge", [10**5000, -(10**5000), [10**5000]], ids=["+", "-", "list"])
 def test_a_number_of_too_many_digits_is_refused_in_one_line(huge, refusal):
     with refusal(ModelError, "acceleration"):
         bouncing_ball.Table(frequency="50 Hz", acceleration=huge)

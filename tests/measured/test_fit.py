@@ -291,3 +291,9 @@ def test_a_law_that_was_not_fitted_is_named(refusal):
 def test_all_times_missing_is_no_contact_time():
     fit = fit_contact([1.0, 2.0], [0.8, 0.7], [np.nan, np.nan])
     assert not fit.best.has_stiffness
+
+
+@pytest.mark.parametrize("laws", ["tsuji", 0.5, np.ones((2, 2)), float, [0.5]])
+def test_laws_are_a_list_of_names(laws, refusal):
+    with refusal(ModelError, "laws = ", "is no list of names of laws"):
+        fit_contact([1.0, 2.0], [0.8, 0.7], laws=laws)

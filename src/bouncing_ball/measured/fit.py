@@ -26,7 +26,14 @@ from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.quantities import STANDARD_GRAVITY, quantities
 from bouncing_ball.contacts.table import Table
 from bouncing_ball.contacts.units import in_si
-from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError, require, suggesting
+from bouncing_ball.errors import (
+    ModelError,
+    NoOrbitError,
+    ParameterError,
+    require,
+    shortened,
+    suggesting,
+)
 from bouncing_ball.measured.curves import CURVES, Curve, curve_named
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
 from bouncing_ball.numerics.arrays import as_numbers
@@ -457,13 +464,26 @@ def fit_contact(
     points = replace(points, is_relative=not absolute_uncertainties)
     weight = None if mass is None else in_si("mass", mass, quantities(Contact)["mass"])
     times = _times(durations, duration_uncertainties, points)
-    names = tuple(CURVES) if laws is None else tuple(laws)
+    names = tuple(CURVES) if laws is None else _names(laws)
     found = [
         replace(_with_time(fit_law(curve_named(name), points), times), mass=weight)
         for name in names
     ]
     found.sort(key=lambda each: (np.nan_to_num(each.criterion, nan=np.inf), each.rms))
     return ContactFit(points, tuple(found), _notes(points, times))
+
+
+def _names(laws: Any) -> tuple[str, ...]:
+    """The names of laws.
+
+    Raises
+    ------
+    ParameterError
+        If they are no list of names.
+    """
+    if not isinstance(laws, list | tuple) or not all(isinstance(name, str) for name in laws):
+        raise ParameterError("{laws} = {} is no list of names of laws", shortened(laws))
+    return tuple(laws)
 
 
 def checked(speeds: ArrayLike, restitutions: ArrayLike, uncertainties: ArrayLike | None) -> Points:

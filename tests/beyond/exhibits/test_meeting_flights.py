@@ -30,3 +30,12 @@ def test_the_flights_meet_at_the_centroid_of_the_force(described, release):
     inside = (time > 0) & (time < data.contact_duration.item())
     assert np.all(gap[inside] < 0) and np.all(gap[time < 0] > 0)
     assert float(data.delay) == pytest.approx(float(data.meeting_time), rel=0.05)
+
+
+def test_the_fewest_samples_show_the_contact():
+    release = "displacement"
+    data = typed(meeting_flights)(PARAMETERS | {"samples": 11}, release)
+    touching = (data.time >= 0) & (data.time <= data.contact_duration)
+    assert int(touching.sum()) >= 4
+    with pytest.raises(ValueError, match="greater than or equal to 11"):
+        typed(meeting_flights)(PARAMETERS | {"samples": 10}, release)

@@ -19,7 +19,7 @@ from bouncing_ball.accuracy.corrected_errors import SIMPLE, errors, search
 from bouncing_ball.accuracy.errors import OF_IMPACTS, Quantity
 from bouncing_ball.accuracy.thresholds import last_zero
 from bouncing_ball.beyond.exhibits.random_orbits import random_orbits
-from bouncing_ball.datasets.parameters import LossyRestitution, Samples, Seed
+from bouncing_ball.datasets.parameters import LossyRestitution, Samples, Seed, number
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.laws.signature import Signature
@@ -73,7 +73,22 @@ VARIABLES = {
 }
 
 
-def meeting_flights(parameters: ContactHistory, release: Release) -> xr.Dataset:
+class OneContact(ContactHistory):
+    """An orbit on one contact, shown from before its contact until after it."""
+
+    # Samples lie at equal steps over 2.2 times the duration of the contact.
+    samples: Annotated[
+        int,
+        number(
+            "number of samples; fewer than 11 do not show the contact, and more than 20001 are not "
+            "visible in a figure",
+            ge=11,
+            le=20001,
+        ),
+    ]
+
+
+def meeting_flights(parameters: OneContact, release: Release) -> xr.Dataset:
     """One contact, with the flights before and after it continued into it.
 
     The dataset has ``ball``, ``table``, ``flight_before``, ``flight_after`` and ``contact_force``

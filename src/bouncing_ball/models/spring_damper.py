@@ -219,7 +219,7 @@ class SpringDamper(OscillatorLaw):
     @property
     def free_duration(self) -> np.ndarray:
         """Duration of the free contact: (π - 2α)/ϖ_d if it is linear and ζ < 1; for ζ ≥ 1 see
-        :meth:`.Release.overdamped_duration`.
+        ``Release.overdamped_duration``.
 
         Raises
         ------

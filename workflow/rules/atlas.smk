@@ -57,9 +57,7 @@ rule atlas:
     message:
         "Atlas: its summary, with charts"
     input:
-        code=lambda wildcards: code(
-            "atlas-summary", "atlas.py", "beyond.atlas.shards"
-        ),
+        code=lambda wildcards: code("atlas-summary", "atlas.py", "beyond.atlas.shards"),
         parts=[rules.atlas_merge.output.data],
     output:
         data="results/atlas/summary.nc",

@@ -146,7 +146,8 @@ def stacked_shares(part: Any, data: xr.Dataset, groups: Mapping[str, str], title
     ratios = data.frequency_ratio.values
     for simple, axes in zip(data.simple.values, part.subplots(1, 2, sharey=True), strict=True):
         one = data.sel(simple=simple, motion_group=list(groups)).transpose("motion_group", ...)
-        low, high = one.agreement_low.values, one.agreement_high.values
+        low = one.agreement_low.values
+        high = one.agreement_high.values
         place = np.arange(len(groups))[:, np.newaxis] * (ratios.size + 1) + np.arange(ratios.size)
         sizes = (low, high - low, 1 - high)
         bottoms = (np.zeros_like(low), low, high)

@@ -9,7 +9,7 @@ from bouncing_ball.contacts.engines.drop_in_steps import Rise
 from bouncing_ball.contacts.engines.engine import ERROR, EngineSettings
 from bouncing_ball.contacts.engines.given_step import AtStep
 from bouncing_ball.contacts.texts import shown
-from bouncing_ball.contacts.write import Looser, Softer
+from bouncing_ball.contacts.write import Looser
 
 
 def line(name: str, *columns: str) -> str:
@@ -41,7 +41,7 @@ def engine_lines(given: DesignAnswer) -> list[str]:
     if engine is None:
         if at is None:
             return []
-        return [*_step_lines(at), *_alternatives_at(at), *_looser(given.looser)]
+        return [*_step_lines(at), *_alternatives_at(given, at), *_looser(given.looser)]
     speed = given.found.slowed_speed
     slowed = "" if speed is None else f" of a fast impact, 1 % less at {shown(speed, 'm/s')}"
     expected = [
@@ -65,7 +65,7 @@ def engine_lines(given: DesignAnswer) -> list[str]:
         *_many(engine),
         *(line(words, shown(x, unit)) for words, x, unit in expected if x is not None),
         *_rise(given.dropped_at_step),
-        *_alternatives(engine, given.softer, given.looser),
+        *_alternatives(given, engine),
     ]
 
 
@@ -111,18 +111,24 @@ def _retuned(at: AtStep) -> str:
     )
 
 
-def _alternatives_at(at: AtStep) -> list[str]:
+def _alternatives_at(given: DesignAnswer, at: AtStep) -> list[str]:
     """What else a given step allows, for parameters that were given."""
     tuned = [] if at.is_within else [_retuned(at).rstrip(".") + "."]
     if at.stiffest is None:
         return tuned
     damping = shown(at.stiffest_damping, at.unit_of_damping)
+    case = given.found.case
+    deep = ""
+    if case.law is None or at.speed is not None:
+        # A linear spring carries the whole weight.
+        rest = shown(case.mass * case.table.gravity / at.stiffest, "m")
+        deep = f", in which the ball rests {rest} deep"
     return [
         *tuned,
         f"The stiffest contact with the same r within {at.allowed:g} has "
         f"{shown(at.stiffest, 'N/m')}, with a damping of {damping} and "
         f"a contact time of {shown(at.stiffest_contact_time, 's')} ({at.stiffest_steps:.4g} "
-        "steps).",
+        f"steps){deep}.",
     ]
 
 
@@ -137,11 +143,12 @@ def _looser(found: Looser | None) -> list[str]:
     ]
 
 
-def _alternatives(engine: EngineSettings, other: Softer | None, wider: Looser | None) -> list[str]:
+def _alternatives(given: DesignAnswer, engine: EngineSettings) -> list[str]:
     """The retuned and the softer contact, if the given step does not resolve the one asked for."""
     at = engine.at_step
+    other = given.softer
     if at is None or other is None or engine.softer is None:
-        return [] if at is None else ["", *_alternatives_at(at)]
+        return [] if at is None else ["", *_alternatives_at(given, at)]
     found = ["", _retuned(at)]
     if engine.retuned is not None and engine.retuned.at_step is not None:
         found[-1] += f", and any is r = {engine.retuned.at_step.span}:"
@@ -158,5 +165,5 @@ def _alternatives(engine: EngineSettings, other: Softer | None, wider: Looser | 
         *([] if other.dropped is None else (f"Note: {one}." for one in other.dropped.remarks)),
         *([other.verdict] if other.verdict else []),
         *_pasted(engine.softer),
-        *_looser(wider),
+        *_looser(given.looser),
     ]

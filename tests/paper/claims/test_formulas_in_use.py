@@ -81,8 +81,8 @@ EDITS = [
     ),
     Edit(
         "models/damping.py",
-        "exponential(-angle * zeta",
-        "exponential(-0.9 * angle * zeta",
+        "exponential(-angle * under",
+        "exponential(-0.9 * angle * under",
         "Eq. 16",
     ),
     Edit(

@@ -192,9 +192,9 @@ def test_a_time_step_is_for_a_contact_whose_r_has_no_speed(refusal):
     with refusal(ModelError, "time_step with hunt_crossley_dissipation needs speed of an impact"):
         answered(mass=0.5, from_engine="drake", parameters=crossley, time_step="1 ms")
     table = {"mass": 0.5, "frequency": "20 Hz", "acceleration": "0.8 g", "n": 1}
-    law = {"law": "hunt-crossley", "contact_time": "2 ms", "restitution": 0.8}
-    with refusal(ModelError, "time_step is given for a spring and a damper"):
-        answered(**table, **law, engine="drake", time_step="1 ms")
+    hertz = {"radius": "5 cm", "reduced_modulus": "1 GPa", "restitution": 0.8}
+    with refusal(ModelError, "time_step is given for a spring and a damper, or for drake with"):
+        answered(**table, **hertz, engine="lammps", time_step="1 ms")
     with refusal(ModelError, "time_step and parameters time_step give the same"):
         given = {"contactStiffness": 1e5, "contactDamping": 1.0, "time_step": 1e-3}
         answered(mass=0.5, from_engine="pybullet", parameters=given, time_step="1 ms")

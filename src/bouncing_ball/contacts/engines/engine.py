@@ -5,7 +5,7 @@ import math
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from importlib.resources import files
 from typing import Any, ClassVar
 
@@ -15,6 +15,7 @@ from bouncing_ball.contacts.engines.given_step import AtStep, at_step
 from bouncing_ball.contacts.engines.impacts import steps_for
 from bouncing_ball.contacts.engines.physical import Physical
 from bouncing_ball.contacts.engines.scheme import Scheme, compensated, represented
+from bouncing_ball.contacts.engines.settings import EngineParameters, EngineSettings
 from bouncing_ball.contacts.engines.steps import LinearStep, Step
 from bouncing_ball.errors import ModelError, did_you_mean, require
 from bouncing_ball.models.damping import Release
@@ -26,48 +27,11 @@ ERROR = 0.001
 # A whole number of steps is not rounded down.
 _ALMOST = 1 + 1e-9
 _PLACE = re.compile(r"@([\w.]+)@")
-EngineParameters = Mapping[str, float | list[float]]
 
 
 def written(value: float) -> float:
     """A number with twelve digits, so that the rounding errors of products are not written."""
     return float(f"{value:.12g}")
-
-
-@dataclass(frozen=True)
-class EngineSettings:
-    """The settings to write into an engine, and the restitution that they produce.
-
-    ``parameters`` have the names and units of the engine; those of a compensated scheme hold for
-    the time step only. ``time_step`` is in s; with ``steps`` such steps in a contact the
-    ``restitution`` of a free impact is met within ``error``. ``restitutions`` has the r of the same
-    contact under each release that the engine has.
-    ``max_height`` and ``penetration`` in m and ``contact_duration`` in s belong to the orbit of a
-    design; they are None if there is no orbit. ``at_step`` is what the contact does at a time step
-    that is given, None if the time step follows from the contact. If the given step does not keep
-    the r of the contact within the error, ``retuned`` has the settings of the same stiffness with
-    the damping that restores the mean r, None if no damping does, and ``softer`` those of the
-    stiffest contact with the same ζ that the step resolves. ``instant`` then says how the engine
-    has this r without a contact that lasts, if it can.
-    """
-
-    name: str
-    parameters: EngineParameters
-    time_step: float
-    release: str
-    restitution: float
-    restitutions: dict[str, float]
-    steps: int
-    error: float
-    scheme: str
-    snippet: str
-    max_height: float | None = None
-    contact_duration: float | None = None
-    penetration: float | None = None
-    at_step: AtStep | None = None
-    instant: str = ""
-    retuned: "EngineSettings | None" = None
-    softer: "EngineSettings | None" = None
 
 
 def text_of(name: str) -> str:

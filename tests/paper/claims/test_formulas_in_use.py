@@ -72,7 +72,7 @@ EDITS = [
         "d0 * free + v0 * g.value + G",
         "Eqs. 12-13",
     ),
-    Edit(ORBIT, "+ (bounce + velocity) / 2 * s, velocity", "+ bounce * s, velocity", "Eqs. 14-15"),
+    Edit(ORBIT, "+ (bounce + velocity) / 2 * s", "+ bounce * s", "Eqs. 14-15"),
     Edit(
         "models/damping.py",
         "np.pi * np.pi + decrement * decrement",

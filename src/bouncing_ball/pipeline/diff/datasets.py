@@ -221,8 +221,11 @@ def _allowed(drift: np.ndarray, share: float) -> np.ndarray:
 
 
 def _curve_drift(name: str, record: xr.Dataset, new: xr.Dataset, over: str) -> np.ndarray:
-    """Distance of two curves, sampled along ``point``, in units of the scales of both axes."""
-    axis = record[name].dims.index("point")
+    """Distance of two curves, sampled along ``point`` or another dimension of points, such as
+    ``long_point``, in units of the scales of both axes.
+    """
+    (along,) = (dim for dim in record[name].dims if str(dim).endswith("point"))
+    axis = record[name].dims.index(along)
     x = _broadcast_beside(record, name, over)
     new_x = _broadcast_beside(new, name, over)
     y = record[name].values

@@ -11,7 +11,7 @@ from bouncing_ball.contacts.question import EngineSetup
 from bouncing_ball.errors import ModelError, NoOrbitError
 from bouncing_ball.measured.curves import CURVES, curve_named
 from bouncing_ball.measured.experiment import experiment
-from bouncing_ball.measured.fit import Points, fit_law
+from bouncing_ball.measured.law_fit import Points, fit_law
 from bouncing_ball.models.laws.hertzian import KuwabaraKono
 
 TABLE = Table(frequency="20 Hz", acceleration="1 g")

@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from bouncing_ball.contacts.quantities import STANDARD_GRAVITY
 from bouncing_ball.errors import ModelError
 from bouncing_ball.measured.curves import curve_named
-from bouncing_ball.measured.fit import Points, fit_contact, fit_law
+from bouncing_ball.measured.fit import fit_contact
 from bouncing_ball.measured.flights import (
     drag_length,
     drop_speeds,
@@ -17,6 +17,7 @@ from bouncing_ball.measured.flights import (
     heard,
     together,
 )
+from bouncing_ball.measured.law_fit import Points, fit_law
 
 PRECISE = {"rtol": 1e-12, "atol": 1e-14, "method": "DOP853"}
 # A table-tennis ball, for which the drag is large: 2.7 g and 40 mm.

@@ -5,7 +5,8 @@ import pytest
 
 from bouncing_ball.measured.curves import curve_named
 from bouncing_ball.measured.experiment import experiment
-from bouncing_ball.measured.fit import Points, fit_contact
+from bouncing_ball.measured.fit import fit_contact
+from bouncing_ball.measured.law_fit import Points
 from bouncing_ball.measured.verdicts import (
     REJECTED,
     Verdict,

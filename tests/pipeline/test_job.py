@@ -35,7 +35,8 @@ def test_a_failure_is_one_line(tmp_path, interruptible, one_line, error, said):
 
 
 def test_a_variable_without_a_unit_is_refused(refusal):
-    job = SimpleNamespace(params=SimpleNamespace(arguments={}), input={})
+    output = SimpleNamespace(data="results/one.nc")
+    job = SimpleNamespace(params=SimpleNamespace(arguments={}), input={}, output=output)
     with refusal(ModelError, "phase has no unit: the study ends with described(...)"):
         make_dataset(job, lambda: xr.Dataset({"phase": 0.0}))
 

@@ -10,7 +10,8 @@ from bouncing_ball.contacts.table import Table
 from bouncing_ball.contacts.units import in_si
 from bouncing_ball.errors import ParameterError
 from bouncing_ball.measured.experiment import Experiment, experiment, names, read
-from bouncing_ball.measured.fit import ContactFit, LawFit
+from bouncing_ball.measured.fit import ContactFit
+from bouncing_ball.measured.law_fit import LawFit
 from bouncing_ball.measured.verdicts import Judgement, error_size, judge
 
 

@@ -3,6 +3,7 @@
 ``experiment``   a text file of measured impacts, and those that belong to the package (``data``)
 ``flights``      speeds and restitution from heights or from times of impacts, with air drag
 ``curves``       restitution and contact time over the impact speed, for each contact law
-``fit``          the parameters of the laws from measured impacts, with intervals, ranked
+``law_fit``      the parameter of one law from measured impacts, with its interval
+``fit``          all laws from measured impacts and contact times, ranked
 ``verdicts``     is a law compatible with an experiment? By leaving out points
 """

@@ -25,7 +25,8 @@ import numpy as np
 import scipy
 
 from bouncing_ball.measured.curves import Curve
-from bouncing_ball.measured.fit import ContactFit, Points, fit_law
+from bouncing_ball.measured.fit import ContactFit
+from bouncing_ball.measured.law_fit import Points, fit_law
 
 REJECTED = 0.01
 ACCEPTED = 0.05

@@ -40,7 +40,8 @@ from bouncing_ball.datasets.parameters import Family, Many, Parameters, Samples,
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.measured.curves import CURVES
 from bouncing_ball.measured.experiment import Experiment, experiment
-from bouncing_ball.measured.fit import LEVEL, ContactFit, LawFit, Points
+from bouncing_ball.measured.fit import ContactFit
+from bouncing_ball.measured.law_fit import LEVEL, LawFit, Points
 from bouncing_ball.measured.verdicts import (
     ACCEPTED,
     REJECTED,

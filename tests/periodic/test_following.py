@@ -394,3 +394,19 @@ def test_an_orbit_on_a_resting_table_is_not_followed(refusal):
     fold, _ = bouncing_ball.limits(bouncing_ball.rigid(restitution=1.0))
     with refusal(NoOrbitError, "the table rests at this orbit, where the phase has no meaning"):
         bouncing_ball.follow(fold, to=0.5)
+
+
+def test_a_closed_branch_ends_at_its_start():
+    """A loop in r; followed on, the branch would pass its special orbits again and again."""
+    ball = bouncing_ball.rigid(restitution=0.49711198038140114)
+    orbit = bouncing_ball.orbit_of_motion(ball, amplitude=3.2407106247114794)
+    found = bouncing_ball.follow(orbit, along="restitution", to=0.62)
+    assert str(found.end_reason[-1].values) == "the branch is closed: it comes back to its start"
+    first, *_, last = found.states()
+    # The start is an orbit where a ball ends; the first point is that orbit, corrected.
+    assert float(last.distance(first)) == 0.0
+    assert np.all(np.diff(found.special_point) >= 0)
+    again = {
+        (kind, round(orbit.parameters["restitution"], 9)) for kind, orbit in found.special_states()
+    }
+    assert len(again) == found.sizes["special"] == 12

@@ -111,6 +111,9 @@ release='displacement')
 def orbits(ball: Ball, n: Family = 1, *, amplitude: AmplitudeOfOrbit) -> list[Orbit]:
     """All n-T orbits at one excitation amplitude Λ, in order of contact duration.
 
+    They are all of them if a closed form of the branch is known, as for ``spring_damper``. For a
+    contact law they are those on the branch that comes from large Λ.
+
     Parameters
     ----------
     ball : Ball

@@ -17,6 +17,7 @@ from bouncing_ball.datasets.arguments import (
 )
 from bouncing_ball.errors import NoOrbitError, ParameterError, shortened, suggesting
 from bouncing_ball.periodic.branches import curves, following, grazing, switching
+from bouncing_ball.periodic.branches.closed import one_turn
 from bouncing_ball.periodic.branches.following import Window
 from bouncing_ball.periodic.branches.labelled import FollowedBranch, SpecialCurve, labelled
 from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls
@@ -62,7 +63,8 @@ def follow(
     grazing of a release the branch on which it lies. A saddle-node has orbits on one side of the
     parameter only, and two branches there: the stable one is followed. The other one comes behind
     the saddle-node if an orbit of the stable one is followed towards it. At the grazing of an
-    impact, at a lost release and at the end of sticking a branch ends. With two parameters the
+    impact, at a lost release and at the end of sticking a branch ends, and a closed branch at its
+    start. With two parameters the
     curve of special orbits of this kind is followed in both directions.
 
     Parameters
@@ -151,7 +153,7 @@ def follow(
     elif orbit.kind == Special.GRAZING_FLIGHT:
         start, towards = grazing.first_with_one_more(orbit, name, value)
     found = following.branch_from(start, name, value, towards=towards, most=most)
-    return FollowedBranch(**labelled(found, "follow"))
+    return FollowedBranch(**labelled(one_turn(found), "follow"))
 
 
 def _to_stable_side(fold: Orbit, name: str, to: float | None) -> np.ndarray:

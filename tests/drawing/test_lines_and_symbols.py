@@ -7,7 +7,12 @@ from matplotlib.figure import Figure
 
 import bouncing_ball as bb
 from bouncing_ball.beyond.exhibits.contact_laws_figures import contact_laws
-from bouncing_ball.beyond.exhibits.motion_maps import DOTS, mark_nodes
+from bouncing_ball.beyond.exhibits.motion_maps import (
+    DOTS,
+    OTHER_COLOURS,
+    UNKNOWN_PERIOD,
+    mark_nodes,
+)
 from bouncing_ball.datasets.variables import SHARED
 from bouncing_ball.drawing.canvas import draw_curve
 from bouncing_ball.drawing.labels import _SYMBOLS, in_a_row
@@ -75,4 +80,7 @@ def test_the_nodes_of_a_kind_are_marked_and_no_others():
     found = {tuple(map(float, point)) for point in marks.get_xydata()}
     expected = {(0.2, 2.0), (0.5, 2.0)}
     assert found in (expected, {(lam, r) for r, lam in expected})
-    assert {"chaotic"} <= {str(kind) for kind in DOTS}
+
+
+def test_the_kinds_with_marks_are_kinds_of_the_maps():
+    assert set(DOTS) <= OTHER_COLOURS.keys() | {UNKNOWN_PERIOD}

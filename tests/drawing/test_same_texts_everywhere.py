@@ -40,4 +40,4 @@ def test_rounding_changes_no_text(record, texts, accepted):
         for old, new in zip(accepted[name].splitlines(), text.splitlines(), strict=True)
         if old != new
     ]
-    assert not moved
+    assert not moved, "\n".join(moved)

@@ -26,7 +26,7 @@ def along_the_branch(monkeypatch):
         # The signs of the sides are exchanged in the first guess, which is then refused.
         other = Side.UNSTABLE if side is Side.STABLE else Side.STABLE
         phase = "bouncing_ball.periodic.one_impact.corrected_branch.instant_phase"
-        original = orbit.__globals__["corrected"].instant_phase
+        original = orbit.__globals__["line"].instant_phase
         with monkeypatch.context() as patch:
             seen = []
 

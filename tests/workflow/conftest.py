@@ -26,10 +26,12 @@ import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 # No run takes as many seconds, unless it hangs.
-HANGING = 3600
+HANGING = 1200
 # A fresh clone: neither results nor the state of earlier runs.
 OTHERS = ".git .venv* results .snakemake tests *.egg-info __pycache__ .*_cache"
 IGNORED = shutil.ignore_patterns(*OTHERS.split())
+# Accepted samples tell whether the tests that made them have changed.
+MAKERS = "*_runs.py"
 
 
 @dataclass(frozen=True)
@@ -230,6 +232,9 @@ def cloned(shared, warm, coarse) -> Tree:
 
     def make(folder: Path) -> None:
         tree = copy_tree(Tree(ROOT), folder, IGNORED)
+        (folder / "tests").mkdir()
+        for path in (ROOT / "tests").glob(MAKERS):
+            shutil.copy2(path, folder / "tests")
         config = folder / "config" / "config.yaml"
         text = config.read_text(encoding="utf-8")
         for (name, key), number in coarse.items():

@@ -15,9 +15,13 @@ def importing() -> Iterator[None]:
 
     Examples
     --------
+    >>> before = signal.signal(signal.SIGINT, signal.default_int_handler)
     >>> with importing():
     ...     signal.getsignal(signal.SIGINT).name
     'SIG_DFL'
+    >>> restored = signal.signal(signal.SIGINT, before)
+    >>> restored is signal.default_int_handler
+    True
     """
     try:
         before = signal.signal(signal.SIGINT, signal.SIG_DFL)

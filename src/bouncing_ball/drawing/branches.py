@@ -162,7 +162,9 @@ def over_amplitude(data: xr.Dataset) -> Figure:
         if f"{_LONG}amplitude" in curve:
             long = placed(_long_branch(curve))
             draw_both_phases(panels, long, colour)
-            hidden = long.amplitude.where(~long.admissible)
+            # With the points next to it, because it may be a single one.
+            near = (~long.admissible).rolling(point=3, center=True, min_periods=1).max()
+            hidden = long.amplitude.where(near > 0)
             if hidden.notnull().any():
                 _enlarge(panels[0], long, hidden, colour)
     legend_below(figure)

@@ -210,40 +210,46 @@ def retuned(
 
 @cache
 def _fewest(scheme: Scheme, zeta: float, release: Release, error: float) -> float:
-    """The number of steps in a contact from which on every r is within an error.
+    """The number of steps in a contact from which on every r is within an error; infinite if
+    rounding keeps r from it.
 
-    The error as a function of this number has bends and jumps. Below the number returned the
-    contact is not within the error, and with any more steps it is.
+    The error as a function of this number has bends and jumps. Just below the number returned the
+    contact is not within the error. With more steps it is, but for the displacement release, whose
+    error has a tooth in each step: of 84 cases single teeth above exceeded the error in ten, by a
+    sixth at most.
     """
     contact = SpringDamper(1.0, zeta, release)
     duration = float(contact.free_duration)
     exact = float(contact.restitution)
 
-    def within(steps: float) -> bool:
-        return spread_in_steps(scheme, zeta, release, duration / steps).error(exact) <= error
+    def off(steps: float) -> float:
+        # At a whole number of steps r may jump, and parameters are written with twelve digits.
+        sides = (steps, steps * (1 + _ASIDE))
+        found = [spread_in_steps(scheme, zeta, release, duration / side) for side in sides]
+        return max(one.error(exact) for one in found)
 
     sampled = fewest_steps(scheme, zeta, release, error)
-    top = 1 + _MARGIN
-    # Of the displacement release the number of steps jumps, and the error with it.
-    while not within(sampled * top):
-        top += _MARGIN / 4
-    tried = sampled * np.linspace(top, 1 - _MARGIN, _TRIED)
-    tried = np.append(tried[tried > FEWEST], FEWEST) if sampled * (1 - _MARGIN) < FEWEST else tried
-    good = float(tried[0])
-    for steps in tried.tolist():
-        if not within(steps):
+    good = sampled * (1 + _MARGIN)
+    while (found := off(good)) > error:
+        # The error falls about as 1/N.
+        good *= max(1 + _MARGIN / 4, found / error)
+        if good > _MOST:
+            return math.inf
+    least = max(FEWEST, sampled * (1 - _MARGIN))
+    bad = None
+    for steps in np.linspace(good, least, _TRIED)[1:].tolist():
+        if off(steps) > error:
+            bad = steps
             break
         good = steps
-    else:
+    if bad is None:
         return good
-    bad = steps
     while good - bad > _FINE * good:
         middle = (good + bad) / 2
-        if within(middle):
-            good = middle
-        else:
+        if off(middle) > error:
             bad = middle
-    # Parameters are written with twelve digits, which may not lead to the other side of a jump.
+        else:
+            good = middle
     return good * (1 + _ASIDE)
 
 

@@ -157,7 +157,7 @@ def _orbits(info: ValidationInfo, amplitude: str, share: np.ndarray) -> Orbits |
     run: Any = info.context or {}
     rule = run.get("release")
     given = info.data
-    if not {"n", "restitution", amplitude} <= given.keys() or rule not in {*map(str, Release)}:
+    if not {"n", "restitution", amplitude} <= given.keys() or rule not in [*map(str, Release)]:
         return None
     return Orbits(given["n"], given["restitution"], given[amplitude] * share, Release(rule))
 

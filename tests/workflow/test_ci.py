@@ -24,17 +24,20 @@ def dry(*arguments: str) -> str:
     return subprocess.check_output(command, cwd=ROOT, env=without_make(), text=True)
 
 
-def run_script(tmp_path, failing: str) -> tuple[int, list[str], str]:
-    """Exit status, make's targets in order, and the last line, if some of the targets fail."""
+def run_script(tmp_path, failing: str, hanging: str = "none") -> tuple[int, list[str], str]:
+    """Exit status, make's targets in order, and the last line, if some targets fail or hang."""
     program = tmp_path / "make"
     program.write_text(
         f'#!/bin/sh\necho "$@" >> "{tmp_path}/called"\n'
-        f'case " {failing} " in *" $1 "*) exit 2;; esac\n',
+        f'case " {failing} " in *" $1 "*) exit 2;; esac\n'
+        f'case " {hanging} " in *" $1 "*) exec sleep 600;; esac\n',
         encoding="utf-8",
     )
     program.chmod(0o755)
     environment = without_make()
     environment["PATH"] = f"{tmp_path}{os.pathsep}{environment['PATH']}"
+    if hanging != "none":
+        environment["LIMIT"] = "2"
     done = subprocess.run(
         [ROOT / ".ci" / "run"], env=environment, capture_output=True, text=True, check=False
     )
@@ -53,6 +56,11 @@ def test_every_step_runs_whatever_fails_and_the_diff_runs_before_the_tests(tmp_p
     assert sorted(order, key=called.index) == order
     assert (status, last.startswith("Failed: ")) == ((1, True) if failing else (0, False))
     assert set(failing.split()) <= set(last.split())
+
+
+def test_a_step_that_hangs_is_ended_and_named(tmp_path):
+    status, called, last = run_script(tmp_path, "", "test")
+    assert status == 1 and called[-1] == STEPS[-1] and last == "Failed: test"
 
 
 def test_the_linter_of_snakemake_has_to_end(tmp_path):

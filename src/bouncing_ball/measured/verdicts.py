@@ -107,16 +107,35 @@ class Unseen:
 _NONE = Unseen(np.nan, 1.0)
 
 
-def _about_a_parabola(points: Points) -> np.ndarray:
-    """The whitened points minus their parabola in ln v of least squares; NaN if there are too few
-    points or speeds.
+def smooth(points: Points, speeds: np.ndarray) -> np.ndarray:
+    """r at speeds in m/s by the parabola in ln v of least squares through the points.
+
+    NaN if there are fewer than five points or four speeds.
+
+    Examples
+    --------
+    >>> measured = np.geomspace(1.0, 4.0, 5)
+    >>> points = Points(measured, 0.8 - 0.1 * np.log(measured))
+    >>> round(float(smooth(points, np.array([2.0]))[0] - (0.8 - 0.1 * np.log(2.0))), 12)
+    0.0
     """
     if points.size < _FEWEST or np.unique(points.speeds).size < _SMOOTH + 1:
-        return np.full(points.size, np.nan)
+        return np.full(np.shape(speeds), np.nan)
     whiten = points.whitening
-    curves = np.vander(np.log(points.speeds / points.reference), _SMOOTH)
-    best = np.linalg.lstsq(whiten @ curves, whiten @ points.restitutions, rcond=None)[0]
-    return whiten @ (points.restitutions - curves @ best)
+    best = np.linalg.lstsq(
+        whiten @ _powers(points, points.speeds), whiten @ points.restitutions, rcond=None
+    )[0]
+    return _powers(points, speeds) @ best
+
+
+def _powers(points: Points, speeds: np.ndarray) -> np.ndarray:
+    """The powers of ln v of the parabola."""
+    return np.vander(np.log(speeds / points.reference), _SMOOTH)
+
+
+def _about_a_parabola(points: Points) -> np.ndarray:
+    """The whitened points minus their parabola in ln v; NaN if there are too few."""
+    return points.whitening @ (points.restitutions - smooth(points, points.speeds))
 
 
 def scatter(points: Points) -> tuple[float, float]:

@@ -235,3 +235,13 @@ def test_wrong_parameters_are_refused(study, given):
 def test_the_parameters_are_typed():
     assert Measured(**MEASURED).experiments == tuple(MEASURED["experiments"])
     assert Shaker(**SHAKER).n == (1, 2)
+
+
+def test_r_by_the_points_is_near_the_points_and_nan_beyond_them(shakers):
+    slow, fast = shakers.sel(experiment="croquet", shaker_frequency=[5.0, 50.0]).shaker_measured
+    # The speeds are 1.06 and 2.13 m/s: next to 0.842 at 1.00 m/s and 0.824 at 2.04 m/s.
+    np.testing.assert_allclose(slow, [0.842, 0.824], atol=2e-3)
+    assert fast.isnull().all()
+    by_points = shakers.fold_by_points.sel(experiment="croquet", shaker_frequency=5.0)
+    first, second = (1 - slow) / (1 + slow)
+    np.testing.assert_allclose(by_points, [0.0, float(first / second - 1)], atol=1e-12)

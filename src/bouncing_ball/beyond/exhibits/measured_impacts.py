@@ -49,6 +49,7 @@ from bouncing_ball.measured.verdicts import (
     error_size,
     judge,
     scatter,
+    smooth,
     trend_of_scatter,
 )
 from bouncing_ball.models.damping import damping_ratio
@@ -122,6 +123,16 @@ VARIABLES = {
     ),
     "shaker_restitution": Variable(
         "restitution coefficient of the law at this speed", symbol="r(v)", budget=_FITTED
+    ),
+    "shaker_measured": Variable(
+        "restitution coefficient of the parabola through the points at this speed, if it is "
+        "within the measured ones",
+        symbol="r(v)",
+        budget=_FITTED,
+    ),
+    "fold_by_points": Variable(
+        "relative error of the saddle-node by the r of the first family, both by this parabola",
+        budget=_FITTED,
     ),
     "by_duration": Variable(
         "relative error of the restitution model by the duration of the contact", budget=_FITTED
@@ -281,7 +292,7 @@ def _on_shakers(fit: ContactFit, parameters: Shaker) -> xr.Dataset:
 def _on_shaker(fit: ContactFit, frequency: float, parameters: Shaker) -> xr.Dataset:
     """One experiment on one shaker."""
     orbits = [_Orbits.of(fit, frequency, n, parameters.position) for n in parameters.n]
-    return xr.concat([each.row(fit, orbits[0].restitution) for each in orbits], "n")
+    return xr.concat([each.row(fit, orbits[0]) for each in orbits], "n")
 
 
 @dataclass(frozen=True)
@@ -311,9 +322,21 @@ class _Orbits:
         amplitude = fold + position * (_doubling(n, r, slope) - fold)
         return cls(table.motion, n, speed, r, slope, amplitude)
 
-    def row(self, fit: ContactFit, constant: float) -> xr.Dataset:
-        """The orbits, and the errors of the restitution model with a constant r."""
+    def measured(self, points: Points) -> float:
+        """r by the parabola through the points; NaN beyond them."""
+        if not points.speeds.min() <= self.speed <= points.speeds.max():
+            return float("nan")
+        return float(smooth(points, np.array([self.speed]))[0])
+
+    def row(self, fit: ContactFit, first: Self) -> xr.Dataset:
+        """The orbits, and the errors of the restitution model with the r of the first family."""
         speeds = fit.points.speeds
+        measured = self.measured(fit.points)
+        constant = first.measured(fit.points)
+        by_points = np.nan
+        if np.isfinite(measured) and np.isfinite(constant):
+            fold = float(restitution_branch.saddle_node(self.n, measured))
+            by_points = float(restitution_branch.saddle_node(self.n, constant)) / fold - 1
         ratio, by_duration, delta = np.nan, np.full(len(COMPARED), np.nan), np.nan
         if fit.best.has_stiffness:
             ratio, by_duration, delta = self.by_duration(fit.best)
@@ -324,7 +347,9 @@ class _Orbits:
                 "shaker_ratio": ratio,
                 "shaker_restitution": self.restitution,
                 "by_duration": ("quantity", by_duration),
-                "by_constant": ("quantity", self.by_constant(constant)),
+                "shaker_measured": measured,
+                "fold_by_points": by_points,
+                "by_constant": ("quantity", self.by_constant(first.restitution)),
                 "shaker_small": delta,
             }
         )

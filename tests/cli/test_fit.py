@@ -37,6 +37,37 @@ def test_the_second_command_is_the_contact_of_the_first(outcome):
     assert "solref" in out
 
 
+@pytest.mark.parametrize("name", ["croquet", "viscous_drop"])
+def test_the_contact_of_the_law_is_the_law_that_was_fitted(outcome, name):
+    """e(v) of the written contact is that of the fit: it has the same parameters."""
+    answer = json.loads(outcome("fit", name, "--mass", "2 g", "--json")[1])
+    best = answer["laws"][0]
+    status, out, err = outcome(*shlex.split(answer["design_of_law"])[1:], "--json")
+    assert (status, err) == (0, "")
+    written = json.loads(out)["law"]
+    assert written["name"] == best["law"] == "kuwabara-kono"
+    for parameter, value in best["parameters"].items():
+        # The command has six digits; the stiffness grows as their powers up to 2.5.
+        assert written[parameter] == pytest.approx(value, rel=3e-5)
+
+
+def test_what_is_not_known_stands_in_capitals(outcome):
+    """A linear law has one command; the mass and the contact time are to be filled in."""
+    rows = outcome("fit", "bouncy_ball")[1].splitlines()
+    assert rows[-2] == "linear as a contact at 3.75 m/s:"
+    assert "--mass MASS --contact-time TIME" in rows[-1]
+    answer = json.loads(outcome("fit", "bouncy_ball", "--json")[1])
+    assert answer["design_of_law"] is None
+    filled = rows[-1].replace("MASS", "0.02").replace("TIME", "0.001")
+    assert outcome(*shlex.split(filled)[1:])[0] == 0
+
+
+def test_one_impact_is_no_range_and_a_frequency_has_its_name(outcome):
+    rows = outcome("fit", "superball")[1].splitlines()
+    assert rows[0] == "Super ball, contact time: 1 impact at 4.43 m/s"
+    assert any(row.startswith("linear") and "natural frequency" in row for row in rows)
+
+
 def test_the_impact_speed_is_that_of_the_orbit_or_given(outcome):
     found = {}
     for option in (("--frequency", "20 Hz"), ("--speed", "0.6 m/s"), ()):
@@ -65,8 +96,13 @@ def test_intervals_show_the_biases_that_were_removed(outcome, heard):
         assert total == pytest.approx(row["ratio_of_intervals"], abs=1e-12)
     text = outcome("fit", str(heard), "--intervals", *options)[1]
     assert "by resolution" in text and "drag of the air was removed" in text
+    first = text.splitlines()[4].split()
+    # Small biases have two digits, and are not shown as 0.
+    assert float(first[-1]) == pytest.approx(answer["impacts"][0]["resolution_bias"], rel=0.05)
     plain = outcome("fit", str(heard), "--intervals")[1]
     assert "drag of the air was not removed" in plain
+    assert "drag of the air was not removed" in outcome("fit", "bouncy_ball")[1]
+    assert "drag of the air" not in outcome("fit", "croquet")[1]
 
 
 @pytest.mark.parametrize(

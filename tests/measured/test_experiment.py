@@ -161,6 +161,14 @@ HOSTILE = {
     "recording,interval\nA,0.8\nA,0.4\n": "line 2: recording = 'A' does not begin with a number",
     "recording,speed\n1,0.8\n": "line 1: the columns must be",
     "recording,speed,restitution\n1,1,0.8\n": "line 1: a column recording needs a column interval",
+    "speed,drop_height,restitution\n1,2,0.8\n": "line 1: the columns must be",
+    "interval,time\n0.8,0\n": "line 1: the columns must be",
+    "interval,uncertainty\n0.8,0.1\n": "line 1: intervals and times have no column uncertainty",
+    "time,duration\n0.8,0.1\n": "line 1: intervals and times have no column duration",
+    "speed,restitution,duration_uncertainty\n1,0.8,0.1\n": "needs a column duration",
+    "# resolution: 1 ms\n" + HEAD + "1,0.8\n": "a resolution needs intervals or times",
+    "# contact time uncertainty: 1 ms\n" + HEAD + "1,0.8\n": "needs the contact time",
+    "interval\n0,8\n": "line 2: 2 values for one column",
     HEAD + "1.0,nan\n": "line 2: restitution = 'nan' does not begin with a number",
     HEAD + "1.0,1.2\n": "line 2: restitution = 1.2 is not a number in (0, 1]",
     HEAD + "1.0,85\n": "line 2: restitution = 85 is not a number in (0, 1]",
@@ -187,6 +195,21 @@ def test_hostile_files_get_one_line(tmp_path, refusal, text):
     path = write(tmp_path, text)
     with refusal(ModelError, HOSTILE[text]):
         read(path)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["interval\n0.8\n0.9\n", "time\n0\n1\n0.5\n", "drop_height,rebound_height\n1,2\n"],
+)
+def test_numbers_that_no_ball_has_are_those_of_a_file(tmp_path, refusal, text):
+    path = write(tmp_path, text)
+    with refusal(ModelError, str(path)):
+        read(path)
+
+
+def test_the_uncertainty_of_a_contact_time_may_belong_to_a_column(tmp_path):
+    head = "# contact time uncertainty: 0.1 ms\nspeed,restitution,duration [ms]\n"
+    assert read(write(tmp_path, head + "1,0.8,1\n")).duration_uncertainties == 1e-4
 
 
 def test_files_that_are_none_get_one_line(tmp_path, refusal):

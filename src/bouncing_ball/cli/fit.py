@@ -13,6 +13,10 @@ from bouncing_ball.measured.experiment import Experiment, experiment, names, rea
 from bouncing_ball.measured.fit import ContactFit
 from bouncing_ball.measured.law_fit import LawFit
 from bouncing_ball.measured.verdicts import Judgement, error_size, judge
+from bouncing_ball.models.spring_damper import SpringDamper
+
+# In SI units the unit of time is a second, and ϖ is a natural frequency.
+_SHOWN = {"frequency_ratio": "natural frequency"}
 
 
 class _At:
@@ -89,12 +93,14 @@ def fit(
         "slowest": float(fitted.points.speeds.min()),
         "fastest": float(fitted.points.speeds.max()),
         "reference_speed": best.speed,
+        "speed": v,
         "impacts": _impacts(found),
         "errors_given": fitted.points.is_known,
         "errors_size": _number(error_size(fitted.points)),
         "laws": [_law(each, judged[each.law]) for each in fitted.laws],
         "notes": [*fitted.notes, *_notes(found, fitted, v)],
         "design": _design(best, v),
+        "design_of_law": _design_of_law(best, v),
     }
 
 
@@ -154,7 +160,7 @@ def _notes(found: Experiment, fitted: ContactFit, speed: float) -> list[str]:
     notes = []
     if found.drag_bias:
         notes += [f"The drag of the air was removed: it changes e by up to {found.drag_bias:.2g}."]
-    elif found.heard is not None:
+    elif found.is_of_flights:
         notes += ["The drag of the air was not removed: give the mass and the diameter."]
     speeds = fitted.points.speeds
     if not speeds.min() <= speed <= speeds.max():
@@ -165,26 +171,36 @@ def _notes(found: Experiment, fitted: ContactFit, speed: float) -> list[str]:
 
 
 def _design(best: LawFit, speed: float) -> str:
-    """The command for the contact at an impact speed."""
+    """The command for the linear contact with the r and the contact time of the law at an impact
+    speed; what is not known stands there in capitals.
+    """
     mass = "MASS" if best.mass is None else f'"{best.mass:.6g} kg"'
-    words = f"bouncing-ball design --mass {mass}"
-    if best.has_stiffness:
-        words += f' --contact-time "{float(best.duration_at(speed)):.6g} s"'
-    return f"{words} --measured-restitution {float(best.restitution_at(speed)):.6g}"
+    time = f'"{float(best.duration_at(speed)):.6g} s"' if best.has_stiffness else "TIME"
+    restitution = float(best.restitution_at(speed))
+    return (
+        f"bouncing-ball design --mass {mass} --contact-time {time} "
+        f"--measured-restitution {restitution:.6g}"
+    )
+
+
+def _design_of_law(best: LawFit, speed: float) -> str | None:
+    """The command for the contact of the law itself; None if the law is linear."""
+    if best.law == SpringDamper.name:
+        return None
+    return f'{_design(best, speed)} --law {best.law} --speed "{speed:.6g} m/s"'
 
 
 def lines(answer: dict[str, Any]) -> list[str]:
     """The answer as text: the impacts that were heard, the laws, notes and the next command."""
     found = [
-        f"{answer['experiment']}: {answer['points']} impacts at {answer['slowest']:.3g} to "
-        f"{answer['fastest']:.3g} m/s",
+        f"{answer['experiment']}: {_speeds(answer)} m/s",
         *_errors(answer),
         "",
     ]
     if answer["impacts"]:
         found += _table(
             ("v in m/s", "e", "ratio", "by drag", "by resolution"),
-            [[f"{value:.5f}" for value in row.values()] for row in answer["impacts"]],
+            [_impact(row) for row in answer["impacts"]],
         )
         found += [""]
     found += _table(
@@ -213,8 +229,29 @@ def lines(answer: dict[str, Any]) -> list[str]:
     timed = [law for law in answer["laws"] if law["contact_time"] is not None]
     if timed:
         found += ["", *_timed(timed)]
-    found += ["", *answer["notes"], "", f"{_best(answer)} as a contact:", f"  {answer['design']}"]
-    return found
+    found += ["", *answer["notes"], ""]
+    at = f"at {answer['speed']:.3g} m/s"
+    if answer["design_of_law"] is not None:
+        found += [f"{_best(answer)} as a contact {at}:", f"  {answer['design_of_law']}"]
+        found += ["For engines, the linear contact with the same impact at this speed:"]
+    else:
+        found += [f"{_best(answer)} as a contact {at}:"]
+    return [*found, f"  {answer['design']}"]
+
+
+def _speeds(answer: dict[str, Any]) -> str:
+    """The number of impacts, and their range of speeds."""
+    slowest = f"{answer['slowest']:.3g}"
+    fastest = f"{answer['fastest']:.3g}"
+    count = "1 impact" if answer["points"] == 1 else f"{answer['points']} impacts"
+    return f"{count} at {slowest}" + ("" if fastest == slowest else f" to {fastest}")
+
+
+def _impact(row: dict[str, float]) -> list[str]:
+    """An impact that was heard; what was removed from its e may be small, and has two digits."""
+    biases = [f"{row[name]:.2g}" for name in ("drag_bias", "resolution_bias")]
+    kept = [f"{row[name]:.5f}" for name in ("speed", "restitution", "ratio_of_intervals")]
+    return [*kept, *biases]
 
 
 def _errors(answer: dict[str, Any]) -> list[str]:
@@ -237,7 +274,7 @@ def _timed(laws: list[dict[str, Any]]) -> list[str]:
     rows = []
     for law in laws:
         numbers = ", ".join(
-            f"{name} {value:.6g} {law['units'][name]}".rstrip()
+            f"{_SHOWN.get(name, name)} {value:.6g} {law['units'][name]}".rstrip()
             for name, value in law["parameters"].items()
         )
         time = f"{law['contact_time'] * 1e3:.4g}"

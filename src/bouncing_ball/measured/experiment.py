@@ -10,9 +10,9 @@ the columns, and one line of numbers for each impact ::
 The columns are ``speed`` and ``restitution``, or ``drop_height`` and ``rebound_height``, or
 ``interval`` or ``time``, the intervals between the impacts of one bouncing ball or their times; a
 column ``recording`` numbers the recordings if there are several. ``uncertainty``, of the
-restitution coefficient, ``duration`` and ``duration_uncertainty`` may follow. If the mass and the
-diameter of the ball are known, the drag of the air is removed from heights and intervals
-(:mod:`bouncing_ball.measured.flights`). The files of the package are in SI units.
+restitution coefficient, ``duration`` and ``duration_uncertainty`` may follow speeds or heights. If
+the mass and the diameter of the ball are known, the drag of the air is removed from heights and
+intervals (:mod:`bouncing_ball.measured.flights`). The files of the package are in SI units.
 
 Where a file has no uncertainties their size follows from the scatter of the points. Errors of
 restitution coefficients that stand in the file are then taken as equal. Those that follow from
@@ -67,6 +67,9 @@ QUANTITIES = {
 TEXTS = ("title", "ball", "measured by", "published", "source", "read", "note")
 """The texts at the head of a file; each may stand on several lines."""
 _WAYS = ({"speed", "restitution"}, {"drop_height", "rebound_height"}, {"interval"}, {"time"})
+_FURTHER = {"uncertainty", "duration", "duration_uncertainty"}
+_OF_INTERVALS = {"recording"}
+"""What may follow speeds or heights, and what may follow intervals."""
 
 
 @dataclass(frozen=True)
@@ -92,6 +95,8 @@ class Experiment:
     drag_bias : float
         The largest change of a restitution coefficient by the removal of the drag; 0 if it was not
         removed.
+    is_of_flights : bool
+        Whether the speeds follow from heights or times of flights, on which the drag acts.
     heard : Heard or None
         The impacts of a bouncing ball with the biases that were removed.
     """
@@ -107,6 +112,7 @@ class Experiment:
     mass: float | None = None
     diameter: float | None = None
     drag_bias: float = 0.0
+    is_of_flights: bool = False
     heard: Heard | None = field(default=None, repr=False)
 
     @property
@@ -193,8 +199,23 @@ def read(file: str | Path, **options: Any) -> Experiment:
         if value is not None:
             key = name.replace("_", " ")
             numbers[key] = in_si(name, value, QUANTITIES[key])
+    _require_their_use(path, numbers, columns)
     texts = {key: value for key, value in head.items() if key in TEXTS}
-    return _experiment(path.stem, texts, numbers, columns)
+    try:
+        return _experiment(path.stem, texts, numbers, columns)
+    except ModelError as error:
+        raise ModelError(f"{path}: {error}") from None
+
+
+def _require_their_use(
+    path: Path, numbers: dict[str, float], columns: dict[str, np.ndarray]
+) -> None:
+    """Refuse numbers that change nothing, because another column or number is missing."""
+    if "resolution" in numbers and not columns.keys() & {"interval", "time"}:
+        raise ModelError(f"{path}: a resolution needs intervals or times")
+    is_timed = "contact time" in numbers or "duration" in columns
+    if "contact time uncertainty" in numbers and not is_timed:
+        raise ModelError(f"{path}: the uncertainty of a contact time needs the contact time")
 
 
 def _is_number(text: str) -> bool:
@@ -253,18 +274,25 @@ def _columns(path: Path, rows: list[tuple[int, str]]) -> dict[str, np.ndarray]:
     at, line = rows[0]
     titles = [_title(path, at, each) for each in next(csv.reader([line]))]
     wanted = [name for name, _ in titles]
-    if len(set(wanted)) < len(wanted) or not any(way <= set(wanted) for way in _WAYS):
+    if len(set(wanted)) < len(wanted) or set(wanted) - _FURTHER - _OF_INTERVALS not in _WAYS:
         ways = "; or ".join(" and ".join(sorted(way, reverse=True)) for way in _WAYS)
         raise ModelError(f"{path}, line {at}: the columns must be {ways}, each of them once")
-    if "recording" in wanted and not {"interval", "time"} & set(wanted):
+    is_heard = bool({"interval", "time"} & set(wanted))
+    if "recording" in wanted and not is_heard:
         raise ModelError(f"{path}, line {at}: a column recording needs a column interval or time")
+    for name in wanted:
+        if is_heard and name in _FURTHER:
+            raise ModelError(f"{path}, line {at}: intervals and times have no column {name}")
+    if "duration_uncertainty" in wanted and "duration" not in wanted:
+        raise ModelError(f"{path}, line {at}: duration_uncertainty needs a column duration")
     found: dict[str, list[float]] = {name: [] for name in wanted}
     for at, line in rows[1:]:
         cells = next(csv.reader([line]))
         if len(cells) != len(titles):
+            columns = "one column" if len(titles) == 1 else f"{len(titles)} columns"
             raise ModelError(
-                f"{path}, line {at}: {len(cells)} values for {len(titles)} columns; numbers have "
-                "a decimal point and no comma"
+                f"{path}, line {at}: {len(cells)} values for {columns}; numbers have a decimal "
+                "point and no comma"
             )
         for (name, factor), cell in zip(titles, cells, strict=True):
             found[name].append(_cell(path, at, name, cell, factor))
@@ -374,5 +402,6 @@ def _experiment(
         mass=mass,
         diameter=diameter,
         drag_bias=bias,
+        is_of_flights="speed" not in columns,
         heard=found,
     )

@@ -264,7 +264,7 @@ def _dropped(engine, restitution):
     import newton
     import warp
 
-    warp.config.quiet = True
+    warp.config.log_level = warp.LOG_WARNING
     builder = newton.ModelBuilder(gravity=(0.0, 0.0, -G))
     material = newton.ModelBuilder.ShapeConfig(restitution=restitution)
     start = warp.transform(warp.vec3(0.0, 0.0, 1.1), warp.quat_identity())

@@ -244,6 +244,30 @@ def test_from_measured_impacts_to_the_solref_of_mujoco():
     assert "solref" in str(written)
 
 
+@pytest.mark.parametrize("name", ["croquet", "membrane_heavy", "thin_drop"])
+def test_the_linear_contact_of_each_law_is_written_with_its_restitution(name, refusal):
+    """MuJoCo's contact, integrated without our formulas, has the e of the fit at this speed."""
+    best = experiment(name).fit().best
+    contact = best.linear_contact(speed=0.4, mass="2 g")
+    setting = EngineSetup(engine="mujoco")
+    written = write_contact(contact, setting)
+    k, b = (-float(x) for x in written.parameters["solref"])
+
+    def pushes(_, y):
+        return -k * y[0] - b * y[1]
+
+    pushes.terminal = True
+    pushes.direction = 1
+    path = solve_ivp(
+        lambda t, y: (y[1], pushes(t, y)), (0, 1), (0, 0.4), events=pushes, rtol=1e-10, atol=1e-14
+    )
+    assert path.t[-1] == pytest.approx(float(best.duration_at(0.4)), rel=1e-6)
+    assert -path.y[1, -1] / 0.4 == pytest.approx(float(best.restitution_at(0.4)), rel=1e-6)
+    if best.law != "linear":
+        with refusal(ModelError, f"{best.law} is not written for mujoco"):
+            write_contact(best.contact(mass="2 g"), setting)
+
+
 def test_one_point_and_equal_speeds_are_said_to_test_nothing():
     one = fit_contact([2.0], [0.8])
     assert any("One point" in note for note in one.notes)

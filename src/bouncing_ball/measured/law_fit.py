@@ -222,7 +222,10 @@ class LawFit:
         return {} if kind is None else {name: unit.name for name, unit in kind.units.items()}
 
     def contact(self, speed: float | None = None, mass: Any = None) -> Contact:
-        """The contact for ``assess_contact``, ``write_contact`` and the engines.
+        """The contact of this law, for ``assess_contact``.
+
+        ``write_contact`` takes it for the engines that have the law; for all engines see
+        :meth:`linear_contact`.
 
         Parameters
         ----------
@@ -237,17 +240,30 @@ class LawFit:
         ModelError
             If the mass is not known.
         """
+        contact = self.linear_contact(speed, mass)
+        return replace(contact, law=self.law) if self.has_stiffness else contact
+
+    def linear_contact(self, speed: float | None = None, mass: Any = None) -> Contact:
+        """The spring and damper with the r and the contact time of this law at one impact speed,
+        for ``write_contact`` and all engines. At other speeds the law has another r.
+
+        Parameters
+        ----------
+        speed : float, optional
+            Impact speed in m/s, by default v₀.
+        mass
+            Mass of the ball, if it is not known from the experiment.
+
+        Raises
+        ------
+        ModelError
+            If the mass is not known.
+        """
         v = self.speed if speed is None else speed
         weight = self.mass if mass is None else mass
         r = float(self.restitution_at(v))
-        if not self.has_stiffness:
-            return Contact(mass=weight, measured_restitution=r)
-        return Contact(
-            mass=weight,
-            contact_time=float(self.duration_at(v)),
-            measured_restitution=r,
-            law=self.law,
-        )
+        time = float(self.duration_at(v)) if self.has_stiffness else None
+        return Contact(mass=weight, contact_time=time, measured_restitution=r)
 
     def speed_on(self, table: Table, n: int = 1) -> float:
         """Impact speed in m/s of the n-T orbit on a table, 2πn/(1 + r(v)) g/Ω."""

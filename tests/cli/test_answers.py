@@ -205,7 +205,7 @@ def test_a_missing_orbit_exits_1_with_the_reason(refused, outcome):
         ("@ --side all --index 2", "not allowed with argument --side"),
         ("@ --tension 1", "unrecognized arguments: --tension 1: see bouncing-ball orbit --help"),
         ("@ --frequency 50", "arguments: --frequency 50; did you mean --frequency-ratio?"),
-        ("@ 2", "unrecognized arguments: 2: see bouncing-ball orbit --help"),
+        ("@ 2", "unrecognized arguments: 2: --amplitude takes one value"),
         ("@ --release Force", "'displacement', 'force', 'approach'); did you mean force?"),
         ("orbit --amplitude 1g", "'1g' is not a number in [1e-12, 1e+08]: give it without a unit"),
         ("orbit --amplitude 1 --restitution 85", "not a number in (0, 1]: did you mean 0.85?"),

@@ -108,7 +108,7 @@ def test_intervals_show_the_biases_that_were_removed(outcome, heard):
 @pytest.mark.parametrize(
     ("arguments", "part"),
     [
-        (("nowhere.csv",), "nowhere.csv cannot be read"),
+        (("nowhere.csv",), "nowhere.csv is neither a file nor an experiment"),
         (("croquet", "--mass", "1 m"), "mass = 1 m"),
         (("croquet", "--intervals"), "no column interval or time"),
         (("croquet", "--speed", "1", "--frequency", "1"), "--speed and --frequency each"),

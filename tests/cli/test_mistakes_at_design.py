@@ -109,7 +109,7 @@ BALL --plot page
 BALL --json --plot
     argument --plot: expected one argument
 -m 20
-    unrecognized arguments: -m 20: see bouncing-ball design --help
+    unrecognized arguments: -m 20; did you mean --mass?
 --mass "1/2 kg" --stiffness 1e6 --restitution 0.8
     --mass = 1/2 kg is a fraction: write '0.5 kg'
 --mass "20 µg" --frequency "50 Hz" --acceleration "1000000000 g" --stiffness 1e6 --restitution 0.8

@@ -1,6 +1,7 @@
 """One subcommand of ``bouncing-ball``: its options, its answer, and the exit status."""
 
 import json
+from functools import cache
 
 from bouncing_ball import __version__
 from bouncing_ball.cli.commands import COMMANDS, Program
@@ -9,6 +10,25 @@ from bouncing_ball.cli.options import Parser, option
 from bouncing_ball.cli.output import fail, say
 from bouncing_ball.errors import ModelError, NoOrbitError, ParameterError, extra
 from bouncing_ball.pipeline.patience import patience
+
+
+class _OfCommand(Parser):
+    """The parser of a subcommand, which knows the options of the others."""
+
+    def _elsewhere(self, unknown: str) -> str:
+        name = unknown.partition("=")[0]
+        found = [command for command in COMMANDS if name in _options(command)]
+        if not found:
+            return ""
+        *more, last = found
+        return f": it is an option of {', '.join(more)}{' and ' if more else ''}{last}"
+
+
+@cache
+def _options(command: str) -> frozenset[str]:
+    alone = Parser(prog=command)
+    _program(command).add_options(alone)
+    return frozenset(alone._option_string_actions)
 
 
 def _program(command: str) -> Program:
@@ -28,7 +48,7 @@ def parser(arguments: list[str]) -> Parser:
         epilog="bouncing-ball COMMAND --help explains a command and gives examples",
     )
     top.add_argument("--version", action="version", version=f"{top.prog} {__version__}")
-    commands = top.add_subparsers(dest="command", parser_class=Parser)
+    commands = top.add_subparsers(dest="command", parser_class=_OfCommand)
     for name, command in COMMANDS.items():
         text = command.purpose
         sub = commands.add_parser(name, help=text, description=text, epilog=command.explanation())
@@ -43,6 +63,9 @@ def parser(arguments: list[str]) -> Parser:
 def answer(arguments: list[str]) -> None:
     """Answer one subcommand; exit with 1 if there is no answer, and with 2 on a mistake."""
     top = parser(arguments)
+    first = arguments[0].partition("=")[0] if arguments else ""
+    if first.startswith("-") and first not in top._option_string_actions:
+        top.error(f"a command is missing before {first}, one of {', '.join(COMMANDS)}")
     given = vars(top.parse_args(arguments))
     command = given.pop("command")
     as_json = given.pop("json", False)

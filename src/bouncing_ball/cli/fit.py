@@ -7,9 +7,9 @@ import numpy as np
 
 from bouncing_ball.contacts.quantities import Speed, quantities
 from bouncing_ball.contacts.table import Table
-from bouncing_ball.contacts.units import in_si
-from bouncing_ball.errors import ParameterError
-from bouncing_ball.measured.experiment import Experiment, experiment, names, read
+from bouncing_ball.contacts.units import doubts, in_si
+from bouncing_ball.errors import ModelError, ParameterError, did_you_mean
+from bouncing_ball.measured.experiment import QUANTITIES, Experiment, experiment, names, read
 from bouncing_ball.measured.fit import ContactFit
 from bouncing_ball.measured.law_fit import LawFit
 from bouncing_ball.measured.verdicts import Judgement, error_size, judge
@@ -68,15 +68,14 @@ def fit(
     """
     if speed is not None and frequency is not None:
         raise ParameterError("{speed} and {frequency} each give the impact speed: give one")
-    found = _experiment(
-        file,
-        intervals=intervals,
-        mass=mass,
-        diameter=diameter,
-        contact_time=contact_time,
-        contact_time_uncertainty=contact_time_uncertainty,
-        resolution=resolution,
-    )
+    options = {
+        "mass": mass,
+        "diameter": diameter,
+        "contact_time": contact_time,
+        "contact_time_uncertainty": contact_time_uncertainty,
+        "resolution": resolution,
+    }
+    found = _experiment(file, intervals=intervals, **options)
     fitted = found.fit()
     judged = judge(fitted)
     best = fitted.best
@@ -98,7 +97,7 @@ def fit(
         "errors_given": fitted.points.is_known,
         "errors_size": _number(error_size(fitted.points)),
         "laws": [_law(each, judged[each.law]) for each in fitted.laws],
-        "notes": [*fitted.notes, *_notes(found, fitted, v)],
+        "notes": [*fitted.notes, *_notes(found, fitted, v), *_doubts(options | {"speed": speed})],
         "design": _design(best, v),
         "design_of_law": _design_of_law(best, v),
     }
@@ -110,6 +109,10 @@ def _experiment(file: str, *, intervals: bool, **options: str | None) -> Experim
         return experiment(file)
     from bouncing_ball.measured.experiment import DATA
 
+    if not known and not Path(file).exists():
+        of = ", ".join(names())
+        said = f"is neither a file nor an experiment of the package: {of}"
+        raise ModelError(f"{file} {said}{did_you_mean(file, names())}")
     return read(DATA / f"{file}.csv" if known else file, intervals=intervals, **options)
 
 
@@ -168,6 +171,12 @@ def _notes(found: Experiment, fitted: ContactFit, speed: float) -> list[str]:
     if fitted.best.has_stiffness and fitted.best.mass is None:
         notes += ["Without the mass, stiffness and damping are per kilogram."]
     return notes
+
+
+def _doubts(options: dict[str, str | None]) -> list[str]:
+    """Sentences on options without a unit that are unusually large in SI units."""
+    kinds = {key.replace(" ", "_"): kind for key, kind in QUANTITIES.items()} | quantities(_At)
+    return [f"{text[0].upper()}{text[1:]}." for text in doubts(options, kinds)]
 
 
 def _design(best: LawFit, speed: float) -> str:

@@ -85,6 +85,7 @@ def follow(
         If there is no orbit to start from.
     """
     require_writable(plot, PICTURES)
+    _require_contact("along", along, impact)
     start = _start(n, amplitude, side, phase, velocity, impact)
     found = _branch(start, along, to, doublings)
     if plot is not None:
@@ -104,12 +105,23 @@ def _window(
     lower, upper = (f"{{{each}}}" for each in options)
     if low is None or high is None:
         raise ParameterError(f"{lower} and {upper} are needed together")
+    if not low < high:
+        raise ParameterError(f"{lower} {low:g} is not below {upper} {high:g}")
     if start is not None and not low <= start <= high:
         raise ParameterError(
             f"the curve starts at {option(name)[2:]} = {start:g}, which is not between "
             f"{lower} {low:g} and {upper} {high:g}"
         )
     return low, high
+
+
+def _require_contact(name: str, parameter: str, impact: dict[str, Any]) -> None:
+    """Raise an error if a parameter of a spring and damper is varied, and there is none."""
+    is_of_contact = parameter.replace("-", "_") in ("frequency_ratio", "damping_ratio")
+    if is_of_contact and impact["frequency_ratio"] is None and impact["law"] is None:
+        raise ParameterError(
+            f"{{{name}}} {parameter} needs {{frequency_ratio}} of a contact, from which it starts"
+        )
 
 
 def _start(
@@ -193,6 +205,10 @@ def curve(
         If there is no such special orbit.
     """
     require_writable(plot, PICTURES)
+    _require_contact("along", along, rest)
+    _require_contact("across", across, rest)
+    if across.replace("-", "_") == along.replace("-", "_"):
+        raise ParameterError(f"{{across}} {across} is that of {{along}}: give another parameter")
     orbit = {name: rest.pop(name) for name in ("n", "amplitude", "side", "phase", "velocity")}
     found = _branch(_start(**orbit, impact=rest), along, to, doublings)
     words = str(Special[kind.replace("-", "_").upper()])

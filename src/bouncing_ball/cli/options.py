@@ -17,12 +17,11 @@ import typing
 from collections.abc import Callable, Iterable
 from typing import Any, NoReturn
 
+from bouncing_ball.cli.advice import advice, meaning
 from bouncing_ball.cli.output import say
-from bouncing_ball.errors import Range, did_you_mean, escaped
+from bouncing_ball.errors import Range, escaped
 
 _OTHER_NAMES = {"parameters": "set", "from_engine": "from", "all_families": "all"}
-# The command whose options have units.
-_WITH_UNITS = "design"
 _OTHER_NAMES |= {"amplitudes": "amplitude"}
 
 
@@ -39,34 +38,54 @@ class Parser(argparse.ArgumentParser):
         self._negative_number_matcher = re.compile(r"-\.?\d")
 
     def error(self, message: str) -> NoReturn:
+        message = message.replace("ignored explicit argument", "it takes no value, not")
         self.exit(2, f"{self.prog.split()[0]}: {escaped(message)}\n")
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
         namespace, unknown = super().parse_known_args(args, namespace)
         if unknown:
-            self.error(f"unrecognized arguments: {' '.join(unknown)}{self._advice(unknown[0])}")
+            self.error(f"unrecognized arguments: {' '.join(unknown)}{self._advice(unknown, args)}")
+        self._require_once(args)
         return namespace, unknown
 
-    def _advice(self, unknown: str) -> str:
+    def _advice(self, unknown: list[str], given: Any) -> str:
         """A clause on the first argument that is not recognized."""
-        name = unknown.partition("=")[0]
-        if self.prog.endswith(_WITH_UNITS) and (engine := _engine_with(name.removeprefix("--"))):
-            own = name.removeprefix("--")
-            return f": it is a parameter of {engine}: --from {engine} --set {own}=NUMBER"
-        if f"--{name}" in self._option_string_actions:
-            return f"; did you mean --{name}?"
-        if meant := name.startswith("--") and _meant(name, self._option_string_actions):
-            return meant
-        is_option = name.startswith("-") and not self._negative_number_matcher.match(name)
-        if is_option or not self.prog.endswith(_WITH_UNITS):
-            return f": see {self.prog} --help"
-        return ': a value with a space is one argument in quotes, such as "20 g"'
+        known = self._option_string_actions
+        command = self.prog.split()[-1]
+        said = advice(unknown[0], given or (), command, known) or self._elsewhere(unknown[0])
+        return said or f": see {self.prog} --help"
+
+    def _elsewhere(self, unknown: str) -> str:
+        """A clause on an argument that other parsers know; empty if there are none."""
+        return ""
+
+    def _require_once(self, given: Any) -> None:
+        """End with an error if an option has two values, of which one would be forgotten."""
+        seen = set()
+        for each in given or ():
+            name = each.partition("=")[0]
+            action = self._option_string_actions.get(name)
+            if action is None or action.nargs == 0 or isinstance(action, _Assignments):
+                continue
+            if name in seen:
+                self.error(f"argument {name}: it is given twice")
+            seen.add(name)
+
+    def _match_argument(self, action: argparse.Action, arg_strings_pattern: str) -> int:
+        try:
+            return super()._match_argument(action, arg_strings_pattern)
+        except argparse.ArgumentError as error:
+            if isinstance(action.metavar, tuple):
+                error.message += f", {' and '.join(action.metavar)}, with a space between them"
+            raise
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         try:
             super()._check_value(action, value)
         except argparse.ArgumentError as error:
-            error.message += _meant(value, list(map(str, action.choices or ())))
+            is_option = f"--{value}" in self._option_string_actions
+            choices = list(map(str, action.choices or ()))
+            error.message += f"; did you mean --{value}?" if is_option else meaning(value, choices)
             raise
 
     def _print_message(self, message: str, file: Any = None) -> None:
@@ -75,48 +94,6 @@ class Parser(argparse.ArgumentParser):
             say(message.rstrip("\n"))
         else:
             super()._print_message(message, file)
-
-
-def _meant(text: str, known: Iterable[str]) -> str:
-    """A clause that suggests the known name that a wrong one resembles, begins or ends.
-
-    Examples
-    --------
-    >>> _meant("--amplitude", ["--acceleration", "--table-amplitude"])
-    '; did you mean --table-amplitude?'
-    >>> _meant("--frequency", ["--amplitude", "--frequency-ratio"])
-    '; did you mean --frequency-ratio?'
-    """
-    names = list(known)
-    part = text.removeprefix("--").replace("_", "-")
-    plain = {name: name.removeprefix("--").replace("_", "-") for name in names}
-    longer = [
-        name
-        for name, each in plain.items()
-        if each.endswith(f"-{part}") or (part and each.startswith(part))
-    ]
-    # Dashes are no letters that two names have in common.
-    alike = did_you_mean(part, plain.values())
-    for name, each in plain.items():
-        if alike == f"; did you mean {each}?":
-            return f"; did you mean {name}?"
-    return did_you_mean("".join(longer[:1]), longer)
-
-
-def _engine_with(parameter: str) -> str:
-    """The first engine that has a parameter of this name; empty if none has.
-
-    Examples
-    --------
-    >>> _engine_with("kn"), _engine_with("mass")
-    ('lammps', '')
-    """
-    # Imported here, because the import needs numpy, which the help does not need.
-    from bouncing_ball.contacts.engines.choice import ENGINES
-
-    plain = ("stiffness", "damping", "solref", "solimp")
-    known = (one.name for one in ENGINES.values() if parameter in one.names)
-    return "" if parameter in plain else next(known, "")
 
 
 def option(name: str) -> str:
@@ -162,9 +139,14 @@ def _number(text: str, kind: Any = float) -> float:
 def _assignment(text: str) -> tuple[str, float]:
     name, _, value = text.partition("=")
     number = _number(value)
-    if not name or number not in Range():
-        raise argparse.ArgumentTypeError(f"{text!r} is not NAME=NUMBER, such as stiffness=1000")
-    return name, number
+    if not name.strip() or number not in Range():
+        why = f"{text!r} is not NAME=NUMBER, such as stiffness=1000"
+        if "=" in value:
+            why += ": repeat the option for each parameter"
+        elif "=" in text:
+            why += _plain(value, Range())
+        raise argparse.ArgumentTypeError(why)
+    return name.strip(), number
 
 
 class _Assignments(argparse.Action):

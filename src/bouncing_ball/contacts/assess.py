@@ -138,7 +138,7 @@ class Assessment:
             return found._replace(verdict=said)
         before = "" if self.chosen is None else f"{found.verdict} "
         share = self.ends.of_orbit(self.n) if self.motion.is_common else None
-        end = judged_by_motion(self.motion, self.needed.tolerance, self.n, share)
+        end = judged_by_motion(self.motion, self.needed.tolerance, self.n, share, self.amplitude)
         return end._replace(verdict=before + end.verdict, reason=self.no_orbit or end.reason)
 
     @property

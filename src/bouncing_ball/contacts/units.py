@@ -42,14 +42,16 @@ _BETWEEN = re.compile(r"[\s·*.^]")
 _SOFTEST = 1e4
 # The smallest restitution that may be one in percent.
 _PERCENT = 5
-# Units that mean something else than what a user of SI units means.
-_FALSE_FRIENDS = {"gr": "g", "gm": "g"}
+# Units that mean something else than what a user of SI units means, by the SI unit of a parameter.
+_FALSE_FRIENDS = {"kg": {"gr": "g", "gm": "g"}, "N/m": {"Nm": "N/m", "N m": "N/m", "N*m": "N/m"}}
 # A number with one decimal comma and its unit, and one whose thousands are grouped by commas.
 _COMMA = re.compile(r"([+-]?\d+),(\d+)([^,]*)", re.DOTALL)
 _GROUPS = re.compile(r"[+-]?\d{1,3}(?:,\d{3})+(?!\d).*", re.DOTALL)
 # Thousands that are separated in another way, and two numbers with a stroke between them.
-_SEPARATED = re.compile(r"[+-]?\d{1,3}(?:['’_ ]\d{3})+(?!\d).*", re.DOTALL)
-_SEPARATOR = re.compile(r"(?<=\d)['’_ ](?=\d{3}(?!\d))")
+_SEPARATED = re.compile(r"[+-]?\d{1,3}(?:(?:['’_ ]\d{3})+|(?:\.\d{3}){2,})(?!\d).*", re.DOTALL)
+_SEPARATOR = re.compile(r"(?<=\d)['’_ .](?=\d{3}(?!\d))")
+# Two numbers, of which the second is an uncertainty or the end of a range.
+_TWO = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)? ?(?:±|\+/?-|-|–|to) ?\d.*", re.DOTALL)
 _FRACTION = re.compile(r"([+-]?\d+\.?\d*)/(\d+\.?\d*)((?!\d).*)", re.DOTALL)
 # A power of ten as one writes it by hand: 10^7, 2*10^7, 2x10**7.
 _POWER_OF_TEN = re.compile(
@@ -210,11 +212,15 @@ def _plain_spelling(text: str) -> str:
     "has a comma: write '0.65', with a decimal point"
     >>> _plain_spelling("1 000 000 N/m"), _plain_spelling("1/2 kg")
     ("has separated thousands: write '1000000 N/m'", "is a fraction: write '0.5 kg'")
+    >>> _plain_spelling("1.000.000 N/m"), _plain_spelling("20 ± 1 g")
+    ("has separated thousands: write '1000000 N/m'", 'is two numbers: give one')
     >>> _plain_spelling("10^7 N/m"), _plain_spelling("2.5*10^6")
     ("is a power of ten: write '1e7 N/m'", "is a power of ten: write '2.5e6'")
     """
     if comma := _without_comma(text):
         return f"has a comma: write {comma}"
+    if _TWO.fullmatch(text):
+        return "is two numbers: give one"
     if _SEPARATED.fullmatch(text):
         return f"has separated thousands: write {_SEPARATOR.sub('', text)!r}"
     power = _POWER_OF_TEN.fullmatch(text)
@@ -229,8 +235,8 @@ def _plain_spelling(text: str) -> str:
 
 def _spelling(unit: str, kind: SIParameter) -> str:
     """The unit that was meant, if a common one has the same letters; otherwise an empty text."""
-    if kind.name == "kg" and unit in _FALSE_FRIENDS:
-        return _FALSE_FRIENDS[unit]
+    if unit in (friends := _FALSE_FRIENDS.get(kind.name, {})):
+        return friends[unit]
     typed = _BETWEEN.sub("", unit).casefold()
     for spelling in _SPELLINGS.get(kind.name, ()):
         if _BETWEEN.sub("", spelling).casefold() == typed:
@@ -247,8 +253,9 @@ def _converted(value: float, unit: str, kind: SIParameter) -> tuple[float, str]:
     why = "has an unknown unit"
     if (kind.name, unit) == ("m/s^2", "g"):
         unit = "standard_gravity"
-    if kind.name == "kg" and unit in _FALSE_FRIENDS:
-        return math.nan, "is in grains, or in no unit of mass"
+    if unit in _FALSE_FRIENDS.get(kind.name, {}):
+        what = "grains, or in no unit of mass" if kind.name == "kg" else "newton times meter"
+        return math.nan, f"is in {what}"
     # Pint also raises the errors of its tokenizer, which are of many types.
     unit = _POWER.sub("^", unit)
     with suppress(Exception):
@@ -280,6 +287,8 @@ _MOST_BARE = {
     "mass": 1e3,
     "drop_height": 100.0,
     "speed": 100.0,
+    "gravity": 50.0,
+    "diameter": 1.0,
 }
 
 

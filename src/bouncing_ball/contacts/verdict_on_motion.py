@@ -39,10 +39,17 @@ class Judgement(NamedTuple):
 
 
 def judged_by_motion(
-    motion: FinalMotion, tolerance: float, n: int, share: float | None = None
+    motion: FinalMotion,
+    tolerance: float,
+    n: int,
+    share: float | None = None,
+    amplitude: float | None = None,
 ) -> Judgement:
     """The verdict on the motion on which a ball ends, if the orbit is not stable, or if only a
     small share of the starts ends on it.
+
+    With the excitation ``amplitude``, a contact on which the ball rests is told from the
+    restitution model, in which no ball rests above Λ = 1, also if its motion is undecided.
     """
     about = f"no ball stays on the {n}-T orbit, so that its errors are not judged"
     if share is not None:
@@ -61,6 +68,11 @@ def judged_by_motion(
     if exact != simple and known and {exact, simple} & distinct:
         sentence = f"its motion is {_named(simple)}, and the contact's is {_named(exact)}"
         return Judgement(False, f"The restitution model is not good enough: {sentence}.", about)
+    leaves = amplitude is not None and amplitude > RESTITUTION_THRESHOLD
+    if exact == Kind.PERMANENT_CONTACT and leaves:
+        sentence = f"its ball leaves the table again and again, as Λ = {amplitude:.4g} is above 1"
+        both = f"{sentence}, and that of the contact rests"
+        return Judgement(False, f"The restitution model is not good enough: {both}.", about)
     if motion.greatest is not None:
         true, predicted = motion.greatest.values()
         error = float(prediction_error(predicted, true))

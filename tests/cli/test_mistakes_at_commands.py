@@ -30,8 +30,6 @@ limits --restitution 0.85 --frequency-ratio 10 Hz
     unrecognized arguments: Hz: numbers of limits have no unit
 limits --restitution 0.85 --amplitude 1
     unrecognized arguments: --amplitude 1: it is an option of orbit, error-law, follow,
-limits --restitution 0.85 --restitution 0.9
-    argument --restitution: it is given twice
 limits —restitution 0.85
     unrecognized arguments: —restitution 0.85; did you mean --restitution?
 limits -r 0.85
@@ -112,8 +110,6 @@ design -mass "20 g" --stiffness 1e6 --restitution 0.8
     unrecognized arguments: -mass 20 g; did you mean --mass?
 design --mass "20 g" --diameter "5 mm" --restitution 0.8
     unrecognized arguments: --diameter 5 mm; did you mean --radius, half of it?
-design --mass "20 g" --mass "30 g" --stiffness 1e6 --restitution 0.8
-    argument --mass: it is given twice
 design --mass "20 g" --stiffness "1e6 Nm" --restitution 0.8
     --stiffness = 1e6 Nm is in newton times meter: did you mean '1e6 N/m'?
 design --mass "20 g" --stiffness "1.000.000 N/m" --restitution 0.8

@@ -45,7 +45,6 @@ class Parser(argparse.ArgumentParser):
         namespace, unknown = super().parse_known_args(args, namespace)
         if unknown:
             self.error(f"unrecognized arguments: {' '.join(unknown)}{self._advice(unknown, args)}")
-        self._require_once(args)
         return namespace, unknown
 
     def _advice(self, unknown: list[str], given: Any) -> str:
@@ -58,18 +57,6 @@ class Parser(argparse.ArgumentParser):
     def _elsewhere(self, unknown: str) -> str:
         """A clause on an argument that other parsers know; empty if there are none."""
         return ""
-
-    def _require_once(self, given: Any) -> None:
-        """End with an error if an option has two values, of which one would be forgotten."""
-        seen = set()
-        for each in given or ():
-            name = each.partition("=")[0]
-            action = self._option_string_actions.get(name)
-            if action is None or action.nargs == 0 or isinstance(action, _Assignments):
-                continue
-            if name in seen:
-                self.error(f"argument {name}: it is given twice")
-            seen.add(name)
 
     def _match_argument(self, action: argparse.Action, arg_strings_pattern: str) -> int:
         try:

@@ -67,14 +67,15 @@ class Assessment:
     """The assessment of a contact on a table; times are in s, lengths in m, forces in N.
 
     ``frequency_ratio``, ``damping_ratio`` and ``amplitude`` are ϖ, ζ and Λ. ``restitution`` has the
-    r of a free impact for each release rule, and ``measured_restitution`` is that for the rule of
-    this contact; it holds at impacts faster than ``slowed_speed``, at which, on a table at rest,
-    gravity lowers √(h′/h) by 1 %, None without damping or for another law. ``n`` is the family of
-    the verdict. Up to Λ = ``permanent_contact`` a ball may stay on the table; None if no such
-    threshold was found. ``law`` has the ``name`` of a contact law and its parameters, whose units
-    are powers of kg, m and s. ``chosen`` is the family for which the contact was chosen, None for a
-    contact that was given. ``no_orbit`` says that no model has an orbit; it is empty if one has.
-    ``hint`` is what may have been meant in that case.
+    r of a free impact for each release rule, of a law for its rule only (the other value is None),
+    and ``measured_restitution`` is that for the rule of this contact; it holds at impacts faster
+    than ``slowed_speed``, at which, on a table at rest, gravity lowers √(h′/h) by 1 %, None without
+    damping or if it does at no speed. ``n`` is the family of the verdict. Up to Λ =
+    ``permanent_contact`` a ball may stay on the table; None if no such threshold was found. ``law``
+    has the ``name`` of a contact law and its parameters, whose units are powers of kg, m and s.
+    ``chosen`` is the family for which the contact was chosen, None for a contact that was given.
+    ``no_orbit`` says that no model has an orbit; it is empty if one has. ``hint`` is what may have
+    been meant in that case.
     """
 
     KEYS: ClassVar[tuple[str, ...]] = (
@@ -93,7 +94,7 @@ class Assessment:
     time_step: LargestTimeStep
     static_deflection: Annotated[float, Listed("static deflection", "m")]
     restitution: Annotated[
-        dict[str, float],
+        dict[str, float | None],
         Listed("restitution, released at δ = 0"),
         Listed("restitution, released without force"),
     ]
@@ -261,9 +262,7 @@ def assess(case: ResolvedContact, question: Question, choice: Choice | None = No
         contact_time=case.contact_time,
         time_step=LargestTimeStep(case.contact_time / STEPS, STEP_RULE),
         static_deflection=case.static_deflection,
-        restitution={
-            str(rule): float(replace(contact, release=rule).restitution) for rule in LINEAR
-        },
+        restitution=_by_release(case),
         measured_restitution=float(contact.restitution),
         slowed_speed=case.slowed_speed,
         permanent_contact=finite(case.permanent_contact),
@@ -284,6 +283,16 @@ def assess(case: ResolvedContact, question: Question, choice: Choice | None = No
         chosen=None if choice is None else choice.n,
         no_orbit=no_orbit,
     )
+
+
+def _by_release(case: ResolvedContact) -> dict[str, float | None]:
+    """r of a free impact for each release rule; None for the rule that a law does not have."""
+    contact = case.contact
+    if case.law is None:
+        return {str(rule): float(replace(contact, release=rule).restitution) for rule in LINEAR}
+    at_surface = case.law.release.at_surface
+    r = float(contact.restitution)
+    return {str(rule): r if rule.at_surface == at_surface else None for rule in LINEAR}
 
 
 def _stays(one: ComparedOrbit) -> bool:

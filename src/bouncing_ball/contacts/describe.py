@@ -5,7 +5,7 @@ from typing import Annotated, Any, ClassVar
 
 from bouncing_ball.contacts.contact import Contact
 from bouncing_ball.contacts.drops import deep
-from bouncing_ball.contacts.notes import remarks
+from bouncing_ball.contacts.notes import formula, remarks
 from bouncing_ball.contacts.quantities import Gravity, Speed, check_kinds, quantities
 from bouncing_ball.contacts.resolve import needs_table, resolve
 from bouncing_ball.contacts.resolved import ResolvedContact
@@ -56,7 +56,7 @@ class Description:
         """Sentences on how the contact was read."""
         depth = self.static_deflection
         sunk = () if depth is None else deep(depth, self.case.given.radius, "at rest")
-        return remarks(self.case) + sunk
+        return remarks(self.case) + formula(self.case) + sunk
 
 
 @suggesting
@@ -103,11 +103,12 @@ def describe(case: ResolvedContact) -> Description:
         whereas its r depends on the speed.
     """
     release = case.contact.release
+    own = release if case.law is None else case.law.release
     found = Description(
         mass=case.mass,
         stiffness=case.stiffness,
         natural_frequency=case.omega,
-        release=str(release),
+        release=str(own),
         case=case,
     )
     if case.needs_speed and case.law is None and case.is_of_no_impact:

@@ -45,6 +45,24 @@ def _on_engine(case: ResolvedContact) -> tuple[str, ...]:
     return (*found, f"r changes from {before} to {after}, because {why}")
 
 
+# The forces of the laws whose constants have other meanings elsewhere, over their stiffness k; x is
+# the depth and ẋ its rate.
+_FORCES = {
+    "hunt-crossley": "k x^1.5 (1 + C ẋ)",
+    "hunt-crossley-linear": "k x (1 + C ẋ)",
+    "tsuji": "k x^1.5 + C √(m k) x^0.25 ẋ",
+    "kuwabara-kono": "k (x^1.5 + C √x ẋ)",
+}
+
+
+def formula(case: ResolvedContact) -> tuple[str, ...]:
+    """The force of a law, in which its stiffness and its damping stand."""
+    force = None if case.law is None else _FORCES.get(case.law.name)
+    if case.law is None or force is None:
+        return ()
+    return (f"the force of {case.law.name} with stiffness k and damping C is {force}, of depth x",)
+
+
 def on_drop_test(case: ResolvedContact) -> tuple[str, ...]:
     """A sentence on the drop test that was given, if one was, and on its restitution."""
     drop = case.given.drop_height
@@ -129,4 +147,4 @@ def notes(case: ResolvedContact, family: ComparedOrbit, motion: FinalMotion) -> 
             "before its release at δ = 0 the contact pulls the ball; a contact that cannot pull "
             "has the r of a release without force"
         )
-    return tuple(found)
+    return (*found, *formula(case))

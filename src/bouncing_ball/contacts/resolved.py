@@ -134,7 +134,7 @@ class ResolvedContact:
     @property
     def slowed_speed(self) -> float | None:
         """The impact speed in m/s at which gravity lowers r by 1 %, in drops on this contact; None
-        without damping, for ζ ≥ 1, and on a vibrating table for a contact law.
+        without damping, for ζ ≥ 1, and for a contact law in which it does at no speed.
         """
         zeta = float(self.contact.damping_ratio)
         if self.law is None:
@@ -145,8 +145,6 @@ class ResolvedContact:
             fast = _FAST
             unit = self.table.gravity / self.omega
         else:
-            if not self.table.is_at_rest:
-                return None
             law = self.law
             fast = _FAST * rest(law) * self.omega * self.table.time
             unit = self.table.length / self.table.time

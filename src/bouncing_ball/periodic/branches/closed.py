@@ -1,4 +1,4 @@
-"""Closed branches, which come back to the orbit at which they start."""
+"""The start of a branch: closed branches come back to it, and a special start is not listed."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -9,6 +9,7 @@ from bouncing_ball.numerics.branch import Branch, End
 from bouncing_ball.numerics.corrector import newton, plane
 from bouncing_ball.numerics.events import SpecialPoint
 from bouncing_ball.periodic.branches.following import PATIENT, Followed
+from bouncing_ball.periodic.orbits.orbit import Orbit
 
 CLOSED = "the branch is closed: it comes back to its start"
 """Why a closed branch ends."""
@@ -39,6 +40,20 @@ def one_turn(found: Followed) -> Followed:
         if back.converged and np.linalg.norm(back.point - start) <= _SAME:
             return replace(found, branch=_up_to_start(found.branch, int(k) + 1))
     return found
+
+
+def without_start(found: Followed, start: Orbit) -> Followed:
+    """A branch without the special orbit at which it starts.
+
+    The test function of this orbit vanishes at the start up to rounding, whose sign decides whether
+    a continuation sees a change of sign there.
+    """
+    if not start.kind:
+        return found
+    here = start.point(found.problem.orbits)
+    branch = found.branch
+    others = [each for each in branch.special if np.linalg.norm(each.point - here) > _SAME]
+    return replace(found, branch=replace(branch, special=tuple(others)))
 
 
 def _up_to_start(branch: Branch, count: int) -> Branch:

@@ -26,7 +26,7 @@ from enum import StrEnum
 import numpy as np
 
 from bouncing_ball.errors import NoOrbitError, ParameterError
-from bouncing_ball.numerics.branch import Branch, ContinuationError
+from bouncing_ball.numerics.branch import Branch, ContinuationError, End
 from bouncing_ball.numerics.continuation import continue_both_ways
 from bouncing_ball.numerics.corrector import Condition, NewtonSettings, null_vector, solution_at
 from bouncing_ball.numerics.events import Event, SpecialPoint, locate, vanishing
@@ -39,6 +39,7 @@ from bouncing_ball.periodic.branches.following import (
     explained,
     limits_of,
 )
+from bouncing_ball.periodic.branches.observables import MERGES
 from bouncing_ball.periodic.branches.sticking_curve import sticking_curve
 from bouncing_ball.periodic.orbits.balls import LAMBDA, LOWEST
 from bouncing_ball.periodic.orbits.normal_form import coefficient
@@ -49,6 +50,7 @@ from bouncing_ball.periodic.orbits.special import (
     Special,
     events,
     flight_margin,
+    flight_time,
     impact_margin,
     loss_of_release,
 )
@@ -69,6 +71,10 @@ _ANOTHER = 1e-3
 # The coefficient of doublings is computed at every so many points of a curve: it takes about as
 # long as a point, and changes slowly.
 _STRIDE = 4
+# A curve whose points accumulate is continued linearly from these last points, up to this distance.
+# The error of the place is of the order of the square of the distance.
+_LAST = 17
+_AHEAD = 0.2
 _MARGINS = {
     Special.GRAZING_FLIGHT: flight_margin,
     Special.GRAZING_IMPACT: impact_margin,
@@ -196,14 +202,55 @@ def curve_through(
             *_generalized(problem, branch, kind),
         ]
         backwards = replace(branch, points=branch.points[::-1], end=branch.start)
-        tests = [each for each in (*events(orbits), loss_of_release(orbits)) if each.name != kind]
         named = replace(
             branch,
             special=tuple(special),
-            start=explained(backwards, tests, limits),
-            end=explained(branch, tests, limits),
+            start=_explained_end(orbits, backwards, kind, windows),
+            end=_explained_end(orbits, branch, kind, windows),
         )
     return Curve(orbits, named, kind)
+
+
+def _explained_end(
+    orbits: PeriodicOrbits, branch: Branch, kind: Special, ranges: dict[str, Window]
+) -> End:
+    """The end of a curve, with what is there if its points accumulate."""
+    tests = [each for each in (*events(orbits), loss_of_release(orbits)) if each.name != kind]
+    end = explained(branch, tests, _limits(orbits, ranges))
+    if not end.stuck or end != branch.end:
+        return end
+    last = branch.points[-1]
+    for (name, within), at in zip(ranges.items(), last[-2:], strict=True):
+        for bound in within:
+            if abs(np.arcsinh(bound) - at) < CURVE_STEPS.creep:
+                shown = f"{name.replace('_', ' ')} = {bound:g}"
+                return End(f"the points accumulate next to {shown}, the end of its range")
+    if orbits.impacts == 1 and _zero_ahead(branch, lambda y: flight_time(orbits, y)) is not None:
+        return End(MERGES)
+    place = _zero_ahead(branch, loss_of_release(orbits).function)
+    if place is None:
+        return end
+    values = orbits.values(place).items()
+    where = ", ".join(f"{name.replace('_', ' ')} = {value:.3g}" for name, value in values)
+    sentence = (
+        f"the orbit is next to a release without speed, at about {where}, where its equations are "
+        "not smooth"
+    )
+    return End(sentence, event=Special.RELEASE_LOST)
+
+
+def _zero_ahead(branch: Branch, function: Callable[[np.ndarray], np.ndarray]) -> np.ndarray | None:
+    """The point ahead of a curve at which a function vanishes if it goes on falling linearly as
+    over the last points; None if there is none near.
+    """
+    last = branch.points[-1]
+    before = branch.points[-min(_LAST, len(branch.points))]
+    here = float(function(last))
+    falls = float(function(before)) - here
+    if not (here > 0 and falls > 0):
+        return None
+    step = here / falls * (last - before)
+    return last + step if np.linalg.norm(step) < _AHEAD else None
 
 
 def _special_at(problem: CurveProblem, y: np.ndarray) -> np.ndarray:
@@ -289,6 +336,9 @@ def _resonances(problem: CurveProblem, branch: Branch, kind: Special) -> list[Sp
         return problem.orbits.trace_and_determinant(y)[1] - 1
 
     values = excess(branch.points)
+    if np.all(np.abs(values) < _RESONANT):
+        # Without dissipation every point has two equal multipliers, and none is special.
+        return []
     found = [
         SpecialPoint(name, branch.points[end]) for end in (0, -1) if abs(values[end]) < _RESONANT
     ]
@@ -307,16 +357,43 @@ def _generalized(problem: CurveProblem, branch: Branch, kind: Special) -> list[S
 
     def cubic(y: np.ndarray) -> np.ndarray:
         rows = y.reshape(-1, y.shape[-1])
-        values = [coefficient(problem.orbits, row, Bifurcation.PERIOD_DOUBLING)[0] for row in rows]
-        return np.reshape(values, y.shape[:-1])
+        return np.reshape([_cubic(problem.orbits, row) for row in rows], y.shape[:-1])
 
-    last = len(branch.points) - 1
-    tested = np.unique([*range(0, last, _STRIDE), last])
-    values = cubic(branch.points[tested])
+    event = Event(Degenerate.GENERALIZED, cubic)
     found = []
-    for k in np.flatnonzero(values[1:] * values[:-1] < 0):
-        left, right = (branch.points[tested[j]] for j in (k, k + 1))
-        place = locate(problem, Event(Degenerate.GENERALIZED, cubic), left, right, _BY_DIFFERENCES)
-        if place is not None:
-            found.append(place)
+    for start, stop in _sign_changes(cubic, branch.points):
+        between = branch.points[start : stop + 1]
+        # Newton's method from the ends of several steps may leave them, and the ranges.
+        for k, _ in _sign_changes(cubic, between, stride=1):
+            place = locate(problem, event, between[k], between[k + 1], _BY_DIFFERENCES)
+            if place is not None:
+                found.append(place)
     return found
+
+
+def _sign_changes(
+    function: Callable[[np.ndarray], np.ndarray], points: np.ndarray, stride: int = _STRIDE
+) -> list[tuple[int, int]]:
+    """The numbers of neighbours among every so many points between which a function changes its
+    sign; where it is not defined it changes none.
+    """
+    last = len(points) - 1
+    tested = np.unique([*range(0, last, stride), last])
+    values = function(points[tested])
+    changed = np.flatnonzero(values[1:] * values[:-1] < 0)
+    return [(int(tested[k]), int(tested[k + 1])) for k in changed]
+
+
+def _cubic(orbits: PeriodicOrbits, y: np.ndarray) -> float:
+    """The coefficient of a period doubling; NaN outside the ranges of the parameters, where
+    Newton's method may try points, and at a 1:2 resonance, which has another normal form.
+    """
+    dynamics, _ = orbits.dynamics(y)
+    if dynamics is None or _is_resonant(orbits, y):
+        return np.nan
+    return coefficient(orbits, y, Bifurcation.PERIOD_DOUBLING)[0]
+
+
+def _is_resonant(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
+    """Whether det M is 1, so that both multipliers of a saddle-node or of a doubling are equal."""
+    return np.abs(orbits.trace_and_determinant(y)[1] - 1) < _RESONANT

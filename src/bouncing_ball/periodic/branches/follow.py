@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any, overload
 
 import numpy as np
@@ -17,7 +18,7 @@ from bouncing_ball.datasets.arguments import (
 )
 from bouncing_ball.errors import NoOrbitError, ParameterError, shortened, suggesting
 from bouncing_ball.periodic.branches import curves, following, grazing, switching
-from bouncing_ball.periodic.branches.closed import one_turn
+from bouncing_ball.periodic.branches.closed import one_turn, without_start
 from bouncing_ball.periodic.branches.following import Window
 from bouncing_ball.periodic.branches.labelled import FollowedBranch, SpecialCurve, labelled
 from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls
@@ -58,14 +59,15 @@ def follow(
     """The branch of a periodic orbit along a parameter, or the curve of a special orbit in two.
 
     An ordinary orbit is followed up to a value of the parameter or to the end of its branch. From a
-    period doubling the branch of twice the period is followed, from a period halving that of half
-    the period, from the grazing of a flight that of the orbits with one impact more, and from the
-    grazing of a release the branch on which it lies. A saddle-node has orbits on one side of the
-    parameter only, and two branches there: the stable one is followed. The other one comes behind
-    the saddle-node if an orbit of the stable one is followed towards it. At the grazing of an
-    impact, at a lost release and at the end of sticking a branch ends, and a closed branch at its
-    start. With two parameters the
-    curve of special orbits of this kind is followed in both directions.
+    period doubling the branch of twice the period is followed, away from the doubling, from a
+    period halving that of half the period, from the grazing of a flight that of the orbits with one
+    impact more, and from the grazing of a release the branch on which it lies. The special orbit at
+    which a branch starts is not listed among its special orbits. A saddle-node has orbits on one
+    side of the parameter only, and two branches there: the stable one is followed. The other one
+    comes behind the saddle-node if an orbit of the stable one is followed towards it. At the
+    grazing of an impact, at a lost release and at the end of sticking a branch ends, and a closed
+    branch at its start. With two parameters the curve of special orbits of this kind is followed in
+    both directions.
 
     Parameters
     ----------
@@ -96,7 +98,8 @@ def follow(
     Raises
     ------
     NoOrbitError
-        If there is no orbit at the start, or if no branch leaves from it.
+        If there is no orbit at the start, if no branch leaves from it, or if it leaves from a
+        saddle-node, a period doubling or a grazing to the other side than ``to``.
     ModelError
         If a parameter is unknown, of a wrong type, or out of range.
 
@@ -123,6 +126,10 @@ def follow(
     _check_orbit(orbit)
     most = checked_number("points", points, POINTS)
     names = _names(orbit, along)
+    if orbit.amplitude == 0:
+        raise NoOrbitError(
+            "the table rests at this orbit, where the phase has no meaning: follow one at Λ > 0"
+        )
     if len(names) == 2:
         if to is not None:
             raise ParameterError(
@@ -135,17 +142,13 @@ def follow(
     balls = Balls(orbit.model, orbit.amplitude)
     allowed = AMPLITUDE_OF_ORBIT if name == LAMBDA else balls.range_of(name)
     value = None if to is None else checked_number("to", to, allowed)
-    if orbit.amplitude == 0:
-        raise NoOrbitError(
-            "the table rests at this orbit, where the phase has no meaning: follow one at Λ > 0"
-        )
     if orbit.kind in _ENDS:
         kind = Special(orbit.kind)
         raise NoOrbitError(f"the branch ends at the {kind}: {MEANINGS[kind]}")
     start = orbit
     towards = None
     if orbit.kind == Special.PERIOD_DOUBLING:
-        start = switching.switch(orbit, name)
+        start, towards = switching.first_doubled(orbit, name, value)
     elif orbit.kind == Special.PERIOD_HALVING:
         start = switching.halved(orbit)
     elif orbit.kind == Special.SADDLE_NODE:
@@ -153,7 +156,8 @@ def follow(
     elif orbit.kind == Special.GRAZING_FLIGHT:
         start, towards = grazing.first_with_one_more(orbit, name, value)
     found = following.branch_from(start, name, value, towards=towards, most=most)
-    return FollowedBranch(**labelled(one_turn(found), "follow"))
+    whole = without_start(one_turn(found), replace(start, kind=str(orbit.kind)))
+    return FollowedBranch(**labelled(whole, "follow"))
 
 
 def _to_stable_side(fold: Orbit, name: str, to: float | None) -> np.ndarray:

@@ -13,6 +13,7 @@ import xarray as xr
 
 from bouncing_ball.datasets.variables import Variable
 from bouncing_ball.models.rigid import RestitutionModel
+from bouncing_ball.numerics.branch import End
 from bouncing_ball.periodic.branches.following import Orbits, orbits_along, orbits_on
 from bouncing_ball.periodic.orbits.balls import Balls
 from bouncing_ball.periodic.orbits.orbit import Orbit
@@ -60,6 +61,12 @@ OBSERVED = (
 )
 """The quantities of orbits along a branch or along ϖ."""
 
+MERGES = "the flight vanishes: the orbit merges with permanent contact"
+"""Why a branch of orbits with one impact ends where their contact fills the whole cycle."""
+# The speed of the only impact of an orbit and its flight time vanish together, so that a branch
+# that ends with one of them has the same end (:func:`~.special.ends_of_contact`).
+_MERGING = ("contact lost", "flight lost")
+
 PLACE = ("amplitude", "phase", "contact_duration")
 """The quantities of special orbits that the datasets contain."""
 
@@ -100,11 +107,22 @@ def branch_variables(found: Orbits) -> dict[str, Any]:
         orbits_along(found.problem, found.branch.points),
         orbits_along(found.problem, special.points),
         special.kinds,
-        [str(found.branch.start), str(found.branch.end)],
+        [reason(found.branch.start), reason(found.branch.end)],
     )
     variables["special_arclength"] = "special", special.arclength
     variables["special_point"] = "special", special.before
     return variables
+
+
+def reason(end: End) -> str:
+    """Why a branch ends, in the words of all datasets.
+
+    Examples
+    --------
+    >>> reason(End("flight lost: the contact fills the whole cycle", event="flight lost"))
+    'the flight vanishes: the orbit merges with permanent contact'
+    """
+    return MERGES if end.event in _MERGING else str(end)
 
 
 def kept_variables(found: Orbits) -> dict[str, Any]:

@@ -13,7 +13,7 @@ import numpy as np
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.numerics.corrector import Correction, newton, plane, tangent
 from bouncing_ball.periodic.branches.following import PATIENT, point_near
-from bouncing_ball.periodic.orbits.balls import LAMBDA
+from bouncing_ball.periodic.orbits.balls import LAMBDA, Balls
 from bouncing_ball.periodic.orbits.orbit import Orbit, orbit_of_point
 from bouncing_ball.periodic.orbits.problem import PeriodicOrbits, turns_of_half, twice
 from bouncing_ball.periodic.orbits.stability import Bifurcation, is_stable
@@ -25,6 +25,9 @@ _FARTHER = 2.0
 # det(M + 1) at a period doubling, over the size of the entries of M. Doublings are located to
 # 1e-12 in y, and the derivatives of M grow as the impacts become slow.
 _DOUBLES = 1e-6
+# A change of the parameter over the distance ASIDE that is smaller than this part of it is an
+# error, and the doubling has no side: doublings are located to 1e-12.
+_VERTICAL = 1e-11
 # The distance at which the rise of the parameter is measured.
 _MEASURED = 1e-4
 # The distance from a saddle-node at which its sides are told apart.
@@ -116,6 +119,30 @@ def switch(doubling: Orbit, along: str = LAMBDA, aside: float = ASIDE) -> Orbit:
             f"and not about {aside:g}: it is on another branch"
         )
     return orbit_of_point(whole, found.point)
+
+
+def first_doubled(doubling: Orbit, along: str, to: float | None) -> tuple[Orbit, np.ndarray | None]:
+    """The first orbit of twice the period, and the direction that leads away from the doubling;
+    None if a value ``to`` lies between the two.
+
+    Raises
+    ------
+    NoOrbitError
+        If there is none, or if the orbits exist on the other side than a value ``to``.
+    """
+    found = switch(doubling, along)
+    at = float(Balls(doubling.model, doubling.amplitude).values[along])
+    change = float(Balls(found.model, found.amplitude).values[along]) - at
+    if to is not None and (to - at) * change < 0 and abs(change) > _VERTICAL * abs(at):
+        where = "above" if change > 0 else "below"
+        raise NoOrbitError(
+            f"to = {to:g} is beyond the period doubling: the orbits of twice the period exist next "
+            f"to it only for {along} {where} {at:g}"
+        )
+    if to is not None and (to - at) * change >= 0 and abs(to - at) < abs(change):
+        return found, None
+    orbits = doubling.problem(along)
+    return found, apart(orbits, doubling.point(orbits))
 
 
 def halved(halving: Orbit) -> Orbit:

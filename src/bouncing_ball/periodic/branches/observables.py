@@ -18,6 +18,13 @@ from bouncing_ball.periodic.branches.following import Orbits, orbits_along, orbi
 from bouncing_ball.periodic.orbits.balls import Balls
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.periodic.orbits.saved import columns_of
+from bouncing_ball.periodic.orbits.special import (
+    CLOSE,
+    MEANINGS,
+    Coordinates,
+    Special,
+    flight_time,
+)
 
 VARIABLES = {
     "special": Variable("special point of the branch, in order of arclength"),
@@ -63,9 +70,9 @@ OBSERVED = (
 
 MERGES = "the flight vanishes: the orbit merges with permanent contact"
 """Why a branch of orbits with one impact ends where their contact fills the whole cycle."""
-# The speed of the only impact of an orbit and its flight time vanish together, so that a branch
-# that ends with one of them has the same end (:func:`~.special.ends_of_contact`).
-_MERGING = ("contact lost", "flight lost")
+# Ends of branches of orbits with one impact (:func:`~.special.ends_of_contact`) at which the speed
+# of the impact or the flight time vanishes, or both.
+_LOST = ("contact lost", "flight lost")
 
 PLACE = ("amplitude", "phase", "contact_duration")
 """The quantities of special orbits that the datasets contain."""
@@ -107,22 +114,28 @@ def branch_variables(found: Orbits) -> dict[str, Any]:
         orbits_along(found.problem, found.branch.points),
         orbits_along(found.problem, special.points),
         special.kinds,
-        [reason(found.branch.start), reason(found.branch.end)],
+        _reasons(found),
     )
     variables["special_arclength"] = "special", special.arclength
     variables["special_point"] = "special", special.before
     return variables
 
 
-def reason(end: End) -> str:
-    """Why a branch ends, in the words of all datasets.
+def _reasons(found: Orbits) -> list[str]:
+    """Why the two ends of a branch are there, in the same words for all branches."""
+    branch = found.branch
+    ends = ((branch.start, branch.points[0]), (branch.end, branch.points[-1]))
+    return [_reason(found.problem, end, point) for end, point in ends]
 
-    Examples
-    --------
-    >>> reason(End("flight lost: the contact fills the whole cycle", event="flight lost"))
-    'the flight vanishes: the orbit merges with permanent contact'
-    """
-    return MERGES if end.event in _MERGING else str(end)
+
+def _reason(problem: Coordinates, end: End, point: np.ndarray) -> str:
+    if end.event not in _LOST:
+        return str(end)
+    # Where a release by force is below the level of the table, a ball may return to this level
+    # without speed after a flight.
+    if float(flight_time(problem.orbits, problem.inner(point))) < CLOSE:
+        return MERGES
+    return f"{Special.GRAZING_IMPACT}: {MEANINGS[Special.GRAZING_IMPACT]}"
 
 
 def kept_variables(found: Orbits) -> dict[str, Any]:

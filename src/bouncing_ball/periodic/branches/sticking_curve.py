@@ -23,6 +23,9 @@ from bouncing_ball.periodic.orbits.special import sticking
 _FIRST = 0.005
 _LARGEST = 0.05
 _SMALLEST = 1e-6
+# A curve that is steeper than this at the smallest step turns back: with a curvature of 1 it has a
+# slope of about 1/sqrt(2 _SMALLEST), and with one of 1000 still 20.
+_STEEP = 10.0
 # The distance along the branch at which the limit is first looked for on both sides of its
 # prediction, and how many distances are tried, each four times as long as the one before.
 _APART = 1e-7
@@ -50,9 +53,12 @@ def sticking_curve(
     NoOrbitError
         If there is no end of sticking near the start.
     """
-    first = _limit(orbits, start, start[-1])
-    if first is None:
-        raise NoOrbitError("no end of sticking was found near the start of the curve")
+    try:
+        first = _limit(orbits, start, start[-1])
+    except NoOrbitError as error:
+        raise NoOrbitError(
+            f"no end of sticking was found near the start of the curve: {error}"
+        ) from None
     forward, end = _one_way(orbits, first, 1.0, windows, most)
     backward, begin = _one_way(orbits, first, -1.0, windows, most)
     points = np.array([*backward[:0:-1], *forward])
@@ -81,12 +87,17 @@ def _one_way(
         if len(points) > 1:
             slope = (here - points[-2]) / (here[-1] - points[-2][-1])
         guess = here + slope * (ahead - here[-1])
-        found = _limit(orbits, guess, ahead)
-        if found is None:
+        try:
+            found = _limit(orbits, guess, ahead)
+        except NoOrbitError as error:
             step /= 2
-            if step < _SMALLEST:
-                return points, End("step too small: no end of sticking was found beyond this point")
-            continue
+            if step >= _SMALLEST:
+                continue
+            if _turns(points):
+                at = f"{across.replace('_', ' ')} = {np.sinh(here[-1]):.6g}"
+                why = f"the curve turns back at {at}: exchange the parameters to follow it further"
+                return points, End(why)
+            return points, End(f"no end of sticking was found beyond this point: {error}")
         if not within[0] <= found[-2] <= within[1]:
             bound = windows[0].high if found[-2] > within[1] else windows[0].low
             return points, End(f"{along.replace('_', ' ')} = {bound:g} is passed")
@@ -98,9 +109,22 @@ def _one_way(
     return points, End(f"reached the limit of {most} points", finished=False)
 
 
-def _limit(orbits: PeriodicOrbits, guess: np.ndarray, across: float) -> np.ndarray | None:
-    """The end of sticking at a coordinate of the second parameter, next to a guess; None if there
-    is none near.
+def _turns(points: list[np.ndarray]) -> bool:
+    """Whether a curve turns back in the second parameter: it becomes ever steeper over it."""
+    if len(points) < 3:
+        return False
+    along, across = np.abs(np.diff(points[-3:], axis=0))[:, -2:].T
+    before, last = along / across
+    return bool(last > before and last > _STEEP)
+
+
+def _limit(orbits: PeriodicOrbits, guess: np.ndarray, across: float) -> np.ndarray:
+    """The end of sticking at a coordinate of the second parameter, next to a guess.
+
+    Raises
+    ------
+    NoOrbitError
+        If there is none near.
     """
     first, second = orbits.along
     one = replace(orbits, along=(first,), balls=orbits.balls.at({second: np.sinh(across)}))
@@ -112,9 +136,16 @@ def _limit(orbits: PeriodicOrbits, guess: np.ndarray, across: float) -> np.ndarr
             beside = start + apart * np.array([-1.0, 1.0])[:, np.newaxis] * ahead
             found = newton(one, beside, plane(np.stack([ahead, ahead]), beside), PATIENT)
             if not found.converged.all():
-                return None
+                raise NoOrbitError("Newton's method finds no orbit there")
+            if not _rests(one, found.point).all():
+                raise NoOrbitError("Newton's method leads to orbits whose balls never rest")
             signs = sticking(one, found.point)
             if signs[0] != signs[1]:
                 (limit,) = domain_limits(one, lambda y: sticking(one, y) > 0, found.point)
                 return np.array([*limit, across])
-    return None
+    raise NoOrbitError("the balls of all orbits near it come to rest, or those of none")
+
+
+def _rests(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
+    """Whether the ball rests on the table at orbits, in one of their impacts."""
+    return (orbits.durations(y) > 0).any(axis=-1)

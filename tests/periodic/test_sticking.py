@@ -142,3 +142,29 @@ def test_the_bounces_are_self_similar_along_a_curve_in_two_parameters():
     for point in list(curve.states())[1::2]:
         assert point.defect() < 1e-12
         self_similar(point, "amplitude", point.amplitude, point.model.impact_law)
+
+
+@pytest.mark.slow
+def test_a_curve_consists_of_balls_that_rest_and_says_where_it_turns_back():
+    """Its last point was an orbit without a rest, at r = 0.5749."""
+    orbit = ended(*CASES[1])
+    curve = bouncing_ball.follow(
+        orbit, along=("amplitude", "restitution"), ranges={"restitution": (0.55, 0.7)}, points=40
+    )
+    first, last = (str(reason) for reason in curve.end_reason.values)
+    assert first == "restitution = 0.55 is reached"
+    assert last.startswith("the curve turns back at restitution = 0.58")
+    points = list(curve.states())
+    assert all(np.any(point.contact_duration > 0) for point in points)
+    self_similar(points[-1], "amplitude", points[-1].amplitude, points[-1].model.impact_law)
+    # Over Λ the same curve passes the place at which r turns.
+    exchanged = bouncing_ball.follow(
+        points[-1],
+        along=("restitution", "amplitude"),
+        ranges={"amplitude": (2.4513, 2.46)},
+        points=12,
+    )
+    r = exchanged.restitution.values
+    assert 0 < np.argmax(r) < len(r) - 1
+    assert r.max() == pytest.approx(points[-1].model.impact_law, abs=1e-5)
+    assert "beyond this point" not in " ".join(map(str, exchanged.end_reason.values))

@@ -148,4 +148,4 @@ def _limit(orbits: PeriodicOrbits, guess: np.ndarray, across: float) -> np.ndarr
 
 def _rests(orbits: PeriodicOrbits, y: np.ndarray) -> np.ndarray:
     """Whether the ball rests on the table at orbits, in one of their impacts."""
-    return (orbits.durations(y) > 0).any(axis=-1)
+    return np.any(orbits.durations(y) > 0, axis=-1)

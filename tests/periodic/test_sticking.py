@@ -91,7 +91,13 @@ def test_sticking_ends_where_the_bounces_become_self_similar(along, amplitude, r
     self_similar(ended(along, amplitude, restitution, to), along, amplitude, restitution)
 
 
-def self_similar(orbit, along, amplitude, restitution):
+# The phases of the impacts, and thus the place of an end, have some roundings; the largest of the
+# differences at the twelve points of a curve is 1.3e-13, rounded up.
+ONE = 1e-13
+ON_A_CURVE = 2e-13
+
+
+def self_similar(orbit, along, amplitude, restitution, within=ONE):
     """Check the end of sticking along a parameter, at a value of the other one."""
     rest = orbit.contact_duration
     (sticks,) = np.flatnonzero(rest > 0)
@@ -110,8 +116,7 @@ def self_similar(orbit, along, amplitude, restitution):
             assert more < 60
             beside = zeros[-1] + (zeros[-1] - zeros[-2]) / 100
             zeros.append(findroot(partial(excess, more=more), (zeros[-1], beside), tol=1e-30))
-        # The phases of the impacts, and thus the place, have some roundings.
-        assert abs(zeros[-1] - place) < 1e-13
+        assert abs(zeros[-1] - place) < within
 
 
 @pytest.mark.parametrize("case", [CASES[0], CASES[2]])
@@ -136,12 +141,13 @@ def test_the_bounces_are_self_similar_along_a_curve_in_two_parameters():
     curve = bouncing_ball.follow(
         orbit, along=("amplitude", "restitution"), ranges={"restitution": (0.3, 0.487)}, points=10
     )
-    assert type(curve).__name__ == "SpecialCurve" and curve.sizes["point"] > 3
+    assert type(curve).__name__ == "SpecialCurve" and curve.sizes["point"] == 12
     assert str(curve.end_reason[1].values) == "restitution = 0.487 is reached"
     assert curve.attrs["curve_kind"] == "end of sticking"
     for point in list(curve.states())[1::2]:
         assert point.defect() < 1e-12
-        self_similar(point, "amplitude", point.amplitude, point.model.impact_law)
+        r = point.model.impact_law
+        self_similar(point, "amplitude", point.amplitude, r, within=ON_A_CURVE)
 
 
 @pytest.mark.slow
@@ -156,7 +162,9 @@ def test_a_curve_consists_of_balls_that_rest_and_says_where_it_turns_back():
     assert last.startswith("the curve turns back at restitution = 0.58")
     points = list(curve.states())
     assert all(np.any(point.contact_duration > 0) for point in points)
-    self_similar(points[-1], "amplitude", points[-1].amplitude, points[-1].model.impact_law)
+    # Next to the turn r is known at a given Λ, and not Λ at a given r.
+    place = points[-1].model.impact_law
+    self_similar(points[-1], "restitution", points[-1].amplitude, place, within=ON_A_CURVE)
     # Over Λ the same curve passes the place at which r turns.
     exchanged = bouncing_ball.follow(
         points[-1],
@@ -166,5 +174,5 @@ def test_a_curve_consists_of_balls_that_rest_and_says_where_it_turns_back():
     )
     r = exchanged.restitution.values
     assert 0 < np.argmax(r) < len(r) - 1
-    assert r.max() == pytest.approx(points[-1].model.impact_law, abs=1e-5)
+    assert r.max() == pytest.approx(place, abs=1e-5)
     assert "beyond this point" not in " ".join(map(str, exchanged.end_reason.values))

@@ -47,12 +47,12 @@ VARIABLES = {
     ),
     "leaving_ratio": Variable("frequency ratio of contacts on which a ball leaves", symbol="ϖ"),
     "leaving": Variable(
-        "smallest ϖ²(Λ - Λ_SD) up to the second opening at which a ball is not on an orbit of one "
-        "period",
+        "smallest ϖ²(Λ - Λ_SD) up to the second opening at which a ball is not known to end on an "
+        "orbit of one period",
         symbol="E",
     ),
     "leaving_periods": Variable(
-        "periods of the table in which the motion repeats there; 0 if it does not"
+        "periods of the table in which the motion repeats there; 0 if that is not known"
     ),
     "doubling": Variable("period doubling of the orbit of so many doubled periods", symbol="k"),
     "step": Variable("step between two period doublings", symbol="k"),
@@ -109,9 +109,10 @@ def cascade_of_flights(parameters: Flights, release: Release) -> xr.Dataset:
     orbit was found: see :func:`bouncing_ball.long_run.cascade_of_flights.openings`.
     ``stiff_opening`` (restitution, flights) is the limit of E = ϖ²(Λ - Λ_SD) for stiff contacts.
     ``leaving`` (restitution, leaving_ratio) is the smallest E, of 40 equal steps up to the limit of
-    the second opening, at which a ball that is set down behind the top of the table does not end on
-    an orbit of one period, NaN if there is none, and ``leaving_periods`` the period of its motion;
-    ``leaving_ratio`` are some of the ϖ. All except the first are NaN, or 0, unless the release is
+    the second opening, at which a ball that is set down behind the top of the table is not known to
+    end on an orbit of one period, NaN if there is none. ``leaving_periods`` is the period of its
+    motion, 0 if it is not known within the impacts followed: a slowly attracting orbit of one
+    period is among these. ``leaving_ratio`` are some of the ϖ. All except the first are NaN, or 0, unless the release is
     the displacement release.
     """
     restitution = np.array(parameters.restitution)
@@ -152,8 +153,9 @@ def cascade_of_flights(parameters: Flights, release: Release) -> xr.Dataset:
 
 
 def _leaving(law: SpringDamper, second: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The smallest E up to ``second`` (r,) at which balls on contacts, shape (r, ϖ), do not end on
-    an orbit of one period, and the period of their motion; NaN and 0 if there is none.
+    """The smallest E up to ``second`` (r,) at which balls on contacts, shape (r, ϖ), are not known
+    to end on an orbit of one period, and the period of their motion, 0 if it is not known; NaN and
+    0 if there is none.
     """
     excess = second[:, np.newaxis] * np.linspace(0, 1, _PLACES + 1)[1:, np.newaxis, np.newaxis]
     threshold = SpringDamperModel(law).permanent_contact_threshold()

@@ -88,6 +88,8 @@ def cascades(data: xr.Dataset) -> Figure:
             errors.plot(ratio, np.abs(curve), ".", color=look["color"], markersize=3)
             line = errors.plot(*_between(ratio, curve, zero), **look)
         lines += line
+        if model == "restitution":
+            _name_lines(errors, ratio[-1], np.abs(one.isel(frequency_ratio=-1).values))
         guide = abs(float(one.isel(doubling=-1, frequency_ratio=-1))) * (ratio[-1] / ratio) ** order
         errors.plot(ratio, guide, **GUIDE)
     logarithmic(errors, xlabel=r"frequency ratio $\varpi$", yscale="log", ylim=(1e-8, 1))
@@ -104,6 +106,21 @@ def cascades(data: xr.Dataset) -> Figure:
     law.legend(loc="best")
     legend_below(figure, lines, labels=[f"{x} model" for x in data["model"].values], ncols=2)
     return figure
+
+
+# Lines whose errors differ by a smaller factor have one name together.
+_APART = 1.25
+
+
+def _name_lines(axes: Axes, end: float, error: np.ndarray) -> None:
+    """The numbers m of lines at their ends, where neighbours that nearly coincide have one name."""
+    jumps = np.abs(np.diff(np.log(error))) > np.log(_APART)
+    groups = np.split(np.arange(error.size), np.flatnonzero(jumps) + 1)
+    for group in groups:
+        first, last = group[[0, -1]]
+        name = str(first) if first == last else f"{first} to {last}"
+        look: Look = {"ha": "left", "va": "top" if group is groups[-1] else "bottom", "fontsize": 6}
+        axes.text(1.1 * end, error[first], f"$m=${name}" if first == 0 else name, **look)
 
 
 def _between(ratio: np.ndarray, error: np.ndarray, zero: float) -> tuple[np.ndarray, np.ndarray]:

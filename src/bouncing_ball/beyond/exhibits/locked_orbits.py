@@ -34,6 +34,14 @@ VARIABLES = {
     "same": Variable(
         "share of the places at which the contact locks with the restitution model's period"
     ),
+    "same_known": Variable(
+        "share of the places at which it is known whether the contact locks with the restitution "
+        "model's period"
+    ),
+    "last_known": Variable(
+        "whether it is known if the contact with the largest frequency ratio locks with the "
+        "restitution model's period"
+    ),
     "same_low": Variable(
         "lower limit of the confidence interval of the share with the same period"
     ),
@@ -120,8 +128,9 @@ def returns_at_places(
     -------
     dict of array
         ``periods`` of :class:`~bouncing_ball.long_run.lift_off.Lap`, shape (change, place), first
-        without a change of Λ and then with each change; and ``same``, shape (ϖ, place), whether the
-        contact has a locked orbit of the same period.
+        without a change of Λ and then with each change; ``same``, shape (ϖ, place), whether the
+        contact has a locked orbit of the same period; and ``known``, of this shape, whether that
+        can be told: its motion is decided, and if it is locked, doubles tell its period.
     """
     r, lam = part(parameters.places())
     ratios = np.array(parameters.frequency_ratio)[:, np.newaxis]
@@ -130,7 +139,8 @@ def returns_at_places(
     contact = three_models(r, ratios, release).contact
     motion = final_motions(contact, lam, -np.pi / 2, 0.0, impacts=parameters.impacts)
     same = (motion.kind == Kind.LOCKED) & (motion.periods == periods[0])
-    return {"periods": periods, "same": same}
+    known = (motion.kind != Kind.UNDECIDED) & ~motion.is_unresolved()
+    return {"periods": periods, "same": same, "known": known}
 
 
 def locked_orbits(
@@ -143,8 +153,10 @@ def locked_orbits(
     :func:`bouncing_ball.long_run.lift_off.laps`, which is 0 where the ball is not found to stick
     again; such places are left out of all shares. ``needed_ratio`` is the smallest of the given ϖ
     above which the contact locks with the same period after a rest on the table; it is infinite if
-    the contact does not do so at the largest ϖ. ``same`` (frequency_ratio) is the share of places
-    with the same period.
+    the contact is not known to do so at the largest ϖ; ``last_known`` (node) is whether its motion
+    there is known. ``same`` (frequency_ratio) is the share of places with the same period, and
+    ``same_known`` (frequency_ratio) that at which it is known whether it is the same, so that the
+    share may be larger by 1 - ``same_known``.
     ``rank_correlation`` is the correlation of the period of the locked orbit with the smallest ϖ.
     In it all places at which this is infinite are one tie, and those at which it is the smallest ϖ
     are another. ``inner_correlation`` is therefore the correlation at the other places, of which
@@ -163,10 +175,15 @@ def locked_orbits(
     period, *periods_beside = found["periods"]
     sticks = period > 0
     same = found["same"]
+    known = found["known"]
     changed = np.array(periods_beside) != period
     needed = _needed_ratio(ratios, same)
     inner = sticks & np.isfinite(needed) & (needed > ratios.min())
-    nodes = {"periods": period, "needed_ratio": np.where(sticks, needed, np.nan)}
+    nodes = {
+        "periods": period,
+        "needed_ratio": np.where(sticks, needed, np.nan),
+        "last_known": known[-1],
+    }
     estimates = {
         "same": ("frequency_ratio", [share_with_limits(x[sticks], level) for x in same]),
         "rank_correlation": ((), correlation(period[sticks], needed[sticks], level)),
@@ -175,8 +192,12 @@ def locked_orbits(
         "uncertainty_exponent": ((), uncertainty_exponent(changed[:, sticks].T, shifts, level)),
     }
     variables = {name: ("node", values) for name, values in nodes.items()}
+    variables |= {
+        "inner_places": ((), float(inner.sum())),
+        "same_known": ("frequency_ratio", known[:, sticks].mean(axis=1)),
+    }
     orbits = described(
-        variables | with_limits(estimates) | {"inner_places": ((), float(inner.sum()))},
+        variables | with_limits(estimates),
         coords={
             "restitution": ("node", r),
             "amplitude": ("node", lam),

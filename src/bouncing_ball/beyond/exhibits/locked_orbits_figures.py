@@ -20,7 +20,11 @@ def locked_orbits(data: xr.Dataset) -> Figure:
     """
     figure, (above, below) = stacked(5.4, (1.0, 1.1))
     by_ratio, jumps = above.subplots(1, 2)
-    bars(by_ratio, data.frequency_ratio.values, data, "same", **_LOOK)
+    bars(by_ratio, data.frequency_ratio.values, data, "same", **_LOOK, label="known")
+    most = data.same + 1 - data.same_known
+    look: Look = {"color": COLOURS[0], "linewidth": 0.9, "label": "known or not known"}
+    by_ratio.plot(data.frequency_ratio, most, "--", **look)
+    by_ratio.legend(loc="upper left", fontsize=7)
     logarithmic(by_ratio, xlabel=r"frequency ratio $\varpi$", ylim=(0, 1.03))
     by_ratio.set_ylabel("share with the same\nlocked period")
     by_ratio.set_title("by frequency ratio")

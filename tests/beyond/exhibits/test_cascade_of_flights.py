@@ -42,6 +42,19 @@ def test_a_ball_leaves_the_orbit_of_one_period_on_compliant_contacts_only():
     assert final_motions(SpringDamperModel(law), lam, 1.7, -0.2).periods.tolist() == [1, 2]
 
 
+def test_a_ball_that_comes_slowly_to_an_orbit_of_one_period_does_not_leave_it():
+    """At E = 10.33 it is not known to be on the orbit within the impacts that suffice elsewhere."""
+    given = {"restitution": [0.95], "frequency_ratio": {"min": 36.88, "max": 100, "samples": 2}}
+    found = typed(cascade_of_flights)(given | {"flights": 2}, "displacement")
+    law = SpringDamper.from_restitution(0.95, 36.88, Release.DISPLACEMENT)
+    lam = float(found.threshold_amplitude[0]) + 10.33 / 36.88**2
+    way = SpringDamperModel(law).simulate(lam, 1.7, -0.2, 3000)
+    # A period has three impacts.
+    apart = np.ptp(way.phase[-30:].reshape(10, 3), axis=0)
+    assert apart.max() < 1e-9
+    assert found.leaving[0, 0] > 13 and found.leaving_periods[0, 0] == 2
+
+
 def test_only_the_papers_release_has_openings():
     found = typed(cascade_of_flights)(FLIGHTS | {"restitution": [0.85]}, "force")
     for name in ("opening_amplitude", "stiff_opening"):

@@ -51,6 +51,11 @@ def test_a_contact_agrees_from_the_needed_ratio_on():
     assert (
         data.same[1] == right[data.periods > 0].mean() and data.jump_share[0] >= data.jump_share[1]
     )
+    # What is not known is not the same, and whatever is the same is known.
+    assert np.all(data.same <= data.same_known) and 0 < data.same_known[1] < 1
+    sticks = data.periods > 0
+    assert data.same_known[1] == data.last_known[sticks].mean()
+    assert data.last_known[right].all()
     asked = data.needed_ratio[data.periods > 0]
     assert data.inner_places == ((asked > 30) & np.isfinite(asked)).sum()
     # Longer periods need a larger ϖ.

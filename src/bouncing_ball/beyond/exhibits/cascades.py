@@ -28,6 +28,7 @@ from bouncing_ball.long_run.cascade_of_flights import (
     openings,
     stiff_openings,
 )
+from bouncing_ball.long_run.destination import final_motions
 from bouncing_ball.long_run.period_doublings import MOST, cascade
 from bouncing_ball.models.damping import Release, damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
@@ -111,8 +112,8 @@ def cascade_of_flights(parameters: Flights, release: Release) -> xr.Dataset:
     ``leaving`` (restitution, leaving_ratio) is the smallest E, of 40 equal steps up to the limit of
     the second opening, at which a ball that is set down behind the top of the table is not known to
     end on an orbit of one period, NaN if there is none. ``leaving_periods`` is the period of its
-    motion, 0 if it is not known within the impacts followed: a slowly attracting orbit of one
-    period is among these. ``leaving_ratio`` are some of the ϖ. All except the first are NaN, or 0, unless the release is
+    motion, 0 if it is not known within the impacts followed, as where the motion is chaotic.
+    ``leaving_ratio`` are some of the ϖ. All except the first are NaN, or 0, unless the release is
     the displacement release.
     """
     restitution = np.array(parameters.restitution)
@@ -161,15 +162,26 @@ def _leaving(law: SpringDamper, second: np.ndarray) -> tuple[np.ndarray, np.ndar
     threshold = SpringDamperModel(law).permanent_contact_threshold()
     amplitude = threshold + excess / np.square(law.frequency_ratio)
     found = balls_behind_the_top(law, amplitude)
-    leaves = found.periods != 1
+    every_period = found.periods.copy()
+    # Orbits that attract slowly need more impacts; these balls are followed from where they are, if
+    # the ball does not leave at a smaller E.
+    left = np.logical_or.accumulate(every_period > 1)
+    unknown = np.nonzero((every_period == 0) & ~left)
+    slow = SpringDamperModel(law[unknown[1:]])
+    ends = found.end_phase[unknown], found.end_velocity[unknown]
+    further = final_motions(slow, amplitude[unknown], *ends, impacts=_FURTHER)
+    every_period[unknown] = further.periods
+    leaves = every_period != 1
     first = np.argmax(leaves, axis=0)[np.newaxis]
     never = ~leaves.any(axis=0)
     at = np.take_along_axis(np.broadcast_to(excess, leaves.shape), first, axis=0)[0]
-    periods = np.take_along_axis(found.periods, first, axis=0)[0]
+    periods = np.take_along_axis(every_period, first, axis=0)[0]
     return np.where(never, np.nan, at), np.where(never, 0, periods)
 
 
 _PLACES = 40
+# Further impacts of balls whose period is not known.
+_FURTHER = 1000
 # The intervals between the ϖ at which it is sought where balls leave.
 _LEAVING_RATIOS = 24
 _GRAVITY = 9.80665

@@ -1,7 +1,7 @@
 """The ϖ above which a contact has the locked orbit of the restitution model (beyond the paper)."""
 
 from collections.abc import Mapping
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 import scipy
@@ -191,7 +191,7 @@ def locked_orbits(
         "jump_share": ("shift", [share_with_limits(x[sticks], level) for x in changed]),
         "uncertainty_exponent": ((), uncertainty_exponent(changed[:, sticks].T, shifts, level)),
     }
-    variables = {name: ("node", values) for name, values in nodes.items()}
+    variables: dict[str, Any] = {name: ("node", values) for name, values in nodes.items()}
     variables |= {
         "inner_places": ((), float(inner.sum())),
         "same_known": ("frequency_ratio", known[:, sticks].mean(axis=1)),

@@ -112,13 +112,8 @@ def cascade_of_flights(parameters: Flights, release: Release) -> xr.Dataset:
     ``leaving`` (restitution, leaving_ratio) is the smallest E, of 40 equal steps up to the limit of
     the second opening, at which a ball that is set down behind the top of the table is not known to
     end on an orbit of one period, NaN if there is none. ``leaving_periods`` is the period of its
-<<<<<<< HEAD
     motion, 0 if it is not known within the impacts followed, as where the motion is chaotic.
     ``leaving_ratio`` are some of the ϖ. All except the first are NaN, or 0, unless the release is
-=======
-    motion, 0 if it is not known within the impacts followed: a slowly attracting orbit of one
-    period is among these. ``leaving_ratio`` are some of the ϖ. All except the first are NaN, or 0, unless the release is
->>>>>>> cf0da347 (A ball whose period is not known is no longer said to leave the orbit of one period)
     the displacement release.
     """
     restitution = np.array(parameters.restitution)

@@ -141,13 +141,14 @@ ARTIFACTS: dict[str, dict[str, Budget]] = {
     "ext_locked": {
         # On long locked orbits a deviation grows beyond the digits of a double, at some 15 % of the
         # places: rounding decides there.
-        **dict.fromkeys(("periods", "needed_ratio"), Budget(1e-6, share=0.3)),
+        **dict.fromkeys(("periods", "needed_ratio", "last_known"), Budget(1e-6, share=0.3)),
         # The same share of all places is four of those.
         "inner_places": Budget(0.05),
         # A change of 4e-16 of the amplitude moves a share by 0.0064 at most. Three times that is
         # allowed.
         **dict.fromkeys(
             (
+                "same_known",
                 *_with_limits("same"),
                 *_with_limits("rank_correlation"),
                 *_with_limits("inner_correlation"),

@@ -9,6 +9,7 @@ from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 
+import numpy as np
 import pytest
 import yaml
 
@@ -16,6 +17,7 @@ from bouncing_ball.beyond.atlas.plan import Plan
 from bouncing_ball.beyond.atlas.shards import shard
 from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.pipeline.configuration import read_yaml
+from bouncing_ball.pipeline.samples import SECONDS
 
 SMALL = {
     "n": [1, 2],
@@ -44,6 +46,21 @@ def made(cloned, tmp_path_factory):
     return tree
 
 
+def without_times(tree):
+    """The files of the atlas: the bytes of their variables, and their attributes, all but the
+    processor time that each of them took.
+    """
+    folder = tree.path / "results" / "atlas"
+    found = {}
+    for path in sorted(folder.rglob("*.nc")):
+        data = read_dataset(path)
+        named = {name: np.asarray(value).tolist() for name, value in data.attrs.items()}
+        attributes = {name: value for name, value in named.items() if name != SECONDS}
+        values = {name: data[name].values.tobytes() for name in data.variables}
+        found[str(path.relative_to(folder))] = (attributes, values)
+    return found
+
+
 def test_the_first_run_in_a_fresh_clone_may_be_the_atlas(fresh):
     assert "Atlas" in fresh.planned("atlas")
 
@@ -57,7 +74,7 @@ def test_a_killed_atlas_is_resumed_without_loss(made, fresh):
     first = min(early, key=lambda name: (shards / name).stat().st_mtime_ns)
     said = fresh.run("--cores", "1", *ATLAS).stdout
     after = fresh.checksums("results/atlas")
-    assert after == made.checksums("results/atlas")
+    assert without_times(fresh) == without_times(made)
     assert 2 == len(early) < len(after)
     assert {name: after[f"shards/{name}"] for name in early} == early
     # The job of the last one was killed before it could say that it was done.
@@ -101,8 +118,8 @@ def slurm(tmp_path):
 
 @pytest.mark.cluster
 @pytest.mark.skipif(bool(MISSING), reason=f"not installed: {', '.join(MISSING)}")
-def test_on_a_cluster_the_bytes_are_the_same(made, fresh, slurm):
+def test_on_a_cluster_the_bits_are_the_same(made, fresh, slurm):
     prepared(fresh)
     command = [Path(sys.executable).with_name("snakemake"), *OPTIONS, *ATLAS]
     subprocess.run(command, cwd=fresh.path, env=fresh.environment() | slurm, check=True)
-    assert fresh.checksums("results/atlas") == made.checksums("results/atlas")
+    assert without_times(fresh) == without_times(made)

@@ -158,13 +158,18 @@ def doubling_without_release(*unknowns):
     ]
 
 
-@pytest.mark.parametrize("number", [0, 1])
-def test_a_curve_of_doublings_of_long_contacts_ends_where_the_release_is_lost(number):
-    """It ended with "16 steps lead 8.0e-04"; the place in 40 digits."""
+def curve_of_a_doubling(number):
+    """The curve in Λ and ϖ through one of the doublings of a compliant contact."""
     ball = bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=2.0)
     states = bouncing_ball.branch(ball).special_states()
     doubling = [orbit for kind, orbit in states if kind == "period doubling"][number]
-    found = bouncing_ball.follow(doubling, along=("amplitude", "frequency_ratio"))
+    return bouncing_ball.follow(doubling, along=("amplitude", "frequency_ratio"))
+
+
+@pytest.mark.parametrize("number", [0, 1])
+def test_a_curve_of_doublings_of_long_contacts_ends_where_the_release_is_lost(number):
+    """It ended with "16 steps lead 8.0e-04"; the place in 40 digits."""
+    found = curve_of_a_doubling(number)
     top = [0, -1][int(np.argmax(found.frequency_ratio.values[[0, -1]]))]
     last = list(found.states())[top]
     start = [last.phase, last.relative_impact_velocity, last.contact_duration]
@@ -184,10 +189,7 @@ def test_a_curve_of_doublings_of_long_contacts_ends_where_the_release_is_lost(nu
 @pytest.mark.parametrize("number", [0, 1])
 def test_all_generalized_doublings_of_a_curve_are_found_from_either_side(number):
     """The coefficient of the normal form changes its sign there, and nowhere else."""
-    ball = bouncing_ball.spring_damper(restitution=0.85, frequency_ratio=2.0)
-    states = bouncing_ball.branch(ball).special_states()
-    doubling = [orbit for kind, orbit in states if kind == "period doubling"][number]
-    found = bouncing_ball.follow(doubling, along=("amplitude", "frequency_ratio"))
+    found = curve_of_a_doubling(number)
     at = np.sort(found.special_frequency_ratio.values)
     assert at == pytest.approx([2.0065216, 2.2136510], abs=1e-6)
     inner = list(found.states())[2:-2:3]

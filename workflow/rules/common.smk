@@ -4,6 +4,7 @@ import gc
 import os
 import shlex
 import sys
+from contextlib import suppress
 from importlib.util import cache_from_source, find_spec
 from pathlib import Path
 
@@ -37,11 +38,13 @@ SCRIPTS = Path(ROOT, "workflow", "scripts")
 
 # Python runs bytecode without reading the source if the size and the time of the source are those
 # of the last compilation, and both may be restored after an edit. The time of the last change that
-# the file system itself keeps cannot: bytecode that is older is removed.
+# the file system itself keeps cannot: bytecode that is older is removed. Another run that was
+# started at the same time may have removed it in between.
 for path in (*HERE.rglob("*.py"), *SCRIPTS.glob("*.py")):
     bytecode = Path(cache_from_source(path))
-    if bytecode.is_file() and path.stat().st_ctime_ns > bytecode.stat().st_mtime_ns:
-        bytecode.unlink(missing_ok=True)
+    with suppress(FileNotFoundError):
+        if path.stat().st_ctime_ns > bytecode.stat().st_mtime_ns:
+            bytecode.unlink()
 
 from bouncing_ball.pipeline.artifacts import Artifact
 from bouncing_ball.pipeline.configuration import ConfigurationError, arguments

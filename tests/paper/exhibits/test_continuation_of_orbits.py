@@ -10,20 +10,18 @@ from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.paper.exhibits.continuation_of_orbits import (
-    Domains,
     both_domains,
     first_limits,
-    followed,
     orbit_branches,
     stability_ranges,
 )
 from bouncing_ball.paper.exhibits.continuation_of_orbits_figures import domains
-from bouncing_ball.periodic.branches.following import Followed
 from bouncing_ball.periodic.one_impact.spring_damper_bifurcations import (
     period_doubling,
     saddle_node,
 )
 from bouncing_ball.periodic.one_impact.spring_damper_branch import branch_point, excess_angle
+from bouncing_ball.periodic.one_impact.whole_branch import whole_branch
 from bouncing_ball.periodic.orbits.orbit import Orbit
 from bouncing_ball.pipeline.configuration import typed
 
@@ -85,11 +83,8 @@ def follow(continuation_settings):
     """The equations and the branch of n-T orbits up to ``top``."""
 
     def along(n, r, omega, top):
-        given = Domains(n=n, restitution=r, frequency_ratio=[omega], amplitude_max=top, points=11)
-        (found,) = followed(given, Release.DISPLACEMENT, continuation_settings)
-        if not isinstance(found, Followed):
-            raise found
-        return found
+        model = SpringDamperModel(SpringDamper.from_restitution(r, omega))
+        return whole_branch(model, n, top, continuation_settings.largest_step)
 
     return along
 

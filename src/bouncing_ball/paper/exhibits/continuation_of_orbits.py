@@ -42,6 +42,7 @@ from bouncing_ball.periodic.one_impact.spring_damper_branch import excess_angle,
 from bouncing_ball.periodic.one_impact.whole_branch import (
     NoBranch,
     branches_through,
+    starts_of_branches,
     whole_branches,
 )
 from bouncing_ball.periodic.orbits.orbit import Orbit
@@ -109,22 +110,6 @@ class Ranges(Parameters):
     amplitude_max: BranchEnd
 
 
-def followed(
-    parameters: Domains, release: Release, continuation: Continuation
-) -> list[Followed | NoBranch]:
-    """The orbits on each contact, from the unstable to the stable side; errors in place of those
-    that cannot be followed.
-    """
-    ratios = np.array(parameters.frequency_ratio)
-    contacts = SpringDamper.from_restitution(parameters.restitution, ratios, release)
-    return whole_branches(
-        SpringDamperModel(contacts),
-        np.full(ratios.size, parameters.n),
-        parameters.amplitude_max,
-        continuation.largest_step,
-    )
-
-
 def _branch(ratio: float, branch: Followed | NoBranch, parameters: Domains) -> xr.Dataset:
     """The branch of one contact; NaN, with the reason, where it cannot be followed."""
     points = parameters.points
@@ -166,49 +151,64 @@ def orbit_branches(parameters: Domains, release: Release, continuation: Continua
 
 def _branches(parameters: Domains, release: Release, continuation: Continuation) -> xr.Dataset:
     """The dataset of :func:`orbit_branches`, also if no branch can be followed."""
-    branches = followed(parameters, release, continuation)
-    pairs = zip(parameters.frequency_ratio, branches, strict=True)
-    rows = [_branch(*pair, parameters) for pair in pairs]
+    branches, others = _followed(parameters, release, continuation)
     zeta = float(damping_ratio(parameters.restitution))
-    data = joined(rows, "frequency_ratio").assign(damping_ratio=zeta)
+    data = _labelled(branches, parameters).assign(damping_ratio=zeta)
     data = describe(data, variables=_VARIABLES)
-    others = _long_branches(parameters, release, continuation, branches)
     if not any(isinstance(other, Followed) for other in others):
         return data
-    pairs = zip(parameters.frequency_ratio, others, strict=True)
-    long = joined([_branch(*pair, parameters) for pair in pairs], "frequency_ratio")
+    long = _labelled(others, parameters)
     names = [*long.data_vars, "point", "special"]
     long = long.rename({name: f"{LONG}{name}" for name in names})
     return data.merge(describe(long, variables=_VARIABLES | VARIABLES))
 
 
-def _long_branches(
-    parameters: Domains,
-    release: Release,
-    continuation: Continuation,
-    branches: list[Followed | NoBranch],
-) -> list[Followed | NoBranch]:
-    """The branches that begin at permanent contact, with errors in place of those that are not
-    followed: on most contacts of the force release, for n > 1, and where the first branch ends at
-    permanent contact itself.
+def _labelled(branches: list[Followed | NoBranch], parameters: Domains) -> xr.Dataset:
+    """The branches of all contacts as one dataset."""
+    pairs = zip(parameters.frequency_ratio, branches, strict=True)
+    return joined([_branch(*pair, parameters) for pair in pairs], "frequency_ratio")
+
+
+def _followed(
+    parameters: Domains, release: Release, continuation: Continuation
+) -> tuple[list[Followed | NoBranch], list[Followed | NoBranch]]:
+    """The branch of each contact, from the unstable to the stable side, and the one that begins at
+    permanent contact, with errors in place of those that cannot be followed.
+
+    There is no second one on most contacts of the force release, for n > 1, and where both are the
+    same. All are followed side by side.
     """
+    n, top = parameters.n, parameters.amplitude_max
     ratios = np.array(parameters.frequency_ratio)
     contacts = SpringDamper.from_restitution(parameters.restitution, ratios, release)
-    duration = 2 * np.pi * parameters.n - _SHORT_FLIGHT / ratios
-    starts = orbits_on_branch(excess_angle(contacts, duration), contacts, parameters.n)
-    top = parameters.amplitude_max
-    possible = starts.exists & (starts.amplitude < top) & starts.is_admissible()
-    for row in np.flatnonzero(possible):
-        first = branches[row]
-        if isinstance(first, Followed):
-            ends = orbits_along(first.problem, first.branch.points[[0, -1]]).amplitude
-            possible[row] = np.all(ends > top * (1 - _AT_THE_TOP))
+    families = np.full(ratios.size, n)
+    starts = starts_of_branches(SpringDamperModel(contacts), families, top)
+    duration = 2 * np.pi * n - _SHORT_FLIGHT / ratios
+    long = orbits_on_branch(excess_angle(contacts, duration), contacts, n)
+    rows = np.flatnonzero(long.exists & (long.amplitude < top) & long.is_admissible())
+    place = ("amplitude", "phase", "contact_duration", "impact_velocity")
+    both = {
+        name: np.concatenate([getattr(starts, name), getattr(long, name)[rows]]) for name in place
+    }
+    model = SpringDamperModel(contacts[[*range(ratios.size), *rows]])
+    found = branches_through(Orbit.of(model, n, **both), top, continuation.largest_step)
+    branches = found[: ratios.size]
     none = NoOrbitError("no other branch begins at permanent contact")
-    found: list[Followed | NoBranch] = [none] * ratios.size
-    for row in np.flatnonzero(possible):
-        start = starts[[row]]
-        (found[row],) = branches_through(start, top, continuation.largest_step)
-    return found
+    others: list[Followed | NoBranch] = [none] * ratios.size
+    for row, other in zip(rows, found[ratios.size :], strict=True):
+        if not _ends_at_permanent_contact(branches[row], top):
+            others[row] = other
+    return branches, others
+
+
+def _ends_at_permanent_contact(branch: Followed | NoBranch, top: float) -> bool:
+    """Whether a branch ends elsewhere than at the largest Λ, of a contact on which a branch begins
+    at permanent contact.
+    """
+    if not isinstance(branch, Followed):
+        return False
+    ends = orbits_along(branch.problem, branch.branch.points[[0, -1]]).amplitude
+    return not np.all(ends > top * (1 - _AT_THE_TOP))
 
 
 class BothDomains(Branches):

@@ -125,24 +125,34 @@ def whole_branches(
     [0.2547, 0.5094]
     """
     require_paper(model.place, _WHOLE)
-    top = amplitude_max
+    starts = starts_of_branches(model, n, amplitude_max)
+    return branches_through(starts, amplitude_max, largest_step, ends)
+
+
+def starts_of_branches(model: Model, n: ArrayLike, amplitude_max: float) -> Orbit:
+    """The orbits from which :func:`whole_branches` starts, of its parameters, as a row.
+
+    There is no orbit, with NaN in its place, where none was found up to the largest Λ.
+
+    Examples
+    --------
+    >>> from bouncing_ball.models.rigid import RestitutionModel
+    >>> starts_of_branches(RestitutionModel(0.85), [1, 8], 1.2).exists.tolist()
+    [True, False]
+    """
     family = np.array(n)
-    fold = np.atleast_1d(n_t.saddle_node(model, family).amplitude)
+    low = _lowest(model, family)
     doubling = np.atleast_1d(n_t.period_doubling(model, family).amplitude)
-    low = np.where(fold > 0, fold, 0.0)
-    found: dict[int, Followed | NoBranch] = {}
-    for k in np.flatnonzero(low >= top).tolist():
-        why = f"{_none(model.take(k), family[k], top)}: the branch begins at Λ = {low[k]:.6g}"
-        found[k] = NoOrbitError(why)
-    rows = np.flatnonzero(low < top)
-    starts = _starts(model.take(rows), family[rows], low[rows], doubling[rows], top)
-    for k in rows[~starts.exists].tolist():
-        why = f"{_none(model.take(k), family[k], top)} was found to start from"
-        found[k] = NoOrbitError(why)
-    rows = rows[starts.exists]
-    branches = branches_through(starts[starts.exists], top, largest_step, ends)
-    found |= dict(zip(rows.tolist(), branches, strict=True))
-    return [found[k] for k in range(family.size)]
+    begins = low < amplitude_max
+    found = _starts(model, family, np.where(begins, low, 0.0), doubling, amplitude_max)
+    return Orbit.of(
+        found.model,
+        family,
+        found.amplitude,
+        np.where(begins, found.phase, np.nan),
+        found.contact_duration,
+        found.impact_velocity,
+    )
 
 
 def branches_through(
@@ -159,8 +169,44 @@ def branches_through(
     >>> round(found.first("saddle-node").amplitude, 4)
     0.2547
     """
-    if not starts.size:
-        return []
+    rows = np.flatnonzero(starts.exists)
+    missing = np.flatnonzero(~starts.exists)
+    found: dict[int, Followed | NoBranch] = {}
+    if missing.size:
+        found |= _reasons(starts[missing], missing.tolist(), amplitude_max)
+    if rows.size:
+        followed = _followed(starts[rows], amplitude_max, largest_step, ends)
+        found |= dict(zip(rows.tolist(), followed, strict=True))
+    return [found[k] for k in range(starts.size)]
+
+
+def _reasons(
+    missing: Orbit, rows: list[int], amplitude_max: float
+) -> dict[int, Followed | NoBranch]:
+    """Why there are no orbits to start from, by their rows."""
+    lowest = _lowest(missing.model, missing.n)
+    why: dict[int, Followed | NoBranch] = {}
+    for k, row in enumerate(rows):
+        orbit = missing[k]
+        none = f"no {orbit.n}-T orbit up to Λ = {amplitude_max:g} for {orbit.model.label}"
+        above = lowest[k] >= amplitude_max
+        rest = (
+            f": the branch begins at Λ = {lowest[k]:.6g}" if above else " was found to start from"
+        )
+        why[row] = NoOrbitError(none + rest)
+    return why
+
+
+def _lowest(model: Model, n: ArrayLike) -> np.ndarray:
+    """Λ at the saddle-nodes of families, or 0 without one, as a row."""
+    fold = np.atleast_1d(n_t.saddle_node(model, n).amplitude)
+    return np.where(fold > 0, fold, 0.0)
+
+
+def _followed(
+    starts: Orbit, amplitude_max: float, largest_step: float, ends: Collection[Bifurcation]
+) -> list[Followed | NoBranch]:
+    """The branches through orbits that exist."""
     problem = PaperUnknowns.of(starts)
 
     def rows_of(which: Any) -> WithEvents:
@@ -189,10 +235,6 @@ def _default_top(model: Model, n: int) -> float:
     doubling = n_t.period_doubling(model, n).amplitude
     low = fold if fold > 0 else 0.0
     return _BEYOND_DOUBLING * (doubling if doubling > low else max(2 * low, 1.0))
-
-
-def _none(model: Model, n: int, top: float) -> str:
-    return f"no {n}-T orbit up to Λ = {top:g} for {model.label}"
 
 
 def _starts(

@@ -9,7 +9,7 @@ import pytest
 
 from bouncing_ball.measured.experiment import COLUMNS, QUANTITIES, TEXTS, experiment, names, read
 from bouncing_ball.measured.flights import drag_length, heard
-from bouncing_ball.measured.verdicts import Verdict, error_size, judge, scatter
+from bouncing_ball.measured.verdicts import Compatibility, error_size, judge, scatter
 
 PAGE = (Path(__file__).parents[2] / "docs" / "measured.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"```\w*\n(.*?)```", PAGE, re.DOTALL)
@@ -75,7 +75,7 @@ def test_membranes_and_drops_decide_as_the_page_says():
     ):
         verdicts = judge(experiment(name).fit((constant, smooth, sharp)))
         for law, found in verdicts.items():
-            wanted = Verdict.COMPATIBLE if law in compatible else Verdict.INCOMPATIBLE
+            wanted = Compatibility.COMPATIBLE if law in compatible else Compatibility.INCOMPATIBLE
             assert found.verdict is wanted, (name, law)
 
 

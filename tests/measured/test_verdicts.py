@@ -9,7 +9,7 @@ from bouncing_ball.measured.fit import fit_contact
 from bouncing_ball.measured.law_fit import Points
 from bouncing_ball.measured.verdicts import (
     REJECTED,
-    Verdict,
+    Compatibility,
     error_size,
     extrapolated,
     judge,
@@ -56,16 +56,16 @@ def test_a_true_law_is_rarely_rejected(law, known):
 def test_a_false_law_is_incompatible_and_the_true_one_compatible(law, others):
     (points,) = sample(law, 0.001, 1, True)
     found = judge(fit_contact(points.speeds, points.restitutions, uncertainties=points.covariance))
-    assert found[law].verdict is Verdict.COMPATIBLE
-    assert {found[other].verdict for other in others} == {Verdict.INCOMPATIBLE}
+    assert found[law].verdict is Compatibility.COMPATIBLE
+    assert {found[other].verdict for other in others} == {Compatibility.INCOMPATIBLE}
 
 
 def test_without_uncertainties_no_law_is_incompatible():
     """The scatter alone does not show a systematic error, so that a law can only deviate."""
     (points,) = sample("linear", 0.001, 1, False)
     found = judge(fit_contact(points.speeds, points.restitutions))
-    assert found["linear"].verdict is Verdict.COMPATIBLE
-    assert found["kuwabara-kono"].verdict is Verdict.DEVIATES
+    assert found["linear"].verdict is Compatibility.COMPATIBLE
+    assert found["kuwabara-kono"].verdict is Compatibility.DEVIATES
 
 
 @pytest.mark.parametrize("law", ["linear", "kuwabara-kono", "hunt-crossley"])
@@ -86,20 +86,20 @@ def test_with_the_errors_needed_a_law_is_just_not_rejected(name, law):
 
 def test_an_experiment_that_rejects_no_law_confirms_none():
     fit = fit_contact([1.0, 1.1, 1.2, 1.3], [0.8, 0.78, 0.81, 0.79], uncertainties=0.05)
-    assert {each.verdict for each in judge(fit).values()} == {Verdict.UNDECIDED}
+    assert {each.verdict for each in judge(fit).values()} == {Compatibility.UNDECIDED}
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 4])
 def test_few_points_without_uncertainties_decide_nothing(count):
     fit = fit_contact(SPEEDS[:count], np.linspace(0.9, 0.5, count))
     found = judge(fit)
-    assert {each.verdict for each in found.values()} == {Verdict.UNDECIDED}
+    assert {each.verdict for each in found.values()} == {Compatibility.UNDECIDED}
     assert np.isnan(noise(fit.points)[0])
 
 
 def test_equal_speeds_decide_nothing():
     fit = fit_contact([2.0] * 8, np.linspace(0.7, 0.9, 8))
-    assert {each.verdict for each in judge(fit).values()} == {Verdict.UNDECIDED}
+    assert {each.verdict for each in judge(fit).values()} == {Compatibility.UNDECIDED}
 
 
 def test_the_scatter_about_a_smooth_curve_is_the_variance():
@@ -168,6 +168,6 @@ def test_hunt_and_crossleys_law_deviates_from_most_experiments():
         name: judge(experiment(name).fit()) for name in ("croquet", "bouncy_ball", "plastic_ball")
     }
     for found in verdicts.values():
-        assert found["hunt-crossley"].verdict is Verdict.DEVIATES
-    assert verdicts["croquet"]["restitution"].verdict is Verdict.DEVIATES
-    assert verdicts["bouncy_ball"]["restitution"].verdict is Verdict.COMPATIBLE
+        assert found["hunt-crossley"].verdict is Compatibility.DEVIATES
+    assert verdicts["croquet"]["restitution"].verdict is Compatibility.DEVIATES
+    assert verdicts["bouncy_ball"]["restitution"].verdict is Compatibility.COMPATIBLE

@@ -12,7 +12,7 @@ from bouncing_ball.errors import ModelError, ParameterError, did_you_mean
 from bouncing_ball.measured.experiment import QUANTITIES, Experiment, experiment, names, read
 from bouncing_ball.measured.fit import ContactFit
 from bouncing_ball.measured.law_fit import LawFit
-from bouncing_ball.measured.verdicts import Judgement, error_size, judge
+from bouncing_ball.measured.verdicts import JudgedLaw, error_size, judge
 from bouncing_ball.models.spring_damper import SpringDamper
 
 # In SI units the unit of time is a second, and ϖ is a natural frequency.
@@ -138,7 +138,7 @@ def _impacts(found: Experiment) -> list[dict[str, float]]:
     ]
 
 
-def _law(fitted: LawFit, judgement: Judgement) -> dict[str, Any]:
+def _law(fitted: LawFit, judgement: JudgedLaw) -> dict[str, Any]:
     return {
         "law": fitted.law,
         "verdict": str(judgement.verdict),

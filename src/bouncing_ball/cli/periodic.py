@@ -179,9 +179,9 @@ def _certified(
     with extra("proofs"):
         from bouncing_ball.beyond.proofs import certificates
         from bouncing_ball.beyond.proofs.balls import exactly
-        from bouncing_ball.beyond.proofs.problem import Problem
+        from bouncing_ball.beyond.proofs.problem import RationalProblem
 
-    problem = Problem(
+    problem = RationalProblem(
         exactly(frequency_ratio),
         restitution=None if restitution is None else exactly(restitution),
         damping_ratio=None if damping_ratio is None else exactly(damping_ratio),

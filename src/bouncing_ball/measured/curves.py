@@ -34,7 +34,7 @@ _LEAST, _MOST = 1e-6, 1.0
 
 
 @dataclass(frozen=True)
-class Curve:
+class LawCurve:
     """r(v) and T(v) of one kind of contact law.
 
     The parameter θ is ln G, or r if it does not depend on the speed.
@@ -142,20 +142,20 @@ def _table(kind: type[ContactLaw]) -> np.ndarray:
     return _free(kind, _GROUPS).restitution
 
 
-def _of(kind: type[ContactLaw]) -> Curve:
+def _of(kind: type[ContactLaw]) -> LawCurve:
     scaled = kind.of_scales(0.1, 1.0, 1.0).scaled(np.ones(1))
     if scaled is None:
-        return Curve(kind.name, kind)
-    return Curve(kind.name, kind, scaled.group_exponent, scaled.time_exponent)
+        return LawCurve(kind.name, kind)
+    return LawCurve(kind.name, kind, scaled.group_exponent, scaled.time_exponent)
 
 
 _KINDS = (SpringDamper, ElastoBacklash, Tsuji, KuwabaraKono, HuntCrossley, LinearHuntCrossley)
 CONSTANT = "restitution"
-CURVES = {CONSTANT: Curve(CONSTANT, None)} | {kind.name: _of(kind) for kind in _KINDS}
+CURVES = {CONSTANT: LawCurve(CONSTANT, None)} | {kind.name: _of(kind) for kind in _KINDS}
 """The laws that are fitted, by name. The paper's two models are the first two."""
 
 
-def curve_named(name: str) -> Curve:
+def curve_named(name: str) -> LawCurve:
     """The curve of the law with this name.
 
     Raises
@@ -166,6 +166,6 @@ def curve_named(name: str) -> Curve:
     return one_of("law", name, CURVES) if name == CONSTANT else _contact_curve(name)
 
 
-def _contact_curve(name: str) -> Curve:
+def _contact_curve(name: str) -> LawCurve:
     kind = law_named(name)
     return one_of("law for a fit", kind.name, CURVES)

@@ -23,7 +23,7 @@ from bouncing_ball.contacts.table import Table
 from bouncing_ball.errors import (
     ModelError,
 )
-from bouncing_ball.measured.curves import Curve
+from bouncing_ball.measured.curves import LawCurve
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
 from bouncing_ball.periodic.one_impact.restitution_branch import rigid_speed
 
@@ -108,7 +108,7 @@ class LawFit:
 
     Parameters
     ----------
-    curve : Curve
+    curve : LawCurve
         The law.
     speed : float
         v₀ in m/s, at which ``restitution`` and ``contact_time`` are given.
@@ -136,7 +136,7 @@ class LawFit:
         Mass of the ball in kg.
     """
 
-    curve: Curve
+    curve: LawCurve
     speed: float
     theta: float
     theta_error: float
@@ -279,7 +279,7 @@ class LawFit:
         return self.contact(self.speed_on(table, n), mass)
 
 
-def fit_law(curve: Curve, points: Points) -> LawFit:
+def fit_law(curve: LawCurve, points: Points) -> LawFit:
     """One law fitted to the restitution coefficients.
 
     Examples

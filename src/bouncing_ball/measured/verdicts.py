@@ -24,7 +24,7 @@ from enum import StrEnum
 import numpy as np
 import scipy
 
-from bouncing_ball.measured.curves import Curve
+from bouncing_ball.measured.curves import LawCurve
 from bouncing_ball.measured.fit import ContactFit
 from bouncing_ball.measured.law_fit import Points, fit_law
 
@@ -35,7 +35,7 @@ _SMOOTH = 3
 _FEWEST = 5
 
 
-class Verdict(StrEnum):
+class Compatibility(StrEnum):
     """Whether a law is compatible with an experiment."""
 
     COMPATIBLE = "compatible"
@@ -45,12 +45,12 @@ class Verdict(StrEnum):
 
 
 @dataclass(frozen=True)
-class Judgement:
+class JudgedLaw:
     """The verdict on one law.
 
     Parameters
     ----------
-    verdict : Verdict
+    verdict : Compatibility
     left_out, extrapolated : float
         The probabilities of the two tests; NaN if there are too few points.
     extrapolation : float
@@ -60,7 +60,7 @@ class Judgement:
         with which the law would not be rejected.
     """
 
-    verdict: Verdict
+    verdict: Compatibility
     left_out: float
     extrapolated: float
     extrapolation: float
@@ -206,7 +206,7 @@ def trend_of_scatter(points: Points) -> float:
     return float(scipy.stats.chi2.sf(slope**2 / (2 * trend @ trend), 1))
 
 
-def left_out(curve: Curve, points: Points) -> Unseen:
+def left_out(curve: LawCurve, points: Points) -> Unseen:
     """The errors at points that are left out of the fit."""
     if points.size < 3:
         return _NONE
@@ -223,7 +223,7 @@ def left_out(curve: Curve, points: Points) -> Unseen:
     return Unseen(float(np.sum((scale * errors) ** 2) / total), float(total**2 / square))
 
 
-def extrapolated(curve: Curve, points: Points) -> Unseen:
+def extrapolated(curve: LawCurve, points: Points) -> Unseen:
     """The errors at the faster half of the points, of a fit to the slower half."""
     order = np.argsort(points.speeds, kind="stable")
     half = points.size // 2
@@ -244,7 +244,7 @@ def extrapolated(curve: Curve, points: Points) -> Unseen:
     )
 
 
-def judge(fit: ContactFit) -> dict[str, Judgement]:
+def judge(fit: ContactFit) -> dict[str, JudgedLaw]:
     """The verdicts on all laws of a fit, by the name of the law."""
     points = fit.points
     variance = noise(points)
@@ -259,7 +259,7 @@ def judge(fit: ContactFit) -> dict[str, Judgement]:
     rejected = {name for name, both in found.items() if np.nanmin([*both, np.inf]) < REJECTED / 2}
     size = float(np.sqrt(np.mean(points.deviations**2)))
     return {
-        name: Judgement(
+        name: JudgedLaw(
             verdict=_verdict(points, name in rejected, bool(rejected), found[name]),
             left_out=found[name][0],
             extrapolated=found[name][1],
@@ -272,9 +272,9 @@ def judge(fit: ContactFit) -> dict[str, Judgement]:
 
 def _verdict(
     points: Points, is_rejected: bool, is_decisive: bool, found: tuple[float, float]
-) -> Verdict:
+) -> Compatibility:
     if is_rejected:
-        return Verdict.INCOMPATIBLE if points.is_known else Verdict.DEVIATES
+        return Compatibility.INCOMPATIBLE if points.is_known else Compatibility.DEVIATES
     if is_decisive and all(p > ACCEPTED for p in found):
-        return Verdict.COMPATIBLE
-    return Verdict.UNDECIDED
+        return Compatibility.COMPATIBLE
+    return Compatibility.UNDECIDED

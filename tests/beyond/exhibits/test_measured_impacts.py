@@ -9,13 +9,13 @@ import xarray as xr
 from bouncing_ball.beyond.exhibits import measured_impacts_figures as figures
 from bouncing_ball.beyond.exhibits.measured_impacts import (
     VARIABLES,
-    Measured,
+    MeasuredImpacts,
     Shaker,
     measured_impacts,
     on_shakers,
 )
 from bouncing_ball.contacts.quantities import STANDARD_GRAVITY
-from bouncing_ball.measured.curves import CURVES, Curve
+from bouncing_ball.measured.curves import CURVES, LawCurve
 from bouncing_ball.measured.experiment import experiment
 from bouncing_ball.measured.verdicts import judge
 from bouncing_ball.models.restitution_by_speed import RestitutionLaw, RestitutionLawModel
@@ -99,12 +99,12 @@ def test_the_papers_two_models_are_rows(laws):
 
 
 def test_the_budgets_allow_what_another_start_of_the_fits_changes(laws, shakers, monkeypatch):
-    start = Curve.parameter
+    start = LawCurve.parameter
 
     def elsewhere(self, restitution):
         return start(self, restitution) * 0.98
 
-    monkeypatch.setattr(Curve, "parameter", elsewhere)
+    monkeypatch.setattr(LawCurve, "parameter", elsewhere)
     for found, study, given in (
         (laws, measured_impacts, MEASURED),
         (shakers, on_shakers, SHAKER),
@@ -233,7 +233,7 @@ def test_wrong_parameters_are_refused(study, given):
 
 
 def test_the_parameters_are_typed():
-    assert Measured(**MEASURED).experiments == tuple(MEASURED["experiments"])
+    assert MeasuredImpacts(**MEASURED).experiments == tuple(MEASURED["experiments"])
     assert Shaker(**SHAKER).n == (1, 2)
 
 

@@ -21,7 +21,7 @@ from bouncing_ball.beyond.proofs.certificates import (
     saddle_node,
 )
 from bouncing_ball.beyond.proofs.newton import certified_zero
-from bouncing_ball.beyond.proofs.problem import Problem
+from bouncing_ball.beyond.proofs.problem import RationalProblem
 from bouncing_ball.beyond.proofs.return_map import ReturnMap, flip_coefficient, return_map
 from bouncing_ball.beyond.proofs.series import Series
 from bouncing_ball.models.damping import LINEAR, Release
@@ -70,7 +70,7 @@ def check(problem, kind):
 @pytest.mark.parametrize("kind", ["saddle-node", "period doubling"])
 @pytest.mark.parametrize(("ratio", "n"), TABLE_1)
 def test_the_ends_of_table_1_are_certified_to_thirty_digits(ratio, n, kind):
-    found = check(Problem(Fraction(ratio), restitution=Fraction(85, 100), n=n), kind)
+    found = check(RationalProblem(Fraction(ratio), restitution=Fraction(85, 100), n=n), kind)
     text, radius = found.texts(30)
     assert float(radius) < 1e-28 and len(text.replace(".", "").lstrip("0")) == 30
     assert {Proved.UNIQUE, Proved.INSIDE, Proved.ADMISSIBLE} <= {*found.proved}
@@ -82,7 +82,9 @@ def random_problems(seed, count):
         ratio = Fraction(round(1e4 * 10 ** random.uniform(0, 5)), 10_000)
         restitution = Fraction(int(random.integers(50, 990)), 1000)
         rule = LINEAR[int(random.integers(2))]
-        yield Problem(ratio, restitution=restitution, n=int(random.integers(1, 6)), release=rule)
+        yield RationalProblem(
+            ratio, restitution=restitution, n=int(random.integers(1, 6)), release=rule
+        )
 
 
 def outcomes(seed, count):
@@ -112,7 +114,7 @@ def test_both_limits_of_a_thousand_random_balls_are_right_or_refused_with_the_re
 
 
 def test_an_orbit_at_a_given_amplitude_has_this_amplitude():
-    problem = Problem(Fraction(10), restitution=Fraction(85, 100))
+    problem = RationalProblem(Fraction(10), restitution=Fraction(85, 100))
     for side in ("stable", "unstable"):
         found = orbit_at(problem, Fraction(1), side)
         with precision(found.bits):
@@ -120,7 +122,7 @@ def test_an_orbit_at_a_given_amplitude_has_this_amplitude():
 
 
 def test_the_determinant_of_the_return_map_is_that_of_the_contact():
-    problem = Problem(Fraction(2), restitution=Fraction(65, 100))
+    problem = RationalProblem(Fraction(2), restitution=Fraction(65, 100))
     found = orbit_at(problem, Fraction(1))
     with precision(found.bits):
         contact = problem.contact()
@@ -132,7 +134,7 @@ def test_the_determinant_of_the_return_map_is_that_of_the_contact():
         assert (1 + a + d + determinant).overlaps(test)
 
 
-GIVEN = Problem(Fraction(10), restitution=Fraction(85, 100))
+GIVEN = RationalProblem(Fraction(10), restitution=Fraction(85, 100))
 
 
 def certify(test, start=None, contact=None):
@@ -191,7 +193,7 @@ def test_the_return_map_contradicts_a_wrong_sign_in_the_period_doubling(monkeypa
 
     monkeypatch.setattr(certificates, "doubling_test", wrong)
     monkeypatch.setattr(newton, "_NEAR", 100.0)
-    problem = Problem(Fraction(10), restitution=Fraction(85, 100), release=release)
+    problem = RationalProblem(Fraction(10), restitution=Fraction(85, 100), release=release)
     with pytest.raises(ProofError, match="is not certified"):
         period_doubling(problem)
 
@@ -204,7 +206,7 @@ def test_the_return_map_contradicts_a_wrong_sign_of_the_damping_force(monkeypatc
 
     monkeypatch.setattr(EnclosedContact, "acceleration", wrong)
     monkeypatch.setattr(newton, "_NEAR", 100.0)
-    problem = Problem(Fraction(10), restitution=Fraction(85, 100), release=Release.FORCE)
+    problem = RationalProblem(Fraction(10), restitution=Fraction(85, 100), release=Release.FORCE)
     with pytest.raises(ProofError, match="contradicts"):
         period_doubling(problem)
 
@@ -359,7 +361,7 @@ def test_a_degenerate_bifurcation_is_refused(monkeypatch, name, proof):
 
 @pytest.mark.parametrize("release", LINEAR)
 def test_a_contact_that_has_been_released_earlier_is_noticed(release):
-    problem = Problem(Fraction(10), restitution=Fraction(85, 100), release=release)
+    problem = RationalProblem(Fraction(10), restitution=Fraction(85, 100), release=release)
     found = saddle_node(problem)
     with precision(80):
         contact = problem.contact()
@@ -414,7 +416,7 @@ def test_a_flight_in_which_the_ball_lands_earlier_is_noticed():
 )
 def test_what_cannot_be_proved_is_refused_with_the_reason(given, reason):
     with pytest.raises(ProofError, match=reason):
-        Problem(**({"frequency_ratio": Fraction(10)} | given))
+        RationalProblem(**({"frequency_ratio": Fraction(10)} | given))
 
 
 def test_below_the_saddle_node_no_orbit_is_certified():

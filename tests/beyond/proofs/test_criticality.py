@@ -9,7 +9,7 @@ from sixty_digits import Exact
 
 from bouncing_ball.beyond.proofs.balls import precision
 from bouncing_ball.beyond.proofs.certificates import Proved, period_doubling
-from bouncing_ball.beyond.proofs.problem import Problem
+from bouncing_ball.beyond.proofs.problem import RationalProblem
 from bouncing_ball.beyond.proofs.return_map import flip_coefficient, return_map
 from bouncing_ball.models.damping import Release
 
@@ -75,7 +75,7 @@ def cubic_coefficient(mapped):
     ],
 )
 def test_the_criticality_is_that_of_a_return_map_in_ninety_digits(given, release, kind):
-    problem = Problem(**given, release=release)
+    problem = RationalProblem(**given, release=release)
     found = period_doubling(problem)
     assert kind in found.proved
     with mpmath.workdps(90):

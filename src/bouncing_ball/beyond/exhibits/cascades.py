@@ -188,7 +188,7 @@ _GRAVITY = 9.80665
 """Standard gravity in m/s²."""
 
 
-class Measured(Parameters):
+class MeasuredDoublings(Parameters):
     """Period doublings measured over the amplitude of a table, at an assumed frequency."""
 
     frequency: Annotated[float, number("frequency of the table", "Hz", gt=0, le=1e6)]
@@ -210,7 +210,7 @@ class Cascades(Parameters):
             le=MOST,
         ),
     ]
-    measured: Measured
+    measured: MeasuredDoublings
 
     @model_validator(mode="after")
     def _computed(self) -> Self:

@@ -45,7 +45,7 @@ from bouncing_ball.measured.law_fit import LEVEL, LawFit, Points
 from bouncing_ball.measured.verdicts import (
     ACCEPTED,
     REJECTED,
-    Judgement,
+    JudgedLaw,
     error_size,
     judge,
     scatter,
@@ -149,7 +149,7 @@ COMPARED = (Quantity.MAX_HEIGHT, Quantity.SADDLE_NODE, Quantity.PERIOD_DOUBLING)
 Name = Annotated[str, number("name of an experiment of the package")]
 
 
-class Measured(Parameters):
+class MeasuredImpacts(Parameters):
     """The experiments that are fitted, and the samples of the curves r(v)."""
 
     experiments: Many[Name]
@@ -169,7 +169,7 @@ class Shaker(Parameters):
     ]
 
 
-def measured_impacts(parameters: Measured) -> xr.Dataset:
+def measured_impacts(parameters: MeasuredImpacts) -> xr.Dataset:
     """Every law on every experiment: curves with bands, errors and verdicts.
 
     The dataset has the measured points over (experiment, measured_impact), NaN beyond the last
@@ -247,7 +247,7 @@ def _one(measured: Experiment, fit: ContactFit, longest: int, samples: int) -> x
     )
 
 
-def _verdicts(judgements: list[Judgement]) -> dict[str, tuple[str, list]]:
+def _verdicts(judgements: list[JudgedLaw]) -> dict[str, tuple[str, list]]:
     return {
         "extrapolation_rms": ("fitted_law", [each.extrapolation for each in judgements]),
         "left_out_probability": ("fitted_law", [each.left_out for each in judgements]),
@@ -291,12 +291,12 @@ def _on_shakers(fit: ContactFit, parameters: Shaker) -> xr.Dataset:
 
 def _on_shaker(fit: ContactFit, frequency: float, parameters: Shaker) -> xr.Dataset:
     """One experiment on one shaker."""
-    orbits = [_Orbits.of(fit, frequency, n, parameters.position) for n in parameters.n]
+    orbits = [_OrbitsOnShaker.of(fit, frequency, n, parameters.position) for n in parameters.n]
     return xr.concat([each.row(fit, orbits[0]) for each in orbits], "n")
 
 
 @dataclass(frozen=True)
-class _Orbits:
+class _OrbitsOnShaker:
     """The n-T orbits of a ball on a shaker, whose impacts are instants with r(v).
 
     ``speed`` is in m/s, ``slope`` is d(r v)/dv, and ``amplitude`` is the Λ at which heights are

@@ -17,7 +17,7 @@ from bouncing_ball.beyond.proofs.certificates import (
     period_doubling,
     saddle_node,
 )
-from bouncing_ball.beyond.proofs.problem import Problem, damping_of, working_bits
+from bouncing_ball.beyond.proofs.problem import RationalProblem, damping_of, working_bits
 from bouncing_ball.beyond.proofs.thresholds import (
     MEASURED,
     CertifiedNumber,
@@ -108,9 +108,9 @@ def ends_of_table_1(parameters: Proofs) -> Iterator[CertifiedRow]:
     certify = {Bifurcation.SADDLE_NODE: saddle_node, Bifurcation.PERIOD_DOUBLING: period_doubling}
     r = exactly(parameters.restitution)
     for ratio, n, kind in product(parameters.frequency_ratio, parameters.n, certify):
-        problem = Problem(exactly(ratio), restitution=r, n=n)
+        problem = RationalProblem(exactly(ratio), restitution=r, n=n)
 
-        def prove(problem: Problem = problem, kind: Bifurcation = kind) -> CertifiedNumber:
+        def prove(problem: RationalProblem = problem, kind: Bifurcation = kind) -> CertifiedNumber:
             found = certify[kind](problem, parameters.digits)
             return CertifiedNumber(found.amplitude, found.bits, found.proved)
 
@@ -135,7 +135,7 @@ def apparent(parameters: Apparent, digits: int) -> CertifiedRow:
     ratio = exactly(parameters.frequency_ratio)
     r = exactly(parameters.restitution)
     lam = parameters.amplitude
-    problem = Problem(ratio, restitution=r, n=parameters.n)
+    problem = RationalProblem(ratio, restitution=r, n=parameters.n)
 
     def prove() -> CertifiedNumber:
         found = orbit_at(problem, exactly(lam), digits=digits)

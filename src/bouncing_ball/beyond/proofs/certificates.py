@@ -24,7 +24,7 @@ from bouncing_ball.beyond.proofs.balls import (
 )
 from bouncing_ball.beyond.proofs.branch import EnclosedContact, Point, point
 from bouncing_ball.beyond.proofs.newton import certified_zero
-from bouncing_ball.beyond.proofs.problem import Problem, working_bits
+from bouncing_ball.beyond.proofs.problem import RationalProblem, working_bits
 from bouncing_ball.beyond.proofs.return_map import ReturnMap, flip_coefficient, return_map
 from bouncing_ball.beyond.proofs.series import Series
 from bouncing_ball.models.spring_damper import SpringDamper
@@ -98,7 +98,7 @@ def doubling_test(contact: EnclosedContact, n: int, excess: Series) -> Series:
 # The certificates.
 
 
-def saddle_node(problem: Problem, digits: int = 30) -> Certificate:
+def saddle_node(problem: RationalProblem, digits: int = 30) -> Certificate:
     """The certified saddle-node of the family.
 
     Raises
@@ -110,7 +110,7 @@ def saddle_node(problem: Problem, digits: int = 30) -> Certificate:
     return _certified(problem, digits, fold_test, start, saddle_node_properties, "saddle-node")
 
 
-def period_doubling(problem: Problem, digits: int = 30) -> Certificate:
+def period_doubling(problem: RationalProblem, digits: int = 30) -> Certificate:
     """The certified period doubling nearest to the saddle-node, with its criticality.
 
     Raises
@@ -124,7 +124,7 @@ def period_doubling(problem: Problem, digits: int = 30) -> Certificate:
 
 
 def orbit_at(
-    problem: Problem, amplitude: Fraction, side: str = "stable", digits: int = 30
+    problem: RationalProblem, amplitude: Fraction, side: str = "stable", digits: int = 30
 ) -> Certificate:
     """The certified orbit at a rational Λ, on one side of the saddle-node.
 
@@ -150,7 +150,12 @@ Properties = Callable[[EnclosedContact, int, arb], list[Proved]]
 
 
 def _certified(
-    problem: Problem, digits: int, test: Test, start: float, properties: Properties, what: str
+    problem: RationalProblem,
+    digits: int,
+    test: Test,
+    start: float,
+    properties: Properties,
+    what: str,
 ) -> Certificate:
     bits = working_bits(problem.frequency_ratio, digits)
     with precision(bits):
@@ -172,7 +177,7 @@ def _amplitude(orbit: Point) -> arb:
     return found
 
 
-def _start(problem: Problem, search: Callable, what: str) -> float:
+def _start(problem: RationalProblem, search: Callable, what: str) -> float:
     found = float(search(problem.approximate(), problem.n))
     if not math.isfinite(found):
         raise NoStartError(f"no {what} of the {problem.n}-T orbit was found to start from")

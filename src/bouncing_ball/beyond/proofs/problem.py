@@ -25,7 +25,7 @@ def damping_of(restitution: Fraction) -> arb:
 
 
 @dataclass(frozen=True)
-class Problem:
+class RationalProblem:
     """A contact with rational parameters and a family of orbits.
 
     Parameters

@@ -25,7 +25,7 @@ from bouncing_ball.beyond.proofs.certificates import (
     saddle_node_properties,
 )
 from bouncing_ball.beyond.proofs.newton import certified_box
-from bouncing_ball.beyond.proofs.problem import Problem, damping_of, working_bits
+from bouncing_ball.beyond.proofs.problem import RationalProblem, damping_of, working_bits
 from bouncing_ball.beyond.proofs.series import Series, angle
 from bouncing_ball.beyond.proofs.simple_models import SimpleModel
 from bouncing_ball.periodic.one_impact import spring_damper_bifurcations as double
@@ -87,7 +87,7 @@ class Comparison:
 
     def start(self, frequency_ratio: float) -> float:
         """The excess angle of the orbit at this ϖ in double precision."""
-        problem = Problem(Fraction(frequency_ratio), restitution=self.restitution, n=self.n)
+        problem = RationalProblem(Fraction(frequency_ratio), restitution=self.restitution, n=self.n)
         approximate = problem.approximate()
         if self.quantity in ("saddle_node", "period_doubling"):
             return float(getattr(double, self.quantity)(approximate, self.n))
@@ -163,7 +163,7 @@ def _require_apex(orbit: Point) -> None:
         raise ProofError("the apex of the flight is not proved to be the greatest height")
 
 
-def apparent_restitution(problem: Problem, excess: arb) -> arb:
+def apparent_restitution(problem: RationalProblem, excess: arb) -> arb:
     """The apparent restitution -δ′_b/δ′ (Eq. 17) of a certified orbit."""
     orbit = point(problem.contact(), problem.n, excess)
     return -orbit.rate / orbit.u

@@ -87,7 +87,7 @@ def require_any_orbit(exists: np.ndarray, n: int, amplitude: ArrayLike, ratios: 
         )
 
 
-class Orbits(NamedTuple):
+class OrbitsOfContacts(NamedTuple):
     """n-T orbits at some of the amplitudes, on contacts of one r and one release rule.
 
     On either side of the branch, or on the stable side and admissible.
@@ -104,7 +104,8 @@ class Orbits(NamedTuple):
 
         Examples
         --------
-        >>> Orbits(1, 0.85, np.array([1.0]), Release.DISPLACEMENT).exists([0.1, 10.0]).tolist()
+        >>> orbits = OrbitsOfContacts(1, 0.85, np.array([1.0]), Release.DISPLACEMENT)
+        >>> orbits.exists([0.1, 10.0]).tolist()
         [False, True]
         """
         column = np.asarray(ratios)[:, np.newaxis]
@@ -150,7 +151,7 @@ class Orbits(NamedTuple):
         )
 
 
-def _orbits(info: ValidationInfo, amplitude: str, share: np.ndarray) -> Orbits | None:
+def _orbits(info: ValidationInfo, amplitude: str, share: np.ndarray) -> OrbitsOfContacts | None:
     """The orbits that parameters ask for at shares of an amplitude; None if the release rule of
     the run is not known, or if a parameter is missing or wrong, which is reported instead.
     """
@@ -159,7 +160,9 @@ def _orbits(info: ValidationInfo, amplitude: str, share: np.ndarray) -> Orbits |
     given = info.data
     if not {"n", "restitution", amplitude} <= given.keys() or rule not in [*map(str, Release)]:
         return None
-    return Orbits(given["n"], given["restitution"], given[amplitude] * share, Release(rule))
+    return OrbitsOfContacts(
+        given["n"], given["restitution"], given[amplitude] * share, Release(rule)
+    )
 
 
 def _on_contact(ratio: float, info: ValidationInfo) -> float:

@@ -33,8 +33,8 @@ from bouncing_ball.models.laws.hertzian import (
     Tsuji,
 )
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
-from bouncing_ball.models.laws.permanent_contact import permanent_contact
 from bouncing_ball.models.laws.signature import Signature
+from bouncing_ball.models.laws.steady_contact import permanent_contact
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.models.spring_damper import SpringDamper

@@ -8,8 +8,8 @@ from scipy.integrate import solve_ivp
 
 from bouncing_ball import ModelError, contact_law, corrected, orbit, rigid, spring_damper
 from bouncing_ball.models.damping import LINEAR, Release, damping_ratio, restitution_coefficient
-from bouncing_ball.models.laws.permanent_contact import permanent_contact
 from bouncing_ball.models.laws.signature import computed
+from bouncing_ball.models.laws.steady_contact import permanent_contact
 from bouncing_ball.models.spring_damper import SpringDamper
 
 APPROACH = Release.APPROACH

@@ -99,3 +99,35 @@ def test_errors_of_the_equations_move_an_orbit_by_what_its_digits_tell():
 def test_where_there_is_no_orbit_no_digit_is_certain():
     none = Orbit.of(SpringDamperModel(SpringDamper(10.0, 0.05)), 1, [1.0, 1.1], np.nan)
     assert np.isnan(none.digits_left()).all()
+
+
+@pytest.mark.parametrize(
+    ("ball", "amplitude"),
+    [
+        (bouncing_ball.rigid(restitution=0.5), 1.6),
+        (bouncing_ball.spring_damper(restitution=0.5, frequency_ratio=20.0), 1.6),
+    ],
+)
+def test_the_history_of_an_orbit_is_that_of_a_simulated_ball(ball, amplitude):
+    """Two impacts in two periods; a stable orbit keeps the roundings of the simulation small."""
+    orbit = bouncing_ball.orbit_of_motion(ball, amplitude=amplitude)
+    found = orbit.history(samples=50)
+    start = {"phase": orbit.phase[0], "velocity": orbit.impact_velocity[0]}
+    simulated = bouncing_ball.history(ball, amplitude=amplitude, periods=2.0, samples=50, **start)
+    assert orbit.impacts == 2
+    for name in ("ball", "table"):
+        np.testing.assert_allclose(found[name], simulated[name], rtol=0, atol=1e-12)
+    # At the last sample the next contact begins, before or after it by a rounding.
+    np.testing.assert_array_equal(found.contact[:-1], simulated.contact[:-1])
+
+
+def test_an_orbit_draws_itself_and_a_row_of_orbits_is_refused(tmp_path, refusal):
+    ball = bouncing_ball.rigid(restitution=0.85)
+    orbit = bouncing_ball.orbit(ball, n=1, amplitude=1.0)
+    figure = orbit.plot(tmp_path / "orbit.png")
+    assert (tmp_path / "orbit.png").is_file()
+    drawn = {line.get_label(): line.get_ydata() for line in figure.axes[0].lines}
+    assert drawn["ball $z$"].max() == pytest.approx(orbit.max_height, rel=1e-4)
+    row = Orbit.of(orbit.model, 1, np.array([1.0, 1.0]), np.array([1.0, 1.1]))
+    with refusal(bouncing_ball.ModelError, "history", "one orbit"):
+        row.plot()

@@ -18,9 +18,9 @@ from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.hertzian import Tsuji
 from bouncing_ball.models.laws.model import LawModel
-from bouncing_ball.models.laws.permanent_contact import known_threshold
 from bouncing_ball.models.laws.scales import rest
 from bouncing_ball.models.laws.signature import Signature
+from bouncing_ball.models.laws.steady_contact import known_threshold
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.spring_damper import SpringDamper

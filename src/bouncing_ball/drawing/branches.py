@@ -199,7 +199,8 @@ def _enlarge(axes: Axes, curve: xr.Dataset, amplitude: xr.DataArray, colour: str
 
 def _around(values: xr.DataArray) -> np.ndarray:
     """The ends of an axis on which these values take the middle third."""
-    low, high = float(values.min()), float(values.max())
+    low = float(values.min())
+    high = float(values.max())
     return np.array([2 * low - high, 2 * high - low])
 
 

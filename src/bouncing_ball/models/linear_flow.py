@@ -33,21 +33,13 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball.models.oscillator import responses
 
-ARGUMENTS = ("time", "displacement", "velocity", "phase", "amplitude")
-"""Order of the last axis of :attr:`ContactFlow.jacobian`."""
-
 
 class ContactFlow(NamedTuple):
-    """δ, δ′ and δ″ after a time in contact, arrays of one shape, and the exact Jacobian.
-
-    ``jacobian`` has shape (..., 2, 5): its rows are the derivatives of δ and δ′, its columns are
-    in the order of :data:`ARGUMENTS`.
-    """
+    """δ, δ′ and δ″ after a time in contact, arrays of one shape."""
 
     displacement: np.ndarray
     velocity: np.ndarray
     acceleration: np.ndarray
-    jacobian: np.ndarray
 
 
 def flow(
@@ -80,23 +72,11 @@ def flow(
     loss = 2 * zeta * omega
     stiffness = omega * omega
     g, G, h = responses(s, omega, zeta)
-    turn = np.exp(1j * phi)
-    drive = lam * turn
-    # The free response to a unit displacement.
-    free = g.rate + loss * g.value
-    d = d0 * free + v0 * g.value - G.value + np.imag(drive * h.value)
+    drive = lam * np.exp(1j * phi)
+    d = d0 * (g.rate + loss * g.value) + v0 * g.value - G.value + np.imag(drive * h.value)
     v = v0 * g.rate - d0 * stiffness * g.value - G.rate + np.imag(drive * h.rate)
     acc = lam * np.sin(s + phi) - 1 - loss * v - stiffness * d
-    of_displacement = (v, free, g.value, np.real(drive * h.value), np.imag(turn * h.value))
-    of_velocity = (
-        acc,
-        -stiffness * g.value,
-        g.rate,
-        np.real(drive * h.rate),
-        np.imag(turn * h.rate),
-    )
-    jacobian = np.moveaxis(np.array([of_displacement, of_velocity]), (0, 1), (-2, -1))
-    return ContactFlow(d, v, acc, jacobian)
+    return ContactFlow(d, v, acc)
 
 
 def _change(values: np.ndarray) -> np.ndarray:

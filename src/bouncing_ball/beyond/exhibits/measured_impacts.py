@@ -337,7 +337,9 @@ class _OrbitsOnShaker:
         if np.isfinite(measured) and np.isfinite(constant):
             fold = float(restitution_branch.saddle_node(self.n, measured))
             by_points = float(restitution_branch.saddle_node(self.n, constant)) / fold - 1
-        ratio, by_duration, delta = np.nan, np.full(len(COMPARED), np.nan), np.nan
+        ratio = np.nan
+        by_duration = np.full(len(COMPARED), np.nan)
+        delta = np.nan
         if fit.best.has_stiffness:
             ratio, by_duration, delta = self.by_duration(fit.best)
         return xr.Dataset(

@@ -7,7 +7,7 @@ names in :mod:`bouncing_ball.contacts.named_laws`. :mod:`.law_of_impact` finds t
 restitution coefficient and duration. :mod:`.force_law` is what the numerical methods know of a law.
 :mod:`.panel`, :mod:`.sweeps`, :mod:`.march` and :mod:`.linearised` compute contacts and their
 derivatives, :mod:`.collocation` answers questions about them, :mod:`.motion` simulates balls on
-them, and :mod:`.permanent_contact` finds the largest Λ at which a ball stays on the table.
+them, and :mod:`.steady_contact` finds the largest Λ at which a ball stays on the table.
 :mod:`bouncing_ball.models.instant` holds the numbers by which a short contact is an instantaneous
 impact, and :mod:`.signature` derives them for a law. The n-T orbits on a law begin in
 :mod:`bouncing_ball.periodic.one_impact.start`.

@@ -15,8 +15,8 @@ from bouncing_ball.models.dynamics import Dynamics
 from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.laws.analytic import require_analytic
 from bouncing_ball.models.laws.contact_law import ContactLaw
-from bouncing_ball.models.laws.permanent_contact import permanent_contact
 from bouncing_ball.models.laws.signature import Signature
+from bouncing_ball.models.laws.steady_contact import permanent_contact
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.setting import PAPER, Setting
 

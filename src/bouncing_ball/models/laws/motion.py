@@ -27,9 +27,9 @@ from bouncing_ball.models.dynamics import Departure, Impact
 from bouncing_ball.models.laws.force_law import ForceLaw
 from bouncing_ball.models.laws.march import MOST_PANELS, ContactEnds, march
 from bouncing_ball.models.laws.panel import Start, slopes_of
-from bouncing_ball.models.laws.permanent_contact import holds
 from bouncing_ball.models.laws.scales import rest
 from bouncing_ball.models.laws.signature import Signature
+from bouncing_ball.models.laws.steady_contact import holds
 from bouncing_ball.models.resumption import (
     ResumingDynamics,
     leaves_fast,

@@ -55,14 +55,28 @@ def contact_end(orbit: Orbit, weight: float) -> ContactFlow:
     flow = contact.flow(time, 0.0, orbit.relative_impact_velocity, orbit.phase, orbit.amplitude)
     sag = contact.flow(time, 0.0, 0.0, 0.0, 0.0)
     missing = 1 - weight
-    jacobian = flow.jacobian.copy()
-    jacobian[..., 0] -= missing * sag.jacobian[..., 0]
     return ContactFlow(
         displacement=flow.displacement - missing * sag.displacement,
         velocity=flow.velocity - missing * sag.velocity,
         acceleration=flow.acceleration - missing * sag.acceleration,
-        jacobian=jacobian,
     )
+
+
+def _by_start(orbit: Orbit) -> np.ndarray:
+    """Derivatives of δ and δ′ at the end of the contacts, at a fixed duration, shape (..., 2, 2).
+
+    The columns are those by the phase and by δ′ at the start. The flow is affine in δ′, Λ cos φ and
+    Λ sin φ (Eqs. 12-13), so that its derivatives are differences of flows.
+    """
+    time = np.asarray(orbit.contact_duration)
+    flow = orbit.law.flow
+    rest = flow(time, 0.0, 0.0, 0.0, 0.0)
+    moved = flow(time, 0.0, 0.0, orbit.phase + np.pi / 2, orbit.amplitude)
+    pushed = flow(time, 0.0, 1.0, 0.0, 0.0)
+    displacement = [each.displacement - rest.displacement for each in (moved, pushed)]
+    velocity = [each.velocity - rest.velocity for each in (moved, pushed)]
+    rows = np.stack(displacement, axis=-1), np.stack(velocity, axis=-1)
+    return np.stack(rows, axis=-2)
 
 
 def weightless_orbits(excess: ArrayLike, contact: SpringDamper, n: ArrayLike) -> Orbit:
@@ -106,8 +120,7 @@ def monodromy(orbit: Orbit, weight: float = 1.0, high_bounce: bool = False) -> n
         return np.asarray(values)[..., np.newaxis]
 
     end = contact_end(orbit, weight)
-    # Columns are the phase and δ′ at the start of contact.
-    by_start = end.jacobian[..., [3, 2]]
+    by_start = _by_start(orbit)
     d_duration = -by_start[..., 0, :] / column(end.velocity)
     d_velocity = by_start[..., 1, :] + column(end.acceleration) * d_duration
     d_release = d_duration + np.array([1.0, 0.0])

@@ -178,7 +178,8 @@ def _followed(
     There is no second one on most contacts of the force release, for n > 1, and where both are the
     same. All are followed side by side.
     """
-    n, top = parameters.n, parameters.amplitude_max
+    n = parameters.n
+    top = parameters.amplitude_max
     ratios = np.array(parameters.frequency_ratio)
     contacts = SpringDamper.from_restitution(parameters.restitution, ratios, release)
     families = np.full(ratios.size, n)

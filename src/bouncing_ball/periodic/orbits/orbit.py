@@ -11,7 +11,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,6 +25,12 @@ from bouncing_ball.periodic.orbits.impacts import Impacts
 from bouncing_ball.periodic.orbits.legs import time_to_section
 from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
 from bouncing_ball.periodic.orbits.simulation import is_admissible
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from bouncing_ball.drawing.result import Result
 
 OBSERVABLES = (
     "amplitude",
@@ -258,6 +265,57 @@ class Orbit(Impacts):
             height = np.where(here, np.where(touching, inside[0], outside[0]), height)
             velocity = np.where(here, np.where(touching, inside[1], outside[1]), velocity)
         return self._single(height), self._single(velocity)
+
+    def touches(self, time: ArrayLike) -> Any:
+        """Whether the ball is in contact at times since the first impact, as :meth:`path`."""
+        t = np.mod(np.asarray(time, dtype=float), 2 * np.pi * np.asarray(self.periods))
+        since = t[..., np.newaxis] - (np.cumsum(self._intervals, axis=-1) - self._intervals)
+        return self._single(np.any((since >= 0) & (since <= self.durations), axis=-1))
+
+    def history(self, samples: int = 200) -> Result:
+        """A single orbit over one repetition, from its first impact on.
+
+        Parameters
+        ----------
+        samples : int
+            Number of samples in each period of the table.
+
+        Returns
+        -------
+        Result
+            The variables of :func:`bouncing_ball.history`.
+
+        Raises
+        ------
+        ModelError
+            If there are several orbits or none, or if the number of samples is out of range.
+
+        Examples
+        --------
+        >>> from bouncing_ball.models.rigid import RestitutionModel
+        >>> orbit = Orbit.of(RestitutionModel(1.0), 1, 0.5, np.pi / 2)
+        >>> orbit.history(samples=2).ball.values - 0.5 == np.array([0.0, np.pi**2 / 2, 0.0])
+        array([ True,  True,  True])
+        """
+        # Imported here, because a single orbit needs no labels.
+        from bouncing_ball.periodic.orbits.saved import history_of
+
+        return history_of(self, samples)
+
+    def plot(
+        self,
+        path: str | Path | None = None,
+        *,
+        ax: Axes | None = None,
+        size: tuple[float, float] | None = None,
+        font_size: float | None = None,
+    ) -> Figure:
+        """A single orbit as a figure: the heights of ball and table over one repetition.
+
+        The parameters and the errors are those of the ``plot`` of a result, such as that of
+        :meth:`history`.
+        """
+        return self.history().plot(path, ax=ax, size=size, font_size=font_size)
 
     # Stability and admissibility.
 

@@ -14,7 +14,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.datasets.arguments import SAMPLES, checked_number, require_memory
 from bouncing_ball.datasets.variables import SHARED, Variable, describe
+from bouncing_ball.drawing.result import Result
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.as_text import model_of, text_of
 from bouncing_ball.numerics.elementary import reduce_angle
@@ -70,6 +72,22 @@ def dataset_of(orbit: Any) -> xr.Dataset:
     named = {name: SHARED.get(name, Variable(name.replace("_", " "))) for name in names}
     named["kind"] = Variable("kind of special orbit")
     return describe(data, named | KEPT).assign_attrs(along=", ".join(orbit.along))
+
+
+def history_of(orbit: Any, samples: int) -> Result:
+    """A single orbit over one repetition; see :meth:`.Orbit.history`."""
+    if orbit.shape or not orbit.exists:
+        raise ModelError("a history is that of one orbit that exists: give one of the orbits")
+    count = checked_number("samples", samples, SAMPLES)
+    time = np.linspace(0.0, 2 * np.pi * int(orbit.periods), int(orbit.periods) * count + 1)
+    require_memory(time.size, "states", "samples")
+    height, velocity = orbit.path(time)
+    table = orbit.amplitude * orbit.model.place.waveform.height(orbit.phases[0] + time)
+    columns = {"ball": height, "ball_velocity": velocity, "table": table}
+    columns["contact"] = orbit.touches(time)
+    data = xr.Dataset({name: ("time", values) for name, values in columns.items()}, {"time": time})
+    labels = dict(orbit.model.parameters) | {"amplitude": orbit.amplitude}
+    return Result.of(describe(data).assign_attrs(labels), "history")
 
 
 def has_orbits(data: xr.Dataset, prefix: str = "") -> bool:

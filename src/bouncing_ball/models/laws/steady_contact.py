@@ -1,19 +1,9 @@
-r"""Amplitudes at which the ball never leaves the table (Eq. 9 and Eqs. 28-36).
+r"""The steady contact of a law in which the ball never leaves the table, and its largest Λ.
 
-A ball on a rigid table never leaves it for Λ ≤ Λ_CR = 1. A ball on a
-spring-damper oscillates steadily, and with the displacement release it never
-leaves if its displacement relative to the table never becomes positive::
-
-    Λ ≤ Λ_SD(ϖ) = √γ/ϖ² = √((1 - x)² + 4ζ² x),     x = 1/ϖ²       (Eq. 33)
-
-With the force release it never leaves if the table pushes it at all times. The force
-over the weight is 1 + z″, and the table's motion reaches the ball with the
-transmissibility (1 + 2iζ√x)/(1 - x + 2iζ√x), so that ::
-
-    Λ ≤ Λ_F(ϖ) = √[((1 - x)² + 4ζ² x)/(1 + 4ζ² x)]
-
-Most other laws have no closed form. At the threshold the grip g vanishes exactly once per period
-and does not change its sign. The steady motion is then a solution of the boundary value problem ::
+The spring and damper has a closed form (:mod:`bouncing_ball.models.permanent_contact`, Eqs. 28-36),
+which its law gives as ``permanent_contact``. Most other laws have none. At the threshold the grip g
+vanishes exactly once per period and does not change its sign. The steady motion is then a solution
+of the boundary value problem ::
 
     p″ = a - f(p, p′),   a = 1 - Λ sin(φ + t),   0 ≤ t ≤ 2π
     p(0) = p(2π),   p′(0) = p′(2π),   g = 0 and dg/dt = 0 at t = 0

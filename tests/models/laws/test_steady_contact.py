@@ -11,14 +11,14 @@ from bouncing_ball.errors import ModelError
 from bouncing_ball.models.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball.models.laws.hertzian import HuntCrossley, KuwabaraKono, Tsuji
 from bouncing_ball.models.laws.law_of_impact import law_of_impact
-from bouncing_ball.models.laws.permanent_contact import (
+from bouncing_ball.models.laws.scales import rest
+from bouncing_ball.models.laws.steady_contact import (
     _holds,
     _Steady,
     _touching,
     holds,
     permanent_contact,
 )
-from bouncing_ball.models.laws.scales import rest
 from bouncing_ball.models.spring_damper import SpringDamper
 
 
@@ -69,7 +69,7 @@ def test_a_stiff_contact_has_a_threshold_next_to_that_of_a_rigid_table():
 @pytest.mark.parametrize("law", [Tsuji(10, 0.3), HuntCrossley(4e3, 0.08), KuwabaraKono(99, 0.1)])
 def test_more_nodes_do_not_change_a_threshold(law, monkeypatch):
     found = permanent_contact(law)
-    monkeypatch.setattr("bouncing_ball.models.laws.permanent_contact._TOLERANCE", 1e-9)
+    monkeypatch.setattr("bouncing_ball.models.laws.steady_contact._TOLERANCE", 1e-9)
     # The method is of the fourth order, so that the grid has little more than half the spacing.
     assert found == pytest.approx(permanent_contact(law), rel=1e-10)
 

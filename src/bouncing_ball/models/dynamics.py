@@ -114,7 +114,7 @@ class Dynamics(Batch, ABC):
         return None
 
     def start(self, phase: np.ndarray, velocity: np.ndarray) -> Impact:
-        """First impacts, which start at phases φ with δ′ at the table's level."""
+        """First impacts, which start at phases φ with δ′ at the table's level (Eqs. 21, 22)."""
         return self.with_table(Impact.at_level(phase, velocity))
 
     def with_table(self, impact: Impact) -> Impact:

@@ -117,7 +117,9 @@ class ContactMotion(Motion):
 
 
 class ClosedFormMotion(ContactMotion):
-    """The motion y away from the resonance, as the sum of the transient and the steady part."""
+    """The motion y away from the resonance, as the sum of the transient and the steady part: δ of
+    Eq. 12 with its constants A and B, and for the force release δ + κ δ′.
+    """
 
     def __init__(self, contact: OscillatorLaw, amplitude, displacement, velocity, x, y):
         super().__init__(contact, amplitude, displacement, velocity, x, y)

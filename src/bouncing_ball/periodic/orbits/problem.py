@@ -2,7 +2,8 @@ r"""The equations of a periodic orbit with k impacts in m periods of the table.
 
 An impact has the state (θ, v) on the Poincaré section of the model: for most models the phase of
 the table and δ′ at the start of the contact. A leg is a contact and the flight after it. It leads
-from the state s_i of impact i to P(s_i), which must be the state of the next impact::
+from the state s_i of impact i to P(s_i), which must be the state of the next impact (for one impact
+in n periods these are Eqs. 24-26 of the paper)::
 
     P(s_i) = s_{i+1},    s_{k+1} = s_1 + (2πm, 0)
 
@@ -297,7 +298,11 @@ class PeriodicOrbits:
         )
 
     def residual(self, y: np.ndarray) -> np.ndarray:
-        """The two equations of each leg, and the errors of the durations, shape (..., N)."""
+        """The two equations of each leg, and the errors of the durations, shape (..., N).
+
+        For one impact they are Eqs. 24-26, of which the height at the landing is one and the
+        velocity there another, and Eq. 23 at a given duration.
+        """
         legs = self.beside(y)
         here = legs.residual[0].reshape(*y.shape[:-1], -1)
         if not self.selects:

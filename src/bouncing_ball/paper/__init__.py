@@ -43,9 +43,8 @@ Eqs.    what                      where
 The library does not compute with Eqs. 28-31, the motion in permanent contact, because it needs only
 the threshold that follows from them (Eqs. 32 and 33). The row of these equations leads to the
 printed form of the last one. Eq. 8 is the period doubling of Holmes' map: its function gives it for
-the map HOLMES of ``ImpactMap``, and by default that of the exact return map. The release (Eq. 23) is searched
-on the motion of Eq. 12 in the form of the class ``ClosedFormMotion``, beside that of the contact's
-end.
+that map, and by default that of the exact return map. The release (Eq. 23) is searched
+on the motion of Eq. 12 as the class ``ClosedFormMotion`` of the linear contact writes it.
 
 Eqs. 1 and 10 are in metres and seconds, all others dimensionless. The paper solves Eqs. 21-26 by
 continuation; at a given duration of the contact they are linear, so that the library also has

@@ -1,5 +1,6 @@
 """A wrong edit in any formula with which a stage computes shows in the row of this formula."""
 
+import compileall
 import json
 import os
 import re
@@ -68,8 +69,8 @@ EDITS = [
     ),
     Edit(
         "models/linear_flow.py",
-        "d0 * free + v0 * g.value - G",
-        "d0 * free + v0 * g.value + G",
+        "+ v0 * g.value - G",
+        "+ v0 * g.value + G",
         "Eqs. 12-13",
     ),
     Edit(ORBIT, "+ (bounce + velocity) / 2 * s", "+ bounce * s", "Eqs. 14-15"),
@@ -161,6 +162,8 @@ def copy(tmp_path_factory):
     """A copy of the package, to be edited."""
     folder = tmp_path_factory.mktemp("edited") / "bouncing_ball"
     shutil.copytree(PACKAGE, folder, ignore=shutil.ignore_patterns("__pycache__"))
+    # Once, and not in the process of every edit.
+    compileall.compile_dir(folder, quiet=2)
     return folder
 
 

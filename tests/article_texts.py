@@ -20,7 +20,7 @@ from bouncing_ball.drawing.tables import to_csv, to_markdown
 from bouncing_ball.paper.claims import tables as rows
 from bouncing_ball.paper.claims.claims import claims
 from bouncing_ball.paper.exhibits import continuation_of_orbits_figures, error_thresholds_figures
-from bouncing_ball.pipeline.article import render_article
+from bouncing_ball.pipeline.article import render_article, sections_of
 from bouncing_ball.pipeline.configuration import read_yaml
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -67,9 +67,13 @@ def all_texts(data, verdicts=None):
     texts["atlas"] = to_markdown(*shares(data["atlas"]))
     about = read_yaml(ROOT / "CITATION.cff")
     decided = rows.Claims(data["claims"])
-    for name in ("article", "supplement", "motions"):
+    sections = {}
+    for name in ("supplement", "article", "motions"):
         file = TEMPLATES / f"{name}.md.j2"
-        made[name] = render_article(file, data, texts, decided, ARTIFACTS, about=about)
+        made[name] = render_article(
+            file, data, texts, decided, ARTIFACTS, about=about, sections=sections
+        )
+        sections = sections or sections_of(made[name])
     return made
 
 

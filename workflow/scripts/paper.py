@@ -7,12 +7,13 @@ from bouncing_ball.datasets.files import write_text
 from bouncing_ball.drawing.tables import to_markdown
 from bouncing_ball.paper.claims import tables as rows
 from bouncing_ball.paper.claims.claims import tally
-from bouncing_ball.pipeline.article import render_article
+from bouncing_ball.pipeline.article import render_article, sections_of
 from bouncing_ball.pipeline.configuration import read_yaml
 from bouncing_ball.pipeline.jobs import logged, read_input, using
 
-# The templates, and the names of the texts.
-ARTICLES = {"article": "paper", "supplement": "supplement", "motions": "motions"}
+# The templates, and the names of the texts. The supplement is the first, because the article refers
+# to its sections.
+ARTICLES = {"supplement": "supplement", "article": "paper", "motions": "motions"}
 
 
 def text_of(path):
@@ -30,10 +31,13 @@ with logged(snakemake) as lines:
     claims = rows.Claims(data["claims"])
     artifacts = snakemake.params.artifacts
     about = read_yaml(snakemake.input.citation)
+    sections: dict[str, str] = {}
     for template, path in ARTICLES.items():
         file = Path(snakemake.params.templates, f"{template}.md.j2")
-        text = render_article(file, data, tables, claims, artifacts, about=about)
+        text = render_article(file, data, tables, claims, artifacts, about=about, sections=sections)
         write_text(snakemake.output[path], text)
+        if template == "supplement":
+            sections = sections_of(text)
     last = tally(data["claims"])
     write_text(snakemake.output.tally, last + "\n")
     lines.append(last)

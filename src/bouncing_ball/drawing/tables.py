@@ -11,6 +11,16 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+LAW_NAMES = {
+    "restitution": "constant r",
+    "linear": "linear",
+    "linear, force release": "linear, force release",
+    "hunt-crossley": "Hunt and Crossley",
+    "tsuji": "Tsuji",
+    "kuwabara-kono": "Kuwabara and Kono",
+}
+"""The names of contact laws for readers; a law without one here keeps its own."""
+
 Rows = Sequence[Sequence[str]]
 TextTable = tuple[list[str], list[list[str]]]
 """Header and rows."""
@@ -100,6 +110,18 @@ def table(parts: Iterable[xr.Dataset], columns: Columns) -> TextTable:
 def text(name: str) -> Column:
     """The column of a variable as text without a number format."""
     return lambda part: str(part[name].item())
+
+
+def law_name(name: str) -> Column:
+    """The column of a variable with the names of contact laws, for readers.
+
+    Examples
+    --------
+    >>> table([xr.Dataset({"law": "hunt-crossley"})], {"law": law_name("law")})[1]
+    [['Hunt and Crossley']]
+    """
+    plain = text(name)
+    return lambda part: LAW_NAMES.get(plain(part), plain(part))
 
 
 def quantity_in_words(part: xr.Dataset) -> str:

@@ -144,12 +144,25 @@ _HEADING = re.compile(r"^(##+) (?!Abstract|References)(.+)$", re.MULTILINE)
 # The first words of a caption, and a reference from anywhere.
 _CAPTION = re.compile(r"\*\*(Figure|Table) «(\w+)»")
 _REFERENCE = re.compile(r"«([^»\n]+)»")
+_NUMBERED_HEADING = re.compile(r"^##+ (S?\d+(?:\.\d+)?)\.? (.+)$", re.MULTILINE)
 
 
-def numbered(text: str) -> str:
+def sections_of(text: str) -> dict[str, str]:
+    """The numbers of the sections of a numbered text by their headings.
+
+    Examples
+    --------
+    >>> sections_of("# Supplement\\n## S1. Checks\\n### S1.1 Routes\\n## References")
+    {'Checks': 'S1', 'Routes': 'S1.1'}
+    """
+    return {name: number for number, name in _NUMBERED_HEADING.findall(text)}
+
+
+def numbered(text: str, sections: Mapping[str, str] | None = None) -> str:
     """The text with numbers in its headings and in place of the references ``«name»``.
 
-    The name of a section is its heading. Figures and tables are numbered in the order of their
+    The name of a section is its heading. A name that the text does not have is looked up in
+    ``sections``, the numbers of the sections of another text. Figures and tables are numbered in the order of their
     captions, ``**Figure «name»`` and ``**Table «name»``. In a replication the numbers follow those
     of the 16 figures and the table of the paper; in a supplement they begin with S1, and in any
     other article with 1.
@@ -172,7 +185,8 @@ def numbered(text: str) -> str:
     is_supplement = text.startswith("# Supplement")
     is_replication = text.startswith("# [Re]")
     prefix = "S" if is_supplement else ""
-    text, numbers = _with_numbered_headings(text, prefix)
+    text, own = _with_numbered_headings(text, prefix)
+    numbers = {**(sections or {}), **own}
     count = Counter(Figure=16, Table=1) if is_replication else Counter()
     for kind, name in _CAPTION.findall(text):
         count[kind] += 1
@@ -297,13 +311,15 @@ def render_article(
     artifacts: Mapping[str, Artifact],
     *,
     about: Mapping[str, Any] | None = None,
+    sections: Mapping[str, str] | None = None,
 ) -> str:
     """The text of a template with numbered sections, figures, tables and citations.
 
     Each sentence has a line. A template may include other templates of its folder. Templates can
     use ``data``, ``tables`` and ``artifacts`` by name, ``claims``, the functions in
     :data:`FORMATS`, and with ``about`` what CITATION.cff says: authors, version, address. Citations
-    have the syntax of pandoc, ``[@key]``.
+    have the syntax of pandoc, ``[@key]``. With ``sections`` references can name sections of another
+    text, as in :func:`numbered`.
 
     Raises
     ------
@@ -325,7 +341,7 @@ def render_article(
         known["about"] = about
     environment.globals.update(FORMATS, **known)
     text = environment.get_template(Path(template).name).render()
-    with_formulas = by_sentence(numbered(text)).replace("Λ_SD", r"$\Lambda_{SD}$")
+    with_formulas = by_sentence(numbered(text, sections)).replace("Λ_SD", r"$\Lambda_{SD}$")
     return with_citations(with_formulas, folder)
 
 

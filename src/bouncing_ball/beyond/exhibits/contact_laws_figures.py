@@ -8,13 +8,14 @@ from bouncing_ball.drawing.canvas import panels_by_quantity
 from bouncing_ball.drawing.labels import parameters
 from bouncing_ball.drawing.style import GUIDE, LAWS
 from bouncing_ball.drawing.tables import (
+    LAW_NAMES,
     Columns,
     TextTable,
     at,
     entry_of,
     quantity_in_words,
+    law_name,
     table,
-    text,
     value,
 )
 from bouncing_ball.drawing.thresholds import with_zeros
@@ -52,7 +53,8 @@ def contact_laws(data: xr.Dataset) -> Figure:
     )
     # Each law has two lines; the legend takes the first.
     lines = figure.axes[0].lines[: 2 * data.sizes["law"] : 2]
-    spare.legend(lines, data["law"].values, loc="upper left", title=title)
+    names = [LAW_NAMES[law] for law in data["law"].values]
+    spare.legend(lines, names, loc="upper left", title=title)
     return figure
 
 
@@ -63,7 +65,7 @@ def ext_laws(data: xr.Dataset) -> TextTable:
     the threshold of the height.
     """
     grid = data.centroid_ratio.values
-    columns: Columns = {"quantity": quantity_in_words, "law": text("law")}
+    columns: Columns = {"quantity": quantity_in_words, "law": law_name("law")}
     for model in data.model.values:
         for ratio in grid[[0, round((len(grid) - 1) / 2), -1]]:
             error = at(value("relative_error", ".2g"), model=model, centroid_ratio=ratio)

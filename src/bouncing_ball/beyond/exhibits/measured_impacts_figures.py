@@ -12,13 +12,24 @@ from bouncing_ball.accuracy.errors import Quantity
 from bouncing_ball.datasets.selection import each
 from bouncing_ball.drawing.canvas import WIDE, canvas, legend_below
 from bouncing_ball.drawing.style import COLOURS, LAWS, Look
-from bouncing_ball.drawing.tables import Column, Columns, TextTable, at, table, text, value, words
+from bouncing_ball.drawing.tables import (
+    LAW_NAMES,
+    Column,
+    Columns,
+    TextTable,
+    at,
+    law_name,
+    table,
+    text,
+    value,
+    words,
+)
 
 # Laws with the same r(v) have one line: all with a constant r, and both of Hunt and Crossley.
 _DRAWN: dict[str, tuple[str, Look]] = {
     "restitution": ("constant r, of both models of the paper", LAWS["linear"]),
-    "kuwabara-kono": ("Kuwabara and Kono", LAWS["kuwabara-kono"]),
-    "hunt-crossley": ("Hunt and Crossley", LAWS["hunt-crossley"]),
+    "kuwabara-kono": (LAW_NAMES["kuwabara-kono"], LAWS["kuwabara-kono"]),
+    "hunt-crossley": (LAW_NAMES["hunt-crossley"], LAWS["hunt-crossley"]),
 }
 # Below this a probability is only bounded.
 _LEAST = 1e-3
@@ -48,7 +59,7 @@ _MANY_TICKS = (0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1, 1.5, 2, 3, 5)
 
 def measured_impacts(data: xr.Dataset) -> Figure:
     """ext_measured: a panel for each experiment with several speeds."""
-    several = data.isel(experiment=np.flatnonzero(data.measured_speed.count("measured_impact") > 1))
+    several = _with_several_speeds(data)
     if not several.sizes["experiment"]:
         figure, axes = canvas()
         axes.text(0.5, 0.5, "no experiment has several speeds", ha="center", va="center")
@@ -113,14 +124,23 @@ def _panel(axes: Axes, one: xr.Dataset) -> None:
     axes.set_ylim(low - room, high + room)
 
 
+def _with_several_speeds(data: xr.Dataset) -> xr.Dataset:
+    """The experiments that can tell one law from another."""
+    count = data.measured_speed.count("measured_impact")
+    return data.isel(experiment=np.flatnonzero(count > 1))
+
+
 def ext_measured(data: xr.Dataset) -> TextTable:
-    """The verdict on each law and experiment, with the errors of its predictions."""
+    """The verdict on each law and experiment of several speeds, with the errors of its predictions.
+
+    A single impact is met by every law.
+    """
     columns: Columns = {
         "experiment": text("experiment_title"),
         "impacts": lambda part: str(int(part.measured_speed.count())),
         "errors": lambda part: "given" if part.errors_given.item() else "scatter",
         "size": value("errors_size", "z.4f"),
-        "law": text("fitted_law"),
+        "law": law_name("fitted_law"),
         "verdict": text("law_verdict"),
         "needed": value("errors_needed", "z.4f"),
         "rms": value("fit_rms", "z.4f"),
@@ -129,7 +149,8 @@ def ext_measured(data: xr.Dataset) -> TextTable:
         "extrapolated": value("extrapolation_rms", "z.4f"),
         "p of it": _probability("extrapolation_probability"),
     }
-    return table(each(data.sel(fitted_law=list(_DRAWN)), "experiment", "fitted_law"), columns)
+    shown = _with_several_speeds(data).sel(fitted_law=list(_DRAWN))
+    return table(each(shown, "experiment", "fitted_law"), columns)
 
 
 def _probability(name: str) -> Column:
@@ -141,6 +162,9 @@ def _probability(name: str) -> Column:
 def ext_shaker(data: xr.Dataset) -> TextTable:
     """The balls of the experiments on shakers, and the errors of the restitution model there.
 
+    A ball has no rows if nothing can be said of its errors: its r is constant and its contact time
+    is not known.
+
     The columns of the first family have the errors by the duration, and that of the period doubling
     by the constant r, which has no other error there; those of the other families have the errors
     by this constant r.
@@ -149,7 +173,7 @@ def ext_shaker(data: xr.Dataset) -> TextTable:
     columns: Columns = {
         "experiment": text("experiment_title"),
         "Hz": value("shaker_frequency", "g"),
-        "law": text("shaker_law"),
+        "law": law_name("shaker_law"),
         **_orbits(first),
         "ϖ": at(value("shaker_ratio", ".3g"), n=first),
         "η": at(value("shaker_small", ".2g"), n=first),
@@ -163,7 +187,10 @@ def ext_shaker(data: xr.Dataset) -> TextTable:
         for quantity in data["quantity"].values:
             name = f"{words(quantity)}, n = {n}, by the constant r"
             columns[name] = _error("by_constant", quantity, n)
-    return table(each(data, "experiment", "shaker_frequency"), columns)
+    falls = (data.by_constant != 0).any(["quantity", "n", "shaker_frequency"])
+    timed = data.shaker_ratio.notnull().any(["n", "shaker_frequency"])
+    shown = data.isel(experiment=np.flatnonzero(falls | timed))
+    return table(each(shown, "experiment", "shaker_frequency"), columns)
 
 
 def _orbits(n: int) -> Columns:

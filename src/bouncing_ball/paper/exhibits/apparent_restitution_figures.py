@@ -7,6 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from bouncing_ball.drawing.canvas import canvas, coloured, draw_curve, legend_below, logarithmic
 from bouncing_ball.drawing.labels import note_beside, number, parameters
@@ -57,16 +58,22 @@ def poincare_map(data: xr.Dataset) -> Figure:
         limits = data.restitution_bounce_velocity, data.restitution_impact_velocity
         axes.plot([phase] * 2, np.array(limits) / np.pi, "*", **_LIMIT | {"color": colour})
         name = rf"$\Lambda={number(float(curve['amplitude']))}${_absence(curve)}"
-        cases.append(Line2D([], [], color=colour, label=name))
+        cases.append(Patch(color=colour, label=name))
     axes.set(xlabel=r"phase of the table over $\pi$", ylabel=r"velocity of the ball, $z′/\pi$")
-    axes.set_title(parameters(data, "n", "restitution"))
+    title = parameters(data, "n", "restitution")
     axes.margins(x=0.14, y=0.08)
     kinds = [
         Line2D([], [], label=r"start of contact, $(\varphi,\,z′_i)$", **_START),
         Line2D([], [], label=r"end of contact, $(\varphi+\tau_b,\,z′_b)$", **_END),
         Line2D([], [], marker="*", label="restitution model", **_LIMIT),
     ]
-    legend_below(figure, cases, kinds)
+    # Colours need names only if there are several.
+    if len(cases) == 1:
+        axes.set_title(f"{title}, {cases[0].get_label()}")
+        legend_below(figure, kinds)
+    else:
+        axes.set_title(title)
+        legend_below(figure, cases, kinds)
     # The names on the curves of all cases would overlap.
     shown = data.isel(case=int(data.phase.notnull().any("frequency_ratio").argmax("case")))
     figure.draw_without_rendering()

@@ -162,10 +162,10 @@ def numbered(text: str, sections: Mapping[str, str] | None = None) -> str:
     """The text with numbers in its headings and in place of the references ``«name»``.
 
     The name of a section is its heading. A name that the text does not have is looked up in
-    ``sections``, the numbers of the sections of another text. Figures and tables are numbered in the order of their
-    captions, ``**Figure «name»`` and ``**Table «name»``. In a replication the numbers follow those
-    of the 16 figures and the table of the paper; in a supplement they begin with S1, and in any
-    other article with 1.
+    ``sections``, the numbers of the sections of another text. Figures and tables are numbered in
+    the order of their captions, ``**Figure «name»`` and ``**Table «name»``. In a replication the
+    numbers follow those of the 16 figures and the table of the paper; in a supplement they begin
+    with S1, and in any other article with 1.
 
     Raises
     ------

@@ -10,7 +10,12 @@ import yaml
 
 from bouncing_ball.errors import ModelError
 from bouncing_ball.paper.claims.tables import Claims
-from bouncing_ball.pipeline.article import render_article, with_citations
+from bouncing_ball.pipeline.article import (
+    numbered,
+    render_article,
+    sections_of,
+    with_citations,
+)
 
 ROOT = Path(__file__).resolve().parents[3]
 TEMPLATES = ROOT / "workflow" / "report" / "paper"
@@ -117,3 +122,12 @@ def test_names_have_numbers_in_the_order_of_their_captions(render):
         )
     with pytest.raises(KeyError, match="nowhere"):
         render("Figure «nowhere»")
+
+
+def test_an_article_can_refer_to_the_sections_of_its_supplement():
+    supplement = numbered("# Supplement\n## Checks\n### Routes\n## End")
+    sections = sections_of(supplement)
+    assert sections == {"Checks": "S1", "Routes": "S1.1", "End": "S2"}
+    # A section of its own comes before one of the same name.
+    article = numbered("# [Re] A title\n## End\nSee «Routes», «End».", sections)
+    assert article.splitlines()[-1] == "See S1.1, 1."

@@ -7,6 +7,8 @@ import pytest
 from docutils.utils.math.latex2mathml import tex2mathml
 
 from bouncing_ball.paper.claims.claims import CLAIMS
+from bouncing_ball.pipeline.article import sections_of
+from bouncing_ball.pipeline.configuration import read_yaml
 
 ROOT = Path(__file__).resolve().parents[3]
 FOLDER = ROOT / "workflow" / "report" / "paper"
@@ -71,3 +73,57 @@ def test_the_site_can_typeset_every_formula(accepted, name):
     assert len(formulas) > 10
     for formula in formulas:
         assert tex2mathml(formula).startswith("<math"), formula
+
+
+def test_the_article_refers_to_every_section_of_its_supplement(accepted):
+    article = accepted["article"].partition("## References")[0]
+    numbers = {*sections_of(accepted["supplement"]).values()}
+    # A section that has subsections is referred to by these.
+    ends = {one for one in numbers if not any(other.startswith(f"{one}.") for other in numbers)}
+    referred = {*re.findall(r"\bSection (S\d+(?:\.\d+)?)", article)}
+    assert referred <= numbers
+    assert ends - referred == set()
+    # Tables and figures stand in these sections, and no reference lacks its number.
+    before, _, rest = accepted["supplement"].partition("\n## S1. ")
+    assert rest and not re.search(r"\*\*(?:Table|Figure) S", before)
+    assert not re.findall(r"[(: ]supplement\)", article)
+
+
+def test_each_table_and_figure_of_the_supplement_is_named_once(accepted):
+    captions = re.findall(r"^\*\*((?:Table|Figure) S\d+)[.,]", accepted["supplement"], re.MULTILINE)
+    named = {*re.findall(r"\b(?:Table|Figure) S\d+", accepted["supplement"] + accepted["article"])}
+    assert len({*captions}) == len(captions) and named == {*captions}
+
+
+@pytest.mark.parametrize("name", ["article", "supplement"])
+def test_no_statement_rests_on_a_work_that_was_not_read(accepted, name):
+    """Such a work may be named where the text says that it was not read, or why it is named."""
+    text, _, works = accepted[name].partition("## References")
+    unread = set(re.findall(r"^(\d+)\. .*\((?:Not read)[^)]*\)", works, re.MULTILINE))
+    assert unread
+    said = r"could not read|found no text|because the paper refers to|nothing is said of"
+    for sentence in text.splitlines():
+        cited = {*re.findall(r"\d+", " ".join(re.findall(r"\[(\d[\d, ]*)\]", sentence)))}
+        assert not cited & unread or re.search(said, sentence), sentence
+
+
+def test_the_abstract_and_the_body_are_of_the_length_of_an_article(accepted):
+    """Words of a letter or a digit, a formula being one, without figures, tables and references."""
+
+    def words(text):
+        return sum(bool(re.search(r"\w", word)) for word in INLINE.sub(" x ", text).split())
+
+    text = DISPLAY.sub("", accepted["article"].partition("\n## References")[0])
+    head, _, body = text.partition("\n## 1. ")
+    prose = [part for part in body.split("\n\n") if not re.match(r"\||!\[|\*\*Table", part.strip())]
+    assert words(head.partition("## Abstract")[2]) <= 200
+    assert sum(map(words, prose)) <= 4500
+
+
+def test_the_article_says_where_its_code_is(accepted):
+    said = r"The code and all data, version (\S+) of (\S+), are in the repository (.*)\.\n"
+    version, date, place = re.search(said, accepted["article"]).groups()
+    about = read_yaml(ROOT / "CITATION.cff")
+    assert version == about["version"] and date == str(about["date-released"])
+    address = about.get("repository-code")
+    assert place == (f"<{address}>" if address else "in which this file stands")

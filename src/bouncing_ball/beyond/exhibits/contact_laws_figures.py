@@ -13,8 +13,8 @@ from bouncing_ball.drawing.tables import (
     TextTable,
     at,
     entry_of,
-    quantity_in_words,
     law_name,
+    quantity_in_words,
     table,
     value,
 )

@@ -31,6 +31,8 @@ _DRAWN: dict[str, tuple[str, Look]] = {
     "kuwabara-kono": (LAW_NAMES["kuwabara-kono"], LAWS["kuwabara-kono"]),
     "hunt-crossley": (LAW_NAMES["hunt-crossley"], LAWS["hunt-crossley"]),
 }
+# The law of a constant r(v) where a law of force is needed.
+_CONSTANT = "linear"
 # Below this a probability is only bounded.
 _LEAST = 1e-3
 _POINTS: Look = {
@@ -187,9 +189,9 @@ def ext_shaker(data: xr.Dataset) -> TextTable:
         for quantity in data["quantity"].values:
             name = f"{words(quantity)}, n = {n}, by the constant r"
             columns[name] = _error("by_constant", quantity, n)
-    falls = (data.by_constant != 0).any(["quantity", "n", "shaker_frequency"])
+    varies = data.shaker_law != _CONSTANT
     timed = data.shaker_ratio.notnull().any(["n", "shaker_frequency"])
-    shown = data.isel(experiment=np.flatnonzero(falls | timed))
+    shown = data.isel(experiment=np.flatnonzero(varies | timed))
     return table(each(shown, "experiment", "shaker_frequency"), columns)
 
 

@@ -7,7 +7,6 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 
 from bouncing_ball.drawing.canvas import canvas, coloured, draw_curve, legend_below, logarithmic
 from bouncing_ball.drawing.labels import note_beside, number, parameters
@@ -20,6 +19,8 @@ _LIMIT: Look = {"markersize": 9, "zorder": 5, "linestyle": "none", "color": REST
 _MARK: Look = {"color": RESTITUTION, "marker": "o", "markersize": 4}
 _START: Look = _MARK | {"linestyle": (0, (4, 1.5)), "markerfacecolor": "white"}
 _END: Look = _MARK | {"linestyle": "-"}
+# The mark of a colour in a legend: starts and ends of the contact have lines of their own.
+_COLOUR: Look = {"marker": "s", "markersize": 7, "linestyle": "none"}
 
 
 def apparent_restitution(data: xr.Dataset) -> Figure:
@@ -58,7 +59,7 @@ def poincare_map(data: xr.Dataset) -> Figure:
         limits = data.restitution_bounce_velocity, data.restitution_impact_velocity
         axes.plot([phase] * 2, np.array(limits) / np.pi, "*", **_LIMIT | {"color": colour})
         name = rf"$\Lambda={number(float(curve['amplitude']))}${_absence(curve)}"
-        cases.append(Patch(color=colour, label=name))
+        cases.append(Line2D([], [], **_COLOUR, color=colour, label=name))
     axes.set(xlabel=r"phase of the table over $\pi$", ylabel=r"velocity of the ball, $z′/\pi$")
     title = parameters(data, "n", "restitution")
     axes.margins(x=0.14, y=0.08)

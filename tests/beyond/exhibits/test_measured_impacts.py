@@ -205,11 +205,20 @@ def test_what_needs_a_contact_time_is_missing_without_one(shakers):
 
 def test_tables_and_figure(laws, shakers):
     head, rows = figures.ext_measured(laws)
-    # One row for each r(v).
-    assert len(rows) == 3 * 3 and all(len(row) == len(head) for row in rows)
+    # One row for each r(v), and none for an experiment of one impact.
+    assert len(rows) == 2 * 3 and all(len(row) == len(head) for row in rows)
+    assert {row[head.index("law")] for row in rows} == {
+        "constant r",
+        "Kuwabara and Kono",
+        "Hunt and Crossley",
+    }
     head, rows = figures.ext_shaker(shakers)
-    assert len(rows) == 4 and rows[2][head.index("ϖ")] == "–"
+    # The other ball has a constant r and no contact time: nothing can be said of its errors.
+    assert [row[0] for row in rows] == ["Croquet ball on wood"] * 2
     assert all(len(row) == len(head) for row in rows)
+    law = shakers.shaker_law.where(shakers.shaker_law != "linear", "kuwabara-kono")
+    head, rows = figures.ext_shaker(shakers.assign(shaker_law=law))
+    assert len(rows) == 4 and rows[2][head.index("ϖ")] == "–"
     figure = figures.measured_impacts(laws)
     # Two experiments have several speeds; the third panel of the row is empty.
     assert [axes.axison for axes in figure.axes] == [True, True, False]

@@ -161,11 +161,10 @@ def sections_of(text: str) -> dict[str, str]:
 def numbered(text: str, sections: Mapping[str, str] | None = None) -> str:
     """The text with numbers in its headings and in place of the references ``«name»``.
 
-    The name of a section is its heading. A name that the text does not have is looked up in
-    ``sections``, the numbers of the sections of another text. Figures and tables are numbered in
-    the order of their captions, ``**Figure «name»`` and ``**Table «name»``. In a replication the
-    numbers follow those of the 16 figures and the table of the paper; in a supplement they begin
-    with S1, and in any other article with 1.
+    The name of a section is its heading; ``sections`` has the numbers of those of another text.
+    Figures and tables are numbered in the order of their captions, ``**Figure «name»`` and
+    ``**Table «name»``. In a replication the numbers follow those of the 16 figures and the table of
+    the paper; in a supplement they begin with S1, and in any other article with 1.
 
     Raises
     ------
@@ -265,12 +264,10 @@ def with_citations(markdown: str, folder: str | Path) -> str:
 
 # Markdown.
 
-# A paragraph with one of these at the start of a line is no prose: a heading, table, quotation,
-# formula, element of HTML, list or fence.
+# The first signs of a line that is no prose: heading, table, quotation, formula, HTML, list, fence.
 _NO_PROSE = re.compile(r"^(#|\||>|\$\$|<|- |\d+\. |```)", re.MULTILINE)
 _PICTURE = re.compile(r"(!\[[^\n]*\n)?(.*)", re.DOTALL)
-# The end of a sentence, but not of an initial, which is a capital letter with a full stop, nor of
-# "Eq." and "Eqs.".
+# The end of a sentence, but not of an initial, which has a full stop, nor of "Eq." and "Eqs.".
 _SENTENCE_END = re.compile(r"(?<=[.!?:;])(?<![\s(*-][A-Z]\.)(?<!Eq\.)(?<!Eqs\.) (?=[A-Z$(*\[])")
 
 
@@ -318,8 +315,7 @@ def render_article(
     Each sentence has a line. A template may include other templates of its folder. Templates can
     use ``data``, ``tables`` and ``artifacts`` by name, ``claims``, the functions in
     :data:`FORMATS`, and with ``about`` what CITATION.cff says: authors, version, address. Citations
-    have the syntax of pandoc, ``[@key]``. With ``sections`` references can name sections of another
-    text, as in :func:`numbered`.
+    have the syntax of pandoc, ``[@key]``; ``sections`` is that of :func:`numbered`.
 
     Raises
     ------

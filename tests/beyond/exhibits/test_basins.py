@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bouncing_ball.beyond.exhibits.basins import MOTIONS, Basins, basins
+from bouncing_ball.beyond.exhibits.basins import MOTIONS, BasinStarts, basins
 from bouncing_ball.beyond.exhibits.motion_samples import three_models
 from bouncing_ball.models.damping import Release
 from bouncing_ball.periodic.one_impact import n_t
@@ -39,7 +39,7 @@ def test_a_stiff_contact_has_the_restitution_models_basins(data):
 
 def test_the_starts_of_the_picture_are_the_middles_of_its_cells():
     given = {"cases": [CASE], "confidence": 0.95, "seed": 3, **SIZES, "starts": 12}
-    phase, speed = Basins(**given).grid()
+    phase, speed = BasinStarts(**given).grid()
     # Cells of π/6 from -π to π, and of 1/2 from 0 to 6.
     np.testing.assert_allclose(phase, -np.pi + np.pi / 12 + np.pi / 6 * np.arange(12), atol=1e-15)
     np.testing.assert_allclose(speed, 0.25 + 0.5 * np.arange(12), rtol=1e-15)

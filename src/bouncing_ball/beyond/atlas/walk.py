@@ -52,7 +52,7 @@ extrapolated from the same number of values."""
 _FIRST_CORRECTIONS = 4
 
 
-class Step(NamedTuple):
+class Stride(NamedTuple):
     """The orbits of the nodes at several ϖ, shape (ϖ, nodes); NaN where there is no orbit."""
 
     frequency_ratio: np.ndarray
@@ -122,7 +122,7 @@ def correction(point: BranchPoint, amplitude: np.ndarray) -> np.ndarray:
     return -(point.fold + root) / square
 
 
-def walk(nodes: Nodes, ratios: np.ndarray) -> Iterator[Step]:
+def walk(nodes: Nodes, ratios: np.ndarray) -> Iterator[Stride]:
     """The orbits of the nodes at each ϖ, from the largest to the smallest.
 
     Parameters
@@ -133,7 +133,7 @@ def walk(nodes: Nodes, ratios: np.ndarray) -> Iterator[Step]:
 
     Yields
     ------
-    Step
+    Stride
         The orbits at :data:`TOGETHER` values of ϖ; the last step may have fewer.
     """
     down = ratios[::-1]
@@ -156,7 +156,7 @@ def walk(nodes: Nodes, ratios: np.ndarray) -> Iterator[Step]:
         if np.any(sought):
             orbit = _replaced(orbit, sought, contact, nodes)
             stable[sought] = orbit[sought].is_stable()
-        yield Step(ratio[:, 0], orbit, stable, sought)
+        yield Stride(ratio[:, 0], orbit, stable, sought)
 
 
 def _replaced(orbit: Orbit, sought: np.ndarray, contact: SpringDamper, nodes: Nodes):

@@ -52,7 +52,7 @@ class BasinCase(Place):
     frequency_ratio: FrequencyRatio
 
 
-class Basins(Sharded):
+class BasinStarts(Sharded):
     """Starts on an even grid for the picture, and random ones for shares and exponents."""
 
     cases: Many[BasinCase]
@@ -89,7 +89,7 @@ def _index_of_motion(found: Motions) -> np.ndarray:
     return np.select(conditions, range(len(conditions)), MOTIONS.index("no repetition"))
 
 
-def destinations(parameters: Basins, release: Release, part: Part = np.asarray) -> Arrays:
+def destinations(parameters: BasinStarts, release: Release, part: Part = np.asarray) -> Arrays:
     """The motions on which balls end, for the starts of the picture and for the random ones.
 
     Returns
@@ -110,12 +110,12 @@ def destinations(parameters: Basins, release: Release, part: Part = np.asarray) 
     return {"destination": np.stack(ends, axis=1).astype(np.int8)}
 
 
-def _picture_starts(parameters: Basins) -> np.ndarray:
+def _picture_starts(parameters: BasinStarts) -> np.ndarray:
     """Phases and speeds of the picture, row by row of one speed, shape (2, starts)."""
     return np.reshape(np.meshgrid(*parameters.grid()), (2, -1))
 
 
-def _random_starts(parameters: Basins) -> np.ndarray:
+def _random_starts(parameters: BasinStarts) -> np.ndarray:
     """Random phases and speeds, without a change of the phases and with each, shape (2, starts)."""
     random = np.random.default_rng(parameters.seed)
     phase = random.uniform(-np.pi, np.pi, parameters.random)
@@ -125,7 +125,7 @@ def _random_starts(parameters: Basins) -> np.ndarray:
     return np.stack([shifted.ravel(), np.broadcast_to(speed, shifted.shape).ravel()])
 
 
-def basins(parameters: Basins, release: Release, found: Found = None) -> xr.Dataset:
+def basins(parameters: BasinStarts, release: Release, found: Found = None) -> xr.Dataset:
     """The motions on which balls end after first impacts (φ, δ′), in three models of each case.
 
     ``destination`` (case, model, start_speed, start_phase) is an index into :data:`MOTIONS`; φ in

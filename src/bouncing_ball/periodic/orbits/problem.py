@@ -192,7 +192,7 @@ class PeriodicOrbits:
         return lru_cache(maxsize=_KEPT)(legs)
 
     @cached_property
-    def _kept(self) -> dict[tuple[tuple[int, ...], bytes], "Compared"]:
+    def _kept(self) -> dict[tuple[tuple[int, ...], bytes], "LegsBeside"]:
         # The last points at which legs were compared, in order.
         return {}
 
@@ -322,13 +322,13 @@ class PeriodicOrbits:
         """
         return self.compared(y, everywhere).points
 
-    def compared(self, y: np.ndarray, everywhere: bool = False) -> "Compared":
+    def compared(self, y: np.ndarray, everywhere: bool = False) -> "LegsBeside":
         """The points :meth:`around` y and the legs there; they may be those ``everywhere``."""
         place = y.shape, y.tobytes()
         known = self._kept.get(place)
         if known is None or (everywhere and not known.everywhere):
             points, lengths = self._points_around(y, everywhere)
-            known = Compared(points, lengths, self.legs(points), everywhere)
+            known = LegsBeside(points, lengths, self.legs(points), everywhere)
             self._kept[place] = known
             if len(self._kept) > _KEPT:
                 del self._kept[next(iter(self._kept))]
@@ -412,7 +412,7 @@ class PeriodicOrbits:
         """The residual and its Jacobian, which is square if no parameter varies."""
         return self.residual(y), self.jacobian(y)
 
-    def _fill_durations(self, matrix: np.ndarray, compared: "Compared") -> None:
+    def _fill_durations(self, matrix: np.ndarray, compared: "LegsBeside") -> None:
         """The rows of the Jacobian that belong to the durations."""
         legs = compared.legs
         contact = np.arange(self.impacts)
@@ -474,7 +474,7 @@ class PeriodicOrbits:
         return gradient
 
 
-class Compared(NamedTuple):
+class LegsBeside(NamedTuple):
     """Points beside some points y, and the legs there.
 
     The first axis of ``points`` and of the legs has y, and then a pair of points for each direction

@@ -14,7 +14,8 @@ from bouncing_ball.periodic.one_impact import n_t
 from bouncing_ball.pipeline.configuration import typed
 from bouncing_ball.pipeline.diff.datasets import compare_datasets
 
-START = {"phase": 1.0, "impact_speed": 10.0, "impacts": 200, "further": 400, "confidence": 0.95}
+START = {"phase": 1.0, "impact_speed": 10.0, "impacts": 200, "further": 400}
+START |= {"resolved_impacts": 400, "confidence": 0.95}
 
 
 def study(ratio, lam, r, **changed):

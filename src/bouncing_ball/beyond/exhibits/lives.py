@@ -50,6 +50,18 @@ VARIABLES = {
     ),
     "mean_life_low": Variable("lower limit of the confidence interval of the mean time to stick"),
     "mean_life_high": Variable("upper limit of the confidence interval of the mean time to stick"),
+    "life_difference": Variable(
+        "mean difference of the times to stick, contact minus restitution model, of balls that "
+        "start alike and stick in both, in periods of the table"
+    ),
+    "life_difference_low": Variable(
+        "lower limit of the mean difference of the times to stick; the limits of all differences "
+        "hold together with the given confidence"
+    ),
+    "life_difference_high": Variable(
+        "upper limit of the mean difference of the times to stick, as the lower one"
+    ),
+    "pairs": Variable("balls that stick on the contact and in the restitution model"),
     "unstuck_share": Variable("share of the balls that have not stuck in all impacts followed"),
     "unstuck_share_low": Variable(
         "lower limit of the confidence interval of the share that has not stuck"
@@ -138,6 +150,47 @@ def mean_with_limits(values: np.ndarray, confidence: float) -> tuple[float, floa
     return mean, mean - width, mean + width
 
 
+def paired_differences(life: np.ndarray, confidence: float) -> tuple[np.ndarray, np.ndarray]:
+    """Differences of the lives of balls that start alike, on contacts and in the restitution model.
+
+    Some balls stick in one model only; they are in no difference. All intervals together hold with
+    the given confidence: each has the confidence of Bonferroni, 1 - (1 - confidence)/m for m
+    differences, each of which holds by Student's distribution.
+
+    Parameters
+    ----------
+    life : array, shape (case, life_ratio, ball)
+        Lives, NaN for a ball that does not stick; the last along the second axis are those of the
+        restitution model.
+    confidence : float
+        The probability with which all intervals contain their means, in (0, 1).
+
+    Returns
+    -------
+    tuple of array
+        Mean difference with its limits, shape (case, life_ratio, 3), and the number of pairs, shape
+        (case, life_ratio). Both are NaN and 0 for the restitution model.
+
+    Examples
+    --------
+    >>> life = np.array([[[3.0, 5.0, np.nan], [1.0, 2.0, 7.0]]])
+    >>> differences, pairs = paired_differences(life, 0.95)
+    >>> differences[0, 0, 0].item(), pairs.tolist()
+    (2.5, [[2, 0]])
+    """
+    cases, ratios = life.shape[:2]
+    many = cases * (ratios - 1)
+    of_each = 1 - (1 - confidence) / many if many else confidence
+    found = np.full((cases, ratios, 3), np.nan)
+    pairs = np.zeros((cases, ratios), dtype=int)
+    for k in np.ndindex(cases, ratios - 1):
+        difference = life[k] - life[k[0], -1]
+        known = difference[np.isfinite(difference)]
+        found[k] = mean_with_limits(known, of_each)
+        pairs[k] = known.size
+    return found, pairs
+
+
 def lives(parameters: Transients, release: Release, part: Part = np.asarray) -> Arrays:
     """Times until balls have stuck to the table, and the kinds of the motions on which they end.
 
@@ -178,10 +231,13 @@ def transients(parameters: Transients, release: Release, found: Found = None) ->
     periods of the table up to the end of the first sticking. A ball that has not stuck is censored
     at its last impact, and one that ends on an orbit without sticking is left out. ``mean_life``
     (case, life_ratio) is the mean of this time over the balls that stick, see
-    :func:`mean_with_limits`. ``unstuck_share`` (case, life_ratio) is the share of all balls that
-    are left out of this mean although they end on no orbit: they have not stuck in all impacts
-    followed. ``lock_share`` is the share of all balls that end on a locked orbit. Each has limits.
-    The restitution model has ϖ = ∞. ``restitution`` and ``amplitude`` are coordinates of the case.
+    :func:`mean_with_limits`. ``life_difference`` (case, life_ratio) is the mean difference of the
+    times of balls that start alike, contact minus restitution model, over the ``pairs`` that stick
+    in both, see :func:`paired_differences`; it is NaN for the restitution model. ``unstuck_share``
+    (case, life_ratio) is the share of all balls that are left out of this mean although they end on
+    no orbit: they have not stuck in all impacts followed. ``lock_share`` is the share of all balls
+    that end on a locked orbit. Each has limits. The restitution model has ϖ = ∞. ``restitution``
+    and ``amplitude`` are coordinates of the case.
     """
     found = found or lives(parameters, release)
     r, lam = columns(parameters.cases)
@@ -206,13 +262,19 @@ def transients(parameters: Transients, release: Release, found: Found = None) ->
         unstuck_shares[k] = share_with_limits(unstuck[k], level)
         lock_shares[k] = share_with_limits(kind[k] == Kind.LOCKED, level)
     dims = ("case", "life_ratio")
+    differences, pairs = paired_differences(life, level)
     estimates = {
         "mean_life": (dims, mean_lives),
+        "life_difference": (dims, differences),
         "unstuck_share": (dims, unstuck_shares),
         "lock_share": (dims, lock_shares),
     }
     return described(
-        {"survival": ((*dims, "life"), survival), **with_limits(estimates)},
+        {
+            "survival": ((*dims, "life"), survival),
+            "pairs": (dims, pairs),
+            **with_limits(estimates),
+        },
         coords={
             "restitution": ("case", r),
             "amplitude": ("case", lam),

@@ -9,6 +9,7 @@ from bouncing_ball.beyond.exhibits.motion_samples import (
     LEAST_ERROR,
     MODELS,
     SIMPLE,
+    MostImpacts,
     ParameterPlane,
     three_models,
 )
@@ -16,6 +17,7 @@ from bouncing_ball.datasets.parameters import number
 from bouncing_ball.datasets.shards import Arrays, Found, Part
 from bouncing_ball.datasets.variables import Variable, described
 from bouncing_ball.long_run.destination import final_motions
+from bouncing_ball.long_run.many_digits import ManyDigits
 from bouncing_ball.long_run.motions import Kind, Motions
 from bouncing_ball.models.damping import Release
 from bouncing_ball.periodic.one_impact import n_t
@@ -29,6 +31,9 @@ VARIABLES = {
     ),
     "agreement_high": Variable("this share if the motions that are not known agreed as well"),
     "agreement_nodes": Variable("nodes of the group at which both motions are known"),
+    "many_digits_nodes": Variable(
+        "nodes at which the restitution model locks and only many digits tell the period"
+    ),
     "chaotic_nodes": Variable(
         "nodes at which the restitution model locks and the contact's ball is chaotic"
     ),
@@ -60,14 +65,15 @@ class Locking(ParameterPlane):
             le=100000,
         ),
     ]
+    resolved_impacts: MostImpacts
 
 
-GROUPS = ("all", "orbit", "subharmonic", "locked", "locked, 1 to 4 T", "locked, above 10 T",
-          "locked, unknown period", "chaotic")  # fmt: skip
+GROUPS = ("all", "orbit", "subharmonic", "locked", "locked, 1 to 4 T", "locked, 5 to 10 T",
+          "locked, above 10 T", "locked, unknown period", "chaotic")  # fmt: skip
 """Groups of nodes by the motion on which the ball of the simple model ends; ``all`` also contains
 permanent contact. The period of a locked motion is unknown if rounding errors decide on it. It is
-then long, because a double loses its digits on the way only, so that ``locked, above 10 T``
-contains these motions."""
+then long, because digits are lost on a long way only, so that ``locked, above 10 T`` contains these
+motions."""
 
 
 def group(found: Motions, name: str) -> np.ndarray:
@@ -76,6 +82,8 @@ def group(found: Motions, name: str) -> np.ndarray:
         return np.full(found.kind.shape, True)
     if name == "locked, 1 to 4 T":
         return (found.kind == Kind.LOCKED) & (found.periods >= 1) & (found.periods <= 4)
+    if name == "locked, 5 to 10 T":
+        return (found.kind == Kind.LOCKED) & (found.periods >= 5) & (found.periods <= 10)
     if name == "locked, above 10 T":
         return (found.kind == Kind.LOCKED) & (found.periods > 10) | found.is_unresolved()
     if name == "locked, unknown period":
@@ -87,7 +95,7 @@ def agreement(simple: Motions, contact: Motions) -> np.ndarray:
     """Shares of the nodes at which two models have motions of one kind and period, as bounds.
 
     At some nodes it is not known whether the motions agree, because one of them is undecided, or
-    because both lock and doubles do not tell one of the periods. These nodes count as not agreeing
+    because both lock and one of the periods is not known. These nodes count as not agreeing
     in the lower bound and as agreeing in the upper one. They are not left out: they are those that
     lose most digits, where the models differ most often.
 
@@ -122,9 +130,10 @@ def motions_at_nodes(parameters: Locking, release: Release, part: Part = np.asar
     -------
     dict of array
         The fields of :class:`~bouncing_ball.long_run.motions.Motions`, shape (model, ϖ,
-        node). The restitution model has the same values at every ϖ. And ``lasts``, shape (ϖ, node):
-        whether the restitution model locks, and the contact is chaotic also if it is followed
-        further.
+        node). The restitution model has the same values at every ϖ. Where doubles do not tell the
+        period of its locked motion, ``periods`` and ``impacts`` are those by many digits, and
+        ``many_digits``, shape (node,), is true. And ``lasts``, shape (ϖ, node): whether the
+        restitution model locks, and the contact is chaotic also if it is followed further.
     """
     ratios = np.array(parameters.frequency_ratio)
     r, lam = part(parameters.places())
@@ -136,12 +145,51 @@ def motions_at_nodes(parameters: Locking, release: Release, part: Part = np.asar
         ends = final_motions(model, lam, phase, velocity, impacts=parameters.impacts)
         found.append({name: np.broadcast_to(values, shape) for name, values in vars(ends).items()})
     arrays = {name: np.stack([one[name] for one in found]) for name in found[0]}
+    rigid = MODELS.index("restitution")
+    unresolved = Motions(**arrays)[rigid, 0].is_unresolved()
+    laps = np.zeros((2, lam.size), dtype=int)
+    laps[:, unresolved] = laps_by_many_digits(
+        r[unresolved], lam[unresolved], parameters.resolved_impacts
+    )
+    for name, by_digits in zip(("periods", "impacts"), laps, strict=True):
+        arrays[name][rigid] += by_digits
     lasts = chaotic_where_locked(Motions(**arrays))
     of_ratio, node = np.nonzero(lasts)
     contact = three_models(r[node], ratios[of_ratio], release).contact
     further = final_motions(contact, lam[node], phase, velocity[node], impacts=parameters.further)
     lasts[of_ratio, node] = further.kind == Kind.CHAOTIC
-    return arrays | {"lasts": lasts}
+    return arrays | {"lasts": lasts, "many_digits": laps[0] > 0}
+
+
+def laps_by_many_digits(restitution: np.ndarray, amplitude: np.ndarray, impacts: int) -> np.ndarray:
+    """Locked orbits of the restitution model, followed with as many digits as they need.
+
+    Parameters
+    ----------
+    restitution, amplitude : array, shape (balls,)
+        r and Λ > 1.
+    impacts : int
+        Impacts after the lift-off within which the ball is to stick again.
+
+    Returns
+    -------
+    array of int, shape (2, balls)
+        Periods of the table and impacts until the ball sticks again. Both are 0 where it does not
+        within so many impacts, or where it grazes the table within the rounding errors of a double.
+
+    Examples
+    --------
+    The second of these orbits loses 195 digits:
+
+    >>> laps_by_many_digits(np.array([0.6, 0.4]), np.array([3.0, 2.1]), 400).tolist()
+    [[13, 259], [33, 311]]
+    """
+    laps = np.zeros((2, amplitude.size), dtype=int)
+    for k, (r, lam) in enumerate(zip(restitution, amplitude, strict=True)):
+        stop = ManyDigits(float(r), float(lam)).after_lift_off(impacts)
+        if stop is not None:
+            laps[:, k] = round(stop.time / (2 * np.pi)), stop.impacts
+    return laps
 
 
 def chaotic_where_locked(motions: Motions) -> np.ndarray:
@@ -160,7 +208,9 @@ def locking(parameters: Locking, release: Release, found: Found = None) -> xr.Da
     ``kind``, ``periods``, ``impacts``, ``lyapunov_exponent`` and ``lyapunov_error`` (model,
     restitution, amplitude) are those of
     :func:`bouncing_ball.long_run.destination.final_motions` at the first ϖ, with one ball
-    for each node; the error of an exponent is at least 1e-5. ``agreement_low`` and
+    for each node, but for ``periods`` and ``impacts`` of the restitution model where doubles do not
+    tell the period: at ``many_digits_nodes`` nodes they are known by many digits, and at the others
+    they are 0. The error of an exponent is at least 1e-5. ``agreement_low`` and
     ``agreement_high`` (simple, frequency_ratio, motion_group) are bounds of the share of nodes at
     which the ball of the contact ends on a motion of the same kind and period as the ball of the
     simple model, and ``agreement_nodes`` is the number of nodes of the group at which it is known:
@@ -176,6 +226,7 @@ def locking(parameters: Locking, release: Release, found: Found = None) -> xr.Da
     ratios = np.array(parameters.frequency_ratio)
     arrays = dict(found or motions_at_nodes(parameters, release))
     lasts = arrays.pop("lasts")
+    many_digits = arrays.pop("many_digits")
     motions = Motions(**arrays)
     contact = MODELS.index("spring-damper")
     shares = [
@@ -209,6 +260,7 @@ def locking(parameters: Locking, release: Release, found: Found = None) -> xr.Da
             "agreement_nodes": (of_shares, nodes),
             "agreement_low": (of_shares, low),
             "agreement_high": (of_shares, high),
+            "many_digits_nodes": ((), many_digits.sum()),
             "chaotic_nodes": ("frequency_ratio", chaotic.sum(axis=-1)),
             "chaotic_sticking_nodes": ("frequency_ratio", (chaotic & sticks_twice).sum(axis=-1)),
             "lasting_nodes": ("frequency_ratio", lasts.sum(axis=-1)),

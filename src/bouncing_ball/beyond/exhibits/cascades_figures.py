@@ -2,6 +2,8 @@
 period doublings by the contact, with the errors of both simple models.
 """
 
+from itertools import cycle
+
 import numpy as np
 import scipy
 import xarray as xr
@@ -14,7 +16,7 @@ from bouncing_ball.drawing.labels import number, parameters
 from bouncing_ball.drawing.style import COLOURS, GUIDE, MODELS, Look
 from bouncing_ball.drawing.thresholds import with_zeros
 
-_MARKS = ("v", "o", "s", "D")
+_MARKS = ("v", "o", "s", "D", "^")
 _OTHER_RELEASE = "openings are computed for\nthe displacement release only"
 _RATIO = r"frequency ratio $\varpi$"
 
@@ -29,9 +31,11 @@ def cascade_of_flights(data: xr.Dataset) -> Figure:
         k = int(one.flights)
         name = rf"from {k} to {k + 1}, $E_{k}$"
         # Dots, because the openings of compliant contacts undulate and jump.
-        look: Look = {"color": colour, "marker": _MARKS[k % 4], "markersize": 1.8}
+        look: Look = {"color": colour, "marker": _MARKS[k % len(_MARKS)], "markersize": 1.8}
         left.plot(ratio, line, label=name, linestyle="none", **look)
-        left.plot(ratio[-1], one.stiff_opening, marker=5, color=colour, clip_on=False)
+        # Beside the axes, where no dots hide them.
+        limit: Look = {"marker": "<", "markersize": 4, "color": colour, "clip_on": False}
+        left.plot(1.02, one.stiff_opening, transform=left.get_yaxis_transform(), **limit)
     ylabel = r"$E=\varpi^2\,(\Lambda-\Lambda_{SD})$"
     title = rf"flights in a period, $r={number(float(shown.restitution))}$"
     logarithmic(left, xlabel=_RATIO, yscale="log", ylabel=ylabel, title=title)
@@ -40,11 +44,13 @@ def cascade_of_flights(data: xr.Dataset) -> Figure:
     else:
         _say(left, "no opening was found here" if _is_sought(data) else _OTHER_RELEASE)
         left.set_xlim(ratio[0], ratio[-1])
-    for one, colour in coloured(data.sortby("restitution"), "restitution"):
+    by_restitution = coloured(data.sortby("restitution"), "restitution")
+    for (one, colour), mark in zip(by_restitution, cycle(_MARKS), strict=False):
         r = float(one.restitution)
         limits = one.stiff_opening.values
         ratios = r**2 * limits[1:] / limits[:-1]
-        right.plot(data.flights[:-1], ratios, "o-", color=colour, markersize=3, label=number(r))
+        look = {"color": colour, "marker": mark, "markersize": 3.5, "linewidth": 0.9}
+        right.plot(data.flights[:-1], ratios, label=number(r), **look)
     right.axhline(1, **GUIDE)
     right.set(xlabel="opening $k$", ylabel=r"$r^2 E_{k+1}/E_k$ for $\varpi\to\infty$")
     right.set(xticks=data.flights.values[:-1], title="ratios of the limits; dotted: 1")

@@ -1,16 +1,25 @@
 """The locked orbits of the restitution model on contacts, and the time until balls stick."""
 
+from itertools import cycle
+
 import numpy as np
 import xarray as xr
+from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 
 from bouncing_ball.beyond.exhibits.motion_maps import bars
-from bouncing_ball.drawing.canvas import coloured, legend_below, logarithmic, stacked
+from bouncing_ball.datasets.selection import each
+from bouncing_ball.drawing.canvas import legend_below, logarithmic, stacked
 from bouncing_ball.drawing.labels import number
 from bouncing_ball.drawing.style import COLOURS, Look
 
-_DASHES = ("-", (0, (4, 1.5)), (0, (1, 1.2)), (0, (6, 1.5, 1, 1.5)))
+# The restitution model has a solid black line. The stiffer a contact, the shorter are its dashes,
+# and the lighter is its colour.
+_DASHES = ((0, (8, 1.5)), (0, (5, 1.5)), (0, (3, 1.2)), (0, (1.8, 1)), (0, (0.9, 0.9)))
+# The lowest share of the balls that is drawn: one of the thousand.
+_LOWEST = 1e-3
+_LIGHTEST = 0.75
 _LOOK: Look = {"color": COLOURS[1], "marker": "o"}
 
 
@@ -20,11 +29,11 @@ def locked_orbits(data: xr.Dataset) -> Figure:
     """
     figure, (above, below) = stacked(5.4, (1.0, 1.1))
     by_ratio, jumps = above.subplots(1, 2)
-    bars(by_ratio, data.frequency_ratio.values, data, "same", **_LOOK, label="known")
+    bars(by_ratio, data.frequency_ratio.values, data, "same", **_LOOK, label="known to be the same")
     most = data.same + 1 - data.same_known
-    look: Look = {"color": COLOURS[0], "linewidth": 0.9, "label": "known or not known"}
+    look: Look = {"color": COLOURS[0], "linewidth": 0.9, "label": "if all not known were the same"}
     by_ratio.plot(data.frequency_ratio, most, "--", **look)
-    by_ratio.legend(loc="upper left", fontsize=7)
+    by_ratio.legend(loc="lower right", fontsize=7)
     logarithmic(by_ratio, xlabel=r"frequency ratio $\varpi$", ylim=(0, 1.03))
     by_ratio.set_ylabel("share with the same\nlocked period")
     by_ratio.set_title("by frequency ratio")
@@ -46,13 +55,22 @@ def _draw_survival(part: SubFigure, data: xr.Dataset) -> None:
     panels = part.subplots(1, data.sizes["case"], sharex=True, sharey=True, squeeze=False)[0]
     for axes, k in zip(panels, range(data.sizes["case"]), strict=True):
         one = data.isel(case=k)
-        for (curve, colour), dashes in zip(coloured(one, "life_ratio"), _DASHES, strict=False):
-            ratio = float(curve.life_ratio)
-            name = "restitution" if np.isinf(ratio) else rf"$\varpi={number(ratio)}$"
-            look: Look = {"color": colour, "linestyle": dashes, "where": "post", "linewidth": 1.1}
-            axes.step(data.life, curve.survival, label=name, **look)
+        contacts = one.isel(life_ratio=slice(None, -1))
+        shades = colormaps["plasma"](np.linspace(0.15, _LIGHTEST, contacts.sizes["life_ratio"]))
+        _draw_curve(axes, one.isel(life_ratio=-1), "restitution model", color=COLOURS[0])
+        for curve, shade, dashes in zip(
+            each(contacts, "life_ratio"), shades, cycle(_DASHES), strict=False
+        ):
+            name = rf"$\varpi={number(float(curve.life_ratio))}$"
+            _draw_curve(axes, curve, name, color=shade, linestyle=dashes)
         r, lam = (number(float(one[f"case_{x}"])) for x in ("restitution", "amplitude"))
-        axes.set(xlabel="table periods", title=rf"transients, $r={r}$, $\Lambda={lam}$")
-    panels[0].set(xscale="log", yscale="log", ylim=(0.01, 1.3))
+        axes.set(xlabel=r"time in $T$", title=rf"transients, $r={r}$, $\Lambda={lam}$")
+    panels[0].set(xscale="log", yscale="log", ylim=(_LOWEST, 1.3))
     panels[0].set_ylabel("share of balls not stuck")
     legend_below(part)
+
+
+def _draw_curve(axes: Axes, curve: xr.Dataset, name: str, **look) -> None:
+    """The survival in one model, up to its last value above zero."""
+    share = curve.survival.where(curve.survival > 0)
+    axes.step(curve.life, share, where="post", linewidth=1.1, label=name, **look)

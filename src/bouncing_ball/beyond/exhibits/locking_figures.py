@@ -28,8 +28,8 @@ from bouncing_ball.drawing.style import Look
 _SHOWN = ("restitution", "spring-damper")
 _GROUPS = {
     "orbit": "orbits",
-    "locked, 1 to 4 T": "1 to 4 T",
-    "locked, above 10 T": "above 10 T",
+    "locked, 1 to 4 T": "locked,\n1 to 4 T",
+    "locked, above 10 T": "locked,\nabove 10 T",
     "all": "all nodes",
 }
 
@@ -39,7 +39,7 @@ def locking(data: xr.Dataset) -> Figure:
     the contact; below, the shares of nodes on which the contact agrees with each simple model.
     """
     data = data.assign(kind=kinds_shown(data))
-    figure, (maps, exponents, below) = stacked(9.2, (3.6, 3.4, 2.2))
+    figure, (maps, exponents, below) = stacked(9.5, (3.6, 3.4, 2.5))
     kinds = maps.subplots(1, len(_SHOWN), sharex=True, sharey=True)
     rates = exponents.subplots(1, len(_SHOWN), sharex=True, sharey=True)
     ratio = number(float(data.frequency_ratio[0]))
@@ -47,14 +47,16 @@ def locking(data: xr.Dataset) -> Figure:
     for model, upper, lower in zip(_SHOWN, kinds, rates, strict=True):
         one = data.sel(model=model)
         _draw_kinds(upper, one)
+        # The colour bar has a pointed end for all exponents beyond, which include -∞.
         rate = one.lyapunov_exponent.values.clip(LOWEST_RATE)
         shown = node_map(lower, one, rate, ["permanent contact"], **look)
         upper.set_title(model if model == "restitution" else rf"{model}, $\varpi={ratio}$")
+        upper.set_xlabel(r"amplitude $\Lambda$")
         lower.set_xlabel(r"amplitude $\Lambda$")
     kinds[0].set_ylabel("restitution coefficient $r$")
     rates[0].set_ylabel("restitution coefficient $r$")
     bar: Look = {"location": "bottom", "aspect": 60, "shrink": 0.6, "extend": "both"}
-    label = r"largest Lyapunov exponent $\lambda$ per period of the table; grey: permanent contact"
+    label = r"largest Lyapunov exponent $\lambda$ per $T$; grey: permanent contact"
     exponents.colorbar(shown, ax=list(rates), label=label, **bar)
     legend_below(maps, [*legend_of_kinds(data), *curves_of_bifurcations()], ncols=5, fontsize=7)
     stacked_shares(below, data, _GROUPS, "contact against the {} model")

@@ -29,10 +29,12 @@ OTHER_COLOURS = {
     "chaotic": "#f3d3c1",
     "undecided": "#b5b5b5",
 }
-# Marks that also distinguish areas in greyscale: dots for locked motions whose period is not known,
-# crosses for unknown motions, and strokes for other areas whose grey level is that of a period.
+# Marks that also distinguish areas in greyscale: plus signs for locked motions whose period is not
+# known, crosses for unknown motions, dots for chaotic ones, and strokes for other areas whose grey
+# level is that of a period.
 DOTS: dict[str, Look] = {
-    UNKNOWN_PERIOD: {"marker": ".", "markersize": 1.6, "markeredgewidth": 0},
+    UNKNOWN_PERIOD: {"marker": "+", "markersize": 2.4, "markeredgewidth": 0.5},
+    "chaotic": {"marker": ".", "markersize": 1.4, "markeredgewidth": 0},
     "undecided": {"marker": "x", "markersize": 1.6, "color": "#000000", "markeredgewidth": 0.3},
     "permanent contact": {"marker": "_", "markersize": 2.5, "markeredgewidth": 0.4},
     "subharmonic": {"marker": "|", "markersize": 2.5, "markeredgewidth": 0.4},
@@ -40,9 +42,16 @@ DOTS: dict[str, Look] = {
 # Largest number of restitution coefficients at which nodes are marked.
 _MARKED = 43
 UNKNOWN = {"not at any": "#000000", "undecided": "#ffffff", "no number": "#c8c8c8"}
-_HATCHES = {UNKNOWN_PERIOD: "......", "undecided": "xxxx", "subharmonic": "||||||"}
+_HATCHES = {
+    UNKNOWN_PERIOD: "++++",
+    "chaotic": "......",
+    "undecided": "xxxx",
+    "subharmonic": "||||||",
+}
 _HATCHES |= dict.fromkeys(("permanent contact", "no number"), "------")
 _BARS: Look = {"markersize": 4, "linewidth": 0.8, "capsize": 2}
+# The factor by which bars that would hide each other are moved from their ϖ.
+_ASIDE = 1.06
 LOWEST_RATE = -1.5
 HIGHEST_RATE = 1.5
 """Exponents outside of this range are drawn as its ends."""
@@ -160,7 +169,7 @@ def stacked_shares(part: Any, data: xr.Dataset, groups: Mapping[str, str], title
         for middle, group in zip(place.mean(axis=1), groups.values(), strict=True):
             axes.text(middle, 1.03, group, ha="center", va="bottom", fontsize=7)
         axes.set(xlabel=r"frequency ratio $\varpi$", ylim=(0, 1))
-        axes.set_title(title.format(simple), pad=16)
+        axes.set_title(title.format(simple), pad=30)
     legend_below(part, ncols=len(_PARTS), fontsize=7)
 
 
@@ -175,7 +184,8 @@ def draw_shares(
     for simple, axes in zip(data.simple.values, part.subplots(1, 2, sharey=True), strict=True):
         for k, (place, (text, colour, marker)) in enumerate(looks.items()):
             one = data.sel({"simple": simple, dim: place})
-            ratio = one.frequency_ratio.values * 1.06 ** (k - 2)
+            # Side by side, on both sides of the ϖ at which they were computed.
+            ratio = one.frequency_ratio.values * _ASIDE ** (2 * k + 1 - len(looks))
             low, high = (one[f"{name}{end}"].values for end in ("_low", "_high"))
             look: Look = {"color": colour, "marker": marker, "label": text, **_BARS}
             axes.errorbar(ratio, low, [np.zeros_like(low), high - low], **look)

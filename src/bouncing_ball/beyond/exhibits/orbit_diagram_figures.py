@@ -34,7 +34,7 @@ def orbit_diagrams(data: xr.Dataset) -> Figure:
         axes.set_title(f"{model} model; {parameters(data, *shown)}")
     _draw_exponents(panels[-1], data)
     panels[-1].set(xlabel=r"amplitude $\Lambda$", xlim=(lam[0], lam[-1]))
-    legend_below(figure)
+    legend_below(figure, markerscale=2.5)
     return figure
 
 

@@ -13,8 +13,8 @@ from bouncing_ball.pipeline.configuration import ConfigurationError, check, type
 R = [0.5, 0.85]
 STIFF = {"min": 500.0, "max": 1000.0, "samples": 2}
 # Ω² = 1 g/m.
-MEASURED = {"frequency": 9.80665**0.5 / (2 * np.pi), "amplitudes": [0.5]}
-CONFIG = {"n": 1, "restitution": R, "frequency_ratio": STIFF, "doublings": 3, "measured": MEASURED}
+TEXTBOOK = {"frequency": 9.80665**0.5 / (2 * np.pi), "amplitudes": [0.5]}
+CONFIG = {"n": 1, "restitution": R, "frequency_ratio": STIFF, "doublings": 3, "textbook": TEXTBOOK}
 
 
 @pytest.fixture(scope="module", params=LINEAR)
@@ -25,7 +25,7 @@ def study(request):
 def test_k_of_the_first_doubling_is_that_of_the_error_law(study):
     """Measured on orbits here, and there a closed form."""
     release, data = study
-    assert np.allclose(data.measured_cascade, [0.5, np.nan, np.nan], equal_nan=True)
+    assert np.allclose(data.textbook_cascade, [0.5, np.nan, np.nan], equal_nan=True)
     law = coefficients(1, damping_ratio(np.array(R)), data.restitution_cascade[:, 0], release)
     # Of the error's expansion the third order is left, over the two ϖ.
     assert np.allclose(data.cascade_coefficient[:, 0], law["period_doubling"], rtol=1e-4)
@@ -71,11 +71,11 @@ def test_a_single_frequency_ratio_with_orbits_is_drawn_as_dots(study):
     assert all(np.isfinite(line.get_ydata()).sum() == 1 for line in dots)
 
 
-def test_more_measured_doublings_than_are_computed_are_refused(refusal):
-    measured = {"frequency": 60.0, "amplitudes": [1e-4, 1.1e-4, 1.2e-4, 1.3e-4]}
+def test_more_doublings_of_a_textbook_than_are_computed_are_refused(refusal):
+    textbook = {"frequency": 60.0, "amplitudes": [1e-4, 1.1e-4, 1.2e-4, 1.3e-4]}
     ratios = {"min": 2.0, "max": 20.0, "samples": 2}
-    given = {"n": 1, "restitution": [0.5], "frequency_ratio": ratios, "measured": measured}
+    given = {"n": 1, "restitution": [0.5], "frequency_ratio": ratios, "textbook": textbook}
     run = create_model("Run", fig=(Cascades, ...))
-    text = "measured.amplitudes has 4 values, more than doublings = 3"
+    text = "textbook.amplitudes has 4 values, more than doublings = 3"
     with refusal(ConfigurationError, text):
         check(run, {"fig": given | {"doublings": 3}})

@@ -73,3 +73,31 @@ def test_a_ball_that_has_not_stuck_is_censored_and_in_no_mean():
     # Eight balls may stick.
     at = data.survival.sel(life=[0.5, 2.5, 100], method="nearest")
     assert at.values.tolist() == [1, 6 / 8, 3 / 8]
+
+
+def test_differences_are_of_balls_that_stick_in_both_models():
+    """Two contacts and the restitution model; four intervals that hold together are wider."""
+    life = np.array([[[3.0, 6, 8, np.nan], [5, 5, 5, 5], [1, 2, 6, 4]]] * 2)
+    found, pairs = lives.paired_differences(life, 0.95)
+    assert pairs.tolist() == [[3, 4, 0]] * 2
+    assert found[0, :2, 0].tolist() == [np.mean([2, 4, 2]), np.mean([4, 3, -1, 1])]
+    assert np.isnan(found[:, 2]).all()
+    # Student's quantile with two degrees of freedom has a closed form.
+    level = 1 - 0.05 / 4
+    quantile = level * np.sqrt(2 / (1 - level**2))
+    width = quantile * np.std([2, 4, 2], ddof=1) / np.sqrt(3)
+    assert np.allclose(found[0, 0, 1:] - found[0, 0, 0], [-width, width])
+
+
+def test_the_intervals_of_differences_hold_together():
+    """In 300 samples all twelve intervals contain their means in some 95 % or more."""
+    random = np.random.default_rng(4)
+    hits = 0
+    for _ in range(300):
+        common = random.exponential(5.0, size=(3, 1, 60))
+        life = common + random.exponential(3.0, size=(3, 5, 60))
+        found, _ = lives.paired_differences(life, 0.95)
+        low, high = found[:, :-1, 1], found[:, :-1, 2]
+        hits += bool(np.all((low < 0) & (high > 0)))
+    # Four standard deviations of the binomial count; Bonferroni may be wider than it has to.
+    assert hits >= 285 - 4 * np.sqrt(300 * 0.95 * 0.05)

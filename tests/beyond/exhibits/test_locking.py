@@ -94,6 +94,22 @@ def test_rounding_may_decide_at_few_nodes_only(recorded):
         assert names == (set() if allowed else {"kind"})
 
 
+def test_many_digits_tell_periods_where_doubles_do_not():
+    """At r = 0.55: what doubles know is kept, and most of what they do not is a period above 10."""
+    data = study(1000.0, (2.6, 3.6, 15), (0.55, 0.6, 2))
+    r, lam = (x.ravel() for x in np.meshgrid(data.restitution, data.amplitude, indexing="ij"))
+    velocity = lam * np.cos(START["phase"]) - START["impact_speed"]
+    balls = final_motions(RestitutionModel(r), lam, START["phase"], velocity, impacts=200)
+    periods = data.periods.sel(model="restitution").values.ravel()
+    unresolved = balls.is_unresolved()
+    assert np.array_equal(periods[~unresolved], balls.periods[~unresolved])
+    found = periods[unresolved]
+    assert data.many_digits_nodes == (found > 0).sum() > 3
+    assert found[found > 0].min() > 10
+    rigid = data.kind_nodes.sel(model="restitution", motion_group="locked, unknown period")
+    assert rigid.values.tolist() == [(found == 0).sum()]
+
+
 def test_a_contact_may_be_chaotic_where_the_restitution_model_locks():
     """At r = 0.7 on a compliant contact, ball by ball, also those that have stuck twice."""
     data = study(100.0, (2.5, 4.5, 21), (0.7, 0.71, 2), impacts=400, further=800)

@@ -85,8 +85,10 @@ VARIABLES = {
         symbol="C_k",
         budget=0.001,
     ),
-    "measured_cascade": Variable(
-        "amplitude of the period doublings in a measurement at an assumed frequency", symbol="Λ"
+    "textbook_cascade": Variable(
+        "amplitude of the period doublings in the computed diagram of a textbook, at an assumed "
+        "frequency",
+        symbol="Λ",
     ),
 }
 
@@ -188,8 +190,8 @@ _GRAVITY = 9.80665
 """Standard gravity in m/s²."""
 
 
-class MeasuredDoublings(Parameters):
-    """Period doublings measured over the amplitude of a table, at an assumed frequency."""
+class Textbook(Parameters):
+    """Period doublings over the amplitude of a table in a diagram, at an assumed frequency."""
 
     frequency: Annotated[float, number("frequency of the table", "Hz", gt=0, le=1e6)]
     amplitudes: Many[Annotated[float, number("amplitude of a doubling", "m", gt=0, le=1)]]
@@ -210,14 +212,14 @@ class Cascades(Parameters):
             le=MOST,
         ),
     ]
-    measured: MeasuredDoublings
+    textbook: Textbook
 
     @model_validator(mode="after")
     def _computed(self) -> Self:
-        count = len(self.measured.amplitudes)
+        count = len(self.textbook.amplitudes)
         if count > self.doublings:
             raise ValueError(
-                f"measured.amplitudes has {count} values, more than doublings = {self.doublings}"
+                f"textbook.amplitudes has {count} values, more than doublings = {self.doublings}"
             )
         return self
 
@@ -238,7 +240,7 @@ def cascades(parameters: Cascades, release: Release) -> xr.Dataset:
     restitution model is zero. To leading order, the error of the restitution model is K/ϖ, where K
     is ``cascade_coefficient`` (restitution, doubling), and that of the corrected model is C/ϖ²,
     where C is ``cascade_second_order``. Both are measured at two stiff contacts, and the next order
-    is eliminated (Richardson). Values are NaN where a doubling was not found. ``measured_cascade``
+    is eliminated (Richardson). Values are NaN where a doubling was not found. ``textbook_cascade``
     (doubling,) is Λ of a measurement.
     """
     r = np.array(parameters.restitution)
@@ -269,7 +271,7 @@ def cascades(parameters: Cascades, release: Release) -> xr.Dataset:
     return described(
         {
             "restitution_cascade": (("restitution", "doubling"), simple.amplitude[..., 0].T),
-            "measured_cascade": ("doubling", _measured(parameters)),
+            "textbook_cascade": ("doubling", _of_textbook(parameters)),
             "cascade_ratio": (("restitution", "step"), simple.ratios()[..., 0].T),
             "contact_cascade_ratio": (
                 ("restitution", "step", "frequency_ratio"),
@@ -300,10 +302,10 @@ def cascades(parameters: Cascades, release: Release) -> xr.Dataset:
     )
 
 
-def _measured(parameters: Cascades) -> np.ndarray:
-    """Λ = aΩ²/g of the measured doublings, NaN for further doublings, shape (doublings,)."""
-    known = np.array(parameters.measured.amplitudes) / _GRAVITY
-    known *= (2 * np.pi * parameters.measured.frequency) ** 2
+def _of_textbook(parameters: Cascades) -> np.ndarray:
+    """Λ = aΩ²/g of the doublings of the textbook, NaN for further doublings, shape (doublings,)."""
+    known = np.array(parameters.textbook.amplitudes) / _GRAVITY
+    known *= (2 * np.pi * parameters.textbook.frequency) ** 2
     return np.pad(known, (0, parameters.doublings - known.size), constant_values=np.nan)
 
 

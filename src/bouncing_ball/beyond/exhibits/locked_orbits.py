@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from typing import Annotated, Any
 
 import numpy as np
-import scipy
 import xarray as xr
 
 from bouncing_ball.beyond.exhibits.lives import VARIABLES as OF_LIVES
+from bouncing_ball.beyond.exhibits.locking import laps_by_many_digits
 from bouncing_ball.beyond.exhibits.motion_samples import (
     ParameterPlane,
     share_with_limits,
@@ -38,6 +38,11 @@ VARIABLES = {
         "share of the places at which it is known whether the contact locks with the restitution "
         "model's period"
     ),
+    "refuted_ratio": Variable(
+        "largest frequency ratio at which it is known that the contact has not the restitution "
+        "model's locked period, 0 if there is none",
+        symbol="ϖ",
+    ),
     "last_known": Variable(
         "whether it is known if the contact with the largest frequency ratio locks with the "
         "restitution model's period"
@@ -48,28 +53,16 @@ VARIABLES = {
     "same_high": Variable(
         "upper limit of the confidence interval of the share with the same period"
     ),
-    "rank_correlation": Variable(
-        "rank correlation of the locked period with the needed frequency ratio"
+    "period_from": Variable("smallest locked period of the places that are compared"),
+    "ordered_pairs": Variable(
+        "pairs of places with different locked periods of which it is known which needs the larger "
+        "frequency ratio"
     ),
-    "rank_correlation_low": Variable(
-        "lower limit of the confidence interval of the rank correlation"
+    "concordance": Variable(
+        "share of these pairs in which the longer period needs the larger frequency ratio"
     ),
-    "rank_correlation_high": Variable(
-        "upper limit of the confidence interval of the rank correlation"
-    ),
-    "inner_places": Variable(
-        "number of places that need a frequency ratio between the smallest and the largest"
-    ),
-    "inner_correlation": Variable(
-        "rank correlation of the locked period with the needed frequency ratio at places that need "
-        "one between the smallest and the largest"
-    ),
-    "inner_correlation_low": Variable(
-        "lower limit of the confidence interval of the rank correlation without ties at the ends"
-    ),
-    "inner_correlation_high": Variable(
-        "upper limit of the confidence interval of the rank correlation without ties at the ends"
-    ),
+    "concordance_low": Variable("lower limit of the confidence interval of the concordant share"),
+    "concordance_high": Variable("upper limit of the confidence interval of the concordant share"),
     "jump_share": Variable("share of the places whose locked period changes with the amplitude"),
     "jump_share_low": Variable(
         "lower limit of the confidence interval of the share next to a discontinuity"
@@ -94,29 +87,64 @@ class LockedOrbits(ParameterPlane):
         return np.array([r, lam])
 
 
-def correlation(one: np.ndarray, other: np.ndarray, confidence: float) -> np.ndarray:
-    """Spearman's rank correlation with its limits (D. G. Bonett and T. A. Wright, 2000).
+PERIODS_FROM = (1, 5)
+"""The smallest locked periods of two groups of places: all, and those without short periods."""
+
+# Samples of the bootstrap, and the seed of its random numbers.
+_RESAMPLED = 500
+_SEED = 1
+
+
+def concordance(period: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[int, float]:
+    """Of pairs whose order is known, how often the longer period needs the larger ϖ.
+
+    The ϖ that a place needs is censored: it is known to lie above ``low``, and not above ``high``.
+    Which of two places needs the larger one is known if these ranges do not overlap. Pairs with
+    equal periods, and those whose order is not known, are left out, as in Kendall's rank
+    correlation τ for censored data; without censoring and ties the share is (1 + τ)/2. As the pairs
+    that are left are no random ones, this is an estimate for them alone.
 
     Parameters
     ----------
-    one, other : array, shape (count,)
-        Pairs of values; only their ranks count, so that infinite values are allowed.
-    confidence : float
-        The probability with which the interval contains the correlation, in (0, 1).
+    period, low, high : array, shape (places,)
+        The locked periods, and the ends of the ranges, low < high; ``high`` may be infinite.
 
     Returns
     -------
-    array, shape (3,)
-        The correlation, its lower limit and its upper limit; NaN if one or other has fewer than
-        three different values, which does not rank them.
+    tuple
+        The number of pairs and the share; NaN if there are none.
+
+    Examples
+    --------
+    The second and the third place need ϖ above 30, but it is not known which needs the larger one:
+
+    >>> concordance(np.array([1, 6, 9]), np.array([0, 30, 30]), np.array([10, 100, np.inf]))
+    (2, 1.0)
     """
-    ranked = min(np.unique(one).size, np.unique(other).size) > 2 and one.size > 3
-    if not ranked:
-        return np.full(3, np.nan)
-    rho = scipy.stats.spearmanr(one, other).statistic
-    width = scipy.stats.norm.ppf((1 + confidence) / 2) * np.sqrt((1 + rho**2 / 2) / (one.size - 3))
-    low, high = np.tanh(np.arctanh(rho) + width * np.array([-1, 1]))
-    return np.array([rho, low, high])
+    longer = period[:, np.newaxis] > period
+    needs_more = low[:, np.newaxis] >= high
+    agree = int((longer & needs_more).sum())
+    pairs = agree + int((longer & needs_more.T).sum())
+    return pairs, agree / pairs if pairs else np.nan
+
+
+def concordance_with_limits(
+    period: np.ndarray, low: np.ndarray, high: np.ndarray, confidence: float
+) -> tuple[int, np.ndarray]:
+    """:func:`concordance` with the limits of its interval, from a bootstrap over the places.
+
+    Returns
+    -------
+    tuple
+        The number of pairs; and the share, its lower limit and its upper limit, shape (3,).
+    """
+    pairs, found = concordance(period, low, high)
+    if not pairs:
+        return pairs, np.full(3, np.nan)
+    drawn = np.random.default_rng(_SEED).integers(period.size, size=(_RESAMPLED, period.size))
+    shares = [concordance(period[k], low[k], high[k])[1] for k in drawn]
+    tail = (1 - confidence) / 2
+    return pairs, np.array([found, *np.nanquantile(shares, [tail, 1 - tail])])
 
 
 def returns_at_places(
@@ -127,20 +155,23 @@ def returns_at_places(
     Returns
     -------
     dict of array
-        ``periods`` of :class:`~bouncing_ball.long_run.lift_off.Lap`, shape (change, place), first
-        without a change of Λ and then with each change; ``same``, shape (ϖ, place), whether the
+        ``periods``, shape (place,), of the locked orbit by as many digits as it needs, 0 if the
+        ball does not stick again within the impacts; ``periods_by_doubles`` of
+        :class:`~bouncing_ball.long_run.lift_off.Lap`, shape (change, place), first without a change
+        of Λ and then with each change; ``same``, shape (ϖ, place), whether the
         contact has a locked orbit of the same period; and ``known``, of this shape, whether that
         can be told: its motion is decided, and if it is locked, doubles tell its period.
     """
     r, lam = part(parameters.places())
     ratios = np.array(parameters.frequency_ratio)[:, np.newaxis]
     changes = np.array([0.0, *parameters.shifts])[:, np.newaxis]
-    periods = laps(r, lam + changes, parameters.impacts).periods
+    periods, _ = laps_by_many_digits(r, lam, parameters.impacts)
+    by_doubles = laps(r, lam + changes, parameters.impacts).periods
     contact = three_models(r, ratios, release).contact
     motion = final_motions(contact, lam, -np.pi / 2, 0.0, impacts=parameters.impacts)
-    same = (motion.kind == Kind.LOCKED) & (motion.periods == periods[0])
+    same = (motion.kind == Kind.LOCKED) & (motion.periods == periods)
     known = (motion.kind != Kind.UNDECIDED) & ~motion.is_unresolved()
-    return {"periods": periods, "same": same, "known": known}
+    return {"periods": periods, "periods_by_doubles": by_doubles, "same": same, "known": known}
 
 
 def locked_orbits(
@@ -149,20 +180,21 @@ def locked_orbits(
     """The places at which a contact has the locked orbit of the restitution model.
 
     The places are uniformly distributed in Λ and r. Over ``node``, with the coordinates
-    ``restitution`` and ``amplitude``, the dataset has ``periods`` of
-    :func:`bouncing_ball.long_run.lift_off.laps`, which is 0 where the ball is not found to stick
-    again; such places are left out of all shares. ``needed_ratio`` is the smallest of the given ϖ
-    above which the contact locks with the same period after a rest on the table; it is infinite if
-    the contact is not known to do so at the largest ϖ; ``last_known`` (node) is whether its motion
-    there is known. ``same`` (frequency_ratio) is the share of places with the same period, and
+    ``restitution`` and ``amplitude``, the dataset has the ``periods`` of
+    :func:`bouncing_ball.beyond.exhibits.locking.laps_by_many_digits`, which are 0 where the ball
+    does not stick again within the impacts; such places are left out of all shares.
+    ``needed_ratio`` is the smallest of the given ϖ above which the contact is known to lock with
+    the same period after a rest on the table, infinite if it is not known to do so at the largest
+    ϖ, and ``refuted_ratio`` the largest of them at which it is known not to, 0 if there is none:
+    the ϖ that is needed lies between them. ``last_known`` (node) is whether its motion at the
+    largest ϖ is known. ``same`` (frequency_ratio) is the share of places with the same period, and
     ``same_known`` (frequency_ratio) that at which it is known whether it is the same, so that the
     share may be larger by 1 - ``same_known``.
-    ``rank_correlation`` is the correlation of the period of the locked orbit with the smallest ϖ.
-    In it all places at which this is infinite are one tie, and those at which it is the smallest ϖ
-    are another. ``inner_correlation`` is therefore the correlation at the other places, of which
-    ``inner_places`` is the number.
+    ``concordance`` (period_from) is, for the places with at least this period, the share of
+    the ``ordered_pairs`` in which the longer period needs the larger ϖ, see :func:`concordance`.
     ``jump_share`` (shift) is the share of places next to a discontinuity, at which the period
-    changes, or is not found, if Λ changes by the shift, and ``uncertainty_exponent`` its exponent.
+    changes, or is not found, if Λ changes by the shift, of those at which doubles find one, and
+    ``uncertainty_exponent`` its exponent.
     Each has a lower and an upper limit, ``_low`` and ``_high``. The variables of
     :func:`bouncing_ball.beyond.exhibits.lives.transients`, ``ext_lives``, are added; the
     coordinates of its cases are ``case_restitution`` and ``case_amplitude`` here.
@@ -172,28 +204,36 @@ def locked_orbits(
     ratios = np.array(parameters.frequency_ratio)
     shifts = np.array(parameters.shifts)
     r, lam = parameters.places()
-    period, *periods_beside = found["periods"]
+    period = found["periods"]
+    first, *beside = found["periods_by_doubles"]
     sticks = period > 0
+    # A lap that has lost the digits of a double has another period after each change of Λ, by
+    # doubles as by many digits.
+    by_doubles = first > 0
     same = found["same"]
     known = found["known"]
-    changed = np.array(periods_beside) != period
+    changed = np.array(beside) != first
     needed = _needed_ratio(ratios, same)
-    inner = sticks & np.isfinite(needed) & (needed > ratios.min())
+    refuted = np.where(known & ~same, ratios[:, np.newaxis], 0.0).max(axis=0)
+    groups = [sticks & (period >= least) for least in PERIODS_FROM]
+    ordered = [
+        concordance_with_limits(period[one], refuted[one], needed[one], level) for one in groups
+    ]
     nodes = {
         "periods": period,
         "needed_ratio": np.where(sticks, needed, np.nan),
+        "refuted_ratio": np.where(sticks, refuted, np.nan),
         "last_known": known[-1],
     }
     estimates = {
         "same": ("frequency_ratio", [share_with_limits(x[sticks], level) for x in same]),
-        "rank_correlation": ((), correlation(period[sticks], needed[sticks], level)),
-        "inner_correlation": ((), correlation(period[inner], needed[inner], level)),
-        "jump_share": ("shift", [share_with_limits(x[sticks], level) for x in changed]),
-        "uncertainty_exponent": ((), uncertainty_exponent(changed[:, sticks].T, shifts, level)),
+        "concordance": ("period_from", [share for _, share in ordered]),
+        "jump_share": ("shift", [share_with_limits(x[by_doubles], level) for x in changed]),
+        "uncertainty_exponent": ((), uncertainty_exponent(changed[:, by_doubles].T, shifts, level)),
     }
     variables: dict[str, Any] = {name: ("node", values) for name, values in nodes.items()}
     variables |= {
-        "inner_places": ((), float(inner.sum())),
+        "ordered_pairs": ("period_from", [pairs for pairs, _ in ordered]),
         "same_known": ("frequency_ratio", known[:, sticks].mean(axis=1)),
     }
     orbits = described(
@@ -203,6 +243,7 @@ def locked_orbits(
             "amplitude": ("node", lam),
             "frequency_ratio": ratios,
             "shift": shifts,
+            "period_from": list(PERIODS_FROM),
         },
         variables=VARIABLES,
     )

@@ -143,8 +143,8 @@ ARTIFACTS: dict[str, dict[str, Budget]] = {
         # 15 % of the places: rounding decides there. The periods of the restitution model have as
         # many digits as they need.
         **dict.fromkeys(("needed_ratio", "refuted_ratio", "last_known"), Budget(1e-6, share=0.3)),
-        # A change of 4e-16 of the contacts' amplitude moves it by 0.6 %, and a concordance by 0.004.
-        # Three times that is allowed.
+        # A change of 4e-16 of the contacts' amplitude moves it by 0.6 %, and a concordance by
+        # 0.004. Three times that is allowed.
         "ordered_pairs": Budget(0.02),
         # A change of 4e-16 of the amplitude moves a share by 0.0064 at most. Three times that is
         # allowed.

@@ -28,6 +28,8 @@ _AROUND = 1001
 # steps from there to the half of the speed.
 _DECADES = 6
 _HALVES = 80
+# A loss of r that is rounding of its signature.
+_ROUNDING = 1e-13
 
 
 def rises(law: ContactLaw, speed: np.ndarray) -> np.ndarray:
@@ -140,7 +142,7 @@ def slowed(law: ContactLaw, fast: float) -> float | None:
     """The speed at which gravity lowers r by one part in a hundred; None if it does at no speed.
 
     ``fast`` is a speed at which gravity is not felt. r is that of a free impact of the same speed.
-    Faster impacts have this r more closely, slower ones are below it.
+    Faster impacts have this r more closely, slower ones are below it, unless nothing is lost.
 
     Examples
     --------
@@ -157,6 +159,8 @@ def slowed(law: ContactLaw, fast: float) -> float | None:
         free = law.signature(speed).restitution
         return float((np.sqrt(2 * rises(law, speed)) / speed - (1 - SLOWED) * free)[0])
 
+    if _ends(law, fast) and float(law.signature(fast).restitution) > 1 - _ROUNDING:
+        return None
     # A loss that grows with the speed stops fast balls.
     tried = math.log(fast) - math.log(10) * np.arange(_DECADES)
     upper = next((x for x in tried.tolist() if _ends(law, math.exp(x)) and surplus(x) >= 0), None)

@@ -74,8 +74,8 @@ MERGES = "the flight vanishes: the orbit merges with permanent contact"
 # Ends of branches of orbits with one impact (:func:`~.special.ends_of_contact`) at which the speed
 # of the impact or the flight time vanishes, or both.
 _LOST = ("contact lost", "flight lost")
-# The slope of a straight line over logarithms is the same on two pieces, up to a tenth, between which
-# the speed becomes larger by this factor at least.
+# The slope of a straight line over logarithms is the same on two pieces, up to a tenth. On each of
+# them the speed becomes larger by this factor at least.
 _STRAIGHT = 0.1
 _FASTER = 1.05
 

@@ -161,7 +161,7 @@ def test_a_curve_consists_of_balls_that_rest_and_turns_back_in_both_parameters()
     assert (first, last) == ("restitution = 0.55 is reached", "restitution = 0.55 is passed")
     points = list(curve.states())
     assert all(np.any(point.contact_duration > 0) for point in points)
-    turns = [int(np.argmin(curve.amplitude)), int(np.argmax(curve.restitution))]
+    turns = [np.argmin(curve.amplitude.values), np.argmax(curve.restitution.values)]
     assert 0 < turns[0] < turns[1] < len(points) - 1
     # Next to the turn r is known at a given Λ, and Λ at a given r beyond it.
     for number, along in ((turns[1], "restitution"), (-3, "amplitude")):

@@ -391,9 +391,9 @@ against it is that of the greatest height, relative to the orbit in closed form.
 evaluates the equations of the restitution model in Python, through its interface `bifpy`, and each
 of its runs is a process. "AUTO-07p compiled" has them in Fortran (`tests/speed/two_impacts.f90`),
 with the same settings; its time is that of its own clock, and both this and that of `follow` beside
-it are the least of {compiled_auto.RUNS} runs. Neither computes events except folds.
-This package also evaluates stability and grazing, and the public call `follow` makes a dataset with
-all observables of its points; the two rows above it are the driver alone.
+it are the least of {compiled_auto.OF_AUTO} and of {compiled_auto.RUNS} runs. Neither computes
+events except folds. This package also evaluates stability and grazing, and the public call `follow`
+makes a dataset with all observables of its points; the two rows above it are the driver alone.
 
 | task | this package | error | peer | peer's time | peer's error | ratio |
 | --- | --- | --- | --- | --- | --- | --- |

@@ -167,3 +167,21 @@ def test_a_curve_consists_of_balls_that_rest_and_turns_back_in_both_parameters()
     for number, along in ((turns[1], "restitution"), (-3, "amplitude")):
         one = points[number]
         self_similar(one, along, one.amplitude, one.model.impact_law, within=ON_A_CURVE)
+
+
+def test_a_branch_ends_where_all_flights_before_a_rest_vanish():
+    """At Λ = 1 the table no longer falls faster than the ball. The branch crept, in 500 steps."""
+    orbit = bouncing_ball.orbit_of_motion(
+        bouncing_ball.rigid(restitution=0.218813), amplitude=1.191588
+    )
+    found = bouncing_ball.follow(orbit, to=0.95327)
+    assert found.attrs["impacts"] == 8
+    why = str(found.end_reason.values[-1])
+    assert why == "the flights vanish: the orbit merges with permanent contact"
+    assert found.sizes["point"] < 100
+    # The flights last 0.01 in all. The ball leaves and lands where sin φ is about 1/Λ.
+    *_, last = found.states()
+    aloft = 2 * np.pi - last.durations.sum()
+    assert aloft == pytest.approx(0.01, abs=1e-9)
+    assert 0 < last.amplitude - 1 < aloft**2
+    assert found.residual.max() < 1e-12

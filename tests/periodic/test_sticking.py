@@ -151,27 +151,37 @@ def test_the_bounces_are_self_similar_along_a_curve_in_two_parameters():
 
 
 @pytest.mark.slow
-def test_a_curve_consists_of_balls_that_rest_and_says_where_it_turns_back():
-    """Its last point was an orbit without a rest, at r = 0.5749."""
+def test_a_curve_consists_of_balls_that_rest_and_turns_back_in_both_parameters():
+    """It ended next to the place where r turns back, and before at an orbit without a rest."""
     orbit = ended(*CASES[1])
     curve = bouncing_ball.follow(
         orbit, along=("amplitude", "restitution"), ranges={"restitution": (0.55, 0.7)}, points=40
     )
     first, last = (str(reason) for reason in curve.end_reason.values)
-    assert first == "restitution = 0.55 is reached"
-    assert last.startswith("the curve turns back at restitution = 0.58")
+    assert (first, last) == ("restitution = 0.55 is reached", "restitution = 0.55 is passed")
     points = list(curve.states())
     assert all(np.any(point.contact_duration > 0) for point in points)
-    # Next to the turn r is known at a given Λ, and not Λ at a given r.
-    place = points[-1].model.impact_law
-    self_similar(points[-1], "restitution", points[-1].amplitude, place, within=ON_A_CURVE)
-    # Over Λ the same curve passes the place at which r turns.
-    exchanged = bouncing_ball.follow(
-        points[-1],
-        along=("restitution", "amplitude"),
-        ranges={"amplitude": (2.4513, 2.46)},
-        points=12,
+    turns = [np.argmin(curve.amplitude.values), np.argmax(curve.restitution.values)]
+    assert 0 < turns[0] < turns[1] < len(points) - 1
+    # Next to the turn r is known at a given Λ, and Λ at a given r beyond it.
+    for number, along in ((turns[1], "restitution"), (-3, "amplitude")):
+        one = points[number]
+        self_similar(one, along, one.amplitude, one.model.impact_law, within=ON_A_CURVE)
+
+
+def test_a_branch_ends_where_all_flights_before_a_rest_vanish():
+    """At Λ = 1 the table no longer falls faster than the ball. The branch crept, in 500 steps."""
+    orbit = bouncing_ball.orbit_of_motion(
+        bouncing_ball.rigid(restitution=0.218813), amplitude=1.191588
     )
-    r = exchanged.restitution.values
-    assert 0 < np.argmax(r) < len(r) - 1
-    assert r.max() == pytest.approx(place, abs=1e-5)
+    found = bouncing_ball.follow(orbit, to=0.95327)
+    assert found.attrs["impacts"] == 8
+    why = str(found.end_reason.values[-1])
+    assert why == "the flights vanish: the orbit merges with permanent contact"
+    assert found.sizes["point"] < 100
+    # The flights last 0.01 in all. The ball leaves and lands where sin φ is about 1/Λ.
+    *_, last = found.states()
+    aloft = 2 * np.pi - last.durations.sum()
+    assert aloft == pytest.approx(0.01, abs=1e-9)
+    assert 0 < last.amplitude - 1 < aloft**2
+    assert found.residual.max() < 1e-12

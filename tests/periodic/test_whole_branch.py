@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import bouncing_ball
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.damping import LINEAR
 from bouncing_ball.models.spring_damper import SpringDamper
@@ -37,3 +38,33 @@ def test_a_branch_is_the_same_alone_and_beside_others(release):
         assert (beside.branch.start, beside.branch.end) == (found.branch.start, found.branch.end)
     assert any(isinstance(each, Followed) for each in together)
     assert not all(isinstance(each, Followed) for each in together)
+
+
+def test_a_branch_is_kept_if_an_event_next_to_its_end_cannot_be_located():
+    """Without damping all multipliers tend to -1 at permanent contact, at Λ = |ϖ² - 1|/ϖ² = 3."""
+    ball = bouncing_ball.spring_damper(restitution=1.0, frequency_ratio=0.5)
+    found = bouncing_ball.branch(ball, n=1, points=30)
+    lost, reached = (str(reason) for reason in found.end_reason.values)
+    assert lost.startswith("the flight vanishes: the orbit merges with permanent contact; ")
+    assert "period doubling" in lost and lost.endswith("could not be located")
+    assert reached == "amplitude = 4.2 is reached"
+    assert found.special_kind.size == 0
+    assert float(found.amplitude[0]) == pytest.approx(3.0, abs=1e-5)
+    assert float(found.residual.max()) < 1e-11
+
+
+def test_a_branch_that_merges_with_a_ringing_contact_is_resampled():
+    """At ϖ = 1/2 without damping the contact rings with the period 4π. The 2-T branch merges with
+    such a motion at Λ = 1; the speed of its impact is the cube of the flight time there, and
+    rounding errors move its points by 1e-10 along the branch.
+    """
+    ball = bouncing_ball.spring_damper(restitution=1.0, frequency_ratio=0.5)
+    found = bouncing_ball.branch(ball, n=2, points=30)
+    why = str(found.end_reason.values[0])
+    assert why == "the flight vanishes: the orbit merges with permanent contact"
+    aloft = 4 * np.pi - found.contact_duration.values[:4]
+    closing = found.impact_velocity.values - found.amplitude.values * np.cos(found.phase.values)
+    slopes = np.diff(np.log(-closing[:4])) / np.diff(np.log(aloft))
+    assert slopes == pytest.approx(np.full(3, 3.0), abs=0.1)
+    assert 1 < float(found.amplitude[0]) < 1 + aloft[0] ** 2
+    assert float(found.residual.max()) < 1e-11

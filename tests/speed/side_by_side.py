@@ -1,13 +1,14 @@
 """How fast, side by side: renews docs/speed.md, with one table from one run (`make speed`).
 
 Each row compares times of this machine in this run, with the error that each program reached. A
-program that is not installed is named absent: AUTO-07p (`pip install bifpy`, which needs gfortran),
-heyoka, MuJoCo. With --cold, a cold run of the pipeline is compared with its imports, in some
-minutes (tests/speed/imports_only.py).
+program that is not installed is named absent: AUTO-07p interpreted (`pip install bifpy`, which
+needs gfortran) and compiled (AUTO_DIR, see compiled_auto.py), heyoka, MuJoCo. With --cold, a cold
+run of the pipeline is compared with its imports, in some minutes (tests/speed/imports_only.py).
 """
 
 import math
 import platform
+import resource
 import sys
 import time
 from collections.abc import Callable
@@ -16,6 +17,7 @@ from pathlib import Path
 from statistics import median
 from typing import NamedTuple
 
+import compiled_auto
 import numpy as np
 
 import bouncing_ball
@@ -38,6 +40,8 @@ R = 0.5
 REPETITIONS = 3
 # Branches that are corrected together, and their points.
 BRANCHES, POINTS = 200, 20
+# Numbers of branches together at which the time for each is compared with compiled AUTO.
+TOGETHER = (1, 2, 5, 10, 20, 50, 100, 200)
 # Bounces of the comparison with an engine, and the error of r for which its time step is chosen.
 BOUNCES, ENGINE_ERROR = 24, 1e-4
 
@@ -68,14 +72,31 @@ def seconds(value: float) -> str:
     return f"{value:.2g} s" if value >= 0.1 else f"{1e3 * value:.2g} ms"
 
 
+def processor_time() -> float:
+    """Seconds that the processor has spent on this process and on those that it has started."""
+    others = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return time.process_time() + others.ru_utime + others.ru_stime
+
+
 def timed(run: Callable) -> tuple[float, object]:
-    """Median seconds of some calls, and the last result."""
-    times = []
-    for _ in range(REPETITIONS):
-        start = time.perf_counter()
-        result = run()
-        times.append(time.perf_counter() - start)
+    """Median seconds of the processor in some calls, and the last result."""
+    times, result = _times(run, REPETITIONS)
     return median(times), result
+
+
+def least(run: Callable) -> tuple[float, object]:
+    """The least seconds of the processor in many calls, and the last result."""
+    times, result = _times(run, compiled_auto.RUNS)
+    return min(times), result
+
+
+def _times(run: Callable, count: int) -> tuple[list[float], object]:
+    times = []
+    for _ in range(count):
+        start = processor_time()
+        result = run()
+        times.append(processor_time() - start)
+    return times, result
 
 
 def flights(state, amplitude: float, restitution: float, periods: int) -> list[float]:
@@ -215,15 +236,56 @@ def curve_row() -> Row:
     return Row(task, ours, error, f"AUTO-07p, {len(points)} points", theirs, worst)
 
 
-def batch_row() -> Row:
-    """Points of branches with two impacts, corrected together: a row of r at each of many Λ."""
+def compiled_rows() -> tuple[Row, str]:
+    """The public call `follow` against AUTO with compiled equations, and at how many branches
+    together both take the same time for each branch.
+    """
     ball = bouncing_ball.rigid(restitution=R)
     start = bouncing_ball.orbit_of_motion(ball, amplitude=1.6, phase=1.0, velocity=-3.0)
-    r = np.linspace(R - 0.01, R + 0.01, BRANCHES)
+    to = 1.8
+    ours, found = least(lambda: bouncing_ball.follow(start, to=to))
+    error = float(np.abs(found.residual).max())
+    task = f"the same branch by the public call `follow`, {found.sizes['point']} points"
+    auto = compiled_auto.folder()
+    if auto is None:
+        return Row(task, ours, error, "AUTO-07p compiled: absent"), ""
+    run = compiled_auto.followed(auto, orbit_state(start), 1.6, R, to)
+    worst = max(max(map(abs, flights(u, p, R, 2))) for u, p in run.points)
+    name = f"AUTO-07p compiled, {len(run.points)} points"
+    row = Row(task, ours, error, name, run.seconds, worst)
+    share = POINTS / len(run.points)
+    times = {count: _together(count, least)[0] / count for count in TOGETHER}
+    even = [count for count, each in times.items() if each <= share * run.seconds]
+    each = ", ".join(f"{seconds(spent)} for {count}" for count, spent in times.items())
+    said = (
+        f"Compiled AUTO takes {seconds(run.seconds)} by its own clock, and {seconds(run.process)} "
+        f"with the start of its process. {POINTS} points of branches with two impacts that are "
+        f"corrected together, without events and stability, take for each branch {each} branches; "
+    )
+    if not even:
+        return row, said + "AUTO takes less time for each branch at all of these numbers."
+    return row, said + f"from {even[0]} together on, each takes no longer than with AUTO."
+
+
+def batch_row() -> Row:
+    """Points of branches with two impacts, corrected together."""
+    spent, error = _together(BRANCHES)
+    count = BRANCHES * POINTS
+    task = f"{count} points of {BRANCHES} branches with two impacts together"
+    return Row(f"{task}: {count / spent:.0f} points per second", spent, error, "none")
+
+
+def _together(branches: int, timer: Callable = timed) -> tuple[float, float]:
+    """Seconds and the largest defect of branches with two impacts that are corrected together: a
+    row of r at each of many Λ.
+    """
+    ball = bouncing_ball.rigid(restitution=R)
+    start = bouncing_ball.orbit_of_motion(ball, amplitude=1.6, phase=1.0, velocity=-3.0)
+    r = np.linspace(R - 0.01, R + 0.01, branches) if branches > 1 else np.array([R])
     problem = start.problem(LAMBDA)
-    balls = Balls(ball, np.full(BRANCHES, 1.6)).at({"restitution": r})
+    balls = Balls(ball, np.full(branches, 1.6)).at({"restitution": r})
     orbits = replace(problem, balls=balls)
-    first = np.tile(start.point(problem), (BRANCHES, 1))
+    first = np.tile(start.point(problem), (branches, 1))
 
     def points() -> np.ndarray:
         y = first.copy()
@@ -235,11 +297,8 @@ def batch_row() -> Row:
             y = found.point
         return y
 
-    spent, y = timed(points)
-    error = np.abs(orbits.residual(y)).max()
-    count = BRANCHES * POINTS
-    task = f"{count} points of {BRANCHES} branches with two impacts together"
-    return Row(f"{task}: {count / spent:.0f} points per second", spent, error, "none")
+    spent, y = timer(points)
+    return spent, float(np.abs(orbits.residual(y)).max())
 
 
 def simulation_row() -> Row:
@@ -315,33 +374,40 @@ def engine_row() -> Row:
     return Row(task, ours, error, name, median(spent for _, spent in runs), their_error)
 
 
-def page(rows: list[Row], cold: str) -> str:
+def page(rows: list[Row], even: str, cold: str) -> str:
     """The page as Markdown."""
     table = "\n".join(row.line() for row in rows)
     return f"""# How fast, side by side
 
-`make speed` renews this page. All times are medians of {REPETITIONS} runs on one machine
-({platform.machine()}, Python {platform.python_version()}, numpy {np.__version__}).
+`make speed` renews this page. All times are times of the processor, medians of
+{REPETITIONS} runs on one machine ({platform.machine()}, Python {platform.python_version()},
+numpy {np.__version__}).
 A ratio above 1 says that this package is faster. The error of a branch is the largest defect of the
 equations; that of AUTO-07p includes the eleven digits of its output files, and on the curve its
 error is the difference of Λ from this package. The error of a simulation is the distance from the
 1-T orbit in closed form, to which the ball has settled. MuJoCo has the time step with which r is
-met within {ENGINE_ERROR:g}; its time is that of the processor for the steps alone, and the error
-against it is that of the greatest height, relative to the orbit in closed form. AUTO-07p evaluates
-the equations of the restitution model in Python, through its interface `bifpy`, and each of its
-runs is a process; it computes no events except folds, whereas this package also evaluates stability
-and grazing.
+met within {ENGINE_ERROR:g}; its time is that of the steps alone, and the error
+against it is that of the greatest height, relative to the orbit in closed form. "AUTO-07p"
+evaluates the equations of the restitution model in Python, through its interface `bifpy`, and each
+of its runs is a process. "AUTO-07p compiled" has them in Fortran (`tests/speed/two_impacts.f90`),
+with the same settings; its time is that of its own clock, and both this and that of `follow` beside
+it are the least of {compiled_auto.OF_AUTO} and of {compiled_auto.RUNS} runs. Neither computes
+events except folds. This package also evaluates stability and grazing, and the public call `follow`
+makes a dataset with all observables of its points; the two rows above it are the driver alone.
 
 | task | this package | error | peer | peer's time | peer's error | ratio |
 | --- | --- | --- | --- | --- | --- | --- |
 {table}
 
+{even}
 {cold}
 """
 
 
 def main() -> None:
-    rows = [branch_row(1, 1.3, 1.8), branch_row(2, 1.6, 1.8), curve_row(), batch_row()]
+    rows = [branch_row(1, 1.3, 1.8), branch_row(2, 1.6, 1.8)]
+    compiled, even = compiled_rows()
+    rows += [compiled, curve_row(), batch_row()]
     rows.append(simulation_row())
     rows.append(engine_row())
     cold = "A cold run of the pipeline against its imports was left out: `make speed COLD=--cold`."
@@ -349,7 +415,7 @@ def main() -> None:
         import imports_only
 
         cold = imports_only.compared(1)
-    text = page(rows, cold)
+    text = page(rows, even, cold)
     PAGE.write_text(text, encoding="utf-8")
     print(text)
 

@@ -5,6 +5,7 @@ from bouncing_ball.errors import one_of
 from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.elasto_backlash import ElastoBacklash
 from bouncing_ball.models.laws.hertzian import HuntCrossley, KuwabaraKono, LinearHuntCrossley, Tsuji
+from bouncing_ball.models.laws.start_speed import Flores, LankaraniNikravesh
 from bouncing_ball.models.spring_damper import SpringDamper
 
 
@@ -22,7 +23,8 @@ def by_name(*laws: type[ContactLaw]) -> dict[str, type[ContactLaw]]:
 
 
 _HERTZ = (HuntCrossley, LinearHuntCrossley, Tsuji, KuwabaraKono)
-LAWS = by_name(*_HERTZ, SpringDamper, ElastoBacklash, Impedance)
+_BY_START = (LankaraniNikravesh, Flores)
+LAWS = by_name(*_HERTZ, *_BY_START, SpringDamper, ElastoBacklash, Impedance)
 """The laws by their names on the command line and in calls."""
 
 

@@ -82,6 +82,8 @@ class Branch:
 
 # Number of rounds that equalise the chords between resampled points.
 _EQUALISING_ROUNDS = 10
+# The largest size of a last step of Newton's method that rounding alone may cause, half the digits.
+_SMALL = 1e-8
 
 
 def _between(
@@ -109,6 +111,8 @@ def resample(problem: Problem, branch: Branch, count: int) -> np.ndarray:
     method in the plane normal to it is the corrector; the first and last points are those of the
     branch. The same is done again at other arclengths, until the chords between neighbours are
     equal, so that the result depends on the branch and on ``count``, but not on the step control.
+    Next to a singular end rounding moves the last step of Newton's method. A point is then taken if
+    it satisfies the equations as well as those of the branch.
 
     Raises
     ------
@@ -121,11 +125,13 @@ def resample(problem: Problem, branch: Branch, count: int) -> np.ndarray:
         raise ContinuationError(f"a branch of one point has no length: {branch.end}")
     wanted = np.linspace(0.0, arc[-1], count)
     points = branch.points
+    satisfied = np.abs(problem.residual(points)).max()
     for _ in range(_EQUALISING_ROUNDS):
         guess, along = _between(wanted, arc, branch.points, branch.tangents)
         found = newton(problem, guess, plane(along, guess))
-        if not np.all(found.converged):
-            residual = found.residual.max()
+        good = found.converged | ((found.step <= _SMALL) & (found.residual <= satisfied))
+        if not np.all(good):
+            residual = found.residual[~good].max()
             raise ContinuationError(
                 f"resampling to {count} points failed with residual {residual:.1e}"
             )

@@ -34,12 +34,14 @@ hysteresis damping for impact analysis of multibody systems*, Journal of Mechani
 (1990) 369-376. The papers themselves were not read.
 """
 
+import math
 from abc import abstractmethod
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.optimize import brentq
 
 from bouncing_ball.errors import ModelError, require
 from bouncing_ball.models.damping import check_positive
@@ -49,6 +51,7 @@ from bouncing_ball.models.laws.hertzian import Hertz, HuntCrossley
 
 # Starts that are slower are damped as one with this speed.
 _SLOWEST = 1e-9
+_ROUNDING = np.finfo(float).eps
 
 
 @dataclass(frozen=True, repr=False)
@@ -112,6 +115,40 @@ class DampedByStart(ContactLaw):
     @abstractmethod
     def nominal_of(cls, factor: np.ndarray) -> np.ndarray:
         """The e that gives c, the inverse of :attr:`factor`; NaN where there is none."""
+
+    @classmethod
+    def group_of(cls, restitution: float) -> float:
+        """c that gives a restitution coefficient r in (0, 1]: y - ln(1 + y) is the same at c and at
+        -r c.
+
+        Raises
+        ------
+        ModelError
+            If no nominal restitution gives it: r is at least 0.66296 with the first law.
+
+        Examples
+        --------
+        >>> round(Flores.group_of(0.47), 3), Flores.group_of(1.0)
+        (1.603, 0.0)
+        """
+        r = restitution
+
+        def loss(c: float) -> float:
+            """Positive below the root, divided by the double root at 0."""
+            return (c * (1 + r) + math.log1p(-r * c) - math.log1p(c)) / (c * c)
+
+        # The root is about 3(1 - r²)/(2(1 + r³)). At c = 1/r the ball no longer leaves.
+        most = (1 - _ROUNDING) / r
+        c = 0.0
+        if r < 1:
+            found = loss(most) < 0
+            c = float(brentq(loss, 0.5 * (1 - r * r), most, xtol=1e-16)) if found else math.inf
+        if not math.isfinite(c) or np.isnan(cls.nominal_of(np.asarray(c))):
+            raise ModelError(
+                f"restitution coefficient r = {r:g} is too small: no {cls.name} contact has it; "
+                "damped so strongly, the ball hardly leaves"
+            )
+        return c
 
     def force(self, penetration: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """The elastic part of the force, K p^{3/2}: that of a ball at rest on its contact. The

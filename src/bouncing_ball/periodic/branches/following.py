@@ -45,6 +45,7 @@ _CLOSER = 0.1
 _TRIES = 4
 _HALVES = "the two turns of the orbit become nearly equal"
 _STAYS = "the flight vanishes: the orbit merges with permanent contact"
+_ALL_VANISH = "the flights vanish: the orbit merges with permanent contact"
 _CORNER = "the branch has a corner, where the map of the model has no derivative"
 # If the steps become too short, a parameter this close to the end of its range is given as the
 # reason.
@@ -352,18 +353,39 @@ def _followed(
     # does, the branch is cut off there.
     initial = min(control.initial, near * np.sqrt(2 * orbits.impacts) / 2)
     equal_turns = Event(_HALVES, two_turns, terminal=True, reason=_HALVES)
+    at_rest = _resting(orbits, start)
     try:
         branch = continue_branch(
             orbits,
             start,
             towards=towards,
-            events=[*events(orbits), loss_of_release(orbits), equal_turns, *limits],
+            events=[*events(orbits), loss_of_release(orbits), equal_turns, *at_rest, *limits],
             control=replace(control, initial=initial),
             max_points=most,
         )
     except ContinuationError as error:
         raise NoOrbitError(str(error)) from None
     return _cut_off(orbits, branch)
+
+
+def _resting(orbits: PeriodicOrbits, start: np.ndarray) -> list[Event]:
+    """The end of a branch of orbits of the restitution models with a rest on the table where the
+    rest fills nearly the whole period.
+
+    All flights vanish together there, and the bounces before the rest are so much slower than the
+    first one that rounding errors decide on them, before the steps become short.
+    """
+    legs = orbits.legs(start)
+    if orbits.impacts == 1 or legs.departure is None or not legs.dynamics.forgets:
+        return []
+    if not np.any(legs.departure.sticks):
+        return []
+
+    def aloft(y: np.ndarray) -> np.ndarray:
+        return np.sum(orbits.intervals(y) - orbits.durations(y), axis=-1)
+
+    near = min(CLOSE, float(aloft(start)) / 2)
+    return [Event(_ALL_VANISH, lambda y: aloft(y) - near, terminal=True, reason=_ALL_VANISH)]
 
 
 def _cut_off(orbits: PeriodicOrbits, branch: Branch) -> Branch:

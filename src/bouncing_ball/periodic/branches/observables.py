@@ -24,6 +24,7 @@ from bouncing_ball.periodic.orbits.special import (
     Coordinates,
     Special,
     flight_time,
+    impact_margin,
 )
 
 VARIABLES = {
@@ -73,6 +74,10 @@ MERGES = "the flight vanishes: the orbit merges with permanent contact"
 # Ends of branches of orbits with one impact (:func:`~.special.ends_of_contact`) at which the speed
 # of the impact or the flight time vanishes, or both.
 _LOST = ("contact lost", "flight lost")
+# The slope of a straight line over logarithms is the same on two pieces, up to a tenth. On each of
+# them the speed becomes larger by this factor at least.
+_STRAIGHT = 0.1
+_FASTER = 1.05
 
 PLACE = ("amplitude", "phase", "contact_duration")
 """The quantities of special orbits that the datasets contain."""
@@ -124,18 +129,43 @@ def branch_variables(found: Orbits) -> dict[str, Any]:
 def _reasons(found: Orbits) -> list[str]:
     """Why the two ends of a branch are there, in the same words for all branches."""
     branch = found.branch
-    ends = ((branch.start, branch.points[0]), (branch.end, branch.points[-1]))
-    return [_reason(found.problem, end, point) for end, point in ends]
+    ends = ((branch.start, branch.points), (branch.end, branch.points[::-1]))
+    return [_reason(found.problem, end, points) for end, points in ends]
 
 
-def _reason(problem: Coordinates, end: End, point: np.ndarray) -> str:
+def _reason(problem: Coordinates, end: End, points: np.ndarray) -> str:
+    """Why a branch ends, by its points from this end on; with the event that could not be located
+    on its last step, if there is one.
+    """
     if end.event not in _LOST:
         return str(end)
-    # Where a release by force is below the level of the table, a ball may return to this level
-    # without speed after a flight.
-    if float(flight_time(problem.orbits, problem.inner(point))) < CLOSE:
-        return MERGES
-    return f"{Special.GRAZING_IMPACT}: {MEANINGS[Special.GRAZING_IMPACT]}"
+    grazes = f"{Special.GRAZING_IMPACT}: {MEANINGS[Special.GRAZING_IMPACT]}"
+    why = MERGES if _merges(problem, points) else grazes
+    return why if end.finished else f"{why}; {end}"
+
+
+def _merges(problem: Coordinates, points: np.ndarray) -> bool:
+    """Whether the flight of an orbit with one impact vanishes at the end of a branch.
+
+    Where a release by force is below the level of the table, a ball may return to this level
+    without speed after a flight. The speed of the impact is a power of the flight time next to
+    permanent contact, with the exponent 1, or 3 without damping. Its logarithm is then a straight
+    line over that of the flight time, whereas at the grazing of an impact a flight remains.
+    """
+    inner = problem.inner(points)
+    flight = flight_time(problem.orbits, inner)
+    if flight[0] < CLOSE:
+        return True
+    speed = impact_margin(problem.orbits, inner)
+    rows = [0]
+    for row, here in enumerate(speed):
+        if here > _FASTER * speed[rows[-1]]:
+            rows.append(row)
+    if len(rows) < 3 or not speed[0] > 0:
+        return False
+    longer, faster = (np.diff(np.log(values[rows[:3]])) for values in (flight, speed))
+    first, second = longer / faster
+    return bool(abs(first - second) < _STRAIGHT * first)
 
 
 def kept_variables(found: Orbits) -> dict[str, Any]:

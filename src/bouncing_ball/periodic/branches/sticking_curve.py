@@ -2,9 +2,10 @@
 
 No smooth function vanishes where sticking ends (:func:`~.special.sticking`), so that Newton's
 method cannot follow such orbits. The equations of the orbit are smooth all the same. The curve is
-therefore a row of limits: at each value of the second parameter the orbit is followed along the
-first one from one side of the limit to the other, and the limit between them is found to rounding.
-The next limit is predicted by the line through the last two.
+therefore a row of limits: at each value of one parameter the orbit is followed along the other one
+from one side of the limit to the other, and the limit between them is found to rounding. The next
+limit is predicted by the line through the last two, and it is sought at the value of the parameter
+that changes faster along this line, so that a curve may turn back in each of them.
 """
 
 from dataclasses import replace
@@ -19,23 +20,25 @@ from bouncing_ball.periodic.branches.following import PATIENT, Window
 from bouncing_ball.periodic.orbits.problem import PeriodicOrbits
 from bouncing_ball.periodic.orbits.special import sticking
 
-# The first, the largest and the smallest step in the coordinate of the second parameter.
+# The first, the largest and the smallest step in the coordinate of the parameter that is given.
 _FIRST = 0.005
 _LARGEST = 0.05
 _SMALLEST = 1e-6
-# A curve that is steeper than this at the smallest step turns back: with a curvature of 1 it has a
-# slope of about 1/sqrt(2 _SMALLEST), and with one of 1000 still 20.
-_STEEP = 10.0
+# The parameter that is given changes if the other one moves faster by this factor, so that it does
+# not change at each point of a curve along the diagonal.
+_FASTER = 1.5
 # The distance along the branch at which the limit is first looked for on both sides of its
 # prediction, and how many distances are tried, each four times as long as the one before.
 _APART = 1e-7
 _LONGER = 10
+# The columns of the two parameters, each with the other one.
+_OTHER = {-1: -2, -2: -1}
 
 
 def sticking_curve(
     orbits: PeriodicOrbits, start: np.ndarray, windows: tuple[Window, Window], most: int
 ) -> Branch:
-    """The limits of sticking through one of them, in both directions of the second parameter.
+    """The limits of sticking through one of them, in both directions.
 
     Parameters
     ----------
@@ -54,7 +57,7 @@ def sticking_curve(
         If there is no end of sticking near the start.
     """
     try:
-        first = _limit(orbits, start, start[-1])
+        first = _limit(orbits, start, -1)
     except NoOrbitError as error:
         raise NoOrbitError(
             f"no end of sticking was found near the start of the curve: {error}"
@@ -74,61 +77,69 @@ def _one_way(
     windows: tuple[Window, Window],
     most: int,
 ) -> tuple[list[np.ndarray], End]:
-    """The points in one direction of the second parameter, and why they end."""
-    along, across = orbits.along
-    within, limits = (np.arcsinh(np.array(window)) for window in windows)
-    last = limits[1] if sign > 0 else limits[0]
+    """The points in one direction, in which the second parameter first rises if the sign is
+    positive, and why they end.
+    """
+    within = np.arcsinh(np.array(windows))
     points = [first]
     step = _FIRST
+    # The column of the parameter that is given, and the direction in which it goes.
+    given = -1
+    heading = sign
     while len(points) < most:
         here = points[-1]
-        ahead = here[-1] + sign * min(step, sign * (last - here[-1]))
+        low, high = within[given]
+        last = high if heading > 0 else low
+        ahead = here[given] + heading * min(step, heading * (last - here[given]))
         slope = np.zeros_like(here)
         if len(points) > 1:
-            slope = (here - points[-2]) / (here[-1] - points[-2][-1])
-        guess = here + slope * (ahead - here[-1])
+            change = here - points[-2]
+            slope = change / change[given]
+        guess = here + slope * (ahead - here[given])
+        guess[given] = ahead
         try:
-            found = _limit(orbits, guess, ahead)
+            found = _limit(orbits, guess, given)
         except NoOrbitError as error:
             step /= 2
             if step >= _SMALLEST:
                 continue
-            if _turns(points):
-                at = f"{across.replace('_', ' ')} = {np.sinh(here[-1]):.6g}"
-                why = f"the curve turns back at {at}: exchange the parameters to follow it further"
-                return points, End(why)
             return points, End(f"no end of sticking was found beyond this point: {error}")
-        if not within[0] <= found[-2] <= within[1]:
-            bound = windows[0].high if found[-2] > within[1] else windows[0].low
-            return points, End(f"{along.replace('_', ' ')} = {bound:g} is passed")
+        other = _OTHER[given]
+        if not within[other][0] <= found[other] <= within[other][1]:
+            window = windows[other]
+            bound = window.high if found[other] > within[other][1] else window.low
+            return points, End(f"{_said(orbits, other)} = {bound:g} is passed")
         points.append(found)
         if ahead == last:
-            value = windows[1].high if sign > 0 else windows[1].low
-            return points, End(f"{across.replace('_', ' ')} = {value:g} is reached")
+            value = windows[given].high if heading > 0 else windows[given].low
+            return points, End(f"{_said(orbits, given)} = {value:g} is reached")
         step = min(2 * step, _LARGEST)
+        change = found - here
+        if abs(change[other]) > _FASTER * abs(change[given]):
+            # The next step along the line is as long as it would have been.
+            step = min(step * abs(change[other] / change[given]), _LARGEST)
+            given = other
+            heading = float(np.sign(change[other]))
     return points, End(f"reached the limit of {most} points", finished=False)
 
 
-def _turns(points: list[np.ndarray]) -> bool:
-    """Whether a curve turns back in the second parameter: it becomes ever steeper over it."""
-    if len(points) < 3:
-        return False
-    along, across = np.abs(np.diff(points[-3:], axis=0))[:, -2:].T
-    before, last = along / across
-    return bool(last > before and last > _STEEP)
+def _said(orbits: PeriodicOrbits, column: int) -> str:
+    """The name of the parameter in a column, in words."""
+    return orbits.along[column].replace("_", " ")
 
 
-def _limit(orbits: PeriodicOrbits, guess: np.ndarray, across: float) -> np.ndarray:
-    """The end of sticking at a coordinate of the second parameter, next to a guess.
+def _limit(orbits: PeriodicOrbits, guess: np.ndarray, given: int) -> np.ndarray:
+    """The end of sticking next to a guess, with its coordinate of one parameter, by its column.
 
     Raises
     ------
     NoOrbitError
         If there is none near.
     """
-    first, second = orbits.along
-    one = replace(orbits, along=(first,), balls=orbits.balls.at({second: np.sinh(across)}))
-    start = guess[:-1]
+    free = _OTHER[given]
+    value = {orbits.along[given]: np.sinh(guess[given])}
+    one = replace(orbits, along=(orbits.along[free],), balls=orbits.balls.at(value))
+    start = np.array([*guess[:-2], guess[free]])
     with np.errstate(all="ignore"):
         # Along the branch, because its states change much faster than the parameter.
         ahead = tangent(one.jacobian(start), np.eye(start.size)[-1])
@@ -142,7 +153,10 @@ def _limit(orbits: PeriodicOrbits, guess: np.ndarray, across: float) -> np.ndarr
             signs = sticking(one, found.point)
             if signs[0] != signs[1]:
                 (limit,) = domain_limits(one, lambda y: sticking(one, y) > 0, found.point)
-                return np.array([*limit, across])
+                there = guess.copy()
+                there[:-2] = limit[:-1]
+                there[free] = limit[-1]
+                return there
     raise NoOrbitError("the balls of all orbits near it come to rest, or those of none")
 
 

@@ -2,7 +2,9 @@
 
 The branch is a solution curve of the equations of n-T orbits in the unknowns of the paper
 (:mod:`bouncing_ball.periodic.one_impact.paper_unknowns`), with Λ as the parameter. It is followed
-to both sides from an orbit in the stable range, until the orbits end or Λ leaves a window.
+to both sides from an orbit in the stable range, until the orbits end or Λ leaves a window. Where an
+event cannot be located, for example next to permanent contact, the branch is kept up to there, and
+its end says which event it is; such an end is not finished (:class:`~.numerics.branch.End`).
 """
 
 from collections.abc import Collection
@@ -15,7 +17,7 @@ from numpy.typing import ArrayLike
 from bouncing_ball.errors import NoOrbitError
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.setting import require_paper
-from bouncing_ball.numerics.branch import Branch, ContinuationError
+from bouncing_ball.numerics.branch import Branch, ContinuationError, End, EndKind
 from bouncing_ball.numerics.continuation import continue_all_both_ways
 from bouncing_ball.numerics.events import Event
 from bouncing_ball.numerics.steps import StepControl, WithEvents
@@ -73,7 +75,7 @@ def whole_branch(
     NoOrbitError
         If the branch begins above this Λ, or if no orbit is found to start from.
     ContinuationError
-        If the continuation stops before an end of the branch or a bound of Λ.
+        If the branch has more points than are allowed before its end or a bound of Λ.
 
     Examples
     --------
@@ -224,9 +226,19 @@ def _checked(problem: PaperUnknowns, branch: Branch | ContinuationError) -> Foll
     if isinstance(branch, ContinuationError):
         return branch
     for end in (branch.start, branch.end):
-        if not end.finished:
+        if end.kind is EndKind.POINTS:
             return ContinuationError(f"the branch is not followed to its end: {end}")
-    return Followed(problem, with_ends(problem, branch))
+    found = with_ends(problem, branch)
+    start = _with_missed(branch.start, found.start)
+    end = _with_missed(branch.end, found.end)
+    return Followed(problem, replace(found, start=start, end=end))
+
+
+def _with_missed(before: End, named: End) -> End:
+    """The name of an end; if an event on the last step could not be located, with this sentence."""
+    if before.finished:
+        return named
+    return before._replace(event=named.event)
 
 
 def _default_top(model: Model, n: int) -> float:

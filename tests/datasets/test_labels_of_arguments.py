@@ -103,6 +103,7 @@ WRONG = {
     "many digits": 10**5000,
     "a module": np,
     "a time": np.timedelta64(1, "ns"),
+    "a date": np.datetime64(1, "ns"),
     "times": np.array([1, 1], dtype="timedelta64[ns]"),
     "dates": [np.datetime64(1, "ns")],
     "a plane": np.full((2, 2), -1.0),

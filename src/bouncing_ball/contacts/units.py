@@ -152,7 +152,7 @@ write it as '50 Hz'
         return ParameterError(f"{{{name}}} = {{}} {why}", said)
 
     # Each of them can be converted to a number.
-    if isinstance(value, bool | np.bool_ | np.timedelta64):
+    if isinstance(value, bool | np.bool_ | np.datetime64 | np.timedelta64):
         raise wrong("is neither a number nor a text", shortened(value))
 
     if isinstance(value, str):

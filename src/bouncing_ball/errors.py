@@ -10,7 +10,7 @@ import math
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
 
 if TYPE_CHECKING:
@@ -151,6 +151,9 @@ def did_you_mean(name: object, known: Iterable[str]) -> str:
 def suggesting(call: _Call) -> _Call:
     """A function or class that answers an unknown keyword argument with the one that it resembles.
 
+    It is called with the settings of numpy with which it was tested, the default ones: a caller who
+    makes numpy raise errors does so for code of his own.
+
     Examples
     --------
     >>> @suggesting
@@ -170,6 +173,12 @@ def suggesting(call: _Call) -> _Call:
     return call
 
 
+def _default_settings_of_numpy() -> AbstractContextManager:
+    # What computes has imported numpy; what only reads arguments does not need it.
+    numpy: Any = sys.modules.get("numpy")
+    return numpy.errstate(all="warn", under="ignore") if numpy else nullcontext()
+
+
 def _suggesting(call: Callable[..., Any], name: str) -> Callable[..., Any]:
     parameters = inspect.signature(call).parameters
     # A call that takes any keyword refuses unknown ones itself, as that of contact laws does.
@@ -181,7 +190,8 @@ def _suggesting(call: Callable[..., Any], name: str) -> Callable[..., Any]:
     def checked(*given: Any, **named: Any) -> Any:
         unknown = next((each for each in named if each not in known), None)
         if unknown is None:
-            return call(*given, **named)
+            with _default_settings_of_numpy():
+                return call(*given, **named)
         begins = [each for each in known if each.startswith(unknown)]
         meant = f"; did you mean {begins[0]}?" if len(begins) == 1 else ""
         *others, last = known

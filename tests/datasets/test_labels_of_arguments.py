@@ -102,6 +102,10 @@ WRONG = {
     "a long text": "x\ny" * 500,
     "many digits": 10**5000,
     "a module": np,
+    "a time": np.timedelta64(1, "ns"),
+    "a date": np.datetime64(1, "ns"),
+    "times": np.array([1, 1], dtype="timedelta64[ns]"),
+    "dates": [np.datetime64(1, "ns")],
     "a plane": np.full((2, 2), -1.0),
 }
 CALLS = {
@@ -141,7 +145,11 @@ def test_what_a_caller_lets_numpy_do_does_not_reach_into_the_library():
     lossy = bb.spring_damper(restitution=1e-6, frequency_ratio=1e-3)
     before = bb.limits(lossy)
     fallen = bb.drop(lossy, height=1.0, periods=1)
+    ball = bb.spring_damper(restitution=0.85, frequency_ratio=10.0)
+    long_fallen = bb.drop(ball, height=1.0, periods=750)
     with np.errstate(all="raise"):
+        assert bb.drop(ball, height=1.0, periods=750).equals(long_fallen)
+        bb.history(BALL, amplitude=1.0, periods=5e-324)
         assert repr(bb.limits(lossy)) == repr(before)
         assert bb.drop(lossy, height=1.0, periods=1).equals(fallen)
         with pytest.raises(bb.NoOrbitError):

@@ -96,6 +96,9 @@ def test_a_damaged_file_is_one_line(tmp_path, refusal):
     path.write_bytes(path.read_bytes()[:2000])
     with refusal(ModelError, "fig08.nc is damaged"):
         read_dataset(path)
+    # A name that cannot be encoded is shown with its escapes.
+    with refusal(ModelError, "\\ud800 is damaged"):
+        read_dataset("\ud800")
 
 
 @pytest.mark.parametrize("error", [RuntimeError("NetCDF: HDF error"), PermissionError(13, "no")])

@@ -12,6 +12,7 @@ from bouncing_ball.beyond.exhibits.motion_maps import (
     OTHER_COLOURS,
     UNKNOWN_PERIOD,
     mark_nodes,
+    node_map,
 )
 from bouncing_ball.datasets.variables import SHARED
 from bouncing_ball.drawing.canvas import draw_curve
@@ -67,7 +68,12 @@ def test_the_errors_of_the_laws_are_over_the_share_of_the_cycle(recorded):
     with style():
         figure = contact_laws(data)
     line = figure.axes[0].lines[0]
-    assert line.get_xdata() == pytest.approx(length / (2 * np.pi * data.attrs["n"]), rel=1e-14)
+    share = length / (2 * np.pi * data.attrs["n"])
+    assert line.get_xdata() == pytest.approx(share, rel=1e-14)
+    # The guides of the first and the second order span the same shares.
+    for slope, guide in zip((1, 2), figure.axes[0].lines[-2:], strict=True):
+        assert guide.get_xdata() == pytest.approx(share[[0, -1]], rel=1e-14)
+        assert guide.get_ydata() == pytest.approx(share[[0, -1]] ** slope, rel=1e-14)
 
 
 def test_the_nodes_of_a_kind_are_marked_and_no_others():
@@ -80,6 +86,33 @@ def test_the_nodes_of_a_kind_are_marked_and_no_others():
     found = {tuple(map(float, point)) for point in marks.get_xydata()}
     expected = {(0.2, 2.0), (0.5, 2.0)}
     assert found in (expected, {(lam, r) for r, lam in expected})
+
+
+def test_a_map_of_motions_marks_each_kind_at_its_own_nodes():
+    kinds = np.array(
+        [["orbit", "undecided"], ["permanent contact", "undecided"], ["orbit", "orbit"]]
+    )
+    axis = {"restitution": [0.2, 0.5, 0.8], "amplitude": [1.0, 2.0]}
+    one = xr.Dataset(
+        {
+            "kind": (("restitution", "amplitude"), kinds),
+            "saddle_node_amplitude": ("restitution", [1.1, 1.2, 1.3]),
+            "period_doubling_amplitude": ("restitution", [1.7, 1.8, 1.9]),
+        },
+        axis,
+    )
+    axes = Figure().add_subplot()
+    values = np.arange(6.0).reshape(3, 2)
+    shown = node_map(axes, one, values, ["undecided", "permanent contact"], vmin=0, vmax=5)
+    assert np.array_equal(shown.get_array(), values)
+    *marks, fold, doubling = axes.lines
+    places = [{tuple(map(float, point)) for point in line.get_xydata()} for line in marks]
+    assert places == [{(2.0, 0.2), (2.0, 0.5)}, {(1.0, 0.5)}]
+    for line, amplitudes in ((fold, [1.1, 1.2, 1.3]), (doubling, [1.7, 1.8, 1.9])):
+        assert line.get_xydata().tolist() == list(
+            map(list, zip(amplitudes, axis["restitution"], strict=True))
+        )
+    assert fold.get_linestyle() != doubling.get_linestyle()
 
 
 def test_the_kinds_with_marks_are_kinds_of_the_maps():

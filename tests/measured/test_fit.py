@@ -285,6 +285,16 @@ def test_notes_give_the_size_of_gravity_during_contact():
 MISTAKES = {
     "no numbers": (([], []), {}, "one length"),
     "two lengths": (([1.0, 2.0], [0.5]), {}, "not 2 and 1"),
+    "a word for truth": (
+        ([1.0], [0.5]),
+        {"absolute_uncertainties": "no"},
+        "absolute_uncertainties = 'no' is not True or False",
+    ),
+    "numbers for truth": (
+        ([1.0, 2.0], [0.5, 0.4]),
+        {"absolute_uncertainties": np.array([1.0, 2.0])},
+        "is not True or False",
+    ),
     "a matrix": ((np.ones((2, 2)), np.ones((2, 2))), {}, "one length"),
     "a speed of 0": (([0.0], [0.5]), {}, "impact speed = 0.0"),
     "NaN": (([1.0], [np.nan]), {}, "restitution coefficient = nan"),

@@ -149,5 +149,6 @@ def test_what_has_no_branch_with_one_impact_more_says_why(refusal):
     )
     with refusal(NoOrbitError, "in the corrected model an impact takes effect after a delay"):
         bouncing_ball.follow(_grazing(delayed))
-    with refusal(NoOrbitError, "the orbit is no grazing of a flight of a branch"):
-        bouncing_ball.grazing_form(bouncing_ball.orbit(rigid, amplitude=1.4))
+    for other in (bouncing_ball.orbit(rigid, amplitude=1.4), rigid, 0.5, None):
+        with refusal(NoOrbitError, "the orbit is no grazing of a flight of a branch"):
+            bouncing_ball.grazing_form(other)

@@ -150,6 +150,9 @@ def test_a_foreign_file_is_refused_in_one_line(content, tmp_path, refusal):
         bouncing_ball.read_orbits(path)
     with refusal(ModelError, "source = 3 is neither a path nor a dataset"):
         bouncing_ball.read_orbits(3)
+    # Python writes no number of so many digits.
+    with refusal(ModelError, "source = a whole number of more than 4300 digits is neither a path"):
+        bouncing_ball.read_orbits(10**5000)
     with refusal(ModelError, "no dataset"):
         bouncing_ball.read_orbits(tmp_path / "missing.nc")
 

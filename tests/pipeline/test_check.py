@@ -55,6 +55,7 @@ def test_finer_grids_of_the_whole_motion_are_accepted_and_are_finer(model):
 
 FIG05 = ("paper", "fig05")
 FIG08 = ("paper", "fig08")
+ENGINES = ("beyond", "ext_engines")
 SPAN = (*FIG05, "frequency_ratio")
 
 
@@ -94,6 +95,10 @@ SPAN = (*FIG05, "frequency_ratio")
         # What the physics forbids.
         ((*FIG05, "cases", 3, "amplitude"), 2.57, "must be at least 2.57039, the saddle-node of"),
         ((*FIG05, "cases", 3, "amplitude"), 2.5704, ""),
+        # What the physics engines ran.
+        ((*ENGINES, "restitution"), 0.7, "restitution = 0.7 must be 0.65 or 0.85, those of"),
+        ((*ENGINES, "n"), 3, "beyond.ext_engines.n = 3 must be 1 or 2, those of the orbits that"),
+        ((*ENGINES, "restitution"), 0.85, ""),
         (("paper", "fig12", "amplitude"), 0.6663, "= 0.6663 must be at least 0.666398, the sadd"),
         (("paper", "fig10", "amplitude", 2), 0.5, "must be at least 0.509447, the saddle-node"),
         ((*FIG08, "amplitude_max"), 0.25, "= 0.25 must be at least 0.254724, the saddle-node"),

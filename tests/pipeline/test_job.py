@@ -9,7 +9,7 @@ from bouncing_ball.datasets.files import write_dataset
 from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline import jobs
 from bouncing_ball.pipeline.jobs import logged, make_dataset, read_input, using
-from bouncing_ball.pipeline.samples import COMPUTATION
+from bouncing_ball.pipeline.samples import COMPUTATION, CONTENT
 
 
 @pytest.fixture
@@ -71,7 +71,7 @@ def test_only_a_sample_has_a_processor_time_which_is_that_of_its_shards_and_its_
     assert made.a.values.tolist() == [1.0, 1.0]
     assert made.attrs.get(jobs.SECONDS) == ("42" if sample else None)
     # Only a sample records what computed it, by what the code is now.
-    assert (COMPUTATION in made.attrs) == sample
+    assert (COMPUTATION in made.attrs) == (CONTENT in made.attrs) == sample
 
 
 def test_an_input_is_whole_or_its_command_is_named(tmp_path, refusal):

@@ -3,15 +3,22 @@
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
 import xarray as xr
 
-from bouncing_ball.datasets.files import write_dataset
+from bouncing_ball.datasets.files import read_dataset, write_dataset
 from bouncing_ball.pipeline import sources
 from bouncing_ball.pipeline.diff.folders import compare_folders
 from bouncing_ball.pipeline.diff.outcome import Outcome
 from bouncing_ball.pipeline.diff.page import to_html, to_terminal
-from bouncing_ball.pipeline.samples import COMPUTATION, computed_by, outdated
+from bouncing_ball.pipeline.samples import (
+    COMPUTATION,
+    CONTENT,
+    computed_by,
+    content_digest,
+    outdated,
+)
 
 ROOT = Path(__file__).parents[2]
 CODE = '"""Twice."""\n\n\ndef twice(x):\n    # By a sum.\n    return x + x\n'
@@ -81,8 +88,52 @@ def test_the_comparison_names_a_sample_that_is_older_or_says_nothing(checkout):
     (file,) = samples.parts
     assert file.name == "config/silent.nc" and "does not record" in file.parts[0].note
     assert "config/silent.nc" in to_terminal(found) and "silent.nc" in to_html(found)
-    # One artifact alone is compared without them.
+    # One artifact alone is compared without samples of others.
     assert compare_folders(checkout, checkout / "results", ["fig01"]).outcome is Outcome.IDENTICAL
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda data: data.assign(hidden=2 * data.hidden),
+        lambda data: data.assign(names=("t", ["a", "c", ""])),
+        lambda data: data.assign_attrs(title="Another"),
+        lambda data: data.assign(x=data.x.assign_attrs(units="rad")),
+    ],
+)
+def test_a_sample_that_was_changed_by_hand_is_named(checkout, change):
+    """Also where no picture shows it; the digest survives that the file is written and read."""
+    path = checkout / "config" / "two.nc"
+    times = np.array([1.0, np.nan, -0.0])
+    made = xr.Dataset(
+        {
+            "x": ((), 1.0, {"units": "1"}),
+            "hidden": ("t", times.astype(np.float32)),
+            "kinds": ("t", np.array([1, 2, 3], dtype=np.int8)),
+            "sure": ("t", [True, False, True]),
+            "names": ("t", ["a", "b", ""]),
+        },
+        {"t": -times},
+        attrs=computed_by([checkout / "src" / "bouncing_ball" / "models" / "twice.py"]),
+    )
+    made.attrs |= {"title": "Two"}
+    made.attrs[CONTENT] = content_digest(made)
+    write_dataset(made, path, compressed=True)
+    assert outdated(checkout) == {}
+    write_dataset(change(read_dataset(path)), path)
+    assert outdated(checkout) == {"two.nc": "its content was changed after it was computed"}
+
+
+def test_one_artifact_is_compared_with_the_samples_that_it_is_drawn_from(checkout):
+    write_dataset(xr.Dataset({"x": ((), 1.0)}), checkout / "config" / "silent.nc")
+    inputs = {"provenance_inputs": '["config/silent.nc"]'}
+    for folder in (checkout, checkout / "results"):
+        (folder / "figures").mkdir(parents=True)
+        for name, attributes in (("fig01", {}), ("fig02", inputs)):
+            data = xr.Dataset({"x": ((), 1.0)}, attrs=attributes)
+            write_dataset(data, folder / "figures" / f"{name}.nc")
+    for name, outcome in (("fig01", Outcome.IDENTICAL), ("fig02", Outcome.STALE)):
+        assert compare_folders(checkout, checkout / "results", [name]).outcome is outcome
 
 
 def test_the_files_of_a_sample_are_named_with_digests(checkout):

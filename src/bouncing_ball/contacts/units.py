@@ -151,7 +151,8 @@ write it as '50 Hz'
     def wrong(why: str, said: str = short) -> ParameterError:
         return ParameterError(f"{{{name}}} = {{}} {why}", said)
 
-    if isinstance(value, bool):
+    # Each of them can be converted to a number.
+    if isinstance(value, bool | np.bool_ | np.datetime64 | np.timedelta64):
         raise wrong("is neither a number nor a text", shortened(value))
 
     if isinstance(value, str):

@@ -141,7 +141,7 @@ def checked(name: str, value: Any, allowed: Range) -> Any:
             values = values.astype(wide, copy=False)
         _check_array(name, values, allowed, named=hasattr(value, "dims"))
         return value
-    number = values.item() if isinstance(values, np.ndarray | np.generic) else values
+    number = _plain(values)
     _check_number(name, number, allowed)
     return int(number) if allowed.whole else float(number)
 
@@ -166,8 +166,20 @@ def _checked_list(name: str, value: Sequence, allowed: Range) -> np.ndarray:
         if isinstance(entry, list | tuple):
             axes = "several axes without names: give an xarray.DataArray"
             raise ParameterError(f"{{{name}}} has {axes}")
-        _check_number(name, entry.item() if isinstance(entry, np.generic) else entry, allowed)
+        _check_number(name, _plain(entry), allowed)
     return np.array(value, dtype=int if allowed.whole else float)
+
+
+def _plain(value: Any) -> Any:
+    """A number of numpy as one of Python; a date or a time of numpy, which is none, as it is.
+
+    Examples
+    --------
+    >>> _plain(np.float32(0.5)), _plain(np.timedelta64(5, "ns"))
+    (0.5, np.timedelta64(5,'ns'))
+    """
+    is_number = isinstance(value, np.ndarray | np.generic) and value.dtype.kind not in "mM"
+    return value.item() if is_number else value
 
 
 def _check_array(name: str, values: np.ndarray, allowed: Range, named: bool) -> None:
@@ -177,8 +189,8 @@ def _check_array(name: str, values: np.ndarray, allowed: Range, named: bool) -> 
     if not values.size:
         raise ParameterError(f"{{{name}}} has no entries")
     outside = values[~_within(values, allowed)] if values.dtype.kind in "iuf" else values
-    for entry in outside.ravel().tolist():
-        _check_number(name, entry, allowed)
+    for entry in outside.ravel():
+        _check_number(name, _plain(entry), allowed)
 
 
 def _within(values: np.ndarray, allowed: Range) -> np.ndarray:

@@ -150,4 +150,4 @@ def read_dataset(path: str | Path) -> xr.Dataset:
         raise ModelError(f"no dataset {printable(path, None)}") from None
     # The type of the error that the libraries raise depends on the place of the damage.
     except (OSError, ValueError, RuntimeError, AttributeError) as error:
-        raise ModelError(f"{path} is damaged") from error
+        raise ModelError(f"{printable(path, None)} is damaged") from error

@@ -114,6 +114,10 @@ def fit_contact(
     >>> fit.best.contact(speed=1.0).law
     'kuwabara-kono'
     """
+    if not isinstance(absolute_uncertainties, bool | np.bool_):
+        raise ParameterError(
+            "{absolute_uncertainties} = {} is not True or False", shortened(absolute_uncertainties)
+        )
     points = checked(speeds, restitutions, uncertainties)
     points = replace(points, is_relative=not absolute_uncertainties)
     weight = None if mass is None else in_si("mass", mass, quantities(Contact)["mass"])

@@ -76,7 +76,7 @@ def read_orbits(source: str | Path | xr.Dataset) -> Orbit | FollowedBranch | Spe
     True
     """
     if not isinstance(source, str | Path | xr.Dataset):
-        raise ParameterError("{source} = {} is neither a path nor a dataset", repr(source))
+        raise ParameterError("{source} = {} is neither a path nor a dataset", shortened(source))
     where = "the dataset" if isinstance(source, xr.Dataset) else str(source)
     data = source if isinstance(source, xr.Dataset) else read_dataset(source)
     if not has_orbits(data):

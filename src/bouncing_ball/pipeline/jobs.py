@@ -29,7 +29,7 @@ from bouncing_ball.errors import ModelError
 from bouncing_ball.pipeline.configuration import typed
 from bouncing_ball.pipeline.patience import patience_of_job
 from bouncing_ball.pipeline.provenance import PREFIX, gather, read_attributes
-from bouncing_ball.pipeline.samples import SECONDS, computed_by
+from bouncing_ball.pipeline.samples import CONTENT, SECONDS, computed_by, content_digest
 from bouncing_ball.pipeline.sources import file_of, names_of, without_versions
 
 REFERENCE = (
@@ -249,7 +249,8 @@ def publish(
     seconds: float | None = None,
 ) -> None:
     """Write the job's dataset, with its title, parameters and provenance as attributes, among them
-    the processor time in seconds if it is given, and the code of what is compressed, a sample.
+    the processor time in seconds if it is given, and of what is compressed, a sample, its code and
+    a digest of its content.
     """
     drawing = snakemake.params.get("drawing")
     made = provenance(snakemake)
@@ -265,4 +266,6 @@ def publish(
         **(computed_by(code) if compressed else {}),
         **({} if seconds is None else {SECONDS: f"{seconds:.0f}"}),
     }
+    if compressed:
+        dataset.attrs[CONTENT] = content_digest(dataset)
     write_dataset(dataset, snakemake.output.data, compressed=compressed)

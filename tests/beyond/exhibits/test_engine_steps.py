@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from bouncing_ball.accuracy.corrected_errors import errors
-from bouncing_ball.beyond.exhibits.engine_steps import conformance
+from bouncing_ball.beyond.exhibits.engine_steps import FAMILIES, RESTITUTIONS, conformance
 from bouncing_ball.contacts.engines.choice import ENGINES
 from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.datasets.files import read_dataset
 from bouncing_ball.errors import ModelError
+from bouncing_ball.models.damping import Release
 from bouncing_ball.models.spring_damper import SpringDamper
 from bouncing_ball.pipeline.configuration import read_yaml, typed
 
@@ -54,10 +55,18 @@ def test_the_error_falls_as_one_over_the_steps(found):
     assert slopes[..., -1] == pytest.approx(-1, abs=0.01)
 
 
-@pytest.mark.parametrize(("changed", "says"), [({"n": 3}, "n = 3"), ({"restitution": 0.7}, "0.7")])
-def test_an_orbit_that_no_engine_ran_is_refused(changed, says, refusal):
-    with refusal(ModelError, says, "is not among"):
-        conformed(**changed)
+def test_the_orbits_that_are_allowed_are_those_that_the_engines_ran():
+    assert RUNS.n.values.tolist() == list(FAMILIES)
+    assert RUNS.restitution.values.tolist() == list(RESTITUTIONS)
+    assert RUNS.release.values.tolist() == [str(rule) for rule in Release if rule.is_linear]
+    # Each of them ran at each frequency ratio in at least one engine.
+    assert RUNS.height_error.notnull().any("engine").all()
+
+
+def test_an_orbit_that_the_dataset_does_not_have_is_refused(refusal):
+    for lacking, says in (({"n": [2]}, "n = 1"), ({"restitution": [0.85]}, "restitution = 0.65")):
+        with refusal(ModelError, says, "is not among"):
+            conformed(RUNS.sel(lacking))
 
 
 def test_the_models_err_as_everywhere_and_the_simulation_does_not(found):

@@ -34,6 +34,16 @@ def test_the_interval_of_a_mean_life_holds_for_lives_that_are_not_exponential():
     assert np.isnan(lives.mean_with_limits(life[:1], 0.95)[1:]).all()
 
 
+def test_the_interval_of_few_lives_is_that_of_students_distribution_in_closed_form():
+    # With one degree of freedom it is Cauchy's, and with two its quantiles are algebraic.
+    mean, low, high = lives.mean_with_limits(np.array([1.0, 3.0]), 0.95)
+    width = np.tan(0.95 * np.pi / 2)
+    assert (mean, low, high) == pytest.approx((2, 2 - width, 2 + width), rel=1e-12)
+    mean, low, high = lives.mean_with_limits(np.array([1.0, 2.0, 3.0]), 0.9)
+    width = 0.9 * np.sqrt(2 / (1 - 0.9**2)) / np.sqrt(3)
+    assert (mean, low, high) == pytest.approx((2, 2 - width, 2 + width), rel=1e-12)
+
+
 def test_a_life_ends_where_the_first_sticking_of_a_simulation_ends(found):
     """After an instant a ball that sticks has a contact of its own; on a contact of finite
     stiffness the contact lasts longer than one damped oscillation.

@@ -9,11 +9,11 @@ are read from the accepted dataset of their runs.
 """
 
 from collections.abc import Mapping
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
-from pydantic import AfterValidator, Strict
+from pydantic import AfterValidator, Field, Strict
 
 from bouncing_ball.accuracy.corrected_errors import SIMPLE, errors
 from bouncing_ball.accuracy.errors import relative
@@ -86,13 +86,37 @@ VARIABLES = {
 Steps = Annotated[int, number("time steps in a contact, at least 8 to resolve it", ge=8, le=131072)]
 
 
+FAMILIES = (1, 2)
+RESTITUTIONS = (0.65, 0.85)
+"""The families n and the restitution coefficients r of the orbits that the engines ran, each of
+them with both release rules.
+"""
+
+
+def _require_run(values: tuple[float, ...]) -> AfterValidator:
+    def check(value: float) -> float:
+        if value not in values:
+            raise ValueError(
+                f"must be {' or '.join(map(str, values))}, those of the orbits that the physics "
+                "engines ran (config/engines.nc)"
+            )
+        return value
+
+    return AfterValidator(check)
+
+
+def _only(values: tuple[float, ...]) -> Any:
+    """The field of a number of which the page of the configuration says that these are allowed."""
+    return Field(json_schema_extra={"enum": list(values)})
+
+
 class EngineOrbit(Parameters):
     """One of the orbits that were run in the engines, and how it is simulated here in few and in
     many time steps.
     """
 
-    n: Family
-    restitution: Restitution
+    n: Annotated[Family, _require_run(FAMILIES), _only(FAMILIES)]
+    restitution: Annotated[Restitution, _require_run(RESTITUTIONS), _only(RESTITUTIONS)]
     release: Annotated[Release, Strict(False)]
     steps: Annotated[Many[Steps], AfterValidator(sorted)]
     balls: Annotated[int, number("balls in each simulation", ge=1, le=1000)]
@@ -225,7 +249,7 @@ def conformance(data: Mapping[str, xr.Dataset], parameters: EngineOrbit) -> xr.D
     Raises
     ------
     ModelError
-        If the engines did not run this orbit.
+        If the dataset does not have this orbit.
     """
     runs = data["engines"]
     along = ("restitution", "n", "frequency_ratio")

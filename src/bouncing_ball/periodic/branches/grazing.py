@@ -106,6 +106,7 @@ def grazing_form(orbit: Orbit) -> GrazingForm:
     >>> round(form.coefficient / (1.5 * (2 * form.acceleration) ** 0.5), 12)
     1.0
     """
+    _require_grazing(orbit)
     name = orbit.along[0]
     problem, here = _problem(orbit, name)
     touch = _touch(problem, here)
@@ -137,6 +138,11 @@ def _slow_restitution(model: Model) -> float:
     return float(np.asarray(model.signature(1e-9).restitution))
 
 
+def _require_grazing(orbit: Orbit) -> None:
+    if not isinstance(orbit, Orbit) or orbit.shape or orbit.kind != Special.GRAZING_FLIGHT:
+        raise NoOrbitError("the orbit is no grazing of a flight of a branch")
+
+
 def _problem(orbit: Orbit, along: str) -> tuple[PeriodicOrbits, np.ndarray]:
     """The equations of a grazing orbit, and the orbit.
 
@@ -145,8 +151,7 @@ def _problem(orbit: Orbit, along: str) -> tuple[PeriodicOrbits, np.ndarray]:
     NoOrbitError
         If the orbit is no grazing of a flight, or if its model has no slow impacts.
     """
-    if not isinstance(orbit, Orbit) or orbit.shape or orbit.kind != Special.GRAZING_FLIGHT:
-        raise NoOrbitError("the orbit is no grazing of a flight of a branch")
+    _require_grazing(orbit)
     problem = orbit.problem(along)
     here = point_near(problem, orbit.point(problem))
     dynamics: Any = problem.dynamics(here)[0]

@@ -345,19 +345,24 @@ def compare_folders(
             why = next(filter(None, reasons), "")
             whole = replace(whole, cause=_cause(whole, judged[name], origins, roots, why))
         found.append(whole)
-    if not only and (samples := _outdated_samples(record)):
+    used = {path for name in wanted for path in judged[name].new.inputs}
+    if samples := _outdated_samples(record, used if only else None):
         found.append(samples)
     found.sort(key=lambda whole: (-whole.outcome.rank, -whole.share, whole.name))
     return Whole("", tuple(found))
 
 
-def _outdated_samples(record: Path) -> Whole | None:
-    """The accepted samples of the record that are older than the code that computes them."""
-    reasons = outdated(record)
+def _outdated_samples(record: Path, used: Collection[str] | None) -> Whole | None:
+    """The accepted samples of the record that are not what their code computes: all of them, or
+    those that are among these files.
+    """
+    found = outdated(record)
+    reasons = {name: why for name, why in found.items() if used is None or f"config/{name}" in used}
     if not reasons:
         return None
     files = [
         Whole(f"config/{name}", (Finding("", Outcome.STALE, note=why),))
         for name, why in reasons.items()
     ]
-    return Whole("samples", tuple(files), cause="accepted samples are older than their code")
+    cause = "accepted samples are older than their code, or were changed by hand"
+    return Whole("samples", tuple(files), cause=cause)

@@ -10,10 +10,14 @@ import bouncing_ball
 from bouncing_ball import Drag, Spring, Waveform, rigid
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.flight import Flight
+from bouncing_ball.models.laws.hertzian import Tsuji
+from bouncing_ball.models.laws.model import LawModel
 from bouncing_ball.models.linear_flight import LinearFlight, Pressure
 from bouncing_ball.models.rigid import RestitutionModel
 from bouncing_ball.models.sequence import Status
 from bouncing_ball.models.setting import OtherSetting
+from bouncing_ball.models.spring_damper import SpringDamper
+from bouncing_ball.models.spring_damper_model import SpringDamperModel
 from bouncing_ball.models.suspension import responses
 from bouncing_ball.models.waveform import SINE
 
@@ -244,3 +248,16 @@ def test_an_array_of_drags_is_a_row_of_balls():
     for k, drag in enumerate(drags):
         alone = rigid(restitution=0.5, flight=Drag(float(drag))).simulate(1.5, 0.2, -4.0, 5)
         assert np.abs(found.time[:, k] - alone.time).max() < 1e-13
+
+
+@pytest.mark.parametrize(
+    "model",
+    [
+        lambda setting: RestitutionModel(0.5, setting),
+        lambda setting: SpringDamperModel(SpringDamper(10.0, 0.1), setting),
+        lambda setting: LawModel(Tsuji(900.0, 0.1), setting),
+    ],
+)
+def test_what_is_no_setting_is_refused_in_one_line(model, refusal):
+    with refusal(ModelError, "setting = 3 is not a Setting"):
+        model(3)

@@ -13,7 +13,7 @@ from bouncing_ball.models.instant import Instant, rigid_instant
 from bouncing_ball.models.laws.analytic import compare
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.restitution import RestitutionDynamics
-from bouncing_ball.models.setting import PAPER, Setting
+from bouncing_ball.models.setting import PAPER, Setting, require_setting
 from bouncing_ball.numerics.arrays import Batch
 
 # The imaginary step relative to the speed; its square is lost in rounding.
@@ -131,6 +131,7 @@ class RestitutionLawModel(Model):
     name: ClassVar[str] = "restitution-law"
 
     def __post_init__(self) -> None:
+        require_setting(self.setting)
         require_analytic_restitution(self.law)
 
     def dynamics(self, amplitude: ArrayLike) -> RestitutionLawDynamics:

@@ -12,7 +12,7 @@ from bouncing_ball.models.damping import check_restitution
 from bouncing_ball.models.instant import Instant, rigid_instant
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.restitution import RestitutionDynamics
-from bouncing_ball.models.setting import PAPER, Setting
+from bouncing_ball.models.setting import PAPER, Setting, require_setting
 from bouncing_ball.numerics.arrays import in_words
 
 
@@ -46,6 +46,7 @@ class RestitutionModel(Model):
     name: ClassVar[str] = "restitution"
 
     def __post_init__(self):
+        require_setting(self.setting)
         given = check_restitution(self.restitution)
         if np.ndim(self.restitution):
             object.__setattr__(self, "restitution", given)

@@ -267,6 +267,12 @@ class OtherSetting(Setting):
         return np.reshape(found, self.shape)
 
 
+def require_setting(setting: Any) -> None:
+    """Raise :class:`ParameterError` unless the argument ``setting`` of a model is one."""
+    if not isinstance(setting, Setting):
+        raise ParameterError("setting = {} is not a Setting", shortened(setting))
+
+
 def require_paper(setting: Setting, what: str) -> None:
     """Raise :class:`ParameterError` in another setting than that of the paper."""
     if not setting.is_paper:

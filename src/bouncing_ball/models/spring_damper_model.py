@@ -14,7 +14,7 @@ from bouncing_ball.models.instant import Instant
 from bouncing_ball.models.linear_contact import LinearContactDynamics
 from bouncing_ball.models.model import Model
 from bouncing_ball.models.permanent_contact import permanent_contact_threshold
-from bouncing_ball.models.setting import PAPER, Setting
+from bouncing_ball.models.setting import PAPER, Setting, require_setting
 from bouncing_ball.models.spring_damper import SpringDamper
 
 
@@ -58,6 +58,7 @@ class SpringDamperModel(Model):
                 f'with contact_law("linear", frequency_ratio=…, damping_ratio=…, '
                 f'release="{self.contact.release}")'
             )
+        require_setting(self.setting)
         self.contact.require_underdamped()
         if not self.setting.is_paper:
             held_by(self.contact, self.setting).check(self.setting.waveform)

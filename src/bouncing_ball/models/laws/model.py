@@ -18,7 +18,7 @@ from bouncing_ball.models.laws.contact_law import ContactLaw
 from bouncing_ball.models.laws.signature import Signature
 from bouncing_ball.models.laws.steady_contact import permanent_contact
 from bouncing_ball.models.model import Model
-from bouncing_ball.models.setting import PAPER, Setting
+from bouncing_ball.models.setting import PAPER, Setting, require_setting
 
 
 @dataclass(frozen=True, repr=False)
@@ -50,6 +50,7 @@ class LawModel(Model):
     name: ClassVar[str] = "contact-law"
 
     def __post_init__(self) -> None:
+        require_setting(self.setting)
         require_analytic(self.law.started(1.0))
         if not self.setting.is_free:
             raise ParameterError(

@@ -128,8 +128,13 @@ def _alternatives_at(given: DesignAnswer, at: AtStep) -> list[str]:
         f"The stiffest contact with the same r within {at.allowed:g} has "
         f"{shown(at.stiffest, 'N/m')}, with a damping of {damping} and "
         f"a contact time of {shown(at.stiffest_contact_time, 's')} ({at.stiffest_steps:.4g} "
-        f"steps){deep}.",
+        f"steps{_how_exact(at)}){deep}.",
     ]
+
+
+def _how_exact(at: AtStep) -> str:
+    """How exact the number of steps is, if it is not exact to the digits that are printed."""
+    return "" if at.speed is None else ", at most 0.1 % more than it needs"
 
 
 def _looser(found: Looser | None) -> list[str]:

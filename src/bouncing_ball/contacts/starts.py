@@ -116,7 +116,8 @@ def _in_words(name: str) -> str:
     periods, impacts = repeats.split("/")
     if impacts == "1":
         return f"on the {periods}-T orbit"
-    return f"on an orbit of {periods} periods and {impacts} impacts"
+    of = f"{periods} period" if periods == "1" else f"{periods} periods"
+    return f"on an orbit of {of} and {impacts} impacts"
 
 
 def ends_of_starts(case: ResolvedContact) -> Ends:

@@ -20,6 +20,8 @@ from bouncing_ball.accuracy.errors import QUANTITIES
 from bouncing_ball.beyond.exhibits.explorer_orbits import reference_orbits
 from bouncing_ball.contacts.engines.choice import ENGINES
 from bouncing_ball.contacts.engines.engine import Physical
+from bouncing_ball.contacts.starts import interval
+from bouncing_ball.contacts.texts import shown
 from bouncing_ball.explorer.document import BOUND, to_html
 from bouncing_ball.explorer.engine_cases import as_json
 from bouncing_ball.long_run.motions import Kind
@@ -103,6 +105,9 @@ COUNTED = [
     "tab=design&m=50&f=25&acc=2&k=1e6&r=0.8&n=5",
     "tab=design&m=500&f=20&acc=0.8&k=1e5&r=0.75&n=1&engine=mujoco",
     "tab=design&m=20&f=50&acc=0.8&k=1e7&r=0.85&n=1&t=5",
+    # Of 144 balls nine end on the orbit, 6.25 %, which is rounded to the even digit.
+    "tab=design&m=20&f=50&acc=0.57&k=789568&r=0.69&n=1",
+    "tab=design&m=20&f=50&acc=0.8&k=1e5&r=0.7&n=1&release=approach",
 ]
 
 # MuJoCo's default impedance, which depends on the depth, and one that does not.
@@ -327,11 +332,18 @@ def test_the_physical_tab_says_what_the_command_prints(case, seen, answered, sho
 
 
 def test_each_verdict_has_the_shares_of_starts_beside_it(seen, answered):
-    few, some, wide = seen["counted"]
-    for state in (few, some, wide):
+    few, some, wide, tie, approach = seen["counted"]
+    for state in (few, some, wide, tie, approach):
         said = answered(state["command"])
-        assert state["share"] == said["starts"].get(f"orbit {said['n']}/1", 0.0)
-        assert state["starts"].startswith("Of 144 balls with other starts, ")
+        share = said["starts"].get(f"orbit {said['n']}/1", 0.0)
+        assert state["share"] == share
+        number = 36 if state is approach else 144
+        assert state["starts"].startswith(f"Of {number} balls with other starts, ")
+        assert share == 0 or f"{shown(share, '%')} " in state["starts"]
+    assert tie["share"] == 9 / 144 and "only 6.2 % of the starts end on it" in tie["verdict"]
+    resting = interval(round(36 * said["starts"]["permanent contact"]), 36)
+    low, high = (f"{100 * end:.0f}" for end in resting)
+    assert f"({low} to {high} %) at rest on the table" in approach["starts"]
     # A verdict on an orbit that few balls reach is not the headline.
     assert few["share"] == 0 and few["good"] == "false"
     headline = "Most balls end otherwise than on the stable 5-T orbit: no start ends on it."

@@ -8,6 +8,8 @@ from bouncing_ball.contacts.describe import Description
 from bouncing_ball.contacts.engines.drop_in_steps import Rise
 from bouncing_ball.contacts.engines.engine import ERROR, EngineSettings
 from bouncing_ball.contacts.engines.given_step import AtStep
+from bouncing_ball.contacts.engines.physical import Physical
+from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.contacts.texts import shown
 from bouncing_ball.contacts.write import Looser
 
@@ -113,7 +115,7 @@ def _retuned(at: AtStep) -> str:
 
 def _alternatives_at(given: DesignAnswer, at: AtStep) -> list[str]:
     """What else a given step allows, for parameters that were given."""
-    tuned = [] if at.is_within else [_retuned(at).rstrip(".") + "."]
+    tuned = [] if at.is_within else [f"{_retuned(at).rstrip('.')}{_retuned_as(given, at)}."]
     if at.stiffest is None:
         return tuned
     damping = shown(at.stiffest_damping, at.unit_of_damping)
@@ -128,8 +130,39 @@ def _alternatives_at(given: DesignAnswer, at: AtStep) -> list[str]:
         f"The stiffest contact with the same r within {at.allowed:g} has "
         f"{shown(at.stiffest, 'N/m')}, with a damping of {damping} and "
         f"a contact time of {shown(at.stiffest_contact_time, 's')} ({at.stiffest_steps:.4g} "
-        f"steps){deep}.",
+        f"steps{_how_exact(at)}){_written_as(given, at, at.stiffest, at.stiffest_damping)}{deep}.",
     ]
+
+
+def _retuned_as(given: DesignAnswer, at: AtStep) -> str:
+    """The parameters with the retuned damping, of the stiffness that was asked for."""
+    case = given.found.case
+    engine = case.given.engine
+    if engine is None or at.retuned is None:
+        return ""
+    parameters = dict(case.given.engine_parameters)
+    parameters.pop("time_step", None)
+    asked = engine.read(parameters, case.mass)
+    return _written_as(given, at, asked.stiffness, at.retuned)
+
+
+def _written_as(given: DesignAnswer, at: AtStep, stiffness: float, damping: float | None) -> str:
+    """The parameters of a contact in an engine whose steps damp it, which are less than that."""
+    case = given.found.case
+    engine = case.given.engine
+    if engine is None or damping is None or engine.scheme is not Scheme.COMPENSATED:
+        return ""
+    if at.speed is not None:
+        return ""
+    contact = Physical(case.mass, stiffness, damping)
+    values = engine.parameters(engine.for_step(contact, at.time_step))
+    said = " and ".join(f"{name} = {value:.6g}" for name, value in values.items())
+    return f", written as {said}"
+
+
+def _how_exact(at: AtStep) -> str:
+    """How exact the number of steps is, if it is not exact to the digits that are printed."""
+    return "" if at.speed is None else ", at most 0.1 % more than it needs"
 
 
 def _looser(found: Looser | None) -> list[str]:

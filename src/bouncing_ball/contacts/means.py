@@ -25,6 +25,7 @@ from bouncing_ball.long_run.motions import Kind
 from bouncing_ball.long_run.sampled_means import (
     Estimate,
     SampleSize,
+    Starts,
     advance,
     quantile,
     sample_sizes,
@@ -272,9 +273,9 @@ def _is_of_impact(law: ContactLaw, speed: float) -> bool:
 def _changes(
     case: ResolvedContact, ends: Mapping[str, End], first: FirstImpact
 ) -> dict[str, dict[str, Mean]] | None:
-    """The errors of the means in the changed cases, of the motions on which a ball with the same
-    start ends there, from smaller samples; None if a ball rests, or if the linear contact in place
-    of a law has another kind of motion.
+    """The errors of the means in the changed cases, from smaller samples. Their motions are those
+    on which a ball with the same start ends, or of balls beside the motion of a law. None if a ball
+    rests, or if the linear contact in place of a law has another kind of motion.
     """
     exact_end, *_ = ends.values()
     all_changed = _changed(case, exact_end)
@@ -289,7 +290,8 @@ def _changes(
         lam = changed.table.amplitude
         # A ball beside a table that moves less would rise from it.
         start = first._replace(velocity=min(first.velocity, lam * math.cos(first.phase)))
-        there = {model: end_of(changed, model, start) for model in list(changed.models)[:2]}
+        there = {model: end_of(changed, model, start) for model in list(changed.models)[1:2]}
+        there = {next(iter(changed.models)): _beside(changed, exact_end, start)} | there
         if name == NO_CHANGE and [end.kind.kind for end in there.values()] != kinds:
             return None
         if not all(end.impacts.phase.size for end in there.values()):
@@ -307,6 +309,16 @@ def _changes(
             each: Mean(float(error[k]), float(margin[k])) for k, each in enumerate(_MEANS)
         }
     return found
+
+
+def _beside(changed: ResolvedContact, end: End, start: FirstImpact) -> End:
+    """The motion of a changed contact: for a law, whose balls take long to follow, that of balls
+    which start beside the impacts of a motion without a change, if this does not repeat.
+    """
+    if changed.law is None or not end.is_sampled:
+        return end_of(changed, next(iter(changed.models)), start)
+    impacts = Starts.of_path(np.array(end.impacts), changed.table.amplitude)
+    return end._replace(impacts=impacts)
 
 
 def _sample_sizes(sampling: Sampling, balls: int, ends: Iterable[End]) -> list[SampleSize]:

@@ -104,8 +104,8 @@ def _notes_on_law(law: ContactLaw, case: ResolvedContact, family: ComparedOrbit)
         return [_cost_of(law, case, family)]
     if isinstance(law, SpringDamper):
         return [
-            "the damper acts on approach only; the ϖ that is needed, and the motions of balls with "
-            "other starts, are those of a linear contact with the same r and duration"
+            "the damper acts on approach only; the ϖ that is needed is that of a linear contact "
+            "with the same r and duration"
         ]
     hertz = isinstance(law, Tsuji)
     name = "Hertz contact with Tsuji's damping" if hertz else f"{law.name} contact"

@@ -1,10 +1,17 @@
 """On which motions balls end that start from an even grid of impacts, and with which shares.
 
 The grid is over the phase of the table and the speed of the first impact. It is followed on the
-exact linear contact. For another law it is the linear contact with the same r and duration, because
-the law itself would take a hundred times as long.
+contact itself. An impact on a contact law takes a hundred times as long as one on a linear contact,
+so that a law has fewer starts; its shares then have Wilson's intervals (E. B. Wilson, Journal of
+the American Statistical Association 22, 1927), which for k of N starts are ::
+
+    (k + z²/2 ± z √(k (N - k)/N + z²/4))/(N + z²),    z = 1.96 for 95 %
+
+They hold for random starts. Those of an even grid are nearer to the shares of all starts, unless
+the basins are finer than the grid.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,13 +20,17 @@ from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.texts import shown
 from bouncing_ball.long_run.basins import MotionName, basins
 from bouncing_ball.long_run.motions import Kind
-from bouncing_ball.models.spring_damper_model import SpringDamperModel
 
-# Starts along each axis, and the impacts for which each ball is followed.
+# Starts along each axis, also of a contact law, of which 144 starts take some twenty seconds, and
+# the impacts for which each ball is followed: after 250 some that approach an orbit are not known.
 _STARTS = 12
+_STARTS_OF_LAW = 6
 _IMPACTS = 300
 FEW = 0.1
-"""The share of starts below which few balls reach an orbit; its standard error is 2.5 %."""
+"""The share of starts below which few balls reach an orbit; its standard error is 2.5 %, and 5 %
+with the starts of a contact law."""
+# The quantile of a normal distribution for intervals of 95 %.
+_QUANTILE = 1.96
 # Motions that are named one by one.
 _NAMED = 3
 
@@ -37,35 +48,60 @@ _WORDS = {
 class Ends:
     """The ``shares`` of starts that end on each motion, the greatest first, by its name: kind, and
     periods/impacts after which it repeats. ``first`` is the phase and the velocity of a start that
-    ends on the first one. ``balls`` is the number of starts, and ``is_linear`` tells whether they
-    are those of the contact itself.
+    ends on the first one. ``balls`` is the number of starts.
     """
 
     shares: dict[str, float]
     first: tuple[float, float]
     balls: int
-    is_linear: bool
 
     def of_orbit(self, n: int) -> float:
         """The share of starts that end on the n-T orbit."""
         return self.shares.get(_name(MotionName(Kind.ORBIT, n, 1)), 0.0)
 
     @property
+    def is_small(self) -> bool:
+        """Whether the starts are so few that the shares have intervals."""
+        return self.balls < _STARTS * _STARTS
+
+    @property
     def sentence(self) -> str:
-        """The shares in one sentence."""
+        """The shares in one sentence, those of few starts with their intervals."""
         by_words: dict[str, float] = {}
         for name, share in self.shares.items():
             words = _in_words(name)
             by_words[words] = by_words.get(words, 0.0) + share
         order = sorted(by_words.items(), key=lambda item: -item[1])
         (most, share), *less = order[:_NAMED]
-        parts = [f"{shown(share, '%')} end {most}"]
-        parts += [f"{shown(share, '%')} {words}" for words, share in less]
+        parts = [f"{self._shown(share)} end {most}"]
+        parts += [f"{self._shown(share)} {words}" for words, share in less]
         left = 1 - sum(share for _, share in order[:_NAMED])
         if len(order) > _NAMED:
-            parts.append(f"{shown(left, '%')} on others")
-        contact = "" if self.is_linear else " of the linear contact with this r and duration"
-        return f"Of {self.balls} balls{contact} with other starts, {', '.join(parts)}."
+            parts.append(f"{self._shown(left)} on others")
+        about = "; the ranges are intervals of 95 % for so few balls" if self.is_small else ""
+        return f"Of {self.balls} balls with other starts, {', '.join(parts)}{about}."
+
+    def _shown(self, share: float) -> str:
+        """A share, with the interval of few starts."""
+        if not self.is_small:
+            return shown(share, "%")
+        low, high = interval(round(share * self.balls), self.balls)
+        return f"{shown(share, '%')} ({100 * low:.0f} to {100 * high:.0f} %)"
+
+
+def interval(count: int, number: int) -> tuple[float, float]:
+    """Wilson's interval of 95 % for a share, of which ``count`` of a ``number`` of starts are seen.
+
+    Examples
+    --------
+    >>> [round(end, 3) for end in interval(18, 36)], [round(end, 3) for end in interval(36, 36)]
+    ([0.345, 0.655], [0.904, 1.0])
+    """
+    square = _QUANTILE * _QUANTILE
+    spread = _QUANTILE * math.sqrt(count * (number - count) / number + square / 4)
+    middle = count + square / 2
+    whole = number + square
+    return (middle - spread) / whole, (middle + spread) / whole
 
 
 def _name(motion: MotionName) -> str:
@@ -80,7 +116,8 @@ def _in_words(name: str) -> str:
     periods, impacts = repeats.split("/")
     if impacts == "1":
         return f"on the {periods}-T orbit"
-    return f"on an orbit of {periods} periods and {impacts} impacts"
+    of = f"{periods} period" if periods == "1" else f"{periods} periods"
+    return f"on an orbit of {of} and {impacts} impacts"
 
 
 def ends_of_starts(case: ResolvedContact) -> Ends:
@@ -96,7 +133,9 @@ def ends_of_starts(case: ResolvedContact) -> Ends:
     ({'permanent contact': 1.0}, 'Of 144 balls with other starts, 100 % end at rest on the table.')
     """
     lam = case.table.amplitude
-    found = basins(SpringDamperModel(case.linear), lam, _STARTS, impacts=_IMPACTS)
+    exact, *_ = case.models.values()
+    starts = _STARTS if case.law is None else _STARTS_OF_LAW
+    found = basins(exact, lam, starts, impacts=_IMPACTS)
     order = np.argsort(-found.share, kind="stable")
     row, column = np.argwhere(found.which == order[0])[0]
     phase = float(found.phase[column])
@@ -105,5 +144,4 @@ def ends_of_starts(case: ResolvedContact) -> Ends:
         shares={_name(found.motions[k]): float(found.share[k]) for k in order},
         first=(phase, float(velocity)),
         balls=int(found.which.size),
-        is_linear=case.law is None,
     )

@@ -8,14 +8,6 @@ const isApproach = contact => contact.release === "approach";
 const partOf = ({omega, zeta}, rising) =>
   ({omega, zeta: rising ? 0 : zeta, release: "displacement", sine: 0});
 
-// The linear contact with the r and the duration of the free impact: SpringDamper.linear.
-function linearOf(contact) {
-  if (!isApproach(contact)) return contact;
-  const unit = contactOf(ownRestitution(contact), 1, "displacement");
-  const durations = [unit, contact].map(one => freeAngle(one) / dampedFrequency(one));
-  return {...unit, omega: durations[0] / durations[1]};
-}
-
 // ---- Orbits. δ and δ′ are affine in u, Λ cos φ and Λ sin φ: rows of their factors and a constant.
 const sumOf = (...terms) => [0, 1, 2, 3].map(k => terms.reduce((sum, [factor, row]) => sum + factor * row[k], 0));
 const TABLE_ROWS = {x: [0, 1, 0, 0], y: [0, 0, 1, 0]};
@@ -131,13 +123,14 @@ function partFrom(contact, rising, amplitude, phase, d, u) {
     const pull = ty - 1 - loss * speed - stiffness * gap, push = tx - loss * pull - stiffness * speed;
     return [gap, speed, pull, push, -ty - loss * push - stiffness * pull];
   };
-  const first = (order, sign) => firstZero(s => {
+  // A ball that turns before its release is not followed to a release that an undamped spring may not have.
+  const first = (order, sign, until = Infinity) => firstZero(s => {
     const [value, v, second, third] = derivatives(s).slice(order).map(z => sign * z);
     const bound = stiffness * omega ** order * envelope * Math.exp(-loss / 2 * s);
-    return {y: s === 0 ? Math.min(value, 0) : value, v, a: second, j: third, ended: false,
+    return {y: s === 0 ? Math.min(value, 0) : value, v, a: second, j: third, ended: s >= until,
       most: [bound + steady, omega * bound + steady, stiffness * bound + steady]};
   }, 0);
-  return {contact: part, point, turn: () => first(1, rising ? -1 : 1), release: () => first(0, 1)};
+  return {contact: part, point, turn: () => first(1, rising ? -1 : 1), release: until => first(0, 1, until)};
 }
 
 // A contact that turns so often does not end, or is not known to; one that stays repeats itself.
@@ -148,7 +141,7 @@ function departByApproach(contact, amplitude, phase, u) {
   let start = 0, d = 0, v = u;
   for (let k = 0; k < MOST_TURNS; k++) {
     const rising = k % 2 === 1, {turn, release, ...part} = partFrom(contact, rising, amplitude, phase + start, d, v);
-    const turned = turn(), released = rising ? release() : Infinity, time = Math.min(turned, released);
+    const turned = turn(), released = rising ? release(turned) : Infinity, time = Math.min(turned, released);
     parts.push({start, ...part});
     if (!Number.isFinite(time)) return stays(true);
     const {gap, speed} = contactState(part.contact, part.point, time);

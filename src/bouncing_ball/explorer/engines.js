@@ -80,15 +80,25 @@ function stepsFor(scheme, contact, error) {
   return good;
 }
 
+// The nearest number of so many digits. Of two that are as near, it is the one whose last digit is
+// even, as in Python; toPrecision takes the larger one. A hundred more digits show all of a double.
+function nearest(x, digits) {
+  if (x === 0 || !Number.isFinite(x)) return x;
+  const [mantissa, power] = Math.abs(x).toExponential(100).split("e"), all = mantissa.replace(".", "");
+  const isTie = /^50*$/.test(all.slice(digits)), isEven = all[digits - 1] % 2 === 0;
+  return isTie && isEven ? Math.sign(x) * Number(`${all.slice(0, digits)}e${power - digits + 1}`)
+    : Number(x.toPrecision(digits));
+}
+
+const rounded = x => nearest(x, 12);
+
 // A number in so many digits, as Python's format g writes it.
 function general(x, digits) {
   if (x === 0) return "0";
-  const [, power] = x.toExponential(digits - 1).split("e");
-  if (power >= -4 && power < digits) return String(Number(x.toPrecision(digits)));
-  const [number, sign] = [x.toExponential(digits - 1).split("e")[0], power < 0 ? "-" : "+"];
-  return `${Number(number)}e${sign}${String(Math.abs(power)).padStart(2, "0")}`;
+  const near = nearest(x, digits), [number, power] = near.toExponential().split("e");
+  if (power >= -4 && power < digits) return String(near);
+  return `${number}e${power < 0 ? "-" : "+"}${String(Math.abs(power)).padStart(2, "0")}`;
 }
-const rounded = x => Number(x.toPrecision(12));
 
 // A contact without an answer: why, in the words of the package.
 class Refused extends Error {}

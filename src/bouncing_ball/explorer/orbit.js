@@ -189,8 +189,8 @@ function notesOf(found, {n}, one) {
   const [orbit] = found.orbits, {release, zeta, omega} = found.contact, name = `${n}-T orbit`;
   const admissible = sampledAdmissible(orbit);
   return [...one.remarks,
-    ...release === "approach" ? ["the damper acts on approach only; the ϖ that is needed, and the motions of balls with "
-      + "other starts, are those of a linear contact with the same r and duration"] : [],
+    ...release === "approach" ? ["the damper acts on approach only; the ϖ that is needed is that of a linear contact with "
+      + "the same r and duration"] : [],
     ...!orbit.exists ? [`at this Λ the contact has no ${name}`]
       : orbit.is_stable && admissible ? [] : [`the ${name} is `
         + `${admissible ? "unstable" : "inadmissible (an earlier impact occurs)"}, so that no ball stays on it`],

@@ -139,7 +139,7 @@ document.querySelectorAll("input[type=number]").forEach(typed => typed.addEventL
 }));
 document.querySelectorAll("input[type=range]").forEach(slider => slider.addEventListener("input", () => {
   const {name} = slider.dataset, value = Number(slider.value);
-  change(name, name === "w" ? Number((10 ** value).toPrecision(4)) : value);
+  change(name, name === "w" ? nearest(10 ** value, 4) : value);
 }));
 for (const name of TEXTS) $(name).addEventListener("input", () => change(name, $(name).value));
 for (const name of SELECTS) $(name).addEventListener("change", () => change(name, $(name).value));

@@ -2,9 +2,11 @@
 "use strict";
 
 // ---- Numbers in words.
-const shown = (x, digits = 6) => Number.isFinite(x) ? String(Number(x.toPrecision(digits))) : "none";
+const shown = (x, digits = 6) => Number.isFinite(x) ? String(nearest(x, digits)) : "none";
+// A share in two digits, and above 99.5 % as a whole number: bouncing_ball.contacts.texts.
 const percent = x => !Number.isFinite(x) ? "none"
-  : x > 0 && x < 1e-5 ? "less than 0.001 %" : `${x < 0.995 ? Number((100 * x).toPrecision(2)) : (100 * x).toFixed(0)} %`;
+  : x > 0 && x < 1e-5 ? "less than 0.001 %"
+    : `${nearest(100 * x, x < 0.995 ? 2 : String(Math.trunc(100 * x)).length)} %`;
 
 // An error with its sign, as in `bouncing-ball design`.
 const signed = x => {
@@ -20,7 +22,7 @@ function inPlaceOf(predicted, exact, unit) {
 }
 
 const prefixPower = x => x === 0 ? 0
-  : Math.min(9, Math.max(-9, 3 * Math.floor(Math.log10(Math.abs(Number(x.toPrecision(4)))) / 3)));
+  : Math.min(9, Math.max(-9, 3 * Math.floor(Math.log10(Math.abs(nearest(x, 4))) / 3)));
 function prefixed(x, unit, digits = 4, power = prefixPower(x)) {
   if (!Number.isFinite(x)) return "none";
   const prefixes = {9: "G", 6: "M", 3: "k", 0: "", "-3": "m", "-6": "µ", "-9": "n"};

@@ -1,5 +1,6 @@
 """Parameters of an engine that contain its time step: the range of r at this step."""
 
+import re
 from types import SimpleNamespace
 
 import numpy as np
@@ -8,6 +9,7 @@ from asked_contacts import answered
 from engine_runs import RUN, Trial
 from installed_engines import only_if_installed
 
+from bouncing_ball.cli.design_text import lines
 from bouncing_ball.contacts.engines.engine import filled, text_of
 from bouncing_ball.errors import ModelError
 
@@ -83,3 +85,21 @@ def test_the_engine_itself_has_this_range(name, parameters, step):
     # Instants 0.01 steps apart, at a slope of r of up to 1 in a step.
     assert (at.least, at.most) == pytest.approx((min(found), max(found)), abs=0.01)
     assert at.least - 1e-3 <= min(found) and max(found) <= at.most + 1e-3
+
+
+def test_a_retuned_contact_is_said_in_parameters_that_have_its_r():
+    """Gazebo's steps damp, so that its parameters have less damping than the contact."""
+    given = {"mass": M, "from_engine": "gazebo", "parameters": {"kp": 1e5, "kd": 50.0}}
+    answer = answered(**given, time_step=1e-3)
+    text = "\n".join(lines(answer))
+    found = re.search(
+        r"the mean r is \S+ at this step, written as kp = (\S+) and kd = (\S+)\.", text
+    )
+    assert found
+    kp, kd = map(float, found.groups())
+    many = [implicit_euler(kp / 2, 2 * kd, 1e-3, f) for f in np.linspace(1e-6, 1, 2001)]
+    # The instants are those above, and the parameters have six digits.
+    assert np.mean(many) == pytest.approx(answer.at_step.restitution, abs=1e-3)
+    # The parameters that were given lose more.
+    before = [implicit_euler(5e4, 100.0, 1e-3, f) for f in np.linspace(1e-6, 1, 201)]
+    assert np.mean(before) < answer.at_step.restitution - 0.02

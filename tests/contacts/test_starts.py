@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball.contacts.resolved import ResolvedContact
-from bouncing_ball.contacts.starts import Ends, ends_of_starts, interval
+from bouncing_ball.contacts.starts import SharesOfStarts, ends_of_starts, interval
 from bouncing_ball.contacts.table import TableMotion
 from bouncing_ball.models.laws.hertzian import Tsuji, tsuji_damping
 from bouncing_ball.models.spring_damper import SpringDamper
@@ -26,12 +26,14 @@ def test_an_interval_ends_where_the_share_seen_is_two_deviations_away(count, num
 
 
 def test_few_starts_have_intervals_and_many_have_none():
-    of_few = Ends({"orbit 1/1": 0.5, "chaotic": 0.5}, (0.0, -1.0), 36).sentence
+    of_few = SharesOfStarts({"orbit 1/1": 0.5, "chaotic": 0.5}, (0.0, -1.0), 36).sentence
     assert of_few == (
         "Of 36 balls with other starts, 50 % (34 to 66 %) end on the 1-T orbit, "
         "50 % (34 to 66 %) in chaotic motion; the ranges are intervals of 95 % for so few balls."
     )
-    of_many = Ends({"orbit 1/1": 9 / 144, "chaotic": 135 / 144}, (0.0, -1.0), 144).sentence
+    of_many = SharesOfStarts(
+        {"orbit 1/1": 9 / 144, "chaotic": 135 / 144}, (0.0, -1.0), 144
+    ).sentence
     assert (
         "94 % end in chaotic motion, 6.2 % on the 1-T orbit." in of_many
         and "interval" not in of_many

@@ -17,7 +17,7 @@ from bouncing_ball.contacts.question import Question
 from bouncing_ball.contacts.resolve import resolve
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.rows import Listed
-from bouncing_ball.contacts.starts import FEW, Ends, ends_of_starts
+from bouncing_ball.contacts.starts import FEW, SharesOfStarts, ends_of_starts
 from bouncing_ball.contacts.table import Table
 from bouncing_ball.contacts.verdict import assessed, judged_choice
 from bouncing_ball.contacts.verdict_on_motion import (
@@ -108,7 +108,7 @@ class Assessment:
     motion: FinalMotion
     case: ResolvedContact
     n: int
-    ends: Ends
+    ends: SharesOfStarts
     chosen: int | None = None
     no_orbit: str = ""
     hint: str = ""
@@ -301,7 +301,7 @@ def _stays(one: ComparedOrbit) -> bool:
 
 
 def _judged(
-    found: tuple[ComparedOrbit, ...], choice: Choice | None, ends: Ends | None
+    found: tuple[ComparedOrbit, ...], choice: Choice | None, ends: SharesOfStarts | None
 ) -> ComparedOrbit:
     """The family of the verdict: that of the choice, or the first whose orbit is stable and
     admissible, and on which not few balls end, or else is stable, or exists.

@@ -16,7 +16,7 @@ _IMPACTS = 600
 _IMPACTS_OF_LAW = 250
 
 
-class EndKind(NamedTuple):
+class EndingKind(NamedTuple):
     """The kind of a motion, with the periods and impacts after which it repeats, or 0."""
 
     kind: str
@@ -31,12 +31,12 @@ class FirstImpact(NamedTuple):
     velocity: float
 
 
-class End(NamedTuple):
+class Ending(NamedTuple):
     """The kind of the motion on which a ball ends, impacts of this motion in order, and whether
     rounding errors decide on its period.
     """
 
-    kind: EndKind
+    kind: EndingKind
     impacts: Starts
     is_unresolved: bool = False
 
@@ -51,12 +51,12 @@ def followed_impacts(case: ResolvedContact) -> int:
     return _IMPACTS if case.law is None else _IMPACTS_OF_LAW
 
 
-def end_of(case: ResolvedContact, name: str, first: FirstImpact) -> End:
+def end_of(case: ResolvedContact, name: str, first: FirstImpact) -> Ending:
     """The motion on which a ball of a model ends."""
     lam = case.table.amplitude
     path = np.empty((3, followed_impacts(case)))
     found = final_motions(case.models[name], lam, *first, impacts=path.shape[1], path=path)
-    kind = EndKind(str(found.kind), int(found.periods), int(found.impacts))
+    kind = EndingKind(str(found.kind), int(found.periods), int(found.impacts))
     followed = int(found.followed)
     seen = path[1:, :followed]
     unresolved = bool(found.is_unresolved())
@@ -67,11 +67,11 @@ def end_of(case: ResolvedContact, name: str, first: FirstImpact) -> End:
     else:
         last = np.array([[found.end_phase], [found.end_velocity]])
         of_motion = np.concatenate([seen[:, followed // 2 :], last], axis=1)
-    return End(kind, Starts.of_path(of_motion, lam), unresolved)
+    return Ending(kind, Starts.of_path(of_motion, lam), unresolved)
 
 
-def on_orbit(case: ResolvedContact, n: int) -> End:
+def on_orbit(case: ResolvedContact, n: int) -> Ending:
     """The n-T orbit of the restitution model."""
     orbit = n_t.orbit(case.models["restitution"], n, case.table.amplitude)
     impact = Starts(np.atleast_1d(orbit.phase), np.atleast_1d(orbit.impact_velocity))
-    return End(EndKind(str(Kind.ORBIT), n, 1), impact)
+    return Ending(EndingKind(str(Kind.ORBIT), n, 1), impact)

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball.contacts.ends import End, FirstImpact, end_of
+from bouncing_ball.contacts.ends import Ending, FirstImpact, end_of
 from bouncing_ball.contacts.families import prediction_error
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.errors import ModelError
@@ -90,7 +90,7 @@ _STIFFNESS = "stiffness"
 
 def compared_means(
     case: ResolvedContact,
-    ends: Mapping[str, End],
+    ends: Mapping[str, Ending],
     tolerance: float,
     most: int | None,
     first: FirstImpact,
@@ -132,7 +132,7 @@ def compared_means(
     }
 
 
-def _are_unlike(ends: Mapping[str, End]) -> bool:
+def _are_unlike(ends: Mapping[str, Ending]) -> bool:
     """Whether one of the motions is periodic and the other is not, so that no mean decides."""
     kinds = {end.kind.kind for end in ends.values()}
     periodic = {str(Kind.ORBIT), str(Kind.SUBHARMONIC)}
@@ -143,7 +143,7 @@ NO_CHANGE = "no change"
 """The name of the linear contact in place of a law, among the changes."""
 
 
-def _changed(case: ResolvedContact, end: End) -> dict[str, ResolvedContact]:
+def _changed(case: ResolvedContact, end: Ending) -> dict[str, ResolvedContact]:
     """The case with r, k or g changed by a thousandth, the others as they are.
 
     r of a contact law is changed at the mean speed of the impacts of the motion. In place of a law
@@ -165,7 +165,7 @@ def _changed(case: ResolvedContact, end: End) -> dict[str, ResolvedContact]:
     return found
 
 
-def _impact_speed(case: ResolvedContact, end: End) -> float:
+def _impact_speed(case: ResolvedContact, end: Ending) -> float:
     """The mean relative speed of the impacts of a motion, dimensionless."""
     speed, _ = table(end.impacts.phase, case.table.amplitude)
     return float(np.mean(speed - end.impacts.velocity))
@@ -271,7 +271,7 @@ def _is_of_impact(law: ContactLaw, speed: float) -> bool:
 
 
 def _changes(
-    case: ResolvedContact, ends: Mapping[str, End], first: FirstImpact
+    case: ResolvedContact, ends: Mapping[str, Ending], first: FirstImpact
 ) -> dict[str, dict[str, Mean]] | None:
     """The errors of the means in the changed cases, from smaller samples. Their motions are those
     on which a ball with the same start ends, or of balls beside the motion of a law. None if a ball
@@ -311,7 +311,7 @@ def _changes(
     return found
 
 
-def _beside(changed: ResolvedContact, end: End, start: FirstImpact) -> End:
+def _beside(changed: ResolvedContact, end: Ending, start: FirstImpact) -> Ending:
     """The motion of a changed contact: for a law, whose balls take long to follow, that of balls
     which start beside the impacts of a motion without a change, if this does not repeat.
     """
@@ -321,7 +321,7 @@ def _beside(changed: ResolvedContact, end: End, start: FirstImpact) -> End:
     return end._replace(impacts=impacts)
 
 
-def _sample_sizes(sampling: Sampling, balls: int, ends: Iterable[End]) -> list[SampleSize]:
+def _sample_sizes(sampling: Sampling, balls: int, ends: Iterable[Ending]) -> list[SampleSize]:
     """The sizes of the sample at which the means are examined.
 
     Without a sample there is one look at one ball. Beside a lap on which rounding errors decide, a
@@ -336,7 +336,7 @@ def _sample_sizes(sampling: Sampling, balls: int, ends: Iterable[End]) -> list[S
 
 
 def _sums(
-    case: ResolvedContact, name: str, end: End, samples: list[SampleSize]
+    case: ResolvedContact, name: str, end: Ending, samples: list[SampleSize]
 ) -> Iterator[np.ndarray]:
     """The sums over the motion of a model at each look: of the balls of a sample, of sections of a
     lap, or of one repetition.
@@ -361,7 +361,7 @@ def _before(case: ResolvedContact, least: int) -> int:
     return max(least, forgotten)
 
 
-def _estimate(end: End, sums: np.ndarray) -> Estimate:
+def _estimate(end: Ending, sums: np.ndarray) -> Estimate:
     """The means of a motion and their errors.
 
     The lap on which a ball locks is another one with other rounding errors, and so differs from the

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball.contacts.ends import End, FirstImpact, end_of, followed_impacts, on_orbit
+from bouncing_ball.contacts.ends import Ending, FirstImpact, end_of, followed_impacts, on_orbit
 from bouncing_ball.contacts.families import ComparedOrbit
 from bouncing_ball.contacts.means import BESIDE, Mean, compared_means
 from bouncing_ball.contacts.resolved import ResolvedContact
@@ -164,7 +164,7 @@ def _tops(sequence: ImpactSequence) -> np.ndarray:
     return sequence.release_displacement + lift + rise * rise / 2
 
 
-def _greatest(case: ResolvedContact, name: str, end: End) -> float:
+def _greatest(case: ResolvedContact, name: str, end: Ending) -> float:
     """Greatest height of a motion that repeats, in m."""
     once = end.impacts.last()
     found = case.models[name].simulate(

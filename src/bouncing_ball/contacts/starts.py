@@ -45,7 +45,7 @@ _WORDS = {
 
 
 @dataclass(frozen=True)
-class Ends:
+class SharesOfStarts:
     """The ``shares`` of starts that end on each motion, the greatest first, by its name: kind, and
     periods/impacts after which it repeats. ``first`` is the phase and the velocity of a start that
     ends on the first one. ``balls`` is the number of starts.
@@ -120,7 +120,7 @@ def _in_words(name: str) -> str:
     return f"on an orbit of {of} and {impacts} impacts"
 
 
-def ends_of_starts(case: ResolvedContact) -> Ends:
+def ends_of_starts(case: ResolvedContact) -> SharesOfStarts:
     """The motions on which balls with a grid of starts end.
 
     Examples
@@ -140,7 +140,7 @@ def ends_of_starts(case: ResolvedContact) -> Ends:
     row, column = np.argwhere(found.which == order[0])[0]
     phase = float(found.phase[column])
     velocity = lam * np.cos(phase) - float(found.speed[row])
-    return Ends(
+    return SharesOfStarts(
         shares={_name(found.motions[k]): float(found.share[k]) for k in order},
         first=(phase, float(velocity)),
         balls=int(found.which.size),

@@ -143,7 +143,7 @@ def test_grazing_flights_are_where_the_simulation_changes(case):
 
 def _lowest(one):
     """The smallest local minimum of δ in the flight, by samples."""
-    time = np.linspace(0, one.flight_time, 4001)
+    time = np.linspace(0, one.flight_time, 801)
     height, _ = one.flight_path(time)
     table = one.amplitude * one.model.place.waveform.height(one.phase + time)
     gap = height - table

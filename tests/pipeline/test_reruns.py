@@ -56,7 +56,7 @@ def test_a_parameter_changes_the_arguments_of_its_studies_only(keys, value, expe
         ("paper/claims/verdict.py", {"claims", "ext_verdicts"}),
         ("paper/claims/witness.py", {"witness"}),
         ("drawing/style.py", set()),
-        ("drawing/matplotlibrc", set()),
+        ("drawing/style.mplstyle", set()),
         ("pipeline/configuration_docs.py", set()),
     ],
 )
@@ -83,7 +83,7 @@ def test_the_modules_of_a_stage_are_those_that_python_imports():
 @pytest.mark.parametrize(
     ("module", "data"),
     [
-        ("bouncing_ball.drawing.style", "drawing/matplotlibrc"),
+        ("bouncing_ball.drawing.style", "drawing/style.mplstyle"),
         ("bouncing_ball.explorer.document", "explorer/model.js"),
         ("bouncing_ball.contacts.engines.engine", "contacts/engines/snippets/generic.txt"),
     ],

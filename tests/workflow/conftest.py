@@ -244,7 +244,7 @@ def cloned(shared, warm, coarse) -> Tree:
             text = text[:start] + fewer + text[end:]
         config.write_text(text, encoding="utf-8")
         # Who looks at pictures looks at those of `make`.
-        settings = "src/bouncing_ball/drawing/matplotlibrc"
+        settings = "src/bouncing_ball/drawing/style.mplstyle"
         tree.rewrite(settings, "savefig.dpi: 300", "savefig.dpi: 50")
         tree.git("init", "--quiet")
         tree.commit("All")

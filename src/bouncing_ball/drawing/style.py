@@ -12,7 +12,7 @@ from matplotlib import colormaps
 from matplotlib.colors import to_hex
 
 # Read once, because a context that is given the file reads it again and imports matplotlib.style.
-_FILE = Path(__file__).with_name("matplotlibrc")
+_FILE = Path(__file__).with_name("style.mplstyle")
 _SETTINGS = matplotlib.rc_params_from_file(_FILE, use_default_template=False)
 # The hues of Okabe and Ito, which colour-blind readers can distinguish, darkened to a
 # contrast of at least 3:1 with white, in an order in which neighbours differ in
@@ -100,7 +100,7 @@ _DRAWING = RLock()
 
 @contextmanager
 def style() -> Iterator[None]:
-    """The settings of ``matplotlibrc`` beside this module, to draw and save a figure.
+    """The settings of ``style.mplstyle`` beside this module, to draw and save a figure.
 
     Threads draw one after another.
     """

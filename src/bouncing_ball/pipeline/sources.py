@@ -56,6 +56,11 @@ _FROM = re.compile(rf"^[ \t]*from ({_PACKAGE}[\w.]*) import (\([^)]*\)|[^\n]*)",
 _IMPORT = re.compile(rf"^[ \t]*import ({_PACKAGE}[\w.]*)", re.MULTILINE)
 
 
+# The package itself imports its public functions only when a user asks for them, and a result
+# imports what draws it only when it is drawn, which no study does.
+_ON_DEMAND = {_ROOT / "__init__.py", _ROOT / "drawing" / "result.py"}
+
+
 @cache
 def imports(path: Path) -> frozenset[str]:
     """Names of modules of this package, and of objects in them, that a file imports."""
@@ -97,7 +102,7 @@ def data_beside(module: Path) -> tuple[Path, ...]:
 
     Examples
     --------
-    >>> "matplotlibrc" in [path.name for path in data_beside(_ROOT / "drawing" / "style.py")]
+    >>> "style.mplstyle" in [path.name for path in data_beside(_ROOT / "drawing" / "style.py")]
     True
     """
     return tuple(
@@ -145,8 +150,7 @@ def sources(modules: Iterable[str], files: Iterable[Path] = ()) -> list[Path]:
                 continue
             seen.add(path)
             seen.update(data_beside(path))
-            # The package itself imports its public functions only when a user asks for them.
-            if path != _ROOT / "__init__.py":
+            if path not in _ON_DEMAND:
                 pending.extend(imports(path))
     return sorted(seen, key=str)
 

@@ -288,7 +288,8 @@ def short_runs(monkeypatch):
 
     for impacts in ("_IMPACTS", "_IMPACTS_OF_LAW"):
         monkeypatch.setattr(ends, impacts, 20)
-    monkeypatch.setattr("bouncing_ball.contacts.starts._STARTS", 3)
+    for starts in ("_STARTS", "_STARTS_OF_LAW"):
+        monkeypatch.setattr(f"bouncing_ball.contacts.starts.{starts}", 3)
     monkeypatch.setattr("bouncing_ball.contacts.starts._IMPACTS", 20)
     monkeypatch.setattr(means, "_BALLS_OF_CHANGE", 4)
     few = means.Sampling(unit=4, usual=4, impacts=(8,), before=4)

@@ -6,6 +6,8 @@ from asked_contacts import answered, assessed
 from bouncing_ball import Contact, Question, Table, choose_contact
 from bouncing_ball.errors import NoOrbitError
 
+pytestmark = pytest.mark.usefixtures("short_runs")
+
 TABLE = {"frequency": "50 Hz", "acceleration": "0.8 g"}
 BALL = {"mass": "20 g", "restitution": 0.8}
 

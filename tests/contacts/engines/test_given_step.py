@@ -17,6 +17,8 @@ from bouncing_ball.contacts.engines.scheme import Scheme
 from bouncing_ball.models.damping import LINEAR, Release, damping_ratio
 from bouncing_ball.models.spring_damper import SpringDamper
 
+pytestmark = pytest.mark.usefixtures("short_runs")
+
 FRACTIONS = np.linspace(0.02, 0.98, 17).tolist()
 
 

@@ -15,6 +15,8 @@ from bouncing_ball.contacts.engines.physical import Physical
 from bouncing_ball.errors import ModelError
 from bouncing_ball.models.damping import Release
 
+pytestmark = pytest.mark.usefixtures("short_runs")
+
 GIVEN = {"point_contact_stiffness": 2e5, "hunt_crossley_dissipation": 0.5}
 ASKED = {"mass": 0.5, "from_engine": "drake", "parameters": GIVEN}
 

@@ -95,13 +95,13 @@ def test_each_table_and_figure_of_the_supplement_is_named_once(accepted):
     assert len({*captions}) == len(captions) and named == {*captions}
 
 
-@pytest.mark.parametrize("name", ["article", "supplement"])
+@pytest.mark.parametrize("name", ["article", "supplement", "motions"])
 def test_no_statement_rests_on_a_work_that_was_not_read(accepted, name):
     """Such a work may be named where the text says that it was not read, or why it is named."""
     text, _, works = accepted[name].partition("## References")
     unread = set(re.findall(r"^(\d+)\. .*\((?:Not read)[^)]*\)", works, re.MULTILINE))
     assert unread
-    said = r"could not read|found no text|because the paper refers to|nothing is said of"
+    said = r"could not read|found (no|neither) text|because the paper refers to|nothing is said of"
     for sentence in text.splitlines():
         cited = {*re.findall(r"\d+", " ".join(re.findall(r"\[(\d[\d, ]*)\]", sentence)))}
         assert not cited & unread or re.search(said, sentence), sentence

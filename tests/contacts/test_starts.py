@@ -1,6 +1,7 @@
 """The shares of starts in words: of a linear contact, and with the intervals of few starts."""
 
 from dataclasses import replace
+from statistics import NormalDist
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from bouncing_ball.contacts.table import TableMotion
 from bouncing_ball.models.laws.hertzian import Tsuji, tsuji_damping
 from bouncing_ball.models.spring_damper import SpringDamper
 
-Z = 1.96
+Z = NormalDist().inv_cdf(0.975)
 
 
 @pytest.mark.parametrize(("count", "number"), [(0, 36), (1, 36), (18, 36), (36, 36), (3, 7)])

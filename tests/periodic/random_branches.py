@@ -74,9 +74,11 @@ def _force(orbit):
     """δ″ + Λ sin φ-part of a contact: a function of δ and δ′."""
     law = orbit.model.impact_law
     if type(law).__name__ == "SpringDamper":
-        ratio, zeta = float(law.frequency_ratio), float(law.damping_ratio)
+        ratio = float(law.frequency_ratio)
+        zeta = float(law.damping_ratio)
         return lambda x, v: -(ratio**2) * x - 2 * zeta * ratio * v
-    stiffness, damping = float(law.stiffness), float(law.damping)
+    stiffness = float(law.stiffness)
+    damping = float(law.damping)
     return lambda x, v: stiffness * max(-x, 0.0) ** 1.5 * (1 - damping * v)
 
 

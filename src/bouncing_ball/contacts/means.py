@@ -290,8 +290,11 @@ def _changes(
         lam = changed.table.amplitude
         # A ball beside a table that moves less would rise from it.
         start = first._replace(velocity=min(first.velocity, lam * math.cos(first.phase)))
-        there = {model: end_of(changed, model, start) for model in list(changed.models)[1:2]}
-        there = {next(iter(changed.models)): _beside(changed, exact_end, start)} | there
+        exact_model, simple_model, *_ = changed.models
+        there = {
+            exact_model: _beside(changed, exact_end, start),
+            simple_model: end_of(changed, simple_model, start),
+        }
         if name == NO_CHANGE and [end.kind.kind for end in there.values()] != kinds:
             return None
         if not all(end.impacts.phase.size for end in there.values()):

@@ -23,8 +23,7 @@ def by_name(*laws: type[ContactLaw]) -> dict[str, type[ContactLaw]]:
 
 
 _HERTZ = (HuntCrossley, LinearHuntCrossley, Tsuji, KuwabaraKono)
-_BY_START = (LankaraniNikravesh, Flores)
-LAWS = by_name(*_HERTZ, *_BY_START, SpringDamper, ElastoBacklash, Impedance)
+LAWS = by_name(*_HERTZ, LankaraniNikravesh, Flores, SpringDamper, ElastoBacklash, Impedance)
 """The laws by their names on the command line and in calls."""
 
 

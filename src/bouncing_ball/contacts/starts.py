@@ -3,18 +3,16 @@
 The grid is over the phase of the table and the speed of the first impact. It is followed on the
 contact itself. An impact on a contact law takes a hundred times as long as one on a linear contact,
 so that a law has fewer starts; its shares then have Wilson's intervals (E. B. Wilson, Journal of
-the American Statistical Association 22, 1927), which for k of N starts are ::
-
-    (k + z²/2 ± z √(k (N - k)/N + z²/4))/(N + z²),    z = 1.96 for 95 %
+the American Statistical Association 22, 1927).
 
 They hold for random starts. Those of an even grid are nearer to the shares of all starts, unless
 the basins are finer than the grid.
 """
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 
 from bouncing_ball.contacts.resolved import ResolvedContact
 from bouncing_ball.contacts.texts import shown
@@ -29,8 +27,7 @@ _IMPACTS = 300
 FEW = 0.1
 """The share of starts below which few balls reach an orbit; its standard error is 2.5 %, and 5 %
 with the starts of a contact law."""
-# The quantile of a normal distribution for intervals of 95 %.
-_QUANTILE = 1.96
+_CONFIDENCE = 0.95
 # Motions that are named one by one.
 _NAMED = 3
 
@@ -97,11 +94,9 @@ def interval(count: int, number: int) -> tuple[float, float]:
     >>> [round(end, 3) for end in interval(18, 36)], [round(end, 3) for end in interval(36, 36)]
     ([0.345, 0.655], [0.904, 1.0])
     """
-    square = _QUANTILE * _QUANTILE
-    spread = _QUANTILE * math.sqrt(count * (number - count) / number + square / 4)
-    middle = count + square / 2
-    whole = number + square
-    return (middle - spread) / whole, (middle + spread) / whole
+    tested = scipy.stats.binomtest(count, number)
+    low, high = tested.proportion_ci(_CONFIDENCE, "wilson")
+    return float(low), float(high)
 
 
 def _name(motion: MotionName) -> str:

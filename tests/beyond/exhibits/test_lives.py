@@ -107,7 +107,8 @@ def test_the_intervals_of_differences_hold_together():
         common = random.exponential(5.0, size=(3, 1, 60))
         life = common + random.exponential(3.0, size=(3, 5, 60))
         found, _ = lives.paired_differences(life, 0.95)
-        low, high = found[:, :-1, 1], found[:, :-1, 2]
+        low = found[:, :-1, 1]
+        high = found[:, :-1, 2]
         hits += bool(np.all((low < 0) & (high > 0)))
     # Four standard deviations of the binomial count; Bonferroni may be wider than it has to.
     assert hits >= 285 - 4 * np.sqrt(300 * 0.95 * 0.05)

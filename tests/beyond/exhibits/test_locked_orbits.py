@@ -121,7 +121,8 @@ def test_the_interval_of_the_concordance_contains_the_true_share():
 def test_many_digits_find_the_laps_that_doubles_know():
     """Up to 15 impacts a double keeps digits; longer laps are in tests/long_run."""
     random = np.random.default_rng(8)
-    r, lam = random.uniform(0.1, 0.6, 40), random.uniform(1.2, 5.0, 40)
+    r = random.uniform(0.1, 0.6, 40)
+    lam = random.uniform(1.2, 5.0, 40)
     by_doubles = laps(r, lam, 15)
     short = np.flatnonzero(by_doubles.periods)[:10]
     assert short.size == 10

@@ -134,7 +134,7 @@ def walk(nodes: Nodes, ratios: np.ndarray) -> Iterator[Stride]:
     Yields
     ------
     Stride
-        The orbits at :data:`TOGETHER` values of ϖ; the last step may have fewer.
+        The orbits at :data:`TOGETHER` values of ϖ; the last stride may have fewer.
     """
     down = ratios[::-1]
     # The first step starts from the limit of t for ϖ → ∞.

@@ -241,7 +241,7 @@ def cascades(parameters: Cascades, release: Release) -> xr.Dataset:
     is ``cascade_coefficient`` (restitution, doubling), and that of the corrected model is C/ϖ²,
     where C is ``cascade_second_order``. Both are measured at two stiff contacts, and the next order
     is eliminated (Richardson). Values are NaN where a doubling was not found. ``textbook_cascade``
-    (doubling,) is Λ of a measurement.
+    (doubling,) is Λ in the textbook's diagram.
     """
     r = np.array(parameters.restitution)
     ratios = parameters.frequency_ratio.grid()
